@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Flags of every target of the project, on an interface target that is not installed.
+add_library(equidem_compiler INTERFACE)
+# Contraction to fused multiply-add is left to the compiler's taste and the machine's: without it a seed gives the same assembly
+# everywhere. Kernels that want it say so themselves.
+target_compile_options(equidem_compiler INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off)
+if(EQUIDEM_WARNINGS_AS_ERRORS)
+  target_compile_options(equidem_compiler INTERFACE -Werror)
+endif()
+if(EQUIDEM_SANITIZE)
+  target_compile_options(equidem_compiler INTERFACE -fsanitize=${EQUIDEM_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(equidem_compiler INTERFACE -fsanitize=${EQUIDEM_SANITIZE})
+endif()

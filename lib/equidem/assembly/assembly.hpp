@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Discs, the contacts that join them, and the cell they live in.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "equidem/core/vector.hpp"
+
+namespace equidem {
+
+/// A bond between disc i and an image of disc j. The contact point lies at the distance lever_i from the
+/// centre of i and lever_j from the centre of j, along the normal n from i to j.
+struct Contact {
+  std::int32_t i = 0;
+  std::int32_t j = 0;
+  std::int32_t shift_x = 0;  ///< i touches j at x_j + (shift_x Lx, shift_y Ly); 0 with a free boundary
+  std::int32_t shift_y = 0;
+  double lever_i = 0;  ///< m
+  double lever_j = 0;  ///< m
+};
+
+/// Discs chosen by name, for supports and loads. On the sides of a free assembly every disc also stands for a
+/// stretch of the side, over which a traction is spread.
+struct DiscGroup {
+  std::vector<std::int32_t> discs;        ///< ascending, without repetition
+  std::vector<double> tributary_lengths;  ///< m, one per disc; empty where the group is not a side
+};
+
+/// A contact network of discs; SI units, per metre of depth.
+struct Assembly {
+  std::string kind;           ///< "hexagonal", "square", "delaunay", "file", ...
+  std::vector<Vec2> centres;  ///< m
+  std::vector<double> radii;  ///< m
+  std::vector<Contact> contacts;
+  std::optional<Vec2> period;  ///< (Lx, Ly) in m of a periodic cell; none: free boundary
+  std::vector<double>
+      cell_areas;  ///< m², the Voronoi (power) cell of each disc, clipped to the sides where free
+  std::vector<double> facet_lengths;  ///< m, per contact: the edge its two cells share; empty where unknown
+  std::vector<double> contact_kN;  ///< Pa, per contact: overrides the springs of the case; empty: none given
+  std::vector<double> contact_kT;  ///< Pa, likewise
+  std::map<std::string, DiscGroup> groups;  ///< left, right, bottom, top, bottom_left, ... and the user's own
+
+  [[nodiscard]] std::size_t size() const { return centres.size(); }
+  [[nodiscard]] bool periodic() const { return period.has_value(); }
+  /// The branch vector l from the centre of i to the centre of (the image of) j, m.
+  [[nodiscard]] Vec2 branch(const Contact& c) const {
+    Vec2 l = centres[c.j] - centres[c.i];
+    if (period) l += Vec2{c.shift_x * period->x, c.shift_y * period->y};
+    return l;
+  }
+  /// m²: of the periodic cell, else the sum of the cells of the discs.
+  [[nodiscard]] double area() const;
+  /// Share of the area that discs cover: gamma/rho of Abe 1996.
+  [[nodiscard]] double solid_fraction() const;
+  /// Mean number of contacts of a disc, z.
+  [[nodiscard]] double coordination_number() const;
+  /// Mean radius, m: the length a by which rotations are scaled to a*theta.
+  [[nodiscard]] double mean_radius() const;
+};
+
+/// Check everything that later parts rely on: sizes agree, radii are positive and finite, contacts join two
+/// existing discs (or a disc and another image of itself) a finite, non-zero distance apart with lever arms
+/// that are not negative. \throws Error (bad_input) naming the first disc or contact that breaks this
+void check(const Assembly& assembly);
+
+/// The disc group of that name.
+/// \throws Error (bad_input) where there is none, naming those that exist
+const DiscGroup& group(const Assembly& assembly, const std::string& name);
+
+}  // namespace equidem

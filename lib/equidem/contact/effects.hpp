@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Which effects can change the answer: decided once, from the scene alone, before any loop.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
+
+namespace equidem {
+
+enum class Rotation {
+  from_scene,  ///< free where a tangential spring can turn a disc
+  free,
+  restrained,
+};
+
+/// \throws Error (bad_input) naming the choices
+Rotation rotation_from(const std::string& name);
+
+/// The effects of a scene, each active or inactive with the reason.
+struct Effects {
+  struct Entry {
+    std::string name;
+    bool active = false;
+    std::string why;
+  };
+  std::vector<Entry> entries;
+  bool tangential_springs = false;
+  bool rotation = false;  ///< rotations are unknowns
+
+  [[nodiscard]] int unknowns_per_disc() const { return rotation ? 3 : 2; }
+  /// "active: normal springs, tangential springs. inactive: rotation (kT = 0 everywhere: nothing can turn a
+  /// disc)."
+  [[nodiscard]] std::string report() const;
+};
+
+/// Normal springs always; tangential springs where some kT != 0; rotation where moreover it is not
+/// restrained. Free rotation with kT = 0 would leave rotations without stiffness: they are inert and are no
+/// unknowns.
+Effects derive_effects(const ContactSprings& springs, Rotation rotation);
+
+}  // namespace equidem

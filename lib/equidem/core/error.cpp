@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/core/error.hpp"
+
+#include <utility>
+
+namespace equidem {
+namespace {
+
+std::string sentence(const std::string& problem, const std::string& why, const std::string& remedy,
+                     const std::string& where) {
+  std::string text = where.empty() ? "" : where + ": ";
+  text += problem;
+  if (!why.empty()) text += " (" + why + ")";
+  text += ".";
+  if (!remedy.empty()) text += " " + remedy + ".";
+  return text;
+}
+
+}  // namespace
+
+Error::Error(ErrorKind kind, std::string problem, std::string why, std::string remedy, std::string where)
+    : std::runtime_error(sentence(problem, why, remedy, where)),
+      kind_(kind),
+      problem_(std::move(problem)),
+      why_(std::move(why)),
+      remedy_(std::move(remedy)),
+      where_(std::move(where)) {}
+
+Error Error::at(const std::string& where) const {
+  return where_.empty() ? Error(kind_, problem_, why_, remedy_, where) : *this;
+}
+
+void bad_input(std::string problem, std::string why, std::string remedy) {
+  throw Error(ErrorKind::bad_input, std::move(problem), std::move(why), std::move(remedy));
+}
+
+void computation_failed(std::string problem, std::string why, std::string remedy) {
+  throw Error(ErrorKind::computation_failed, std::move(problem), std::move(why), std::move(remedy));
+}
+
+}  // namespace equidem

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The one way bad input and failed computations are told. Broken promises between functions are asserted
+/// instead.
+#pragma once
+
+#include <cassert>
+#include <stdexcept>
+#include <string>
+
+namespace equidem {
+
+/// What went wrong, and the exit code of the program for it.
+enum class ErrorKind {
+  computation_failed = 1,  ///< the input was accepted, but no trustworthy answer exists or was reached
+  bad_input = 2,           ///< the input cannot be used as it is
+  interrupted = 130,       ///< the user asked to stop
+};
+
+/// A sentence for the user: "[where: ]problem (why it is one). What to do."
+class Error : public std::runtime_error {
+ public:
+  /// \param problem what is wrong, starting in lower case, without a full stop
+  /// \param why the reason for which it is a problem, without brackets; may be empty
+  /// \param remedy what the user can do, a sentence without its full stop; may be empty
+  /// \param where "file:line: key", or empty
+  Error(ErrorKind kind, std::string problem, std::string why, std::string remedy, std::string where = {});
+
+  [[nodiscard]] ErrorKind kind() const { return kind_; }
+  [[nodiscard]] const std::string& problem() const { return problem_; }
+  [[nodiscard]] const std::string& why() const { return why_; }
+  [[nodiscard]] const std::string& remedy() const { return remedy_; }
+  [[nodiscard]] const std::string& where() const { return where_; }
+  [[nodiscard]] int exit_code() const { return static_cast<int>(kind_); }
+
+  /// The same error with the place in the user's file that caused it; an error that already has one keeps it.
+  [[nodiscard]] Error at(const std::string& where) const;
+
+ private:
+  ErrorKind kind_;
+  std::string problem_, why_, remedy_, where_;
+};
+
+/// Throw an Error of kind bad_input.
+[[noreturn]] void bad_input(std::string problem, std::string why, std::string remedy);
+/// Throw an Error of kind computation_failed.
+[[noreturn]] void computation_failed(std::string problem, std::string why, std::string remedy);
+
+}  // namespace equidem

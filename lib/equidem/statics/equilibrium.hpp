@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Equilibrium of an assembly under supports and loads, by solving its assembled stiffness matrix.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/contact/effects.hpp"
+#include "equidem/contact/frame.hpp"
+#include "equidem/core/stopwatch.hpp"
+#include "equidem/statics/linear_solver.hpp"
+#include "equidem/statics/supports.hpp"
+
+namespace equidem {
+
+/// Force and moment by which a support holds a disc.
+struct Reaction {
+  std::int32_t disc = 0;
+  Vec2 force;         ///< N/m
+  double moment = 0;  ///< N
+};
+
+/// The state of rest of one load case, with what is needed to trust it.
+struct Equilibrium {
+  std::vector<DiscMotion> motions;           ///< per disc
+  std::vector<ContactForce> contact_forces;  ///< per contact
+  std::vector<Reaction> reactions;           ///< discs with a held component
+  std::vector<double>
+      rotation_moments;  ///< N, per disc: moment that holds it where rotation is restrained; else empty
+  double relative_residual =
+      0;                ///< |f - K u| over |f| (prescribed motions included in f), 2-norms over the unknowns
+  int refinements = 0;  ///< steps of iterative refinement done
+  std::int64_t unknowns = 0;
+  std::int64_t negative_pivots = 0;  ///< negative eigenvalues of K (Sylvester's law of inertia)
+  /// Negative eigenvalues beyond the one that each rotation brings where kT < 0: modes by which the assembly
+  /// would give way.
+  std::int64_t unstable_modes = 0;
+  double pivot_growth = 0;     ///< largest |L_ij| of the factorization
+  double factor_nonzeros = 0;  ///< entries of L
+  double factor_bytes = 0;
+  std::string solver;  ///< the back end and factorization used
+  StageTimes times;    ///< assembly of K, ordering, analysis, factorization, solve, refinement, ...
+
+  /// Total elastic energy, N (J/m per m).
+  double energy = 0;
+  /// A few lines for people.
+  [[nodiscard]] std::string report() const;
+};
+
+struct EquilibriumOptions {
+  Rotation rotation = Rotation::from_scene;
+  SolverOptions solver;
+};
+
+/// A factorized stiffness matrix of an assembly with its supports: any number of load cases, one
+/// factorization.
+class EquilibriumSolver {
+ public:
+  /// Decide the unknowns, check the supports, assemble K, order, analyze and factorize.
+  /// The assembly and the springs must outlive this object.
+  /// \throws Error (bad_input) on discs without contacts, an assembly in pieces of which some can move
+  /// freely, a rigid motion
+  ///         that the supports leave free (named), a mechanism (named); Error (computation_failed) where the
+  ///         factor would not fit into memory or K is singular
+  EquilibriumSolver(const Assembly& assembly, const ContactSprings& springs,
+                    std::span<const Support> supports, const EquilibriumOptions& options = {});
+  ~EquilibriumSolver();
+  EquilibriumSolver(EquilibriumSolver&&) noexcept;
+
+  /// \throws Error (bad_input) where a load names no group or an empty one, or acts on a component that is
+  /// held
+  [[nodiscard]] Equilibrium solve(const LoadCase& loads) const;
+  [[nodiscard]] const Effects& effects() const;
+  [[nodiscard]] std::int64_t unknowns() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// One load case.
+Equilibrium solve_equilibrium(const Assembly& assembly, const ContactSprings& springs,
+                              std::span<const Support> supports, const LoadCase& loads,
+                              const EquilibriumOptions& options = {});
+
+}  // namespace equidem

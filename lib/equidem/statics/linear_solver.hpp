@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Choice of the linear solver.
+#pragma once
+
+#include <string>
+
+namespace equidem {
+
+/// The back ends; `solver_method_names()` lists them for users.
+enum class SolverMethod {
+  automatic,     ///< multifrontal: Cholesky where no spring is negative, else L D L^T
+  multifrontal,  ///< ours: geometric nested dissection on the graph of discs, threads over subtrees
+  cholmod,       ///< SuiteSparse's supernodal Cholesky with our ordering
+  umfpack,       ///< SuiteSparse's unsymmetric LU with partial pivoting, our ordering left to it
+};
+
+/// \throws Error (bad_input) naming the choices
+SolverMethod solver_method_from(const std::string& name);
+std::string to_string(SolverMethod method);
+
+struct SolverOptions {
+  SolverMethod method = SolverMethod::automatic;
+  int max_refinements = 4;  ///< steps of iterative refinement, >= 0
+  double memory_limit = 0;  ///< bytes the factor may take; 0: what the machine has free
+};
+
+}  // namespace equidem

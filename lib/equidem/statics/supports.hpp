@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What holds and what pulls an assembly.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "equidem/core/vector.hpp"
+
+namespace equidem {
+
+/// Prescribed motion of the discs of a group; a component without a value stays free.
+struct Support {
+  std::string group;
+  std::optional<double> ux;        ///< m
+  std::optional<double> uy;        ///< m
+  std::optional<double> rotation;  ///< rad, counter-clockwise
+};
+
+/// How the force of a load is meant.
+enum class LoadKind {
+  per_disc,  ///< N/m on each disc of the group
+  total,     ///< N/m on the whole group, equal shares
+  traction,  ///< Pa on the side that the group forms, by the tributary length of each disc
+};
+
+/// Force and moment on the discs of a group.
+struct Load {
+  std::string group;
+  LoadKind kind = LoadKind::per_disc;
+  Vec2 force;         ///< N/m, or Pa for a traction
+  double moment = 0;  ///< N (N m per metre of depth); on each disc, or in equal shares
+};
+
+/// Loads that act together.
+using LoadCase = std::vector<Load>;
+
+}  // namespace equidem
