@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Assemblies from and to files (JSON, schema "equidem-assembly/1").
+#pragma once
+
+#include <filesystem>
+
+#include "equidem/assembly/assembly.hpp"
+
+namespace equidem {
+
+/// Read an assembly. `contacts` missing: touching discs (gap at most 1e-9 of the smaller radius). The contact
+/// point is the midpoint of the branch unless "levers" says otherwise; "springs": [[kN, kT], ...] per
+/// contact; "groups": {"name": [disc, ...]}. Sides (left, right, bottom, top) and corners of a free assembly
+/// are added where the file gives none by that name: the discs whose cells touch the side of the bounding
+/// rectangle. \throws Error (bad_input) with file and, where there is one, the entry: unreadable or truncated
+/// file, missing or unknown key,
+///         wrong type, absent disc, non-finite number, ...
+Assembly read_assembly(const std::filesystem::path& path);
+
+/// Write all that read_assembly reads; numbers in the shortest form that reads back to the same bits.
+void write_assembly(const std::filesystem::path& path, const Assembly& assembly, bool overwrite);
+
+}  // namespace equidem

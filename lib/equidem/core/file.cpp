@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/core/file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include <unistd.h>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+[[noreturn]] void cannot_write(const fs::path& path, const std::string& reason) {
+  bad_input(format("cannot write '{}'", path.string()), reason, "Choose a place that can be written to");
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) {
+    bad_input(format("cannot read '{}'", path.string()), "there is no such file",
+              "Check its name and the folder");
+  }
+  if (fs::is_directory(path, ignored)) {
+    bad_input(format("cannot read '{}'", path.string()), "it is a folder", "Name a file in it");
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::string content((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  if (!file || file.bad()) {
+    bad_input(format("cannot read '{}'", path.string()), std::strerror(errno), "Check that you may read it");
+  }
+  return content;
+}
+
+void check_writable(const fs::path& path, bool overwrite) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) cannot_write(path, "it is a folder");
+  if (fs::exists(path, ignored) && !overwrite) {
+    bad_input(format("'{}' exists already", path.string()), "nothing of yours is overwritten unasked",
+              "Choose another name, or pass --overwrite");
+  }
+  fs::path folder = folder_of(path);
+  while (!fs::exists(folder, ignored) && folder.has_parent_path() && folder != folder.parent_path()) {
+    folder = folder.parent_path();
+  }
+  if (folder.empty() || !fs::exists(folder, ignored)) folder = ".";
+  if (!fs::is_directory(folder, ignored)) cannot_write(path, format("'{}' is not a folder", folder.string()));
+  if (access(folder.c_str(), W_OK) != 0)
+    cannot_write(path, format("'{}': {}", folder.string(), std::strerror(errno)));
+}
+
+void write_file(const fs::path& path, std::string_view content, bool overwrite) {
+  check_writable(path, overwrite);
+  std::error_code failed;
+  fs::create_directories(folder_of(path), failed);
+  if (failed) cannot_write(path, failed.message());
+  const fs::path temporary = path.string() + format(".{}.part", getpid());
+  {
+    std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
+    file.write(content.data(), static_cast<std::streamsize>(content.size()));
+    file.flush();
+    if (!file) {
+      const std::string reason = std::strerror(errno);
+      file.close();
+      fs::remove(temporary, failed);
+      cannot_write(path, reason);
+    }
+  }
+  fs::rename(temporary, path, failed);
+  if (failed) {
+    const std::string reason = failed.message();
+    fs::remove(temporary, failed);
+    cannot_write(path, reason);
+  }
+}
+
+}  // namespace equidem

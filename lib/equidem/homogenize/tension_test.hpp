@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Abe's numerical test (1996, section 3, Fig. 6): uniaxial tension of a block along x.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/homogenize/strain.hpp"
+#include "equidem/statics/equilibrium.hpp"
+
+namespace equidem {
+
+/// Where the two strain gauges A-B (along x) and C-D (along y) sit.
+enum class GaugePlacement {
+  centre,   ///< discs two spacings either side of the middle
+  quarter,  ///< discs a quarter of the block either side of the middle
+  ends,     ///< from side to side through the middle
+};
+
+/// "centre" | "quarter" | "ends". \throws Error (bad_input)
+GaugePlacement gauge_placement_from(const std::string& name);
+
+struct TensionTest {
+  double stress = 1e6;  ///< s11, Pa; not zero
+  GaugePlacement gauge = GaugePlacement::centre;
+};
+
+/// Loads, supports and gauges of the test on an assembly with a free boundary: the traction s11 on the discs
+/// of the left and right sides by their tributary length (equal loads on a lattice), the bottom row held
+/// vertically, the bottom-left disc held both ways.
+struct TensionSetup {
+  std::vector<Support> supports;
+  LoadCase loads;
+  StrainGauge horizontal;  ///< A-B
+  StrainGauge vertical;    ///< C-D
+  double height = 0;  ///< m, by which the total load is divided: the tributary height, rows * sqrt3 a on the
+                      ///< hexagonal lattice
+};
+
+/// \throws Error (bad_input) where the assembly is periodic or too small for the gauges
+TensionSetup tension_setup(const Assembly& assembly, const TensionTest& test);
+
+struct TensionResult {
+  double poisson_ratio = 0;    ///< nu = -e22/(e11 - e22), plane strain, eq. (35), from the two gauges
+  double stiffness_ratio = 0;  ///< 2G/((1 - nu) kN) = s11/(kN e11), eq. (36); kN is the mean over contacts
+  Voigt strain;                ///< gauges: e11, e22; shear from the fitted field
+  Voigt stress;                ///< s11 = total load / height
+  Tensor2 fitted_gradient;     ///< displacement gradient fitted to the inner half of the block
+  double fitted_poisson_ratio = 0;  ///< eq. (35) from the fitted field
+};
+
+TensionResult evaluate_tension(const Assembly& assembly, const ContactSprings& springs,
+                               const TensionTest& test, const TensionSetup& setup,
+                               const Equilibrium& equilibrium);
+
+}  // namespace equidem
