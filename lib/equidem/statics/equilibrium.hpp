@@ -84,6 +84,11 @@ class EquilibriumSolver {
   std::unique_ptr<Implementation> implementation_;
 };
 
+/// Order and analyze, without assembling or factorizing: what a solve will take.
+/// \throws Error (bad_input) as EquilibriumSolver does for supports
+SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& springs,
+                             std::span<const Support> supports, const EquilibriumOptions& options = {});
+
 /// One load case.
 Equilibrium solve_equilibrium(const Assembly& assembly, const ContactSprings& springs,
                               std::span<const Support> supports, const LoadCase& loads,

@@ -3,6 +3,7 @@
 /// Choice of the linear solver.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace equidem {
@@ -23,6 +24,15 @@ struct SolverOptions {
   SolverMethod method = SolverMethod::automatic;
   int max_refinements = 4;  ///< steps of iterative refinement, >= 0
   double memory_limit = 0;  ///< bytes the factor may take; 0: what the machine has free
+};
+
+/// What a factorization will take, known before it is tried.
+struct SolveEstimate {
+  std::int64_t unknowns = 0;
+  double factor_nonzeros = 0;  ///< entries of L
+  double factor_bytes = 0;
+  double peak_bytes = 0;  ///< factor and what lives beside it during factorization
+  double operations = 0;  ///< additions and multiplications
 };
 
 }  // namespace equidem

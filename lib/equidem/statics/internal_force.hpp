@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The force that the contacts exert, evaluated from the contact law itself.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/contact/frame.hpp"
+#include "equidem/statics/contact_graph.hpp"
+#include "equidem/statics/degrees_of_freedom.hpp"
+
+namespace equidem {
+
+/// Motion of all discs as an unevaluated sum of two doubles, discs x per_disc components (u_x, u_y[, a
+/// theta]), m. One double would not do: a displacement of 1000 stretches carries the round-off of 1000
+/// stretches, and the residual with it.
+struct PreciseMotion {
+  std::vector<double> high;
+  std::vector<double> low;
+
+  explicit PreciseMotion(std::size_t components) : high(components, 0.0), low(components, 0.0) {}
+  /// Add a correction without losing what it is too small for.
+  void add(std::span<const double> correction);
+};
+
+/// Force of every contact, from the differences of the motion of its discs.
+void contact_forces_of(const Assembly& assembly, const ContactSprings& springs,
+                       const DegreesOfFreedom& unknowns, const PreciseMotion& motion,
+                       std::span<ContactForce> forces);
+
+/// Internal force f_int = K u per component (N/m; moments over a): the negative of what contacts exert on the
+/// discs.
+void internal_force(const Assembly& assembly, const ContactGraph& graph, const DegreesOfFreedom& unknowns,
+                    std::span<const ContactForce> forces, std::span<double> result);
+
+/// Moment that contacts exert on each disc, N: sum of lever * tangential force.
+std::vector<double> contact_moments(const Assembly& assembly, std::span<const ContactForce> forces);
+
+}  // namespace equidem

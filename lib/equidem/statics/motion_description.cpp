@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/statics/motion_description.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/statics/contact_graph.hpp"
+#include "equidem/statics/unwrapped_pieces.hpp"
+
+namespace equidem {
+namespace {
+
+// Shares of the squared motion.
+constexpr double negligible = 1e-6;    ///< what is left of a motion that is called rigid, or pure rotation
+constexpr double roughly = 0.05;       ///< what is left of a motion that is called uniform strain
+constexpr double moving_least = 1e-6;  ///< of the largest motion: less counts as rest
+
+double squared(double x) {
+  return x * x;
+}
+
+/// u = t + H (x - c) fitted to some discs by least squares.
+struct Field {
+  Vec2 c, t;
+  Tensor2 H;
+
+  [[nodiscard]] Vec2 at(Vec2 x) const { return t + H * (x - c); }
+  [[nodiscard]] double rotation() const { return 0.5 * (H.yx - H.xy); }
+};
+
+class Description {
+ public:
+  Description(const Assembly& assembly, std::span<const DiscMotion> motions)
+      : assembly_(assembly),
+        motions_(motions),
+        centres_(unwrap_pieces(assembly, ContactGraph(assembly)).centres) {
+    assert(motions.size() == assembly.size());
+    measure();
+  }
+
+  [[nodiscard]] std::string text() const {
+    if (moving_.empty()) return "no motion";
+    if (rotation_ > (1 - negligible) * total_) return describe_rotations();
+    if (moving_.size() > 2) {
+      const std::string rigid = describe_rigid();
+      if (!rigid.empty()) return rigid;
+    }
+    const auto count = static_cast<double>(assembly_.size());
+    if (participants_ <= std::max(2.0, 0.1 * count) && participants_ < 0.5 * count) return describe_local();
+    return describe_uniform_strain() + format("spread over {} of {}, largest at {}", moving_.size(),
+                                              counted(count_(assembly_.size()), "disc"),
+                                              describe_disc(assembly_, largest_first_.front()));
+  }
+
+ private:
+  static long long count_(std::size_t n) { return static_cast<long long>(n); }
+
+  /// Motions are divided by the largest, so that their squares neither vanish nor overflow.
+  void measure() {
+    double largest = 0;
+    for (std::size_t d = 0; d < assembly_.size(); ++d) {
+      largest = std::max({largest, std::abs(motions_[d].u.x), std::abs(motions_[d].u.y),
+                          std::abs(assembly_.radii[d] * motions_[d].theta)});
+    }
+    if (!(largest > 0)) return;
+    u_.resize(assembly_.size());
+    spin_.resize(assembly_.size());
+    weight_.resize(assembly_.size());
+    double squares = 0;
+    for (std::size_t d = 0; d < assembly_.size(); ++d) {
+      u_[d] = motions_[d].u / largest;
+      spin_[d] = assembly_.radii[d] * motions_[d].theta / largest;
+      weight_[d] = dot(u_[d], u_[d]) + squared(spin_[d]);
+      total_ += weight_[d];
+      rotation_ += squared(spin_[d]);
+      squares += squared(weight_[d]);
+    }
+    participants_ = squared(total_) / squares;
+    largest_first_.resize(assembly_.size());
+    std::iota(largest_first_.begin(), largest_first_.end(), 0);
+    std::stable_sort(largest_first_.begin(), largest_first_.end(),
+                     [&](std::size_t p, std::size_t q) { return weight_[p] > weight_[q]; });
+    for (std::size_t d = 0; d < assembly_.size(); ++d) {
+      if (weight_[d] > moving_least * weight_[largest_first_.front()]) moving_.push_back(d);
+    }
+  }
+
+  /// "25 discs" or "12 of 25 discs (disc 3 at (..) most)".
+  [[nodiscard]] std::string describe_moving(std::size_t moving) const {
+    if (moving == assembly_.size()) return "all " + counted(count_(moving), "disc");
+    return format("{} of {}, {} the most", moving, counted(count_(assembly_.size()), "disc"),
+                  describe_disc(assembly_, largest_first_.front()));
+  }
+
+  [[nodiscard]] std::string describe_rotations() const {
+    double slip = 0;
+    double scale = 0;
+    for (const Contact& c : assembly_.contacts) {
+      const double i = c.lever_i * spin_[c.i] / assembly_.radii[c.i];
+      const double j = c.lever_j * spin_[c.j] / assembly_.radii[c.j];
+      slip += squared(i + j);
+      scale += squared(i) + squared(j);
+    }
+    const bool gears = slip <= negligible * scale;
+    return format("a {} of {} in place{}", gears ? "counter-rotation" : "rotation",
+                  describe_moving(moving_.size()),
+                  gears ? ", neighbours turning against one another like gears" : "");
+  }
+
+  /// Least squares over some discs, with the unwrapped centres.
+  [[nodiscard]] Field fit(const std::vector<std::size_t>& discs) const {
+    const double share = 1 / static_cast<double>(discs.size());
+    Field f;
+    for (const std::size_t d : discs) f.c += share * centres_[d], f.t += share * u_[d];
+    Tensor2 xx, ux;
+    for (const std::size_t d : discs) {
+      const Vec2 x = centres_[d] - f.c;
+      xx += outer(x, x);
+      ux += outer(u_[d] - f.t, x);
+    }
+    const double trace = xx.xx + xx.yy;
+    const double determinant = xx.xx * xx.yy - xx.xy * xx.yx;
+    if (determinant > 1e-12 * squared(trace)) {
+      f.H = (1 / determinant) * Tensor2{ux.xx * xx.yy - ux.xy * xx.yx, ux.xy * xx.xx - ux.xx * xx.xy,
+                                        ux.yx * xx.yy - ux.yy * xx.yx, ux.yy * xx.xx - ux.yx * xx.xy};
+    } else if (trace > 0) {
+      f.H = (1 / trace) * ux;  // centres on a line: no gradient across it
+    }
+    return f;
+  }
+
+  /// Share of the motion of some discs that a field leaves over.
+  [[nodiscard]] double left_over(const Field& f, const std::vector<std::size_t>& discs) const {
+    double sum = 0;
+    double scale = 0;
+    for (const std::size_t d : discs) {
+      const Vec2 e = u_[d] - f.at(centres_[d]);
+      sum += dot(e, e);
+      scale += dot(u_[d], u_[d]);
+    }
+    return sum / scale;
+  }
+
+  [[nodiscard]] std::vector<std::size_t> every_disc() const {
+    std::vector<std::size_t> discs(assembly_.size());
+    std::iota(discs.begin(), discs.end(), 0);
+    return discs;
+  }
+
+  /// Of all discs, or else of those that move; empty where neither is rigid.
+  [[nodiscard]] std::string describe_rigid() const {
+    const std::vector<std::size_t> all = every_disc();
+    for (const auto* discs : {&all, &moving_}) {
+      Field f = rotation_about_mean(*discs);
+      if (left_over(f, *discs) > negligible) continue;
+      double extent = 0;
+      for (const std::size_t d : *discs) extent = std::max(extent, norm(centres_[d] - f.c));
+      const double turn = f.rotation();
+      const std::string of = describe_moving(discs->size());
+      if (std::abs(turn) * extent <= 1e-4 * norm(f.t)) {
+        return format("a rigid translation along {} of {}", describe_direction(f.t), of);
+      }
+      Vec2 x = f.c + perpendicular(f.t) / turn;
+      for (double* value : {&x.x, &x.y}) {
+        if (std::abs(*value) < 1e-6 * extent) *value = 0;
+      }
+      return format("a rigid rotation about ({:.6g}, {:.6g}) of {}", x.x, x.y, of);
+    }
+    return {};
+  }
+
+  [[nodiscard]] Field rotation_about_mean(const std::vector<std::size_t>& discs) const {
+    const double share = 1 / static_cast<double>(discs.size());
+    Field f;
+    for (const std::size_t d : discs) f.c += share * centres_[d], f.t += share * u_[d];
+    double turning = 0;
+    double square = 0;
+    for (const std::size_t d : discs) {
+      const Vec2 x = centres_[d] - f.c;
+      turning += cross(x, u_[d] - f.t);
+      square += dot(x, x);
+    }
+    const double omega = square > 0 ? turning / square : 0;
+    f.H = {0, -omega, omega, 0};
+    return f;
+  }
+
+  [[nodiscard]] std::string describe_local() const {
+    const auto about = std::max(1LL, std::llround(participants_));
+    std::string names;
+    for (std::size_t k = 0; k < std::min<std::size_t>({5, static_cast<std::size_t>(about), moving_.size()});
+         ++k) {
+      names += (k == 0 ? "" : ", ") + describe_disc(assembly_, largest_first_[k]);
+    }
+    return format("a local motion of about {} of {}: {}{}", about, counted(count_(assembly_.size()), "disc"),
+                  names, about > 5 ? ", ..." : "");
+  }
+
+  /// "a uniform shear ", "a uniform strain " or "a motion ".
+  [[nodiscard]] std::string describe_uniform_strain() const {
+    const std::vector<std::size_t> all = every_disc();
+    const Field f = fit(all);
+    if (left_over(f, all) > roughly) return "a motion ";
+    const double volume = 0.5 * squared(f.H.xx + f.H.yy);
+    const double shear = 0.5 * (squared(f.H.xx - f.H.yy) + squared(f.H.xy + f.H.yx));
+    return volume < 0.1 * shear ? "a nearly uniform shear " : "a nearly uniform strain ";
+  }
+
+  const Assembly& assembly_;
+  std::span<const DiscMotion> motions_;
+  std::vector<Vec2> centres_;
+  std::vector<Vec2> u_;         ///< over the largest component of any motion
+  std::vector<double> spin_;    ///< radius times rotation, likewise
+  std::vector<double> weight_;  ///< |u|² + spin²
+  double total_ = 0;
+  double rotation_ = 0;
+  double participants_ = 0;  ///< participation ratio (sum w)² / sum w²
+  std::vector<std::size_t> largest_first_, moving_;
+};
+
+}  // namespace
+
+std::string describe_motion(const Assembly& assembly, std::span<const DiscMotion> motions) {
+  return Description(assembly, motions).text();
+}
+
+std::string describe_direction(Vec2 direction) {
+  constexpr double aligned = 1e-6;
+  Vec2 n = direction / norm(direction);
+  if (std::abs(n.y) < aligned) return "x";
+  if (std::abs(n.x) < aligned) return "y";
+  if (n.x < 0) n = -n;
+  return format("({:.4g}, {:.4g})", n.x, n.y);
+}
+
+std::string describe_disc(const Assembly& assembly, std::size_t disc) {
+  return format("disc {} at ({:.6g}, {:.6g})", disc, assembly.centres[disc].x, assembly.centres[disc].y);
+}
+
+double elastic_energy(const Assembly& assembly, const ContactSprings& springs,
+                      std::span<const DiscMotion> motions) {
+  double energy = 0;
+  for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
+    const Contact& c = assembly.contacts[k];
+    energy +=
+        linear_spring_energy(springs[k], deformation(frame_of(assembly, c), motions[c.i], motions[c.j]));
+  }
+  return energy;
+}
+
+double reference_energy(const Assembly& assembly, const ContactSprings& springs,
+                        std::span<const DiscMotion> motions) {
+  double energy = 0;
+  for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
+    const Contact& c = assembly.contacts[k];
+    const DiscMotion& i = motions[c.i];
+    const DiscMotion& j = motions[c.j];
+    energy += 0.5 * springs[k].kN * (dot(i.u, i.u) + dot(j.u, j.u)) +
+              0.5 * std::abs(springs[k].kT) * (squared(c.lever_i * i.theta) + squared(c.lever_j * j.theta));
+  }
+  return energy;
+}
+
+double softness(const Assembly& assembly, const ContactSprings& springs,
+                std::span<const DiscMotion> motions) {
+  const double reference = reference_energy(assembly, springs, motions);
+  return reference > 0 ? elastic_energy(assembly, springs, motions) / reference : 0;
+}
+
+}  // namespace equidem

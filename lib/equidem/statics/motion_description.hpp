@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A motion of an assembly in words and in energy: what a mode of zero or negative stiffness looks like, and
+/// whether it is a mechanism or merely soft.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/contact/frame.hpp"
+
+namespace equidem {
+
+/// What kind of motion this is, as words that fit into a sentence (no capital, no full stop): "a rigid
+/// rotation of the whole assembly about (0.1, 0.05)", "a local motion of about 3 of 900 discs: disc 17 at
+/// (0.02, 0.01), ...". Told apart are rigid translation and rotation (of all discs, or of those that move),
+/// counter-rotation of discs, motion of a few discs, uniform strain, and whatever else spreads over the
+/// assembly. Does not depend on the scale or the sign of the motions.
+/// \param motions per disc, finite
+std::string describe_motion(const Assembly& assembly, std::span<const DiscMotion> motions);
+
+/// "x", "y" or the unit vector "(0.6, 0.8)"; opposite directions have one name.
+std::string describe_direction(Vec2 direction);
+/// "disc 17 at (0.02, 0.01)".
+std::string describe_disc(const Assembly& assembly, std::size_t disc);
+
+/// Elastic energy of a motion, N (J/m per m): sum over contacts of kN dn²/2 + kT ds²/2.
+double elastic_energy(const Assembly& assembly, const ContactSprings& springs,
+                      std::span<const DiscMotion> motions);
+
+/// The scale of that energy, N: the same sum with the motions of the two discs of a contact in place of the
+/// stretch and slip that they share, kN (|u_i|² + |u_j|²)/2 + |kT| ((r_i theta_i)² + (r_j theta_j)²)/2.
+double reference_energy(const Assembly& assembly, const ContactSprings& springs,
+                        std::span<const DiscMotion> motions);
+
+/// elastic_energy / reference_energy of a motion; 0 where nothing moves. A mechanism, computed to rounding,
+/// has about 1e-30 (1e-26 after a factorization); the softest stable mode, the bending of a strip of N rows,
+/// has about 1/N⁴ times what the supports add, above 1e-18 for any strip that is not longer than 10 000
+/// discs. Negative for an unstable mode (kT < 0).
+double softness(const Assembly& assembly, const ContactSprings& springs, std::span<const DiscMotion> motions);
+
+}  // namespace equidem

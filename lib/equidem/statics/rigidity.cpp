@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/statics/rigidity.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/statics/motion_description.hpp"
+#include "equidem/statics/rigid_motions.hpp"
+
+namespace equidem {
+namespace {
+
+/// "rotation about (x, y)".
+std::string describe_rotation(const PieceMotions& piece, const RigidMotion& motion) {
+  // u = 0 at the point x with e_z x (x - centre) = -t size / rotation.
+  const double size = piece.size;
+  Vec2 x = piece.centre + (size / motion.rotation) * perpendicular(motion.t);
+  for (double* value : {&x.x, &x.y}) {
+    if (std::abs(*value) < 1e-9 * size) *value = 0;
+  }
+  return format("rotation about ({:.6g}, {:.6g}){}", x.x, x.y,
+                piece.rolls ? ", discs rolling on one another" : "");
+}
+
+/// The free motions of a piece by name: "translation along y and rotation about (x, y)".
+std::string describe_free(const PieceMotions& piece) {
+  const std::vector<RigidMotion>& free = piece.free;
+  constexpr double straight = 1e-7;  // a rotation about a point 1e7 sizes away counts as a translation
+  if (free.size() == 3) return "translation along x and along y, and rotation";
+  if (free.size() == 1) {
+    if (std::abs(free[0].rotation) > straight) return describe_rotation(piece, free[0]);
+    return "translation along " + describe_direction(free[0].t);
+  }
+  const auto [p, q] = std::pair{free[0], free[1]};
+  if (std::hypot(p.rotation, q.rotation) <= straight) return "translation along x and along y";
+  const Vec2 translation = q.rotation * p.t - p.rotation * q.t;
+  const RigidMotion rotation{p.rotation * p.t + q.rotation * q.t,
+                             p.rotation * p.rotation + q.rotation * q.rotation};
+  return format("translation along {} and {}", describe_direction(translation),
+                describe_rotation(piece, rotation));
+}
+
+void check_discs_without_contacts(const Assembly& assembly, const std::vector<PieceMotions>& pieces) {
+  std::int64_t count = 0;
+  std::string names;
+  for (const PieceMotions& piece : pieces) {
+    if (piece.has_contacts || piece.free.empty()) continue;
+    if (++count <= 3) names += (names.empty() ? "" : ", ") + describe_disc(assembly, piece.first_disc);
+  }
+  if (count == 0) return;
+  if (assembly.size() == 1) {
+    bad_input(format("the assembly is a single disc that is free to move, {}", names),
+              "no contact resists its motion", "Give it neighbours");
+  }
+  if (count == 1) {
+    bad_input(format("{} has no contacts and is not held in both directions", names),
+              "nothing resists its motion", "Hold it, remove it, or give it contacts");
+  }
+  bad_input(format("{} have no contacts and are not held in both directions: {}{}", counted(count, "disc"),
+                   names, count > 3 ? ", ..." : ""),
+            "nothing resists their motion", "Hold them, remove them, or give them contacts");
+}
+
+/// "of 400, 12 and 5 discs", largest first.
+std::string sizes_of(const std::vector<PieceMotions>& pieces) {
+  std::vector<std::int64_t> sizes;
+  for (const PieceMotions& piece : pieces) {
+    if (piece.has_contacts) sizes.push_back(piece.discs);
+  }
+  std::sort(sizes.rbegin(), sizes.rend());
+  constexpr std::size_t most = 5;
+  std::string text = format("of {}", sizes[0]);
+  for (std::size_t k = 1; k < std::min(sizes.size(), most); ++k) {
+    text += format("{}{}", k + 1 == sizes.size() ? " and " : ", ", sizes[k]);
+  }
+  return text + (sizes.size() > most ? ", ... discs" : " discs");
+}
+
+/// What to hold so that the motions stop.
+std::string remedy(const std::vector<RigidMotion>& free, const std::string& names) {
+  if (free.size() == 3) return "Hold one disc in x and y, and another one across the line that joins them";
+  if (names.find("rotation") == std::string::npos) return "Hold a disc against it";
+  if (free.size() == 1) return "Hold one more disc, along a line that does not pass through that point";
+  return "Hold a disc against the translation, and another one against the rotation";
+}
+
+void check_pieces(const Assembly& assembly, const std::vector<PieceMotions>& pieces) {
+  std::int64_t joined = 0;
+  std::int64_t loose = 0;
+  const PieceMotions* first = nullptr;
+  for (const PieceMotions& piece : pieces) {
+    if (!piece.has_contacts) continue;
+    ++joined;
+    if (piece.free.empty()) continue;
+    ++loose;
+    if (first == nullptr) first = &piece;
+  }
+  if (first == nullptr) return;
+  const std::vector<RigidMotion>& free = first->free;
+  const std::string names = describe_free(*first);
+  const char* verb = free.size() > 1 ? "are" : "is";
+  if (joined == 1) {
+    bad_input(first->held ? format("the supports leave {} of the assembly free", names)
+                          : format("no support holds the assembly: {} {} free", names, verb),
+              "no contact resists a rigid motion, so that equilibrium has no single answer",
+              remedy(free, names));
+  }
+  const std::string which = loose == 1        ? "one of them is"
+                            : loose == joined ? "none of them is"
+                                              : format("{} of them are", loose);
+  bad_input(format("the assembly is in {} pieces ({}) and {}{} held: of the piece of {} with {}, {} {} free",
+                   joined, sizes_of(pieces), which, loose == joined ? " fully" : " not fully",
+                   counted(first->discs, "disc"), describe_disc(assembly, first->first_disc), names, verb),
+            "no contact joins it to the rest", "Hold every piece, remove it, or join it by contacts");
+}
+
+void check_gears(const Assembly& assembly, const std::vector<GearMode>& gears) {
+  if (gears.empty()) return;
+  const GearMode& first = gears.front();
+  const auto more = static_cast<std::int64_t>(gears.size()) - 1;
+  bad_input(format("{} around {} can counter-rotate like gears at no cost{}", counted(first.discs, "disc"),
+                   describe_disc(assembly, first.first_disc),
+                   more > 0 ? format(", and so can {} more such {}", more, more > 1 ? "groups" : "group")
+                            : std::string()),
+            "their graph of contacts is bipartite: no odd ring of contacts makes neighbours slip",
+            "Hold the rotation of one of them, restrain rotation, or add a contact that closes an odd ring");
+}
+
+}  // namespace
+
+RigidityReport examine_rigidity(const Assembly& assembly, const ContactGraph& graph,
+                                const ContactSprings& springs, const DegreesOfFreedom& unknowns) {
+  const FreeMotions motions = find_free_motions(assembly, graph, springs, unknowns);
+  RigidityReport report;
+  for (const PieceMotions& piece : motions.pieces) {
+    ++(piece.has_contacts ? report.pieces : report.discs_without_contacts);
+    report.free_rigid_motions += static_cast<std::int64_t>(piece.free.size());
+  }
+  report.gear_modes = static_cast<std::int64_t>(motions.gears.size());
+  return report;
+}
+
+void check_rigidity(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
+                    const DegreesOfFreedom& unknowns) {
+  if (assembly.size() == 0) {
+    bad_input("the assembly has no discs", "there is nothing to solve for", "Give it discs");
+  }
+  const FreeMotions motions = find_free_motions(assembly, graph, springs, unknowns);
+  check_discs_without_contacts(assembly, motions.pieces);
+  check_pieces(assembly, motions.pieces);
+  check_gears(assembly, motions.gears);
+}
+
+}  // namespace equidem

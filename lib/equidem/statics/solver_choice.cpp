@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/statics/solver_choice.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/statics/cholmod_factorization.hpp"
+#include "equidem/statics/memory.hpp"
+#include "equidem/statics/motion_description.hpp"
+#include "equidem/statics/multifrontal_cholesky.hpp"
+#include "equidem/statics/multifrontal_ldlt.hpp"
+#include "equidem/statics/umfpack_factorization.hpp"
+
+namespace equidem {
+namespace {
+
+struct MethodName {
+  SolverMethod method;
+  const char* name;
+};
+constexpr MethodName method_names[] = {{SolverMethod::automatic, "auto"},
+                                       {SolverMethod::multifrontal, "multifrontal"},
+                                       {SolverMethod::cholmod, "cholmod"},
+                                       {SolverMethod::umfpack, "umfpack"}};
+
+std::vector<DiscMotion> as_motions(const DegreesOfFreedom& unknowns, const std::vector<double>& x) {
+  const auto b = static_cast<std::size_t>(unknowns.per_disc);
+  std::vector<DiscMotion> motions(x.size() / b);
+  for (std::size_t d = 0; d < motions.size(); ++d) {
+    motions[d] = {{x[d * b], x[d * b + 1]}, b == 3 ? x[d * b + 2] / unknowns.rotation_scale : 0.0};
+  }
+  return motions;
+}
+
+[[noreturn]] void report_mechanism(const System& system, const Factorization& factor) {
+  const std::string motion =
+      describe_motion(system.k.assembly, as_motions(system.unknowns, factor.softest_motion()));
+  bad_input("the assembly is a mechanism", format("it can move at no cost: {}", motion),
+            "Hold that motion by a support, add contacts, or give the contacts tangential springs (kT > 0)");
+}
+
+/// K is singular where the softest motion that elimination met costs no more energy than its own round-off.
+void refuse_mechanism(const System& system, const Factorization& factor) {
+  constexpr double suspicious = 1e-9;  // share of a stiffness left when all others have given way
+  constexpr double no_energy = 1e-21;  // over the energy of the same motions without cooperation
+  if (factor.report().smallest_pivot > suspicious) return;
+  const std::vector<double> softest = factor.softest_motion();
+  if (softest.empty()) return;
+  if (softness(system.k.assembly, system.springs, as_motions(system.unknowns, softest)) < no_energy) {
+    report_mechanism(system, factor);
+  }
+}
+
+std::unique_ptr<Factorization> indefinite(const System& system) {
+  auto factor = multifrontal_ldlt(system.symbolic, system.k);
+  if (factor->report().zero_pivots > 0) report_mechanism(system, *factor);
+  return factor;
+}
+
+std::unique_ptr<Factorization> multifrontal(const System& system) {
+  if (system.springs.any_negative()) return indefinite(system);
+  if (auto factor = multifrontal_cholesky(system.symbolic, system.k)) {
+    refuse_mechanism(system, *factor);
+    return factor;
+  }
+  // No spring is negative: a pivot that is not positive is round-off of zero, and L D L^T finds the motion.
+  auto factor = indefinite(system);
+  refuse_mechanism(system, *factor);
+  return factor;
+}
+
+std::unique_ptr<Factorization> by_cholmod(const System& system) {
+  if (system.springs.any_negative()) {
+    bad_input("method 'cholmod' cannot solve this case",
+              "some kT is negative, and Cholesky wants a positive definite matrix", "Use method = \"auto\"");
+  }
+  auto factor =
+      cholmod_cholesky(system.k, system.unknowns, CholmodOrdering::ours, system.symbolic->tree.order);
+  return factor ? std::move(factor) : multifrontal(system);  // the latter names the mechanism
+}
+
+std::unique_ptr<Factorization> by_umfpack(const System& system) {
+  auto factor = umfpack_lu(system.k, system.unknowns);
+  return factor ? std::move(factor) : multifrontal(system);
+}
+
+}  // namespace
+
+SolverMethod solver_method_from(const std::string& name) {
+  std::string known;
+  for (const auto& entry : method_names) {
+    if (name == entry.name) return entry.method;
+    known += (known.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  bad_input(format("'{}' is no solver method", name), "", format("Choose one of {}", known));
+}
+
+std::string to_string(SolverMethod method) {
+  for (const auto& entry : method_names) {
+    if (method == entry.method) return entry.name;
+  }
+  return "auto";
+}
+
+SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns, bool indefinite) {
+  SolveEstimate result;
+  result.unknowns = unknowns.unknowns;
+  result.factor_nonzeros = symbolic.nonzeros;
+  result.factor_bytes = symbolic.factor_bytes();
+  result.operations = symbolic.operations;
+  // Beside the factor: update matrices on their way up, about two of the largest front and a tenth of the
+  // factor; L D L^T works in whole fronts and keeps the names of its rows.
+  const double front = 8 * symbolic.largest_front * symbolic.largest_front;
+  result.peak_bytes = (indefinite ? 1.25 : 1.1) * result.factor_bytes + (indefinite ? 3 : 2) * front;
+  return result;
+}
+
+void check_memory(const SolveEstimate& estimate, double memory_limit) {
+  const double available = memory_limit > 0 ? memory_limit : available_memory();
+  if (available == 0 || estimate.peak_bytes <= available) return;
+  computation_failed(
+      format("the factorization of {} unknowns needs about {}", estimate.unknowns,
+             readable_bytes(estimate.peak_bytes)),
+      format("{} {}", readable_bytes(available),
+             memory_limit > 0 ? "are allowed by memory_limit" : "of memory are available"),
+      "Use fewer discs, restrain rotation, raise the limit, or take a machine with more memory");
+}
+
+std::unique_ptr<Factorization> factorize(const System& system, const SolverOptions& options,
+                                         StageTimes& times) {
+  const Stopwatch watch;
+  std::unique_ptr<Factorization> factor;
+  switch (options.method) {
+    case SolverMethod::automatic:
+    case SolverMethod::multifrontal:
+      factor = multifrontal(system);
+      break;
+    case SolverMethod::cholmod:
+      factor = by_cholmod(system);
+      break;
+    case SolverMethod::umfpack:
+      factor = by_umfpack(system);
+      break;
+  }
+  times.add("factorize", watch.seconds());
+  return factor;
+}
+
+std::int64_t negative_rotations(const System& system) {
+  if (system.unknowns.per_disc != 3 || !system.springs.any_negative()) return 0;
+  StiffnessMatrix rotations;
+  rotations.block = 1;
+  rotations.diagonal.reserve(system.k.graph.size());
+  for (std::size_t d = 0; d < system.k.graph.size(); ++d)
+    rotations.diagonal.push_back(system.k.matrix.diagonal_block(d)[8]);
+  rotations.coupling.reserve(system.k.assembly.contacts.size());
+  for (std::size_t c = 0; c < system.k.assembly.contacts.size(); ++c) {
+    rotations.coupling.push_back(system.k.matrix.coupling_block(c)[8]);
+  }
+  SymbolicFactor symbolic = *system.symbolic;
+  symbolic.block = 1;
+  const MatrixOnGraph matrix{rotations, system.k.assembly, system.k.graph};
+  return multifrontal_ldlt(std::make_shared<const SymbolicFactor>(std::move(symbolic)), matrix)
+      ->report()
+      .negative_pivots;
+}
+
+}  // namespace equidem

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// From the wish of the user to a factorization that can be trusted.
+#pragma once
+
+#include <memory>
+
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/core/stopwatch.hpp"
+#include "equidem/statics/degrees_of_freedom.hpp"
+#include "equidem/statics/factorization.hpp"
+#include "equidem/statics/front.hpp"
+#include "equidem/statics/linear_solver.hpp"
+#include "equidem/statics/symbolic_factor.hpp"
+
+namespace equidem {
+
+/// Everything a factorization is made from.
+struct System {
+  const MatrixOnGraph& k;
+  const ContactSprings& springs;
+  const DegreesOfFreedom& unknowns;
+  std::shared_ptr<const SymbolicFactor> symbolic;
+};
+
+SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns, bool indefinite);
+
+/// \throws Error (computation_failed) where the estimated peak exceeds `memory_limit` bytes, or what the
+/// machine has where it is 0
+void check_memory(const SolveEstimate& estimate, double memory_limit);
+
+/// Cholesky where no spring is negative, else L D L^T with delayed pivots, unless the user names a method. A
+/// factorization that breaks down, or whose softest motion costs no energy, means a mechanism. \throws Error
+/// (bad_input) naming the mechanism; (computation_failed) where the chosen method cannot factorize K
+std::unique_ptr<Factorization> factorize(const System& system, const SolverOptions& options,
+                                         StageTimes& times);
+
+/// Negative eigenvalues that the rotations bring by themselves: those of the rotational block of K
+/// (Haynsworth: the inertia of K is that of this block and of the stiffness with rotations eliminated).
+std::int64_t negative_rotations(const System& system);
+
+}  // namespace equidem

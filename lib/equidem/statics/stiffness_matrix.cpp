@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/statics/stiffness_matrix.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/threads.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr std::size_t grain = 1 << 12;
+
+/// block += kN g p^T + kT h q^T for the derivatives of stretch and slip by two motions.
+template <int B>
+void add_outer(double* block, const SpringConstants& k, const std::array<double, 3>& g,
+               const std::array<double, 3>& p, const std::array<double, 3>& h,
+               const std::array<double, 3>& q) {
+  for (int r = 0; r < B; ++r) {
+    for (int c = 0; c < B; ++c) block[r * B + c] += k.kN * g[r] * p[c] + k.kT * h[r] * q[c];
+  }
+}
+
+template <int B>
+void assemble(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
+              const DegreesOfFreedom& unknowns, StiffnessMatrix& matrix) {
+  const double scale = unknowns.rotation_scale;
+  const double held_stiffness = springs.largest();
+  const auto held = [&](std::size_t disc, int k) { return unknowns.held[disc * B + k] != 0; };
+  parallel_ranges(assembly.contacts.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const Contact& contact = assembly.contacts[c];
+      double* block = &matrix.coupling[c * B * B];
+      std::fill(block, block + B * B, 0.0);
+      if (contact.i == contact.j) continue;
+      const DeformationGradient g = deformation_gradient(frame_of(assembly, contact), scale);
+      add_outer<B>(block, springs[c], g.normal_i, g.normal_j, g.tangential_i, g.tangential_j);
+      for (int k = 0; k < B; ++k) {
+        if (held(contact.i, k)) std::fill(block + k * B, block + k * B + B, 0.0);
+        if (held(contact.j, k)) {
+          for (int r = 0; r < B; ++r) block[r * B + k] = 0;
+        }
+      }
+    }
+  });
+  parallel_ranges(assembly.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t d = begin; d < end; ++d) {
+      double* block = &matrix.diagonal[d * B * B];
+      std::fill(block, block + B * B, 0.0);
+      for (const auto& edge : graph.of(d)) {
+        const Contact& contact = assembly.contacts[edge.contact];
+        const SpringConstants k = springs[edge.contact];
+        DeformationGradient g = deformation_gradient(frame_of(assembly, contact), scale);
+        if (contact.i == contact.j) {  // both ends move alike
+          for (int r = 0; r < 3; ++r) {
+            g.normal_i[r] += g.normal_j[r];
+            g.tangential_i[r] += g.tangential_j[r];
+          }
+        } else if (static_cast<std::size_t>(contact.j) == d) {
+          std::swap(g.normal_i, g.normal_j);
+          std::swap(g.tangential_i, g.tangential_j);
+        }
+        add_outer<B>(block, k, g.normal_i, g.normal_i, g.tangential_i, g.tangential_i);
+      }
+      for (int k = 0; k < B; ++k) {
+        if (!held(d, k)) continue;
+        for (int r = 0; r < B; ++r) block[r * B + k] = block[k * B + r] = 0;
+        block[k * B + k] = held_stiffness;
+      }
+    }
+  });
+}
+
+}  // namespace
+
+StiffnessMatrix assemble_stiffness(const Assembly& assembly, const ContactGraph& graph,
+                                   const ContactSprings& springs, const DegreesOfFreedom& unknowns) {
+  StiffnessMatrix matrix;
+  matrix.block = unknowns.per_disc;
+  const std::size_t entries = static_cast<std::size_t>(matrix.block) * matrix.block;
+  matrix.diagonal.resize(assembly.size() * entries);
+  matrix.coupling.resize(assembly.contacts.size() * entries);
+  if (matrix.block == 3) {
+    assemble<3>(assembly, graph, springs, unknowns, matrix);
+  } else {
+    assemble<2>(assembly, graph, springs, unknowns, matrix);
+  }
+  return matrix;
+}
+
+void multiply(const StiffnessMatrix& matrix, const Assembly& assembly, const ContactGraph& graph,
+              std::span<const double> x, std::span<double> y) {
+  const int b = matrix.block;
+  parallel_ranges(graph.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t d = begin; d < end; ++d) {
+      const double* diagonal = matrix.diagonal_block(d);
+      for (int r = 0; r < b; ++r) {
+        double sum = 0;
+        for (int c = 0; c < b; ++c) sum += diagonal[r * b + c] * x[d * b + c];
+        for (const auto& edge : graph.of(d)) {
+          const double* k = matrix.coupling_block(edge.contact);
+          const bool first = static_cast<std::size_t>(assembly.contacts[edge.contact].i) == d;
+          const double* there = &x[static_cast<std::size_t>(edge.other) * b];
+          for (int c = 0; c < b; ++c) sum += (first ? k[r * b + c] : k[c * b + r]) * there[c];
+        }
+        y[d * b + r] = sum;
+      }
+    }
+  });
+}
+
+CompressedColumns compress(const StiffnessMatrix& matrix, const Assembly& assembly, const ContactGraph& graph,
+                           const DegreesOfFreedom& unknowns, std::span<const std::int32_t> order) {
+  const int b = matrix.block;
+  CompressedColumns out;
+  std::vector<std::int64_t> column_of(graph.size() * b, -1);
+  for (std::size_t k = 0; k < graph.size(); ++k) {
+    const std::size_t disc = order.empty() ? k : static_cast<std::size_t>(order[k]);
+    for (int r = 0; r < b; ++r) {
+      const std::size_t component = disc * b + r;
+      if (unknowns.held[component] != 0) continue;
+      column_of[component] = out.size++;
+      out.component.push_back(static_cast<std::int64_t>(component));
+    }
+  }
+  out.first.reserve(out.size + 1);
+  out.first.push_back(0);
+  std::vector<std::pair<std::int64_t, double>> entries;
+  for (const std::int64_t component : out.component) {
+    const std::size_t disc = component / b;
+    const auto c = static_cast<int>(component % b);
+    const std::int64_t column = column_of[component];
+    entries.clear();
+    const auto add = [&](std::size_t other, int r, double value) {
+      const std::int64_t row = column_of[other * b + r];
+      if (row >= column) entries.emplace_back(row, value);
+    };
+    for (int r = 0; r < b; ++r) add(disc, r, matrix.diagonal_block(disc)[r * b + c]);
+    for (const auto& edge : graph.of(disc)) {
+      if (static_cast<std::size_t>(edge.other) == disc) continue;
+      const double* k = matrix.coupling_block(edge.contact);
+      const bool first = static_cast<std::size_t>(assembly.contacts[edge.contact].i) == disc;
+      for (int r = 0; r < b; ++r) add(edge.other, r, first ? k[c * b + r] : k[r * b + c]);
+    }
+    std::sort(entries.begin(), entries.end(), [](const auto& p, const auto& q) { return p.first < q.first; });
+    for (std::size_t e = 0; e < entries.size(); ++e) {
+      if (e > 0 && entries[e].first == entries[e - 1].first) {
+        out.values.back() += entries[e].second;
+      } else {
+        out.rows.push_back(entries[e].first);
+        out.values.push_back(entries[e].second);
+      }
+    }
+    out.first.push_back(static_cast<std::int64_t>(out.rows.size()));
+  }
+  return out;
+}
+
+}  // namespace equidem
