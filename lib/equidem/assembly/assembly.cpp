@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/assembly/assembly.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+bool finite(Vec2 v) {
+  return std::isfinite(v.x) && std::isfinite(v.y);
+}
+
+/// "contact 7, of discs 3 and 4"; where they touch across the period, with the shift.
+std::string described(const Contact& c, std::size_t index) {
+  if (c.shift_x == 0 && c.shift_y == 0) return format("contact {}, of discs {} and {}", index, c.i, c.j);
+  return format("contact {}, of disc {} and the image of disc {} shifted by ({}, {}) periods", index, c.i,
+                c.j, c.shift_x, c.shift_y);
+}
+
+void check_count(const char* what, std::size_t count, const char* per, std::size_t expected) {
+  if (count == expected) return;
+  bad_input(format("{} {} are given for {} {}", count, what, expected, per), "there must be one for each",
+            format("Give {} {}, or none", expected, what));
+}
+
+void check_discs(const Assembly& assembly) {
+  const std::size_t n = assembly.size();
+  if (n == 0) bad_input("the assembly has no discs", "there is nothing to solve for", "Give it discs");
+  check_count("radii", assembly.radii.size(), "discs", n);
+  for (std::size_t d = 0; d < n; ++d) {
+    if (!finite(assembly.centres[d])) {
+      bad_input(format("disc {} has its centre at ({}, {})", d, assembly.centres[d].x, assembly.centres[d].y),
+                "centres must be finite", "Correct its coordinates");
+    }
+    if (!(assembly.radii[d] > 0) || !std::isfinite(assembly.radii[d])) {
+      bad_input(format("disc {} has the radius {}", d, assembly.radii[d]),
+                "radii must be positive and finite", "Correct it");
+    }
+  }
+  if (assembly.cell_areas.empty()) return;
+  check_count("cell areas", assembly.cell_areas.size(), "discs", n);
+  for (std::size_t d = 0; d < n; ++d) {
+    if (!(assembly.cell_areas[d] >= 0) || !std::isfinite(assembly.cell_areas[d])) {
+      bad_input(format("disc {} has the cell area {}", d, assembly.cell_areas[d]),
+                "cell areas must be finite and not negative", "Measure the cells anew");
+    }
+  }
+}
+
+void check_contact(const Assembly& assembly, std::size_t index) {
+  const Contact& c = assembly.contacts[index];
+  const auto n = static_cast<std::int64_t>(assembly.size());
+  for (const std::int32_t disc : {c.i, c.j}) {
+    if (disc < 0 || disc >= n) {
+      bad_input(format("contact {} names disc {}", index, disc),
+                format("the discs are numbered from 0 to {}", n - 1), "Correct the contact or add the disc");
+    }
+  }
+  const bool shifted = c.shift_x != 0 || c.shift_y != 0;
+  if (shifted && !assembly.periodic()) {
+    bad_input(format("{}, reaches across a period", described(c, index)), "the assembly has no period",
+              "Give the cell its period, or set the shift of the contact to 0");
+  }
+  if (c.i == c.j && !shifted) {
+    bad_input(format("contact {} joins disc {} to itself", index, c.i),
+              "a disc can only touch another disc or its own image across a period",
+              "Remove the contact or give it a shift");
+  }
+  const Vec2 l = assembly.branch(c);
+  if (!finite(l) || (l.x == 0 && l.y == 0)) {
+    bad_input(format("{}, spans the branch ({}, {})", described(c, index), l.x, l.y),
+              "its length must be finite and positive, or it has no direction", "Move one of the discs");
+  }
+  for (const double lever : {c.lever_i, c.lever_j}) {
+    if (!(lever >= 0) || !std::isfinite(lever)) {
+      bad_input(format("{}, has the lever arm {}", described(c, index), lever),
+                "lever arms must be finite and not negative", "Correct it");
+    }
+  }
+}
+
+void check_contacts(const Assembly& assembly) {
+  const std::size_t m = assembly.contacts.size();
+  for (std::size_t c = 0; c < m; ++c) check_contact(assembly, c);
+  if (!assembly.facet_lengths.empty()) {
+    check_count("facet lengths", assembly.facet_lengths.size(), "contacts", m);
+    for (std::size_t c = 0; c < m; ++c) {
+      if (!(assembly.facet_lengths[c] >= 0) || !std::isfinite(assembly.facet_lengths[c])) {
+        bad_input(format("{}, has the facet length {}", described(assembly.contacts[c], c),
+                         assembly.facet_lengths[c]),
+                  "facet lengths must be finite and not negative", "Measure the cells anew");
+      }
+    }
+  }
+  if (assembly.contact_kN.empty() && assembly.contact_kT.empty()) return;
+  check_count("normal springs", assembly.contact_kN.size(), "contacts", m);
+  check_count("tangential springs", assembly.contact_kT.size(), "contacts", m);
+  for (std::size_t c = 0; c < m; ++c) {
+    if (!(assembly.contact_kN[c] > 0) || !std::isfinite(assembly.contact_kN[c])) {
+      bad_input(format("{}, has kN = {} Pa", described(assembly.contacts[c], c), assembly.contact_kN[c]),
+                "a normal spring must be positive and finite", "Correct it or remove the contact");
+    }
+    if (!std::isfinite(assembly.contact_kT[c])) {
+      bad_input(format("{}, has kT = {} Pa", described(assembly.contacts[c], c), assembly.contact_kT[c]),
+                "a tangential spring must be finite", "Correct it");
+    }
+  }
+}
+
+void check_group(const Assembly& assembly, const std::string& name, const DiscGroup& discs) {
+  const auto n = static_cast<std::int64_t>(assembly.size());
+  for (std::size_t k = 0; k < discs.discs.size(); ++k) {
+    if (discs.discs[k] < 0 || discs.discs[k] >= n) {
+      bad_input(format("group '{}' names disc {}", name, discs.discs[k]),
+                format("the discs are numbered from 0 to {}", n - 1), "Correct the group or add the disc");
+    }
+    if (k > 0 && discs.discs[k] <= discs.discs[k - 1]) {
+      bad_input(format("group '{}' names disc {} after disc {}", name, discs.discs[k], discs.discs[k - 1]),
+                "the discs of a group must ascend, each once", "Sort them and drop repetitions");
+    }
+  }
+  if (discs.tributary_lengths.empty()) return;
+  check_count(format("tributary lengths of group '{}'", name).c_str(), discs.tributary_lengths.size(),
+              "discs of it", discs.discs.size());
+  for (std::size_t k = 0; k < discs.discs.size(); ++k) {
+    if (!(discs.tributary_lengths[k] >= 0) || !std::isfinite(discs.tributary_lengths[k])) {
+      bad_input(format("disc {} of group '{}' has the tributary length {}", discs.discs[k], name,
+                       discs.tributary_lengths[k]),
+                "tributary lengths must be finite and not negative", "Correct it");
+    }
+  }
+}
+
+}  // namespace
+
+double Assembly::area() const {
+  if (period) return period->x * period->y;
+  if (cell_areas.empty()) {
+    bad_input("the assembly has no cell areas", "with a free boundary its area is the sum of its cells",
+              "Measure the cells first");
+  }
+  return std::accumulate(cell_areas.begin(), cell_areas.end(), 0.0);
+}
+
+double Assembly::solid_fraction() const {
+  double squares = 0;
+  for (const double r : radii) squares += r * r;
+  return std::numbers::pi * squares / area();
+}
+
+double Assembly::coordination_number() const {
+  return centres.empty() ? 0 : 2 * static_cast<double>(contacts.size()) / static_cast<double>(size());
+}
+
+double Assembly::mean_radius() const {
+  return radii.empty() ? 0
+                       : std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
+}
+
+void check(const Assembly& assembly) {
+  if (assembly.period && !(finite(*assembly.period) && assembly.period->x > 0 && assembly.period->y > 0)) {
+    bad_input(format("the period is ({}, {}) m", assembly.period->x, assembly.period->y),
+              "both lengths of a periodic cell must be positive and finite", "Correct the cell");
+  }
+  check_discs(assembly);
+  check_contacts(assembly);
+  for (const auto& [name, discs] : assembly.groups) check_group(assembly, name, discs);
+}
+
+const DiscGroup& group(const Assembly& assembly, const std::string& name) {
+  const auto found = assembly.groups.find(name);
+  if (found != assembly.groups.end()) return found->second;
+  std::string names;
+  for (const auto& [known, discs] : assembly.groups) names += (names.empty() ? "" : ", ") + known;
+  bad_input(
+      format("the assembly has no group '{}'", name),
+      names.empty() ? std::string("it has no groups at all") : "its groups are " + names,
+      assembly.periodic() ? "Name one of them; a periodic cell has no sides of its own" : "Name one of them");
+}
+
+}  // namespace equidem

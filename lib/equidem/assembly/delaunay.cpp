@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/assembly/delaunay.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "equidem/assembly/power_cells.hpp"
+#include "equidem/assembly/space_filling_curve.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+void check(const DelaunayOptions& options) {
+  const std::int64_t least = options.periodic ? 1 : 3;
+  constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max() / 2;
+  if (options.discs < least || options.discs > most) {
+    bad_input(format("discs = {}", options.discs),
+              format("a {} triangulation needs {} to {} discs", options.periodic ? "periodic" : "free", least,
+                     most),
+              "Correct the count");
+  }
+  if (!(options.disorder >= 0 && options.disorder < 0.5)) {
+    bad_input(format("disorder = {}", options.disorder),
+              "it must lie in [0, 0.5), or neighbours could change places",
+              "Correct it, or ask for poisson_disc points");
+  }
+  const RadiusDistribution& radii = options.radii;
+  if (!(radii.smallest > 0) || !std::isfinite(radii.smallest)) {
+    bad_input(format("the smallest radius is {} m", radii.smallest), "radii must be positive and finite",
+              "Correct it");
+  }
+  if (!(radii.largest >= radii.smallest) || !std::isfinite(radii.largest)) {
+    bad_input(format("the largest radius is {} m", radii.largest),
+              format("it must be finite and at least the smallest, {} m", radii.smallest), "Correct it");
+  }
+  if (!(options.aspect >= 1e-3 && options.aspect <= 1e3)) {
+    bad_input(format("aspect = {}", options.aspect), "width over height must lie in [0.001, 1000]",
+              "Correct it");
+  }
+}
+
+PointSet points_of(const DelaunayOptions& options, Random& random) {
+  const PointOptions wanted = {.count = options.discs,
+                               .spacing = options.radii.smallest + options.radii.largest,
+                               .aspect = options.aspect,
+                               .periodic = options.periodic};
+  switch (options.points) {
+    case PointProcess::poisson_disc:
+      return poisson_disc_points(wanted, random);
+    case PointProcess::perturbed_hexagonal:
+      return perturbed_hexagonal_points(wanted, options.disorder, random);
+    case PointProcess::uniform:
+      break;
+  }
+  return uniform_points(wanted, random);
+}
+
+/// Contacts at the midpoint of the branch as the assembly measures it; unequal discs keep the radical axis.
+void set_midpoints(Assembly& assembly) {
+  const bool equal = std::all_of(assembly.radii.begin(), assembly.radii.end(),
+                                 [&](double r) { return r == assembly.radii.front(); });
+  if (!equal) return;
+  for (Contact& contact : assembly.contacts) {
+    contact.lever_i = contact.lever_j = 0.5 * norm(assembly.branch(contact));
+  }
+}
+
+void take_sides(Assembly& assembly, PowerCells& cells) {
+  for (auto& [name, discs] : cells.sides) assembly.groups.emplace(name, std::move(discs));
+}
+
+void take_network(Assembly& assembly, PowerCells&& cells) {
+  assembly.contacts = std::move(cells.neighbours);
+  assembly.facet_lengths = std::move(cells.facet_lengths);
+  assembly.cell_areas = std::move(cells.areas);
+  assembly.contact_kN.clear();
+  assembly.contact_kT.clear();
+  set_midpoints(assembly);
+  take_sides(assembly, cells);
+}
+
+[[noreturn]] void refuse_collinear(const Assembly& assembly) {
+  const auto furthest = [&](Vec2 from) {
+    std::size_t best = 0;
+    for (std::size_t k = 0; k < assembly.size(); ++k) {
+      if (norm(assembly.centres[k] - from) > norm(assembly.centres[best] - from)) best = k;
+    }
+    return best;
+  };
+  const std::size_t one = furthest(assembly.centres[0]);
+  const std::size_t other = furthest(assembly.centres[one]);
+  bad_input(format("all {} discs lie on the line through discs {} and {}", assembly.size(),
+                   std::min(one, other), std::max(one, other)),
+            "points on one line have no triangles", "Move some of them, or list the contacts");
+}
+
+}  // namespace
+
+Assembly delaunay_assembly(const DelaunayOptions& options) {
+  check(options);
+  Random random(options.seed);
+  const PointSet set = points_of(options, random);
+  Assembly assembly;
+  assembly.kind = "delaunay";
+  assembly.centres.reserve(set.points.size());
+  for (const std::int32_t k : hilbert_order(set.points)) assembly.centres.push_back(set.points[k]);
+  assembly.radii.resize(assembly.size(), options.radii.smallest);
+  if (options.radii.largest > options.radii.smallest) {
+    for (double& radius : assembly.radii)
+      radius = random.uniform(options.radii.smallest, options.radii.largest);
+  }
+  if (options.periodic) assembly.period = set.extent;
+  PowerCells cells = power_cells(assembly, Rectangle{.low = {0, 0}, .high = set.extent});
+  if (cells.collinear && !assembly.periodic()) refuse_collinear(assembly);
+  take_network(assembly, std::move(cells));
+  return assembly;
+}
+
+void triangulate(Assembly& assembly) {
+  assembly.contacts.clear();
+  assembly.facet_lengths.clear();
+  assembly.cell_areas.clear();
+  check(assembly);
+  if (!assembly.periodic() && assembly.size() < 3) {
+    bad_input(format("{} cannot be triangulated", counted(static_cast<long long>(assembly.size()), "disc")),
+              "a triangulation needs three or more", "Add discs, or list the contacts");
+  }
+  PowerCells cells = power_cells(assembly);
+  if (cells.collinear) refuse_collinear(assembly);
+  take_network(assembly, std::move(cells));
+}
+
+void measure_cells(Assembly& assembly) {
+  PowerCells cells = power_cells(assembly);
+  // Name every contact as the triangulation does and look it up: neighbours ascend by i, j and shift.
+  const auto key = [](const Contact& c) { return std::tuple(c.i, c.j, c.shift_x, c.shift_y); };
+  assembly.facet_lengths.assign(assembly.contacts.size(), 0);
+  for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
+    Contact contact = assembly.contacts[k];
+    if (std::tuple(contact.i, 0, 0) > std::tuple(contact.j, contact.shift_x, contact.shift_y)) {
+      std::swap(contact.i, contact.j);
+      contact.shift_x = -contact.shift_x;
+      contact.shift_y = -contact.shift_y;
+    }
+    const auto found = std::lower_bound(cells.neighbours.begin(), cells.neighbours.end(), contact,
+                                        [&](const Contact& a, const Contact& b) { return key(a) < key(b); });
+    if (found == cells.neighbours.end() || key(*found) != key(contact)) continue;
+    assembly.facet_lengths[k] =
+        cells.facet_lengths[static_cast<std::size_t>(found - cells.neighbours.begin())];
+  }
+  assembly.cell_areas = std::move(cells.areas);
+  take_sides(assembly, cells);
+}
+
+}  // namespace equidem

@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/assembly/files.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "equidem/assembly/delaunay.hpp"
+#include "equidem/assembly/touching.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* schema = "equidem-assembly/1";
+constexpr std::array<std::string_view, 8> known_keys = {"schema",   "title",  "cell",    "discs",
+                                                        "contacts", "levers", "springs", "groups"};
+
+/// Changes of one letter (put in, left out, replaced) that turn one word into another (Levenshtein 1966).
+std::size_t letters_changed(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t k = 0; k <= b.size(); ++k) row[k] = k;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t k = 1; k <= b.size(); ++k) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[k - 1] ? 0 : 1);
+      diagonal = std::exchange(row[k], std::min({row[k] + 1, row[k - 1] + 1, replaced}));
+    }
+  }
+  return row.back();
+}
+
+const char* kind_of(const Json& value) {
+  switch (value.type()) {
+    case Json::value_t::null:
+      return "null";
+    case Json::value_t::object:
+      return "an object";
+    case Json::value_t::array:
+      return "a list";
+    case Json::value_t::string:
+      return "a text";
+    case Json::value_t::boolean:
+      return "a truth value";
+    default:
+      return "a number";
+  }
+}
+
+[[noreturn]] void refuse(const std::string& problem, const std::string& why, const std::string& remedy,
+                         const std::string& entry) {
+  throw Error(ErrorKind::bad_input, problem, why, remedy, entry);
+}
+
+[[noreturn]] void wrong_kind(const Json& value, const std::string& expected, const std::string& entry) {
+  refuse(format("{} stands where {} is expected", kind_of(value), expected), "", "Correct the entry", entry);
+}
+
+double number(const Json& value, const std::string& entry) {
+  if (!value.is_number()) wrong_kind(value, "a number", entry);
+  const auto result = value.get<double>();
+  if (!std::isfinite(result)) refuse("the number is not finite", "", "Correct the entry", entry);
+  return result;
+}
+
+std::int32_t integer(const Json& value, const std::string& entry) {
+  if (!value.is_number_integer()) {
+    if (value.is_number()) {
+      refuse(format("{} stands where a whole number is expected", value.dump()), "", "Correct the entry",
+             entry);
+    }
+    wrong_kind(value, "a whole number", entry);
+  }
+  const bool fits = value.is_number_unsigned()
+                        ? value.get<std::uint64_t>() <= std::numeric_limits<std::int32_t>::max()
+                        : value.get<std::int64_t>() >= std::numeric_limits<std::int32_t>::min();
+  if (!fits)
+    refuse(format("{} is beyond all numbers of discs", value.dump()), "", "Correct the entry", entry);
+  return value.get<std::int32_t>();
+}
+
+const Json& list(const Json& value, const std::string& entry) {
+  if (!value.is_array()) wrong_kind(value, "a list", entry);
+  return value;
+}
+
+/// A list of exactly as many entries as `names` names, separated by commas.
+const Json& row(const Json& value, std::size_t count, const char* names, const std::string& entry) {
+  list(value, entry);
+  if (value.size() == count) return value;
+  refuse(format("{} stand where {} are expected", counted(static_cast<long long>(value.size()), "number"),
+                count),
+         format("an entry is [{}]", names), "Correct the entry", entry);
+}
+
+const Json& list_per_contact(const Json& value, std::size_t contacts, const std::string& entry) {
+  list(value, entry);
+  if (value.size() == contacts) return value;
+  refuse(format("{} for {}", counted(static_cast<long long>(value.size()), "entry", "entries"),
+                counted(static_cast<long long>(contacts), "contact")),
+         "there must be one for each", "Correct the list or remove it", entry);
+}
+
+void check_keys(const Json& file) {
+  if (!file.is_object()) wrong_kind(file, "an object with the keys schema, discs, ...", "");
+  const auto found = file.find("schema");
+  if (found == file.end() || *found != schema) {
+    refuse(found == file.end() ? std::string("the key 'schema' is missing")
+                               : format("the schema is {}", found->dump()),
+           format("an assembly file says \"schema\": \"{}\"", schema),
+           "Add or correct it, if this is an assembly file", "schema");
+  }
+  for (const auto& [key, value] : file.items()) {
+    if (std::find(known_keys.begin(), known_keys.end(), key) != known_keys.end()) continue;
+    const auto* nearest = std::min_element(
+        known_keys.begin(), known_keys.end(),
+        [&, k = key](auto a, auto b) { return letters_changed(k, a) < letters_changed(k, b); });
+    refuse(format("there is no key '{}'", key), format("the nearest is '{}'", *nearest),
+           "Correct or remove it", key);
+  }
+  if (!file.contains("discs")) {
+    refuse("the key 'discs' is missing", "an assembly is made of discs",
+           "Add \"discs\": [[x, y, radius], ...]", "discs");
+  }
+  if (file.contains("title") && !file["title"].is_string()) wrong_kind(file["title"], "a text", "title");
+}
+
+void read_discs(const Json& file, Assembly& assembly) {
+  if (file.contains("cell") && !file["cell"].is_null()) {
+    const Json& cell = row(file["cell"], 2, "Lx, Ly", "cell");
+    assembly.period = Vec2{number(cell[0], "cell[0]"), number(cell[1], "cell[1]")};
+  }
+  const Json& discs = list(file["discs"], "discs");
+  for (std::size_t k = 0; k < discs.size(); ++k) {
+    const std::string entry = format("discs[{}]", k);
+    const Json& disc = row(discs[k], 3, "x, y, radius", entry);
+    assembly.centres.push_back({number(disc[0], entry), number(disc[1], entry)});
+    assembly.radii.push_back(number(disc[2], entry));
+  }
+}
+
+void refuse_repeated(const Assembly& assembly) {
+  std::vector<std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t, std::size_t>> named;
+  named.reserve(assembly.contacts.size());
+  for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
+    const Contact& c = assembly.contacts[k];
+    if (std::tuple(c.i, 0, 0) <= std::tuple(c.j, c.shift_x, c.shift_y)) {
+      named.emplace_back(c.i, c.j, c.shift_x, c.shift_y, k);
+    } else {
+      named.emplace_back(c.j, c.i, -c.shift_x, -c.shift_y, k);
+    }
+  }
+  std::sort(named.begin(), named.end());
+  const auto same = [](const auto& a, const auto& b) {
+    return std::get<0>(a) == std::get<0>(b) && std::get<1>(a) == std::get<1>(b) &&
+           std::get<2>(a) == std::get<2>(b) && std::get<3>(a) == std::get<3>(b);
+  };
+  const auto twice = std::adjacent_find(named.begin(), named.end(), same);
+  if (twice == named.end()) return;
+  refuse(format("contacts {} and {} are the same, of discs {} and {}", std::get<4>(*twice),
+                std::get<4>(*(twice + 1)), std::get<0>(*twice), std::get<1>(*twice)),
+         "its springs would count twice", "Remove one of them",
+         format("contacts[{}]", std::get<4>(*(twice + 1))));
+}
+
+void read_contacts(const Json& file, Assembly& assembly) {
+  if (!file.contains("contacts")) {
+    for (const char* key : {"levers", "springs"}) {
+      if (!file.contains(key)) continue;
+      refuse(format("there are {} but no contacts", key), "they are given in the order of the contacts",
+             "Add \"contacts\"", key);
+    }
+    check(assembly);
+    assembly.contacts = touching_discs(assembly);
+    return;
+  }
+  const Json& contacts = list(file["contacts"], "contacts");
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const std::string entry = format("contacts[{}]", k);
+    const Json& contact = row(contacts[k], 4, "i, j, shift x, shift y", entry);
+    assembly.contacts.push_back({.i = integer(contact[0], entry),
+                                 .j = integer(contact[1], entry),
+                                 .shift_x = integer(contact[2], entry),
+                                 .shift_y = integer(contact[3], entry)});
+  }
+  // Discs that exist are needed before the midpoints of branches.
+  check(assembly);
+  refuse_repeated(assembly);
+  for (Contact& contact : assembly.contacts) {
+    contact.lever_i = contact.lever_j = 0.5 * norm(assembly.branch(contact));
+  }
+}
+
+void read_levers_and_springs(const Json& file, Assembly& assembly) {
+  const std::size_t contacts = assembly.contacts.size();
+  if (file.contains("levers")) {
+    const Json& levers = list_per_contact(file["levers"], contacts, "levers");
+    for (std::size_t k = 0; k < contacts; ++k) {
+      const std::string entry = format("levers[{}]", k);
+      const Json& pair = row(levers[k], 2, "r_i, r_j", entry);
+      assembly.contacts[k].lever_i = number(pair[0], entry);
+      assembly.contacts[k].lever_j = number(pair[1], entry);
+    }
+  }
+  if (file.contains("springs")) {
+    const Json& springs = list_per_contact(file["springs"], contacts, "springs");
+    for (std::size_t k = 0; k < contacts; ++k) {
+      const std::string entry = format("springs[{}]", k);
+      const Json& pair = row(springs[k], 2, "kN, kT", entry);
+      assembly.contact_kN.push_back(number(pair[0], entry));
+      assembly.contact_kT.push_back(number(pair[1], entry));
+    }
+  }
+}
+
+DiscGroup read_group(const Json& value, const std::string& entry) {
+  const Json* discs = &value;
+  const Json* lengths = nullptr;
+  if (value.is_object()) {
+    for (const auto& [key, part] : value.items()) {
+      if (key == "discs") continue;
+      if (key == "tributary_lengths") {
+        lengths = &part;
+        continue;
+      }
+      refuse(format("there is no key '{}' in a group", key), "its keys are 'discs' and 'tributary_lengths'",
+             "Correct or remove it", entry);
+    }
+    if (!value.contains("discs")) refuse("the key 'discs' is missing", "", "Add the list of discs", entry);
+    discs = &value["discs"];
+  }
+  list(*discs, entry);
+  if (lengths != nullptr && list(*lengths, entry).size() != discs->size()) {
+    refuse(format("{} for {}", counted(static_cast<long long>(lengths->size()), "tributary length"),
+                  counted(static_cast<long long>(discs->size()), "disc")),
+           "there must be one for each", "Correct the list or remove it", entry);
+  }
+  std::vector<std::pair<std::int32_t, double>> members;
+  for (std::size_t k = 0; k < discs->size(); ++k) {
+    const std::string member = format("{}[{}]", entry, k);
+    members.emplace_back(integer((*discs)[k], member),
+                         lengths != nullptr ? number((*lengths)[k], member) : 0);
+  }
+  std::sort(members.begin(), members.end());
+  DiscGroup result;
+  for (const auto& [disc, length] : members) {
+    result.discs.push_back(disc);
+    if (lengths != nullptr) result.tributary_lengths.push_back(length);
+  }
+  return result;
+}
+
+Json parse(const std::string& text) {
+  try {
+    return Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    const std::size_t byte = std::min(error.byte, text.size());
+    const std::string_view before(text.data(), byte);
+    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+    const std::size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
+    const bool truncated = error.byte > text.size() || text.empty();
+    refuse(truncated ? "the file ends in the middle of an entry" : "this is not JSON",
+           format("reading stopped at byte {} of {}", byte, text.size()),
+           truncated ? "Get the whole file: it was cut off" : "Correct the text there",
+           format("line {}, column {}", line, std::max<std::size_t>(byte, line_start + 1) - line_start));
+  } catch (const Json::exception&) {
+    refuse("a number is too large for a double", "the largest is 1.8e308", "Correct it", "");
+  }
+}
+
+Assembly assembly_of(const Json& file) {
+  check_keys(file);
+  Assembly assembly;
+  assembly.kind = "file";
+  read_discs(file, assembly);
+  read_contacts(file, assembly);
+  read_levers_and_springs(file, assembly);
+  if (file.contains("groups")) {
+    if (!file["groups"].is_object()) wrong_kind(file["groups"], "an object of groups", "groups");
+    for (const auto& [name, value] : file["groups"].items()) {
+      assembly.groups[name] = read_group(value, format("groups.{}", name));
+    }
+  }
+  check(assembly);
+  measure_cells(assembly);
+  return assembly;
+}
+
+/// The shortest text that reads back to the same bits; the sign of -0 needs a point, or it reads as a whole
+/// number.
+std::string shortest(double value) {
+  return value == 0 && std::signbit(value) ? "-0.0" : format("{}", value);
+}
+
+/// "key": [one per line].
+template <typename Entry>
+void append_list(std::string& text, const char* key, std::size_t count, const Entry& entry) {
+  text += format(",\n\"{}\": [", key);
+  for (std::size_t k = 0; k < count; ++k) text += (k == 0 ? "\n" : ",\n") + entry(k);
+  text += "]";
+}
+
+template <typename Values, typename Write>
+std::string joined(const Values& values, const Write& write) {
+  std::string text = "[";
+  for (const auto& value : values) text += (text.size() > 1 ? ", " : "") + write(value);
+  return text + "]";
+}
+
+std::string text_of(const Assembly& assembly) {
+  std::string text = format("{{\"schema\": \"{}\"", schema);
+  text += ",\n\"title\": " + Json(assembly.kind).dump();
+  text += assembly.period
+              ? format(",\n\"cell\": [{}, {}]", shortest(assembly.period->x), shortest(assembly.period->y))
+              : ",\n\"cell\": null";
+  append_list(text, "discs", assembly.size(), [&](std::size_t k) {
+    return format("[{}, {}, {}]", shortest(assembly.centres[k].x), shortest(assembly.centres[k].y),
+                  shortest(assembly.radii[k]));
+  });
+  const auto& contacts = assembly.contacts;
+  append_list(text, "contacts", contacts.size(), [&](std::size_t k) {
+    return format("[{}, {}, {}, {}]", contacts[k].i, contacts[k].j, contacts[k].shift_x, contacts[k].shift_y);
+  });
+  append_list(text, "levers", contacts.size(), [&](std::size_t k) {
+    return format("[{}, {}]", shortest(contacts[k].lever_i), shortest(contacts[k].lever_j));
+  });
+  if (!assembly.contact_kN.empty()) {
+    append_list(text, "springs", contacts.size(), [&](std::size_t k) {
+      return format("[{}, {}]", shortest(assembly.contact_kN[k]), shortest(assembly.contact_kT[k]));
+    });
+  }
+  if (!assembly.groups.empty()) {
+    std::string separator = ",\n\"groups\": {\n";
+    for (const auto& [name, members] : assembly.groups) {
+      const std::string discs = joined(members.discs, [](std::int32_t disc) { return format("{}", disc); });
+      text += separator + Json(name).dump() + ": ";
+      text += members.tributary_lengths.empty() ? discs
+                                                : format("{{\"discs\": {}, \"tributary_lengths\": {}}}",
+                                                         discs, joined(members.tributary_lengths, shortest));
+      separator = ",\n";
+    }
+    text += "}";
+  }
+  return text + "}\n";
+}
+
+}  // namespace
+
+Assembly read_assembly(const std::filesystem::path& path) {
+  const std::string text = read_file(path);
+  try {
+    return assembly_of(parse(text));
+  } catch (const Error& error) {
+    // "file: entry", so that the user finds both.
+    const std::string where = error.where().empty() ? path.string() : path.string() + ": " + error.where();
+    throw Error(error.kind(), error.problem(), error.why(), error.remedy(), where);
+  }
+}
+
+void write_assembly(const std::filesystem::path& path, const Assembly& assembly, bool overwrite) {
+  check_writable(path, overwrite);
+  check(assembly);
+  write_file(path, text_of(assembly), overwrite);
+}
+
+}  // namespace equidem

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/assembly/touching.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <tuple>
+
+#include "equidem/assembly/sites.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+/// Gaps up to this share of the smaller radius are rounding of the centres.
+constexpr double largest_gap = 1e-9;
+/// Discs wider than this many periods are taken for a mistake.
+constexpr int most_periods = 16;
+
+/// Discs sorted into squares at least one largest diameter wide, so that touching discs lie in squares that
+/// touch.
+class Grid {
+ public:
+  explicit Grid(const Assembly& assembly) : assembly_(assembly) {
+    const double reach =
+        2 * (1 + largest_gap) * *std::max_element(assembly.radii.begin(), assembly.radii.end());
+    low_ = high_ = assembly.centres.front();
+    for (const Vec2 x : assembly.centres) {
+      low_ = {std::min(low_.x, x.x), std::min(low_.y, x.y)};
+      high_ = {std::max(high_.x, x.x), std::max(high_.y, x.y)};
+    }
+    if (assembly.period) {
+      const double narrow = std::min(assembly.period->x, assembly.period->y);
+      if (reach > most_periods * narrow) {
+        bad_input(format("the largest disc, of diameter {:.6g} m, spans more than {} periods of {:.6g} m",
+                         reach, most_periods, narrow),
+                  "it would touch itself that many times", "Correct the radii or the cell");
+      }
+      low_ = {0, 0};
+      high_ = *assembly.period;
+    }
+    // No more squares than discs along either direction: few discs far apart need no fine grid.
+    const auto most = static_cast<double>(assembly.size());
+    columns_ = static_cast<std::int64_t>(std::clamp(std::floor((high_.x - low_.x) / reach), 1.0, most));
+    rows_ = static_cast<std::int64_t>(std::clamp(std::floor((high_.y - low_.y) / reach), 1.0, most));
+    while (columns_ * rows_ > 4 * static_cast<std::int64_t>(assembly.size()) + 16) {
+      columns_ = (columns_ + 1) / 2;
+      rows_ = (rows_ + 1) / 2;
+    }
+    width_ = (high_.x - low_.x) / static_cast<double>(columns_);
+    height_ = (high_.y - low_.y) / static_cast<double>(rows_);
+    reach_x_ = width_ > 0 ? static_cast<std::int64_t>(std::ceil(reach / width_)) : 0;
+    reach_y_ = height_ > 0 ? static_cast<std::int64_t>(std::ceil(reach / height_)) : 0;
+    if (!assembly.period) {
+      reach_x_ = std::min<std::int64_t>(reach_x_, 1);
+      reach_y_ = std::min<std::int64_t>(reach_y_, 1);
+    }
+    sort_discs();
+  }
+
+  /// Call body(other disc, shift_x, shift_y) for the images of discs near a disc, itself among them.
+  template <typename Body>
+  void for_each_near(std::size_t disc, const Body& body) const {
+    const Place at = places_[disc];
+    for (std::int64_t y = at.row - reach_y_; y <= at.row + reach_y_; ++y) {
+      for (std::int64_t x = at.column - reach_x_; x <= at.column + reach_x_; ++x) {
+        std::int64_t sx = 0;
+        std::int64_t sy = 0;
+        if (assembly_.period) {
+          sx = static_cast<std::int64_t>(std::floor(static_cast<double>(x) / static_cast<double>(columns_)));
+          sy = static_cast<std::int64_t>(std::floor(static_cast<double>(y) / static_cast<double>(rows_)));
+        } else if (x < 0 || x >= columns_ || y < 0 || y >= rows_) {
+          continue;
+        }
+        const auto square = static_cast<std::size_t>((y - sy * rows_) * columns_ + (x - sx * columns_));
+        for (std::size_t k = first_[square]; k < first_[square + 1]; ++k) {
+          const std::int32_t other = sorted_[k];
+          body(other, static_cast<std::int32_t>(sx + at.moved_x - places_[other].moved_x),
+               static_cast<std::int32_t>(sy + at.moved_y - places_[other].moved_y));
+        }
+      }
+    }
+  }
+
+ private:
+  /// The square of a disc, and the periods by which its centre lies outside the cell.
+  struct Place {
+    std::int64_t column = 0;
+    std::int64_t row = 0;
+    std::int64_t moved_x = 0;
+    std::int64_t moved_y = 0;
+  };
+
+  [[nodiscard]] Place place(std::size_t disc) const {
+    Vec2 x = assembly_.centres[disc];
+    Place p;
+    if (assembly_.period) {
+      p.moved_x = periods_below(x.x, assembly_.period->x, disc);
+      p.moved_y = periods_below(x.y, assembly_.period->y, disc);
+      x -= Vec2{static_cast<double>(p.moved_x) * assembly_.period->x,
+                static_cast<double>(p.moved_y) * assembly_.period->y};
+    }
+    if (width_ > 0) {
+      p.column =
+          std::clamp<std::int64_t>(static_cast<std::int64_t>((x.x - low_.x) / width_), 0, columns_ - 1);
+    }
+    if (height_ > 0) {
+      p.row = std::clamp<std::int64_t>(static_cast<std::int64_t>((x.y - low_.y) / height_), 0, rows_ - 1);
+    }
+    return p;
+  }
+
+  void sort_discs() {
+    first_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
+    for (std::size_t disc = 0; disc < assembly_.size(); ++disc) {
+      places_.push_back(place(disc));
+      ++first_[square_of(places_.back()) + 1];
+    }
+    for (std::size_t k = 1; k < first_.size(); ++k) first_[k] += first_[k - 1];
+    std::vector<std::size_t> next = first_;
+    sorted_.resize(assembly_.size());
+    for (std::size_t disc = 0; disc < assembly_.size(); ++disc) {
+      sorted_[next[square_of(places_[disc])]++] = static_cast<std::int32_t>(disc);
+    }
+  }
+
+  [[nodiscard]] std::size_t square_of(const Place& p) const {
+    return static_cast<std::size_t>(p.row * columns_ + p.column);
+  }
+
+  const Assembly& assembly_;
+  Vec2 low_;
+  Vec2 high_;
+  std::int64_t columns_ = 1;
+  std::int64_t rows_ = 1;
+  double width_ = 0;
+  double height_ = 0;
+  std::int64_t reach_x_ = 0;
+  std::int64_t reach_y_ = 0;
+  std::vector<Place> places_;
+  std::vector<std::size_t> first_;
+  std::vector<std::int32_t> sorted_;
+};
+
+}  // namespace
+
+std::vector<Contact> touching_discs(const Assembly& assembly) {
+  const Grid grid(assembly);
+  std::vector<Contact> contacts;
+  for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
+    const std::size_t first = contacts.size();
+    const auto i = static_cast<std::int32_t>(disc);
+    grid.for_each_near(disc, [&](std::int32_t j, std::int32_t shift_x, std::int32_t shift_y) {
+      if (std::tuple(i, 0, 0) >= std::tuple(j, shift_x, shift_y)) return;
+      Contact contact{.i = i, .j = j, .shift_x = shift_x, .shift_y = shift_y};
+      const double distance = norm(assembly.branch(contact));
+      const double gap = distance - assembly.radii[i] - assembly.radii[j];
+      if (gap > largest_gap * std::min(assembly.radii[i], assembly.radii[j])) return;
+      contact.lever_i = contact.lever_j = 0.5 * distance;
+      contacts.push_back(contact);
+    });
+    std::sort(contacts.begin() + static_cast<std::ptrdiff_t>(first), contacts.end(),
+              [](const Contact& a, const Contact& b) {
+                return std::tie(a.j, a.shift_x, a.shift_y) < std::tie(b.j, b.shift_x, b.shift_y);
+              });
+  }
+  return contacts;
+}
+
+}  // namespace equidem

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/assembly/lattices.hpp"
+#include "equidem/core/error.hpp"
+
+#include "support/catch.hpp"
+
+using namespace equidem;
+
+namespace {
+
+/// Two discs side by side, and what `spoil` does to them.
+Assembly pair_of_discs(const std::function<void(Assembly&)>& spoil = [](Assembly&) {}) {
+  Assembly a;
+  a.centres = {{0, 0}, {2, 0}};
+  a.radii = {1, 1};
+  a.contacts = {{.i = 0, .j = 1, .lever_i = 1, .lever_j = 1}};
+  a.cell_areas = {4, 4};
+  a.facet_lengths = {2};
+  a.contact_kN = {1};
+  a.contact_kT = {-1};
+  a.groups["ends"] = {.discs = {0, 1}, .tributary_lengths = {2, 2}};
+  spoil(a);
+  return a;
+}
+
+}  // namespace
+
+TEST_CASE("a_sound_assembly_passes") {
+  CHECK_NOTHROW(check(pair_of_discs()));
+  CHECK_NOTHROW(check(hexagonal_lattice({})));
+  CHECK_NOTHROW(check(square_lattice({.columns = 1, .rows = 1, .periodic = true})));
+  CHECK_NOTHROW(check(pair_of_discs([](Assembly& a) { a.groups["empty"] = {}; })));
+}
+
+TEST_CASE("what_breaks_an_assembly_is_named") {
+  const double infinity = std::numeric_limits<double>::infinity();
+  struct Case {
+    std::function<void(Assembly&)> spoil;
+    const char* sentence;
+  };
+  const std::vector<Case> cases = {
+      {[](Assembly& a) { a = {}; },
+       "the assembly has no discs (there is nothing to solve for). Give it discs."},
+      {[](Assembly& a) { a.radii.pop_back(); },
+       "1 radii are given for 2 discs (there must be one for each). Give 2 radii, or none."},
+      {[](Assembly& a) { a.radii[1] = 0; },
+       "disc 1 has the radius 0 (radii must be positive and finite). Correct it."},
+      {[](Assembly& a) { a.radii[0] = -2.5; },
+       "disc 0 has the radius -2.5 (radii must be positive and finite). Correct it."},
+      {[](Assembly& a) { a.radii[0] = NAN; },
+       "disc 0 has the radius nan (radii must be positive and finite). Correct it."},
+      {[&](Assembly& a) { a.centres[1].y = infinity; },
+       "disc 1 has its centre at (2, inf) (centres must be finite). Correct its coordinates."},
+      {[](Assembly& a) {
+         a.cell_areas = {1, -1};
+       },
+       "disc 1 has the cell area -1 (cell areas must be finite and not negative). Measure the cells anew."},
+      {[](Assembly& a) { a.cell_areas = {1}; },
+       "1 cell areas are given for 2 discs (there must be one for each). Give 2 cell areas, or none."},
+      {[](Assembly& a) { a.contacts[0].j = 7; },
+       "contact 0 names disc 7 (the discs are numbered from 0 to 1). Correct the contact or add the disc."},
+      {[](Assembly& a) { a.contacts[0].i = -1; },
+       "contact 0 names disc -1 (the discs are numbered from 0 to 1). Correct the contact or add the disc."},
+      {[](Assembly& a) { a.contacts[0].j = 0; },
+       "contact 0 joins disc 0 to itself (a disc can only touch another disc or its own image across a "
+       "period). "
+       "Remove the contact or give it a shift."},
+      {[](Assembly& a) { a.contacts[0].shift_x = 1; },
+       "contact 0, of disc 0 and the image of disc 1 shifted by (1, 0) periods, reaches across a period (the "
+       "assembly "
+       "has no period). Give the cell its period, or set the shift of the contact to 0."},
+      {[](Assembly& a) { a.centres[1] = a.centres[0]; },
+       "contact 0, of discs 0 and 1, spans the branch (0, 0) (its length must be finite and positive, or it "
+       "has no "
+       "direction). Move one of the discs."},
+      {[](Assembly& a) { a.contacts[0].lever_j = -0.1; },
+       "contact 0, of discs 0 and 1, has the lever arm -0.1 (lever arms must be finite and not negative). "
+       "Correct "
+       "it."},
+      {[](Assembly& a) {
+         a.facet_lengths = {2, 2};
+       },
+       "2 facet lengths are given for 1 contacts (there must be one for each). Give 1 facet lengths, or "
+       "none."},
+      {[](Assembly& a) { a.facet_lengths[0] = NAN; },
+       "contact 0, of discs 0 and 1, has the facet length nan (facet lengths must be finite and not "
+       "negative). "
+       "Measure the cells anew."},
+      {[](Assembly& a) { a.contact_kT.clear(); },
+       "0 tangential springs are given for 1 contacts (there must be one for each). Give 1 tangential "
+       "springs, or "
+       "none."},
+      {[](Assembly& a) { a.contact_kN[0] = 0; },
+       "contact 0, of discs 0 and 1, has kN = 0 Pa (a normal spring must be positive and finite). Correct it "
+       "or remove "
+       "the contact."},
+      {[&](Assembly& a) { a.contact_kT[0] = infinity; },
+       "contact 0, of discs 0 and 1, has kT = inf Pa (a tangential spring must be finite). Correct it."},
+      {[](Assembly& a) {
+         a.period = Vec2{4, 0};
+       },
+       "the period is (4, 0) m (both lengths of a periodic cell must be positive and finite). Correct the "
+       "cell."},
+      {[](Assembly& a) {
+         a.groups["ends"].discs = {0, 2};
+       },
+       "group 'ends' names disc 2 (the discs are numbered from 0 to 1). Correct the group or add the disc."},
+      {[](Assembly& a) {
+         a.groups["ends"].discs = {1, 1};
+       },
+       "group 'ends' names disc 1 after disc 1 (the discs of a group must ascend, each once). Sort them and "
+       "drop "
+       "repetitions."},
+      {[](Assembly& a) { a.groups["ends"].tributary_lengths = {1}; },
+       "1 tributary lengths of group 'ends' are given for 2 discs of it (there must be one for each). Give 2 "
+       "tributary "
+       "lengths of group 'ends', or none."},
+      {[](Assembly& a) { a.groups["ends"].tributary_lengths[1] = -3; },
+       "disc 1 of group 'ends' has the tributary length -3 (tributary lengths must be finite and not "
+       "negative). Correct "
+       "it."},
+  };
+  for (const Case& broken : cases) {
+    const Assembly a = pair_of_discs(broken.spoil);
+    CHECK_THROWS_WITH(check(a), broken.sentence);
+    try {
+      check(a);
+    } catch (const Error& error) {
+      CHECK(error.kind() == ErrorKind::bad_input);
+    }
+  }
+}
+
+TEST_CASE("groups_are_found_by_name") {
+  const Assembly a = pair_of_discs([](Assembly& spoilt) { spoilt.groups["empty"] = {}; });
+  CHECK(group(a, "ends").discs.size() == 2);
+  CHECK(group(a, "empty").discs.empty());
+  CHECK_THROWS_WITH(group(a, "end"),
+                    "the assembly has no group 'end' (its groups are empty, ends). Name one of them.");
+  CHECK_THROWS_WITH(
+      group(Assembly{}, "left"),
+      Catch::Matchers::StartsWith("the assembly has no group 'left' (it has no groups at all)"));
+}
+
+TEST_CASE("measures_of_an_assembly_are_means_over_its_discs") {
+  const Assembly a = pair_of_discs([](Assembly& unequal) { unequal.radii = {1, 0.5}; });
+  CHECK(a.area() == 8);
+  CHECK(a.mean_radius() == 0.75);
+  CHECK(a.coordination_number() == 1);
+  CHECK(a.solid_fraction() == Approx(std::acos(-1.0) * 1.25 / 8));
+  CHECK_THROWS_WITH(pair_of_discs([](Assembly& bare) { bare.cell_areas.clear(); }).area(),
+                    Catch::Matchers::StartsWith("the assembly has no cell areas"));
+}

@@ -1,0 +1,445 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numeric>
+#include <set>
+
+#include "equidem/assembly/delaunay.hpp"
+#include "equidem/assembly/power_cells.hpp"
+#include "equidem/assembly/space_filling_curve.hpp"
+#include "equidem/assembly/triangulation.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/threads.hpp"
+
+#include "geometry_oracle.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+
+namespace {
+
+constexpr RadiusDistribution equal_radii = {.smallest = 0.005, .largest = 0.005};
+constexpr RadiusDistribution unequal_radii = {.smallest = 0.003, .largest = 0.007};
+
+double sum(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+/// The rectangle that a free assembly fills, from its side groups.
+Vec2 extent(const Assembly& a) {
+  if (a.period) return *a.period;
+  return {sum(group(a, "bottom").tributary_lengths), sum(group(a, "left").tributary_lengths)};
+}
+
+std::set<oracle::Pair> pairs(const std::vector<Contact>& contacts) {
+  std::set<oracle::Pair> result;
+  for (const Contact& c : contacts) result.insert(oracle::pair(c));
+  return result;
+}
+
+/// FNV-1a of the bits of everything in an assembly.
+class Hash {
+ public:
+  void add(const auto& value) {
+    unsigned char bytes[sizeof(value)];
+    std::memcpy(bytes, &value, sizeof(value));
+    for (const unsigned char byte : bytes) hash_ = (hash_ ^ byte) * 0x100000001b3ULL;
+  }
+  void add_all(const auto& values) {
+    for (const auto& value : values) add(value);
+  }
+  [[nodiscard]] std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325ULL;
+};
+
+std::uint64_t hash(const Assembly& a) {
+  Hash h;
+  h.add_all(a.centres);
+  h.add_all(a.radii);
+  h.add_all(a.contacts);
+  h.add_all(a.cell_areas);
+  h.add_all(a.facet_lengths);
+  for (const auto& [name, discs] : a.groups) {
+    h.add_all(name);
+    h.add_all(discs.discs);
+    h.add_all(discs.tributary_lengths);
+  }
+  return h.value();
+}
+
+PointProcess any_process() {
+  return GENERATE(PointProcess::poisson_disc, PointProcess::perturbed_hexagonal, PointProcess::uniform);
+}
+
+}  // namespace
+
+TEST_CASE("triangulations_have_the_edges_that_euler_counts") {
+  const bool weighted = GENERATE(false, true);
+  const std::int64_t count = GENERATE(3, 10, 500);
+  Random random(7);
+  const std::vector<Vec2> points = uniform_points({.count = count}, random).points;
+  // Weights far below the squared distances hide no point.
+  std::vector<double> weights(weighted ? points.size() : 0);
+  for (double& w : weights) w = 1e-9 * random.uniform();
+
+  const auto edges = triangulation_edges(points, weights, hilbert_order(points));
+
+  std::int64_t hull = 0;
+  for (const TriangulationEdge& e : edges) hull += e.left < 0 || e.right < 0 ? 1 : 0;
+  CAPTURE(weighted, count, hull);
+  CHECK(static_cast<std::int64_t>(edges.size()) == 3 * count - 3 - hull);
+}
+
+TEST_CASE("periodic_triangulations_have_three_edges_per_disc") {
+  const PointProcess process = any_process();
+  const std::int64_t count = GENERATE(1, 2, 3, 5, 40, 1000);
+  const std::uint64_t seed = GENERATE(1, 2, 3);
+  CAPTURE(to_string(process), count, seed);
+
+  const Assembly a =
+      delaunay_assembly({.discs = count, .points = process, .disorder = 0.2, .seed = seed, .periodic = true});
+
+  check(a);
+  // The images of one disc form a rectangular grid: the diagonals have facets of no length.
+  CHECK(a.contacts.size() == (a.size() == 1 ? 2 : 3 * a.size()));
+}
+
+TEST_CASE("delaunay_triangles_have_empty_circles") {
+  Random random(3);
+  const std::vector<Vec2> points = uniform_points({.count = 60}, random).points;
+
+  const auto edges = triangulation_edges(points, {}, hilbert_order(points));
+
+  std::size_t triangles = 0;
+  for (const TriangulationEdge& e : edges) {
+    for (const std::int32_t third : {e.left, e.right}) {
+      if (third < 0) continue;
+      ++triangles;
+      const Vec2 b = points[e.b] - points[e.a];
+      const Vec2 c = points[third] - points[e.a];
+      CHECK((cross(b, c) > 0) == (third == e.left));
+      const Vec2 centre = points[e.a] - perpendicular(dot(b, b) * c - dot(c, c) * b) / (2 * cross(b, c));
+      const double radius = norm(points[e.a] - centre);
+      CHECK(norm(points[e.b] - centre) == Approx(radius).epsilon(1e-9));
+      for (const Vec2 p : points) CHECK(norm(p - centre) > radius * (1 - 1e-9));
+    }
+  }
+  CHECK(triangles > 3 * points.size());
+}
+
+TEST_CASE("cells_are_those_cut_by_brute_force") {
+  const PointProcess process = any_process();
+  const bool periodic = GENERATE(true, false);
+  const auto radii = GENERATE(equal_radii, unequal_radii);
+  const double aspect = GENERATE(1.0, 0.3);
+  const std::uint64_t seed = GENERATE(1, 2);
+  CAPTURE(to_string(process), periodic, radii.largest, aspect, seed);
+
+  const Assembly a = delaunay_assembly({.discs = 60,
+                                        .points = process,
+                                        .disorder = 0.3,
+                                        .seed = seed,
+                                        .radii = radii,
+                                        .aspect = aspect,
+                                        .periodic = periodic});
+  const oracle::Cells expected = oracle::cells(a, {{0, 0}, extent(a)}, 1);
+
+  REQUIRE(a.contacts.size() == expected.neighbours.size());
+  for (std::size_t k = 0; k < a.contacts.size(); ++k) {
+    CAPTURE(k, a.contacts[k].i, a.contacts[k].j);
+    CHECK(oracle::pair(a.contacts[k]) == expected.neighbours[k].pair);
+    CHECK(std::abs(a.facet_lengths[k] - expected.neighbours[k].facet) < 1e-10 * a.mean_radius());
+  }
+  for (std::size_t d = 0; d < a.size(); ++d) {
+    CHECK(std::abs(a.cell_areas[d] - expected.areas[d]) < 1e-10 * a.mean_radius() * a.mean_radius());
+  }
+}
+
+TEST_CASE("tiny_periodic_cells_are_those_cut_by_brute_force") {
+  const std::int64_t count = GENERATE(1, 2, 3, 4);
+  const auto radii = GENERATE(equal_radii, unequal_radii);
+  const double aspect = GENERATE(1.0, 0.25, 2.0);
+  const std::uint64_t seed = GENERATE(1, 2, 3, 4, 5);
+  CAPTURE(count, radii.largest, aspect, seed);
+
+  const Assembly a = delaunay_assembly({.discs = count,
+                                        .points = PointProcess::uniform,
+                                        .seed = seed,
+                                        .radii = radii,
+                                        .aspect = aspect,
+                                        .periodic = true});
+  const oracle::Cells expected = oracle::cells(a, {}, 6);
+
+  // One disc on its own lattice is a rectangular grid: four neighbours.
+  REQUIRE(a.contacts.size() == expected.neighbours.size());
+  for (std::size_t k = 0; k < a.contacts.size(); ++k) {
+    CHECK(oracle::pair(a.contacts[k]) == expected.neighbours[k].pair);
+    CHECK(a.facet_lengths[k] == Approx(expected.neighbours[k].facet).epsilon(1e-9));
+  }
+  for (std::size_t d = 0; d < a.size(); ++d)
+    CHECK(a.cell_areas[d] == Approx(expected.areas[d]).margin(1e-12));
+}
+
+TEST_CASE("cells_fill_the_rectangle") {
+  const PointProcess process = any_process();
+  const bool periodic = GENERATE(true, false);
+  const auto radii = GENERATE(equal_radii, unequal_radii);
+  const std::int64_t count = GENERATE(5, 100, 3000);
+  const double aspect = GENERATE(1.0, 7.0);
+
+  const Assembly a = delaunay_assembly({.discs = count,
+                                        .points = process,
+                                        .disorder = 0.45,
+                                        .radii = radii,
+                                        .aspect = aspect,
+                                        .periodic = periodic});
+
+  check(a);
+  const Vec2 size = extent(a);
+  const double mean_diameter = radii.smallest + radii.largest;
+  const double per_disc = std::sqrt(3.0) / 2 * mean_diameter * mean_diameter;
+  CAPTURE(to_string(process), periodic, radii.largest, count, aspect, a.size());
+  CHECK(std::abs(sum(a.cell_areas) / (size.x * size.y) - 1) < 1e-12);
+  // The mean spacing is the mean diameter.
+  CHECK(size.x * size.y == Approx(per_disc * static_cast<double>(a.size())).epsilon(1e-12));
+}
+
+TEST_CASE("facets_of_a_periodic_cell_close_around_every_disc") {
+  const PointProcess process = any_process();
+  const auto radii = GENERATE(equal_radii, unequal_radii);
+  const Assembly a =
+      delaunay_assembly({.discs = 800, .points = process, .disorder = 0.3, .radii = radii, .periodic = true});
+
+  std::vector<Vec2> sums(a.size());
+  for (std::size_t k = 0; k < a.contacts.size(); ++k) {
+    const Contact& c = a.contacts[k];
+    const Vec2 l = a.branch(c);
+    sums[c.i] += (a.facet_lengths[k] / norm(l)) * l;
+    sums[c.j] -= (a.facet_lengths[k] / norm(l)) * l;
+  }
+
+  double worst = 0;
+  for (const Vec2 s : sums) worst = std::max(worst, norm(s) / a.mean_radius());
+  CAPTURE(to_string(process), radii.largest, worst);
+  CHECK(worst < 1e-12);
+}
+
+TEST_CASE("levers_reach_from_centre_to_centre") {
+  const PointProcess process = any_process();
+  const bool periodic = GENERATE(true, false);
+  const auto radii = GENERATE(equal_radii, unequal_radii);
+  const Assembly a = delaunay_assembly(
+      {.discs = 300, .points = process, .disorder = 0.1, .radii = radii, .periodic = periodic});
+  CAPTURE(to_string(process), periodic, radii.largest);
+
+  for (const Contact& c : a.contacts) {
+    const double l = norm(a.branch(c));
+    CHECK(c.lever_i + c.lever_j == Approx(l).epsilon(1e-13));
+    // On the radical axis both discs have the same power, unless it lies behind a centre.
+    const double ri = a.radii[c.i];
+    const double rj = a.radii[c.j];
+    const bool between = std::abs(ri * ri - rj * rj) <= l * l;
+    if (between) {
+      CHECK(std::abs((c.lever_i * c.lever_i - ri * ri) - (c.lever_j * c.lever_j - rj * rj)) <
+            1e-12 * (ri * ri + l * l));
+    } else {
+      CHECK(c.lever_i * c.lever_j == 0);
+    }
+    if (ri == rj) CHECK(c.lever_i == c.lever_j);
+  }
+}
+
+TEST_CASE("a_periodic_cell_may_be_cut_anywhere") {
+  const auto radii = GENERATE(equal_radii, unequal_radii);
+  const std::int64_t count = GENERATE(2, 3, 200);
+  const Vec2 by = GENERATE(Vec2{0.0131, -0.0077}, Vec2{-1.7, 2.9}, Vec2{1e-9, 0});
+  Assembly a =
+      delaunay_assembly({.discs = count, .points = PointProcess::uniform, .radii = radii, .periodic = true});
+
+  Assembly moved = a;
+  for (Vec2& x : moved.centres) x += by;
+  triangulate(moved);
+
+  CAPTURE(radii.largest, count, by.x, by.y);
+  REQUIRE(pairs(moved.contacts) == pairs(a.contacts));
+  for (std::size_t k = 0; k < a.contacts.size(); ++k) {
+    CHECK(norm(moved.branch(moved.contacts[k])) == Approx(norm(a.branch(a.contacts[k]))).epsilon(1e-9));
+    CHECK(std::abs(moved.facet_lengths[k] - a.facet_lengths[k]) < 1e-9 * a.mean_radius());
+  }
+  for (std::size_t d = 0; d < a.size(); ++d)
+    CHECK(moved.cell_areas[d] == Approx(a.cell_areas[d]).epsilon(1e-9));
+
+  // Images of single discs may be given too: the shifts follow them.
+  moved.centres[1] += Vec2{2 * a.period->x, -a.period->y};
+  triangulate(moved);
+  for (std::size_t k = 0; k < a.contacts.size(); ++k) {
+    CHECK(norm(moved.branch(moved.contacts[k])) == Approx(norm(a.branch(a.contacts[k]))).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("sides_of_a_random_assembly_are_shared_out_whole") {
+  const PointProcess process = any_process();
+  const auto radii = GENERATE(equal_radii, unequal_radii);
+  const Assembly a = delaunay_assembly({.discs = 400, .points = process, .radii = radii, .aspect = 2});
+  CAPTURE(to_string(process), radii.largest);
+
+  CHECK(sum(group(a, "top").tributary_lengths) ==
+        Approx(sum(group(a, "bottom").tributary_lengths)).epsilon(1e-12));
+  CHECK(sum(group(a, "right").tributary_lengths) ==
+        Approx(sum(group(a, "left").tributary_lengths)).epsilon(1e-12));
+  // The disc that holds a corner is the one with the least power there.
+  const Vec2 size = extent(a);
+  const std::vector<std::pair<const char*, Vec2>> corners = {
+      {"bottom_left", {0, 0}}, {"bottom_right", {size.x, 0}}, {"top_left", {0, size.y}}, {"top_right", size}};
+  for (const auto& [name, corner] : corners) {
+    std::int32_t best = -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t d = 0; d < a.size(); ++d) {
+      const Vec2 to = a.centres[d] - corner;
+      const double power = dot(to, to) - a.radii[d] * a.radii[d];
+      if (power < least) least = power, best = static_cast<std::int32_t>(d);
+    }
+    CHECK(group(a, name).discs == std::vector<std::int32_t>{best});
+  }
+}
+
+TEST_CASE("a_seed_gives_the_same_bits_for_every_number_of_threads") {
+  const PointProcess process = any_process();
+  const bool periodic = GENERATE(true, false);
+  const DelaunayOptions options = {
+      .discs = 20000, .points = process, .seed = 5, .radii = unequal_radii, .periodic = periodic};
+  CAPTURE(to_string(process), periodic);
+  const int before = thread_count();
+
+  set_thread_count(1);
+  const std::uint64_t one = hash(delaunay_assembly(options));
+  const std::uint64_t again = hash(delaunay_assembly(options));
+  set_thread_count(3);
+  const std::uint64_t three = hash(delaunay_assembly(options));
+  set_thread_count(before);
+  DelaunayOptions other = options;
+  other.seed = 6;
+
+  CHECK(again == one);
+  CHECK(three == one);
+  CHECK(hash(delaunay_assembly(other)) != one);
+}
+
+TEST_CASE("the_order_of_the_discs_does_not_change_their_cells") {
+  const bool periodic = GENERATE(true, false);
+  const auto radii = GENERATE(equal_radii, unequal_radii);
+  Assembly a = delaunay_assembly(
+      {.discs = 300, .points = PointProcess::uniform, .radii = radii, .periodic = periodic});
+  triangulate(a);
+  Assembly reversed = a;
+  std::reverse(reversed.centres.begin(), reversed.centres.end());
+  std::reverse(reversed.radii.begin(), reversed.radii.end());
+  triangulate(reversed);
+
+  CHECK(reversed.contacts.size() == a.contacts.size());
+  for (std::size_t d = 0; d < a.size(); ++d) {
+    CHECK(reversed.cell_areas[a.size() - 1 - d] == Approx(a.cell_areas[d]).epsilon(1e-10));
+  }
+}
+
+TEST_CASE("corners_where_four_cells_meet_are_no_contacts") {
+  // Four discs on every circle: the diagonals of the triangulation have facets of no length.
+  const bool periodic = GENERATE(true, false);
+  Assembly a;
+  for (int y = 0; y < 6; ++y) {
+    for (int x = 0; x < 6; ++x) a.centres.push_back({0.5 + x, 0.5 + y});
+  }
+  a.radii.assign(36, 0.5);
+  if (periodic) a.period = Vec2{6, 6};
+
+  triangulate(a);
+
+  CHECK(a.contacts.size() == (periodic ? 72 : 60));
+  for (const double f : a.facet_lengths) CHECK(f == Approx(1));
+  for (const double area : a.cell_areas) CHECK(area == Approx(1));
+  if (periodic) return;
+  const DiscGroup& left = group(a, "left");
+  CHECK(left.discs == std::vector<std::int32_t>{0, 6, 12, 18, 24, 30});
+  for (const double length : left.tributary_lengths) CHECK(length == Approx(1));
+}
+
+TEST_CASE("a_disc_inside_another_has_an_empty_cell_and_no_contacts") {
+  Assembly a;
+  a.centres = {{0, 0}, {10, 0}, {10, 10}, {0, 10}, {5, 5}, {5.2, 5.1}};
+  a.radii = {1, 1, 1, 1, 4, 0.1};
+
+  triangulate(a);
+
+  CHECK(a.cell_areas[5] == 0);
+  for (const Contact& c : a.contacts) CHECK((c.i != 5 && c.j != 5));
+  CHECK(sum(a.cell_areas) == Approx(144).epsilon(1e-13));
+}
+
+TEST_CASE("cells_of_few_or_collinear_discs_can_be_measured") {
+  const int count = GENERATE(1, 2, 5);
+  const bool upright = GENERATE(true, false);
+  Assembly a;
+  for (int k = 0; k < count; ++k) a.centres.push_back(upright ? Vec2{3, 2.0 * k} : Vec2{2.0 * k, 3});
+  a.radii.assign(a.size(), 1);
+  for (int k = 0; k + 1 < count; ++k) a.contacts.push_back({.i = k + 1, .j = k, .lever_i = 1, .lever_j = 1});
+  CAPTURE(count, upright);
+
+  measure_cells(a);
+
+  for (const double area : a.cell_areas) CHECK(area == Approx(4));
+  for (const double facet : a.facet_lengths) CHECK(facet == Approx(2));
+  CHECK(group(a, upright ? "left" : "bottom").discs.size() == a.size());
+  CHECK(group(a, upright ? "bottom" : "left").discs == std::vector<std::int32_t>{0});
+}
+
+TEST_CASE("points_that_make_no_triangulation_are_named") {
+  Assembly a;
+  a.radii.assign(4, 0.1);
+
+  a.centres = {{0, 0}, {1, 0}, {0, 1}, {1, 0}};
+  CHECK_THROWS_WITH(
+      triangulate(a),
+      "discs 1 and 3 have the same centre, (1, 0) m (no direction joins them, and their cells cannot be "
+      "told apart). Move or remove one of them.");
+  a.centres = {{0, 0}, {1, 1}, {3, 3}, {2, 2}};
+  CHECK_THROWS_WITH(
+      triangulate(a),
+      "all 4 discs lie on the line through discs 0 and 2 (points on one line have no triangles). Move "
+      "some of them, or list the contacts.");
+  a.centres = {{0, 0}, {1, 1}};
+  a.radii.resize(2);
+  CHECK_THROWS_WITH(
+      triangulate(a),
+      "2 discs cannot be triangulated (a triangulation needs three or more). Add discs, or list the "
+      "contacts.");
+  a.period = Vec2{1, 1};
+  CHECK_THROWS_WITH(triangulate(a), Catch::Matchers::StartsWith("discs 0 and 1 have the same centre"));
+  a.centres = {{0, 0}, {0, 1e-4}};
+  a.period = Vec2{1e-9, 1e3};
+  CHECK_THROWS_AS(triangulate(a), Error);
+}
+
+TEST_CASE("options_out_of_range_are_refused") {
+  CHECK_THROWS_WITH(delaunay_assembly({.discs = 2}),
+                    Catch::Matchers::StartsWith("discs = 2 (a free triangulation needs 3"));
+  CHECK_THROWS_WITH(delaunay_assembly({.discs = 0, .periodic = true}),
+                    Catch::Matchers::StartsWith("discs = 0 ("));
+  CHECK_THROWS_WITH(delaunay_assembly({.disorder = 0.5}), Catch::Matchers::StartsWith("disorder = 0.5 ("));
+  CHECK_THROWS_WITH(delaunay_assembly({.disorder = NAN}), Catch::Matchers::StartsWith("disorder = nan ("));
+  CHECK_THROWS_WITH(delaunay_assembly({.radii = {.smallest = 0}}),
+                    Catch::Matchers::StartsWith("the smallest radius is 0 m"));
+  CHECK_THROWS_WITH(delaunay_assembly({.radii = {.smallest = 1, .largest = 0.5}}),
+                    Catch::Matchers::StartsWith("the largest radius is 0.5 m"));
+  CHECK_THROWS_WITH(delaunay_assembly({.aspect = -1}), Catch::Matchers::StartsWith("aspect = -1 ("));
+  CHECK_THROWS_WITH(
+      point_process_from("sobol"),
+      "there are no points of the kind 'sobol' (the kinds are poisson_disc, perturbed_hexagonal and "
+      "random). Choose one of them.");
+  for (const char* name : {"poisson_disc", "perturbed_hexagonal", "random"}) {
+    CHECK(to_string(point_process_from(name)) == name);
+  }
+}

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <tuple>
+
+#include <unistd.h>
+
+#include "equidem/assembly/delaunay.hpp"
+#include "equidem/assembly/files.hpp"
+#include "equidem/assembly/lattices.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+
+#include "support/catch.hpp"
+
+using namespace equidem;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A folder that is removed with its content.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() : path_(fs::temp_directory_path() / ("equidem_test_files_" + std::to_string(getpid()))) {
+    fs::create_directories(path_);
+  }
+  ~TemporaryFolder() { fs::remove_all(path_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  [[nodiscard]] fs::path operator/(const char* name) const { return path_ / name; }
+
+ private:
+  fs::path path_;
+};
+
+Assembly read_text(const std::string& text) {
+  const TemporaryFolder folder;
+  write_file(folder / "a.json", text, true);
+  return read_assembly(folder / "a.json");
+}
+
+/// The sentence with which a text is refused, from the name of the file on.
+std::string refusal(const std::string& text) {
+  try {
+    read_text(text);
+  } catch (const Error& error) {
+    const std::string sentence = error.what();
+    return sentence.substr(std::min(sentence.size(), sentence.find("a.json")));
+  }
+  return "(accepted)";
+}
+
+/// A file of two touching discs, its key `key` replaced by `value`.
+std::string file_with(const std::string& key = "", const std::string& value = "") {
+  std::string text = R"({"schema": "equidem-assembly/1")";
+  const auto add = [&](const std::string& name, const std::string& standard) {
+    const std::string& taken = name == key ? value : standard;
+    if (!taken.empty()) text += ", \"" + name + "\": " + taken;
+  };
+  add("discs", "[[0, 0, 1], [2, 0, 1]]");
+  add("contacts", "[[0, 1, 0, 0]]");
+  for (const char* name : {"cell", "levers", "springs", "groups", "title", "dics"}) add(name, "");
+  return text + "}";
+}
+
+void require_same(const Assembly& a, const Assembly& b) {
+  REQUIRE(a.centres == b.centres);
+  for (std::size_t d = 0; d < a.size(); ++d)
+    CHECK(std::signbit(a.centres[d].x) == std::signbit(b.centres[d].x));
+  REQUIRE(a.radii == b.radii);
+  REQUIRE(a.period == b.period);
+  REQUIRE(a.contacts.size() == b.contacts.size());
+  for (std::size_t k = 0; k < a.contacts.size(); ++k) {
+    const Contact& p = a.contacts[k];
+    const Contact& q = b.contacts[k];
+    CHECK(std::tie(p.i, p.j, p.shift_x, p.shift_y) == std::tie(q.i, q.j, q.shift_x, q.shift_y));
+    CHECK(std::tie(p.lever_i, p.lever_j) == std::tie(q.lever_i, q.lever_j));
+  }
+  CHECK(a.contact_kN == b.contact_kN);
+  CHECK(a.contact_kT == b.contact_kT);
+  REQUIRE(a.groups.size() == b.groups.size());
+  for (const auto& [name, discs] : a.groups) {
+    CAPTURE(name);
+    CHECK(discs.discs == group(b, name).discs);
+    CHECK(discs.tributary_lengths == group(b, name).tributary_lengths);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("files_read_back_to_the_same_bits") {
+  const bool periodic = GENERATE(true, false);
+  Assembly a = delaunay_assembly({.discs = 300,
+                                  .points = PointProcess::uniform,
+                                  .radii = {.smallest = 0.003, .largest = 0.007},
+                                  .periodic = periodic});
+  for (std::size_t k = 0; k < a.contacts.size(); ++k) {
+    a.contact_kN.push_back(1e9 / (1.0 + static_cast<double>(k)));
+    a.contact_kT.push_back(-1e-300 * static_cast<double>(k));
+  }
+  a.groups["chosen \"few\""] = {.discs = {3, 17}, .tributary_lengths = {}};
+  if (!periodic) a.centres[0].x = -0.0;
+  const TemporaryFolder folder;
+
+  write_assembly(folder / "sub/a.json", a, false);
+  const Assembly b = read_assembly(folder / "sub/a.json");
+
+  require_same(a, b);
+  CHECK(b.kind == "file");
+  CHECK(b.cell_areas.size() == a.size());
+  CHECK_THROWS_AS(write_assembly(folder / "sub/a.json", a, false), Error);
+  CHECK_NOTHROW(write_assembly(folder / "sub/a.json", a, true));
+}
+
+TEST_CASE("cells_of_a_file_are_measured") {
+  const Assembly a = delaunay_assembly({.discs = 200, .periodic = true});
+  const TemporaryFolder folder;
+  write_assembly(folder / "a.json", a, false);
+
+  const Assembly b = read_assembly(folder / "a.json");
+
+  for (std::size_t d = 0; d < a.size(); ++d) CHECK(b.cell_areas[d] == Approx(a.cell_areas[d]).epsilon(1e-12));
+  for (std::size_t k = 0; k < a.contacts.size(); ++k) CHECK(b.facet_lengths[k] == Approx(a.facet_lengths[k]));
+}
+
+TEST_CASE("missing_contacts_are_the_touching_discs") {
+  const bool periodic = GENERATE(true, false);
+  Assembly lattice = hexagonal_lattice({.columns = 4, .rows = 6, .periodic = periodic});
+  const TemporaryFolder folder;
+  write_assembly(folder / "a.json", lattice, false);
+  std::string text = read_file(folder / "a.json");
+  const std::size_t begin = text.find(",\n\"contacts\"");
+  const std::size_t end = text.find(",\n\"groups\"");
+  text.erase(begin, end == std::string::npos ? text.size() - 2 - begin : end - begin);
+
+  const Assembly found = read_text(text);
+
+  CHECK(found.contacts.size() == lattice.contacts.size());
+  for (const Contact& c : found.contacts) CHECK(c.lever_i == Approx(0.005).epsilon(1e-12));
+}
+
+TEST_CASE("discs_touch_up_to_rounding_and_overlap_counts") {
+  CHECK(read_text(file_with("contacts", "")).contacts.size() == 1);
+  const auto contacts = [](const std::string& discs) {
+    return read_text(R"({"schema": "equidem-assembly/1", "discs": )" + discs + "}").contacts.size();
+  };
+  CHECK(contacts("[[0, 0, 1], [2.0000000005, 0, 1]]") == 1);
+  CHECK(contacts("[[0, 0, 1], [2.00000001, 0, 1]]") == 0);
+  CHECK(contacts("[[0, 0, 1], [1.5, 0, 1]]") == 1);
+  CHECK(contacts("[[0, 0, 3], [3.5, 0, 0.5], [4.5, 0, 0.5]]") == 2);
+  // One disc in a narrow cell touches its own images on two sides, and those after them.
+  const Assembly narrow =
+      read_text(R"({"schema": "equidem-assembly/1", "cell": [1, 10], "discs": [[0.2, 3, 0.5]]})");
+  REQUIRE(narrow.contacts.size() == 1);
+  CHECK(narrow.contacts[0].shift_x == 1);
+  CHECK(read_text(R"({"schema": "equidem-assembly/1", "cell": [1, 10], "discs": [[9.2, -3, 1.1]]})")
+            .contacts.size() == 2);
+}
+
+TEST_CASE("levers_springs_and_groups_are_read") {
+  const Assembly a = read_text(R"({"schema": "equidem-assembly/1", "title": "three", "cell": null,
+    "discs": [[0, 0, 1], [2, 0, 1], [1, 1.8, 1]], "contacts": [[0, 1, 0, 0], [2, 0, 0, 0]],
+    "levers": [[0.9, 1.1], [1, 1.5]], "springs": [[1e9, 5e8], [2e9, -1]],
+    "groups": {"pulled": [2, 0], "side": {"discs": [1, 0], "tributary_lengths": [5, 6]}, "left": []}})");
+
+  CHECK(a.contacts[0].lever_i == 0.9);
+  CHECK(a.contacts[1].lever_j == 1.5);
+  CHECK(a.contact_kN == std::vector<double>{1e9, 2e9});
+  CHECK(a.contact_kT == std::vector<double>{5e8, -1});
+  CHECK(group(a, "pulled").discs == std::vector<std::int32_t>{0, 2});
+  CHECK(group(a, "side").tributary_lengths == std::vector<double>{6, 5});
+  // The file's own groups stay; the other sides are added.
+  CHECK(group(a, "left").discs.empty());
+  CHECK(group(a, "bottom").discs == std::vector<std::int32_t>{0, 1});
+  CHECK(group(a, "bottom").tributary_lengths == std::vector<double>{2, 2});
+}
+
+TEST_CASE("wrong_entries_are_named") {
+  struct Case {
+    const char* key;
+    const char* value;
+    const char* sentence;
+  };
+  const std::vector<Case> cases = {
+      {"dics", "[]", "a.json: dics: there is no key 'dics' (the nearest is 'discs'). Correct or remove it."},
+      {"discs", "",
+       "a.json: discs: the key 'discs' is missing (an assembly is made of discs). Add \"discs\": [[x, y, "
+       "radius], "
+       "...]."},
+      {"discs", "[]", "a.json: the assembly has no discs (there is nothing to solve for). Give it discs."},
+      {"discs", "7", "a.json: discs: a number stands where a list is expected. Correct the entry."},
+      {"discs", "[[0, 0, 1], [2, 0]]",
+       "a.json: discs[1]: 2 numbers stand where 3 are expected (an entry is [x, y, radius]). Correct the "
+       "entry."},
+      {"discs", "[[0, 0, 1], [2, \"0\", 1]]",
+       "a.json: discs[1]: a text stands where a number is expected. Correct the entry."},
+      {"discs", "[[0, 0, 1], [2, 0, -1]]",
+       "a.json: disc 1 has the radius -1 (radii must be positive and finite). Correct it."},
+      {"discs", "[[0, 0, 1], [2, 0, 1e999]]",
+       "a.json: a number is too large for a double (the largest is 1.8e308). Correct it."},
+      {"discs", "[[0, 0, 1], [2, 0, 1], [2, 0, 1]]",
+       "a.json: discs 1 and 2 have the same centre, (2, 0) m (no direction joins them, and their cells "
+       "cannot be told "
+       "apart). Move or remove one of them."},
+      {"contacts", "[[0, 2, 0, 0]]",
+       "a.json: contact 0 names disc 2 (the discs are numbered from 0 to 1). Correct the contact or add the "
+       "disc."},
+      {"contacts", "[[0, 0, 0, 0]]",
+       "a.json: contact 0 joins disc 0 to itself (a disc can only touch another disc or its own image across "
+       "a "
+       "period). Remove the contact or give it a shift."},
+      {"contacts", "[[0, 1.5, 0, 0]]",
+       "a.json: contacts[0]: 1.5 stands where a whole number is expected. Correct the entry."},
+      {"contacts", "[[0, 99999999999, 0, 0]]",
+       "a.json: contacts[0]: 99999999999 is beyond all numbers of discs. Correct the entry."},
+      {"contacts", "[[0, 1, 0, 0], [1, 0, 0, 0]]",
+       "a.json: contacts[1]: contacts 0 and 1 are the same, of discs 0 and 1 (its springs would count "
+       "twice). Remove "
+       "one of them."},
+      {"levers", "[[1, 1], [1, 1]]",
+       "a.json: levers: 2 entries for 1 contact (there must be one for each). Correct the list or remove "
+       "it."},
+      {"levers", "[[1, -1]]",
+       "a.json: contact 0, of discs 0 and 1, has the lever arm -1 (lever arms must be finite and not "
+       "negative). "
+       "Correct it."},
+      {"springs", "[[0, 1]]",
+       "a.json: contact 0, of discs 0 and 1, has kN = 0 Pa (a normal spring must be positive and finite). "
+       "Correct it "
+       "or remove the contact."},
+      {"springs", "[[1, null]]",
+       "a.json: springs[0]: null stands where a number is expected. Correct the entry."},
+      {"cell", "[1]",
+       "a.json: cell: 1 number stand where 2 are expected (an entry is [Lx, Ly]). Correct the entry."},
+      {"cell", "[1, -1]",
+       "a.json: the period is (1, -1) m (both lengths of a periodic cell must be positive and finite). "
+       "Correct the "
+       "cell."},
+      {"groups", "{\"pulled\": [5]}",
+       "a.json: group 'pulled' names disc 5 (the discs are numbered from 0 to 1). Correct the group or add "
+       "the disc."},
+      {"groups", "{\"pulled\": [true]}",
+       "a.json: groups.pulled[0]: a truth value stands where a whole number is expected. Correct the entry."},
+      {"groups", "{\"pulled\": {\"disc\": [1]}}",
+       "a.json: groups.pulled: there is no key 'disc' in a group (its keys are 'discs' and "
+       "'tributary_lengths'). "
+       "Correct or remove it."},
+      {"groups", "[]",
+       "a.json: groups: a list stands where an object of groups is expected. Correct the entry."},
+      {"title", "7", "a.json: title: a number stands where a text is expected. Correct the entry."},
+  };
+  REQUIRE(refusal(file_with()) == "(accepted)");
+  for (const Case& wrong : cases) CHECK(refusal(file_with(wrong.key, wrong.value)) == wrong.sentence);
+
+  CHECK(refusal("{}") ==
+        "a.json: schema: the key 'schema' is missing (an assembly file says \"schema\": "
+        "\"equidem-assembly/1\"). Add or "
+        "correct it, if this is an assembly file.");
+  CHECK(refusal(R"({"schema": "other/2"})") ==
+        "a.json: schema: the schema is \"other/2\" (an assembly file says \"schema\": "
+        "\"equidem-assembly/1\"). Add or "
+        "correct it, if this is an assembly file.");
+  CHECK(refusal("[1]") ==
+        "a.json: a list stands where an object with the keys schema, discs, ... is expected. Correct "
+        "the entry.");
+  CHECK(refusal("{\"schema\": \"equidem-assembly/1\",\n \"discs\": [[NaN, 0, 1]]}") ==
+        "a.json: line 2, column 13: this is not JSON (reading stopped at byte 46 of 57). Correct the text "
+        "there.");
+  CHECK_THROWS_AS(read_assembly("no/such/file.json"), Error);
+  CHECK_THROWS_AS(read_assembly("."), Error);
+}
+
+TEST_CASE("an_independent_triangulation_has_the_same_contacts_and_the_same_cells") {
+  const Assembly given =
+      read_assembly(fs::path(EQUIDEM_SOURCE_DIR) / "data/reference/perturbed_hexagonal_400.json");
+  Assembly ours = given;
+
+  triangulate(ours);
+
+  REQUIRE(given.contacts.size() == 1200);
+  REQUIRE(ours.contacts.size() == 1200);
+  for (std::size_t k = 0; k < 1200; ++k) {
+    const Contact& p = given.contacts[k];
+    const Contact& q = ours.contacts[k];
+    CHECK(std::tie(p.i, p.j, p.shift_x, p.shift_y) == std::tie(q.i, q.j, q.shift_x, q.shift_y));
+    CHECK(given.facet_lengths[k] == ours.facet_lengths[k]);
+  }
+}
+
+TEST_CASE("a_file_cut_off_anywhere_is_refused") {
+  Assembly a = square_lattice({.columns = 2, .rows = 2});
+  a.contact_kN.assign(4, 1e9);
+  a.contact_kT.assign(4, 5e8);
+  const TemporaryFolder folder;
+  write_assembly(folder / "a.json", a, false);
+  const std::string whole = read_file(folder / "a.json");
+  REQUIRE(whole.size() > 500);
+  REQUIRE(whole.substr(whole.size() - 2) == "}\n");
+
+  for (std::size_t length = 0; length + 2 <= whole.size(); ++length) {
+    const std::string sentence = refusal(whole.substr(0, length));
+    INFO(length << ": " << sentence);
+    const bool told =
+        sentence.find("cut off") != std::string::npos || sentence.find("not JSON") != std::string::npos;
+    CHECK(told);
+    CHECK(sentence.find("line ") != std::string::npos);
+  }
+}
