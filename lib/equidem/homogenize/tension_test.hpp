@@ -12,15 +12,21 @@
 
 namespace equidem {
 
-/// Where the two strain gauges A-B (along x) and C-D (along y) sit.
+/// Where the two strain gauges A-B (along x) and C-D (along y) sit. On the lattices A and B are discs of the
+/// middle row (of two middle rows of a hexagonal block, the one with a disc in its middle), the nearest pair
+/// symmetric about its middle that is at least as far out as said. C and D share one x, that of the disc in
+/// or next to the middle, and lie as many rows above as below the middle one; `ends` leaves out the last of
+/// an even number of hexagonal rows, since only every other row has discs at the same x. Elsewhere all four
+/// are the discs nearest to the points said, one spacing being the mean branch length.
 enum class GaugePlacement {
-  centre,   ///< discs two spacings either side of the middle
+  centre,   ///< discs two spacings (rows) either side of the middle
   quarter,  ///< discs a quarter of the block either side of the middle
   ends,     ///< from side to side through the middle
 };
 
 /// "centre" | "quarter" | "ends". \throws Error (bad_input)
 GaugePlacement gauge_placement_from(const std::string& name);
+std::string to_string(GaugePlacement placement);
 
 struct TensionTest {
   double stress = 1e6;  ///< s11, Pa; not zero
@@ -39,7 +45,9 @@ struct TensionSetup {
                       ///< hexagonal lattice
 };
 
-/// \throws Error (bad_input) where the assembly is periodic or too small for the gauges
+/// \throws Error (bad_input) where the assembly is periodic, too small for the gauges (with the least size)
+/// or has
+///         no sides to pull at, or where the stress is zero or not finite
 TensionSetup tension_setup(const Assembly& assembly, const TensionTest& test);
 
 struct TensionResult {
@@ -47,7 +55,8 @@ struct TensionResult {
   double stiffness_ratio = 0;  ///< 2G/((1 - nu) kN) = s11/(kN e11), eq. (36); kN is the mean over contacts
   Voigt strain;                ///< gauges: e11, e22; shear from the fitted field
   Voigt stress;                ///< s11 = total load / height
-  Tensor2 fitted_gradient;     ///< displacement gradient fitted to the inner half of the block
+  Tensor2 fitted_gradient;     ///< displacement gradient fitted to the inner half of the block, at least one
+                               ///< spacing either side of its middle
   double fitted_poisson_ratio = 0;  ///< eq. (35) from the fitted field
 };
 

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/homogenize/stress.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
+
+namespace equidem {
+namespace {
+
+void check_cells(const Assembly& assembly) {
+  if (assembly.cell_areas.size() != assembly.size()) {
+    bad_input("the discs have no cell areas",
+              "the stress of a disc is a sum over its contacts divided by its cell",
+              "Measure the cells first");
+  }
+  for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
+    if (!(assembly.cell_areas[disc] > 0)) {
+      bad_input(format("disc {} has the cell area {} m²", disc, assembly.cell_areas[disc]),
+                "its stress is divided by this area, which must be positive",
+                "Remove the disc, or give radii whose power cells all hold some area");
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Tensor2> disc_stresses(const Assembly& assembly, std::span<const ContactForce> forces) {
+  assert(forces.size() == assembly.contacts.size());
+  check_cells(assembly);
+  std::vector<Tensor2> stresses(assembly.size());
+  for (std::size_t c = 0; c < forces.size(); ++c) {
+    const Contact& contact = assembly.contacts[c];
+    const ContactFrame frame = frame_of(assembly, contact);
+    // j feels -F at -r_j n: the same sign of F_i l_j at both ends.
+    const Tensor2 force_by_normal = outer(force_on_i(frame, forces[c]), frame.normal);
+    stresses[contact.i] += frame.lever_i * force_by_normal;
+    stresses[contact.j] += frame.lever_j * force_by_normal;
+  }
+  for (std::size_t disc = 0; disc < stresses.size(); ++disc) stresses[disc] *= 1 / assembly.cell_areas[disc];
+  return stresses;
+}
+
+Tensor2 average_stress(const Assembly& assembly, std::span<const Tensor2> stresses,
+                       const std::function<bool(std::size_t disc)>& inside) {
+  assert(stresses.size() == assembly.size() && assembly.cell_areas.size() == assembly.size());
+  Tensor2 sum;
+  double area = 0;
+  for (std::size_t disc = 0; disc < stresses.size(); ++disc) {
+    if (!inside(disc)) continue;
+    sum += assembly.cell_areas[disc] * stresses[disc];
+    area += assembly.cell_areas[disc];
+  }
+  if (!(area > 0)) {
+    bad_input("the region holds no disc", "there is no stress to average",
+              "Choose a region around some disc centres");
+  }
+  return (1 / area) * sum;
+}
+
+Tensor2 macroscopic_stress(const Assembly& assembly, std::span<const ContactForce> forces) {
+  assert(forces.size() == assembly.contacts.size());
+  const double area = assembly.area();
+  // Partial sums of a fixed length, added in order: the same bits for every number of threads, and rounding
+  // errors that grow far slower than in one long sum.
+  constexpr std::size_t block = 4096;
+  std::vector<Tensor2> partial((forces.size() + block - 1) / block);
+  parallel_tasks(partial.size(), [&](std::size_t task, int) {
+    const std::size_t end = std::min(forces.size(), (task + 1) * block);
+    for (std::size_t c = task * block; c < end; ++c) {
+      const ContactFrame frame = frame_of(assembly, assembly.contacts[c]);
+      partial[task] += (frame.lever_i + frame.lever_j) * outer(force_on_i(frame, forces[c]), frame.normal);
+    }
+  });
+  return (1 / area) * std::accumulate(partial.begin(), partial.end(), Tensor2{});
+}
+
+StressAsymmetry stress_asymmetry(const Assembly& assembly, std::span<const ContactForce> forces,
+                                 std::span<const double> moments) {
+  assert(moments.empty() || moments.size() == assembly.size());
+  return {.difference = asymmetry(macroscopic_stress(assembly, forces)),
+          .moment_density = std::accumulate(moments.begin(), moments.end(), 0.0) / assembly.area()};
+}
+
+}  // namespace equidem

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/homogenize/tension_test.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/material/spring_relations.hpp"
+
+namespace equidem {
+namespace {
+
+using Disc = std::int32_t;
+
+/// The rectangle around the centres of all discs.
+struct Extents {
+  Vec2 low;
+  Vec2 high;
+  [[nodiscard]] Vec2 middle() const { return 0.5 * (low + high); }
+  [[nodiscard]] Vec2 size() const { return high - low; }
+};
+
+Extents extents_of(const Assembly& assembly) {
+  Extents e{assembly.centres.front(), assembly.centres.front()};
+  for (const Vec2 x : assembly.centres) {
+    e.low = {std::min(e.low.x, x.x), std::min(e.low.y, x.y)};
+    e.high = {std::max(e.high.x, x.x), std::max(e.high.y, x.y)};
+  }
+  return e;
+}
+
+double mean_branch_length(const Assembly& assembly) {
+  double sum = 0;
+  for (const Contact& contact : assembly.contacts) sum += norm(assembly.branch(contact));
+  return sum / static_cast<double>(assembly.contacts.size());
+}
+
+[[noreturn]] void refuse_size(GaugePlacement placement, const std::string& present,
+                              const std::string& needed) {
+  bad_input(
+      format("the block has {}, too few for the gauges '{}'", present, to_string(placement)),
+      format("they need at least {}", needed),
+      placement == GaugePlacement::ends ? "Take a larger block" : "Take a larger block or another gauge");
+}
+
+/// How far out from the middle of `count` discs (or rows) in line a gauge reaches, in half spacings.
+int half_reach(GaugePlacement placement, int count) {
+  switch (placement) {
+    case GaugePlacement::centre:
+      return 4;
+    case GaugePlacement::quarter:
+      return std::max(1, count / 2);  // (count - 1)/4 spacings or a little more
+    case GaugePlacement::ends:
+      break;
+  }
+  return count - 1;
+}
+
+/// The nearest pair, symmetric about the middle of 0 ... count - 1, at least as far out as the placement
+/// says; negative where there is none.
+std::pair<int, int> symmetric_pair(GaugePlacement placement, int count) {
+  const int twice_first = count - 1 - half_reach(placement, count);
+  const int first = twice_first < 0 ? -1 : twice_first / 2;
+  return {first, count - 1 - first};
+}
+
+/// Gauges on a lattice, found by counting rows and discs: no tie between equally near discs can turn them.
+class LatticeGauges {
+ public:
+  LatticeGauges(const Assembly& assembly, GaugePlacement placement)
+      : placement_(placement),
+        staggered_(assembly.kind == "hexagonal"),
+        columns_(static_cast<int>(group(assembly, "bottom").discs.size())),
+        first_(group(assembly, "left").discs),
+        last_(group(assembly, "right").discs) {
+    assert(first_.size() == last_.size());
+  }
+
+  void place(TensionSetup& setup) const {
+    const int middle = middle_row();
+    const auto [a, b] = symmetric_pair(placement_, count(middle));
+    const auto [c, d] = rows_of_vertical_gauge(middle);
+    if (a < 0 || a >= b || c < 0 || c >= d || d >= rows()) {
+      refuse_size(placement_, format("{} and {}", counted(columns_, "column"), counted(rows(), "row")),
+                  format("{} columns and {} rows", least_columns(), least_rows()));
+    }
+    setup.horizontal = {first_[middle] + a, first_[middle] + b};
+    setup.vertical = {middle_disc(c), middle_disc(d)};
+  }
+
+ private:
+  [[nodiscard]] int rows() const { return static_cast<int>(first_.size()); }
+  [[nodiscard]] int count(int row) const { return last_[row] - first_[row] + 1; }
+  [[nodiscard]] Disc middle_disc(int row) const { return first_[row] + (count(row) - 1) / 2; }
+  /// Of the two middle rows of an even number, the one with a disc in its middle.
+  [[nodiscard]] int middle_row() const {
+    const int row = (rows() - 1) / 2;
+    return rows() % 2 == 0 && count(row) % 2 == 0 && count(row + 1) % 2 != 0 ? row + 1 : row;
+  }
+  /// For blocks of as many rows as there are, or as many as there must be.
+  [[nodiscard]] int least_columns() const {
+    const int rows_then = std::max(rows(), least_rows());
+    const bool centre = placement_ == GaugePlacement::centre;
+    if (staggered_ && rows_then % 2 == 0) return centre ? 5 : 3;
+    const int short_by = staggered_ ? (rows_then - 1) / 2 % 2 : 0;  // discs that the middle row lacks
+    return (centre ? 5 : 2) + short_by;
+  }
+  [[nodiscard]] int least_rows() const {
+    return placement_ == GaugePlacement::centre ? 5 : staggered_ ? 3 : 2;
+  }
+  [[nodiscard]] std::pair<int, int> rows_of_vertical_gauge(int middle) const {
+    if (!staggered_) return symmetric_pair(placement_, rows());
+    // Rows an even number apart have discs at the same x.
+    if (placement_ == GaugePlacement::ends) return {0, (rows() - 1) / 2 * 2};
+    const int reach = (half_reach(placement_, rows()) + 1) / 2;
+    return {middle - reach, middle + reach};
+  }
+
+  GaugePlacement placement_;
+  bool staggered_;
+  int columns_;
+  const std::vector<Disc>& first_;
+  const std::vector<Disc>& last_;
+};
+
+/// The disc nearest to a point; of discs equally near (to 1e-9 of a spacing) the first.
+Disc nearest_disc(const Assembly& assembly, Vec2 point, double spacing) {
+  Disc nearest = 0;
+  double least = norm(assembly.centres[0] - point);
+  for (std::size_t disc = 1; disc < assembly.size(); ++disc) {
+    const double distance = norm(assembly.centres[disc] - point);
+    if (distance < least - 1e-9 * spacing) nearest = static_cast<Disc>(disc), least = distance;
+  }
+  return nearest;
+}
+
+void place_nearest_gauges(const Assembly& assembly, GaugePlacement placement, TensionSetup& setup) {
+  const Extents block = extents_of(assembly);
+  const double spacing = mean_branch_length(assembly);
+  const auto half_length = [&](double extent) {
+    switch (placement) {
+      case GaugePlacement::centre:
+        return 2 * spacing;
+      case GaugePlacement::quarter:
+        return extent / 4;
+      case GaugePlacement::ends:
+        break;
+    }
+    return extent / 2;
+  };
+  const Vec2 half{half_length(block.size().x), half_length(block.size().y)};
+  const auto pair_at = [&](Vec2 reach) {
+    return StrainGauge{nearest_disc(assembly, block.middle() - reach, spacing),
+                       nearest_disc(assembly, block.middle() + reach, spacing)};
+  };
+  setup.horizontal = pair_at({half.x, 0});
+  setup.vertical = pair_at({0, half.y});
+  const double slack = 1e-9 * spacing;
+  const bool inside = 2 * half.x <= block.size().x + slack && 2 * half.y <= block.size().y + slack;
+  if (!inside || setup.horizontal.first == setup.horizontal.second ||
+      setup.vertical.first == setup.vertical.second) {
+    refuse_size(placement, format("disc centres over {:.3g} m by {:.3g} m", block.size().x, block.size().y),
+                format("{0:.3g} m by {0:.3g} m, {1} mean spacings each way",
+                       (placement == GaugePlacement::centre ? 4 : 2) * spacing,
+                       placement == GaugePlacement::centre ? 4 : 2));
+  }
+}
+
+/// The side by that name with its tributary lengths.
+const DiscGroup& side(const Assembly& assembly, const std::string& name) {
+  const DiscGroup& discs = group(assembly, name);
+  if (discs.discs.empty() || discs.tributary_lengths.size() != discs.discs.size()) {
+    bad_input(format("the group '{}' is not a side of the block", name),
+              "the test spreads its traction over the side by the tributary length of each disc",
+              format("Leave '{}' to be found from the cells of the discs", name));
+  }
+  return discs;
+}
+
+double total_length(const DiscGroup& side) {
+  return std::accumulate(side.tributary_lengths.begin(), side.tributary_lengths.end(), 0.0);
+}
+
+double mean_normal_spring(const Assembly& assembly, const ContactSprings& springs) {
+  if (springs.uniform()) return springs[0].kN;
+  double sum = 0;
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) sum += springs[c].kN;
+  return sum / static_cast<double>(assembly.contacts.size());
+}
+
+}  // namespace
+
+GaugePlacement gauge_placement_from(const std::string& name) {
+  for (const GaugePlacement placement :
+       {GaugePlacement::centre, GaugePlacement::quarter, GaugePlacement::ends})
+    if (name == to_string(placement)) return placement;
+  bad_input(format("gauge = \"{}\"", name), "there is no such placement of the strain gauges",
+            "Choose \"centre\", \"quarter\" or \"ends\"");
+}
+
+std::string to_string(GaugePlacement placement) {
+  switch (placement) {
+    case GaugePlacement::centre:
+      return "centre";
+    case GaugePlacement::quarter:
+      return "quarter";
+    case GaugePlacement::ends:
+      break;
+  }
+  return "ends";
+}
+
+TensionSetup tension_setup(const Assembly& assembly, const TensionTest& test) {
+  if (!std::isfinite(test.stress) || test.stress == 0) {
+    bad_input(format("the tension test pulls with a stress of {} Pa", test.stress),
+              "the ratios it measures need a finite stress other than zero",
+              "Give a stress, 1e6 for example");
+  }
+  if (assembly.periodic()) {
+    bad_input("the tension test is asked of a periodic cell", "a periodic cell has no sides to pull at",
+              "Set periodic = false, or homogenize the cell");
+  }
+  if (assembly.contacts.empty()) {
+    bad_input("the tension test is asked of discs without contacts", "nothing carries the load",
+              "Give the assembly contacts");
+  }
+  TensionSetup setup;
+  setup.height = total_length(side(assembly, "left"));
+  const double other = total_length(side(assembly, "right"));
+  if (!(setup.height > 0) || std::abs(other - setup.height) > 1e-9 * setup.height) {
+    bad_input(format("the left side is {} m high and the right side {} m", setup.height, other),
+              "the two pulls of the test must balance", "Correct the tributary lengths of the two groups");
+  }
+  setup.supports = {{.group = "bottom", .ux = {}, .uy = 0.0, .rotation = {}},
+                    {.group = "bottom_left", .ux = 0.0, .uy = 0.0, .rotation = {}}};
+  setup.loads = {{.group = "left", .kind = LoadKind::traction, .force = {-test.stress, 0}},
+                 {.group = "right", .kind = LoadKind::traction, .force = {test.stress, 0}}};
+  if (assembly.kind == "hexagonal" || assembly.kind == "square") {
+    LatticeGauges(assembly, test.gauge).place(setup);
+  } else {
+    place_nearest_gauges(assembly, test.gauge, setup);
+  }
+  return setup;
+}
+
+TensionResult evaluate_tension(const Assembly& assembly, const ContactSprings& springs,
+                               const TensionTest& test, const TensionSetup& setup,
+                               const Equilibrium& equilibrium) {
+  const std::vector<DiscMotion>& motions = equilibrium.motions;
+  TensionResult result;
+  const double e11 = gauge_strain(assembly, motions, setup.horizontal);
+  const double e22 = gauge_strain(assembly, motions, setup.vertical);
+  // Total load / height: the traction itself, spread over that height.
+  result.stress = {.xx = test.stress, .yy = 0, .xy = 0};
+  result.poisson_ratio = poisson_ratio_of_strains(e11, e22);
+  result.stiffness_ratio = test.stress / (mean_normal_spring(assembly, springs) * e11);
+
+  const Extents block = extents_of(assembly);
+  const Vec2 middle = block.middle();
+  const double spacing = mean_branch_length(assembly);
+  const double slack = 1e-9 * spacing;  // rounding must not decide which discs on the rim of the region count
+  const Vec2 half{std::max(block.size().x / 4, spacing) + slack,
+                  std::max(block.size().y / 4, spacing) + slack};
+  result.fitted_gradient = fitted_displacement_gradient(assembly, motions, [&](std::size_t disc) {
+    const Vec2 d = assembly.centres[disc] - middle;
+    return std::abs(d.x) <= half.x && std::abs(d.y) <= half.y;
+  });
+  result.fitted_poisson_ratio =
+      poisson_ratio_of_strains(result.fitted_gradient.xx, result.fitted_gradient.yy);
+  const Voigt fitted = voigt_strain(result.fitted_gradient);
+  result.strain = {.xx = e11, .yy = e22, .xy = fitted.xy};
+  return result;
+}
+
+}  // namespace equidem
