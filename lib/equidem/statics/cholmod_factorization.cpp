@@ -102,6 +102,7 @@ class CholmodCholesky final : public Factorization {
     constexpr auto limit = static_cast<std::int64_t>(std::numeric_limits<Index>::max());
     if (std::max(columns.size, columns.first.back()) >= limit) return Outcome::indices_too_short;
     component_ = std::move(columns.component);
+    if (component_.empty()) return Outcome::positive;
     std::vector<Index> first(columns.first.begin(), columns.first.end());
     std::vector<Index> rows(columns.rows.begin(), columns.rows.end());
     std::vector<std::int64_t>().swap(columns.first);

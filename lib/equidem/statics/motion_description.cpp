@@ -18,7 +18,7 @@ namespace {
 
 // Shares of the squared motion.
 constexpr double negligible = 1e-6;    ///< what is left of a motion that is called rigid, or pure rotation
-constexpr double roughly = 0.05;       ///< what is left of a motion that is called uniform strain
+constexpr double roughly = 0.05;       ///< what uniform strain leaves of what a rigid motion leaves
 constexpr double moving_least = 1e-6;  ///< of the largest motion: less counts as rest
 
 double squared(double x) {
@@ -48,18 +48,18 @@ class Description {
     if (moving_.empty()) return "no motion";
     if (rotation_ > (1 - negligible) * total_) return describe_rotations();
     if (moving_.size() > 2) {
-      const std::string rigid = describe_rigid();
+      std::string rigid = describe_rigid();
       if (!rigid.empty()) return rigid;
     }
     const auto count = static_cast<double>(assembly_.size());
     if (participants_ <= std::max(2.0, 0.1 * count) && participants_ < 0.5 * count) return describe_local();
     return describe_uniform_strain() + format("spread over {} of {}, largest at {}", moving_.size(),
-                                              counted(count_(assembly_.size()), "disc"),
+                                              counted(as_count(assembly_.size()), "disc"),
                                               describe_disc(assembly_, largest_first_.front()));
   }
 
  private:
-  static long long count_(std::size_t n) { return static_cast<long long>(n); }
+  static long long as_count(std::size_t n) { return static_cast<long long>(n); }
 
   /// Motions are divided by the largest, so that their squares neither vanish nor overflow.
   void measure() {
@@ -91,10 +91,10 @@ class Description {
     }
   }
 
-  /// "25 discs" or "12 of 25 discs (disc 3 at (..) most)".
+  /// "all 25 discs" or "12 of 25 discs, disc 3 at (0.1, 0.2) the most".
   [[nodiscard]] std::string describe_moving(std::size_t moving) const {
-    if (moving == assembly_.size()) return "all " + counted(count_(moving), "disc");
-    return format("{} of {}, {} the most", moving, counted(count_(assembly_.size()), "disc"),
+    if (moving == assembly_.size()) return "all " + counted(as_count(moving), "disc");
+    return format("{} of {}, {} the most", moving, counted(as_count(assembly_.size()), "disc"),
                   describe_disc(assembly_, largest_first_.front()));
   }
 
@@ -158,11 +158,11 @@ class Description {
     const std::vector<std::size_t> all = every_disc();
     for (const auto* discs : {&all, &moving_}) {
       Field f = rotation_about_mean(*discs);
-      if (left_over(f, *discs) > negligible) continue;
+      if (!(left_over(f, *discs) <= negligible)) continue;
       double extent = 0;
       for (const std::size_t d : *discs) extent = std::max(extent, norm(centres_[d] - f.c));
       const double turn = f.rotation();
-      const std::string of = describe_moving(discs->size());
+      const std::string of = describe_moving(discs->size()) + describe_rolling(f.rotation(), *discs);
       if (std::abs(turn) * extent <= 1e-4 * norm(f.t)) {
         return format("a rigid translation along {} of {}", describe_direction(f.t), of);
       }
@@ -173,6 +173,14 @@ class Description {
       return format("a rigid rotation about ({:.6g}, {:.6g}) of {}", x.x, x.y, of);
     }
     return {};
+  }
+
+  /// Discs that turn, but not as the rigid motion does.
+  [[nodiscard]] std::string describe_rolling(double turn, const std::vector<std::size_t>& discs) const {
+    double own = 0;
+    for (const std::size_t d : discs) own += squared(spin_[d] - assembly_.radii[d] * turn);
+    return rotation_ > negligible * total_ && own > negligible * total_ ? ", discs rolling on one another"
+                                                                        : "";
   }
 
   [[nodiscard]] Field rotation_about_mean(const std::vector<std::size_t>& discs) const {
@@ -198,15 +206,15 @@ class Description {
          ++k) {
       names += (k == 0 ? "" : ", ") + describe_disc(assembly_, largest_first_[k]);
     }
-    return format("a local motion of about {} of {}: {}{}", about, counted(count_(assembly_.size()), "disc"),
-                  names, about > 5 ? ", ..." : "");
+    return format("a local motion of about {} of {}: {}{}", about,
+                  counted(as_count(assembly_.size()), "disc"), names, about > 5 ? ", ..." : "");
   }
 
   /// "a uniform shear ", "a uniform strain " or "a motion ".
   [[nodiscard]] std::string describe_uniform_strain() const {
     const std::vector<std::size_t> all = every_disc();
     const Field f = fit(all);
-    if (left_over(f, all) > roughly) return "a motion ";
+    if (left_over(f, all) > roughly * left_over(rotation_about_mean(all), all)) return "a motion ";
     const double volume = 0.5 * squared(f.H.xx + f.H.yy);
     const double shear = 0.5 * (squared(f.H.xx - f.H.yy) + squared(f.H.xy + f.H.yx));
     return volume < 0.1 * shear ? "a nearly uniform shear " : "a nearly uniform strain ";

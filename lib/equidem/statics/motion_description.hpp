@@ -36,10 +36,10 @@ double elastic_energy(const Assembly& assembly, const ContactSprings& springs,
 double reference_energy(const Assembly& assembly, const ContactSprings& springs,
                         std::span<const DiscMotion> motions);
 
-/// elastic_energy / reference_energy of a motion; 0 where nothing moves. A mechanism, computed to rounding,
-/// has about 1e-30 (1e-26 after a factorization); the softest stable mode, the bending of a strip of N rows,
-/// has about 1/N⁴ times what the supports add, above 1e-18 for any strip that is not longer than 10 000
-/// discs. Negative for an unstable mode (kT < 0).
+/// elastic_energy / reference_energy of a motion; 0 where nothing moves, negative for an unstable mode (kT <
+/// 0). A mechanism has what rounding leaves, below 1e-27. A stable mode may be soft, but not that soft: the
+/// bending of a clamped strip, N rows long and two discs wide, has 0.3/N⁴ (1.7e-12 for 660 rows), and a mode
+/// that only tangential springs resist about kT/kN times 1/N².
 double softness(const Assembly& assembly, const ContactSprings& springs, std::span<const DiscMotion> motions);
 
 }  // namespace equidem

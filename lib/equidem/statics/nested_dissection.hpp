@@ -27,7 +27,7 @@ struct DissectionTree {
 };
 
 struct DissectionOptions {
-  int leaf_size = 10;  ///< discs that are not divided any further, >= 1
+  int leaf_size = 8;  ///< discs that are not divided any further, >= 1
 };
 
 /// Divide the discs by a straight cut across the longer side of their bounding box, near the median; the

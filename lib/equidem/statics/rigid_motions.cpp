@@ -194,8 +194,18 @@ class Equations {
     }
   }
 
+  /// The tolerance, or more where rounding of the coordinates (far from the origin, or over a long way) hides
+  /// more of the lengths and adds up around a ring.
+  [[nodiscard]] double closing_tolerance() const {
+    double largest = 0;
+    for (const Vec2 x : unwrapped_.centres) largest = std::max({largest, std::abs(x.x), std::abs(x.y)});
+    constexpr double rounding = 1e3 * std::numeric_limits<double>::epsilon();
+    return std::max(tolerance, rounding * largest / assembly_.mean_radius());
+  }
+
   /// No slip at any contact with a tangential spring.
   void close_rings() {
+    const double closed = closing_tolerance();
     for (std::size_t k = 0; k < assembly_.contacts.size(); ++k) {
       if (springs_[k].kT == 0) continue;
       const Contact& c = assembly_.contacts[k];
@@ -205,11 +215,11 @@ class Equations {
         continue;
       }
       double scale = 0;
-      const auto sum = [&scale](double p, double q, double less) {
+      const auto sum = [&scale, closed](double p, double q, double less) {
         const double terms = std::abs(p) + std::abs(q) + less;
         scale += terms;
         const double value = p + q - less;
-        return std::abs(value) <= tolerance * terms ? 0.0 : value;
+        return std::abs(value) <= closed * terms ? 0.0 : value;
       };
       const double omega = sum(c.lever_i * alpha_[c.i], c.lever_j * alpha_[c.j], length);
       const double gamma = sum(c.lever_i * beta_[c.i], c.lever_j * beta_[c.j], 0);

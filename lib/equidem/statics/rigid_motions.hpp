@@ -60,8 +60,9 @@ struct FreeMotions {
   std::vector<GearMode> gears;
 };
 
-/// In a time proportional to the contacts. Sums below 1e-9 of their terms count as zero. Rotations that no
-/// contact resists are none of these motions (number_unknowns holds them).
+/// In a time proportional to the contacts. Sums below 1e-9 of their terms count as zero, below the rounding
+/// of coordinates where that is more (discs a million radii from the origin). Rotations that no contact
+/// resists are none of these motions (number_unknowns holds them).
 FreeMotions find_free_motions(const Assembly& assembly, const ContactGraph& graph,
                               const ContactSprings& springs, const DegreesOfFreedom& unknowns);
 

@@ -27,21 +27,30 @@ std::string describe_rotation(const PieceMotions& piece, const RigidMotion& moti
                 piece.rolls ? ", discs rolling on one another" : "");
 }
 
+/// A rotation about a point 1e7 sizes away counts as a translation.
+bool turns(const RigidMotion& motion) {
+  return std::abs(motion.rotation) > 1e-7;
+}
+
+/// The pure translation among the combinations of two motions.
+Vec2 common_translation(const std::vector<RigidMotion>& two) {
+  return two[1].rotation * two[0].t - two[0].rotation * two[1].t;
+}
+
 /// The free motions of a piece by name: "translation along y and rotation about (x, y)".
 std::string describe_free(const PieceMotions& piece) {
   const std::vector<RigidMotion>& free = piece.free;
-  constexpr double straight = 1e-7;  // a rotation about a point 1e7 sizes away counts as a translation
   if (free.size() == 3) return "translation along x and along y, and rotation";
   if (free.size() == 1) {
-    if (std::abs(free[0].rotation) > straight) return describe_rotation(piece, free[0]);
-    return "translation along " + describe_direction(free[0].t);
+    return turns(free[0]) ? describe_rotation(piece, free[0])
+                          : "translation along " + describe_direction(free[0].t);
   }
-  const auto [p, q] = std::pair{free[0], free[1]};
-  if (std::hypot(p.rotation, q.rotation) <= straight) return "translation along x and along y";
-  const Vec2 translation = q.rotation * p.t - p.rotation * q.t;
+  if (!turns(free[0]) && !turns(free[1])) return "translation along x and along y";
+  // The rotation is the combination orthogonal to the translation.
+  const auto& [p, q] = std::pair{free[0], free[1]};
   const RigidMotion rotation{p.rotation * p.t + q.rotation * q.t,
                              p.rotation * p.rotation + q.rotation * q.rotation};
-  return format("translation along {} and {}", describe_direction(translation),
+  return format("translation along {} and {}", describe_direction(common_translation(free)),
                 describe_rotation(piece, rotation));
 }
 
@@ -81,12 +90,19 @@ std::string sizes_of(const std::vector<PieceMotions>& pieces) {
   return text + (sizes.size() > most ? ", ... discs" : " discs");
 }
 
-/// What to hold so that the motions stop.
-std::string remedy(const std::vector<RigidMotion>& free, const std::string& names) {
+/// What to hold so that the motions stop. Components are held along x or y, so that a translation that is
+/// free while another is not runs along x or y.
+std::string remedy(const PieceMotions& piece) {
+  const std::vector<RigidMotion>& free = piece.free;
   if (free.size() == 3) return "Hold one disc in x and y, and another one across the line that joins them";
-  if (names.find("rotation") == std::string::npos) return "Hold a disc against it";
-  if (free.size() == 1) return "Hold one more disc, along a line that does not pass through that point";
-  return "Hold a disc against the translation, and another one against the rotation";
+  const bool rotates = std::any_of(free.begin(), free.end(), turns);
+  if (free.size() == 2 && !rotates) return "Hold one disc in x and y";
+  if (free.size() == 1 && rotates) {
+    return "Hold one more disc, along a line that does not pass through that point";
+  }
+  const std::string direction = describe_direction(free.size() == 1 ? free[0].t : common_translation(free));
+  return format("Hold a disc in {}{}", direction,
+                rotates ? ", and another one so that the assembly cannot turn" : "");
 }
 
 void check_pieces(const Assembly& assembly, const std::vector<PieceMotions>& pieces) {
@@ -101,22 +117,21 @@ void check_pieces(const Assembly& assembly, const std::vector<PieceMotions>& pie
     if (first == nullptr) first = &piece;
   }
   if (first == nullptr) return;
-  const std::vector<RigidMotion>& free = first->free;
   const std::string names = describe_free(*first);
-  const char* verb = free.size() > 1 ? "are" : "is";
+  const bool several = first->free.size() > 1;
   if (joined == 1) {
-    bad_input(first->held ? format("the supports leave {} of the assembly free", names)
-                          : format("no support holds the assembly: {} {} free", names, verb),
-              "no contact resists a rigid motion, so that equilibrium has no single answer",
-              remedy(free, names));
+    bad_input(first->held
+                  ? format("the supports leave {} of the assembly free: {}",
+                           several ? "rigid motions" : "a rigid motion", names)
+                  : format("no support holds the assembly: {} {} free", names, several ? "are" : "is"),
+              "no contact resists a rigid motion, so that equilibrium has no single answer", remedy(*first));
   }
-  const std::string which = loose == 1        ? "one of them is"
-                            : loose == joined ? "none of them is"
-                                              : format("{} of them are", loose);
-  bad_input(format("the assembly is in {} pieces ({}) and {}{} held: of the piece of {} with {}, {} {} free",
-                   joined, sizes_of(pieces), which, loose == joined ? " fully" : " not fully",
-                   counted(first->discs, "disc"), describe_disc(assembly, first->first_disc), names, verb),
-            "no contact joins it to the rest", "Hold every piece, remove it, or join it by contacts");
+  const std::string which = loose == 1        ? "one of them is not fully held,"
+                            : loose == joined ? "none of them is fully held, such as"
+                                              : format("{} of them are not fully held, such as", loose);
+  bad_input(format("the assembly is in {} pieces ({}) and {} the {} with {}: {}", joined, sizes_of(pieces),
+                   which, counted(first->discs, "disc"), describe_disc(assembly, first->first_disc), names),
+            "no contact joins them to the rest", "Hold every piece, remove it, or join it by contacts");
 }
 
 void check_gears(const Assembly& assembly, const std::vector<GearMode>& gears) {

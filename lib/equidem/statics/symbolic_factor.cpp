@@ -64,14 +64,15 @@ SymbolicFactor analyze(DissectionTree tree, const ContactGraph& graph, int block
     discs[t] = node.end - node.begin;
     if (node.parent >= 0) children[node.parent].push_back(static_cast<std::int32_t>(t));
   }
-  const TreeSchedule schedule = schedule_tree(symbolic.tree, discs);
-  parallel_tasks(schedule.subtrees.size(), [&](std::size_t s, int) {
-    const std::int32_t root = schedule.subtrees[s];
-    for (std::int32_t t = symbolic.tree.nodes[root].first_descendant; t <= root; ++t) {
-      collect_rows(symbolic, graph, children, t);
-    }
-  });
-  for (const std::int32_t t : schedule.above) collect_rows(symbolic, graph, children, t);
+  for (const TreeSchedule::Wave& wave : schedule_tree(symbolic.tree, discs).waves) {
+    parallel_tasks(wave.subtrees.size(), [&](std::size_t s, int) {
+      const std::int32_t root = wave.subtrees[s];
+      for (std::int32_t t = symbolic.tree.nodes[root].first_descendant; t <= root; ++t) {
+        collect_rows(symbolic, graph, children, t);
+      }
+    });
+    for (const std::int32_t t : wave.above) collect_rows(symbolic, graph, children, t);
+  }
 
   for (std::size_t t = 0; t < fronts; ++t) {
     const double k = static_cast<double>(symbolic.pivots(t)), m = static_cast<double>(symbolic.updates(t));

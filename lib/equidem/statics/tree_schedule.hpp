@@ -13,14 +13,20 @@
 
 namespace equidem {
 
-/// A division of the tree into independent subtrees and the nodes above them. What each node computes does
-/// not depend on it.
+/// A division of the tree into waves, worked off one after another. What each node computes does not depend
+/// on it.
 struct TreeSchedule {
-  std::vector<std::int32_t> subtrees;  ///< their roots, the most work first
-  std::vector<std::int32_t> above;     ///< the other nodes, children before parents
+  struct Wave {
+    std::vector<std::int32_t> subtrees;  ///< their roots, independent of each other, the most work first
+    std::vector<std::int32_t>
+        above;  ///< nodes that only wait for subtrees of this and earlier waves, children first
+  };
+  std::vector<Wave> waves;
 };
 
-/// \param work of each node, in any unit
+/// Waves take a quarter of the work each: what waits for its parent is then the update matrices of a few
+/// small subtrees and of some finished waves, not of all subtrees at once. \param work of each node, in any
+/// unit
 TreeSchedule schedule_tree(const DissectionTree& tree, std::span<const double> work);
 
 }  // namespace equidem

@@ -65,24 +65,25 @@ void TreeSweep::up(const Size& size, const Visit& visit, const std::function<voi
   std::size_t capacity = 0;
   std::vector<std::size_t> sizes(nodes.size());
   for (std::size_t t = 0; t < nodes.size(); ++t) sizes[t] = size(t);
-  for (const std::int32_t root : schedule_.subtrees) {
-    std::size_t height = 0;
-    for (std::int32_t t = nodes[root].first_descendant; t < root; ++t) {
-      height += sizes[t];
-      capacity = std::max(capacity, height);
-      for (const std::int32_t child : children_[t]) height -= sizes[child];
+  for (const TreeSchedule::Wave& wave : schedule_.waves) {
+    for (const std::int32_t root : wave.subtrees) {
+      std::size_t height = 0;
+      for (std::int32_t t = nodes[root].first_descendant; t < root; ++t) {
+        height += sizes[t];
+        capacity = std::max(capacity, height);
+        for (const std::int32_t child : children_[t]) height -= sizes[child];
+      }
     }
   }
   std::vector<std::unique_ptr<ValueStack>> stacks(thread_count());
   std::mutex report_mutex;
   double unreported = 0;
 
-  parallel_tasks(schedule_.subtrees.size(), [&](std::size_t s, int worker) {
+  const auto visit_subtree = [&](std::int32_t root, int worker) {
     if (!stacks[worker]) stacks[worker] = std::make_unique<ValueStack>(capacity);
     ValueStack& stack = *stacks[worker];
     stack.clear();
     std::vector<Child> children;
-    const std::int32_t root = schedule_.subtrees[s];
     double done = 0;
     for (std::int32_t t = nodes[root].first_descendant; t <= root; ++t) {
       const std::size_t count = children_[t].size();
@@ -104,12 +105,10 @@ void TreeSweep::up(const Size& size, const Visit& visit, const std::function<voi
       report(unreported / total);
       unreported = 0;
     }
-  });
-  stacks.clear();
-  std::vector<Child> children;
-  for (const std::int32_t t : schedule_.above) {
+  };
+  const auto visit_above = [&](std::int32_t t) {
     handed[t] = pool.take(sizes[t]);
-    children.clear();
+    std::vector<Child> children;
     for (const std::int32_t child : children_[t]) {
       children.push_back({static_cast<std::size_t>(child), handed[child].data()});
     }
@@ -117,15 +116,22 @@ void TreeSweep::up(const Size& size, const Visit& visit, const std::function<voi
     for (const std::int32_t child : children_[t]) pool.give_back(std::move(handed[child]));
     report((unreported + work_[t]) / total);
     unreported = 0;
+  };
+  for (const TreeSchedule::Wave& wave : schedule_.waves) {
+    parallel_tasks(wave.subtrees.size(),
+                   [&](std::size_t s, int worker) { visit_subtree(wave.subtrees[s], worker); });
+    for (const std::int32_t t : wave.above) visit_above(t);
   }
 }
 
 void TreeSweep::down(const std::function<void(std::size_t)>& visit) const {
-  for (auto t = schedule_.above.rbegin(); t != schedule_.above.rend(); ++t) visit(*t);
-  parallel_tasks(schedule_.subtrees.size(), [&](std::size_t s, int) {
-    const std::int32_t root = schedule_.subtrees[s];
-    for (std::int32_t t = root; t >= symbolic_.tree.nodes[root].first_descendant; --t) visit(t);
-  });
+  for (auto wave = schedule_.waves.rbegin(); wave != schedule_.waves.rend(); ++wave) {
+    for (auto t = wave->above.rbegin(); t != wave->above.rend(); ++t) visit(*t);
+    parallel_tasks(wave->subtrees.size(), [&](std::size_t s, int) {
+      const std::int32_t root = wave->subtrees[s];
+      for (std::int32_t t = root; t >= symbolic_.tree.nodes[root].first_descendant; --t) visit(t);
+    });
+  }
 }
 
 }  // namespace equidem
