@@ -42,7 +42,8 @@ class Random {
   /// Uniform in {0, ..., count - 1}; the bias of the multiplication, count / 2^64, is far below what can be
   /// seen.
   std::uint64_t below(std::uint64_t count) {
-    return static_cast<std::uint64_t>((static_cast<unsigned __int128>(bits()) * count) >> 64);
+    __extension__ using Wide = unsigned __int128;
+    return static_cast<std::uint64_t>((static_cast<Wide>(bits()) * count) >> 64);
   }
 
  private:

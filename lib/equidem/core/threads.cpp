@@ -44,7 +44,10 @@ struct Job {
 /// Threads that wait for jobs; they live until the process ends.
 class Pool {
  public:
+  Pool() = default;
   ~Pool() { resize(0); }
+  Pool(const Pool&) = delete;
+  Pool& operator=(const Pool&) = delete;
 
   void run(Job& job, int threads) {
     const std::lock_guard one_job_at_a_time(run_mutex_);

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/contact/contact_springs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+struct NamedWeighting {
+  const char* name;
+  SpringWeighting weighting;
+};
+constexpr std::array<NamedWeighting, 3> weightings{{{"uniform", SpringWeighting::uniform},
+                                                    {"contact_density", SpringWeighting::contact_density},
+                                                    {"voronoi", SpringWeighting::voronoi}}};
+
+std::string name_of(const Assembly& assembly, std::size_t contact) {
+  const Contact& c = assembly.contacts[contact];
+  return format("contact {} (discs {} and {})", contact, c.i, c.j);
+}
+
+/// \param where the contact, or empty for the springs of the case
+void check(const SpringConstants& k, const std::string& where) {
+  const std::string of = where.empty() ? "" : " of " + where;
+  if (!(k.kN > 0 && std::isfinite(k.kN))) {
+    bad_input(format("the normal spring{} is kN = {:.6g} Pa", of, k.kN), "it must be positive and finite",
+              "Give a kN above 0 Pa");
+  }
+  if (!std::isfinite(k.kT)) {
+    bad_input(format("the tangential spring{} is kT = {:.6g} Pa", of, k.kT), "it must be finite",
+              "Give a number of Pa");
+  }
+}
+
+/// By how much the springs of the case are multiplied at each contact.
+std::vector<double> weights(const Assembly& assembly, SpringWeighting weighting) {
+  const std::size_t count = assembly.contacts.size();
+  std::vector<double> weight(count);
+  if (weighting == SpringWeighting::contact_density) {
+    const std::vector<double> psi = contact_density(assembly);
+    for (std::size_t c = 0; c < count; ++c) {
+      if (!(psi[c] > 0)) {
+        bad_input(
+            format("the contact density is {:.6g} contacts per radian at {}", psi[c], name_of(assembly, c)),
+            "its second and fourth harmonics do not describe so anisotropic an assembly",
+            "Use the weighting \"uniform\"");
+      }
+      weight[c] = 1 / psi[c];
+    }
+    return weight;
+  }
+  if (assembly.facet_lengths.size() != count) {
+    bad_input("the weighting \"voronoi\" has no cell edges to weight with",
+              "only assemblies made by triangulation know the edge that the cells of two discs share",
+              "Use an assembly of kind \"delaunay\", or another weighting");
+  }
+  for (std::size_t c = 0; c < count; ++c) {
+    weight[c] = assembly.facet_lengths[c] / norm(assembly.branch(assembly.contacts[c]));
+    if (!(weight[c] > 0)) {
+      bad_input(format("the cells share no edge at {}", name_of(assembly, c)),
+                "the weighting \"voronoi\" would give it kN = 0",
+                "Move one of the discs, or use another weighting");
+    }
+  }
+  return weight;
+}
+
+}  // namespace
+
+SpringWeighting spring_weighting_from(const std::string& name) {
+  for (const NamedWeighting& known : weightings) {
+    if (name == known.name) return known.weighting;
+  }
+  bad_input(format("'{}' is no weighting of springs", name), "",
+            "Write \"uniform\", \"contact_density\" or \"voronoi\"");
+}
+
+std::string to_string(SpringWeighting weighting) {
+  return std::find_if(weightings.begin(), weightings.end(),
+                      [&](const NamedWeighting& known) { return known.weighting == weighting; })
+      ->name;
+}
+
+bool ContactSprings::any_tangential() const {
+  if (uniform()) return uniform_.kT != 0;
+  return std::any_of(per_contact_.begin(), per_contact_.end(),
+                     [](const SpringConstants& k) { return k.kT != 0; });
+}
+
+bool ContactSprings::any_negative() const {
+  if (uniform()) return uniform_.kT < 0;
+  return std::any_of(per_contact_.begin(), per_contact_.end(),
+                     [](const SpringConstants& k) { return k.kT < 0; });
+}
+
+double ContactSprings::largest() const {
+  const auto larger = [](const SpringConstants& k) { return std::max(std::abs(k.kN), std::abs(k.kT)); };
+  double result = uniform() ? larger(uniform_) : 0;
+  for (const SpringConstants& k : per_contact_) result = std::max(result, larger(k));
+  return result;
+}
+
+ContactSprings contact_springs(const Assembly& assembly, SpringConstants springs, SpringWeighting weighting) {
+  const bool own_kN = !assembly.contact_kN.empty();
+  const bool own_kT = !assembly.contact_kT.empty();
+  const std::size_t count = assembly.contacts.size();
+  assert(!own_kN || assembly.contact_kN.size() == count);
+  assert(!own_kT || assembly.contact_kT.size() == count);
+  const bool case_is_used = !own_kN || !own_kT;
+  if (case_is_used) {
+    check({own_kN ? 1.0 : springs.kN, own_kT ? 0.0 : springs.kT}, "");
+    if (weighting == SpringWeighting::uniform && !own_kN && !own_kT) return ContactSprings(springs);
+  }
+
+  std::vector<double> weight(count, 1.0);
+  if (case_is_used && weighting != SpringWeighting::uniform) weight = weights(assembly, weighting);
+  std::vector<SpringConstants> result(count);
+  for (std::size_t c = 0; c < count; ++c) {
+    result[c] = {own_kN ? assembly.contact_kN[c] : weight[c] * springs.kN,
+                 own_kT ? assembly.contact_kT[c] : weight[c] * springs.kT};
+    check(result[c], name_of(assembly, c));
+  }
+  return ContactSprings(std::move(result));
+}
+
+std::vector<double> contact_density(const Assembly& assembly) {
+  // psi(theta) has the period pi, since each contact is seen from both of its discs, so only even harmonics
+  // exist.
+  const std::size_t count = assembly.contacts.size();
+  std::vector<Vec2> normals(count);
+  std::array<double, 4> mean{};  // of cos 2 theta, sin 2 theta, cos 4 theta, sin 4 theta over the contacts
+  const auto harmonics = [](Vec2 n) {
+    const double c2 = n.x * n.x - n.y * n.y;
+    const double s2 = 2 * n.x * n.y;
+    return std::array<double, 4>{c2, s2, c2 * c2 - s2 * s2, 2 * c2 * s2};
+  };
+  for (std::size_t c = 0; c < count; ++c) {
+    const Vec2 l = assembly.branch(assembly.contacts[c]);
+    normals[c] = l / norm(l);
+    const auto h = harmonics(normals[c]);
+    for (std::size_t k = 0; k < 4; ++k) mean[k] += h[k] / static_cast<double>(count);
+  }
+  const double psi_mean = assembly.coordination_number() / (2 * std::numbers::pi);
+  std::vector<double> psi(count);
+  for (std::size_t c = 0; c < count; ++c) {
+    const auto h = harmonics(normals[c]);
+    double series = 1;
+    for (std::size_t k = 0; k < 4; ++k) series += 2 * mean[k] * h[k];
+    psi[c] = psi_mean * series;
+  }
+  return psi;
+}
+
+}  // namespace equidem

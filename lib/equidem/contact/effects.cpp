@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/contact/effects.hpp"
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+Effects::Entry rotation_entry(bool tangential_springs, Rotation rotation) {
+  if (!tangential_springs) return {"rotation", false, "kT = 0 everywhere: nothing can turn a disc"};
+  if (rotation == Rotation::restrained) {
+    return {"rotation", false,
+            "restrained as asked: moments hold the discs, and the stress need not be symmetric"};
+  }
+  return {"rotation", true, "tangential springs turn the discs"};
+}
+
+}  // namespace
+
+Rotation rotation_from(const std::string& name) {
+  if (name == "from_scene") return Rotation::from_scene;
+  if (name == "free") return Rotation::free;
+  if (name == "restrained") return Rotation::restrained;
+  bad_input(format("'{}' says nothing about rotation", name), "",
+            "Write \"free\" or \"restrained\", or \"from_scene\" to let the scene decide");
+}
+
+std::string Effects::report() const {
+  std::string active;
+  std::string inactive;
+  for (const Entry& entry : entries) {
+    std::string& list = entry.active ? active : inactive;
+    if (!list.empty()) list += ", ";
+    list += entry.active ? entry.name : format("{} ({})", entry.name, entry.why);
+  }
+  std::string text = "active: " + active + ".";
+  if (!inactive.empty()) text += " inactive: " + inactive + ".";
+  return text;
+}
+
+Effects derive_effects(const ContactSprings& springs, Rotation rotation) {
+  Effects effects;
+  effects.tangential_springs = springs.any_tangential();
+  const Effects::Entry turning = rotation_entry(effects.tangential_springs, rotation);
+  effects.rotation = turning.active;
+
+  effects.entries.push_back({"normal springs", true, "every contact has one"});
+  if (effects.tangential_springs) {
+    effects.entries.push_back({"tangential springs", true, "kT is not 0 at some contact"});
+  } else {
+    effects.entries.push_back({"tangential springs", false, "kT = 0 everywhere"});
+  }
+  effects.entries.push_back(turning);
+  return effects;
+}
+
+}  // namespace equidem

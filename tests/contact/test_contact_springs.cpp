@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The springs of every contact: weightings, overrides, refusals.
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/random.hpp"
+
+#include "support/catch.hpp"
+
+using namespace equidem;
+
+namespace {
+
+/// A disc in the middle for each angle: contacts of exactly the given directions.
+Assembly pairs_of_discs(const std::vector<double>& angles) {
+  Assembly assembly;
+  assembly.kind = "pairs";
+  for (const double angle : angles) {
+    const auto i = static_cast<std::int32_t>(assembly.centres.size());
+    const Vec2 centre{10.0 * i, 0};
+    assembly.centres.push_back(centre);
+    assembly.centres.push_back(centre + 2.0 * Vec2{std::cos(angle), std::sin(angle)});
+    assembly.contacts.push_back({i, i + 1, 0, 0, 1, 1});
+  }
+  assembly.radii.assign(assembly.centres.size(), 1.0);
+  assembly.cell_areas.assign(assembly.centres.size(), 4.0);
+  return assembly;
+}
+
+/// Angles whose density is (1 + a cos 2(t - t0) + b cos 4(t - t1))/(2 pi) exactly: the quantiles, not random
+/// draws, so that the mean over n of them is the integral to 1/n².
+std::vector<double> anisotropic_angles(int count, double a, double t0, double b, double t1) {
+  const auto cumulative = [&](double t) {
+    return (t + a / 2 * (std::sin(2 * (t - t0)) + std::sin(2 * t0)) +
+            b / 4 * (std::sin(4 * (t - t1)) + std::sin(4 * t1))) /
+           (2 * std::numbers::pi);
+  };
+  std::vector<double> angles;
+  for (int k = 0; k < count; ++k) {
+    const double target = (k + 0.5) / count;
+    double low = 0;
+    double high = 2 * std::numbers::pi;
+    while (high - low > 1e-14) {
+      const double middle = (low + high) / 2;
+      (cumulative(middle) < target ? low : high) = middle;
+    }
+    angles.push_back(low);
+  }
+  return angles;
+}
+
+/// sum k n_i n_j / sum k and sum k n_i n_j n_k n_l / sum k in their deviations from isotropy: the four
+/// harmonics.
+double anisotropy(const Assembly& assembly, const ContactSprings& springs) {
+  double sum = 0;
+  double harmonics[4] = {};
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    const Vec2 l = assembly.branch(assembly.contacts[c]);
+    const double t = std::atan2(l.y, l.x);
+    const double k = springs[c].kN;
+    sum += k;
+    harmonics[0] += k * std::cos(2 * t);
+    harmonics[1] += k * std::sin(2 * t);
+    harmonics[2] += k * std::cos(4 * t);
+    harmonics[3] += k * std::sin(4 * t);
+  }
+  double largest = 0;
+  for (const double h : harmonics) largest = std::max(largest, std::abs(h / sum));
+  return largest;
+}
+
+std::string message_of(const Assembly& assembly, SpringConstants k, SpringWeighting weighting) {
+  try {
+    static_cast<void>(contact_springs(assembly, k, weighting));
+  } catch (const Error& error) {
+    CHECK(error.kind() == ErrorKind::bad_input);
+    return error.what();
+  }
+  return "no error";
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("contact_density_weighting_makes_fabric_isotropic_to_fourth_order") {
+  const Assembly assembly = pairs_of_discs(anisotropic_angles(2000, 0.4, 0.3, 0.3, 1.1));
+  const double unweighted =
+      anisotropy(assembly, contact_springs(assembly, {1, 0.5}, SpringWeighting::uniform));
+  const double weighted =
+      anisotropy(assembly, contact_springs(assembly, {1, 0.5}, SpringWeighting::contact_density));
+  CAPTURE(unweighted, weighted);
+  CHECK(unweighted > 0.1);
+  CHECK(weighted < 1e-5);
+}
+
+TEST_CASE("contact_density_of_random_angles_is_isotropic_within_their_scatter") {
+  Random random(11);
+  const std::vector<double> angles = anisotropic_angles(1000, 0.4, 0.3, 0.3, 1.1);
+  const int count = 20000;
+
+  std::vector<double> drawn(count);
+  for (double& angle : drawn) angle = angles[random.below(angles.size())];
+  const Assembly assembly = pairs_of_discs(drawn);
+  const double weighted =
+      anisotropy(assembly, contact_springs(assembly, {1, 0}, SpringWeighting::contact_density));
+  CAPTURE(weighted);
+  CHECK(weighted < 3 / std::sqrt(count));
+}
+
+TEST_CASE("contact_density_integrates_to_the_coordination_number") {
+  const Assembly assembly = pairs_of_discs(anisotropic_angles(500, 0.5, 0.2, 0.2, 0.4));
+  const std::vector<double> psi = contact_density(assembly);
+  // The mean of 1/psi over contacts drawn with density psi/z is 2 pi/z.
+  double mean_inverse = 0;
+  for (const double p : psi) mean_inverse += 1 / p / static_cast<double>(psi.size());
+  CHECK(mean_inverse == Approx(2 * std::numbers::pi / assembly.coordination_number()).epsilon(1e-4));
+}
+
+TEST_CASE("contact_density_of_an_isotropic_assembly_is_z_over_2_pi_at_every_contact") {
+  std::vector<double> angles(12);
+  for (std::size_t k = 0; k < 12; ++k) angles[k] = 0.1 + static_cast<double>(k) * std::numbers::pi / 6;
+  const Assembly assembly = pairs_of_discs(angles);
+  const ContactSprings springs = contact_springs(assembly, {3, 2}, SpringWeighting::contact_density);
+  const double psi = assembly.coordination_number() / (2 * std::numbers::pi);
+  for (std::size_t c = 0; c < angles.size(); ++c) {
+    CAPTURE(c);
+    CHECK(springs[c].kN == Approx(3 / psi).epsilon(1e-13));
+    CHECK(springs[c].kT == Approx(2 / psi).epsilon(1e-13));
+  }
+}
+
+TEST_CASE("voronoi_weighting_scales_by_shared_edge_over_distance") {
+  Assembly assembly = pairs_of_discs({0.0, 1.0, 2.0});
+  assembly.facet_lengths = {1.0, 0.5, 4.0};
+  const ContactSprings springs = contact_springs(assembly, {10, -4}, SpringWeighting::voronoi);
+  for (std::size_t c = 0; c < 3; ++c) {
+    CAPTURE(c);
+    CHECK(springs[c].kN == Approx(10 * assembly.facet_lengths[c] / 2));
+    CHECK(springs[c].kT == Approx(-4 * assembly.facet_lengths[c] / 2));
+  }
+  CHECK(springs.any_tangential());
+  CHECK(springs.any_negative());
+  CHECK(springs.largest() == Approx(20));
+}
+
+TEST_CASE("uniform_weighting_stores_one_pair") {
+  const Assembly assembly = pairs_of_discs({0.0, 1.0});
+  const ContactSprings springs = contact_springs(assembly, {10, 0}, SpringWeighting::uniform);
+  CHECK(springs.uniform());
+  CHECK(springs[1].kN == 10);
+  CHECK_FALSE(springs.any_tangential());
+  CHECK_FALSE(springs.any_negative());
+  CHECK(springs.largest() == 10);
+}
+
+TEST_CASE("springs_of_the_assembly_override_those_of_the_case") {
+  Assembly assembly = pairs_of_discs({0.0, 1.0});
+  assembly.facet_lengths = {1, 1};
+  assembly.contact_kN = {3, 5};
+  SECTION("both springs: the case and its weighting are not asked") {
+    assembly.contact_kT = {0, -7};
+    const auto weighting =
+        GENERATE(SpringWeighting::uniform, SpringWeighting::contact_density, SpringWeighting::voronoi);
+    const ContactSprings springs = contact_springs(assembly, {0, 0}, weighting);
+    CHECK(springs[0].kN == 3);
+    CHECK(springs[1].kN == 5);
+    CHECK(springs[1].kT == -7);
+    CHECK(springs.any_tangential());
+    CHECK(springs.any_negative());
+    CHECK(springs.largest() == 7);
+  }
+  SECTION("one spring: the other comes from the case") {
+    const ContactSprings springs = contact_springs(assembly, {100, 2}, SpringWeighting::uniform);
+    CHECK(springs[1].kN == 5);
+    CHECK(springs[1].kT == 2);
+  }
+}
+
+TEST_CASE("bad_springs_are_refused_with_the_contact_and_the_value") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  Assembly assembly = pairs_of_discs({0.0, 1.0, 2.0});
+  SECTION("of the case") {
+    for (const double kN : {0.0, -2.5, nan, infinity}) {
+      const std::string message = message_of(assembly, {kN, 1}, SpringWeighting::uniform);
+      CAPTURE(kN, message);
+      CHECK(contains(message, "the normal spring is kN = "));
+      CHECK(contains(message, "must be positive and finite"));
+    }
+    CHECK(contains(message_of(assembly, {1, nan}, SpringWeighting::contact_density), "kT = nan"));
+  }
+  SECTION("of one contact") {
+    assembly.contact_kN = {1, 0, 1};
+    assembly.contact_kT = {1, 1, 1};
+    const std::string message = message_of(assembly, {1, 1}, SpringWeighting::uniform);
+    CAPTURE(message);
+    CHECK(contains(message, "contact 1 (discs 2 and 3) is kN = 0"));
+    assembly.contact_kN = {1, 1, 1};
+    assembly.contact_kT = {1, 1, infinity};
+    CHECK(contains(message_of(assembly, {1, 1}, SpringWeighting::uniform),
+                   "contact 2 (discs 4 and 5) is kT = inf"));
+  }
+  SECTION("voronoi without cells") {
+    CHECK(contains(message_of(assembly, {1, 1}, SpringWeighting::voronoi), "has no cell edges"));
+  }
+  SECTION("voronoi with an edge of no length") {
+    assembly.facet_lengths = {1, 1, 0};
+    const std::string message = message_of(assembly, {1, 1}, SpringWeighting::voronoi);
+    CAPTURE(message);
+    CHECK(contains(message, "contact 2 (discs 4 and 5)"));
+  }
+  SECTION("a contact density that its harmonics make negative") {
+    // Nearly all contacts along x and one across: 1 + 2 cos 2t + 2 cos 4t is below zero somewhere.
+    std::vector<double> angles(30, 0.0);
+    angles.push_back(std::numbers::pi / 4);
+    const std::string message = message_of(pairs_of_discs(angles), {1, 1}, SpringWeighting::contact_density);
+    CAPTURE(message);
+    CHECK(contains(message, "contact 30 (discs 60 and 61)"));
+    CHECK(contains(message, "Use the weighting \"uniform\""));
+  }
+}
+
+TEST_CASE("weightings_have_the_names_of_the_case_file") {
+  for (const std::string name : {"uniform", "contact_density", "voronoi"}) {
+    CHECK(to_string(spring_weighting_from(name)) == name);
+  }
+  CHECK_THROWS_WITH(spring_weighting_from("Voronoi"), Catch::Contains("\"contact_density\" or \"voronoi\""));
+}

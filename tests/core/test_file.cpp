@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Files are written whole or not at all, and never over the user's without leave.
+#include <csignal>
+#include <filesystem>
+#include <iterator>
+#include <string>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+
+#include "support/catch.hpp"
+
+using namespace equidem;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A folder of its own, gone afterwards.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string pattern = (fs::temp_directory_path() / "equidem-test-XXXXXX").string();
+    path_ = mkdtemp(pattern.data());
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::permissions(path_, fs::perms::owner_all, ignored);
+    fs::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+  [[nodiscard]] const fs::path& path() const { return path_; }
+  [[nodiscard]] long entries() const {
+    return std::distance(fs::directory_iterator(path_), fs::directory_iterator());
+  }
+
+ private:
+  fs::path path_;
+};
+
+/// Files of this process may not grow beyond this many bytes, as on a full disc.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() { setrlimit(RLIMIT_FSIZE, &before_); }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+}  // namespace
+
+TEST_CASE("what_is_written_is_read_back") {
+  const TemporaryFolder folder;
+  std::string content = "line\r\nthen a zero byte, and no newline at the end";
+  content.push_back('\0');
+  content += std::string(100000, 'x');
+  write_file(folder / "new/folders/file.bin", content, false);
+  CHECK(read_file(folder / "new/folders/file.bin") == content);
+  write_file(folder / "empty", "", false);
+  CHECK(read_file(folder / "empty").empty());
+}
+
+TEST_CASE("an_existing_file_is_kept_unless_overwriting_is_asked") {
+  const TemporaryFolder folder;
+  write_file(folder / "file", "mine", false);
+  CHECK_THROWS_WITH(write_file(folder / "file", "yours", false),
+                    Catch::Contains("exists already") && Catch::Contains("--overwrite"));
+  CHECK_THROWS_AS(check_writable(folder / "file", false), Error);
+  CHECK(read_file(folder / "file") == "mine");
+  CHECK_NOTHROW(check_writable(folder / "file", true));
+  write_file(folder / "file", "yours", true);
+  CHECK(read_file(folder / "file") == "yours");
+  CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("a_write_that_fails_halfway_leaves_nothing_new_and_the_old_file_whole") {
+  const TemporaryFolder folder;
+  const bool existed = GENERATE(false, true);
+  CAPTURE(existed);
+  if (existed) write_file(folder / "file", "old", false);
+  {
+    const FileSizeLimit full_disc(1000);
+    CHECK_THROWS_WITH(write_file(folder / "file", std::string(1000000, 'x'), true),
+                      Catch::Contains("cannot write") && Catch::Contains("large"));
+  }
+  CHECK(folder.entries() == (existed ? 1 : 0));
+  if (existed) CHECK(read_file(folder / "file") == "old");
+}
+
+TEST_CASE("a_folder_is_no_file") {
+  const TemporaryFolder folder;
+  CHECK_THROWS_WITH(read_file(folder.path()), Catch::Contains("it is a folder"));
+  CHECK_THROWS_WITH(write_file(folder.path(), "x", true), Catch::Contains("it is a folder"));
+  write_file(folder / "file", "x", false);
+  CHECK_THROWS_WITH(write_file(folder / "file/inside", "x", false), Catch::Contains("is not a folder"));
+}
+
+TEST_CASE("a_missing_file_is_named") {
+  const TemporaryFolder folder;
+  CHECK_THROWS_WITH(read_file(folder / "absent.toml"),
+                    Catch::Contains("absent.toml") && Catch::Contains("there is no such file"));
+}
+
+TEST_CASE("a_place_without_permission_is_refused_before_the_work") {
+  // A folder that is closed by its permissions; the superuser may write there, so a folder of the kernel
+  // stands in for it.
+  const TemporaryFolder folder;
+  fs::path closed = folder.path();
+  if (geteuid() == 0) {
+    closed = "/proc/sys/kernel/nothing";
+    CHECK_THROWS_WITH(write_file(closed / "file", "x", false), Catch::Contains("cannot write"));
+    return;
+  }
+  fs::permissions(closed, fs::perms::owner_read | fs::perms::owner_exec);
+  CHECK_THROWS_WITH(check_writable(closed / "deep/file", false), Catch::Contains("Permission denied"));
+  CHECK_THROWS_WITH(write_file(closed / "file", "x", false), Catch::Contains("Permission denied"));
+}
+
+TEST_CASE("a_relative_path_without_a_folder_means_the_current_one") {
+  CHECK_NOTHROW(check_writable("equidem-test-file-that-does-not-exist", false));
+}
