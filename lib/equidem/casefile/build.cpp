@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/casefile/build.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "equidem/assembly/delaunay.hpp"
+#include "equidem/assembly/files.hpp"
+#include "equidem/assembly/lattices.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/material/spring_relations.hpp"
+
+namespace equidem {
+namespace {
+
+[[noreturn]] void fail(const std::string& where, const std::string& problem, const std::string& why,
+                       const std::string& remedy) {
+  throw Error(ErrorKind::bad_input, problem, why, remedy, where);
+}
+
+Assembly generate(const AssemblyCase& wanted) {
+  switch (wanted.kind) {
+    case AssemblyKind::square:
+      return square_lattice(wanted.lattice);
+    case AssemblyKind::hexagonal:
+      return hexagonal_lattice(wanted.lattice);
+    case AssemblyKind::delaunay:
+      return delaunay_assembly(wanted.delaunay);
+    case AssemblyKind::file:
+      return read_assembly(wanted.path);
+  }
+  return {};
+}
+
+DiscGroup discs_of(const GroupCase& wanted, const Assembly& assembly, const std::string& where) {
+  const auto count = static_cast<std::int32_t>(assembly.size());
+  DiscGroup result;
+  for (const std::int32_t disc : wanted.discs) {
+    if (disc >= count) {
+      fail(where, format("group '{}' names disc {}", wanted.name, disc),
+           format("the assembly has {}, numbered from 0", counted(count, "disc")), "Correct the list");
+    }
+    result.discs.push_back(disc);
+  }
+  std::sort(result.discs.begin(), result.discs.end());
+  result.discs.erase(std::unique(result.discs.begin(), result.discs.end()), result.discs.end());
+  if (!wanted.box_low) return result;
+
+  const Vec2 low = *wanted.box_low, high = *wanted.box_high;
+  Vec2 least = assembly.centres.front(), most = least;
+  for (std::int32_t disc = 0; disc < count; ++disc) {
+    const Vec2 x = assembly.centres[static_cast<std::size_t>(disc)];
+    least = {std::min(least.x, x.x), std::min(least.y, x.y)};
+    most = {std::max(most.x, x.x), std::max(most.y, x.y)};
+    if (x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y) result.discs.push_back(disc);
+  }
+  if (result.discs.empty()) {
+    fail(where, format("no disc has its centre in the box of group '{}'", wanted.name),
+         format("the centres lie in [{:.6g}, {:.6g}, {:.6g}, {:.6g}]", least.x, least.y, most.x, most.y),
+         "Move or widen the box");
+  }
+  return result;
+}
+
+void add_groups(Assembly& assembly, const Case& resolved) {
+  for (std::size_t k = 0; k < resolved.groups.size(); ++k) {
+    const GroupCase& wanted = resolved.groups[k];
+    const std::string where = resolved.where(format("group.{}.{}", k, wanted.box_low ? "box" : "discs"));
+    if (assembly.groups.contains(wanted.name)) {
+      fail(resolved.where(format("group.{}.name", k)),
+           format("the assembly has a group '{}' of its own", wanted.name), "a name means one group",
+           "Choose another name");
+    }
+    assembly.groups[wanted.name] = discs_of(wanted, assembly, where);
+  }
+}
+
+/// Whatever acts on a group needs one that exists and holds discs.
+void check_group_names(const Assembly& assembly, const Case& resolved) {
+  for (const char* table : {"support", "load"}) {
+    const TomlValue* list = resolved.document.find(table);
+    for (std::size_t k = 0; list != nullptr && k < list->items.size(); ++k) {
+      const std::string where = resolved.where(format("{}.{}.group", table, k));
+      const std::string& name = list->items[k].find("group")->text;
+      try {
+        if (group(assembly, name).discs.empty())
+          bad_input(format("group '{}' holds no disc", name), format("the {} would do nothing", table),
+                    "Choose another group");
+      } catch (const Error& error) {
+        throw error.at(where);
+      }
+    }
+  }
+}
+
+Packing packing_of(AssemblyKind kind) {
+  if (kind == AssemblyKind::hexagonal) return Packing::hexagonal;
+  return kind == AssemblyKind::square ? Packing::square : Packing::isotropic;
+}
+
+SpringConstants springs_of_material(const Case& resolved, const Assembly& assembly, Packing& packing) {
+  const MaterialCase& material = *resolved.material;
+  IsotropicMeasures measures;
+  packing = packing_of(resolved.assembly.kind);
+  if (resolved.weighting != SpringWeighting::uniform) {
+    if (packing == Packing::square) {
+      bad_input(format("the weighting is \"{}\" on the square lattice", to_string(resolved.weighting)),
+                "its relation to moduli (Abe 1996, eq. 31) is for equal springs",
+                "Use weighting = \"uniform\"");
+    }
+    packing = Packing::isotropic;
+  }
+  if (packing == Packing::isotropic) {
+    const double psi = assembly.coordination_number() / (2 * std::numbers::pi);
+    switch (resolved.weighting) {
+      case SpringWeighting::uniform:
+        measures = {assembly.solid_fraction(), psi};
+        break;
+      case SpringWeighting::contact_density:
+        measures = {assembly.solid_fraction(), 1.0};
+        break;
+      case SpringWeighting::voronoi:
+        measures = {0.5, 1.0};
+        break;
+    }
+  }
+  return springs_for(material.moduli, packing, measures,
+                     material.static_only ? NegativeTangential::static_only : NegativeTangential::refuse);
+}
+
+std::string described(const SpringConstants& springs, SpringWeighting weighting) {
+  return format("kN = {:.6g} Pa, kT = {:.6g} Pa (kT/kN = {:.6g}), weighting {}", springs.kN, springs.kT,
+                springs.ratio(), to_string(weighting));
+}
+
+std::string described(const MaterialCase& material, const SpringConstants& springs, SpringWeighting weighting,
+                      Packing packing) {
+  return format("G = {:.6g} Pa, nu = {:.6g} (plane {}) gives {}. The relation {}",
+                material.moduli.shear_modulus, material.moduli.poisson_ratio,
+                to_string(material.moduli.plane), described(springs, weighting), validity(packing));
+}
+
+}  // namespace
+
+Assembly build_assembly(const Case& resolved) {
+  Assembly assembly;
+  try {
+    assembly = generate(resolved.assembly);
+  } catch (const Error& error) {
+    throw error.at(
+        resolved.where(resolved.assembly.kind == AssemblyKind::file ? "assembly.path" : "assembly"));
+  }
+  add_groups(assembly, resolved);
+  check_group_names(assembly, resolved);
+  check(assembly);
+  return assembly;
+}
+
+BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
+  const bool own = !assembly.contact_kN.empty();
+  if (!resolved.springs && !resolved.material && !own) {
+    fail(resolved.where("assembly.path"), "the springs are missing",
+         "neither the case file nor the assembly file gives any",
+         "Add [springs] with kN and kT to the case file");
+  }
+  const std::string where = resolved.where(resolved.material ? "material" : "springs");
+  try {
+    if (own) {
+      return {contact_springs(assembly, resolved.springs.value_or(SpringConstants{}), resolved.weighting),
+              {},
+              resolved.springs || resolved.material
+                  ? "springs of the assembly file; those of the case file are not used"
+                  : "springs of the assembly file"};
+    }
+    Packing packing = Packing::isotropic;
+    const SpringConstants constants =
+        resolved.material ? springs_of_material(resolved, assembly, packing) : *resolved.springs;
+    const std::string report = resolved.material
+                                   ? described(*resolved.material, constants, resolved.weighting, packing)
+                                   : described(constants, resolved.weighting);
+    return {contact_springs(assembly, constants, resolved.weighting), constants, report};
+  } catch (const Error& error) {
+    throw error.at(where);
+  }
+}
+
+}  // namespace equidem

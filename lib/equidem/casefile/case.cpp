@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/casefile/case.hpp"
+
+#include <algorithm>
+
+#include "equidem/casefile/keys.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const TomlValue& at, const std::string& key, const std::string& problem,
+                       const std::string& why, const std::string& remedy) {
+  throw Error(ErrorKind::bad_input, problem, why, remedy, format("{}: {}", at.where(), key));
+}
+
+/// A path of the file as the program opens it.
+fs::path opened(const fs::path& written, const fs::path& folder) {
+  return (written.is_absolute() ? written : folder / written).lexically_normal();
+}
+
+double number(const TomlValue& table, const char* key) {
+  return table.find(key)->real;
+}
+const std::string& text(const TomlValue& table, const char* key) {
+  return table.find(key)->text;
+}
+int whole(const TomlValue& table, const char* key) {
+  return static_cast<int>(table.find(key)->integer);
+}
+
+std::vector<TomlValue> no_items;
+
+const std::vector<TomlValue>& repeated(const TomlValue& root, const char* name) {
+  const TomlValue* list = root.find(name);
+  return list == nullptr ? no_items : list->items;
+}
+
+AssemblyCase read_assembly_table(TomlValue& table, const fs::path& folder) {
+  AssemblyCase result;
+  const std::string& kind = text(table, "kind");
+  if (kind == "file") {
+    result.kind = AssemblyKind::file;
+    TomlValue& path = *table.find("path");
+    result.path = opened(path.text, folder);
+    path.text = result.path.string();
+    return result;
+  }
+  if (kind != "delaunay") {
+    result.kind = kind == "square" ? AssemblyKind::square : AssemblyKind::hexagonal;
+    result.lattice = {.columns = whole(table, "columns"),
+                      .rows = whole(table, "rows"),
+                      .radius = number(table, "radius"),
+                      .periodic = table.find("periodic")->boolean};
+    return result;
+  }
+  result.kind = AssemblyKind::delaunay;
+  DelaunayOptions& options = result.delaunay;
+  options.discs = table.find("discs")->integer;
+  options.points = point_process_from(text(table, "points"));
+  if (const TomlValue* disorder = table.find("disorder")) options.disorder = disorder->real;
+  options.seed = static_cast<std::uint64_t>(table.find("seed")->integer);
+  options.aspect = number(table, "aspect");
+  options.periodic = table.find("periodic")->boolean;
+  const TomlValue* radius = table.find("radius");
+  const TomlValue* radii = table.find("radii");
+  if ((radius == nullptr) == (radii == nullptr)) {
+    fail(radius != nullptr ? *radii : table, "assembly.radius",
+         radius != nullptr ? "radius and radii are both given" : "the size of the discs is missing",
+         "discs are of one radius, or of radii between two", "Give either radius = ... or [assembly.radii]");
+  }
+  if (radius != nullptr) {
+    options.radii = {radius->real, radius->real};
+  } else {
+    options.radii = {number(*radii, "smallest"), number(*radii, "largest")};
+    if (options.radii.smallest > options.radii.largest) {
+      fail(*radii, "assembly.radii",
+           format("smallest = {} is larger than largest = {}", options.radii.smallest, options.radii.largest),
+           "", "Exchange them");
+    }
+  }
+  return result;
+}
+
+MaterialCase read_material(const TomlValue& table) {
+  const TomlValue* shear = table.find("shear_modulus");
+  const TomlValue* young = table.find("young_modulus");
+  if ((shear == nullptr) == (young == nullptr)) {
+    fail(young != nullptr ? *young : table, "material.shear_modulus",
+         young != nullptr ? "shear_modulus and young_modulus are both given" : "a modulus is missing",
+         "with poisson_ratio, one modulus says all", "Give either shear_modulus or young_modulus");
+  }
+  MaterialCase result;
+  const double nu = number(table, "poisson_ratio");
+  const Plane plane = plane_from(text(table, "plane"));
+  try {
+    if (shear != nullptr) {
+      result.moduli = {shear->real, nu, plane};
+      check(result.moduli);
+    } else {
+      result.moduli = moduli_from_young(young->real, nu, plane);
+    }
+  } catch (const Error& error) {
+    throw error.at(format("{}: material", table.where()));
+  }
+  result.static_only = table.find("static_only")->boolean;
+  return result;
+}
+
+GroupCase read_group(const TomlValue& table) {
+  GroupCase result{.name = text(table, "name"), .discs = {}, .box_low = {}, .box_high = {}};
+  const TomlValue* discs = table.find("discs");
+  const TomlValue* box = table.find("box");
+  if (result.name.empty())
+    fail(table, "group.name", "the name is empty", "[[support]] and [[load]] choose a group by its name",
+         "Name it");
+  if ((discs == nullptr) == (box == nullptr)) {
+    fail(box != nullptr ? *box : table, format("group '{}'", result.name),
+         box != nullptr ? "discs and box are both given" : "it has neither discs nor box",
+         "a group is a list of discs, or the discs in a box", "Give one of the two");
+  }
+  if (discs != nullptr) {
+    for (const TomlValue& item : discs->items)
+      result.discs.push_back(static_cast<std::int32_t>(item.integer));
+    return result;
+  }
+  result.box_low = Vec2{box->items[0].real, box->items[1].real};
+  result.box_high = Vec2{box->items[2].real, box->items[3].real};
+  if (result.box_low->x >= result.box_high->x || result.box_low->y >= result.box_high->y) {
+    fail(*box, "group.box", format("the box {} is empty", box->shown()), "it is [x_min, y_min, x_max, y_max]",
+         "Put the smaller numbers first");
+  }
+  return result;
+}
+
+std::optional<double> held(const TomlValue* value) {
+  if (value == nullptr) return {};
+  return value->type == TomlValue::Type::boolean ? 0.0 : value->real;
+}
+
+Support read_support(const TomlValue& table) {
+  Support result{.group = text(table, "group"),
+                 .ux = held(table.find("ux")),
+                 .uy = held(table.find("uy")),
+                 .rotation = held(table.find("rotation"))};
+  if (!result.ux && !result.uy && !result.rotation) {
+    fail(table, "support", format("the support of '{}' holds nothing", result.group),
+         "ux, uy and rotation are all left out", "Add one, such as uy = true");
+  }
+  return result;
+}
+
+Load read_load(const TomlValue& table) {
+  const std::string& kind = text(table, "kind");
+  Load result{.group = text(table, "group"),
+              .kind = kind == "total"      ? LoadKind::total
+                      : kind == "traction" ? LoadKind::traction
+                                           : LoadKind::per_disc,
+              .force = {},
+              .moment = 0};
+  const TomlValue* force = table.find("force");
+  const TomlValue* moment = table.find("moment");
+  if (force == nullptr && moment == nullptr)
+    fail(table, "load", format("the load on '{}' has neither force nor moment", result.group),
+         "it would do nothing", "Add one, such as force = [1.0e3, 0.0]");
+  if (moment != nullptr && result.kind == LoadKind::traction)
+    fail(*moment, "load.moment", "a traction has no moment", "it is a force per area of a side",
+         "Give the moment in a [[load]] of its own");
+  if (force != nullptr) result.force = {force->items[0].real, force->items[1].real};
+  if (moment != nullptr) result.moment = moment->real;
+  return result;
+}
+
+/// The name of a load case becomes part of the names of files.
+void check_name_of_case(const TomlValue& value) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  if (std::all_of(value.text.begin(), value.text.end(), plain)) return;
+  fail(value, "load.case", format("{} cannot name a load case", value.shown()),
+       "it becomes part of the names of files", "Use letters, digits, '_' and '-' only");
+}
+
+/// Loads with a name act in the case of that name, loads without in every case.
+std::vector<NamedLoads> read_load_cases(const std::vector<TomlValue>& tables) {
+  std::vector<NamedLoads> cases;
+  for (const TomlValue& table : tables) {
+    const std::string& name = text(table, "case");
+    check_name_of_case(*table.find("case"));
+    const bool known =
+        std::any_of(cases.begin(), cases.end(), [&](const NamedLoads& loads) { return loads.name == name; });
+    if (!name.empty() && !known) cases.push_back({name, {}});
+  }
+  if (cases.empty()) cases.push_back({});
+  for (const TomlValue& table : tables) {
+    const Load load = read_load(table);
+    const std::string& name = text(table, "case");
+    for (NamedLoads& loads : cases)
+      if (name.empty() || name == loads.name) loads.loads.push_back(load);
+  }
+  return cases;
+}
+
+/// A file of springs takes the place of the table [springs].
+void resolve_springs_file(TomlValue& root, const fs::path& folder) {
+  TomlValue* named = root.find("springs");
+  if (named == nullptr || named->type != TomlValue::Type::text) return;
+  const fs::path path = opened(named->text, folder);
+  TomlValue document;
+  try {
+    document = parse_toml(read_file(path), path.string());
+  } catch (const Error& error) {
+    throw error.at(format("{}: springs", named->where()));
+  }
+  check_and_complete(document, springs_file_spec());
+  *named = *document.find("springs");
+}
+
+void check_contradictions(const TomlValue& root, const AssemblyCase& assembly) {
+  const TomlValue* springs = root.find("springs");
+  const TomlValue* material = root.find("material");
+  if (springs != nullptr && material != nullptr) {
+    fail(*material, "material", "springs and [material] are both given",
+         "[material] says which springs to take", "Remove one of them");
+  }
+  const bool springs_in_file = assembly.kind == AssemblyKind::file;
+  if (springs == nullptr && material == nullptr && !springs_in_file) {
+    fail(root, "springs", "the springs are missing",
+         "every contact has a normal spring kN and a tangential spring kT",
+         "Add [springs] with kN and kT, or [material], or springs = \"FILE\"");
+  }
+  const TomlValue* test = root.find("test");
+  for (const char* other : {"support", "load"}) {
+    if (test == nullptr || repeated(root, other).empty()) continue;
+    fail(repeated(root, other).front(), other, format("[test] and [[{}]] are both given", other),
+         "the test brings its own supports and loads", "Remove one of them");
+  }
+  if (test != nullptr && (assembly.lattice.periodic || assembly.delaunay.periodic)) {
+    fail(*root.find("assembly")->find("periodic"), "assembly.periodic",
+         "a periodic assembly has no sides to pull", "[test] pulls at the left and right sides",
+         "Set periodic = false, or remove [test]");
+  }
+}
+
+void check_group_names(const std::vector<TomlValue>& tables) {
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    for (std::size_t earlier = 0; earlier < k; ++earlier) {
+      if (text(tables[earlier], "name") != text(tables[k], "name")) continue;
+      fail(*tables[k].find("name"), "group.name",
+           format("there are two groups '{}'", text(tables[k], "name")),
+           format("the other is at {}", tables[earlier].where()), "Give each its own name");
+    }
+  }
+}
+
+SolverMethod method_from(const std::string& name) {
+  if (name == "multifrontal") return SolverMethod::multifrontal;
+  if (name == "cholmod") return SolverMethod::cholmod;
+  if (name == "umfpack") return SolverMethod::umfpack;
+  return SolverMethod::automatic;
+}
+
+}  // namespace
+
+std::string Case::where(std::string_view key) const {
+  return format("{}: {}", value_at(document, key).where(), key);
+}
+
+Case parse_case(std::string_view content, const std::string& name, const fs::path& folder,
+                std::span<const std::string> overrides) {
+  TomlValue root = parse_toml(content, name);
+  for (const std::string& assignment : overrides) apply_override(root, assignment);
+  check_and_complete(root, case_file_spec());
+  resolve_springs_file(root, folder);
+
+  Case result;
+  result.title = text(root, "title");
+  result.assembly = read_assembly_table(*root.find("assembly"), folder);
+  check_contradictions(root, result.assembly);
+  for (const char* source : {"springs", "material"})
+    if (const TomlValue* table = root.find(source))
+      result.weighting = spring_weighting_from(text(*table, "weighting"));
+  if (const TomlValue* springs = root.find("springs"))
+    result.springs = SpringConstants{number(*springs, "kN"), number(*springs, "kT")};
+  if (const TomlValue* material = root.find("material")) result.material = read_material(*material);
+  if (const TomlValue* rotation = root.find("effects")->find("rotation"))
+    result.rotation = rotation->text == "free" ? Rotation::free : Rotation::restrained;
+  if (const TomlValue* test = root.find("test"))
+    result.test =
+        TensionTest{.stress = number(*test, "stress"), .gauge = gauge_placement_from(text(*test, "gauge"))};
+  check_group_names(repeated(root, "group"));
+  for (const TomlValue& table : repeated(root, "group")) result.groups.push_back(read_group(table));
+  for (const TomlValue& table : repeated(root, "support")) result.supports.push_back(read_support(table));
+  result.load_cases = read_load_cases(repeated(root, "load"));
+  const TomlValue& solver = *root.find("solver");
+  result.solver = {.method = method_from(text(solver, "method")),
+                   .max_refinements = whole(solver, "max_refinements"),
+                   .memory_limit = *bytes_of(*solver.find("memory_limit"))};
+  const TomlValue& output = *root.find("output");
+  result.output = {.csv = output.find("csv")->boolean,
+                   .vtk = output.find("vtk")->boolean,
+                   .picture = output.find("picture")->boolean};
+  result.document = std::move(root);
+  return result;
+}
+
+Case read_case(const fs::path& path, std::span<const std::string> overrides) {
+  return parse_case(read_file(path), path.string(), path.parent_path(), overrides);
+}
+
+}  // namespace equidem

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The case file: what is computed, as typed values.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "equidem/assembly/delaunay.hpp"
+#include "equidem/assembly/lattices.hpp"
+#include "equidem/casefile/toml.hpp"
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/contact/effects.hpp"
+#include "equidem/homogenize/tension_test.hpp"
+#include "equidem/material/elastic_moduli.hpp"
+#include "equidem/statics/linear_solver.hpp"
+#include "equidem/statics/supports.hpp"
+
+namespace equidem {
+
+enum class AssemblyKind { square, hexagonal, delaunay, file };
+
+/// [assembly]; the options of the other kinds keep their defaults.
+struct AssemblyCase {
+  AssemblyKind kind = AssemblyKind::hexagonal;
+  LatticeOptions lattice;
+  DelaunayOptions delaunay;
+  std::filesystem::path path;  ///< as the program opens it
+};
+
+/// [material]: the continuum that the springs shall stand for.
+struct MaterialCase {
+  ElasticModuli moduli;
+  bool static_only = false;  ///< kT < 0 allowed
+};
+
+/// [[group]]: discs listed, or those with their centre inside a box.
+struct GroupCase {
+  std::string name;
+  std::vector<std::int32_t> discs;
+  std::optional<Vec2> box_low, box_high;  ///< m
+};
+
+/// [[load]] entries that act together.
+struct NamedLoads {
+  std::string name;  ///< empty where the file names no load cases
+  LoadCase loads;
+};
+
+/// [output]: what is written with --out, beside result.json and case.toml.
+struct OutputCase {
+  bool csv = true;
+  bool vtk = true;
+  bool picture = true;
+};
+
+/// A checked case file: complete, in range and without contradiction. What only the assembly can tell
+/// (whether a group holds discs, whether supports suffice) is checked where the case is built and solved.
+struct Case {
+  std::string title;
+  AssemblyCase assembly;
+  std::optional<SpringConstants> springs;  ///< or
+  std::optional<MaterialCase> material;
+  SpringWeighting weighting = SpringWeighting::uniform;
+  Rotation rotation = Rotation::from_scene;
+  std::optional<TensionTest> test;     ///< or
+  std::vector<Support> supports;       ///< with
+  std::vector<NamedLoads> load_cases;  ///< at least one: without [[load]] one empty case
+  std::vector<GroupCase> groups;
+  SolverOptions solver;
+  OutputCase output;
+
+  /// The document behind it: defaults filled in, a springs file replaced by what it says.
+  TomlValue document;
+
+  /// "cases/a.toml:7: load.0.group": where the user wrote it, for errors.
+  [[nodiscard]] std::string where(std::string_view key) const;
+};
+
+/// Read and check a case file.
+/// \param overrides "springs.kT=0.3e9", in order
+/// \throws Error (bad_input) with file, line and key: unreadable file, no TOML, unknown or missing key, wrong
+///         type, out of range, contradiction
+Case read_case(const std::filesystem::path& path, std::span<const std::string> overrides = {});
+
+/// The same from text.
+/// \param name of the file, for messages
+/// \param folder to which paths in the text are relative
+Case parse_case(std::string_view text, const std::string& name, const std::filesystem::path& folder,
+                std::span<const std::string> overrides = {});
+
+/// The resolved case as TOML: every default written out, overrides applied. Reading it back gives the same
+/// case.
+/// \param folder where it will lie: paths are written relative to it
+std::string to_toml(const Case& resolved, const std::filesystem::path& folder);
+
+}  // namespace equidem

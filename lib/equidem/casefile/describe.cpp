@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/casefile/check_value.hpp"
+#include "equidem/casefile/keys.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr std::size_t text_width = 100;
+
+/// Append words, broken into lines of text_width that begin with `indent` spaces.
+void append_wrapped(std::string& out, const std::string& words, std::size_t indent) {
+  std::size_t column = indent;
+  std::string line(indent, ' ');
+  std::size_t begin = 0;
+  while (begin < words.size()) {
+    std::size_t end = words.find(' ', begin);
+    if (end == std::string::npos) end = words.size();
+    const std::size_t length = end - begin;
+    if (column > indent && column + 1 + length > text_width) {
+      out += line + "\n";
+      line.assign(indent, ' ');
+      column = indent;
+    }
+    if (column > indent) {
+      line += ' ';
+      ++column;
+    }
+    line += words.substr(begin, length);
+    column += length;
+    begin = end + 1;
+  }
+  out += line + "\n";
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  return list;
+}
+
+void append_key(std::string& out, const KeySpec& key) {
+  out += format("  {:<16} {}", key.name, expected(key));
+  if (key.is_required()) {
+    out += "; required";
+  } else {
+    out += key.has_default() ? format("; default {}", key.fallback) : "; optional";
+  }
+  out += "\n";
+  std::string help = key.help;
+  if (*key.when_key != '\0') help = format("({} = {}) {}", key.when_key, joined(key.when), help);
+  if (!help.empty()) append_wrapped(out, help, 19);
+}
+
+constexpr const char* example =
+    R"(The case file is TOML and says what is computed. It is strict: an unknown key is an error that names
+its line. SI units, per metre of depth; tension positive; angles in radians, counter-clockwise.
+Paths are relative to the folder of the case file.
+
+An example:
+
+  schema = "equidem/1"
+  title  = "Abe 1996, Fig. 6"
+  [assembly]
+  kind    = "hexagonal"
+  columns = 21
+  rows    = 21
+  radius  = 0.005
+  [springs]
+  kN = 1.0e9
+  kT = 0.5e9
+  [test]
+  kind = "uniaxial_tension"
+
+Any key can be set on the command line: --set springs.kT=0.3e9 --set assembly.rows=11
+
+)";
+
+}  // namespace
+
+std::string describe_case_file() {
+  const FileSpec& spec = case_file_spec();
+  std::string out = example;
+  out += "At the top of the file\n";
+  for (const KeySpec& key : spec.keys)
+    if (*key.table == '\0') append_key(out, key);
+  for (const TableSpec& table : spec.tables) {
+    const std::string heading = table.repeated ? format("[[{}]]", table.name) : format("[{}]", table.name);
+    out += format("\n{}  {}{}\n", heading, table.help, table.required ? "; required" : "");
+    for (const KeySpec& key : spec.keys)
+      if (std::string_view(key.table) == table.name) append_key(out, key);
+  }
+  return out;
+}
+
+}  // namespace equidem

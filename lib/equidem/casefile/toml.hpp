@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// TOML as a plain tree of values that know their line; toml.cpp is the only place that includes toml++.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace equidem {
+
+/// One value of a TOML document; tables keep the order of the file.
+struct TomlValue {
+  enum class Type { table, array, integer, real, boolean, text, date };
+
+  Type type = Type::table;
+  std::int64_t integer = 0;
+  double real = 0;  ///< also set where type is integer
+  bool boolean = false;
+  std::string text;
+  std::vector<TomlValue> items;                            ///< of an array
+  std::vector<std::pair<std::string, TomlValue>> entries;  ///< of a table
+
+  std::shared_ptr<const std::string> source;  ///< file name, or the option of the command line
+  int line = 0;                               ///< in the file, from 1; 0: none
+
+  [[nodiscard]] bool is_table() const { return type == Type::table; }
+  [[nodiscard]] bool is_array() const { return type == Type::array; }
+  [[nodiscard]] bool is_number() const { return type == Type::integer || type == Type::real; }
+  /// The entry of that name of a table; nullptr where there is none.
+  [[nodiscard]] const TomlValue* find(std::string_view name) const;
+  [[nodiscard]] TomlValue* find(std::string_view name);
+  /// "cases/a.toml:7", or the option of the command line.
+  [[nodiscard]] std::string where() const;
+  /// "a table", "an array", "text", ...: for messages.
+  [[nodiscard]] std::string type_name() const;
+  /// The value in short, as TOML: `21`, `"hexagonal"`, `nan`.
+  [[nodiscard]] std::string shown() const;
+};
+
+/// \param source name of the file, for messages
+/// \throws Error (bad_input) with file and line where the text is not TOML
+TomlValue parse_toml(std::string_view text, const std::string& source);
+
+/// Name and version of the parser, "toml++ 3.3.0".
+std::string toml_parser();
+
+/// Text as a TOML basic string, in quotes.
+std::string toml_text(std::string_view text);
+/// A number in the shortest form that reads back to the same bits, always with a point or an exponent.
+std::string toml_number(double value);
+
+}  // namespace equidem

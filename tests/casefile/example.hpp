@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A small valid case, and how tests read it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "equidem/casefile/case.hpp"
+#include "equidem/core/error.hpp"
+
+namespace equidem::test {
+
+inline const std::string tension_case = R"(schema = "equidem/1"
+title  = "Abe 1996, Fig. 6"
+[assembly]
+kind    = "hexagonal"
+columns = 21
+rows    = 21
+radius  = 0.005
+[springs]
+kN = 1.0e9
+kT = 0.5e9
+[test]
+kind   = "uniaxial_tension"
+stress = 1.0e6
+gauge  = "centre"
+)";
+
+inline const std::string load_case = R"(schema = "equidem/1"
+[assembly]
+kind = "delaunay"
+discs = 50
+points = "perturbed_hexagonal"
+disorder = 0.2
+seed = 7
+[assembly.radii]
+smallest = 0.004
+largest = 0.006
+[material]
+shear_modulus = 1.0e9
+poisson_ratio = 0.2
+plane = "strain"
+[effects]
+rotation = "free"
+[[group]]
+name = "some"
+discs = [0, 1, 2]
+[[group]]
+name = "inside"
+box = [0.0, 0.0, 0.02, 0.02]
+[[support]]
+group = "left"
+ux = true
+uy = 1e-3
+[[load]]
+group = "some"
+kind = "total"
+force = [1.0, -2.0]
+case = "a"
+[[load]]
+group = "inside"
+moment = 3.0
+case = "b"
+[solver]
+method = "umfpack"
+max_refinements = 2
+memory_limit = "4 GB"
+[output]
+picture = false
+)";
+
+inline Case parsed(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return parse_case(text, "a.toml", ".", overrides);
+}
+
+/// The sentence of the error of a case; empty where it is accepted.
+inline std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  try {
+    static_cast<void>(parsed(text, overrides));
+  } catch (const Error& error) {
+    return error.kind() == ErrorKind::bad_input ? error.what() : std::string("wrong kind: ") + error.what();
+  }
+  return {};
+}
+
+/// The text with the first `what` replaced.
+inline std::string changed(std::string text, const std::string& what, const std::string& by) {
+  const auto at = text.find(what);
+  if (at == std::string::npos) throw std::logic_error("the example has no '" + what + "'");
+  return text.replace(at, what.size(), by);
+}
+
+}  // namespace equidem::test

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "equidem/casefile/build.hpp"
+#include "equidem/casefile/keys.hpp"
+#include "equidem/casefile/nearest.hpp"
+
+#include "example.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+struct BadCase {
+  std::string text;
+  std::vector<std::string> overrides;
+  std::string line;                ///< how the line at fault begins; empty: the first
+  std::string key;                 ///< at fault; empty: none is named
+  std::vector<std::string> words;  ///< that it must hold
+};
+
+BadCase tension(const std::string& what, const std::string& by, const std::string& line,
+                const std::string& key, std::vector<std::string> words) {
+  return {changed(tension_case, what, by), {}, line, key, std::move(words)};
+}
+
+BadCase loaded(const std::string& what, const std::string& by, const std::string& line,
+               const std::string& key, std::vector<std::string> words) {
+  return {changed(load_case, what, by), {}, line, key, std::move(words)};
+}
+
+BadCase overridden(const std::string& text, const std::string& assignment, const std::string& key,
+                   std::vector<std::string> words) {
+  return {text, {assignment}, {}, key, std::move(words)};
+}
+
+/// "a.toml:7", where that line begins with `line`.
+std::string place_of(const std::string& text, const std::string& line) {
+  const auto at = text.find(line);
+  if (at == std::string::npos) throw std::logic_error("no line begins with '" + line + "'");
+  return "a.toml:" +
+         std::to_string(1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+}
+
+std::vector<BadCase> bad_cases() {
+  return {
+      // schema
+      tension("schema = \"equidem/1\"\n", "", "title  = \"Abe 1996, Fig. 6\"", "schema",
+              {"missing key", "schema = \"equidem/1\""}),
+      tension("equidem/1", "equidem/2", "schema = \"equidem/2\"", "schema",
+              {"\"equidem/2\"", "\"equidem/1\""}),
+      tension("\"equidem/1\"", "1", "schema = 1", "schema", {"1 is not the schema"}),
+      // TOML itself
+      tension("[springs]", "[springs", "[springs", "", {"not TOML"}),
+      tension("rows    = 21", "rows    = 21\nrows = 3", "rows = 3", "", {"not TOML", "rows"}),
+      tension("rows    = 21", "rows    = ", "rows    =", "", {"not TOML"}),
+      // unknown keys and tables
+      tension("columns", "colums", "colums = 21", "assembly.colums",
+              {"unknown key", "Perhaps you mean 'columns'"}),
+      tension("kN", "KN_", "KN_ = 1.0e9", "springs.KN_", {"unknown key", "'kN'"}),
+      tension("[springs]", "[sprigns]", "[sprigns]", "sprigns", {"unknown table", "'springs'"}),
+      tension("rows    = 21", "rows    = 21\ntitle = \"x\"", "title = \"x\"", "assembly.title",
+              {"unknown key", "at the top of the file"}),
+      tension("rows    = 21", "rows    = 21\nkT = 1.0", "kT = 1.0", "assembly.kT",
+              {"It belongs to [springs]"}),
+      tension("rows    = 21", "rows    = 21\nfluffiness = 1.0", "fluffiness = 1.0", "assembly.fluffiness",
+              {"Known here: kind, columns"}),
+      tension("rows    = 21", "rows    = 21\nseed = 3", "seed = 3", "assembly.seed",
+              {"does not apply to kind = \"hexagonal\"", "delaunay"}),
+      tension("rows    = 21", "rows    = 21\nradii = {smallest = 1.0, largest = 2.0}",
+              "radii = {smallest = 1.0, largest = 2.0}", "assembly.radii", {"does not apply"}),
+      loaded("\"perturbed_hexagonal\"", "\"random\"", "disorder = 0.2", "assembly.disorder",
+             {"points = \"random\"", "perturbed_hexagonal"}),
+      // missing keys and tables
+      tension("columns = 21\n", "", "[assembly]", "assembly.columns", {"missing key", "[assembly]"}),
+      tension("radius  = 0.005\n", "", "[assembly]", "assembly.radius", {"missing key"}),
+      tension("kind    = \"hexagonal\"\n", "", "[assembly]", "assembly.kind",
+              {"missing key", "\"square\", \"hexagonal\""}),
+      tension("kT = 0.5e9\n", "", "[springs]", "springs.kT", {"missing key"}),
+      tension("[springs]\nkN = 1.0e9\nkT = 0.5e9\n", "", "schema = \"equidem/1\"", "springs",
+              {"springs are missing", "[material]"}),
+      tension("kind   = \"uniaxial_tension\"\n", "", "[test]", "test.kind", {"missing key"}),
+      {"schema = \"equidem/1\"\n", {}, "", "[assembly]", {"missing table"}},
+      {"", {}, "", "schema", {"missing key"}},
+      loaded("plane = \"strain\"\n", "", "[material]", "material.plane", {"missing key"}),
+      loaded("shear_modulus = 1.0e9\n", "", "[material]", "material.shear_modulus",
+             {"a modulus is missing", "young_modulus"}),
+      loaded("[assembly.radii]\nsmallest = 0.004\nlargest = 0.006\n", "", "[assembly]", "assembly.radius",
+             {"size of the discs is missing"}),
+      loaded("name = \"some\"\n", "", "[[group]]", "group.name", {"missing key", "[[group]]"}),
+      // wrong type
+      tension("= 21", "= \"21\"", "columns = \"21\"", "assembly.columns",
+              {"\"21\" is text", "Leave out the quotes"}),
+      tension("= 21", "= 21.0", "columns = 21.0", "assembly.columns",
+              {"21.0 is a number", "Write columns = 21"}),
+      tension("= 21", "= 21.5", "columns = 21.5", "assembly.columns", {"21.5", "whole number"}),
+      tension("1.0e9", "true", "kN = true", "springs.kN", {"true is true or false", "a number in Pa"}),
+      tension("1.0e9", "[1.0]", "kN = [1.0]", "springs.kN", {"[1.0] is an array"}),
+      tension("1.0e9", "1979-05-27", "kN = 1979-05-27", "springs.kN", {"a date"}),
+      tension("\"hexagonal\"", "3", "kind    = 3", "assembly.kind", {"3 is a whole number", "\"square\""}),
+      tension("[springs]\nkN = 1.0e9\nkT = 0.5e9\n", "[[springs]]\nkN = 1.0e9\nkT = 0.5e9\n", "[[springs]]",
+              "springs", {"[[springs]]", "Write [springs]"}),
+      loaded("[[load]]", "[load]", "[[load]]", "", {"not TOML"}),
+      {changed(tension_case, "title  =", "load = 3\ntitle  ="), {}, "load = 3", "load", {"Write [[load]]"}},
+      {changed(tension_case, "title  =", "springs = 3\ntitle  ="), {}, "[springs]", "", {"not TOML"}},
+      loaded("picture = false", "picture = 0", "picture = 0", "output.picture", {"true or false"}),
+      loaded("[1.0, -2.0]", "[1.0]", "force = [1.0]", "load.force", {"1 entry", "two numbers"}),
+      loaded("[1.0, -2.0]", "[1.0, \"a\"]", "force = [1.0, \"a\"]", "load.force", {"\"a\" is text"}),
+      loaded("ux = true", "ux = false", "ux = false", "support.ux", {"false says nothing", "free"}),
+      loaded("[0, 1, 2]", "[0, 1.5]", "discs = [0, 1.5]", "group.discs", {"1.5"}),
+      loaded("[0, 1, 2]", "[0, -1]", "discs = [0, -1]", "group.discs", {"-1 is no number of a disc"}),
+      loaded("[0, 1, 2]", "[]", "discs = []", "group.discs", {"empty"}),
+      loaded("\"4 GB\"", "\"4 parsecs\"", "memory_limit = \"4 parsecs\"", "solver.memory_limit",
+             {"\"4 GB\""}),
+      // numbers out of range
+      tension("= 21", "= 0", "columns = 0", "assembly.columns", {"0 is out of range"}),
+      tension("= 21", "= -3", "columns = -3", "assembly.columns", {"-3 is out of range"}),
+      tension("0.005", "0.0", "radius  = 0.0", "assembly.radius", {"out of range", "> 0"}),
+      tension("0.005", "-0.005", "radius  = -0.005", "assembly.radius", {"-0.005 is out of range", "> 0"}),
+      tension("1.0e9", "0", "kN = 0", "springs.kN", {"0 is out of range", "> 0"}),
+      tension("1.0e9", "-1.0e9", "kN = -1.0e9", "springs.kN", {"out of range", "> 0"}),
+      tension("1.0e9", "nan", "kN = nan", "springs.kN", {"nan is not a finite number"}),
+      tension("0.5e9", "inf", "kT = inf", "springs.kT", {"inf is not a finite number"}),
+      tension("0.5e9", "-inf", "kT = -inf", "springs.kT", {"-inf is not a finite number"}),
+      tension("0.5e9", "nan", "kT = nan", "springs.kT", {"nan is not a finite number"}),
+      tension("1.0e6", "0.0", "stress = 0.0", "test.stress", {"not 0"}),
+      tension("= 21", "= nan", "columns = nan", "assembly.columns", {"not a finite number"}),
+      loaded("disorder = 0.2", "disorder = 0.5", "disorder = 0.5", "assembly.disorder", {"< 0.5"}),
+      loaded("seed = 7", "seed = -7", "seed = -7", "assembly.seed", {"-7 is out of range"}),
+      loaded("discs = 50", "discs = 2", "discs = 2", "assembly.discs", {"2 is out of range"}),
+      loaded("smallest = 0.004", "smallest = 0.04", "[assembly.radii]", "assembly.radii",
+             {"larger than", "Exchange"}),
+      loaded("poisson_ratio = 0.2", "poisson_ratio = 0.7", "[material]", "material", {"0.7"}),
+      loaded("max_refinements = 2", "max_refinements = -1", "max_refinements = -1", "solver.max_refinements",
+             {"out of range"}),
+      loaded("\"4 GB\"", "-1", "memory_limit = -1", "solver.memory_limit", {"out of range"}),
+      loaded("[0.0, 0.0, 0.02, 0.02]", "[0.02, 0.0, 0.0, 0.02]", "box = [0.02, 0.0, 0.0, 0.02]", "group.box",
+             {"the box", "empty"}),
+      // choices
+      tension("\"hexagonal\"", "\"hexagnal\"", "kind    = \"hexagnal\"", "assembly.kind",
+              {"Perhaps you mean \"hexagonal\""}),
+      tension("\"hexagonal\"", "\"packing\"", "kind    = \"packing\"", "assembly.kind",
+              {"\"packing\" arrives with a later version"}),
+      tension("\"centre\"", "\"center\"", "gauge  = \"center\"", "test.gauge",
+              {"Perhaps you mean \"centre\""}),
+      loaded("\"umfpack\"", "\"magic\"", "method = \"magic\"", "solver.method",
+             {"\"magic\" is no known method", "\"cholmod\""}),
+      // contradictions
+      tension("[test]", "[material]\nshear_modulus = 1.0\npoisson_ratio = 0.1\nplane = \"strain\"\n[test]",
+              "[material]", "material", {"both given"}),
+      tension("[test]", "[[support]]\ngroup = \"left\"\nux = true\n[test]", "[[support]]", "support",
+              {"[test] and [[support]] are both given"}),
+      tension("[test]", "[[load]]\ngroup = \"left\"\nforce = [1.0, 0.0]\n[test]", "[[load]]", "load",
+              {"[test] and [[load]] are both given"}),
+      tension("rows    = 21", "rows    = 21\nperiodic = true", "periodic = true", "assembly.periodic",
+              {"no sides to pull"}),
+      loaded("shear_modulus = 1.0e9", "shear_modulus = 1.0e9\nyoung_modulus = 1.0e9", "young_modulus = 1.0e9",
+             "material.shear_modulus", {"both given"}),
+      loaded("seed = 7", "seed = 7\nradius = 0.1", "[assembly.radii]", "assembly.radius", {"both given"}),
+      loaded("ux = true\nuy = 1e-3\n", "", "[[support]]", "support", {"holds nothing"}),
+      loaded("force = [1.0, -2.0]\n", "", "[[load]]", "load", {"neither force nor moment"}),
+      loaded("\"total\"\nforce = [1.0, -2.0]", "\"traction\"\nmoment = 1.0", "moment = 1.0", "load.moment",
+             {"a traction has no moment"}),
+      loaded("name = \"inside\"", "name = \"some\"", "name = \"some\"\nbox", "group.name",
+             {"two groups 'some'"}),
+      loaded("case = \"a\"", "case = \"../a\"", "case = \"../a\"", "load.case", {"cannot name a load case"}),
+      // overrides
+      overridden(tension_case, "springs.kTT=1", "springs.kTT", {"unknown key", "'kT'"}),
+      overridden(tension_case, "sprigs.kT=1", "sprigs", {"unknown table", "'springs'"}),
+      overridden(tension_case, "springs.kN=-1", "springs.kN", {"out of range"}),
+      overridden(tension_case, "springs.kN=lots", "springs.kN", {"\"lots\" is text"}),
+      overridden(tension_case, "springs.kN", "", {"sets nothing", "springs.kT=0.3e9"}),
+      overridden(tension_case, "=3", "", {"sets nothing"}),
+      overridden(tension_case, "springs.kN=", "", {"no TOML value"}),
+      overridden(tension_case, "springs.kN={a=1", "", {"no TOML value"}),
+      overridden(tension_case, "springs.kN.x=1", "", {"nothing below 'kN'"}),
+      overridden(load_case, "load.7.moment=1", "", {"no entry '7'"}),
+      overridden(load_case, "load.0.force=[1]", "load.force", {"1 entry"}),
+      overridden(tension_case, "assembly.seed=3", "assembly.seed", {"does not apply"}),
+      overridden(tension_case, "assembly.rows=x", "assembly.rows", {"\"x\" is text"}),
+  };
+}
+
+}  // namespace
+
+TEST_CASE("bad_cases_say_where_what_and_why") {
+  for (const BadCase& bad : bad_cases()) {
+    const std::string sentence = error_of(bad.text, bad.overrides);
+    CAPTURE(bad.text, bad.overrides, sentence);
+    std::string place = bad.overrides.empty() ? place_of(bad.text, bad.line) : "--set " + bad.overrides[0];
+    if (!bad.key.empty()) place += ": " + bad.key;
+    CAPTURE(place);
+    CHECK(sentence.starts_with(place + ": "));
+    for (const std::string& word : bad.words) {
+      CAPTURE(word);
+      CHECK(sentence.find(word) != std::string::npos);
+    }
+    CHECK(sentence.find('\n') == std::string::npos);
+    CHECK(sentence.ends_with("."));
+  }
+}
+
+TEST_CASE("the_key_one_letter_off_is_suggested_for_every_key") {
+  for (const KeySpec& key : case_file_spec().keys) {
+    std::vector<std::string> here;
+    for (const KeySpec& other : case_file_spec().keys)
+      if (std::string(other.table) == key.table) here.emplace_back(other.name);
+    const std::string name = key.name;
+    const std::set<std::string> misspelt = {name + "s", name.substr(0, name.size() - 1) + "_", "x" + name};
+    for (const std::string& wrong : misspelt) {
+      if (std::find(here.begin(), here.end(), wrong) != here.end()) continue;
+      CAPTURE(key.table, key.name, wrong);
+      const auto meant = nearest(wrong, here);
+      REQUIRE(meant);
+      CHECK(edit_distance(wrong, *meant) <= edit_distance(wrong, name));
+    }
+  }
+}
+
+TEST_CASE("an_override_is_one_value") {
+  const std::string sentence = error_of(tension_case, {"springs.kN=1\nfoo=2"});
+  CAPTURE(sentence);
+  CHECK(sentence.find("more than one value") != std::string::npos);
+  CHECK(sentence.find('\n') == std::string::npos);
+}
+
+TEST_CASE("edit_distance_counts_single_changes") {
+  CHECK(edit_distance("kT", "kT") == 0);
+  CHECK(edit_distance("kt", "kT") == 0);
+  CHECK(edit_distance("colums", "columns") == 1);
+  CHECK(edit_distance("sprigns", "springs") == 1);
+  CHECK(edit_distance("", "abc") == 3);
+  CHECK(edit_distance("abc", "") == 3);
+  CHECK(edit_distance("kitten", "sitting") == 3);
+  const std::vector<std::string> verbs = {"solve", "sweep"};
+  CHECK(nearest("slove", verbs) == "solve");
+  CHECK(nearest("sweeps", verbs) == "sweep");
+  CHECK_FALSE(nearest("integrate", verbs));
+  CHECK_FALSE(nearest(std::string(100000, 'x'), verbs));
+}
+
+TEST_CASE("groups_that_do_not_fit_the_assembly_are_refused_with_their_line") {
+  const std::string block =
+      "schema = \"equidem/1\"\n[assembly]\nkind = \"hexagonal\"\ncolumns = 5\nrows = 5\nradius = 0.005\n" +
+      load_case.substr(load_case.find("[material]"));
+  const auto sentence = [](const std::string& text) -> std::string {
+    const Case c = parsed(text);
+    try {
+      static_cast<void>(build_assembly(c));
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  REQUIRE(sentence(block).empty());
+
+  struct Wrong {
+    std::string what, by, key, word;
+  };
+  const std::vector<Wrong> wrongs = {
+      {"discs = [0, 1, 2]", "discs = [0, 99]", "group.0.discs", "names disc 99"},
+      {"box = [0.0, 0.0, 0.02, 0.02]", "box = [5.0, 5.0, 6.0, 6.0]", "group.1.box", "no disc has its centre"},
+      {"name = \"some\"", "name = \"left\"", "group.0.name", "of its own"},
+      {"group = \"left\"", "group = \"lift\"", "support.0.group", "no group 'lift'"},
+      {"group = \"some\"", "group = \"sum\"", "load.0.group", "no group 'sum'"},
+  };
+  for (const Wrong& wrong : wrongs) {
+    const std::string text = changed(block, wrong.what, wrong.by);
+    const std::string said = sentence(text);
+    CAPTURE(wrong.by, said);
+    CHECK(said.starts_with(place_of(text, wrong.by) + ": " + wrong.key + ": "));
+    CHECK(said.find(wrong.word) != std::string::npos);
+  }
+}

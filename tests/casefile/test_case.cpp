@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <filesystem>
+
+#include "equidem/casefile/build.hpp"
+#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/keys.hpp"
+#include "equidem/core/file.hpp"
+
+#include "example.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+TEST_CASE("a_case_says_what_its_file_says") {
+  const Case c = parsed(tension_case);
+
+  CHECK(c.title == "Abe 1996, Fig. 6");
+  CHECK(c.assembly.kind == AssemblyKind::hexagonal);
+  CHECK(c.assembly.lattice.columns == 21);
+  CHECK(c.assembly.lattice.rows == 21);
+  CHECK(c.assembly.lattice.radius == 0.005);
+  CHECK_FALSE(c.assembly.lattice.periodic);
+  REQUIRE(c.springs);
+  CHECK(c.springs->kN == 1e9);
+  CHECK(c.springs->kT == 0.5e9);
+  CHECK(c.weighting == SpringWeighting::uniform);
+  CHECK(c.rotation == Rotation::from_scene);
+  REQUIRE(c.test);
+  CHECK(c.test->stress == 1e6);
+  CHECK(c.test->gauge == GaugePlacement::centre);
+  CHECK(c.solver.method == SolverMethod::automatic);
+}
+
+TEST_CASE("supports_and_loads_keep_what_is_free_and_what_is_held") {
+  const Case c = parsed(load_case);
+
+  CHECK(c.assembly.delaunay.discs == 50);
+  CHECK(c.assembly.delaunay.points == PointProcess::perturbed_hexagonal);
+  CHECK(c.assembly.delaunay.disorder == 0.2);
+  CHECK(c.assembly.delaunay.seed == 7);
+  CHECK(c.assembly.delaunay.radii.smallest == 0.004);
+  CHECK(c.assembly.delaunay.radii.largest == 0.006);
+  REQUIRE(c.material);
+  CHECK(c.material->moduli.shear_modulus == 1e9);
+  CHECK(c.rotation == Rotation::free);
+  REQUIRE(c.supports.size() == 1);
+  CHECK(c.supports[0].ux == 0.0);
+  CHECK(c.supports[0].uy == 1e-3);
+  CHECK_FALSE(c.supports[0].rotation);
+  REQUIRE(c.load_cases.size() == 2);
+  CHECK(c.load_cases[0].name == "a");
+  CHECK(c.load_cases[0].loads[0].kind == LoadKind::total);
+  CHECK(c.load_cases[0].loads[0].force == Vec2{1, -2});
+  CHECK(c.load_cases[1].loads[0].kind == LoadKind::per_disc);
+  CHECK(c.load_cases[1].loads[0].moment == 3);
+  CHECK(c.solver.method == SolverMethod::umfpack);
+  CHECK(c.solver.max_refinements == 2);
+  CHECK(c.solver.memory_limit == 4e9);
+  CHECK_FALSE(c.output.picture);
+  CHECK(c.output.vtk);
+}
+
+TEST_CASE("a_load_without_a_case_acts_in_every_case") {
+  const Case c = parsed(load_case + "[[load]]\ngroup = \"left\"\nforce = [5.0, 0.0]\n");
+
+  REQUIRE(c.load_cases.size() == 2);
+  for (const NamedLoads& loads : c.load_cases) {
+    CAPTURE(loads.name);
+    REQUIRE(loads.loads.size() == 2);
+    CHECK(loads.loads[1].force.x == 5);
+  }
+}
+
+TEST_CASE("the_resolved_case_reads_back_as_the_same_case") {
+  const bool tension = GENERATE(true, false);
+  const Case first = parsed(tension ? tension_case : load_case, {R"(title="a \"quoted\" \\ title, äöü")"});
+  const std::string echoed = to_toml(first, ".");
+  CAPTURE(echoed);
+  const Case second = parsed(echoed);
+
+  CHECK(to_toml(second, ".") == echoed);
+  CHECK(second.supports.size() == first.supports.size());
+  CHECK(second.load_cases.size() == first.load_cases.size());
+  CHECK(second.solver.memory_limit == first.solver.memory_limit);
+  CHECK(second.assembly.delaunay.radii.largest == first.assembly.delaunay.radii.largest);
+}
+
+TEST_CASE("paths_are_relative_to_the_case_file_and_follow_the_echo") {
+  const std::string text = R"(schema = "equidem/1"
+[assembly]
+kind = "file"
+path = "own/truss.json"
+)";
+  const Case c = parse_case(text, "cases/a.toml", "cases", {});
+  CHECK(c.assembly.path == std::filesystem::path("cases/own/truss.json"));
+  CHECK(to_toml(c, "out").find("path = \"../cases/own/truss.json\"") != std::string::npos);
+}
+
+TEST_CASE("every_number_survives_the_echo_bit_by_bit") {
+  const double kT = GENERATE(1.0 / 3.0, 5e-324, 1.7976931348623157e308, -0.1, 1e9 + 1e-7);
+  const Case c = parsed(tension_case, {"springs.kT=" + toml_number(kT)});
+  REQUIRE(c.springs);
+  CHECK(c.springs->kT == kT);
+  CHECK(parsed(to_toml(c, ".")).springs->kT == kT);
+}
+
+TEST_CASE("overrides_replace_add_and_reach_into_lists") {
+  CHECK(parsed(tension_case, {"springs.kT=0.3e9"}).springs->kT == 0.3e9);
+  CHECK(parsed(tension_case, {"springs.kT = 0.3e9", "springs.kT=1"}).springs->kT == 1);
+  CHECK(parsed(tension_case, {"assembly.rows=11"}).assembly.lattice.rows == 11);
+  CHECK(parsed(tension_case, {"solver.method=cholmod"}).solver.method == SolverMethod::cholmod);
+  CHECK(parsed(tension_case, {"solver.method=\"cholmod\""}).solver.method == SolverMethod::cholmod);
+  CHECK(parsed(tension_case, {"effects.rotation=restrained"}).rotation == Rotation::restrained);
+  CHECK(parsed(load_case, {"load.1.moment=9"}).load_cases[1].loads[0].moment == 9);
+  CHECK(parsed(load_case, {"load.0.force=[7, 8]"}).load_cases[0].loads[0].force == Vec2{7, 8});
+  CHECK(parsed(tension_case, {"springs={kN = 1, kT = 2}"}).springs->kT == 2);
+}
+
+TEST_CASE("every_case_of_the_data_folder_is_valid_and_can_be_built") {
+  namespace fs = std::filesystem;
+  int cases = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(EQUIDEM_SOURCE_DIR) / "data/cases")) {
+    if (entry.path().extension() != ".toml") continue;
+    CAPTURE(entry.path());
+    const Case c = read_case(entry.path());
+    const Assembly assembly = build_assembly(c);
+    const BuiltSprings springs = build_springs(c, assembly);
+    INFO(springs.report);
+    CHECK(assembly.size() >= 3);
+    CHECK(springs.springs.largest() > 0);
+    ++cases;
+  }
+  CHECK(cases >= 5);
+}
+
+TEST_CASE("the_description_names_every_key_and_its_example_is_valid") {
+  const std::string text = describe_case_file();
+  for (const KeySpec& key : case_file_spec().keys) {
+    CAPTURE(key.table, key.name);
+    CHECK(text.find(std::string("\n  ") + key.name + " ") != std::string::npos);
+  }
+  for (const TableSpec& table : case_file_spec().tables) {
+    CAPTURE(table.name);
+    CHECK(text.find(std::string("[") + table.name + "]") != std::string::npos);
+  }
+  const auto begin = text.find("  schema = ");
+  const auto end = text.find("Any key can be set");
+  REQUIRE(begin != std::string::npos);
+  REQUIRE(end != std::string::npos);
+  CHECK(error_of(text.substr(begin, end - begin)).empty());
+}
+
+TEST_CASE("a_springs_file_stands_in_for_the_springs") {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::temp_directory_path() / "equidem_test_springs_file";
+  fs::create_directories(folder);
+  const std::string text = changed(tension_case, "[springs]\nkN = 1.0e9\nkT = 0.5e9\n", "");
+  const std::string with_file = changed(text, "title ", "springs = \"springs.toml\"\ntitle ");
+  const auto sentence = [&]() -> std::string {
+    try {
+      static_cast<void>(parse_case(with_file, "a.toml", folder, {}));
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  };
+
+  write_file(folder / "springs.toml",
+             "schema = \"equidem-springs/1\"\n[springs]\nkN = 2.0e9\nkT = 1.0e9\nweighting = \"voronoi\"\n",
+             true);
+  const Case c = parse_case(with_file, "a.toml", folder, {});
+  REQUIRE(c.springs);
+  CHECK(c.springs->kN == 2e9);
+  CHECK(c.weighting == SpringWeighting::voronoi);
+  const Case repeated = parsed(to_toml(c, "."));
+  REQUIRE(repeated.springs);
+  CHECK(repeated.springs->kN == c.springs->kN);
+  CHECK(repeated.springs->kT == c.springs->kT);
+  CHECK(repeated.weighting == c.weighting);
+
+  write_file(folder / "springs.toml", "schema = \"equidem-springs/1\"\n[springs]\nkN = 2.0e9\nkTT = 1.0e9\n",
+             true);
+  CHECK(sentence().find("springs.toml:4: springs.kTT: unknown key") != std::string::npos);
+  fs::remove_all(folder);
+  CHECK(sentence().find("a.toml:2: springs: cannot read") != std::string::npos);
+}
