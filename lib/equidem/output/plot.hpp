@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Plots of curves, drawn by gnuplot from a script that stays beside the data for the user to edit and rerun.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace equidem {
+
+/// How the points of a series are shown.
+enum class SeriesStyle { line, dashed_line, points, line_with_points };
+enum class Marker { circle, square, triangle, diamond };
+
+/// The colour-blind-safe palette of Okabe and Ito (2008).
+enum class PlotColour { black, orange, sky_blue, green, yellow, blue, vermilion, purple };
+
+/// One curve. A point that is not finite is a gap.
+struct Series {
+  std::string label = {};      ///< in the legend; empty: not in the legend
+  std::vector<double> x = {};  ///< one value per y; series with the same x share one column of the data file
+  std::vector<double> y = {};
+  SeriesStyle style = SeriesStyle::line;
+  PlotColour colour = PlotColour::black;
+  Marker marker = Marker::circle;
+  bool filled = true;       ///< markers: filled, or open with a white face
+  std::string column = {};  ///< name of y in the data file; empty: made of the label
+};
+
+/// A vertical line across the plot with its label written along it.
+struct VerticalLine {
+  double x = 0;
+  std::string label = {};
+  PlotColour colour = PlotColour::black;
+};
+
+/// A shaded range of x, behind all else.
+struct Band {
+  double from = 0;
+  double to = 0;
+  std::string label = {};  ///< written at its top; may be empty
+};
+
+/// One axis. The range is that of the data where a bound is not given.
+struct Axis {
+  std::string label = {};
+  std::optional<double> min = {};
+  std::optional<double> max = {};
+  bool logarithmic = false;
+};
+
+/// Text is drawn as it is, whatever characters it holds.
+struct Plot {
+  std::string title = {};
+  Axis x = {};
+  Axis y = {};
+  std::vector<Series> series = {};  ///< later ones are drawn on top
+  std::vector<VerticalLine> vertical_lines = {};
+  std::vector<Band> bands = {};
+  /// Labels use gnuplot's enhanced text: "k_T/k_N", "{/:Italic x}". Only for text that is not the user's;
+  /// Greek as Unicode, since viewers of SVG lack the font of "{/Symbol n}".
+  bool enhanced = false;
+  /// A marker whose y lies outside the given range is shown as a small triangle at that edge.
+  bool mark_points_outside = true;
+};
+
+/// What came of a plot.
+struct PlotResult {
+  bool drawn = false;        ///< the SVG and the PNG are there
+  std::string message = {};  ///< one sentence: what was written, or why there is no picture
+  std::vector<std::filesystem::path> files = {};
+};
+
+/// Write NAME.csv (the data), NAME.gp (the script; `gnuplot NAME.gp` in that folder draws again) and, by
+/// gnuplot, NAME.svg and NAME.png (900 x 650 pixels). Where gnuplot is absent or fails, data and script are
+/// there and the result says so. The legend takes the corner with the fewest points, or stands under the plot
+/// where all are crowded. \throws Error (bad_input) on a plot that cannot be drawn (x and y of different
+/// length, no finite point, a value not
+///         positive on a logarithmic axis, an empty range, a name that is no plain file name), and as
+///         write_file does
+PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const Plot& plot,
+                      bool overwrite);
+
+}  // namespace equidem

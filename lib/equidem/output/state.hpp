@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// An assembly with what was computed on it: what every writer of files and pictures is given.
+#pragma once
+
+#include <cassert>
+#include <span>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/frame.hpp"
+#include "equidem/core/vector.hpp"
+
+namespace equidem {
+
+/// A view: all that it names must outlive it. An empty span means "not computed": the columns, arrays and
+/// colours made of it are left out.
+struct AssemblyState {
+  const Assembly& assembly;
+  std::span<const DiscMotion> motions = {};           ///< per disc
+  std::span<const ContactForce> contact_forces = {};  ///< per contact
+  std::span<const Tensor2> stresses = {};             ///< per disc, Pa
+};
+
+/// Sizes agree: a promise of the caller.
+inline void assert_consistent([[maybe_unused]] const AssemblyState& state) {
+  assert(state.motions.empty() || state.motions.size() == state.assembly.size());
+  assert(state.contact_forces.empty() || state.contact_forces.size() == state.assembly.contacts.size());
+  assert(state.stresses.empty() || state.stresses.size() == state.assembly.size());
+}
+
+/// Half the trace of a plane stress tensor, Pa; tension positive.
+constexpr double mean_stress(const Tensor2& stress) {
+  return 0.5 * (stress.xx + stress.yy);
+}
+
+}  // namespace equidem

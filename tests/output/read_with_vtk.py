@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""read_with_vtk.py FOLDER NAME: read NAME.vtm, NAME_discs.vtp and NAME_contacts.vtp with VTK's own readers and compare every
+number with discs.csv and contacts.csv, written by another writer from the same state. Exit 0: equal bit for bit; 77: the
+Python module of VTK is missing."""
+import csv
+import os
+import sys
+
+try:
+    import numpy as np
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOXML import vtkXMLMultiBlockDataReader, vtkXMLPolyDataReader
+except ImportError as missing:
+    print(f"skipped: {missing}")
+    sys.exit(77)
+
+folder, name = sys.argv[1:]
+faults = []
+
+
+def table(file_name):
+    with open(os.path.join(folder, file_name), newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {key: np.array([float(row[key]) for row in rows]) for key in rows[0]} if rows else {}
+
+
+def poly_data(file_name):
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(os.path.join(folder, file_name))
+    reader.Update()
+    if reader.GetErrorCode():
+        faults.append(f"{file_name}: error {reader.GetErrorCode()} of the reader")
+    return reader.GetOutput()
+
+
+def compare(what, found, wanted):
+    if not np.array_equal(found, wanted):
+        faults.append(f"{what}: {found} is not {wanted}")
+
+
+def array(data, key):
+    found = data.GetArray(key)
+    if found is None:
+        faults.append(f"no array {key}")
+        return None
+    return vtk_to_numpy(found)
+
+
+discs, contacts = table("discs.csv"), table("contacts.csv")
+n, m = len(discs["disc"]), len(contacts.get("i", []))
+
+data = poly_data(f"{name}_discs.vtp")
+compare("disc points", vtk_to_numpy(data.GetPoints().GetData()),
+        np.column_stack([discs["x_m"], discs["y_m"], np.zeros(n)]))
+compare("vertices", vtk_to_numpy(data.GetVerts().GetConnectivityArray()), np.arange(n))
+compare("vertex offsets", vtk_to_numpy(data.GetVerts().GetOffsetsArray()), np.arange(n + 1))
+point = data.GetPointData()
+scalars = {"radius": "radius_m", "cell_area": "cell_area_m2", "rotation": "rotation_rad", "stress_xx": "stress_xx_Pa",
+           "stress_yy": "stress_yy_Pa", "stress_xy": "stress_xy_Pa", "stress_yx": "stress_yx_Pa"}
+for key, column in scalars.items():
+    compare(key, array(point, key), discs[column])
+compare("mean stress", array(point, "mean_stress"), 0.5 * (discs["stress_xx_Pa"] + discs["stress_yy_Pa"]))
+displacement = np.column_stack([discs["ux_m"], discs["uy_m"], np.zeros(n)])
+compare("displacement", array(point, "displacement"), displacement)
+
+data = poly_data(f"{name}_contacts.vtp")
+compare("number of lines", data.GetNumberOfLines(), m)
+if m:
+    i, j = contacts["i"].astype(int), contacts["j"].astype(int)
+    ends = vtk_to_numpy(data.GetPoints().GetData())
+    compare("line connectivity", vtk_to_numpy(data.GetLines().GetConnectivityArray()), np.arange(2 * m))
+    compare("line offsets", vtk_to_numpy(data.GetLines().GetOffsetsArray()), 2 * np.arange(m + 1))
+    compare("starts", ends[0::2, :2], np.column_stack([discs["x_m"][i], discs["y_m"][i]]))
+    branch = np.column_stack([contacts["branch_x_m"], contacts["branch_y_m"]])
+    compare("ends", ends[1::2, :2], ends[0::2, :2] + branch)
+    cell = data.GetCellData()
+    for key, column in {"i": "i", "j": "j", "normal_force": "normal_force_N_per_m",
+                        "tangential_force": "tangential_force_N_per_m"}.items():
+        compare(key, array(cell, key), contacts[column])
+    length = array(cell, "branch_length")
+    if not np.allclose(length, np.hypot(branch[:, 0], branch[:, 1]), rtol=1e-15, atol=0):
+        faults.append("branch_length is not the length of the branch")
+    compare("displacement of the ends", array(data.GetPointData(), "displacement"),
+            displacement[np.column_stack([i, j]).ravel()])
+
+reader = vtkXMLMultiBlockDataReader()
+reader.SetFileName(os.path.join(folder, f"{name}.vtm"))
+reader.Update()
+blocks = reader.GetOutput()
+compare("blocks", blocks.GetNumberOfBlocks(), 2)
+compare("points of the disc block", blocks.GetBlock(0).GetNumberOfPoints(), n)
+compare("lines of the contact block", blocks.GetBlock(1).GetNumberOfLines() if m else 0, m)
+
+for fault in faults:
+    print(fault)
+print(f"{n} discs, {m} contacts: {len(faults)} faults")
+sys.exit(1 if faults else 0)

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Assemblies with made-up states, a folder that vanishes, and Python as a second pair of eyes.
+#pragma once
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <unistd.h>
+
+#include "equidem/assembly/lattices.hpp"
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/output/state.hpp"
+
+namespace equidem {
+
+/// An assembly under a displacement field, contact forces by the linear law, and stresses that are just
+/// numbers.
+struct MadeUpState {
+  Assembly assembly;
+  std::vector<DiscMotion> motions;
+  std::vector<ContactForce> forces;
+  std::vector<Tensor2> stresses;
+
+  [[nodiscard]] AssemblyState view() const { return {assembly, motions, forces, stresses}; }
+};
+
+inline MadeUpState made_up(Assembly assembly, const Tensor2& gradient) {
+  MadeUpState state;
+  state.assembly = std::move(assembly);
+  for (std::size_t disc = 0; disc < state.assembly.size(); ++disc) {
+    const double k = static_cast<double>(disc) + 0.1;
+    state.motions.push_back({gradient * state.assembly.centres[disc], 1e-4 * std::sin(k)});
+    state.stresses.push_back({1e6 * std::cos(k), 3e5 * std::sin(k), 3e5 / k, -1e6 / k});
+  }
+  for (const Contact& contact : state.assembly.contacts) {
+    const ContactDeformation d =
+        deformation(frame_of(state.assembly, contact), state.motions[contact.i], state.motions[contact.j]);
+    state.forces.push_back(linear_spring_force({1e9, 3e8}, d));
+  }
+  return state;
+}
+
+inline MadeUpState stretched_block(int columns = 7, int rows = 6, bool periodic = false) {
+  return made_up(hexagonal_lattice({.columns = columns, .rows = rows, .periodic = periodic}),
+                 {1e-3, 2e-4, -1e-4, -3e-4});
+}
+
+/// A new folder below that for temporary files, removed at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "equidem-XXXXXX").string();
+    path_ = mkdtemp(name.data());
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  [[nodiscard]] std::size_t files() const {
+    return static_cast<std::size_t>(std::distance(std::filesystem::recursive_directory_iterator(path_), {}));
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Run a script of this folder with Python; its complaints appear in the log of the test. \return its exit
+/// code
+inline int run_python(const std::string& script, const std::vector<std::string>& arguments) {
+  std::string command =
+      std::string("'") + EQUIDEM_PYTHON + "' '" + EQUIDEM_SOURCE_DIR + "/tests/output/" + script + "'";
+  for (const std::string& argument : arguments) command += " '" + argument + "'";
+  const int status = std::system((command + " 1>&2").c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+}  // namespace equidem

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <sstream>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/random.hpp"
+#include "equidem/output/csv.hpp"
+
+#include "output/states.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+
+namespace {
+
+/// Lines of unquoted cells.
+std::vector<std::vector<std::string>> cells_of(const std::string& csv) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    rows.emplace_back();
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+  }
+  return rows;
+}
+
+double number(const std::string& cell) {
+  double value = std::nan("");
+  std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return value;
+}
+
+std::size_t column(const std::vector<std::string>& header, const std::string& name) {
+  const auto found = std::find(header.begin(), header.end(), name);
+  CAPTURE(name);
+  REQUIRE(found != header.end());
+  return static_cast<std::size_t>(found - header.begin());
+}
+
+}  // namespace
+
+TEST_CASE("numbers_in_csv_read_back_to_the_same_bits") {
+  Random random(7);
+  std::vector<double> numbers{0.0, -0.0, 0.1, 5e-324, 1.7976931348623157e308};
+  std::vector<std::int64_t> integers{0, -1, INT64_MAX, INT64_MIN, 42};
+  while (numbers.size() < 1000) {
+    const double candidate = std::bit_cast<double>(random.bits());
+    if (!std::isfinite(candidate)) continue;
+    numbers.push_back(candidate);
+    integers.push_back(static_cast<std::int64_t>(random.bits()));
+  }
+  const auto rows = cells_of(Table().add("x_m", numbers).add("count", integers).csv());
+  REQUIRE(rows.size() == numbers.size() + 1);
+  REQUIRE(rows[0] == std::vector<std::string>{"x_m", "count"});
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    CAPTURE(rows[k + 1][0], rows[k + 1][1]);
+    CHECK(std::bit_cast<std::uint64_t>(number(rows[k + 1][0])) == std::bit_cast<std::uint64_t>(numbers[k]));
+    CHECK(std::stoll(rows[k + 1][1]) == integers[k]);
+  }
+}
+
+TEST_CASE("csv_quotes_only_where_it_must") {
+  const Table table = Table()
+                          .add("plain", std::vector<std::string>{"stable", "a \"b\""})
+                          .add("with, comma", std::vector<std::string>{"line\nbreak", ""})
+                          .add("number", std::vector<double>{std::nan(""), INFINITY});
+  CHECK(table.csv() == "plain,\"with, comma\",number\nstable,\"line\nbreak\",nan\n\"a \"\"b\"\"\",,inf\n");
+}
+
+TEST_CASE("a_table_refuses_columns_it_cannot_hold") {
+  Table table;
+  table.add("ratio", std::vector<double>{0, 1});
+  CHECK_THROWS_WITH(table.add("ratio", std::vector<double>{0, 1}), Catch::Contains("'ratio'"));
+  CHECK_THROWS_WITH(table.add("nu", std::vector<double>{0, 1, 2}),
+                    Catch::Contains("'nu' has 3 values but the table has 2 rows"));
+  CHECK_THROWS_AS(table.add("", std::vector<double>{0, 1}), Error);
+  CHECK_THROWS_WITH(table.column("mu"), Catch::Contains("'mu'") && Catch::Contains("ratio"));
+}
+
+TEST_CASE("disc_and_contact_tables_hold_the_state") {
+  const bool periodic = GENERATE(false, true);
+  CAPTURE(periodic);
+  const MadeUpState state = stretched_block(4, 4, periodic);
+  const TemporaryFolder folder;
+  write_disc_csv(folder / "discs.csv", state.view(), false);
+  write_contact_csv(folder / "contacts.csv", state.view(), false);
+
+  const auto discs = cells_of(read_file(folder / "discs.csv"));
+  REQUIRE(discs.size() == state.assembly.size() + 1);
+  for (std::size_t k = 0; k < state.assembly.size(); ++k) {
+    CHECK(number(discs[k + 1][column(discs[0], "y_m")]) == state.assembly.centres[k].y);
+    CHECK(number(discs[k + 1][column(discs[0], "ux_m")]) == state.motions[k].u.x);
+    CHECK(number(discs[k + 1][column(discs[0], "stress_yx_Pa")]) == state.stresses[k].yx);
+    CHECK(number(discs[k + 1][column(discs[0], "cell_area_m2")]) == state.assembly.cell_areas[k]);
+  }
+  const auto contacts = cells_of(read_file(folder / "contacts.csv"));
+  REQUIRE(contacts.size() == state.assembly.contacts.size() + 1);
+  for (std::size_t k = 0; k < state.assembly.contacts.size(); ++k) {
+    const double fx = number(contacts[k + 1][column(contacts[0], "force_x_N_per_m")]);
+    const double fy = number(contacts[k + 1][column(contacts[0], "force_y_N_per_m")]);
+    CHECK(number(contacts[k + 1][column(contacts[0], "normal_force_N_per_m")]) == state.forces[k].normal);
+    CHECK(std::hypot(fx, fy) == Approx(std::hypot(state.forces[k].normal, state.forces[k].tangential)));
+    CHECK(contacts[k + 1][column(contacts[0], "shift_x")] ==
+          std::to_string(state.assembly.contacts[k].shift_x));
+  }
+}
+
+TEST_CASE("what_was_not_computed_has_no_column") {
+  const Assembly assembly = hexagonal_lattice({.columns = 2, .rows = 2});
+  const TemporaryFolder folder;
+  write_disc_csv(folder / "discs.csv", {assembly}, false);
+  write_contact_csv(folder / "contacts.csv", {assembly}, false);
+  CHECK(cells_of(read_file(folder / "discs.csv"))[0] ==
+        std::vector<std::string>{"disc", "x_m", "y_m", "radius_m", "cell_area_m2"});
+  CHECK(cells_of(read_file(folder / "contacts.csv"))[0].back() == "lever_j_m");
+}

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <cstdlib>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/output/gnuplot.hpp"
+#include "equidem/output/plot.hpp"
+#include "equidem/output/plot_layout.hpp"
+#include "equidem/output/plot_script.hpp"
+
+#include "output/states.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Every feature at once.
+Plot rich_plot() {
+  return {.title = "Poisson's ratio",
+          .x = {.label = "kT / kN", .min = -1, .max = 1},
+          .y = {.label = "ν", .min = 0, .max = 0.6},
+          .series = {{.label = "theory", .x = {-1, 1}, .y = {0.5, 0}},
+                     {.label = "stable", .x = {0, 0.5, 1}, .y = {0.25, NAN, 0}, .style = SeriesStyle::points},
+                     {.label = "unstable",
+                      .x = {-0.9, -0.5, -0.4},
+                      .y = {0.1, 7, -3},
+                      .style = SeriesStyle::points,
+                      .colour = PlotColour::vermilion,
+                      .filled = false},
+                     {.label = "joined",
+                      .x = {0, 0.5, 1},
+                      .y = {0.1, 0.2, 0.3},
+                      .style = SeriesStyle::line_with_points,
+                      .marker = Marker::diamond,
+                      .filled = false}},
+          .vertical_lines = {{.x = -1.0 / 3, .label = "lattice limit"}},
+          .bands = {{.from = -1, .to = -1.0 / 3, .label = "unstable"}}};
+}
+
+bool gnuplot_is_missing(const PlotResult& result) {
+  if (result.message.find("not installed") == std::string::npos) return false;
+  WARN("not tested: gnuplot is missing");
+  return true;
+}
+
+std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t k = 0; k < 4; ++k) value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
+  return value;
+}
+
+/// The environment variable PATH, changed for a while.
+class SearchPath {
+ public:
+  explicit SearchPath(const std::string& path) : before_(std::getenv("PATH")) {
+    setenv("PATH", path.c_str(), 1);
+  }
+  ~SearchPath() { setenv("PATH", before_.c_str(), 1); }
+  SearchPath(const SearchPath&) = delete;
+  SearchPath& operator=(const SearchPath&) = delete;
+
+ private:
+  std::string before_;
+};
+
+}  // namespace
+
+TEST_CASE("a_plot_is_data_a_script_that_runs_again_and_two_pictures") {
+  const TemporaryFolder folder;
+  const PlotResult result = write_plot(folder.path(), "fig 7", rich_plot(), false);
+  if (gnuplot_is_missing(result)) return;
+  CAPTURE(result.message);
+  REQUIRE(result.drawn);
+  CHECK(result.files.size() == 4);
+  CHECK(folder.files() == 4);
+
+  SECTION("the PNG is one, of the promised size") {
+    const std::string png = read_file(folder / "fig 7.png");
+    REQUIRE(png.size() > 5000);
+    CHECK(png.substr(0, 8) == "\x89PNG\r\n\x1a\n");
+    CHECK(big_endian(png, 16) == 900);
+    CHECK(big_endian(png, 20) == 650);
+  }
+  SECTION("the SVG is well-formed") {
+    CHECK(run_python("well_formed.py", {(folder / "fig 7.svg").string()}) == 0);
+  }
+  SECTION("the script draws again") {
+    const std::string before = read_file(folder / "fig 7.png");
+    fs::remove(folder / "fig 7.png");
+    fs::remove(folder / "fig 7.svg");
+    const GnuplotRun run = run_gnuplot(folder.path(), "fig 7.gp");
+    CAPTURE(run.reason);
+    CHECK(run.succeeded);
+    const bool same = read_file(folder / "fig 7.png") == before;
+    CHECK(same);
+    CHECK(fs::exists(folder / "fig 7.svg"));
+  }
+  SECTION("the script speaks of its neighbours only") {
+    CHECK(read_file(folder / "fig 7.gp").find(folder.path().string()) == std::string::npos);
+  }
+}
+
+TEST_CASE("logarithmic_axes_are_drawn") {
+  const double largest = GENERATE(40.0, 1e6);
+  const TemporaryFolder folder;
+  const Plot plot{.x = {.label = "n", .logarithmic = true},
+                  .y = {.label = "error", .logarithmic = true},
+                  .series = {{.label = "e", .x = {3, largest}, .y = {0.1, 0.1 / largest}}}};
+  const PlotResult result = write_plot(folder.path(), "error", plot, false);
+  if (gnuplot_is_missing(result)) return;
+  CAPTURE(result.message, largest);
+  CHECK(result.drawn);
+}
+
+TEST_CASE("data_of_a_plot_has_named_columns") {
+  Plot plot{.x = {.label = "kT / kN"},
+            .series = {{.label = "nu, theory", .x = {0, 1}, .y = {0.25, 0}},
+                       {.label = "other", .x = {0, 1}, .y = {1, NAN}, .column = "stable"},
+                       {.label = "", .x = {0, 0.5, 1}, .y = {1, 2, 3}},
+                       {.label = "nu theory", .x = {0, 1}, .y = {4, 5}}}};
+  const PlotData data = plot_data(plot);
+  CHECK(data.csv ==
+        "kT_kN,nu_theory,stable,kT_kN_2,y,nu_theory_2\n0,0.25,1,0,1,4\n1,0,nan,0.5,2,5\n,,,1,3,\n");
+  CHECK(data.places[3].x == "kT_kN");
+  CHECK(data.places[2].x == "kT_kN_2");
+}
+
+TEST_CASE("no_text_reaches_a_shell_or_breaks_the_script") {
+  const TemporaryFolder folder;
+  const std::string wild =
+      "`touch pwned` $(touch pwned) 'quote' \"double\" {a}_b^c @d \\ % # \n'; system('touch pwned')";
+  Plot plot = rich_plot();
+  plot.title = plot.x.label = plot.y.label = plot.series[0].label = wild;
+  plot.vertical_lines[0].label = plot.bands[0].label = wild;
+  const PlotResult result = write_plot(folder.path(), "wild", plot, false);
+  if (gnuplot_is_missing(result)) return;
+  CAPTURE(result.message);
+  CHECK(result.drawn);
+  CHECK_FALSE(fs::exists(folder / "pwned"));
+  CHECK_FALSE(fs::exists("pwned"));
+  CHECK(run_python("well_formed.py", {(folder / "wild.svg").string()}) == 0);
+}
+
+TEST_CASE("without_gnuplot_data_and_script_stay") {
+  const TemporaryFolder folder;
+  const TemporaryFolder nothing_here;
+  const SearchPath path(nothing_here.path().string());
+  const PlotResult result = write_plot(folder.path(), "fig7", rich_plot(), false);
+  CAPTURE(result.message);
+  CHECK_FALSE(result.drawn);
+  CHECK(result.message.find("gnuplot is not installed") != std::string::npos);
+  CHECK(result.files == std::vector<fs::path>{folder / "fig7.csv", folder / "fig7.gp"});
+  CHECK(folder.files() == 2);
+}
+
+TEST_CASE("a_script_that_gnuplot_refuses_is_told") {
+  const TemporaryFolder folder;
+  write_file(folder / "bad.gp", "set nonsense\n", false);
+  const GnuplotRun run = run_gnuplot(folder.path(), "bad.gp");
+  if (run.reason == "gnuplot is not installed") return;
+  CAPTURE(run.reason);
+  CHECK_FALSE(run.succeeded);
+  CHECK(run.reason.find("line 1") != std::string::npos);
+  write_file(folder / "slow.gp", "pause 20\n", false);
+  const GnuplotRun slow = run_gnuplot(folder.path(), "slow.gp", 0.2);
+  CAPTURE(slow.reason);
+  CHECK_FALSE(slow.succeeded);
+  CHECK(slow.reason.find("took more than 0.2 s") != std::string::npos);
+}
+
+TEST_CASE("the_legend_covers_no_data") {
+  // Points everywhere but in one corner, which must be found; points everywhere: the legend leaves the plot.
+  const std::string corner = GENERATE("top right", "top left", "bottom right", "bottom left", "below");
+  Series cloud{.label = "points", .style = SeriesStyle::points};
+  for (int i = 0; i <= 40; ++i) {
+    for (int j = 0; j <= 40; ++j) {
+      const bool right = i > 20, top = j > 20;
+      if (corner == std::string(top ? "top" : "bottom") + (right ? " right" : " left")) continue;
+      cloud.x.push_back(i / 40.0);
+      cloud.y.push_back(j / 40.0);
+    }
+  }
+  Plot plot{.series = {cloud}};
+  CHECK(lay_out(plot).legend == corner);
+}
+
+TEST_CASE("labels_of_close_vertical_lines_stand_apart") {
+  const Plot plot{.x = {.min = -1, .max = 1},
+                  .y = {.min = 0, .max = 1},
+                  .series = {{.x = {-1, 1}, .y = {0.5, 0}}},
+                  .vertical_lines = {{.x = -1.0 / 3, .label = "lattice"}, {.x = -0.27, .label = "block"}}};
+  const PlotLayout layout = lay_out(plot);
+  CHECK_FALSE(layout.line_labels[0].right);
+  CHECK(layout.line_labels[1].right);
+}
+
+TEST_CASE("a_plot_that_cannot_be_drawn_is_refused") {
+  const TemporaryFolder folder;
+  const Plot good{.series = {{.label = "s", .x = {1, 2}, .y = {1, 2}}}};
+  const auto refused = [&](const std::string& name, const Plot& plot, const std::string& words) {
+    CAPTURE(name, words);
+    CHECK_THROWS_WITH(write_plot(folder.path(), name, plot, false), Catch::Contains(words));
+  };
+  for (const char* name : {"", "| rm", "<cat", "a/b", "../up", "-x", "it's", "a`b`", "new\nline"}) {
+    refused(name, good, "cannot name the files");
+  }
+  Plot plot = good;
+  plot.series[0].x.push_back(3);
+  refused("p", plot, "3 values of x and 2 values of y");
+  plot = good;
+  plot.series[0].y = {NAN, INFINITY};
+  refused("p", plot, "no finite point");
+  plot = good;
+  plot.y.logarithmic = true;
+  plot.series[0].y[1] = -2;
+  refused("p", plot, "(2, -2)");
+  plot = good;
+  plot.x.min = 2, plot.x.max = 1;
+  refused("p", plot, "from 2 to 1");
+  CHECK(folder.files() == 0);
+}
