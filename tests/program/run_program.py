@@ -1,0 +1,301 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Drives the built program as a user does: run_program.py PROGRAM SOURCE_FOLDER [unittest options]."""
+import csv
+import json
+import math
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM = ""
+CASES = pathlib.Path()
+TENSION = ""
+
+
+def equidem(*arguments, cwd=None):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=120)
+
+
+def refuse_constant(name):
+    raise ValueError(f"{name} is not JSON")
+
+
+def parse_json(text):
+    return json.loads(text, parse_constant=refuse_constant)
+
+
+class ProgramTest(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory(prefix="equidem_test_")
+        self.folder = pathlib.Path(self.temporary.name)
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def check_error(self, done, exit_code, *words):
+        """One sentence on stderr, nothing on stdout."""
+        self.assertEqual(done.returncode, exit_code, done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertTrue(done.stderr.startswith("equidem: "), done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        for word in words:
+            self.assertIn(word, done.stderr)
+
+    def check_done(self, done):
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+
+class Usage(ProgramTest):
+    def test_help_shows_examples_verbs_and_exit_codes(self):
+        for arguments in (["--help"], ["help"]):
+            text = self.check_done(equidem(*arguments)).stdout
+            for word in ("solve", "sweep", "Examples:", "Exit codes:", "130"):
+                self.assertIn(word, text)
+
+    def test_help_of_a_verb_lists_its_options(self):
+        for arguments in (["solve", "--help"], ["help", "solve"], ["sweep", "--help"]):
+            text = self.check_done(equidem(*arguments)).stdout
+            for word in ("--set", "--out", "--json", "--threads", "--seed", "--dry-run", "--quiet", "--overwrite"):
+                self.assertIn(word, text)
+
+    def test_help_case_lists_every_table(self):
+        text = self.check_done(equidem("help", "case")).stdout
+        for word in ("[assembly]", "[springs]", "[material]", "[test]", "[[support]]", "[[load]]", "kN", "default"):
+            self.assertIn(word, text)
+        self.assertLessEqual(max(map(len, text.splitlines())), 110)
+
+    def test_version_names_version_and_libraries(self):
+        text = self.check_done(equidem("--version")).stdout
+        self.assertRegex(text, r"equidem \d+\.\d+\.\d+")
+        self.assertIn("CLI11", text)
+
+    def test_bad_usage_is_exit_code_2_with_the_nearest_word(self):
+        self.check_error(equidem(), 2, "a verb is missing", "--help")
+        self.check_error(equidem("slove", TENSION), 2, "unknown verb 'slove'", "'solve'")
+        self.check_error(equidem("--frob"), 2, "--frob")
+        self.check_error(equidem("help", "solv"), 2, "'solve'")
+        self.check_error(equidem("solve"), 2, "case file is missing")
+        self.check_error(equidem("solve", TENSION, TENSION), 2, "one argument too many")
+        self.check_error(equidem("solve", TENSION, "--treads", "2"), 2, "'--threads'")
+        self.check_error(equidem("solve", TENSION, "--threads", "0"), 2, "--threads")
+        self.check_error(equidem("solve", TENSION, "--set", "springs.kT"), 2, "springs.kT", "sets nothing")
+        self.check_error(equidem("sweep", TENSION, "--values", "1"), 2, "--key")
+        self.check_error(equidem("sweep", TENSION, "--key", "springs.kT"), 2, "--from")
+        self.check_error(equidem("sweep", TENSION, "--key", "springs.kT", "--from", "1"), 2, "--to")
+        self.check_error(equidem("sweep", TENSION, "--key", "springs.kTT", "--values", "1"), 2, "'kT'")
+        self.check_error(equidem("sweep", TENSION, "--key", "springs.kT", "--values", "nan"), 2, "nan")
+        self.check_error(equidem("sweep", TENSION, "--key", "ratio", "--values", "0", "--resume"), 2, "--out")
+
+    def test_bad_input_is_exit_code_2_with_its_place(self):
+        self.check_error(equidem("solve", self.folder / "absent.toml"), 2, "absent.toml", "no such file")
+        self.check_error(equidem("solve", self.folder), 2, "it is a folder")
+        broken = self.folder / "broken.toml"
+        broken.write_text(pathlib.Path(TENSION).read_text().replace("columns", "colums"))
+        self.check_error(equidem("solve", broken), 2, "broken.toml:", "assembly.colums", "'columns'")
+        self.check_error(equidem("solve", TENSION, "--seed", "3"), 2, "seed", "does not apply")
+        self.check_error(equidem("solve", TENSION, "--set", "assembly.rows=2"), 2)
+
+
+class Solve(ProgramTest):
+    def test_json_on_stdout_is_all_there_is_and_has_the_documented_keys(self):
+        done = self.check_done(equidem("solve", TENSION, "--json", "-"))
+        result = parse_json(done.stdout)
+        for key in ("status", "report", "times", "effects", "version", "unknowns", "relative_residual",
+                    "negative_pivots", "poisson_ratio", "stiffness_ratio", "strain", "stress"):
+            self.assertIn(key, result)
+        self.assertEqual(result["status"], "solved")
+        self.assertEqual(set(result["effects"]), {"active", "inactive"})
+        self.assertLess(result["relative_residual"], 1e-12)
+        self.assertEqual(result["negative_pivots"], 0)
+        self.assertEqual(len(result["strain"]), 3)
+        self.assertEqual(len(result["stress"]), 3)
+        # -e22 / (e11 - e22), eq. (35)
+        e11, e22, _ = result["strain"]
+        self.assertTrue(math.isclose(result["poisson_ratio"], -e22 / (e11 - e22), rel_tol=1e-12))
+        self.assertLess(abs(result["poisson_ratio"] - result["theory"]["poisson_ratio"]), 0.01)
+
+    def test_set_changes_the_answer_as_the_file_would(self):
+        changed = self.folder / "changed.toml"
+        changed.write_text(pathlib.Path(TENSION).read_text().replace("kT = 0.5e9", "kT = 0.0"))
+        by_file = parse_json(self.check_done(equidem("solve", changed, "--json", "-")).stdout)
+        by_set = parse_json(self.check_done(equidem("solve", TENSION, "--set", "springs.kT=0", "--json", "-")).stdout)
+        for key in ("poisson_ratio", "stiffness_ratio", "strain", "stress", "energy"):
+            self.assertEqual(by_file[key], by_set[key])
+        # At kT = 0 theory is exact at every size: nu = 1/4.
+        self.assertTrue(math.isclose(by_set["poisson_ratio"], 0.25, rel_tol=1e-12), by_set["poisson_ratio"])
+
+    def test_the_answer_does_not_depend_on_the_number_of_threads(self):
+        answers = [parse_json(self.check_done(equidem("solve", CASES / "delaunay_tension.toml", "--threads", n,
+                                                      "--json", "-")).stdout) for n in (1, 2, 3)]
+        for answer in answers[1:]:
+            self.assertEqual(answer["strain"], answers[0]["strain"])
+            self.assertEqual(answer["energy"], answers[0]["energy"])
+
+    def test_every_case_of_the_data_folder_is_solved(self):
+        for case in sorted(CASES.glob("*.toml")):
+            with self.subTest(case=case.name):
+                done = self.check_done(equidem("solve", case))
+                self.assertIn("residual", done.stdout)
+                self.assertIn("stability       stable", done.stdout)
+                self.assertEqual(done.stderr, "")
+
+    def test_moments_explain_an_asymmetric_stress(self):
+        result = parse_json(self.check_done(equidem("solve", CASES / "restrained_rotation.toml", "--json", "-")).stdout)
+        self.assertGreater(abs(result["stress_asymmetry"]), 0.1 * abs(result["stress"][2]))
+        self.assertTrue(math.isclose(result["stress_asymmetry"], result["moment_per_area"], rel_tol=1e-9), result)
+        free = parse_json(self.check_done(equidem("solve", CASES / "restrained_rotation.toml",
+                                                  "--set", "effects.rotation=free", "--json", "-")).stdout)
+        self.assertLess(abs(free["stress_asymmetry"]), 1e-9 * abs(free["stress"][2]))
+
+    def test_files_are_written_and_the_echoed_case_repeats_the_result(self):
+        out = self.folder / "new" / "out"
+        done = self.check_done(equidem("solve", CASES / "truss.toml", "--out", out))
+        self.assertIn(str(out), done.stderr)
+        names = {path.name for path in out.iterdir()}
+        self.assertLessEqual({"result.json", "case.toml", "discs.csv", "contacts.csv", "state.vtm", "picture.svg",
+                              "picture.png"}, names)
+        first = parse_json((out / "result.json").read_text())
+        again = parse_json(self.check_done(equidem("solve", out / "case.toml", "--json", "-")).stdout)
+        self.assertEqual(first["energy"], again["energy"])
+        with open(out / "discs.csv", newline="") as file:
+            self.assertEqual(len(list(csv.DictReader(file))), 3)
+
+    def test_load_cases_share_a_run_and_keep_their_own_files(self):
+        out = self.folder / "out"
+        done = self.check_done(equidem("solve", CASES / "cantilever.toml", "--out", out, "--json", "-"))
+        result = parse_json(done.stdout)
+        self.assertEqual([one["case"] for one in result["load_cases"]], ["weight", "tip"])
+        for name in ("weight", "tip"):
+            self.assertTrue((out / f"discs_{name}.csv").exists())
+
+    def test_nothing_is_overwritten_unasked(self):
+        out = self.folder / "out"
+        self.check_done(equidem("solve", CASES / "truss.toml", "--out", out))
+        before = (out / "result.json").read_bytes()
+        self.check_error(equidem("solve", CASES / "truss.toml", "--out", out), 2, "exists already", "--overwrite")
+        self.assertEqual((out / "result.json").read_bytes(), before)
+        self.check_done(equidem("solve", CASES / "truss.toml", "--out", out, "--overwrite"))
+        target = self.folder / "x.json"
+        target.write_text("mine")
+        self.check_error(equidem("solve", TENSION, "--json", target), 2, "x.json", "exists already")
+        self.assertEqual(target.read_text(), "mine")
+
+    def test_an_output_that_cannot_be_written_is_told_before_the_computation(self):
+        obstacle = self.folder / "file"
+        obstacle.write_text("")
+        self.check_error(equidem("solve", TENSION, "--out", obstacle / "out"), 2, "cannot write", "not a folder")
+        self.check_error(equidem("solve", TENSION, "--json", self.folder), 2, "cannot write", "folder")
+        if os.geteuid() != 0:
+            locked = self.folder / "locked"
+            locked.mkdir(mode=0o500)
+            self.check_error(equidem("solve", TENSION, "--out", locked / "out"), 2, "cannot write", "locked")
+
+    def test_quiet_says_nothing_and_dry_run_solves_nothing(self):
+        done = self.check_done(equidem("solve", TENSION, "--quiet"))
+        self.assertEqual((done.stdout, done.stderr), ("", ""))
+        out = self.folder / "out"
+        done = self.check_done(equidem("solve", TENSION, "--dry-run", "--out", out, "--json", "-"))
+        size = parse_json(done.stdout)
+        self.assertEqual(size["status"], "dry_run")
+        self.assertFalse(out.exists())
+        solved = parse_json(self.check_done(equidem("solve", TENSION, "--json", "-")).stdout)
+        self.assertEqual(size["unknowns"], solved["unknowns"])
+        self.assertEqual(size["factor_nonzeros"], solved["factor_nonzeros"])
+
+    def test_a_case_that_cannot_stand_says_which_motion_is_free(self):
+        done = equidem("solve", CASES / "truss.toml", "--set", "support=[{group = \"apex\", ux = true}]")
+        self.check_error(done, 2, "free")
+
+
+class Sweep(ProgramTest):
+    def rows(self, out):
+        with open(out / "sweep.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_the_curve_follows_theory(self):
+        out = self.folder / "out"
+        done = self.check_done(equidem("sweep", TENSION, "--key", "ratio", "--from", "0", "--to", "1", "--steps", "3",
+                                       "--out", out, "--json", "-"))
+        result = parse_json(done.stdout)
+        self.assertTrue(result["complete"])
+        self.assertEqual([point["value"] for point in result["points"]], [0, 0.5, 1])
+        for point in result["points"]:
+            self.assertEqual(point["status"], "solved")
+            self.assertLess(abs(point["poisson_ratio"] - (1 - point["value"]) / 4), 0.01)
+        self.assertEqual([row["ratio"] for row in self.rows(out)], ["0", "0.5", "1"])
+        for name in ("poisson_ratio.csv", "poisson_ratio.gp", "stiffness_ratio.csv", "case.toml", "result.json"):
+            self.assertTrue((out / name).exists(), name)
+
+    def test_a_point_equals_the_solve_of_its_value(self):
+        swept = parse_json(self.check_done(equidem("sweep", TENSION, "--key", "springs.kT", "--values", "0.25e9",
+                                                   "--json", "-")).stdout)
+        solved = parse_json(self.check_done(equidem("solve", TENSION, "--set", "springs.kT=0.25e9", "--json", "-")).stdout)
+        self.assertEqual(swept["points"][0]["poisson_ratio"], solved["poisson_ratio"])
+
+    def test_a_point_that_fails_stays_with_its_sentence(self):
+        done = self.check_done(equidem("sweep", TENSION, "--key", "springs.kN", "--values", "-1,1e9", "--json", "-"))
+        bad, good = parse_json(done.stdout)["points"]
+        self.assertEqual(bad["status"], "failed")
+        self.assertIn("out of range", bad["message"])
+        self.assertIsNone(bad["poisson_ratio"])
+        self.assertEqual(good["status"], "solved")
+
+    def test_when_all_points_fail_so_does_the_sweep(self):
+        done = equidem("sweep", TENSION, "--key", "springs.kN", "--values", "-1,-2")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("out of range", done.stderr)
+
+    def test_unstable_points_are_marked(self):
+        done = self.check_done(equidem("sweep", TENSION, "--key", "ratio", "--values", "-0.1,-0.35", "--json", "-"))
+        stable, unstable = parse_json(done.stdout)["points"]
+        self.assertEqual(stable["unstable_modes"], 0)
+        self.assertEqual(stable["status"], "solved")
+        self.assertGreater(unstable["unstable_modes"], 0)
+        self.assertEqual(unstable["status"], "unstable")
+
+    def test_interrupted_it_keeps_what_is_done_and_resume_completes_it(self):
+        out = self.folder / "out"
+        command = [PROGRAM, "sweep", TENSION, "--key", "springs.kT", "--from", "0", "--to", "1e9", "--steps", "1000000",
+                   "--out", str(out)]
+        running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        try:
+            deadline = time.monotonic() + 60
+            while not (out / "sweep.csv").exists() and time.monotonic() < deadline:
+                self.assertIsNone(running.poll())
+                time.sleep(0.05)
+            running.send_signal(signal.SIGINT)
+            stdout, stderr = running.communicate(timeout=60)
+        finally:
+            if running.poll() is None:
+                running.kill()
+                running.communicate()
+        self.assertEqual(running.returncode, 130, stderr)
+        self.assertIn("INCOMPLETE", stdout)
+        self.assertIn("--resume", stderr)
+        done = self.rows(out)
+        self.assertGreater(len(done), 0)
+        self.assertEqual(parse_json((out / "result.json").read_text())["status"], "interrupted")
+
+        values = [row["springs.kT"] for row in done] + ["0.9e9", "1e9"]
+        shorter = ["sweep", TENSION, "--key", "springs.kT", "--values", ",".join(values), "--out", out]
+        self.check_error(equidem(*shorter), 2, "exists already")
+        self.check_error(equidem(*shorter, "--resume", "--set", "springs.kN=2e9"), 2, "another case")
+        self.check_done(equidem(*shorter, "--resume"))
+        completed = self.rows(out)
+        self.assertEqual(completed[:len(done)], done)
+        self.assertEqual(len(completed), len(done) + 2)
+        self.assertTrue(parse_json((out / "result.json").read_text())["complete"])
+
+
+if __name__ == "__main__":
+    PROGRAM = sys.argv.pop(1)
+    CASES = pathlib.Path(sys.argv.pop(1)) / "data" / "cases"
+    TENSION = str(CASES / "abe1996_fig6.toml")
+    unittest.main()

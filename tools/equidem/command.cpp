@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "command.hpp"
+
+#include <cstdio>
+
+#include <CLI/CLI.hpp>
+
+#include "equidem/casefile/toml.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
+
+namespace equidem {
+
+void add_result_options(CLI::App& command, CommonOptions& options) {
+  command.add_option("--out", options.out, "write tables, pictures and files for ParaView into this folder")
+      ->type_name("DIR");
+  command
+      .add_option("--json", options.json, "write the result as JSON; '-': to stdout, in place of the report")
+      ->type_name("FILE|-");
+  command.add_option("--threads", options.threads, "threads; left out: one per processor")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+  command.add_flag("--quiet", options.quiet, "no report and no progress");
+  command.add_flag("--overwrite", options.overwrite, "replace files that exist");
+}
+
+void add_common_options(CLI::App& command, CommonOptions& options) {
+  command.add_option("CASE", options.case_file, "the case file (TOML); 'equidem help case' lists its keys")
+      ->required()
+      ->type_name("FILE");
+  command
+      .add_option("--set", options.set, "set a key of the case file, such as springs.kT=0.3e9; repeatable")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  command.add_option("--seed", options.seed, "short for --set assembly.seed=S")->type_name("S");
+  command.add_flag("--dry-run", options.dry_run, "say how large the computation is, without doing it");
+  add_result_options(command, options);
+}
+
+Case read_case(const CommonOptions& options) {
+  if (options.threads > 0) set_thread_count(options.threads);
+  set_progress_shown(!options.quiet);
+  std::vector<std::string> overrides = options.set;
+  if (options.seed) overrides.push_back(format("assembly.seed={}", *options.seed));
+  return read_case(options.case_file, overrides);
+}
+
+void OutputPlan::expect(const std::string& name) const {
+  if (options_.out) check_writable(*options_.out / name, options_.overwrite);
+}
+
+void OutputPlan::expect_json() const {
+  if (options_.json && *options_.json != "-") check_writable(*options_.json, options_.overwrite);
+}
+
+void deliver(const CommonOptions& options, const std::string& report, const JsonObject& object) {
+  const bool to_stdout = options.json && *options.json == "-";
+  if (to_stdout) {
+    std::fputs(object.text().c_str(), stdout);
+  } else if (!options.quiet) {
+    std::fputs(report.c_str(), stdout);
+  }
+  if (options.json && !to_stdout) write_file(*options.json, object.text(), options.overwrite);
+  if (options.out) write_file(*options.out / "result.json", object.text(), options.overwrite);
+}
+
+void say(const CommonOptions& options, const std::string& line) {
+  if (!options.quiet) std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+}  // namespace equidem

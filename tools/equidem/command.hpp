@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What all verbs share on the command line: the case file, overrides, and where results go.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "equidem/casefile/case.hpp"
+#include "equidem/output/json.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace equidem {
+
+/// The options that every verb takes.
+struct CommonOptions {
+  std::filesystem::path case_file;
+  std::vector<std::string> set;
+  std::optional<std::filesystem::path> out;
+  std::optional<std::string> json;  ///< file, or "-" for stdout
+  int threads = 0;                  ///< 0: one per processor
+  std::optional<std::int64_t> seed;
+  bool dry_run = false;
+  bool quiet = false;
+  bool overwrite = false;
+};
+
+/// Where results go and how the work is done: what verbs without a case file take, too.
+void add_result_options(CLI::App& command, CommonOptions& options);
+/// The case file, its overrides, and add_result_options.
+void add_common_options(CLI::App& command, CommonOptions& options);
+
+/// Apply threads and quiet, and read the case with its overrides.
+Case read_case(const CommonOptions& options);
+
+/// Where the files of a verb go. Asked before the computation, so that no hour is lost to a full folder.
+class OutputPlan {
+ public:
+  explicit OutputPlan(const CommonOptions& options) : options_(options) {}
+
+  /// A file NAME in --out, if there is one. \throws Error (bad_input) where it could not be written
+  void expect(const std::string& name) const;
+  /// The file of --json, if there is one. \throws Error (bad_input)
+  void expect_json() const;
+  [[nodiscard]] bool has_folder() const { return options_.out.has_value(); }
+  [[nodiscard]] const std::filesystem::path& folder() const { return *options_.out; }
+
+ private:
+  const CommonOptions& options_;
+};
+
+/// Report on stdout (unless quiet, or stdout is taken by the JSON), the object to --json and to
+/// OUT/result.json.
+void deliver(const CommonOptions& options, const std::string& report, const JsonObject& object);
+
+/// One line on stderr, unless quiet.
+void say(const CommonOptions& options, const std::string& line);
+
+}  // namespace equidem

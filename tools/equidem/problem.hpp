@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A case made ready to be solved, and what is evaluated once it is.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "equidem/casefile/build.hpp"
+#include "equidem/casefile/case.hpp"
+#include "equidem/core/stopwatch.hpp"
+#include "equidem/core/vector.hpp"
+#include "equidem/homogenize/tension_test.hpp"
+#include "equidem/statics/equilibrium.hpp"
+
+namespace equidem {
+
+/// Everything that an EquilibriumSolver is given; it must stay where it is while the solver lives.
+struct Problem {
+  Case resolved;
+  Assembly assembly;
+  BuiltSprings springs;
+  std::optional<TensionSetup> tension;
+  std::vector<Support> supports;
+  std::vector<NamedLoads> load_cases;
+  StageTimes times;  ///< of building it
+
+  [[nodiscard]] EquilibriumOptions options() const {
+    return {.rotation = resolved.rotation, .solver = resolved.solver};
+  }
+};
+
+/// \param assembly to use instead of building it; empty: build
+/// \throws Error (bad_input) as build_assembly and build_springs do; neither [test] nor anything that acts
+Problem build_problem(Case resolved, std::optional<Assembly> assembly = {});
+
+/// One load case, solved and evaluated.
+struct SolvedCase {
+  std::string name;  ///< of the load case, may be empty
+  Equilibrium equilibrium;
+  std::vector<Tensor2> stresses;  ///< Pa, per disc; empty where the cells are unknown
+  std::optional<Tensor2> stress;  ///< Pa, of the assembly, not made symmetric
+  /// Pa: all moments that act on discs from outside (restrained rotation, supports, loads) over the area. It
+  /// equals the asymmetry of the stress, xy - yx (Abe 1996, eq. 55).
+  double moment_per_area = 0;
+  std::optional<TensionResult> tension;
+
+  /// "solved", or "unstable" where the assembly would give way.
+  [[nodiscard]] std::string status() const { return equilibrium.unstable_modes > 0 ? "unstable" : "solved"; }
+};
+
+SolvedCase solve_case(const Problem& problem, const EquilibriumSolver& solver, const NamedLoads& loads);
+
+/// What theory says of the tension test on a lattice of equal springs, plane strain: hexagonal nu = (1 - r)/4
+/// and (37) with r = kT/kN; square nu = 0 and s11/(kN e11) = 1.
+struct TensionTheory {
+  double poisson_ratio = 0;
+  double stiffness_ratio = 0;
+};
+std::optional<TensionTheory> tension_theory(const Problem& problem);
+
+}  // namespace equidem

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+/// "1 293 000" is easier to read than 1293000.
+std::string grouped(std::int64_t value) {
+  std::string digits = format("{}", value);
+  for (auto k = static_cast<std::ptrdiff_t>(digits.size()) - 3; k > (value < 0 ? 1 : 0); k -= 3)
+    digits.insert(static_cast<std::size_t>(k), 1, ' ');
+  return digits;
+}
+
+/// What the inertia of K says about the answer.
+std::string stability(const Problem& problem, const Equilibrium& result) {
+  if (result.negative_pivots < 0) return "not known: the solver does not count negative pivots";
+  if (result.unstable_modes > 0) {
+    return format(
+        "UNSTABLE: {} beyond one for each rotation; the assembly would give way by so many modes, this "
+        "equilibrium is no state of rest",
+        counted(result.unstable_modes, "negative pivot"));
+  }
+  if (result.negative_pivots == 0) return "stable: no negative pivot";
+  return format("stable: {}, one for each rotation{}", counted(result.negative_pivots, "negative pivot"),
+                problem.springs.springs.any_negative() ? " (kT < 0; static-only)" : "");
+}
+
+std::string scientific(double value) {
+  return format("{:.6g}", value);
+}
+
+/// A component of a tensor; what is round-off beside the largest one reads as 0.
+std::string component(double value, double largest) {
+  return std::abs(value) <= 1e-12 * largest ? "0" : format("{:.6g}", value);
+}
+
+void append_stress(std::string& out, const SolvedCase& result) {
+  if (!result.stress) {
+    out += report_line("stress", "not known: the assembly has no cell areas");
+    return;
+  }
+  const Tensor2& s = *result.stress;
+  const double largest = std::max({std::abs(s.xx), std::abs(s.yy), std::abs(s.xy), std::abs(s.yx)});
+  const auto shown = [&](double value) { return component(value, largest); };
+  const bool symmetric = std::abs(asymmetry(s)) <= 1e-9 * largest;
+  if (symmetric) {
+    out += report_line("stress", format("xx {}, yy {}, xy {} Pa, mean over the assembly", shown(s.xx),
+                                        shown(s.yy), shown(s.xy)));
+    return;
+  }
+  out += report_line("stress", format("xx {}, yy {}, xy {}, yx {} Pa, mean over the assembly", shown(s.xx),
+                                      shown(s.yy), shown(s.xy), shown(s.yx)));
+  out += report_line(
+      "", format("not symmetric: xy - yx = {:.6g} Pa (Abe 1996, eq. 55). The moments that restrained "
+                 "rotation, supports and loads put on the discs are {:.6g} N m per m²",
+                 asymmetry(s), result.moment_per_area));
+}
+
+void append_tension(std::string& out, const Problem& problem, const SolvedCase& result) {
+  const TensionResult& t = *result.tension;
+  const TensionSetup& setup = *problem.tension;
+  const auto theory = tension_theory(problem);
+  const TomlValue& test = *problem.resolved.document.find("test");
+  out +=
+      report_line("tension test",
+                  format("s11 = {:.6g} Pa, height {:.6g} m, gauge \"{}\": discs {}-{} along x, {}-{} along y",
+                         t.stress.xx, setup.height, test.find("gauge")->text, setup.horizontal.first,
+                         setup.horizontal.second, setup.vertical.first, setup.vertical.second));
+  out += report_line("  strain", format("e11 = {:.9g}, e22 = {:.9g}", t.strain.xx, t.strain.yy));
+  const auto compared = [&](const std::string& name, double value, double expected) {
+    std::string line = format("{:<14.9g}", value);
+    if (theory) line += format(" theory {:<12.9g} difference {:+.2e}", expected, value - expected);
+    out += report_line("  " + name, line);
+  };
+  compared("nu, (35)", t.poisson_ratio, theory ? theory->poisson_ratio : 0);
+  compared("2G/((1-nu)kN)", t.stiffness_ratio, theory ? theory->stiffness_ratio : 0);
+  out += report_line("  whole field",
+                     format("nu = {:.9g}, fitted to the inner half of the block", t.fitted_poisson_ratio));
+}
+
+}  // namespace
+
+std::string report_line(const std::string& name, const std::string& value) {
+  constexpr std::size_t name_width = 16, value_width = 94;
+  std::string text, line = format("{:<{}}", name, name_width);
+  std::size_t used = 0;
+  for (std::size_t begin = 0; begin < value.size();) {
+    std::size_t end = value.find(' ', begin + 1);
+    if (end == std::string::npos) end = value.size();
+    const std::string word = value.substr(begin, end - begin);
+    if (used > 0 && used + word.size() > value_width) {
+      text += line + "\n";
+      line.assign(name_width, ' ');
+      used = 0;
+      line += word.substr(1);
+    } else {
+      line += word;
+    }
+    used += word.size();
+    begin = end;
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  return text + line + "\n";
+}
+
+std::string describe_problem(const Problem& problem, const Effects& effects) {
+  const Assembly& a = problem.assembly;
+  std::string out;
+  if (!problem.resolved.title.empty()) out += problem.resolved.title + "\n\n";
+  out += report_line(
+      "assembly",
+      format("{}, {} discs, {} contacts, z = {:.4g}", a.kind, grouped(static_cast<std::int64_t>(a.size())),
+             grouped(static_cast<std::int64_t>(a.contacts.size())), a.coordination_number()));
+  if (a.periodic() || !a.cell_areas.empty())
+    out += report_line("", format("area {:.6g} m², solid fraction {:.6g}{}", a.area(), a.solid_fraction(),
+                                  a.periodic() ? ", periodic" : ""));
+  out += report_line("springs", problem.springs.report);
+  std::string active;
+  for (const Effects::Entry& entry : effects.entries)
+    if (entry.active) active += (active.empty() ? "" : ", ") + entry.name;
+  out += report_line("effects", active);
+  for (const Effects::Entry& entry : effects.entries)
+    if (!entry.active) out += report_line("", format("no {}: {}", entry.name, entry.why));
+  return out;
+}
+
+std::string describe_results(const Problem& problem, std::span<const SolvedCase> results,
+                             const StageTimes& times) {
+  std::string out;
+  const Equilibrium& first = results.front().equilibrium;
+  out += report_line("unknowns", grouped(first.unknowns));
+  out += report_line("solver", format("{}, {:.3g} entries in the factor ({})", first.solver,
+                                      first.factor_nonzeros, readable_bytes(first.factor_bytes)));
+  out += report_line("stability", stability(problem, first));
+  for (const SolvedCase& result : results) {
+    if (!result.name.empty()) out += format("\nload case {}\n", result.name);
+    const Equilibrium& e = result.equilibrium;
+    out += report_line("residual", format("{:.2e} relative, after {} of refinement", e.relative_residual,
+                                          counted(e.refinements, "step")));
+    out += report_line("energy", scientific(e.energy) + " N (J per m of depth, per m)");
+    append_stress(out, result);
+    if (result.tension) append_tension(out, problem, result);
+  }
+  // Stages that took no visible share of the time are left to the JSON.
+  std::string stages;
+  for (const auto& [stage, seconds] : times.stages())
+    if (seconds >= 0.02 * times.total()) stages += format(", {} {:.2g} s", stage, seconds);
+  out += report_line("times", format("{:.2g} s in all{}", times.total(), stages));
+  return out;
+}
+
+std::string describe_estimate(const SolveEstimate& e) {
+  return report_line("unknowns", grouped(e.unknowns)) +
+         report_line("memory", format("{} at the peak, {} of it for the factor ({:.3g} entries)",
+                                      readable_bytes(e.peak_bytes), readable_bytes(e.factor_bytes),
+                                      e.factor_nonzeros)) +
+         report_line("work", format("{:.3g} multiplications and additions to factorize", e.operations)) +
+         "nothing was solved (--dry-run)\n";
+}
+
+}  // namespace equidem

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The verbs of the program. A verb is one file with one declare function, and one line in the table below.
+#pragma once
+
+#include <array>
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace equidem {
+
+/// Carries out a verb once the command line is read; returns the exit code.
+using Run = std::function<int()>;
+
+Run declare_solve(CLI::App& command);
+Run declare_sweep(CLI::App& command);
+Run declare_reproduce(CLI::App& command);
+
+struct Verb {
+  const char* name;
+  const char* summary;                ///< one line of the help
+  Run (*declare)(CLI::App& command);  ///< adds its options to the command line
+};
+
+inline constexpr std::array verbs{
+    Verb{"solve", "equilibrium under supports and loads, or Abe's tension test", declare_solve},
+    Verb{"sweep", "solve over a range of one key: the curves", declare_sweep},
+    Verb{"reproduce", "a paper's tables and figures beside ours: abe1996", declare_reproduce},
+};
+
+}  // namespace equidem
