@@ -154,6 +154,7 @@ Equilibrium EquilibriumSolver::Implementation::solve(const LoadCase& loads) cons
   for (std::size_t k = 0; k < f.size(); ++k) motion.high[k] = unknowns.prescribed[k];
   result.contact_forces.resize(assembly.contacts.size());
   refine(f, motion, result);
+  contact_forces_of(assembly, springs, unknowns, motion, result.contact_forces);
   describe_state(f, motion, result);
   const FactorReport& report = factor->report();
   result.solver = report.name;
@@ -173,9 +174,7 @@ void EquilibriumSolver::Implementation::refine(std::span<const double> f, Precis
   constexpr double good_enough = 1e-15;
   std::vector<double> residual(f.size());
   const auto evaluate = [&] {
-    contact_forces_of(assembly, springs, unknowns, motion, result.contact_forces);
-    internal_force(assembly, graph, unknowns, result.contact_forces, residual);
-    for (std::size_t k = 0; k < f.size(); ++k) residual[k] = unknowns.held[k] != 0 ? 0.0 : f[k] - residual[k];
+    residual_force(assembly, graph, springs, unknowns, motion, f, residual);
     return norm_of_free(unknowns, residual);
   };
   const double reference = evaluate();

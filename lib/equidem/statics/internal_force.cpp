@@ -1,13 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/statics/internal_force.hpp"
 
-#include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/threads.hpp"
 
 namespace equidem {
 namespace {
 
 constexpr std::size_t grain = 1 << 13;
+
+using Extended = long double;  // 64 bits of mantissa on x86, more elsewhere
+
+struct ExtendedForce {
+  Extended normal, tangential;
+};
+
+ExtendedForce evaluate(const Contact& contact, const ContactFrame& frame, const SpringConstants& k,
+                       const DegreesOfFreedom& unknowns, const PreciseMotion& motion) {
+  const auto b = static_cast<std::size_t>(unknowns.per_disc);
+  const std::size_t i = contact.i * b, j = contact.j * b;
+  const auto difference = [&](std::size_t c) {
+    return (static_cast<Extended>(motion.high[j + c]) - motion.high[i + c]) +
+           (static_cast<Extended>(motion.low[j + c]) - motion.low[i + c]);
+  };
+  const Extended ux = difference(0), uy = difference(1);
+  const Vec2 n = frame.normal;
+  const Extended stretch = ux * n.x + uy * n.y;
+  Extended slip = uy * n.x - ux * n.y;
+  if (b == 3) {
+    const Extended turn_i = static_cast<Extended>(motion.high[i + 2]) + motion.low[i + 2];
+    const Extended turn_j = static_cast<Extended>(motion.high[j + 2]) + motion.low[j + 2];
+    slip -= (frame.lever_i * turn_i + frame.lever_j * turn_j) / unknowns.rotation_scale;
+  }
+  return {k.kN * stretch, k.kT * slip};
+}
 
 }  // namespace
 
@@ -24,23 +49,44 @@ void PreciseMotion::add(std::span<const double> correction) {
 void contact_forces_of(const Assembly& assembly, const ContactSprings& springs,
                        const DegreesOfFreedom& unknowns, const PreciseMotion& motion,
                        std::span<ContactForce> forces) {
-  const auto b = static_cast<std::size_t>(unknowns.per_disc);
   parallel_ranges(assembly.contacts.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       const Contact& contact = assembly.contacts[c];
-      const ContactFrame frame = frame_of(assembly, contact);
-      const std::size_t i = contact.i * b, j = contact.j * b;
-      const auto difference = [&](std::size_t k) {
-        return (motion.high[j + k] - motion.high[i + k]) + (motion.low[j + k] - motion.low[i + k]);
-      };
-      const Vec2 du{difference(0), difference(1)};
-      ContactDeformation d{dot(du, frame.normal), dot(du, frame.tangent())};
-      if (b == 3) {
-        const double turn_i = motion.high[i + 2] + motion.low[i + 2],
-                     turn_j = motion.high[j + 2] + motion.low[j + 2];
-        d.tangential -= (frame.lever_i * turn_i + frame.lever_j * turn_j) / unknowns.rotation_scale;
+      const ExtendedForce f = evaluate(contact, frame_of(assembly, contact), springs[c], unknowns, motion);
+      forces[c] = {static_cast<double>(f.normal), static_cast<double>(f.tangential)};
+    }
+  });
+}
+
+void residual_force(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
+                    const DegreesOfFreedom& unknowns, const PreciseMotion& motion, std::span<const double> f,
+                    std::span<double> residual) {
+  const auto b = static_cast<std::size_t>(unknowns.per_disc);
+  parallel_ranges(assembly.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t d = begin; d < end; ++d) {
+      Extended x = f[d * b], y = f[d * b + 1], moment = 0;
+      for (const auto& edge : graph.of(d)) {
+        const Contact& contact = assembly.contacts[edge.contact];
+        const ContactFrame frame = frame_of(assembly, contact);
+        const ExtendedForce force = evaluate(contact, frame, springs[edge.contact], unknowns, motion);
+        const Vec2 n = frame.normal;
+        const Extended fx = force.normal * n.x - force.tangential * n.y;
+        const Extended fy = force.normal * n.y + force.tangential * n.x;
+        if (static_cast<std::size_t>(contact.i) == d) {
+          x += fx, y += fy;
+          moment += frame.lever_i * force.tangential;
+        }
+        if (static_cast<std::size_t>(contact.j) == d) {
+          x -= fx, y -= fy;
+          moment += frame.lever_j * force.tangential;
+        }
       }
-      forces[c] = linear_spring_force(springs[c], d);
+      const auto keep = [&](std::size_t k, Extended value) {
+        residual[d * b + k] = unknowns.held[d * b + k] != 0 ? 0.0 : static_cast<double>(value);
+      };
+      keep(0, x);
+      keep(1, y);
+      if (b == 3) keep(2, f[d * b + 2] + moment / unknowns.rotation_scale);
     }
   });
 }

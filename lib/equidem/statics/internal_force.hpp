@@ -26,7 +26,8 @@ struct PreciseMotion {
   void add(std::span<const double> correction);
 };
 
-/// Force of every contact, from the differences of the motion of its discs.
+/// Force of every contact, from the differences of the motion of its discs, evaluated in extended precision:
+/// a disc that has turned far stretches its contacts by small differences of large products.
 void contact_forces_of(const Assembly& assembly, const ContactSprings& springs,
                        const DegreesOfFreedom& unknowns, const PreciseMotion& motion,
                        std::span<ContactForce> forces);
@@ -35,6 +36,12 @@ void contact_forces_of(const Assembly& assembly, const ContactSprings& springs,
 /// discs.
 void internal_force(const Assembly& assembly, const ContactGraph& graph, const DegreesOfFreedom& unknowns,
                     std::span<const ContactForce> forces, std::span<double> result);
+
+/// What is left of the load f once the contacts have answered: f - f_int(motion) on free components, 0 on
+/// held ones. Stretch, slip, forces and their sums are all evaluated in extended precision.
+void residual_force(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
+                    const DegreesOfFreedom& unknowns, const PreciseMotion& motion, std::span<const double> f,
+                    std::span<double> residual);
 
 /// Moment that contacts exert on each disc, N: sum of lever * tangential force.
 std::vector<double> contact_moments(const Assembly& assembly, std::span<const ContactForce> forces);

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "equidem/core/threads.hpp"
-#include "equidem/statics/vertex_cover.hpp"
+#include "equidem/statics/vertex_separator.hpp"
 
 namespace equidem {
 namespace {
@@ -34,19 +34,30 @@ struct Division {
   std::array<std::int32_t, 2> children{-1, -1};
 };
 
+/// A division of a part into two sides and their separator. Discs in the strip about the cut have the side
+/// that is listed; the others are low below `place`, else high.
 struct Cut {
   int axis = 0;
-  float place = 0;                      ///< the low side is below it
-  std::vector<std::int32_t> separator;  ///< discs
+  float place = 0;
+  std::vector<std::int32_t> strip;  ///< discs
+  std::vector<VertexSeparator::Side> sides;
+  std::size_t separator_size = 0;
 };
 
 struct Scratch {
   std::vector<float> coordinates;
   std::vector<Item> items;
-  VertexCover cover;
+  VertexSeparator separator;
 };
 
-constexpr std::int32_t separated = -1;  // label of a disc that is in a separator
+// Labels of discs whose side a cut has decided.
+constexpr std::int32_t decided_low = -1, decided_high = -2, separated = -3;
+
+std::int32_t decided(VertexSeparator::Side side) {
+  return side == VertexSeparator::Side::low    ? decided_low
+         : side == VertexSeparator::Side::high ? decided_high
+                                               : separated;
+}
 
 class Dissection {
  public:
@@ -56,7 +67,14 @@ class Dissection {
         items_(graph.size()),
         coordinates_(graph.size()),
         label_(graph.size(), 0),
+        strip_index_(graph.size(), -1),
         divisions_(2 * graph.size() + 1) {
+    // Counted from the lower left corner, so that single precision is spent on the assembly and not on where
+    // it lies.
+    for (std::size_t d = 0; d < assembly.size(); ++d) {
+      const Vec2 x = assembly.centres[d];
+      corner_ = d == 0 ? x : Vec2{std::min(corner_.x, x.x), std::min(corner_.y, x.y)};
+    }
     parallel_ranges(items_.size(), 1 << 14, [&](std::size_t first, std::size_t last) {
       for (std::size_t d = first; d < last; ++d) {
         items_[d] = item(assembly, d);
@@ -77,10 +95,10 @@ class Dissection {
 
  private:
   Item item(const Assembly& assembly, std::size_t d) const {
-    const Vec2 x = assembly.centres[d];
+    const Vec2 x = assembly.centres[d] - corner_;
     Vec2 reach;
     for (const auto& edge : graph_.of(d)) {
-      const Vec2 y = assembly.centres[edge.other];
+      const Vec2 y = assembly.centres[edge.other] - corner_;
       reach.x = std::max(reach.x, std::abs(y.x - x.x));
       reach.y = std::max(reach.y, std::abs(y.y - x.y));
     }
@@ -133,11 +151,10 @@ class Dissection {
     division = {part.begin, part.end, {-1, -1}};
     if (part.size() <= std::max(1, options_.leaf_size)) return;
     const Cut cut = best_cut(part, scratch);
-    const auto is_low = [&](const Item& it) { return it.at[cut.axis] < cut.place; };
-    for (const std::int32_t disc : cut.separator) set_label(disc, separated);
+    for (std::size_t k = 0; k < cut.strip.size(); ++k) set_label(cut.strip[k], decided(cut.sides[k]));
 
     std::array<std::int32_t, 3> counts{};  // low side, high side, separator
-    for (std::int32_t k = part.begin; k < part.end; ++k) ++counts[side_of(items_[k], is_low(items_[k]))];
+    for (std::int32_t k = part.begin; k < part.end; ++k) ++counts[side_of(items_[k], cut)];
     if (counts[0] == part.size() || counts[1] == part.size() || counts[2] == part.size())
       return;  // discs coincide
     const Part low{part.begin, part.begin + counts[0], part.label + 1};
@@ -146,7 +163,7 @@ class Dissection {
     scratch.items.assign(items_.begin() + part.begin, items_.begin() + part.end);
     std::array<std::int32_t, 3> next{low.begin, high.begin, high.end};
     for (const Item& it : scratch.items) {
-      const int side = side_of(it, is_low(it));
+      const int side = side_of(it, cut);
       items_[next[side]++] = it;
       if (side < 2) set_label(it.disc, side == 0 ? low.label : high.label);
     }
@@ -164,7 +181,19 @@ class Dissection {
     }
   }
 
-  int side_of(const Item& it, bool low) { return label_of(it.disc) == separated ? 2 : low ? 0 : 1; }
+  /// 0: low, 1: high, 2: separator.
+  int side_of(const Item& it, const Cut& cut) {
+    switch (label_of(it.disc)) {
+      case decided_low:
+        return 0;
+      case decided_high:
+        return 1;
+      case separated:
+        return 2;
+      default:
+        return it.at[cut.axis] < cut.place ? 0 : 1;
+    }
+  }
 
   Cut best_cut(const Part& part, Scratch& scratch) {
     std::array<float, 2> lowest = items_[part.begin].at, highest = lowest;
@@ -181,42 +210,88 @@ class Dissection {
     constexpr float alike = 0.75F;
     if (std::min(width, height) > alike * std::max(width, height)) {
       Cut other = median_cut(part, 1 - longer, scratch);
-      if (other.separator.size() < cut.separator.size()) cut = std::move(other);
+      if (other.separator_size < cut.separator_size) cut = std::move(other);
     }
     return cut;
   }
 
-  /// A cut across `axis` at the median coordinate, or above it where nothing lies below, and its smallest
-  /// separator.
+  /// The smallest separator in a strip about the median coordinate, or, in a small part, along the median
+  /// itself.
   Cut median_cut(const Part& part, int axis, Scratch& scratch) {
     auto& x = scratch.coordinates;
     x.clear();
     for (std::int32_t k = part.begin; k < part.end; ++k) x.push_back(items_[k].at[axis]);
     const auto middle = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
     std::nth_element(x.begin(), middle, x.end());
+    if (part.size() >= options_.strip_from) {
+      const double n = part.size();
+      const auto half_strip = static_cast<std::ptrdiff_t>(
+          std::min(options_.strip_layers * std::sqrt(n), options_.strip_share * n));
+      std::nth_element(x.begin(), middle - half_strip, middle);
+      std::nth_element(middle, middle + half_strip, x.end());
+      const float lowest = *std::min_element(x.begin(), middle - half_strip + 1);
+      if (*(middle - half_strip) > lowest) {
+        return cut_in_strip(part, axis, *(middle - half_strip), *(middle + half_strip), scratch);
+      }
+    }
     float place = *middle;
-    if (*std::min_element(x.begin(), middle + 1) == place) {
+    if (*std::min_element(x.begin(), middle + 1) == place) {  // nothing lies below
       float above = std::numeric_limits<float>::infinity();
       for (const float at : x) {
         if (at > place) above = std::min(above, at);
       }
       place = above;
     }
-    return {axis, place, smallest_separator(part, axis, place, scratch)};
+    return cut_in_strip(part, axis, place, place, scratch);
   }
 
-  std::vector<std::int32_t> smallest_separator(const Part& part, int axis, float place, Scratch& scratch) {
-    scratch.cover.clear();
+  /// The smallest separator made of discs between `below` and `above` and of the ends of contacts that reach
+  /// across. Where the strip has no width, those ends are all: a minimum vertex cover of the contacts that
+  /// are cut (Koenig).
+  Cut cut_in_strip(const Part& part, int axis, float below, float above, Scratch& scratch) {
+    Cut cut{axis, below, {}, {}, 0};
+    const bool line = below == above;
+    const auto take = [&](std::int32_t disc) {
+      if (strip_index_[disc] >= 0) return;
+      strip_index_[disc] = static_cast<std::int32_t>(cut.strip.size());
+      cut.strip.push_back(disc);
+    };
     for (std::int32_t k = part.begin; k < part.end; ++k) {
       const Item& it = items_[k];
-      if (it.at[axis] >= place || it.at[axis] + it.reach[axis] < place) continue;
-      for (const auto& edge : graph_.of(it.disc)) {
-        if (coordinates_[edge.other][axis] >= place && label_of(edge.other) == part.label) {
-          scratch.cover.add_edge(it.disc, edge.other);
+      const float at = it.at[axis];
+      if (at >= above) continue;
+      if (at >= below) {
+        take(it.disc);
+      } else if (at + it.reach[axis] >= above) {
+        for (const auto& edge : graph_.of(it.disc)) {
+          if (coordinates_[edge.other][axis] < above || label_of(edge.other) != part.label) continue;
+          take(it.disc);
+          take(edge.other);
         }
       }
     }
-    return scratch.cover.smallest();
+    VertexSeparator& separator = scratch.separator;
+    separator.clear(cut.strip.size());
+    for (std::size_t k = 0; k < cut.strip.size(); ++k) {
+      const auto vertex = static_cast<std::int32_t>(k);
+      const bool low = coordinates_[cut.strip[k]][axis] < below;
+      if (line) low ? separator.touch_low(vertex) : separator.touch_high(vertex);
+      for (const auto& edge : graph_.of(cut.strip[k])) {
+        if (label_of(edge.other) != part.label) continue;
+        const std::int32_t other = strip_index_[edge.other];
+        const bool other_low = coordinates_[edge.other][axis] < below;
+        if (other > vertex) {
+          if (!line || low != other_low) separator.add_edge(vertex, other);
+        } else if (other < 0 && !line) {
+          other_low ? separator.touch_low(vertex) : separator.touch_high(vertex);
+        }
+      }
+    }
+    const auto sides = separator.solve();
+    cut.sides.assign(sides.begin(), sides.end());
+    cut.separator_size = separator.size();
+    for (const std::int32_t disc : cut.strip) strip_index_[disc] = -1;
+    return cut;
   }
 
   /// Append the nodes of a division in postorder; nodes without discs are left out. The index of the node of
@@ -245,9 +320,11 @@ class Dissection {
 
   const ContactGraph& graph_;
   DissectionOptions options_;
+  Vec2 corner_;
   std::vector<Item> items_;
   std::vector<std::array<float, 2>> coordinates_;  // by disc
   std::vector<std::int32_t> label_;                // by disc
+  std::vector<std::int32_t> strip_index_;          // by disc: place in the strip of the cut at hand, or -1
   std::vector<Division> divisions_;                // by label
 };
 

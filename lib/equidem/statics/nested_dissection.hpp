@@ -27,13 +27,17 @@ struct DissectionTree {
 };
 
 struct DissectionOptions {
-  int leaf_size = 8;  ///< discs that are not divided any further, >= 1
+  int leaf_size = 8;    ///< discs that are not divided any further, >= 1
+  int strip_from = 64;  ///< discs of a part from which the separator is sought in a strip, not along a line
+  double strip_layers = 5;  ///< half the width of the strip in layers of discs, sqrt(discs of the part) each
+  double strip_share =
+      0.12;  ///< half the width of the strip at most, as a share of the discs of the part; below 1/2
 };
 
-/// Divide the discs by a straight cut across the longer side of their bounding box, near the median; the
-/// separator is a smallest set of discs that touches every contact across the cut (Koenig: a minimum vertex
-/// cover of the bipartite graph of cut contacts). Contacts through a period are contacts like others, so that
-/// a cell is cut open by itself. The result does not depend on the number of threads.
+/// Divide the discs across the longer side of their bounding box (both sides are tried where they are alike):
+/// the separator is a smallest set of discs, within a strip about the median coordinate, without which the
+/// two sides do not touch. Contacts through a period are contacts like others, so that a cell is cut open by
+/// itself. The result does not depend on the number of threads.
 DissectionTree dissect(const Assembly& assembly, const ContactGraph& graph,
                        const DissectionOptions& options = {});
 
