@@ -1,0 +1,164 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The rules of the house that a compiler does not check.
+
+    check_architecture.py FOLDER
+
+reads a source tree and prints every broken rule, one per line, as "file:line: what is wrong". Exit code 1 where there is one.
+The order of the rooms is read from lib/CMakeLists.txt.
+"""
+
+import fnmatch
+import os
+import re
+import sys
+
+LONGEST_SOURCE = 400  # lines
+
+# Third-party headers, the places that may include them (patterns of paths), and in how many files of lib/equidem at most.
+PARTS = [
+    ("fmt/*", ["lib/equidem/core/text.hpp"], 1),
+    ("CGAL/*", ["lib/equidem/assembly/*"], 1),
+    ("nlohmann/*", ["lib/equidem/assembly/*", "lib/equidem/output/*", "tests/*"], 2),
+    ("toml++/*", ["lib/equidem/casefile/*"], 1),
+    ("cholmod.h", ["lib/equidem/statics/*", "tools/bench/*"], 1),
+    ("umfpack.h", ["lib/equidem/statics/*", "tools/bench/*"], 1),
+    ("cblas.h", ["lib/equidem/statics/*"], 1),
+    ("lapacke.h", ["lib/equidem/statics/*"], 1),
+    ("cairo*", ["lib/equidem/output/*"], 1),
+    ("metis.h", ["tools/bench/*"], 0),
+    ("benchmark/*", ["tools/bench/*"], 0),
+    ("CLI/*", ["tools/*"], 0),
+    ("catch2/*", ["tests/support/*"], 0),
+]
+# Headers of the operating system and the compiler.
+SYSTEM = ["sys/*", "unistd.h", "dlfcn.h", "fcntl.h", "poll.h", "pthread.h", "sched.h", "immintrin.h"]
+
+SOURCES = (".cpp", ".hpp", ".h", ".c", ".py")
+SCRIPTS = ("tools/prepare", "tools/test", "tools/demo", ".ci/run")
+SPDX = "SPDX-License-Identifier: GPL-3.0-or-later"
+# Places on the machine of whoever writes: absolute paths below these.
+MACHINE_PATH = re.compile(r"(?<![\w./\-~$}{])/(?:%s)\b" % "|".join(["work", "tmp", "root", "home", "mnt", "Users"]))
+INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
+
+
+def files_of(root):
+    for folder, folders, names in os.walk(root):
+        inside = os.path.relpath(folder, root)
+        folders[:] = sorted(f for f in folders if f not in (".git", "__pycache__")
+                            and not (inside == "." and f in ("build", "out", ".cache")))
+        for name in sorted(names):
+            yield os.path.normpath(os.path.join(inside, name))
+
+
+def rooms_of(root):
+    """The names listed in set(EQUIDEM_ROOMS ...), in their order."""
+    with open(os.path.join(root, "lib/CMakeLists.txt"), encoding="utf-8") as file:
+        text = re.sub(r"#.*", "", file.read())
+    found = re.search(r"set\(EQUIDEM_ROOMS\s+([^)]*)\)", text)
+    return found.group(1).split() if found else []
+
+
+def room_of(path):
+    parts = path.split(os.sep)
+    return parts[2] if len(parts) > 3 and parts[:2] == ["lib", "equidem"] else None
+
+
+def includes_of(text):
+    for number, line in enumerate(text.splitlines(), 1):
+        found = INCLUDE.match(line)
+        if found:
+            yield number, found.group(1), found.group(2)
+
+
+def check_own_include(path, header, rooms):
+    """An include of "equidem/ROOM/..." from a file of the library."""
+    here, there = room_of(path), header.split("/")[1]
+    if there not in rooms:
+        return f"'{header}' is in no room of lib/CMakeLists.txt"
+    if here is not None and rooms.index(there) > rooms.index(here):
+        return f"room '{here}' includes '{header}', but '{there}' comes after it"
+    return None
+
+
+def check_foreign_include(path, header, used):
+    """An include of <...>; `used` collects which files of the library include which part."""
+    if not re.search(r"[/.]", header) or any(fnmatch.fnmatch(header, s) for s in SYSTEM):
+        return None
+    for pattern, places, most in PARTS:
+        if fnmatch.fnmatch(header, pattern):
+            if not any(fnmatch.fnmatch(path, place) for place in places):
+                return f"<{header}> may be included only in {', '.join(places)}"
+            if path.startswith("lib/"):
+                used.setdefault(pattern, set()).add(path)
+                if len(used[pattern]) > most:
+                    return f"<{header}> is included in more than {most} file(s): {', '.join(sorted(used[pattern]))}"
+            return None
+    return f"<{header}> is no part that check_architecture.py knows; give it one place in PARTS"
+
+
+def check_source(path, text, rooms, used):
+    if path.startswith("lib/equidem/") and room_of(path) not in rooms:
+        yield 1, f"'{room_of(path) or path}' is no room of lib/CMakeLists.txt"
+        return
+    for number, kind, header in includes_of(text):
+        if header.startswith("equidem/"):
+            wrong = check_own_include(path, header, rooms)
+        elif kind == "<":
+            wrong = check_foreign_include(path, header, used)
+        elif path.startswith("lib/"):
+            wrong = f"'{header}' must be written as \"equidem/ROOM/...\""
+        else:
+            wrong = None
+        if wrong:
+            yield number, wrong
+    length = text.count("\n")
+    if length > LONGEST_SOURCE:
+        yield LONGEST_SOURCE + 1, f"the file has {length} lines, more than {LONGEST_SOURCE}: split it"
+
+
+def has_licence(path, text):
+    lines = text.splitlines()[:2]
+    return any(SPDX in line for line in (lines[:2] if lines and lines[0].startswith("#!") else lines[:1]))
+
+
+def is_source(path):
+    return path.endswith(SOURCES + (".cmake",)) or path.endswith("CMakeLists.txt") or path in SCRIPTS
+
+
+def violations(root):
+    rooms = rooms_of(root)
+    if not rooms:
+        yield "lib/CMakeLists.txt", 1, "it lists no rooms in set(EQUIDEM_ROOMS ...)"
+        return
+    used = {}
+    for path in files_of(root):
+        full = os.path.join(root, path)
+        if os.path.islink(full) or os.path.getsize(full) > 1_000_000:
+            continue
+        try:
+            with open(full, encoding="utf-8") as file:
+                text = file.read()
+        except UnicodeDecodeError:
+            continue
+        if is_source(path) and not has_licence(path, text):
+            yield path, 1, f"the first line is not '{SPDX}'"
+        if path.endswith(SOURCES):
+            for number, wrong in check_source(path, text, rooms, used):
+                yield path, number, wrong
+        for number, line in enumerate(text.splitlines(), 1):
+            if MACHINE_PATH.search(line) and not line.startswith("#!"):
+                yield path, number, f"a path of one machine: {line.strip()[:100]}"
+
+
+def main():
+    count = 0
+    for path, number, wrong in violations(sys.argv[1]):
+        print(f"{path}:{number}: {wrong}")
+        count += 1
+    print(f"{count} broken rule(s)" if count else f"rooms in order: {' '.join(rooms_of(sys.argv[1]))}")
+    return 1 if count else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

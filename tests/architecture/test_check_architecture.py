@@ -1,0 +1,101 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The architecture check can fail: small trees, each with one broken rule, and one without."""
+
+import os
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from check_architecture import SPDX, violations  # noqa: E402
+
+LISTS = f"# {SPDX}\nset(EQUIDEM_ROOMS\n  core      # first\n  contact   # needs core (and nothing else)\n  output\n)\n"
+GOOD = {
+    "lib/CMakeLists.txt": LISTS,
+    "lib/equidem/core/error.hpp": "#include <string>\n",
+    "lib/equidem/core/text.hpp": "#include <fmt/format.h>\n",
+    "lib/equidem/contact/spring.cpp": '#include "equidem/core/error.hpp"\n#include <sys/mman.h>\n',
+    "lib/equidem/output/picture.cpp": '#include "equidem/contact/spring.hpp"\n#include <cairo/cairo.h>\n',
+    "tools/equidem/main.cpp": '#include "equidem/output/picture.hpp"\n#include <CLI/CLI.hpp>\n#include "verb.hpp"\n',
+    "tests/support/catch.hpp": "#include <catch2/catch.hpp>\n",
+    "README.md": "Run tools/demo; see https://example.org/work/home.\n",
+}
+
+
+def violations_of(changes):
+    """What the check says of the good tree with some files replaced or added."""
+    with tempfile.TemporaryDirectory() as root:
+        for path, text in {**GOOD, **changes}.items():
+            full = os.path.join(root, path)
+            os.makedirs(os.path.dirname(full), exist_ok=True)
+            if path.endswith((".cpp", ".hpp")) and not text.startswith("//"):
+                text = f"// {SPDX}\n{text}"
+            with open(full, "w", encoding="utf-8") as file:
+                file.write(text)
+        return [f"{path}:{number}: {wrong}" for path, number, wrong in violations(root)]
+
+
+class TheCheck(unittest.TestCase):
+    def fails_with(self, changes, *parts):
+        found = violations_of(changes)
+        self.assertEqual(len(found), 1, found)
+        for part in parts:
+            self.assertIn(part, found[0])
+
+    def test_accepts_a_tree_in_order(self):
+        self.assertEqual(violations_of({}), [])
+
+    def test_rejects_a_backward_include(self):
+        self.fails_with({"lib/equidem/core/error.cpp": '#include "equidem/contact/spring.hpp"\n'},
+                        "lib/equidem/core/error.cpp:2", "'contact' comes after it")
+
+    def test_rejects_output_included_from_elsewhere(self):
+        self.fails_with({"lib/equidem/contact/law.hpp": '#  include "equidem/output/picture.hpp"\n'},
+                        "room 'contact' includes 'equidem/output/picture.hpp'")
+
+    def test_rejects_an_include_of_a_room_in_angle_brackets(self):
+        self.fails_with({"lib/equidem/core/error.cpp": "#include <equidem/contact/spring.hpp>\n"},
+                        "'contact' comes after it")
+
+    def test_rejects_a_folder_that_is_no_room(self):
+        self.fails_with({"lib/equidem/extra/a.cpp": "\n"}, "'extra' is no room")
+
+    def test_rejects_an_include_of_no_room(self):
+        self.fails_with({"tools/equidem/run.cpp": '#include "equidem/extra/a.hpp"\n'}, "in no room")
+
+    def test_rejects_an_include_that_hides_its_room(self):
+        self.fails_with({"lib/equidem/core/error.cpp": '#include "../contact/spring.hpp"\n'}, "must be written as")
+
+    def test_rejects_a_part_outside_its_place(self):
+        self.fails_with({"lib/equidem/contact/law.cpp": "#include <fmt/format.h>\n"},
+                        "<fmt/format.h> may be included only in lib/equidem/core/text.hpp")
+        self.fails_with({"tests/core/test_a.cpp": "#include <catch2/catch.hpp>\n"}, "tests/support/")
+        self.fails_with({"lib/equidem/core/error.cpp": "#include <CGAL/Kernel.h>\n"}, "lib/equidem/assembly/")
+
+    def test_rejects_a_part_in_a_second_file(self):
+        self.fails_with({"lib/equidem/output/canvas.cpp": "#include <cairo/cairo-svg.h>\n"},
+                        "more than 1 file(s)", "canvas.cpp", "picture.cpp")
+
+    def test_rejects_an_unknown_part(self):
+        self.fails_with({"lib/equidem/contact/law.cpp": "#include <boost/any.hpp>\n"}, "is no part")
+
+    def test_rejects_a_file_without_its_licence(self):
+        self.fails_with({"lib/equidem/core/error.hpp": "// A comment.\n"}, "SPDX")
+        self.fails_with({"cmake/more.cmake": "set(a b)\n"}, "SPDX")
+        self.fails_with({"tools/demo": "#!/bin/bash\nset -e\n"}, "SPDX")
+
+    def test_rejects_a_file_that_is_too_long(self):
+        self.fails_with({"lib/equidem/core/error.hpp": "\n" * 400}, "has 401 lines")
+        self.assertEqual(violations_of({"lib/equidem/core/error.hpp": "\n" * 399}), [])
+
+    def test_rejects_paths_of_one_machine(self):
+        for place in ("work/main", "tmp/x", "root", "home/me"):
+            self.fails_with({"README.md": f"Look into /{place}.\n"}, "README.md:1: a path of one machine")
+
+    def test_rejects_a_build_file_without_rooms(self):
+        self.fails_with({"lib/CMakeLists.txt": f"# {SPDX}\n# set(EQUIDEM_ROOMS core)\n"}, "lists no rooms")
+
+
+if __name__ == "__main__":
+    unittest.main()
