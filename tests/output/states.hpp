@@ -12,6 +12,7 @@
 
 #include <unistd.h>
 
+#include "equidem/core/text.hpp"
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/output/state.hpp"
@@ -77,10 +78,9 @@ class TemporaryFolder {
 /// Run a script of this folder with Python; its complaints appear in the log of the test. \return its exit
 /// code
 inline int run_python(const std::string& script, const std::vector<std::string>& arguments) {
-  std::string command =
-      std::string("'") + EQUIDEM_PYTHON + "' '" + EQUIDEM_SOURCE_DIR + "/tests/output/" + script + "'";
-  for (const std::string& argument : arguments) command += " '" + argument + "'";
-  const int status = std::system((command + " 1>&2").c_str());
+  std::string command = format("'{}' '{}/tests/output/{}'", EQUIDEM_PYTHON, EQUIDEM_SOURCE_DIR, script);
+  for (const std::string& argument : arguments) command += format(" '{}'", argument);
+  const int status = std::system(format("{} 1>&2", command).c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 

@@ -19,7 +19,7 @@ void hold(DegreesOfFreedom& unknowns, std::int32_t disc, int k, double value, co
     bad_input(format("the support of '{}' prescribes {} of disc {} a second time", group, names[k], disc),
               "another support gives it a different value", "Prescribe each component of a disc once");
   }
-  unknowns.held[component] = 1;
+  unknowns.held[component] = DegreesOfFreedom::supported;
   unknowns.prescribed[component] = value;
 }
 
@@ -67,7 +67,7 @@ void hold_inert_rotations(const Assembly& assembly, const ContactSprings& spring
   for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
     std::uint8_t& held = unknowns.held[3 * disc + 2];
     if (resisted[disc] != 0 || held != 0) continue;
-    held = 1;
+    held = DegreesOfFreedom::inert;
     ++unknowns.inert_rotations;
   }
 }

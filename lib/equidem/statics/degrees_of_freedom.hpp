@@ -20,8 +20,9 @@ namespace equidem {
 struct DegreesOfFreedom {
   int per_disc = 2;           ///< 2: (u_x, u_y); 3: (u_x, u_y, a theta)
   double rotation_scale = 1;  ///< a, m: the mean radius
-  std::vector<std::uint8_t>
-      held;  ///< per component (disc * per_disc + k): 1 where prescribed or without stiffness
+  /// Why a component is no unknown: `supported`, its motion is prescribed; `inert`, no contact resists it.
+  static constexpr std::uint8_t free = 0, supported = 1, inert = 2;
+  std::vector<std::uint8_t> held;  ///< per component (disc * per_disc + k): one of the above
   std::vector<double> prescribed;  ///< m, per component: the value where held, else 0
   std::int64_t unknowns = 0;
   std::int64_t free_rotations = 0;  ///< unknowns that are rotations

@@ -66,20 +66,15 @@ std::vector<double> assemble_loads(const Assembly& assembly, const DegreesOfFree
   return f;
 }
 
-/// A load on a component that no contact resists and no support holds could not be balanced.
-void check_inert_loads(const Assembly& assembly, const DegreesOfFreedom& unknowns, const ContactGraph& graph,
-                       const ContactSprings& springs, std::span<const double> f) {
+/// A moment on a disc that no contact keeps from turning, and no support either, could not be balanced.
+void check_inert_loads(const Assembly& assembly, const DegreesOfFreedom& unknowns,
+                       std::span<const double> f) {
   if (unknowns.per_disc != 3 || unknowns.inert_rotations == 0) return;
   for (std::size_t d = 0; d < assembly.size(); ++d) {
-    if (f[3 * d + 2] == 0 || unknowns.held[3 * d + 2] == 0) continue;
-    const auto edges = graph.of(d);
-    const bool inert =
-        std::none_of(edges.begin(), edges.end(), [&](const auto& e) { return springs[e.contact].kT != 0; });
-    if (inert) {
-      bad_input(format("a moment acts on disc {}", d),
-                "none of its contacts has a tangential spring to resist it",
-                "Remove the moment or give a contact of the disc kT != 0");
-    }
+    if (f[3 * d + 2] == 0 || unknowns.held[3 * d + 2] != DegreesOfFreedom::inert) continue;
+    bad_input(format("a moment acts on disc {}", d),
+              "none of its contacts has a tangential spring and a lever arm to resist it",
+              "Remove the moment, hold the rotation of the disc, or give a contact of it kT != 0");
   }
 }
 
@@ -149,7 +144,7 @@ Equilibrium EquilibriumSolver::Implementation::solve(const LoadCase& loads) cons
   result.times = times;
   result.unknowns = unknowns.unknowns;
   const std::vector<double> f = assemble_loads(assembly, unknowns, loads);
-  check_inert_loads(assembly, unknowns, graph, springs, f);
+  check_inert_loads(assembly, unknowns, f);
   PreciseMotion motion(f.size());
   for (std::size_t k = 0; k < f.size(); ++k) motion.high[k] = unknowns.prescribed[k];
   result.contact_forces.resize(assembly.contacts.size());
@@ -186,17 +181,13 @@ void EquilibriumSolver::Implementation::refine(std::span<const double> f, Precis
     for (std::size_t k = 0; k < f.size(); ++k) {
       if (unknowns.held[k] != 0) residual[k] = 0;
     }
-    PreciseMotion previous = pass > 0 ? motion : PreciseMotion(0);
+    const PreciseMotion previous = motion;
     motion.add(residual);
-    double now = evaluate() / reference;
+    const double now = evaluate() / reference;
     result.times.add(pass == 0 ? "solve" : "refine", watch.lap());
-    if (!std::isfinite(now) || (pass > 0 && now >= before)) {  // no better: keep what was
-      if (pass > 0) {
-        motion = std::move(previous);
-        now = evaluate() / reference;
-        result.relative_residual = now;
-        return;
-      }
+    if (pass > 0 && !(now < before)) {  // no better: keep what was
+      motion = previous;
+      break;
     }
     result.relative_residual = now;
     result.refinements = pass;

@@ -40,7 +40,7 @@ class Ldlt final : public Factorization {
        const IndefiniteOptions& options)
       : symbolic_(std::move(symbolic)), options_(options), fronts_(symbolic_->fronts()) {
     dense::use_one_thread_per_call();
-    for (const double entry : k.matrix.diagonal) largest_ = std::max(largest_, std::abs(entry));
+    choose_scales(k);
     factorize(k);
     write_report();
   }
@@ -51,8 +51,10 @@ class Ldlt final : public Factorization {
     for (int c = 0; c < right_hand_sides; ++c) {
       const std::span<double> column = x.subspan(c * n, n);
       permute_to_elimination(*symbolic_, column, y);
+      scale(y);
       forward(y);
       backward(y);
+      scale(y);
       permute_from_elimination(*symbolic_, y, column);
     }
   }
@@ -61,6 +63,7 @@ class Ldlt final : public Factorization {
     std::vector<double> y(unknowns(), 0.0), x(unknowns());
     if (softest_ >= 0) y[softest_] = 1;
     backward(y);
+    scale(y);
     permute_from_elimination(*symbolic_, y, x);
     return x;
   }
@@ -107,6 +110,7 @@ class Ldlt final : public Factorization {
 
     // Columns of K count rows as if nothing had been delayed: the delayed ones are skipped over.
     add_matrix_columns(*symbolic_, k, t, front.values, n);
+    scale_columns(front, own, front.candidates - own);
     make_room(front, own, front.candidates - own);
     auto& index = index_of_unknown(unknowns());
     for (std::size_t r = 0; r < n; ++r) index[front.ids[r]] = static_cast<std::int32_t>(r);
@@ -115,10 +119,48 @@ class Ldlt final : public Factorization {
       pool_.give_back(std::move(updates[child.node]));
     }
     FrontFactor& factor = fronts_[t];
-    factor.pivots = factorize_indefinite(front, options_.threshold, zero_pivot * largest_);
+    factor.pivots = factorize_indefinite(front, options_.threshold, zero_pivot);
     factor.delayed = front.candidates - factor.pivots.count;
     keep(front, factor, updates[t]);
     pool_.give_back(std::move(values));
+  }
+
+  /// Rows and columns are scaled to entries about 1, by powers of two, so that nothing is rounded: a pivot
+  /// then counts as zero by its own stiffness, however much smaller than others that is.
+  void choose_scales(const MatrixOnGraph& k) {
+    const auto b = static_cast<std::size_t>(symbolic_->block);
+    std::vector<double> largest(unknowns(), 0.0);
+    const auto raise = [&](std::size_t disc, std::size_t r, double entry) {
+      double& row = largest[symbolic_->position[disc] * b + r];
+      row = std::max(row, std::abs(entry));
+    };
+    for (std::size_t d = 0; d < symbolic_->position.size(); ++d) {
+      for (std::size_t e = 0; e < b * b; ++e) raise(d, e / b, k.matrix.diagonal_block(d)[e]);
+    }
+    for (std::size_t c = 0; c < k.assembly.contacts.size(); ++c) {
+      for (std::size_t e = 0; e < b * b; ++e) {
+        raise(k.assembly.contacts[c].i, e / b, k.matrix.coupling_block(c)[e]);
+        raise(k.assembly.contacts[c].j, e % b, k.matrix.coupling_block(c)[e]);
+      }
+    }
+    scale_.assign(unknowns(), 1.0);
+    for (std::size_t p = 0; p < scale_.size(); ++p) {
+      if (largest[p] > 0) scale_[p] = std::ldexp(1.0, -(std::ilogb(largest[p]) / 2));
+    }
+  }
+
+  void scale_columns(IndefiniteFront& front, std::size_t own, std::size_t delayed) const {
+    for (std::size_t c = 0; c < own; ++c) {
+      double* column = front.values + c * front.size;
+      const double here = scale_[front.ids[c]];
+      for (std::size_t r = 0; r < front.size - delayed; ++r) {
+        column[r] *= here * scale_[front.ids[r < own ? r : r + delayed]];
+      }
+    }
+  }
+
+  void scale(std::vector<double>& y) const {
+    for (std::size_t p = 0; p < y.size(); ++p) y[p] *= scale_[p];
   }
 
   /// Shift the rows of later discs, assembled right behind the own ones, past `delayed` rows.
@@ -188,7 +230,7 @@ class Ldlt final : public Factorization {
       smallest = 0;
       softest_ = f.ids[f.pivots.count];
     }
-    report_.smallest_pivot = smallest / largest_;
+    report_.smallest_pivot = smallest;
     const auto b = static_cast<std::int64_t>(symbolic_->block);
     if (softest_ >= 0) report_.smallest_component = symbolic_->tree.order[softest_ / b] * b + softest_ % b;
   }
@@ -262,12 +304,12 @@ class Ldlt final : public Factorization {
     return static_cast<double>(fronts_[t].pivots.count * fronts_[t].ids.size() + 100);
   }
 
-  /// A pivot below this share of the largest entry is what round-off leaves of nothing.
-  static constexpr double zero_pivot = 1e-14;
+  /// A pivot below this is what round-off leaves of nothing; the scaled entries are about 1.
+  static constexpr double zero_pivot = 1e-12;
 
   std::shared_ptr<const SymbolicFactor> symbolic_;
   IndefiniteOptions options_;
-  double largest_ = 0;  // entry of the diagonal blocks
+  std::vector<double> scale_;  // of each unknown, in elimination order
   std::vector<FrontFactor> fronts_;
   BufferPool pool_;            // empty but during factorization
   std::int64_t softest_ = -1;  // unknown of the smallest pivot, in elimination order

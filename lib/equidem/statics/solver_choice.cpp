@@ -2,6 +2,7 @@
 #include "equidem/statics/solver_choice.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -42,14 +43,17 @@ std::vector<DiscMotion> as_motions(const DegreesOfFreedom& unknowns, const std::
             "Hold that motion by a support, add contacts, or give the contacts tangential springs (kT > 0)");
 }
 
-/// K is singular where the softest motion that elimination met costs no more energy than its own round-off.
+constexpr double suspicious = 1e-9;  // share of a stiffness left when all others have given way
+
+/// K is singular where the softest motion that elimination met costs, or with kT < 0 yields, no more energy
+/// than its own round-off.
 void refuse_mechanism(const System& system, const Factorization& factor) {
-  constexpr double suspicious = 1e-9;  // share of a stiffness left when all others have given way
   constexpr double no_energy = 1e-21;  // over the energy of the same motions without cooperation
   if (factor.report().smallest_pivot > suspicious) return;
   const std::vector<double> softest = factor.softest_motion();
   if (softest.empty()) return;
-  if (softness(system.k.assembly, system.springs, as_motions(system.unknowns, softest)) < no_energy) {
+  if (std::abs(softness(system.k.assembly, system.springs, as_motions(system.unknowns, softest))) <
+      no_energy) {
     report_mechanism(system, factor);
   }
 }
@@ -57,6 +61,7 @@ void refuse_mechanism(const System& system, const Factorization& factor) {
 std::unique_ptr<Factorization> indefinite(const System& system) {
   auto factor = multifrontal_ldlt(system.symbolic, system.k);
   if (factor->report().zero_pivots > 0) report_mechanism(system, *factor);
+  refuse_mechanism(system, *factor);
   return factor;
 }
 
@@ -66,10 +71,15 @@ std::unique_ptr<Factorization> multifrontal(const System& system) {
     refuse_mechanism(system, *factor);
     return factor;
   }
-  // No spring is negative: a pivot that is not positive is round-off of zero, and L D L^T finds the motion.
-  auto factor = indefinite(system);
-  refuse_mechanism(system, *factor);
-  return factor;
+  return indefinite(system);  // no spring is negative: a pivot that is not positive is round-off of zero
+}
+
+/// What a library's factorization cannot tell, ours can: where it failed or met a pivot near nothing, K is
+/// factorized once more to name the mechanism, if there is one.
+std::unique_ptr<Factorization> judged(std::unique_ptr<Factorization> factor, const System& system) {
+  if (factor && factor->report().smallest_pivot > suspicious) return factor;
+  auto judge = multifrontal(system);
+  return factor ? std::move(factor) : std::move(judge);
 }
 
 std::unique_ptr<Factorization> by_cholmod(const System& system) {
@@ -77,14 +87,13 @@ std::unique_ptr<Factorization> by_cholmod(const System& system) {
     bad_input("method 'cholmod' cannot solve this case",
               "some kT is negative, and Cholesky wants a positive definite matrix", "Use method = \"auto\"");
   }
-  auto factor =
-      cholmod_cholesky(system.k, system.unknowns, CholmodOrdering::ours, system.symbolic->tree.order);
-  return factor ? std::move(factor) : multifrontal(system);  // the latter names the mechanism
+  return judged(
+      cholmod_cholesky(system.k, system.unknowns, CholmodOrdering::ours, system.symbolic->tree.order),
+      system);
 }
 
 std::unique_ptr<Factorization> by_umfpack(const System& system) {
-  auto factor = umfpack_lu(system.k, system.unknowns);
-  return factor ? std::move(factor) : multifrontal(system);
+  return judged(umfpack_lu(system.k, system.unknowns), system);
 }
 
 }  // namespace

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Stability of Abe's tension test (1996, Fig. 6) for kT < 0, by inertia, against dense algebra and against
+/// values of the generalized eigenvalue problem S_T v = lambda K_N v, r_c = -1/lambda_max, that were computed
+/// independently.
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "equidem/assembly/lattices.hpp"
+#include "equidem/homogenize/tension_test.hpp"
+#include "equidem/statics/equilibrium.hpp"
+#include "equidem/statics/internal_force.hpp"
+
+#include "support/catch.hpp"
+#include "support/dense_oracle.hpp"
+#include "support/fields.hpp"
+#include "support/sturm.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+struct Block {
+  Assembly assembly;
+  TensionSetup setup;
+
+  explicit Block(int size)
+      : assembly(hexagonal_lattice({.columns = size, .rows = size})), setup(tension_setup(assembly, {})) {}
+
+  [[nodiscard]] Equilibrium solved(double ratio) const {
+    const ContactSprings springs(SpringConstants{1e9, ratio * 1e9});
+    return solve_equilibrium(assembly, springs, setup.supports, setup.loads);
+  }
+  /// The ratio at which unstable modes appear, between one that has some and one that has none.
+  [[nodiscard]] double critical_ratio(double unstable, double stable) const {
+    while (stable - unstable > 1e-6) {
+      const double middle = 0.5 * (unstable + stable);
+      (solved(middle).unstable_modes > 0 ? unstable : stable) = middle;
+    }
+    return 0.5 * (unstable + stable);
+  }
+  /// Inertia of the dense stiffness, column by column from the contact law; held components left out.
+  [[nodiscard]] Inertia dense_inertia(double ratio) const {
+    const ContactSprings springs(SpringConstants{1, ratio});
+    const ContactGraph graph(assembly);
+    const DegreesOfFreedom unknowns =
+        number_unknowns(assembly, springs, derive_effects(springs, Rotation::free), setup.supports);
+    std::vector<std::size_t> free;
+    for (std::size_t k = 0; k < unknowns.held.size(); ++k) {
+      if (unknowns.held[k] == 0) free.push_back(k);
+    }
+    DenseMatrix k(free.size());
+    std::vector<ContactForce> forces(assembly.contacts.size());
+    std::vector<double> f(unknowns.held.size());
+    for (std::size_t c = 0; c < free.size(); ++c) {
+      PreciseMotion unit(unknowns.held.size());
+      unit.high[free[c]] = 1;
+      contact_forces_of(assembly, springs, unknowns, unit, forces);
+      internal_force(assembly, graph, unknowns, forces, f);
+      for (std::size_t r = 0; r < free.size(); ++r) k(r, c) = f[free[r]];
+    }
+    return inertia_of(k, 1e-13);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("negative_pivots_are_the_negative_eigenvalues_of_the_dense_matrix") {
+  const Block block(5);
+  std::int64_t before = 0;
+  for (const double ratio : {-0.01, -0.05, -0.1, -0.2, -0.3, -0.33, -0.34, -0.36, -0.4, -0.5, -0.7, -0.9}) {
+    const Equilibrium state = block.solved(ratio);
+    const Inertia dense = block.dense_inertia(ratio);
+    CAPTURE(ratio, dense.negative, dense.zero, state.negative_pivots, state.unstable_modes,
+            state.pivot_growth, state.relative_residual);
+    CHECK(dense.zero == 0);
+    CHECK(state.negative_pivots == dense.negative);
+    CHECK(state.unstable_modes == dense.negative - static_cast<std::int64_t>(block.assembly.size()));
+    CHECK(state.unstable_modes >= before);  // S = K_N + kT S_T only softens as kT falls
+    CHECK(state.relative_residual < 1e-12);
+    before = state.unstable_modes;
+  }
+  CHECK(before > 0);
+}
+
+TEST_CASE("a_stable_block_has_one_negative_pivot_for_each_rotation") {
+  for (const int size : {5, 6, 11, 20}) {
+    const Block block(size);
+    for (const double ratio : {-0.001, -0.01, -0.03, -0.049}) {
+      const Equilibrium state = block.solved(ratio);
+      CAPTURE(size, ratio, state.report());
+      CHECK(state.negative_pivots == static_cast<std::int64_t>(block.assembly.size()));
+      CHECK(state.unstable_modes == 0);
+    }
+  }
+}
+
+TEST_CASE("the_critical_ratio_found_by_inertia_is_that_of_the_eigenvalue_problem") {
+  CHECK(Block(5).critical_ratio(-0.36, -0.30) == Approx(-0.3360).margin(5e-5));
+  CHECK(Block(7).critical_ratio(-0.33, -0.27) == Approx(-0.2995).margin(5e-5));
+  CHECK(Block(11).critical_ratio(-0.30, -0.25) == Approx(-0.2754).margin(5e-5));
+  CHECK(Block(15).critical_ratio(-0.29, -0.25) == Approx(-0.2686).margin(5e-5));
+  CHECK(Block(19).critical_ratio(-0.28, -0.25) == Approx(-0.2658).margin(5e-5));
+}

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Independent solvers find the same state of rest.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "equidem/statics/equilibrium.hpp"
+
+#include "support/assemblies.hpp"
+#include "support/catch.hpp"
+#include "support/fields.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+Equilibrium solved(const Scene& scene, SolverMethod method) {
+  EquilibriumOptions options = scene.options;
+  options.solver.method = method;
+  return solve_equilibrium(scene.assembly(), scene.springs, scene.supports,
+                           {{.group = "a", .kind = LoadKind::per_disc, .force = {1e5, -3e4}},
+                            {.group = "b", .kind = LoadKind::per_disc, .force = {-5e4, 7e4}}},
+                           options);
+}
+
+/// Largest difference of any motion (rotations times the mean radius) over the largest motion.
+double difference(const Assembly& assembly, const Equilibrium& p, const Equilibrium& q) {
+  const double a = assembly.mean_radius();
+  double off = 0, size = 0;
+  for (std::size_t d = 0; d < p.motions.size(); ++d) {
+    off = std::max(
+        {off, norm(p.motions[d].u - q.motions[d].u), a * std::abs(p.motions[d].theta - q.motions[d].theta)});
+    size = std::max({size, norm(q.motions[d].u), a * std::abs(q.motions[d].theta)});
+  }
+  return size == 0 ? off : off / size;
+}
+
+}  // namespace
+
+TEST_CASE("all_solvers_find_the_same_state_of_rest") {
+  for (const Scene& scene : held_scenes()) {
+    const Equilibrium ours = solved(scene, SolverMethod::multifrontal),
+                      lu = solved(scene, SolverMethod::umfpack);
+    const double to_lu = difference(scene.assembly(), ours, lu);
+    CAPTURE(scene.name, ours.solver, lu.solver, to_lu);
+    CHECK(to_lu < 1e-10);
+    if (scene.springs.any_negative()) continue;
+    const Equilibrium supernodal = solved(scene, SolverMethod::cholmod);
+    const double to_cholmod = difference(scene.assembly(), ours, supernodal);
+    CAPTURE(supernodal.solver, to_cholmod);
+    CHECK(to_cholmod < 1e-10);
+    CHECK(supernodal.solver != ours.solver);
+    CHECK(supernodal.energy == Approx(ours.energy).epsilon(1e-10));
+  }
+}
