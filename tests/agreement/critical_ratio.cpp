@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Stability of Abe's tension test (1996, Fig. 6) for kT < 0, by inertia, against dense algebra and against
-/// values of the generalized eigenvalue problem S_T v = lambda K_N v, r_c = -1/lambda_max, that were computed
-/// independently.
+/// Stability of Abe's tension test (1996, Fig. 6) for kT < 0, by inertia, against dense algebra and against values of
+/// the generalized eigenvalue problem S_T v = lambda K_N v, r_c = -1/lambda_max, that were computed independently.
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -73,8 +72,8 @@ TEST_CASE("negative_pivots_are_the_negative_eigenvalues_of_the_dense_matrix") {
   for (const double ratio : {-0.01, -0.05, -0.1, -0.2, -0.3, -0.33, -0.34, -0.36, -0.4, -0.5, -0.7, -0.9}) {
     const Equilibrium state = block.solved(ratio);
     const Inertia dense = block.dense_inertia(ratio);
-    CAPTURE(ratio, dense.negative, dense.zero, state.negative_pivots, state.unstable_modes,
-            state.pivot_growth, state.relative_residual);
+    CAPTURE(ratio, dense.negative, dense.zero, state.negative_pivots, state.unstable_modes, state.pivot_growth,
+            state.relative_residual);
     CHECK(dense.zero == 0);
     CHECK(state.negative_pivots == dense.negative);
     CHECK(state.unstable_modes == dense.negative - static_cast<std::int64_t>(block.assembly.size()));

@@ -31,8 +31,7 @@ double difference(const Assembly& assembly, const Equilibrium& p, const Equilibr
   const double a = assembly.mean_radius();
   double off = 0, size = 0;
   for (std::size_t d = 0; d < p.motions.size(); ++d) {
-    off = std::max(
-        {off, norm(p.motions[d].u - q.motions[d].u), a * std::abs(p.motions[d].theta - q.motions[d].theta)});
+    off = std::max({off, norm(p.motions[d].u - q.motions[d].u), a * std::abs(p.motions[d].theta - q.motions[d].theta)});
     size = std::max({size, norm(q.motions[d].u), a * std::abs(q.motions[d].theta)});
   }
   return size == 0 ? off : off / size;
@@ -42,8 +41,7 @@ double difference(const Assembly& assembly, const Equilibrium& p, const Equilibr
 
 TEST_CASE("all_solvers_find_the_same_state_of_rest") {
   for (const Scene& scene : held_scenes()) {
-    const Equilibrium ours = solved(scene, SolverMethod::multifrontal),
-                      lu = solved(scene, SolverMethod::umfpack);
+    const Equilibrium ours = solved(scene, SolverMethod::multifrontal), lu = solved(scene, SolverMethod::umfpack);
     const double to_lu = difference(scene.assembly(), ours, lu);
     CAPTURE(scene.name, ours.solver, lu.solver, to_lu);
     CHECK(to_lu < 1e-10);

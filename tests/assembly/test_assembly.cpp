@@ -44,12 +44,10 @@ TEST_CASE("what_breaks_an_assembly_is_named") {
     const char* sentence;
   };
   const std::vector<Case> cases = {
-      {[](Assembly& a) { a = {}; },
-       "the assembly has no discs (there is nothing to solve for). Give it discs."},
+      {[](Assembly& a) { a = {}; }, "the assembly has no discs (there is nothing to solve for). Give it discs."},
       {[](Assembly& a) { a.radii.pop_back(); },
        "1 radii are given for 2 discs (there must be one for each). Give 2 radii, or none."},
-      {[](Assembly& a) { a.radii[1] = 0; },
-       "disc 1 has the radius 0 (radii must be positive and finite). Correct it."},
+      {[](Assembly& a) { a.radii[1] = 0; }, "disc 1 has the radius 0 (radii must be positive and finite). Correct it."},
       {[](Assembly& a) { a.radii[0] = -2.5; },
        "disc 0 has the radius -2.5 (radii must be positive and finite). Correct it."},
       {[](Assembly& a) { a.radii[0] = NAN; },
@@ -140,11 +138,9 @@ TEST_CASE("groups_are_found_by_name") {
   const Assembly a = pair_of_discs([](Assembly& spoilt) { spoilt.groups["empty"] = {}; });
   CHECK(group(a, "ends").discs.size() == 2);
   CHECK(group(a, "empty").discs.empty());
-  CHECK_THROWS_WITH(group(a, "end"),
-                    "the assembly has no group 'end' (its groups are empty, ends). Name one of them.");
-  CHECK_THROWS_WITH(
-      group(Assembly{}, "left"),
-      Catch::Matchers::StartsWith("the assembly has no group 'left' (it has no groups at all)"));
+  CHECK_THROWS_WITH(group(a, "end"), "the assembly has no group 'end' (its groups are empty, ends). Name one of them.");
+  CHECK_THROWS_WITH(group(Assembly{}, "left"),
+                    Catch::Matchers::StartsWith("the assembly has no group 'left' (it has no groups at all)"));
 }
 
 TEST_CASE("measures_of_an_assembly_are_means_over_its_discs") {

@@ -162,8 +162,7 @@ TEST_CASE("tiny_periodic_cells_are_those_cut_by_brute_force") {
     CHECK(oracle::pair(a.contacts[k]) == expected.neighbours[k].pair);
     CHECK(a.facet_lengths[k] == Approx(expected.neighbours[k].facet).epsilon(1e-9));
   }
-  for (std::size_t d = 0; d < a.size(); ++d)
-    CHECK(a.cell_areas[d] == Approx(expected.areas[d]).margin(1e-12));
+  for (std::size_t d = 0; d < a.size(); ++d) CHECK(a.cell_areas[d] == Approx(expected.areas[d]).margin(1e-12));
 }
 
 TEST_CASE("cells_fill_the_rectangle") {
@@ -173,12 +172,8 @@ TEST_CASE("cells_fill_the_rectangle") {
   const std::int64_t count = GENERATE(5, 100, 3000);
   const double aspect = GENERATE(1.0, 7.0);
 
-  const Assembly a = delaunay_assembly({.discs = count,
-                                        .points = process,
-                                        .disorder = 0.45,
-                                        .radii = radii,
-                                        .aspect = aspect,
-                                        .periodic = periodic});
+  const Assembly a = delaunay_assembly(
+      {.discs = count, .points = process, .disorder = 0.45, .radii = radii, .aspect = aspect, .periodic = periodic});
 
   check(a);
   const Vec2 size = extent(a);
@@ -214,8 +209,8 @@ TEST_CASE("levers_reach_from_centre_to_centre") {
   const PointProcess process = any_process();
   const bool periodic = GENERATE(true, false);
   const auto radii = GENERATE(equal_radii, unequal_radii);
-  const Assembly a = delaunay_assembly(
-      {.discs = 300, .points = process, .disorder = 0.1, .radii = radii, .periodic = periodic});
+  const Assembly a =
+      delaunay_assembly({.discs = 300, .points = process, .disorder = 0.1, .radii = radii, .periodic = periodic});
   CAPTURE(to_string(process), periodic, radii.largest);
 
   for (const Contact& c : a.contacts) {
@@ -239,8 +234,7 @@ TEST_CASE("a_periodic_cell_may_be_cut_anywhere") {
   const auto radii = GENERATE(equal_radii, unequal_radii);
   const std::int64_t count = GENERATE(2, 3, 200);
   const Vec2 by = GENERATE(Vec2{0.0131, -0.0077}, Vec2{-1.7, 2.9}, Vec2{1e-9, 0});
-  Assembly a =
-      delaunay_assembly({.discs = count, .points = PointProcess::uniform, .radii = radii, .periodic = true});
+  Assembly a = delaunay_assembly({.discs = count, .points = PointProcess::uniform, .radii = radii, .periodic = true});
 
   Assembly moved = a;
   for (Vec2& x : moved.centres) x += by;
@@ -252,8 +246,7 @@ TEST_CASE("a_periodic_cell_may_be_cut_anywhere") {
     CHECK(norm(moved.branch(moved.contacts[k])) == Approx(norm(a.branch(a.contacts[k]))).epsilon(1e-9));
     CHECK(std::abs(moved.facet_lengths[k] - a.facet_lengths[k]) < 1e-9 * a.mean_radius());
   }
-  for (std::size_t d = 0; d < a.size(); ++d)
-    CHECK(moved.cell_areas[d] == Approx(a.cell_areas[d]).epsilon(1e-9));
+  for (std::size_t d = 0; d < a.size(); ++d) CHECK(moved.cell_areas[d] == Approx(a.cell_areas[d]).epsilon(1e-9));
 
   // Images of single discs may be given too: the shifts follow them.
   moved.centres[1] += Vec2{2 * a.period->x, -a.period->y};
@@ -269,10 +262,8 @@ TEST_CASE("sides_of_a_random_assembly_are_shared_out_whole") {
   const Assembly a = delaunay_assembly({.discs = 400, .points = process, .radii = radii, .aspect = 2});
   CAPTURE(to_string(process), radii.largest);
 
-  CHECK(sum(group(a, "top").tributary_lengths) ==
-        Approx(sum(group(a, "bottom").tributary_lengths)).epsilon(1e-12));
-  CHECK(sum(group(a, "right").tributary_lengths) ==
-        Approx(sum(group(a, "left").tributary_lengths)).epsilon(1e-12));
+  CHECK(sum(group(a, "top").tributary_lengths) == Approx(sum(group(a, "bottom").tributary_lengths)).epsilon(1e-12));
+  CHECK(sum(group(a, "right").tributary_lengths) == Approx(sum(group(a, "left").tributary_lengths)).epsilon(1e-12));
   // The disc that holds a corner is the one with the least power there.
   const Vec2 size = extent(a);
   const std::vector<std::pair<const char*, Vec2>> corners = {

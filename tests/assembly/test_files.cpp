@@ -68,8 +68,7 @@ std::string file_with(const std::string& key = "", const std::string& value = ""
 
 void require_same(const Assembly& a, const Assembly& b) {
   REQUIRE(a.centres == b.centres);
-  for (std::size_t d = 0; d < a.size(); ++d)
-    CHECK(std::signbit(a.centres[d].x) == std::signbit(b.centres[d].x));
+  for (std::size_t d = 0; d < a.size(); ++d) CHECK(std::signbit(a.centres[d].x) == std::signbit(b.centres[d].x));
   REQUIRE(a.radii == b.radii);
   REQUIRE(a.period == b.period);
   REQUIRE(a.contacts.size() == b.contacts.size());
@@ -152,12 +151,11 @@ TEST_CASE("discs_touch_up_to_rounding_and_overlap_counts") {
   CHECK(contacts("[[0, 0, 1], [1.5, 0, 1]]") == 1);
   CHECK(contacts("[[0, 0, 3], [3.5, 0, 0.5], [4.5, 0, 0.5]]") == 2);
   // One disc in a narrow cell touches its own images on two sides, and those after them.
-  const Assembly narrow =
-      read_text(R"({"schema": "equidem-assembly/1", "cell": [1, 10], "discs": [[0.2, 3, 0.5]]})");
+  const Assembly narrow = read_text(R"({"schema": "equidem-assembly/1", "cell": [1, 10], "discs": [[0.2, 3, 0.5]]})");
   REQUIRE(narrow.contacts.size() == 1);
   CHECK(narrow.contacts[0].shift_x == 1);
-  CHECK(read_text(R"({"schema": "equidem-assembly/1", "cell": [1, 10], "discs": [[9.2, -3, 1.1]]})")
-            .contacts.size() == 2);
+  CHECK(read_text(R"({"schema": "equidem-assembly/1", "cell": [1, 10], "discs": [[9.2, -3, 1.1]]})").contacts.size() ==
+        2);
 }
 
 TEST_CASE("levers_springs_and_groups_are_read") {
@@ -231,10 +229,8 @@ TEST_CASE("wrong_entries_are_named") {
        "a.json: contact 0, of discs 0 and 1, has kN = 0 Pa (a normal spring must be positive and finite). "
        "Correct it "
        "or remove the contact."},
-      {"springs", "[[1, null]]",
-       "a.json: springs[0]: null stands where a number is expected. Correct the entry."},
-      {"cell", "[1]",
-       "a.json: cell: 1 number stand where 2 are expected (an entry is [Lx, Ly]). Correct the entry."},
+      {"springs", "[[1, null]]", "a.json: springs[0]: null stands where a number is expected. Correct the entry."},
+      {"cell", "[1]", "a.json: cell: 1 number stand where 2 are expected (an entry is [Lx, Ly]). Correct the entry."},
       {"cell", "[1, -1]",
        "a.json: the period is (1, -1) m (both lengths of a periodic cell must be positive and finite). "
        "Correct the "
@@ -248,8 +244,7 @@ TEST_CASE("wrong_entries_are_named") {
        "a.json: groups.pulled: there is no key 'disc' in a group (its keys are 'discs' and "
        "'tributary_lengths'). "
        "Correct or remove it."},
-      {"groups", "[]",
-       "a.json: groups: a list stands where an object of groups is expected. Correct the entry."},
+      {"groups", "[]", "a.json: groups: a list stands where an object of groups is expected. Correct the entry."},
       {"title", "7", "a.json: title: a number stands where a text is expected. Correct the entry."},
   };
   REQUIRE(refusal(file_with()) == "(accepted)");
@@ -274,8 +269,7 @@ TEST_CASE("wrong_entries_are_named") {
 }
 
 TEST_CASE("an_independent_triangulation_has_the_same_contacts_and_the_same_cells") {
-  const Assembly given =
-      read_assembly(fs::path(EQUIDEM_SOURCE_DIR) / "data/reference/perturbed_hexagonal_400.json");
+  const Assembly given = read_assembly(fs::path(EQUIDEM_SOURCE_DIR) / "data/reference/perturbed_hexagonal_400.json");
   Assembly ours = given;
 
   triangulate(ours);
@@ -303,8 +297,7 @@ TEST_CASE("a_file_cut_off_anywhere_is_refused") {
   for (std::size_t length = 0; length + 2 <= whole.size(); ++length) {
     const std::string sentence = refusal(whole.substr(0, length));
     INFO(length << ": " << sentence);
-    const bool told =
-        sentence.find("cut off") != std::string::npos || sentence.find("not JSON") != std::string::npos;
+    const bool told = sentence.find("cut off") != std::string::npos || sentence.find("not JSON") != std::string::npos;
     CHECK(told);
     CHECK(sentence.find("line ") != std::string::npos);
   }

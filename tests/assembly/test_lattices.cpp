@@ -48,8 +48,7 @@ TEST_CASE("lattice_contacts_are_the_touching_discs_each_once") {
   if (hexagonal && !periodic && columns == 1 && rows > 1) return;
   CAPTURE(hexagonal, periodic, columns, rows);
 
-  const Assembly assembly =
-      lattice(hexagonal, {.columns = columns, .rows = rows, .radius = 0.3, .periodic = periodic});
+  const Assembly assembly = lattice(hexagonal, {.columns = columns, .rows = rows, .radius = 0.3, .periodic = periodic});
 
   check(assembly);
   CHECK(named(assembly.contacts) == named(touching_discs(assembly)));
@@ -82,8 +81,7 @@ TEST_CASE("lattice_counts_follow_their_formulas") {
   CHECK(contacts(grid) == (c - 1) * r + c * (r - 1));
 
   CHECK(square_lattice({.columns = c, .rows = r, .periodic = true}).coordination_number() == 4);
-  if (r % 2 == 0)
-    CHECK(hexagonal_lattice({.columns = c, .rows = r, .periodic = true}).coordination_number() == 6);
+  if (r % 2 == 0) CHECK(hexagonal_lattice({.columns = c, .rows = r, .periodic = true}).coordination_number() == 6);
 }
 
 TEST_CASE("lattice_areas_give_the_solid_fractions_of_close_and_square_packing") {
@@ -139,19 +137,15 @@ TEST_CASE("sides_of_a_free_lattice_are_its_outer_discs") {
 TEST_CASE("lattices_refuse_what_makes_no_lattice") {
   CHECK_THROWS_WITH(hexagonal_lattice({.columns = 0}),
                     "columns = 0 (a row of a lattice has at least one disc). Ask for 1 or more.");
-  CHECK_THROWS_WITH(square_lattice({.rows = -3}),
-                    "rows = -3 (a lattice has at least one row). Ask for 1 or more.");
-  CHECK_THROWS_WITH(square_lattice({.radius = 0}),
-                    "radius = 0 m (a radius must be positive and finite). Correct it.");
+  CHECK_THROWS_WITH(square_lattice({.rows = -3}), "rows = -3 (a lattice has at least one row). Ask for 1 or more.");
+  CHECK_THROWS_WITH(square_lattice({.radius = 0}), "radius = 0 m (a radius must be positive and finite). Correct it.");
   CHECK_THROWS_WITH(square_lattice({.radius = NAN}),
                     "radius = nan m (a radius must be positive and finite). Correct it.");
-  CHECK_THROWS_WITH(
-      hexagonal_lattice({.rows = 5, .periodic = true}),
-      "rows = 5 in a periodic hexagonal lattice (rows are shifted by turns, so that only an even number "
-      "of them repeats). Ask for 4 or 6.");
-  CHECK_THROWS_WITH(
-      hexagonal_lattice({.columns = 1, .rows = 3}),
-      "columns = 1 in a free hexagonal lattice (every other row has one disc less, here none, and the "
-      "rows would not touch). Ask for 2 or more columns.");
+  CHECK_THROWS_WITH(hexagonal_lattice({.rows = 5, .periodic = true}),
+                    "rows = 5 in a periodic hexagonal lattice (rows are shifted by turns, so that only an even number "
+                    "of them repeats). Ask for 4 or 6.");
+  CHECK_THROWS_WITH(hexagonal_lattice({.columns = 1, .rows = 3}),
+                    "columns = 1 in a free hexagonal lattice (every other row has one disc less, here none, and the "
+                    "rows would not touch). Ask for 2 or more columns.");
   CHECK_THROWS_AS(square_lattice({.columns = 100000, .rows = 100000}), Error);
 }

@@ -48,8 +48,8 @@ TEST_CASE("poisson_disc_points_keep_their_distance_and_leave_no_gap") {
   CAPTURE(periodic, aspect, seed, set.points.size(), closest, widest);
   CHECK(widest < closest * 1.01);
   // Random sequential adsorption of discs ends at a coverage of 0.547 (Feder 1980); free sides are crowded.
-  const double coverage = std::acos(-1.0) / 4 * closest * closest * static_cast<double>(set.points.size()) /
-                          (set.extent.x * set.extent.y);
+  const double coverage =
+      std::acos(-1.0) / 4 * closest * closest * static_cast<double>(set.points.size()) / (set.extent.x * set.extent.y);
   CHECK(coverage == Approx(periodic ? 0.547 : 0.56).epsilon(0.03));
   CHECK(static_cast<double>(set.points.size()) == Approx(1500).epsilon(5 * 0.25 / std::sqrt(1500)));
   CHECK(set.extent.x * set.extent.y ==
@@ -61,8 +61,8 @@ TEST_CASE("perturbed_points_stay_near_their_lattice_sites") {
   const bool periodic = GENERATE(true, false);
   const double disorder = GENERATE(0.0, 0.1, 0.49);
   Random random(4);
-  const PointSet set = perturbed_hexagonal_points(
-      {.count = 1000, .spacing = 1, .aspect = 1.5, .periodic = periodic}, disorder, random);
+  const PointSet set =
+      perturbed_hexagonal_points({.count = 1000, .spacing = 1, .aspect = 1.5, .periodic = periodic}, disorder, random);
 
   const double row_distance = std::sqrt(3.0) / 2;
   const auto columns = static_cast<std::size_t>(std::lround(set.extent.x));

@@ -22,8 +22,7 @@ using namespace equidem;
 TEST_CASE("the_order_of_the_discs_does_not_change_their_cells") {
   const bool periodic = GENERATE(true, false);
   const auto radii = GENERATE(equal_radii, unequal_radii);
-  Assembly a = delaunay_assembly(
-      {.discs = 300, .points = PointProcess::uniform, .radii = radii, .periodic = periodic});
+  Assembly a = delaunay_assembly({.discs = 300, .points = PointProcess::uniform, .radii = radii, .periodic = periodic});
   triangulate(a);
   Assembly reversed = a;
   std::reverse(reversed.centres.begin(), reversed.centres.end());
@@ -91,21 +90,18 @@ TEST_CASE("points_that_make_no_triangulation_are_named") {
   a.radii.assign(4, 0.1);
 
   a.centres = {{0, 0}, {1, 0}, {0, 1}, {1, 0}};
-  CHECK_THROWS_WITH(
-      triangulate(a),
-      "discs 1 and 3 have the same centre, (1, 0) m (no direction joins them, and their cells cannot be "
-      "told apart). Move or remove one of them.");
+  CHECK_THROWS_WITH(triangulate(a),
+                    "discs 1 and 3 have the same centre, (1, 0) m (no direction joins them, and their cells cannot be "
+                    "told apart). Move or remove one of them.");
   a.centres = {{0, 0}, {1, 1}, {3, 3}, {2, 2}};
-  CHECK_THROWS_WITH(
-      triangulate(a),
-      "all 4 discs lie on the line through discs 0 and 2 (points on one line have no triangles). Move "
-      "some of them, or list the contacts.");
+  CHECK_THROWS_WITH(triangulate(a),
+                    "all 4 discs lie on the line through discs 0 and 2 (points on one line have no triangles). Move "
+                    "some of them, or list the contacts.");
   a.centres = {{0, 0}, {1, 1}};
   a.radii.resize(2);
-  CHECK_THROWS_WITH(
-      triangulate(a),
-      "2 discs cannot be triangulated (a triangulation needs three or more). Add discs, or list the "
-      "contacts.");
+  CHECK_THROWS_WITH(triangulate(a),
+                    "2 discs cannot be triangulated (a triangulation needs three or more). Add discs, or list the "
+                    "contacts.");
   a.period = Vec2{1, 1};
   CHECK_THROWS_WITH(triangulate(a), Catch::Matchers::StartsWith("discs 0 and 1 have the same centre"));
   a.centres = {{0, 0}, {0, 1e-4}};
@@ -116,8 +112,7 @@ TEST_CASE("points_that_make_no_triangulation_are_named") {
 TEST_CASE("options_out_of_range_are_refused") {
   CHECK_THROWS_WITH(delaunay_assembly({.discs = 2}),
                     Catch::Matchers::StartsWith("discs = 2 (a free triangulation needs 3"));
-  CHECK_THROWS_WITH(delaunay_assembly({.discs = 0, .periodic = true}),
-                    Catch::Matchers::StartsWith("discs = 0 ("));
+  CHECK_THROWS_WITH(delaunay_assembly({.discs = 0, .periodic = true}), Catch::Matchers::StartsWith("discs = 0 ("));
   CHECK_THROWS_WITH(delaunay_assembly({.disorder = 0.5}), Catch::Matchers::StartsWith("disorder = 0.5 ("));
   CHECK_THROWS_WITH(delaunay_assembly({.disorder = NAN}), Catch::Matchers::StartsWith("disorder = nan ("));
   CHECK_THROWS_WITH(delaunay_assembly({.radii = {.smallest = 0}}),
@@ -125,10 +120,9 @@ TEST_CASE("options_out_of_range_are_refused") {
   CHECK_THROWS_WITH(delaunay_assembly({.radii = {.smallest = 1, .largest = 0.5}}),
                     Catch::Matchers::StartsWith("the largest radius is 0.5 m"));
   CHECK_THROWS_WITH(delaunay_assembly({.aspect = -1}), Catch::Matchers::StartsWith("aspect = -1 ("));
-  CHECK_THROWS_WITH(
-      point_process_from("sobol"),
-      "there are no points of the kind 'sobol' (the kinds are poisson_disc, perturbed_hexagonal and "
-      "random). Choose one of them.");
+  CHECK_THROWS_WITH(point_process_from("sobol"),
+                    "there are no points of the kind 'sobol' (the kinds are poisson_disc, perturbed_hexagonal and "
+                    "random). Choose one of them.");
   for (const char* name : {"poisson_disc", "perturbed_hexagonal", "random"}) {
     CHECK(to_string(point_process_from(name)) == name);
   }

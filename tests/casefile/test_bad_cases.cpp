@@ -25,13 +25,13 @@ struct BadCase {
   std::vector<std::string> words;  ///< that it must hold
 };
 
-BadCase tension(const std::string& what, const std::string& by, const std::string& line,
-                const std::string& key, std::vector<std::string> words) {
+BadCase tension(const std::string& what, const std::string& by, const std::string& line, const std::string& key,
+                std::vector<std::string> words) {
   return {changed(tension_case, what, by), {}, line, key, std::move(words)};
 }
 
-BadCase loaded(const std::string& what, const std::string& by, const std::string& line,
-               const std::string& key, std::vector<std::string> words) {
+BadCase loaded(const std::string& what, const std::string& by, const std::string& line, const std::string& key,
+               std::vector<std::string> words) {
   return {changed(load_case, what, by), {}, line, key, std::move(words)};
 }
 
@@ -44,8 +44,7 @@ BadCase overridden(const std::string& text, const std::string& assignment, const
 std::string place_of(const std::string& text, const std::string& line) {
   const auto at = text.find(line);
   if (at == std::string::npos) throw std::logic_error("no line begins with '" + line + "'");
-  return "a.toml:" +
-         std::to_string(1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+  return "a.toml:" + std::to_string(1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
 }
 
 std::vector<BadCase> bad_cases() {
@@ -53,22 +52,19 @@ std::vector<BadCase> bad_cases() {
       // schema
       tension("schema = \"equidem/1\"\n", "", "title  = \"Abe 1996, Fig. 6\"", "schema",
               {"missing key", "schema = \"equidem/1\""}),
-      tension("equidem/1", "equidem/2", "schema = \"equidem/2\"", "schema",
-              {"\"equidem/2\"", "\"equidem/1\""}),
+      tension("equidem/1", "equidem/2", "schema = \"equidem/2\"", "schema", {"\"equidem/2\"", "\"equidem/1\""}),
       tension("\"equidem/1\"", "1", "schema = 1", "schema", {"1 is not the schema"}),
       // TOML itself
       tension("[springs]", "[springs", "[springs", "", {"not TOML"}),
       tension("rows    = 21", "rows    = 21\nrows = 3", "rows = 3", "", {"not TOML", "rows"}),
       tension("rows    = 21", "rows    = ", "rows    =", "", {"not TOML"}),
       // unknown keys and tables
-      tension("columns", "colums", "colums = 21", "assembly.colums",
-              {"unknown key", "Perhaps you mean 'columns'"}),
+      tension("columns", "colums", "colums = 21", "assembly.colums", {"unknown key", "Perhaps you mean 'columns'"}),
       tension("kN", "KN_", "KN_ = 1.0e9", "springs.KN_", {"unknown key", "'kN'"}),
       tension("[springs]", "[sprigns]", "[sprigns]", "sprigns", {"unknown table", "'springs'"}),
       tension("rows    = 21", "rows    = 21\ntitle = \"x\"", "title = \"x\"", "assembly.title",
               {"unknown key", "at the top of the file"}),
-      tension("rows    = 21", "rows    = 21\nkT = 1.0", "kT = 1.0", "assembly.kT",
-              {"It belongs to [springs]"}),
+      tension("rows    = 21", "rows    = 21\nkT = 1.0", "kT = 1.0", "assembly.kT", {"It belongs to [springs]"}),
       tension("rows    = 21", "rows    = 21\nfluffiness = 1.0", "fluffiness = 1.0", "assembly.fluffiness",
               {"Known here: kind, columns"}),
       tension("rows    = 21", "rows    = 21\nseed = 3", "seed = 3", "assembly.seed",
@@ -95,17 +91,15 @@ std::vector<BadCase> bad_cases() {
              {"size of the discs is missing"}),
       loaded("name = \"some\"\n", "", "[[group]]", "group.name", {"missing key", "[[group]]"}),
       // wrong type
-      tension("= 21", "= \"21\"", "columns = \"21\"", "assembly.columns",
-              {"\"21\" is text", "Leave out the quotes"}),
-      tension("= 21", "= 21.0", "columns = 21.0", "assembly.columns",
-              {"21.0 is a number", "Write columns = 21"}),
+      tension("= 21", "= \"21\"", "columns = \"21\"", "assembly.columns", {"\"21\" is text", "Leave out the quotes"}),
+      tension("= 21", "= 21.0", "columns = 21.0", "assembly.columns", {"21.0 is a number", "Write columns = 21"}),
       tension("= 21", "= 21.5", "columns = 21.5", "assembly.columns", {"21.5", "whole number"}),
       tension("1.0e9", "true", "kN = true", "springs.kN", {"true is true or false", "a number in Pa"}),
       tension("1.0e9", "[1.0]", "kN = [1.0]", "springs.kN", {"[1.0] is an array"}),
       tension("1.0e9", "1979-05-27", "kN = 1979-05-27", "springs.kN", {"a date"}),
       tension("\"hexagonal\"", "3", "kind    = 3", "assembly.kind", {"3 is a whole number", "\"square\""}),
-      tension("[springs]\nkN = 1.0e9\nkT = 0.5e9\n", "[[springs]]\nkN = 1.0e9\nkT = 0.5e9\n", "[[springs]]",
-              "springs", {"[[springs]]", "Write [springs]"}),
+      tension("[springs]\nkN = 1.0e9\nkT = 0.5e9\n", "[[springs]]\nkN = 1.0e9\nkT = 0.5e9\n", "[[springs]]", "springs",
+              {"[[springs]]", "Write [springs]"}),
       loaded("[[load]]", "[load]", "[[load]]", "", {"not TOML"}),
       {changed(tension_case, "title  =", "load = 3\ntitle  ="), {}, "load = 3", "load", {"Write [[load]]"}},
       {changed(tension_case, "title  =", "springs = 3\ntitle  ="), {}, "[springs]", "", {"not TOML"}},
@@ -116,8 +110,7 @@ std::vector<BadCase> bad_cases() {
       loaded("[0, 1, 2]", "[0, 1.5]", "discs = [0, 1.5]", "group.discs", {"1.5"}),
       loaded("[0, 1, 2]", "[0, -1]", "discs = [0, -1]", "group.discs", {"-1 is no number of a disc"}),
       loaded("[0, 1, 2]", "[]", "discs = []", "group.discs", {"empty"}),
-      loaded("\"4 GB\"", "\"4 parsecs\"", "memory_limit = \"4 parsecs\"", "solver.memory_limit",
-             {"\"4 GB\""}),
+      loaded("\"4 GB\"", "\"4 parsecs\"", "memory_limit = \"4 parsecs\"", "solver.memory_limit", {"\"4 GB\""}),
       // numbers out of range
       tension("= 21", "= 0", "columns = 0", "assembly.columns", {"0 is out of range"}),
       tension("= 21", "= -3", "columns = -3", "assembly.columns", {"-3 is out of range"}),
@@ -134,8 +127,7 @@ std::vector<BadCase> bad_cases() {
       loaded("disorder = 0.2", "disorder = 0.5", "disorder = 0.5", "assembly.disorder", {"< 0.5"}),
       loaded("seed = 7", "seed = -7", "seed = -7", "assembly.seed", {"-7 is out of range"}),
       loaded("discs = 50", "discs = 2", "discs = 2", "assembly.discs", {"2 is out of range"}),
-      loaded("smallest = 0.004", "smallest = 0.04", "[assembly.radii]", "assembly.radii",
-             {"larger than", "Exchange"}),
+      loaded("smallest = 0.004", "smallest = 0.04", "[assembly.radii]", "assembly.radii", {"larger than", "Exchange"}),
       loaded("poisson_ratio = 0.2", "poisson_ratio = 0.7", "[material]", "material", {"0.7"}),
       loaded("max_refinements = 2", "max_refinements = -1", "max_refinements = -1", "solver.max_refinements",
              {"out of range"}),
@@ -147,8 +139,7 @@ std::vector<BadCase> bad_cases() {
               {"Perhaps you mean \"hexagonal\""}),
       tension("\"hexagonal\"", "\"packing\"", "kind    = \"packing\"", "assembly.kind",
               {"\"packing\" arrives with a later version"}),
-      tension("\"centre\"", "\"center\"", "gauge  = \"center\"", "test.gauge",
-              {"Perhaps you mean \"centre\""}),
+      tension("\"centre\"", "\"center\"", "gauge  = \"center\"", "test.gauge", {"Perhaps you mean \"centre\""}),
       loaded("\"umfpack\"", "\"magic\"", "method = \"magic\"", "solver.method",
              {"\"magic\" is no known method", "\"cholmod\""}),
       // contradictions
@@ -167,8 +158,7 @@ std::vector<BadCase> bad_cases() {
       loaded("force = [1.0, -2.0]\n", "", "[[load]]", "load", {"neither force nor moment"}),
       loaded("\"total\"\nforce = [1.0, -2.0]", "\"traction\"\nmoment = 1.0", "moment = 1.0", "load.moment",
              {"a traction has no moment"}),
-      loaded("name = \"inside\"", "name = \"some\"", "name = \"some\"\nbox", "group.name",
-             {"two groups 'some'"}),
+      loaded("name = \"inside\"", "name = \"some\"", "name = \"some\"\nbox", "group.name", {"two groups 'some'"}),
       loaded("case = \"a\"", "case = \"../a\"", "case = \"../a\"", "load.case", {"cannot name a load case"}),
       // overrides
       overridden(tension_case, "springs.kTT=1", "springs.kTT", {"unknown key", "'kT'"}),

@@ -167,8 +167,7 @@ TEST_CASE("a_springs_file_stands_in_for_the_springs") {
   };
 
   write_file(folder / "springs.toml",
-             "schema = \"equidem-springs/1\"\n[springs]\nkN = 2.0e9\nkT = 1.0e9\nweighting = \"voronoi\"\n",
-             true);
+             "schema = \"equidem-springs/1\"\n[springs]\nkN = 2.0e9\nkT = 1.0e9\nweighting = \"voronoi\"\n", true);
   const Case c = parse_case(with_file, "a.toml", folder, {});
   REQUIRE(c.springs);
   CHECK(c.springs->kN == 2e9);
@@ -179,8 +178,7 @@ TEST_CASE("a_springs_file_stands_in_for_the_springs") {
   CHECK(repeated.springs->kT == c.springs->kT);
   CHECK(repeated.weighting == c.weighting);
 
-  write_file(folder / "springs.toml", "schema = \"equidem-springs/1\"\n[springs]\nkN = 2.0e9\nkTT = 1.0e9\n",
-             true);
+  write_file(folder / "springs.toml", "schema = \"equidem-springs/1\"\n[springs]\nkN = 2.0e9\nkTT = 1.0e9\n", true);
   CHECK(sentence().find("springs.toml:4: springs.kTT: unknown key") != std::string::npos);
   fs::remove_all(folder);
   CHECK(sentence().find("a.toml:2: springs: cannot read") != std::string::npos);

@@ -33,8 +33,8 @@ Assembly pairs_of_discs(const std::vector<double>& angles) {
   return assembly;
 }
 
-/// Angles whose density is (1 + a cos 2(t - t0) + b cos 4(t - t1))/(2 pi) exactly: the quantiles, not random
-/// draws, so that the mean over n of them is the integral to 1/n².
+/// Angles whose density is (1 + a cos 2(t - t0) + b cos 4(t - t1))/(2 pi) exactly: the quantiles, not random draws,
+/// so that the mean over n of them is the integral to 1/n².
 std::vector<double> anisotropic_angles(int count, double a, double t0, double b, double t1) {
   const auto cumulative = [&](double t) {
     return (t + a / 2 * (std::sin(2 * (t - t0)) + std::sin(2 * t0)) +
@@ -55,8 +55,7 @@ std::vector<double> anisotropic_angles(int count, double a, double t0, double b,
   return angles;
 }
 
-/// sum k n_i n_j / sum k and sum k n_i n_j n_k n_l / sum k in their deviations from isotropy: the four
-/// harmonics.
+/// sum k n_i n_j / sum k and sum k n_i n_j n_k n_l / sum k in their deviations from isotropy: the four harmonics.
 double anisotropy(const Assembly& assembly, const ContactSprings& springs) {
   double sum = 0;
   double harmonics[4] = {};
@@ -93,10 +92,8 @@ bool contains(const std::string& text, const std::string& part) {
 
 TEST_CASE("contact_density_weighting_makes_fabric_isotropic_to_fourth_order") {
   const Assembly assembly = pairs_of_discs(anisotropic_angles(2000, 0.4, 0.3, 0.3, 1.1));
-  const double unweighted =
-      anisotropy(assembly, contact_springs(assembly, {1, 0.5}, SpringWeighting::uniform));
-  const double weighted =
-      anisotropy(assembly, contact_springs(assembly, {1, 0.5}, SpringWeighting::contact_density));
+  const double unweighted = anisotropy(assembly, contact_springs(assembly, {1, 0.5}, SpringWeighting::uniform));
+  const double weighted = anisotropy(assembly, contact_springs(assembly, {1, 0.5}, SpringWeighting::contact_density));
   CAPTURE(unweighted, weighted);
   CHECK(unweighted > 0.1);
   CHECK(weighted < 1e-5);
@@ -110,8 +107,7 @@ TEST_CASE("contact_density_of_random_angles_is_isotropic_within_their_scatter") 
   std::vector<double> drawn(count);
   for (double& angle : drawn) angle = angles[random.below(angles.size())];
   const Assembly assembly = pairs_of_discs(drawn);
-  const double weighted =
-      anisotropy(assembly, contact_springs(assembly, {1, 0}, SpringWeighting::contact_density));
+  const double weighted = anisotropy(assembly, contact_springs(assembly, {1, 0}, SpringWeighting::contact_density));
   CAPTURE(weighted);
   CHECK(weighted < 3 / std::sqrt(count));
 }
@@ -206,8 +202,7 @@ TEST_CASE("bad_springs_are_refused_with_the_contact_and_the_value") {
     CHECK(contains(message, "contact 1 (discs 2 and 3) is kN = 0"));
     assembly.contact_kN = {1, 1, 1};
     assembly.contact_kT = {1, 1, infinity};
-    CHECK(contains(message_of(assembly, {1, 1}, SpringWeighting::uniform),
-                   "contact 2 (discs 4 and 5) is kT = inf"));
+    CHECK(contains(message_of(assembly, {1, 1}, SpringWeighting::uniform), "contact 2 (discs 4 and 5) is kT = inf"));
   }
   SECTION("voronoi without cells") {
     CHECK(contains(message_of(assembly, {1, 1}, SpringWeighting::voronoi), "has no cell edges"));

@@ -17,10 +17,10 @@ TEST_CASE("rotations_are_unknowns_only_where_springs_can_turn_a_disc") {
     Rotation rotation;
     int unknowns;
   };
-  const auto c = GENERATE(Case{0.0, Rotation::from_scene, 2}, Case{0.0, Rotation::free, 2},
-                          Case{0.0, Rotation::restrained, 2}, Case{0.5, Rotation::from_scene, 3},
-                          Case{0.5, Rotation::free, 3}, Case{0.5, Rotation::restrained, 2},
-                          Case{-0.2, Rotation::from_scene, 3}, Case{-0.2, Rotation::restrained, 2});
+  const auto c =
+      GENERATE(Case{0.0, Rotation::from_scene, 2}, Case{0.0, Rotation::free, 2}, Case{0.0, Rotation::restrained, 2},
+               Case{0.5, Rotation::from_scene, 3}, Case{0.5, Rotation::free, 3}, Case{0.5, Rotation::restrained, 2},
+               Case{-0.2, Rotation::from_scene, 3}, Case{-0.2, Rotation::restrained, 2});
   const Effects effects = derive_effects(ContactSprings({1.0, c.kT}), c.rotation);
   CAPTURE(c.kT, static_cast<int>(c.rotation), effects.report());
   CHECK(effects.unknowns_per_disc() == c.unknowns);

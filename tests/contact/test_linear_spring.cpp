@@ -110,9 +110,7 @@ TEST_CASE("tangent_is_the_derivative_of_force_and_the_second_derivative_of_energ
       for (std::size_t p = 0; p < 6; ++p) {
         CAPTURE(p, q);
         CHECK(K[p][q] == Approx((ahead[p] - behind[p]) / (2 * h)).margin(1e-12));
-        const auto W = [&](double dp, double dq) {
-          return energy(scene, moved(moved(scene.motion, p, dp), q, dq));
-        };
+        const auto W = [&](double dp, double dq) { return energy(scene, moved(moved(scene.motion, p, dp), q, dq)); };
         CHECK(K[p][q] == Approx((W(h, h) - W(h, -h) - W(-h, h) + W(-h, -h)) / (4 * h * h)).margin(1e-11));
       }
     }
@@ -140,9 +138,7 @@ TEST_CASE("rigid_motions_cost_no_energy") {
     const Vec2 translation{random.uniform(-1, 1), random.uniform(-1, 1)};
     const Vec2 pole{random.uniform(-3, 3), random.uniform(-3, 3)};
     const double theta = random.uniform(-1, 1);
-    const auto rigid = [&](Vec2 x) {
-      return DiscMotion{translation + theta * perpendicular(x - pole), theta};
-    };
+    const auto rigid = [&](Vec2 x) { return DiscMotion{translation + theta * perpendicular(x - pole), theta}; };
     const ContactDeformation d = deformation(scene.frame, rigid(i), rigid(j));
     CAPTURE(d.normal, d.tangential, theta, pole.x, pole.y);
     CHECK(std::abs(d.normal) < 1e-14);
@@ -169,8 +165,8 @@ TEST_CASE("reaction_equals_action_and_moments_balance") {
     const Vec2 i{0.3, -2};
     const Vec2 j = i + (scene.frame.lever_i + scene.frame.lever_j) * scene.frame.normal;
     const double a = scene.rotation_scale;
-    const double about_origin = cross(i, {internal[0], internal[1]}) + cross(j, {internal[3], internal[4]}) +
-                                a * (internal[2] + internal[5]);
+    const double about_origin =
+        cross(i, {internal[0], internal[1]}) + cross(j, {internal[3], internal[4]}) + a * (internal[2] + internal[5]);
     CHECK(std::abs(about_origin) < 1e-13);
   }
 }

@@ -35,9 +35,7 @@ class TemporaryFolder {
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   fs::path operator/(const std::string& name) const { return path_ / name; }
   [[nodiscard]] const fs::path& path() const { return path_; }
-  [[nodiscard]] long entries() const {
-    return std::distance(fs::directory_iterator(path_), fs::directory_iterator());
-  }
+  [[nodiscard]] long entries() const { return std::distance(fs::directory_iterator(path_), fs::directory_iterator()); }
 
  private:
   fs::path path_;

@@ -15,8 +15,8 @@ using namespace equidem;
 
 namespace {
 
-/// xoshiro256++ and splitmix64 written anew from their definition (Blackman & Vigna 2019; Steele, Lea & Flood
-/// 2014), in the plainest way.
+/// xoshiro256++ and splitmix64 written anew from their definition (Blackman & Vigna 2019; Steele, Lea & Flood 2014),
+/// in the plainest way.
 class Reference {
  public:
   explicit Reference(std::uint64_t seed) {

@@ -159,8 +159,7 @@ TEST_CASE("jobs_of_two_threads_of_the_user_do_not_mix") {
 TEST_CASE("fewer_than_one_thread_is_refused") {
   const int count = GENERATE(0, -3);
   const int before = thread_count();
-  CHECK_THROWS_WITH(set_thread_count(count),
-                    Catch::Contains("number of threads is " + std::to_string(count)));
+  CHECK_THROWS_WITH(set_thread_count(count), Catch::Contains("number of threads is " + std::to_string(count)));
   CHECK(thread_count() == before);
   CHECK(before >= 1);
 }

@@ -23,9 +23,8 @@ using namespace equidem::test;
 
 namespace {
 
-/// Motions of an assembly whose discs of group "held" are held, under the same force on the discs of group
-/// "pulled": largest error of any component over the largest motion, against long double; the sentence where
-/// it is refused.
+/// Motions of an assembly whose discs of group "held" are held, under the same force on the discs of group "pulled":
+/// largest error of any component over the largest motion, against long double; the sentence where it is refused.
 struct Comparison {
   double error = 0;
   std::string refusal;
@@ -35,10 +34,8 @@ struct Comparison {
 Comparison compare(const Assembly& assembly, const ContactSprings& springs, Vec2 force) {
   std::vector<char> held(3 * assembly.size(), 0);
   std::vector<double> forces(3 * assembly.size(), 0.0);
-  for (const std::int32_t d : group(assembly, "held").discs)
-    held[3 * d] = held[3 * d + 1] = held[3 * d + 2] = 1;
-  for (const std::int32_t d : group(assembly, "pulled").discs)
-    forces[3 * d] = force.x, forces[3 * d + 1] = force.y;
+  for (const std::int32_t d : group(assembly, "held").discs) held[3 * d] = held[3 * d + 1] = held[3 * d + 2] = 1;
+  for (const std::int32_t d : group(assembly, "pulled").discs) forces[3 * d] = force.x, forces[3 * d + 1] = force.y;
   Comparison comparison;
   comparison.refusal =
       refusal_of([&] {
@@ -50,8 +47,7 @@ Comparison compare(const Assembly& assembly, const ContactSprings& springs, Vec2
         for (std::size_t d = 0; d < assembly.size(); ++d) {
           const long double r = assembly.radii[d];
           const long double u[3] = {exact[3 * d], exact[3 * d + 1], r * exact[3 * d + 2]};
-          const double v[3] = {state.motions[d].u.x, state.motions[d].u.y,
-                               assembly.radii[d] * state.motions[d].theta};
+          const double v[3] = {state.motions[d].u.x, state.motions[d].u.y, assembly.radii[d] * state.motions[d].theta};
           for (int k = 0; k < 3; ++k) {
             off = std::max(off, static_cast<double>(std::abs(u[k] - v[k])));
             size = std::max(size, static_cast<double>(std::abs(u[k])));
@@ -84,10 +80,10 @@ TEST_CASE("a_chain_of_2000_springs_of_all_sizes_stretches_by_the_sum_of_its_flex
     flexibility += 1 / stiffness;
   }
   const ContactSprings springs(k);
-  const Equilibrium state = solve_equilibrium(
-      chain, springs, std::vector<Support>{{.group = "first", .ux = 0.0, .uy = 0.0, .rotation = {}}},
-      {{.group = "last", .kind = LoadKind::total, .force = {1, 0.5}}},
-      {.rotation = Rotation::restrained, .solver = {}});
+  const Equilibrium state =
+      solve_equilibrium(chain, springs, std::vector<Support>{{.group = "first", .ux = 0.0, .uy = 0.0, .rotation = {}}},
+                        {{.group = "last", .kind = LoadKind::total, .force = {1, 0.5}}},
+                        {.rotation = Rotation::restrained, .solver = {}});
   double normal = 0, tangential = 0;
   for (const ContactForce& f : state.contact_forces) {
     normal = std::max(normal, std::abs(f.normal - 1));
@@ -106,9 +102,9 @@ TEST_CASE("every_section_of_a_strip_of_2_by_2000_carries_the_load_and_its_moment
   const double a = 0.005;
   const Assembly strip = hexagonal_lattice({.columns = 2000, .rows = 2, .radius = a});
   const ContactSprings springs(SpringConstants{1e9, ratio * 1e9});
-  const Equilibrium state = solve_equilibrium(
-      strip, springs, std::vector<Support>{{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = {}}},
-      {{.group = "bottom_right", .kind = LoadKind::total, .force = force}});
+  const Equilibrium state =
+      solve_equilibrium(strip, springs, std::vector<Support>{{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = {}}},
+                        {{.group = "bottom_right", .kind = LoadKind::total, .force = force}});
   const Vec2 at = strip.centres[group(strip, "bottom_right").discs[0]];
   // Cut between discs; contacts across the cut carry force and moment of the part to the right.
   double worst_force = 0, worst_moment = 0;
@@ -199,8 +195,7 @@ TEST_CASE("radii_of_1000_to_1_give_the_answer_of_long_double") {
 
 TEST_CASE("a_delaunay_assembly_of_radii_1000_to_1_is_solved_or_refused_with_a_sentence") {
   for (const std::uint64_t seed : {1, 2, 3}) {
-    Assembly random =
-        delaunay_assembly({.discs = 120, .seed = seed, .radii = {.smallest = 1e-5, .largest = 1e-2}});
+    Assembly random = delaunay_assembly({.discs = 120, .seed = seed, .radii = {.smallest = 1e-5, .largest = 1e-2}});
     random.groups["held"] = random.groups["left"];
     random.groups["pulled"] = random.groups["right"];
     const ContactSprings springs(SpringConstants{1e9, 0.5e9});
@@ -216,8 +211,7 @@ TEST_CASE("a_delaunay_assembly_of_radii_1000_to_1_is_solved_or_refused_with_a_se
 
 TEST_CASE("two_halves_joined_by_springs_of_nearly_nothing_are_right_to_the_digits_left_or_refused") {
   Assembly halves = held_block(6, 4);
-  const double middle =
-      0.5 * (halves.centres.front().x + halves.centres[group(halves, "right").discs[0]].x) + 0.002;
+  const double middle = 0.5 * (halves.centres.front().x + halves.centres[group(halves, "right").discs[0]].x) + 0.002;
   for (const double weak : {1e-4, 1e-8, 1e-10, 1e-12, 1e-14, 1e-16, 1e-18}) {
     for (const double sign : {1.0, -0.05}) {
       std::vector<SpringConstants> k;
@@ -225,8 +219,7 @@ TEST_CASE("two_halves_joined_by_springs_of_nearly_nothing_are_right_to_the_digit
       for (const Contact& c : halves.contacts) {
         const bool joint = (halves.centres[c.i].x < middle) != (halves.centres[c.j].x < middle);
         joints += joint ? 1 : 0;
-        k.push_back(joint ? SpringConstants{weak * 1e9, sign * weak * 0.5e9}
-                          : SpringConstants{1e9, sign * 0.5e9});
+        k.push_back(joint ? SpringConstants{weak * 1e9, sign * weak * 0.5e9} : SpringConstants{1e9, sign * 0.5e9});
       }
       const ContactSprings springs(k);
       const Comparison c = compare(halves, springs, {1000, 0});

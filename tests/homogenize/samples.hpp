@@ -92,8 +92,7 @@ struct Resultant {
   double moment = 0;
 };
 
-inline std::vector<Resultant> contact_resultants(const Assembly& assembly,
-                                                 const std::vector<ContactForce>& forces) {
+inline std::vector<Resultant> contact_resultants(const Assembly& assembly, const std::vector<ContactForce>& forces) {
   std::vector<Resultant> resultants(assembly.size());
   for (std::size_t c = 0; c < forces.size(); ++c) {
     const Contact& contact = assembly.contacts[c];

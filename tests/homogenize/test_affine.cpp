@@ -22,13 +22,12 @@ TEST_CASE("affine_forces_balance_on_every_disc_of_a_lattice") {
     const Tensor2 gradient = random_tensor(random);
     const double a = assembly.radii.front();
     double out_of_balance = 0, moment_free = 0, moment_held = 0;
-    for (const Resultant& r : contact_resultants(
-             assembly, affine_contact_forces(assembly, springs, gradient, mean_rotation(gradient)))) {
+    for (const Resultant& r :
+         contact_resultants(assembly, affine_contact_forces(assembly, springs, gradient, mean_rotation(gradient)))) {
       out_of_balance = std::max(out_of_balance, norm(r.force) / a);
       moment_free = std::max(moment_free, std::abs(r.moment) / (a * a));
     }
-    for (const Resultant& r :
-         contact_resultants(assembly, affine_contact_forces(assembly, springs, gradient, 0))) {
+    for (const Resultant& r : contact_resultants(assembly, affine_contact_forces(assembly, springs, gradient, 0))) {
       moment_held = std::max(moment_held, std::abs(r.moment) / (a * a));
     }
     CAPTURE(name, ratio, shown(gradient), out_of_balance, moment_free, moment_held);
@@ -36,9 +35,8 @@ TEST_CASE("affine_forces_balance_on_every_disc_of_a_lattice") {
     CHECK(moment_free < 1e-13);
     // Held discs feel z r kT 2 r omega with omega the rotation of the field.
     const double contacts_per_disc = assembly.coordination_number();
-    CHECK(moment_held == Approx(2 * contacts_per_disc * std::abs(ratio * mean_rotation(gradient)))
-                             .epsilon(1e-12)
-                             .margin(1e-13));
+    CHECK(moment_held ==
+          Approx(2 * contacts_per_disc * std::abs(ratio * mean_rotation(gradient))).epsilon(1e-12).margin(1e-13));
   }
 }
 
@@ -67,8 +65,8 @@ TEST_CASE("elastic_energy_of_an_affine_motion_is_the_work_of_its_stress") {
     const auto forces = affine_contact_forces(assembly, springs, h, 0);
     double energy = 0;
     for (std::size_t c = 0; c < forces.size(); ++c) {
-      energy += linear_spring_energy(
-          springs[c], {forces[c].normal / springs[c].kN, forces[c].tangential / springs[c].kT});
+      energy +=
+          linear_spring_energy(springs[c], {forces[c].normal / springs[c].kN, forces[c].tangential / springs[c].kT});
     }
     const Tensor2 s = macroscopic_stress(assembly, forces);
     const double work = assembly.area() / 2 * (s.xx * h.xx + s.xy * h.xy + s.yx * h.yx + s.yy * h.yy);

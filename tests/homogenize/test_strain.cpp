@@ -20,8 +20,7 @@ bool everywhere(std::size_t) {
 
 std::vector<DiscMotion> affine_motions(const Assembly& assembly, const Tensor2& gradient, Vec2 rigid) {
   std::vector<DiscMotion> motions(assembly.size());
-  for (std::size_t disc = 0; disc < motions.size(); ++disc)
-    motions[disc].u = rigid + gradient * assembly.centres[disc];
+  for (std::size_t disc = 0; disc < motions.size(); ++disc) motions[disc].u = rigid + gradient * assembly.centres[disc];
   return motions;
 }
 
@@ -48,8 +47,8 @@ TEST_CASE("fit_and_gauges_find_a_uniform_gradient_under_any_rigid_motion") {
     const Tensor2 whole = fitted_displacement_gradient(moved, motions, everywhere);
     double middle = 0;
     for (const Vec2 x : moved.centres) middle += x.x / static_cast<double>(moved.size());
-    const Tensor2 half = fitted_displacement_gradient(
-        moved, motions, [&](std::size_t disc) { return moved.centres[disc].x < middle; });
+    const Tensor2 half =
+        fitted_displacement_gradient(moved, motions, [&](std::size_t disc) { return moved.centres[disc].x < middle; });
     CAPTURE(name, far, shown(gradient), shown(whole), shown(half));
     CHECK(difference(whole, gradient) < tolerance);
     CHECK(difference(half, gradient) < 4 * tolerance);
@@ -58,8 +57,7 @@ TEST_CASE("fit_and_gauges_find_a_uniform_gradient_under_any_rigid_motion") {
     const StrainGauge gauge{.first = 1, .second = static_cast<std::int32_t>(moved.size()) - 2};
     const Vec2 l = moved.centres[gauge.second] - moved.centres[gauge.first];
     const Vec2 n = l / norm(l);
-    const double expected =
-        gradient.xx * n.x * n.x + (gradient.xy + gradient.yx) * n.x * n.y + gradient.yy * n.y * n.y;
+    const double expected = gradient.xx * n.x * n.x + (gradient.xy + gradient.yx) * n.x * n.y + gradient.yy * n.y * n.y;
     CHECK(gauge_length(moved, gauge) == Approx(norm(l)));
     CHECK(std::abs(gauge_strain(moved, motions, gauge) - expected) < tolerance);
     CHECK(std::abs(gauge_strain(moved, motions, {.first = gauge.second, .second = gauge.first}) - expected) <
@@ -109,8 +107,7 @@ TEST_CASE("a_cell_of_twice_the_area_counts_as_two_discs") {
   motions_twice.push_back(motions[3]);
   const Assembly doubled = discs_at(twice, {});
   CHECK(difference(weighted, fitted_displacement_gradient(doubled, motions_twice, everywhere)) < 1e-15);
-  CHECK(difference(weighted, fitted_displacement_gradient(discs_at(centres, {}), motions, everywhere)) >
-        1e-3);
+  CHECK(difference(weighted, fitted_displacement_gradient(discs_at(centres, {}), motions, everywhere)) > 1e-3);
 }
 
 TEST_CASE("no_gradient_can_be_fitted_to_discs_on_one_line") {
@@ -121,12 +118,10 @@ TEST_CASE("no_gradient_can_be_fitted_to_discs_on_one_line") {
     const Assembly line = discs_at(centres, {});
     CAPTURE(discs, direction.x, direction.y);
     const std::string message = message_of([&] {
-      static_cast<void>(
-          fitted_displacement_gradient(line, std::vector<DiscMotion>(centres.size()), everywhere));
+      static_cast<void>(fitted_displacement_gradient(line, std::vector<DiscMotion>(centres.size()), everywhere));
     });
     CAPTURE(message);
-    CHECK(
-        contains(message, "a displacement gradient cannot be fitted to " + std::to_string(discs) + " disc"));
+    CHECK(contains(message, "a displacement gradient cannot be fitted to " + std::to_string(discs) + " disc"));
   }
 }
 

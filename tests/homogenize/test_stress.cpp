@@ -79,8 +79,7 @@ TEST_CASE("asymmetry_of_stress_is_the_outer_moment_per_area_disc_by_disc_and_as_
     double worst = 0;
     for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
       holding[disc] = -resultants[disc].moment;
-      worst =
-          std::max(worst, std::abs(asymmetry(stresses[disc]) - holding[disc] / assembly.cell_areas[disc]));
+      worst = std::max(worst, std::abs(asymmetry(stresses[disc]) - holding[disc] / assembly.cell_areas[disc]));
     }
     const double scale = stress_scale(assembly);
     const StressAsymmetry whole = stress_asymmetry(assembly, forces, holding);
@@ -173,11 +172,8 @@ TEST_CASE("stress_needs_cells_and_a_region_needs_discs") {
   Assembly assembly = square_lattice({.columns = 3, .rows = 3, .radius = 1, .periodic = false});
   const auto forces = random_forces(assembly, 8);
   const auto stresses = disc_stresses(assembly, forces);
-  CHECK(
-      message_of([&] {
-        static_cast<void>(average_stress(assembly, stresses, [](std::size_t) { return false; }));
-      }) ==
-      "the region holds no disc (there is no stress to average). Choose a region around some disc centres.");
+  CHECK(message_of([&] { static_cast<void>(average_stress(assembly, stresses, [](std::size_t) { return false; })); }) ==
+        "the region holds no disc (there is no stress to average). Choose a region around some disc centres.");
   assembly.cell_areas[4] = 0;
   const std::string empty_cell = message_of([&] { static_cast<void>(disc_stresses(assembly, forces)); });
   CAPTURE(empty_cell);

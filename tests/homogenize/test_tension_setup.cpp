@@ -18,8 +18,7 @@ using namespace samples;
 namespace {
 
 constexpr double a = 0.005;
-constexpr GaugePlacement placements[] = {GaugePlacement::centre, GaugePlacement::quarter,
-                                         GaugePlacement::ends};
+constexpr GaugePlacement placements[] = {GaugePlacement::centre, GaugePlacement::quarter, GaugePlacement::ends};
 
 Assembly lattice(const std::string& kind, int columns, int rows) {
   const LatticeOptions options{.columns = columns, .rows = rows, .radius = a, .periodic = false};
@@ -44,8 +43,7 @@ TEST_CASE("gauges_of_a_lattice_lie_along_the_axes_about_its_middle") {
         ++placed;
         const Assembly assembly = lattice(kind, columns, rows);
         const TensionSetup setup = tension_setup(assembly, {.stress = 1, .gauge = placement});
-        const Vec2 A = assembly.centres[setup.horizontal.first],
-                   B = assembly.centres[setup.horizontal.second];
+        const Vec2 A = assembly.centres[setup.horizontal.first], B = assembly.centres[setup.horizontal.second];
         const Vec2 C = assembly.centres[setup.vertical.first], D = assembly.centres[setup.vertical.second];
         const double row_distance = kind == "square" ? 2 * a : std::numbers::sqrt3 * a;
         const Vec2 middle{columns * a, rows * row_distance / 2};
@@ -101,8 +99,7 @@ TEST_CASE("a_block_too_small_for_its_gauges_is_told_the_least_size") {
         ++refused;
         CAPTURE(kind, columns, rows, message);
         std::smatch least;
-        REQUIRE(std::regex_search(message, least,
-                                  std::regex("they need at least (\\d+) columns and (\\d+) rows")));
+        REQUIRE(std::regex_search(message, least, std::regex("they need at least (\\d+) columns and (\\d+) rows")));
         REQUIRE(contains(message, "'" + to_string(placement) + "'"));
         const int least_columns = std::max(columns, std::stoi(least[1]));
         const int least_rows = std::max(rows, std::stoi(least[2]));
@@ -155,8 +152,7 @@ TEST_CASE("a_known_uniform_field_is_read_exactly_whatever_the_assembly_and_the_g
       Random random(31);
       for (SpringConstants& k : constants) sum += k.kN = random.uniform(1e8, 2e8);
       const double mean_kN = sum / static_cast<double>(constants.size());
-      const TensionResult result =
-          evaluate_tension(assembly, ContactSprings(constants), test, setup, equilibrium);
+      const TensionResult result = evaluate_tension(assembly, ContactSprings(constants), test, setup, equilibrium);
 
       const Vec2 ab = assembly.centres[setup.horizontal.second] - assembly.centres[setup.horizontal.first];
       const Vec2 cd = assembly.centres[setup.vertical.second] - assembly.centres[setup.vertical.first];
@@ -227,6 +223,5 @@ TEST_CASE("a_tension_test_that_cannot_be_made_is_refused_with_its_reason") {
   CHECK(contains(too_few, "4 mean spacings each way"));
 
   CHECK_THROWS_AS(gauge_placement_from("center"), Error);
-  for (const GaugePlacement placement : placements)
-    CHECK(gauge_placement_from(to_string(placement)) == placement);
+  for (const GaugePlacement placement : placements) CHECK(gauge_placement_from(to_string(placement)) == placement);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What every state of rest obeys, whatever solver found it: forces and moments balance, energy is work, load
-/// cases are reciprocal and superpose.
+/// What every state of rest obeys, whatever solver found it: forces and moments balance, energy is work, load cases
+/// are reciprocal and superpose.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -97,8 +97,7 @@ TEST_CASE("every_scene_is_solved_to_a_residual_of_1e_13") {
 TEST_CASE("reactions_balance_loads_and_moments") {
   for (const Scene& scene : held_scenes()) {
     const LoadCase loads = random_loads(scene, turns(scene), 2);
-    const Equilibrium state =
-        solve_equilibrium(scene.assembly(), scene.springs, scene.supports, loads, scene.options);
+    const Equilibrium state = solve_equilibrium(scene.assembly(), scene.springs, scene.supports, loads, scene.options);
     const Balance balance = balance_of(scene.assembly(), loads, state);
     CAPTURE(scene.name, balance.force.x, balance.force.y, balance.sum_of_forces, balance.moment,
             balance.sum_of_moments);
@@ -111,8 +110,7 @@ TEST_CASE("reactions_balance_loads_and_moments") {
 TEST_CASE("energy_is_half_the_work_of_the_loads") {
   for (const Scene& scene : held_scenes()) {
     const LoadCase loads = random_loads(scene, turns(scene), 3);
-    const Equilibrium state =
-        solve_equilibrium(scene.assembly(), scene.springs, scene.supports, loads, scene.options);
+    const Equilibrium state = solve_equilibrium(scene.assembly(), scene.springs, scene.supports, loads, scene.options);
     const double half_work = 0.5 * work(scene.assembly(), loads, state);
     const double scale = work_scale(scene.assembly(), loads, state);
     const double by_motions = elastic_energy(scene.assembly(), scene.springs, state.motions);
@@ -127,11 +125,9 @@ TEST_CASE("energy_is_half_the_work_of_the_loads") {
 TEST_CASE("two_load_cases_do_the_same_work_on_one_anothers_motions") {  // Betti
   for (const Scene& scene : held_scenes()) {
     const EquilibriumSolver solver(scene.assembly(), scene.springs, scene.supports, scene.options);
-    const LoadCase first = random_loads(scene, turns(scene), 4),
-                   second = random_loads(scene, turns(scene), 5);
+    const LoadCase first = random_loads(scene, turns(scene), 4), second = random_loads(scene, turns(scene), 5);
     const Equilibrium of_first = solver.solve(first), of_second = solver.solve(second);
-    const double there = work(scene.assembly(), first, of_second),
-                 back = work(scene.assembly(), second, of_first);
+    const double there = work(scene.assembly(), first, of_second), back = work(scene.assembly(), second, of_first);
     const double scale =
         work_scale(scene.assembly(), first, of_second) + work_scale(scene.assembly(), second, of_first);
     CAPTURE(scene.name, there, back, scale);
@@ -142,8 +138,7 @@ TEST_CASE("two_load_cases_do_the_same_work_on_one_anothers_motions") {  // Betti
 TEST_CASE("load_cases_superpose") {
   for (const Scene& scene : held_scenes()) {
     const EquilibriumSolver solver(scene.assembly(), scene.springs, scene.supports, scene.options);
-    const LoadCase first = random_loads(scene, turns(scene), 6),
-                   second = random_loads(scene, turns(scene), 7);
+    const LoadCase first = random_loads(scene, turns(scene), 6), second = random_loads(scene, turns(scene), 7);
     LoadCase both = first;
     for (Load load : second) {
       load.force *= -2;
@@ -158,8 +153,7 @@ TEST_CASE("load_cases_superpose") {
     }
     for (std::size_t c = 0; c < sum.contact_forces.size(); ++c) {
       const ContactForce &f = p.contact_forces[c], &g = q.contact_forces[c], &s = sum.contact_forces[c];
-      force = std::max(
-          {force, std::abs(f.normal), std::abs(g.normal), std::abs(f.tangential), std::abs(g.tangential)});
+      force = std::max({force, std::abs(f.normal), std::abs(g.normal), std::abs(f.tangential), std::abs(g.tangential)});
       force_difference = std::max({force_difference, std::abs(f.normal - 2 * g.normal - s.normal),
                                    std::abs(f.tangential - 2 * g.tangential - s.tangential)});
     }

@@ -66,21 +66,19 @@ struct Free {
   }
 };
 
-/// Largest |x - y| where the largest |y| is 1; 0 where both are nothing, as is K of a single disc that cannot
-/// turn.
+/// Largest |x - y| where the largest |y| is 1; 0 where both are nothing, as is K of a single disc that cannot turn.
 double difference(const std::vector<double>& x, const std::vector<double>& y) {
   return largest(x) == 0 && largest(y) == 0 ? 0 : relative_difference(x, y);
 }
 
-/// `body` for every kind, 2 and 3 unknowns per disc, kT positive, zero and negative, springs alike and
-/// weighted.
+/// `body` for every kind, 2 and 3 unknowns per disc, kT positive, zero and negative, springs alike and weighted.
 void for_all(const std::function<void(const Free&)>& body) {
   for (const AssemblyKind& kind : assembly_kinds()) {
     for (const int per_disc : {2, 3}) {
       for (const double ratio : {0.7, 0.0, -0.4}) {
         for (const SpringWeighting weighting : {SpringWeighting::uniform, SpringWeighting::voronoi}) {
-          const Free scene(kind.name, kind.assembly,
-                           contact_springs(kind.assembly, {1e9, ratio * 1e9}, weighting), per_disc);
+          const Free scene(kind.name, kind.assembly, contact_springs(kind.assembly, {1e9, ratio * 1e9}, weighting),
+                           per_disc);
           CAPTURE(kind.name, per_disc, ratio, to_string(weighting));
           body(scene);
         }
@@ -104,8 +102,7 @@ TEST_CASE("stiffness_is_the_derivative_of_the_force") {
     const std::vector<double> expected = scene.times(v);
     // The law is linear: a central difference of any step is exact but for round-off, which grows as 1/h.
     for (const double h : {1.0, 1e-2, 1e-5}) {
-      const std::vector<double> ahead = scene.force(combined(u, h, v)),
-                                behind = scene.force(combined(u, -h, v));
+      const std::vector<double> ahead = scene.force(combined(u, h, v)), behind = scene.force(combined(u, -h, v));
       std::vector<double> slope(u.size());
       for (std::size_t k = 0; k < u.size(); ++k) slope[k] = (ahead[k] - behind[k]) / (2 * h);
       CAPTURE(h);
@@ -210,8 +207,7 @@ TEST_CASE("stiffness_does_not_depend_on_numbers_of_discs_nor_on_which_disc_a_con
     std::vector<std::int32_t> disc_now(before.size()), contact_before(before.contacts.size());
     for (auto* numbers : {&disc_now, &contact_before}) {
       std::iota(numbers->begin(), numbers->end(), 0);
-      for (std::size_t k = numbers->size(); k-- > 1;)
-        std::swap((*numbers)[k], (*numbers)[random.below(k + 1)]);
+      for (std::size_t k = numbers->size(); k-- > 1;) std::swap((*numbers)[k], (*numbers)[random.below(k + 1)]);
     }
     Assembly after = before;
     for (std::size_t d = 0; d < before.size(); ++d) {

@@ -19,10 +19,8 @@ namespace {
 std::vector<ElasticModuli> moduli_of_all_kinds() {
   std::vector<ElasticModuli> all;
   for (const double G : {0.1, 1.0, 1000.0}) {
-    for (const double nu : {-0.99, -0.5, -0.1, 0.0, 0.2, 0.25, 0.3, 0.49})
-      all.push_back({G, nu, Plane::strain});
-    for (const double nu : {-0.49, -0.1, 0.0, 0.25, 1.0 / 3, 0.5, 0.99})
-      all.push_back({G, nu, Plane::stress});
+    for (const double nu : {-0.99, -0.5, -0.1, 0.0, 0.2, 0.25, 0.3, 0.49}) all.push_back({G, nu, Plane::strain});
+    for (const double nu : {-0.49, -0.1, 0.0, 0.25, 1.0 / 3, 0.5, 0.99}) all.push_back({G, nu, Plane::stress});
   }
   return all;
 }
@@ -41,8 +39,7 @@ TEST_CASE("readings_convert_back_and_forth_without_changing_the_sheet") {
     CHECK(read.shear_modulus == moduli.shear_modulus);
     CHECK(read.plane == other);
     CHECK(read.bulk_modulus_2d() == Approx(moduli.bulk_modulus_2d()).epsilon(1e-12));
-    CHECK(
-        same(read.lame_lambda() / moduli.bulk_modulus_2d(), moduli.lame_lambda() / moduli.bulk_modulus_2d()));
+    CHECK(same(read.lame_lambda() / moduli.bulk_modulus_2d(), moduli.lame_lambda() / moduli.bulk_modulus_2d()));
     CHECK(same(read.read_as(moduli.plane).poisson_ratio, moduli.poisson_ratio));
     CHECK(moduli.read_as(moduli.plane).poisson_ratio == moduli.poisson_ratio);
   }
@@ -110,6 +107,5 @@ TEST_CASE("planes_have_the_names_of_the_case_file") {
   CHECK(plane_from("stress") == Plane::stress);
   CHECK(to_string(Plane::strain) == "strain");
   CHECK(to_string(Plane::stress) == "stress");
-  CHECK_THROWS_WITH(plane_from("Strain"),
-                    Catch::Contains("'Strain' is no plane") && Catch::Contains("\"stress\""));
+  CHECK_THROWS_WITH(plane_from("Strain"), Catch::Contains("'Strain' is no plane") && Catch::Contains("\"stress\""));
 }

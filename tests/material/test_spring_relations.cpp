@@ -20,9 +20,8 @@ namespace {
 
 const IsotropicMeasures loose{0.8, 4.2 / (2 * pi)};
 
-/// Elasticity of a set of bonds that follow a uniform strain, rotations in equilibrium (the mean rotation of
-/// the field): sum over bonds of kN nnnn + kT ssss over twice the area. Independent of Abe's derivation by
-/// Taylor series.
+/// Elasticity of a set of bonds that follow a uniform strain, rotations in equilibrium (the mean rotation of the
+/// field): sum over bonds of kN nnnn + kT ssss over twice the area. Independent of Abe's derivation by Taylor series.
 struct Tensor {
   double C11, C12, C66;
 };
@@ -65,8 +64,7 @@ std::string refusal(Function&& function) {
 }  // namespace
 
 TEST_CASE("springs_to_moduli_to_springs_is_the_identity") {
-  const auto packing =
-      GENERATE(Packing::isotropic, Packing::hexagonal, Packing::square, Packing::hexagonal_restrained);
+  const auto packing = GENERATE(Packing::isotropic, Packing::hexagonal, Packing::square, Packing::hexagonal_restrained);
   const auto plane = GENERATE(Plane::strain, Plane::stress);
   for (const double kN : {1.0, 3e9}) {
     for (const double ratio : {-0.3, -0.1, 0.0, 0.1, 0.5, 1.0}) {
@@ -206,9 +204,7 @@ TEST_CASE("a_poisson_ratio_that_needs_negative_kT_is_refused_unless_static_only"
   CHECK(contains(in_strain, "Poisson's ratio is 0.3 in plane strain (above 1/4 it needs kT < 0"));
   CHECK(contains(in_strain, "-1/3"));
   CHECK(contains(in_strain, "at most 1/4, or ask for the static-only continuation."));
-  const std::string in_stress = refusal([&] {
-    return springs_for({1, 0.34, Plane::stress}, packing, loose);
-  });
+  const std::string in_stress = refusal([&] { return springs_for({1, 0.34, Plane::stress}, packing, loose); });
   CAPTURE(in_stress);
   CHECK(contains(in_stress, "Poisson's ratio is 0.34 in plane stress (above 1/3"));
   CHECK_NOTHROW(springs_for({1, 0.3, Plane::stress}, packing, loose));
@@ -231,12 +227,9 @@ TEST_CASE("the_continuation_ends_where_the_body_is_incompressible") {
 TEST_CASE("the_square_lattice_stands_for_nu_0_only") {
   for (const double nu : {0.1, -0.1, 0.25, 0.3}) {
     for (const auto negative : {NegativeTangential::refuse, NegativeTangential::static_only}) {
-      const std::string message = refusal([&] {
-        return springs_for({1, nu}, Packing::square, {}, negative);
-      });
+      const std::string message = refusal([&] { return springs_for({1, nu}, Packing::square, {}, negative); });
       CAPTURE(nu, message);
-      CHECK(contains(message,
-                     "on the square lattice (the square lattice has C11 = kN, C12 = 0 and C66 = kT/2"));
+      CHECK(contains(message, "on the square lattice (the square lattice has C11 = kN, C12 = 0 and C66 = kT/2"));
     }
   }
   const std::string message = refusal([&] { return moduli_of({1, 0.5}, Packing::square); });
@@ -251,17 +244,11 @@ TEST_CASE("springs_that_stand_for_no_stable_body_are_refused_with_the_limit") {
   CHECK(contains(hexagonal, "kT/kN is -1 (the shear modulus is no longer positive at -1"));
   CHECK(contains(hexagonal, "-1/3"));
   CHECK_NOTHROW(moduli_of({1, -0.999}, Packing::hexagonal));
-  CHECK(contains(refusal([] {
-                   return moduli_of({1, -1.2}, Packing::isotropic, loose);
-                 }),
-                 "Choose kT/kN above -1."));
+  CHECK(contains(refusal([] { return moduli_of({1, -1.2}, Packing::isotropic, loose); }), "Choose kT/kN above -1."));
   const auto restrained = refusal([] { return moduli_of({3, -1}, Packing::hexagonal_restrained); });
   CAPTURE(restrained);
   CHECK(contains(restrained, "Choose kT/kN above -1/3"));
-  CHECK(contains(refusal([] {
-                   return moduli_of({1, 1}, Packing::hexagonal_restrained);
-                 }),
-                 "Choose kT below kN"));
+  CHECK(contains(refusal([] { return moduli_of({1, 1}, Packing::hexagonal_restrained); }), "Choose kT below kN"));
   // kT/kN >= 5: a stable sheet, but with nu <= -1 it is no section of a solid.
   CHECK(contains(refusal([] { return moduli_of({1, 5}, Packing::hexagonal); }), "Read it in plane stress"));
   CHECK(moduli_of({1, 5}, Packing::hexagonal, {}, Plane::stress).poisson_ratio == Approx(-0.5));
@@ -276,10 +263,7 @@ TEST_CASE("springs_that_stand_for_no_stable_body_are_refused_with_the_limit") {
 TEST_CASE("the_isotropic_relation_asks_for_its_measures") {
   CHECK(contains(refusal([] { return springs_for({1, 0.1}, Packing::isotropic); }), "solid fraction is 0 "));
   CHECK(contains(refusal([] { return springs_for({1, 0.1}, Packing::isotropic, {1.2, 1}); }), "1.2"));
-  CHECK(contains(refusal([] {
-                   return springs_for({1, 0.1}, Packing::isotropic, {0.8, 0});
-                 }),
-                 "contact density is 0 "));
+  CHECK(contains(refusal([] { return springs_for({1, 0.1}, Packing::isotropic, {0.8, 0}); }), "contact density is 0 "));
   CHECK(contains(refusal([] { return moduli_of({1, 0.1}, Packing::isotropic); }), "solid fraction is 0 "));
 }
 

@@ -12,15 +12,14 @@
 
 #include <unistd.h>
 
-#include "equidem/core/text.hpp"
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/text.hpp"
 #include "equidem/output/state.hpp"
 
 namespace equidem {
 
-/// An assembly under a displacement field, contact forces by the linear law, and stresses that are just
-/// numbers.
+/// An assembly under a displacement field, contact forces by the linear law, and stresses that are just numbers.
 struct MadeUpState {
   Assembly assembly;
   std::vector<DiscMotion> motions;
@@ -75,8 +74,8 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// Run a script of this folder with Python; its complaints appear in the log of the test. \return its exit
-/// code
+/// Run a script of this folder with Python; its complaints appear in the log of the test.
+/// \return its exit code
 inline int run_python(const std::string& script, const std::vector<std::string>& arguments) {
   std::string command = format("'{}' '{}/tests/output/{}'", EQUIDEM_PYTHON, EQUIDEM_SOURCE_DIR, script);
   for (const std::string& argument : arguments) command += format(" '{}'", argument);

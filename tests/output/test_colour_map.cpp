@@ -29,8 +29,8 @@ TEST_CASE("equal_steps_of_the_number_are_equal_steps_of_lightness") {
 TEST_CASE("the_diverging_map_weighs_both_signs_alike") {
   for (double t = 0; t <= 0.5; t += 0.05) {
     CAPTURE(t);
-    CHECK(std::abs(lightness(colour_at(ColourMap::diverging, t)) -
-                   lightness(colour_at(ColourMap::diverging, 1 - t))) < 0.004);
+    CHECK(std::abs(lightness(colour_at(ColourMap::diverging, t)) - lightness(colour_at(ColourMap::diverging, 1 - t))) <
+          0.004);
   }
   CHECK(lightness(colour_at(ColourMap::diverging, 0.5)) > 0.95);
 }

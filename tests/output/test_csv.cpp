@@ -105,8 +105,7 @@ TEST_CASE("disc_and_contact_tables_hold_the_state") {
     const double fy = number(contacts[k + 1][column(contacts[0], "force_y_N_per_m")]);
     CHECK(number(contacts[k + 1][column(contacts[0], "normal_force_N_per_m")]) == state.forces[k].normal);
     CHECK(std::hypot(fx, fy) == Approx(std::hypot(state.forces[k].normal, state.forces[k].tangential)));
-    CHECK(contacts[k + 1][column(contacts[0], "shift_x")] ==
-          std::to_string(state.assembly.contacts[k].shift_x));
+    CHECK(contacts[k + 1][column(contacts[0], "shift_x")] == std::to_string(state.assembly.contacts[k].shift_x));
   }
 }
 

@@ -39,8 +39,7 @@ bool is_json(const std::string& text) {
 TEST_CASE("numbers_in_json_read_back_to_the_same_bits") {
   Random random(11);
   JsonObject object;
-  std::vector<double> numbers{0.0,  -0.0,          1.0, 1e6, 0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308,
-                              1e16, 123456789012.0};
+  std::vector<double> numbers{0.0, -0.0, 1.0, 1e6, 0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308, 1e16, 123456789012.0};
   while (numbers.size() < 500) {
     const double number = std::bit_cast<double>(random.bits());
     if (std::isfinite(number)) numbers.push_back(number);

@@ -32,12 +32,11 @@ TEST_CASE("every_disc_has_the_colour_of_its_stress_at_its_displaced_place") {
     int columns, rows;
     bool periodic;
   };
-  const auto [name, columns, rows, periodic] = GENERATE(
-      Case{"few discs", 5, 5, false}, Case{"periodic", 6, 4, true}, Case{"as an image", 103, 102, false});
+  const auto [name, columns, rows, periodic] =
+      GENERATE(Case{"few discs", 5, 5, false}, Case{"periodic", 6, 4, true}, Case{"as an image", 103, 102, false});
   CAPTURE(name);
   const MadeUpState state =
-      made_up(hexagonal_lattice({.columns = columns, .rows = rows, .periodic = periodic}),
-              {1e-3, 2e-4, -1e-4, -3e-4});
+      made_up(hexagonal_lattice({.columns = columns, .rows = rows, .periodic = periodic}), {1e-3, 2e-4, -1e-4, -3e-4});
   const bool fine = state.assembly.size() > most_drawn_discs;
   const int width = fine ? 900 : 500;
   const PictureOptions options{
@@ -106,8 +105,7 @@ TEST_CASE("what_is_not_known_is_not_drawn") {
   CHECK(scene.displacement_scale == 1);
   CHECK(scene.centres == assembly.centres);
   const TemporaryFolder folder;
-  CHECK_NOTHROW(
-      write_picture(folder.path(), "bare", {assembly}, {.title = "not UTF-8: \xff\xc3 \x01"}, false));
+  CHECK_NOTHROW(write_picture(folder.path(), "bare", {assembly}, {.title = "not UTF-8: \xff\xc3 \x01"}, false));
   CHECK(run_python("well_formed.py", {(folder / "bare.svg").string()}) == 0);
 }
 
@@ -125,8 +123,7 @@ TEST_CASE("a_picture_that_cannot_be_drawn_is_refused") {
   MadeUpState lost = stretched_block(3, 2);
   lost.motions[1].u.y = NAN;
   refused(lost.view(), {}, "disc 1");
-  CHECK_THROWS_WITH(disc_colour_from("pressure"),
-                    Catch::Contains("'pressure'") && Catch::Contains("mean_stress"));
+  CHECK_THROWS_WITH(disc_colour_from("pressure"), Catch::Contains("'pressure'") && Catch::Contains("mean_stress"));
   CHECK(disc_colour_from("stress_xy") == DiscColour::stress_xy);
   CHECK(folder.files() == 0);
 }

@@ -55,9 +55,7 @@ std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
 /// The environment variable PATH, changed for a while.
 class SearchPath {
  public:
-  explicit SearchPath(const std::string& path) : before_(std::getenv("PATH")) {
-    setenv("PATH", path.c_str(), 1);
-  }
+  explicit SearchPath(const std::string& path) : before_(std::getenv("PATH")) { setenv("PATH", path.c_str(), 1); }
   ~SearchPath() { setenv("PATH", before_.c_str(), 1); }
   SearchPath(const SearchPath&) = delete;
   SearchPath& operator=(const SearchPath&) = delete;
@@ -122,8 +120,7 @@ TEST_CASE("data_of_a_plot_has_named_columns") {
                        {.label = "", .x = {0, 0.5, 1}, .y = {1, 2, 3}},
                        {.label = "nu theory", .x = {0, 1}, .y = {4, 5}}}};
   const PlotData data = plot_data(plot);
-  CHECK(data.csv ==
-        "kT_kN,nu_theory,stable,kT_kN_2,y,nu_theory_2\n0,0.25,1,0,1,4\n1,0,nan,0.5,2,5\n,,,1,3,\n");
+  CHECK(data.csv == "kT_kN,nu_theory,stable,kT_kN_2,y,nu_theory_2\n0,0.25,1,0,1,4\n1,0,nan,0.5,2,5\n,,,1,3,\n");
   CHECK(data.places[3].x == "kT_kN");
   CHECK(data.places[2].x == "kT_kN_2");
 }

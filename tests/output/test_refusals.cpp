@@ -25,8 +25,7 @@ struct Writer {
 std::vector<Writer> writers(const MadeUpState& state) {
   const Plot plot{.title = "t", .series = {{.label = "s", .x = {0, 1}, .y = {1, 2}}}};
   return {
-      {"table", [](const fs::path& f,
-                   bool o) { write_csv(f / "t.csv", Table().add("x", std::vector<double>{1}), o); }},
+      {"table", [](const fs::path& f, bool o) { write_csv(f / "t.csv", Table().add("x", std::vector<double>{1}), o); }},
       {"disc table", [&](const fs::path& f, bool o) { write_disc_csv(f / "d.csv", state.view(), o); }},
       {"contact table", [&](const fs::path& f, bool o) { write_contact_csv(f / "c.csv", state.view(), o); }},
       {"VTK", [&](const fs::path& f, bool o) { write_vtk(f, "v", state.view(), o); }},

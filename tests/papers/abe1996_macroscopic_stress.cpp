@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Abe (1996), section 4: the macroscopic stress, eq. (50), of uniform strain on regular lattices: eqs. (51),
-/// (52) with free rotation, (54), (55) with restrained rotation. The springs range beyond what the paper
-/// allows: these relations hold for every kT, stable or not.
+/// Abe (1996), section 4: the macroscopic stress, eq. (50), of uniform strain on regular lattices: eqs. (51), (52)
+/// with free rotation, (54), (55) with restrained rotation. The springs range beyond what the paper allows: these
+/// relations hold for every kT, stable or not.
 #include <cmath>
 #include <numbers>
 
@@ -26,8 +26,7 @@ Assembly periodic_hexagonal() {
 }
 
 /// Largest deviation of any disc's stress from the expected one.
-double worst_difference(const Assembly& assembly, const std::vector<ContactForce>& forces,
-                        const Tensor2& expected) {
+double worst_difference(const Assembly& assembly, const std::vector<ContactForce>& forces, const Tensor2& expected) {
   double worst = 0;
   for (const Tensor2& s : disc_stresses(assembly, forces)) worst = std::max(worst, difference(s, expected));
   return worst;
@@ -48,10 +47,10 @@ constexpr double permutation(int i, int j) {
 /// The bracket of eq. (55), corrected: the paper leaves out delta_2i delta_2j (u_1,1 + 3 u_2,2).
 double bracket_55(const Tensor2& u, const SpringConstants& k, int i, int j) {
   const auto both = [&](int p, int q) { return delta(p, i) * delta(q, j); };
-  const double normal = both(0, 0) * (3 * u.xx + u.yy) + both(1, 1) * (u.xx + 3 * u.yy) +
-                        (both(0, 1) + both(1, 0)) * (u.xy + u.yx);
-  const double tangential = (both(0, 0) - both(1, 1)) * (u.xx - u.yy) + both(0, 1) * (3 * u.xy - u.yx) +
-                            both(1, 0) * (-u.xy + 3 * u.yx);
+  const double normal =
+      both(0, 0) * (3 * u.xx + u.yy) + both(1, 1) * (u.xx + 3 * u.yy) + (both(0, 1) + both(1, 0)) * (u.xy + u.yx);
+  const double tangential =
+      (both(0, 0) - both(1, 1)) * (u.xx - u.yy) + both(0, 1) * (3 * u.xy - u.yx) + both(1, 0) * (-u.xy + 3 * u.yx);
   return k.kN * normal + k.kT * tangential;
 }
 
@@ -98,8 +97,8 @@ TEST_CASE("restrained_rotation_leaves_the_contact_forces_of_equation_54") {
             expected[i] += 2 * a * k.kN * component(u, m, q) * n[i] * n[m] * n[q];
             for (int l = 0; l < 2; ++l)
               for (int p = 0; p < 2; ++p)
-                expected[i] += 2 * a * k.kT * component(u, m, q) * permutation(l, m) * permutation(p, i) *
-                               n[l] * n[p] * n[q];
+                expected[i] +=
+                    2 * a * k.kT * component(u, m, q) * permutation(l, m) * permutation(p, i) * n[l] * n[p] * n[q];
           }
       worst = std::max(worst, norm(force_on_i(frame, forces[c]) - Vec2{expected[0], expected[1]}));
     }
@@ -128,8 +127,8 @@ TEST_CASE("restrained_rotation_of_the_hexagonal_lattice_gives_the_stress_of_equa
     const double volume = sqrt3 / 4 * (1 - ratio) * (u.xx + u.yy);
     const double twice_G = sqrt3 / 2 * (1 + ratio);
     const double shear = twice_G * (u.xy + u.yx) / 2;
-    const Tensor2 closed{volume + twice_G * u.xx, shear - sqrt3 / 2 * ratio * spin,
-                         shear + sqrt3 / 2 * ratio * spin, volume + twice_G * u.yy};
+    const Tensor2 closed{volume + twice_G * u.xx, shear - sqrt3 / 2 * ratio * spin, shear + sqrt3 / 2 * ratio * spin,
+                         volume + twice_G * u.yy};
 
     CAPTURE(ratio, shown(u), shown(printed), shown(closed));
     CHECK(worst_difference(assembly, forces, printed) < 1e-13 * largest(u));
@@ -148,8 +147,7 @@ TEST_CASE("asymmetry_of_equation_55_is_minus_sqrt3_kT_spin_and_the_moments_that_
     for (const Resultant& r : contact_resultants(assembly, forces)) holding.push_back(-r.moment);
     const StressAsymmetry found = stress_asymmetry(assembly, forces, holding);
     double worst = 0;
-    for (const Tensor2& s : disc_stresses(assembly, forces))
-      worst = std::max(worst, std::abs(asymmetry(s) - expected));
+    for (const Tensor2& s : disc_stresses(assembly, forces)) worst = std::max(worst, std::abs(asymmetry(s) - expected));
     CAPTURE(ratio, shown(u), expected, found.difference, found.moment_density, worst);
     CHECK(worst < 1e-13 * largest(u));
     CHECK(std::abs(found.difference - expected) < 1e-13 * largest(u));
@@ -164,10 +162,8 @@ TEST_CASE("restrained_rotation_still_gives_nu_of_free_rotation_in_uniaxial_stres
   const Assembly assembly = periodic_hexagonal();
   for (const double ratio : ratios) {
     const ContactSprings springs(SpringConstants{1, ratio});
-    const Tensor2 along =
-        macroscopic_stress(assembly, affine_contact_forces(assembly, springs, {1, 0, 0, 0}, 0));
-    const Tensor2 across =
-        macroscopic_stress(assembly, affine_contact_forces(assembly, springs, {0, 0, 0, 1}, 0));
+    const Tensor2 along = macroscopic_stress(assembly, affine_contact_forces(assembly, springs, {1, 0, 0, 0}, 0));
+    const Tensor2 across = macroscopic_stress(assembly, affine_contact_forces(assembly, springs, {0, 0, 0, 1}, 0));
     const double e22 = -along.yy / across.yy;
     CAPTURE(ratio, e22);
     CHECK(poisson_ratio_of_strains(1, e22) == Approx((1 - ratio) / 4).margin(1e-13));

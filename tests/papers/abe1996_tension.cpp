@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Abe (1996), section 3: the tension test of Fig. 6, nu of eq. (35) against (1 - kT/kN)/4 (Fig. 7) and the
-/// stiffness of eq. (36) against eq. (37) (Fig. 8).
+/// Abe (1996), section 3: the tension test of Fig. 6, nu of eq. (35) against (1 - kT/kN)/4 (Fig. 7) and the stiffness
+/// of eq. (36) against eq. (37) (Fig. 8).
 ///
-/// A strip with free top and bottom is in uniform strain away from its ends, but the contacts that its top
-/// and bottom rows lack carry nothing: of R rows, R - 2r/(3(1 + r)) bear the stress of the bulk, r = kT/kN.
-/// The error of eq. (36) on a block of n rows is therefore of order 1/n, and none where kT = 0.
+/// A strip with free top and bottom is in uniform strain away from its ends, but the contacts that its top and bottom
+/// rows lack carry nothing: of R rows, R - 2r/(3(1 + r)) bear the stress of the bulk, r = kT/kN. The error of eq.
+/// (36) on a block of n rows is therefore of order 1/n, and none where kT = 0.
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -75,8 +75,7 @@ TEST_CASE("without_tangential_springs_the_tension_test_is_exact_at_every_size_an
     int columns, rows;
   };
   for (const Size size : {Size{5, 5}, Size{7, 9}, Size{8, 6}, Size{11, 11}, Size{20, 13}, Size{21, 21}}) {
-    for (const GaugePlacement gauge :
-         {GaugePlacement::centre, GaugePlacement::quarter, GaugePlacement::ends}) {
+    for (const GaugePlacement gauge : {GaugePlacement::centre, GaugePlacement::quarter, GaugePlacement::ends}) {
       const Run run = run_tension(size.columns, size.rows, 0, gauge);
       CAPTURE(size.columns, size.rows, to_string(gauge), run.equilibrium.relative_residual);
       CHECK(run.result.poisson_ratio == Approx(poisson_ratio_of_ratio(0)).epsilon(1e-12));
@@ -127,16 +126,13 @@ TEST_CASE("stress_is_uniform_and_uniaxial_in_a_strip_away_from_its_ends") {
     const auto stresses = disc_stresses(run.assembly, run.equilibrium.contact_forces);
     const Tensor2 expected{pull * rows / bearing_rows(rows, ratio), 0, 0, 0};
     const double middle = columns * a;
-    const auto near_middle = [&](std::size_t disc) {
-      return std::abs(run.assembly.centres[disc].x - middle) < 10 * a;
-    };
+    const auto near_middle = [&](std::size_t disc) { return std::abs(run.assembly.centres[disc].x - middle) < 10 * a; };
     const double lowest = 1.01 * run.assembly.centres.front().y;
     const double highest = run.assembly.centres.back().y - 0.01 * a;
     double worst = 0;
     for (std::size_t disc = 0; disc < stresses.size(); ++disc) {
       const double y = run.assembly.centres[disc].y;
-      if (near_middle(disc) && y > lowest && y < highest)
-        worst = std::max(worst, difference(stresses[disc], expected));
+      if (near_middle(disc) && y > lowest && y < highest) worst = std::max(worst, difference(stresses[disc], expected));
     }
     CAPTURE(ratio, expected.xx, worst);
     CHECK(worst < 1e-9 * pull);

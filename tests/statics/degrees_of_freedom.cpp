@@ -25,8 +25,7 @@ DegreesOfFreedom number(const Assembly& assembly, SpringConstants k, Rotation ro
   return number_unknowns(assembly, springs, derive_effects(springs, rotation), supports);
 }
 
-std::string refused(const Assembly& assembly, const std::vector<Support>& supports,
-                    SpringConstants k = {1e9, 1e9}) {
+std::string refused(const Assembly& assembly, const std::vector<Support>& supports, SpringConstants k = {1e9, 1e9}) {
   const Refusal refusal = refusal_of([&] { number(assembly, k, Rotation::free, supports); });
   CHECK(refusal.kind == ErrorKind::bad_input);
   return refusal.message;
@@ -85,8 +84,7 @@ TEST_CASE("rotations_that_no_contact_resists_are_held_and_counted") {
   std::vector<SpringConstants> k(4, {1e9, 1e9});
   k[3].kT = 0;
   const ContactSprings springs(k);
-  const DegreesOfFreedom unknowns =
-      number_unknowns(chain, springs, derive_effects(springs, Rotation::free), {});
+  const DegreesOfFreedom unknowns = number_unknowns(chain, springs, derive_effects(springs, Rotation::free), {});
   CHECK(unknowns.inert_rotations == 2);  // of disc 0 (lever) and disc 4 (spring)
   CHECK(unknowns.free_rotations == 3);
   CHECK(unknowns.unknowns == 13);
@@ -98,8 +96,7 @@ TEST_CASE("rotations_that_no_contact_resists_are_held_and_counted") {
 TEST_CASE("supports_that_make_no_sense_are_refused_with_their_reason") {
   Assembly block = hexagonal_lattice({.columns = 4, .rows = 3});
   block.groups["nobody"] = {};
-  const double nan = std::numeric_limits<double>::quiet_NaN(),
-               infinity = std::numeric_limits<double>::infinity();
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   check_says(refused(block, {{.group = "lft", .ux = 0.0, .uy = {}, .rotation = {}}}),
              {"no group 'lft'", "its groups are", "left"});
   check_says(refused(block, {{.group = "nobody", .ux = 0.0, .uy = {}, .rotation = {}}}),
@@ -127,6 +124,5 @@ TEST_CASE("the_same_value_twice_is_no_contradiction_and_a_rotation_held_at_zero_
                                       {.group = "bottom", .ux = 0.0, .uy = {}, .rotation = 0.0}};
   CHECK(number(block, {1e9, 1e9}, Rotation::free, supports).unknowns ==
         static_cast<std::int64_t>(3 * block.size()) - 2 * 6);
-  CHECK(number(block, {1e9, 0}, Rotation::free, supports).unknowns ==
-        static_cast<std::int64_t>(2 * block.size()) - 6);
+  CHECK(number(block, {1e9, 0}, Rotation::free, supports).unknowns == static_cast<std::int64_t>(2 * block.size()) - 6);
 }

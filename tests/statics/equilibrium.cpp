@@ -53,9 +53,8 @@ TEST_CASE("a_chain_in_tension_carries_the_same_force_everywhere_and_stretches_by
   const ContactSprings springs(k);
   const double force = 1234.5;
   const std::vector<Support> supports{{.group = "first", .ux = 0.0, .uy = 0.0, .rotation = {}}};
-  const Equilibrium state =
-      solve_equilibrium(chain, springs, supports,
-                        {{.group = "last", .kind = LoadKind::total, .force = {force, 0}}}, restrained);
+  const Equilibrium state = solve_equilibrium(
+      chain, springs, supports, {{.group = "last", .kind = LoadKind::total, .force = {force, 0}}}, restrained);
   for (const ContactForce& f : state.contact_forces) {
     CAPTURE(f.normal, f.tangential);
     CHECK(std::abs(f.normal - force) <= 1e-14 * force);
@@ -72,9 +71,8 @@ TEST_CASE("a_sheared_chain_of_discs_that_cannot_turn_needs_moments_to_hold_it") 
   const ContactSprings springs(SpringConstants{1e9, 5e8});
   const std::vector<Support> supports{{.group = "first", .ux = 0.0, .uy = 0.0, .rotation = {}}};
   const double force = 1000;
-  const Equilibrium state =
-      solve_equilibrium(chain, springs, supports,
-                        {{.group = "last", .kind = LoadKind::total, .force = {0, force}}}, restrained);
+  const Equilibrium state = solve_equilibrium(
+      chain, springs, supports, {{.group = "last", .kind = LoadKind::total, .force = {0, force}}}, restrained);
   CHECK(state.motions.back().u.y == Approx(3 * force / 5e8).epsilon(1e-14));
   // Every contact carries the force as slip, at a lever of 0.01 m on either disc: the holding moment is its
   // opposite.
@@ -91,8 +89,7 @@ TEST_CASE("a_prescribed_translation_moves_all_discs_and_loads_no_contact") {
       const ContactSprings springs(SpringConstants{1e9, ratio * 1e9});
       const Vec2 t{0.003, -0.001};
       std::vector<Support> supports{{.group = "anchor", .ux = t.x, .uy = t.y, .rotation = 0.0}};
-      if (!kind.assembly.periodic())
-        supports.push_back({.group = "guide", .ux = {}, .uy = t.y, .rotation = {}});
+      if (!kind.assembly.periodic()) supports.push_back({.group = "guide", .ux = {}, .uy = t.y, .rotation = {}});
       const Equilibrium state =
           solve_equilibrium(kind.assembly, springs, supports, {},
                             {.rotation = kind.chain ? Rotation::restrained : Rotation::free, .solver = {}});
@@ -212,8 +209,7 @@ TEST_CASE("a_moment_on_an_inert_disc_is_refused_unless_a_support_takes_it") {
   const Load moment{.group = "last", .kind = LoadKind::per_disc, .force = {}, .moment = 2.0};
   std::vector<Support> supports{{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = {}}};
 
-  const Refusal refusal =
-      refusal_of([&] { static_cast<void>(solve_equilibrium(fan, springs, supports, {moment})); });
+  const Refusal refusal = refusal_of([&] { static_cast<void>(solve_equilibrium(fan, springs, supports, {moment})); });
   CAPTURE(refusal.message);
   CHECK(refusal.says(format("a moment acts on disc {}", last)));
   CHECK(refusal.says("tangential spring"));
@@ -248,9 +244,8 @@ TEST_CASE("a_moment_on_a_disc_whose_contacts_have_no_lever_is_refused") {
   const ContactSprings springs(SpringConstants{1e9, 5e8});
   const std::vector<Support> supports{{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = {}}};
   const Refusal refusal = refusal_of([&] {
-    static_cast<void>(
-        solve_equilibrium(block, springs, supports,
-                          {{.group = "last", .kind = LoadKind::per_disc, .force = {}, .moment = 2.0}}));
+    static_cast<void>(solve_equilibrium(block, springs, supports,
+                                        {{.group = "last", .kind = LoadKind::per_disc, .force = {}, .moment = 2.0}}));
   });
   CAPTURE(refusal.message);
   CHECK(refusal.says(format("a moment acts on disc {}", last)));
@@ -258,12 +253,9 @@ TEST_CASE("a_moment_on_a_disc_whose_contacts_have_no_lever_is_refused") {
 
 TEST_CASE("the_estimate_is_what_the_solve_then_reports") {
   for (const Scene& scene : held_scenes()) {
-    const SolveEstimate estimate =
-        estimate_solve(scene.assembly(), scene.springs, scene.supports, scene.options);
-    const Equilibrium state =
-        solve_equilibrium(scene.assembly(), scene.springs, scene.supports, {}, scene.options);
-    CAPTURE(scene.name, estimate.factor_nonzeros, state.factor_nonzeros, estimate.factor_bytes,
-            state.factor_bytes);
+    const SolveEstimate estimate = estimate_solve(scene.assembly(), scene.springs, scene.supports, scene.options);
+    const Equilibrium state = solve_equilibrium(scene.assembly(), scene.springs, scene.supports, {}, scene.options);
+    CAPTURE(scene.name, estimate.factor_nonzeros, state.factor_nonzeros, estimate.factor_bytes, state.factor_bytes);
     CHECK(estimate.unknowns == state.unknowns);
     CHECK(estimate.peak_bytes >= estimate.factor_bytes);
     CHECK(estimate.operations >= estimate.factor_nonzeros);
@@ -305,17 +297,15 @@ TEST_CASE("a_state_of_rest_has_the_same_bits_for_every_number_of_threads") {
     double ratio;
   };
   const Assembly hexagonal = hexagonal_lattice({.columns = 60, .rows = 60});
-  const Assembly random =
-      delaunay_assembly({.discs = 1500, .seed = 5, .radii = {.smallest = 0.004, .largest = 0.006}});
+  const Assembly random = delaunay_assembly({.discs = 1500, .seed = 5, .radii = {.smallest = 0.004, .largest = 0.006}});
   for (const Case& scene : {Case{"hexagonal", hexagonal, 0.5}, Case{"hexagonal", hexagonal, -0.1},
                             Case{"delaunay", random, 0.5}, Case{"delaunay", random, -0.05}}) {
     const ContactSprings springs(SpringConstants{1e9, scene.ratio * 1e9});
     const std::vector<Support> supports{{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = {}}};
     const auto solved = [&](int threads) {
       const ThreadsFor with(threads);
-      return numbers_of(
-          solve_equilibrium(scene.assembly, springs, supports,
-                            {{.group = "right", .kind = LoadKind::traction, .force = {1e6, 2e5}}}));
+      return numbers_of(solve_equilibrium(scene.assembly, springs, supports,
+                                          {{.group = "right", .kind = LoadKind::traction, .force = {1e6, 2e5}}}));
     };
     const std::vector<double> one = solved(1);
     for (const int threads : {2, 3, 7}) {

@@ -44,8 +44,7 @@ template <typename Product>
 double largest_difference(const Symmetric& a, Product product) {
   double difference = 0;
   for (std::size_t c = 0; c < a.n; ++c) {
-    for (std::size_t r = c; r < a.n; ++r)
-      difference = std::max(difference, std::abs(product(r, c) - a(r, c)));
+    for (std::size_t r = c; r < a.n; ++r) difference = std::max(difference, std::abs(product(r, c) - a(r, c)));
   }
   return difference;
 }
@@ -92,8 +91,8 @@ TEST_CASE("factors_of_a_positive_front_multiply_to_the_front") {
     std::size_t pivots, updates;
   };
   // From 768 rows on, fronts are worked on in tiles of 256.
-  const auto [k, m] = GENERATE(
-      values<Size>({{1, 0}, {3, 5}, {30, 60}, {300, 468}, {256, 512}, {700, 100}, {769, 0}, {5, 800}}));
+  const auto [k, m] =
+      GENERATE(values<Size>({{1, 0}, {3, 5}, {30, 60}, {300, 468}, {256, 512}, {700, 100}, {769, 0}, {5, 800}}));
   const int threads = GENERATE(1, 3);
   const ThreadsFor with(threads);
   const std::size_t n = k + m;

@@ -86,8 +86,7 @@ System delaunay() {
   return {"delaunay", std::move(discs), stiff, 3, held};
 }
 System all_held() {
-  return {"all held", hexagonal_lattice({.columns = 2, .rows = 2}), stiff, 3,
-          [](std::int32_t, int) { return true; }};
+  return {"all held", hexagonal_lattice({.columns = 2, .rows = 2}), stiff, 3, [](std::int32_t, int) { return true; }};
 }
 
 struct BackEnd {
@@ -104,8 +103,7 @@ BackEnd cholmod(const std::string& name, CholmodOrdering ordering) {
 std::vector<BackEnd> cholesky_back_ends() {
   return {{"multifrontal Cholesky",
            [](const System& s, FactorReport* report) {
-             const auto symbolic =
-                 std::make_shared<const SymbolicFactor>(analyze(s.tree, s.graph, s.matrix.block));
+             const auto symbolic = std::make_shared<const SymbolicFactor>(analyze(s.tree, s.graph, s.matrix.block));
              return multifrontal_cholesky(symbolic, s.on_graph(), report);
            }},
           cholmod("CHOLMOD, our order", CholmodOrdering::ours),

@@ -46,8 +46,7 @@ std::vector<DiscMotion> gears(const Assembly& square_assembly) {
   return motions;
 }
 
-void check_says(const Assembly& assembly, std::vector<DiscMotion> motions,
-                const std::vector<std::string>& words) {
+void check_says(const Assembly& assembly, std::vector<DiscMotion> motions, const std::vector<std::string>& words) {
   const std::string first = describe_motion(assembly, motions);
   INFO("the words: " << first);
   for (const std::string& word : words) {
@@ -62,12 +61,11 @@ void check_says(const Assembly& assembly, std::vector<DiscMotion> motions,
   }
 }
 
-/// Cholesky factor of K + shift max(diag K) over the free components, in a band; discs of lattices are
-/// numbered along their rows, so that the band of a slender one is narrow.
+/// Cholesky factor of K + shift max(diag K) over the free components, in a band; discs of lattices are numbered along
+/// their rows, so that the band of a slender one is narrow.
 class BandSolver {
  public:
-  BandSolver(const Assembly& assembly, const ContactSprings& springs, const DegreesOfFreedom& unknowns,
-             double shift) {
+  BandSolver(const Assembly& assembly, const ContactSprings& springs, const DegreesOfFreedom& unknowns, double shift) {
     const ContactGraph graph(assembly);
     columns_ = compress(assemble_stiffness(assembly, graph, springs, unknowns), assembly, graph, unknowns);
     const std::int64_t n = columns_.size;
@@ -190,8 +188,7 @@ TEST_CASE("local_motions_name_their_discs") {
   std::vector<DiscMotion> motions(assembly.size());
   motions[17] = {{1, 0.4}, 3};
   motions[41] = {{-0.2, 0.9}, 0};
-  check_says(assembly, motions,
-             {"local motion of about 2 of 95 discs", describe_disc(assembly, 17), "disc 41 at"});
+  check_says(assembly, motions, {"local motion of about 2 of 95 discs", describe_disc(assembly, 17), "disc 41 at"});
   for (std::size_t d = 50; d < 60; ++d) motions[d] = {{0.9, d % 2 == 0 ? 0.5 : -0.5}, 0};
   Assembly larger = hexagonal(20, 20);
   motions.resize(larger.size());
@@ -251,8 +248,7 @@ TEST_CASE("soft_modes_stay_above_mechanisms") {
     int columns, rows;
     double kT;
   };
-  const Strip strip =
-      GENERATE(Strip{2, 660, 0.5e9}, Strip{3, 400, 0.5e9}, Strip{3, 400, 1e5}, Strip{11, 95, 0.5e9});
+  const Strip strip = GENERATE(Strip{2, 660, 0.5e9}, Strip{3, 400, 0.5e9}, Strip{3, 400, 1e5}, Strip{11, 95, 0.5e9});
   const Assembly assembly = hexagonal(strip.columns, strip.rows);
   const ContactSprings springs(SpringConstants{1e9, strip.kT});
   const DegreesOfFreedom unknowns = clamp_first_row(assembly, strip.columns, 3);

@@ -57,8 +57,7 @@ struct Loose {
   Loose(const Assembly& discs, double ratio, int per_disc, int leaf_size)
       : assembly(discs),
         graph(discs),
-        matrix(assemble_stiffness(discs, graph, ContactSprings(SpringConstants{1, ratio}),
-                                  all_free(discs, per_disc))),
+        matrix(assemble_stiffness(discs, graph, ContactSprings(SpringConstants{1, ratio}), all_free(discs, per_disc))),
         symbolic(std::make_shared<const SymbolicFactor>(
             analyze(dissect(discs, graph, {.leaf_size = leaf_size}), graph, per_disc))) {}
 
@@ -75,8 +74,7 @@ bool same_bits(const std::vector<double>& x, const std::vector<double>& y) {
 TEST_CASE("cholesky_undoes_the_matrix") {
   Random random(1);
   for (int trial = 0; trial < 40; ++trial) {
-    const int block = 2 + trial % 2, leaf_size = 1 + trial % 7,
-              discs = 1 + static_cast<int>(random.below(60));
+    const int block = 2 + trial % 2, leaf_size = 1 + trial % 7, discs = 1 + static_cast<int>(random.below(60));
     RandomSystem system = random_system(discs, block, trial % 3 * 10, leaf_size, random);
     system.fill_positive(random);
     FactorReport report;
@@ -112,17 +110,15 @@ TEST_CASE("indefinite_matrices_are_solved_with_their_inertia_and_bounded_growth"
   double growth = 0;
   Random random(3);
   for (int trial = 0; trial < 30; ++trial) {
-    const int block = 2 + trial % 2, leaf_size = 1 + trial % 4,
-              discs = 1 + static_cast<int>(random.below(45));
+    const int block = 2 + trial % 2, leaf_size = 1 + trial % 4, discs = 1 + static_cast<int>(random.below(45));
     RandomSystem system = random_system(discs, block, trial % 3 * 8, leaf_size, random);
     system.fill_at_random(random, zero_share);
     const DenseMatrix a = system.dense_matrix();
     const Inertia expected = inertia_of(a, 1e-10);
     const auto factor = multifrontal_ldlt(system.symbolic, system.on_graph(), {.threshold = u});
     const FactorReport& report = factor->report();
-    CAPTURE(u, zero_share, trial, discs, block, leaf_size, expected.negative, expected.zero,
-            report.negative_pivots, report.zero_pivots, report.delayed_pivots, report.growth,
-            report.smallest_pivot);
+    CAPTURE(u, zero_share, trial, discs, block, leaf_size, expected.negative, expected.zero, report.negative_pivots,
+            report.zero_pivots, report.delayed_pivots, report.growth, report.smallest_pivot);
     CHECK(report.zero_pivots == expected.zero);
     CHECK(report.negative_pivots == expected.negative);
     CHECK(report.growth <= (1 + 1e-12) / u);
@@ -187,8 +183,7 @@ TEST_CASE("zero_pivots_count_the_null_space_of_unsupported_assemblies") {
           if (expected.zero == 0) continue;
           const std::vector<double> softest = factor->softest_motion();
           REQUIRE(largest(softest) > 0);
-          const double resistance =
-              norm_of(a) == 0 ? 0 : largest(times(a, softest)) / (norm_of(a) * largest(softest));
+          const double resistance = norm_of(a) == 0 ? 0 : largest(times(a, softest)) / (norm_of(a) * largest(softest));
           CAPTURE(resistance);
           CHECK(resistance < 1e-13);
         }
@@ -231,8 +226,7 @@ TEST_CASE("several_right_hand_sides_are_solved_as_one_by_one") {
       std::vector<double> alone(from, from + static_cast<std::ptrdiff_t>(n));
       factor.solve(alone, 1);
       const auto there = together.begin() + c * static_cast<std::ptrdiff_t>(n);
-      difference =
-          std::max(difference, relative_difference({there, there + static_cast<std::ptrdiff_t>(n)}, alone));
+      difference = std::max(difference, relative_difference({there, there + static_cast<std::ptrdiff_t>(n)}, alone));
     }
     return difference;
   };

@@ -155,8 +155,7 @@ TEST_CASE("rows_of_fronts_hold_all_fill_of_their_discs") {
     const ContactGraph graph(assembly);
     for (const int leaf_size : {1, 10}) {
       const int block = leaf_size == 1 ? 2 : 3;
-      const SymbolicFactor symbolic =
-          analyze(dissect(assembly, graph, {.leaf_size = leaf_size}), graph, block);
+      const SymbolicFactor symbolic = analyze(dissect(assembly, graph, {.leaf_size = leaf_size}), graph, block);
       const auto fill = eliminate(graph, symbolic);
       double nonzeros = 0;
       std::size_t spare = 0;
@@ -178,8 +177,7 @@ TEST_CASE("rows_of_fronts_hold_all_fill_of_their_discs") {
         }
         // More than that only where a child passes on what its parent's own discs are not coupled to.
         for (const std::int32_t q : rows) spare += needed[q] == 0 ? 1 : 0;
-        const double k = static_cast<double>(symbolic.pivots(t)),
-                     m = static_cast<double>(symbolic.updates(t));
+        const double k = static_cast<double>(symbolic.pivots(t)), m = static_cast<double>(symbolic.updates(t));
         nonzeros += k * (k + 1) / 2 + k * m;
       }
       CAPTURE(spare, symbolic.nonzeros);

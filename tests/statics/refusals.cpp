@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Scenes that have no equilibrium, or none that could be trusted: each is refused with a sentence of its
-/// own.
+/// Scenes that have no equilibrium, or none that could be trusted: each is refused with a sentence of its own.
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -35,8 +34,7 @@ Assembly block() {
 
 /// Solve; check that it is refused with one sentence of problem, why and remedy that holds the words.
 void check_refused(const Assembly& assembly, SpringConstants k, const std::vector<Support>& supports,
-                   const LoadCase& loads, const std::vector<std::string>& words,
-                   EquilibriumOptions options = {}) {
+                   const LoadCase& loads, const std::vector<std::string>& words, EquilibriumOptions options = {}) {
   const ContactSprings springs(k);
   std::string solution;
   const Refusal refusal =
@@ -68,16 +66,14 @@ Assembly block_with_a_tail(int size, double angle) {
   return tail;
 }
 
-LoadCase load_on(const std::string& group, Vec2 force, double moment = 0,
-                 LoadKind kind = LoadKind::per_disc) {
+LoadCase load_on(const std::string& group, Vec2 force, double moment = 0, LoadKind kind = LoadKind::per_disc) {
   return {{.group = group, .kind = kind, .force = force, .moment = moment}};
 }
 
 }  // namespace
 
 TEST_CASE("loads_that_make_no_sense_are_refused") {
-  const double nan = std::numeric_limits<double>::quiet_NaN(),
-               infinity = std::numeric_limits<double>::infinity();
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   check_refused(block(), stiff, left_held, load_on("nobody", {1, 0}),
                 {"load", "'nobody'", "empty", "no disc to carry it"});
   check_refused(block(), stiff, left_held, load_on("rihgt", {1, 0}), {"no group 'rihgt'", "right"});
@@ -175,8 +171,7 @@ TEST_CASE("mechanisms_are_refused_whatever_the_solver_and_the_sign_of_kT") {
                           {0.3, 1}});
   }
   for (const Mechanism& m : mechanisms) {
-    for (const SolverMethod method :
-         {SolverMethod::automatic, SolverMethod::cholmod, SolverMethod::umfpack}) {
+    for (const SolverMethod method : {SolverMethod::automatic, SolverMethod::cholmod, SolverMethod::umfpack}) {
       if (method == SolverMethod::cholmod && m.springs.kT < 0) continue;
       CAPTURE(m.name, to_string(method));
       EquilibriumOptions options;

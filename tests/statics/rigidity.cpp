@@ -131,8 +131,7 @@ TEST_CASE("assemblies_without_neighbours_are_refused") {
     CHECK(scene.report().discs_without_contacts == 4);
     CHECK(scene.report().free_rigid_motions == 8);
     scene.hold(first, {0, 1}).hold(first + 1, {0, 1}).hold(first + 2, {0, 1}).hold(first + 3, {0});
-    check_says(scene.refusal(),
-               {format("disc {} at (13.5, ", first + 3), "not held in both directions", "Hold it"});
+    check_says(scene.refusal(), {format("disc {} at (13.5, ", first + 3), "not held in both directions", "Hold it"});
     CHECK(scene.hold(first + 3, {1}).refusal().empty());
   }
 }
@@ -233,8 +232,8 @@ TEST_CASE("a_piece_that_is_not_held_is_named") {
   append(scene.assembly, block(3, 3).assembly, {20, 0});
   append(scene.assembly, block(2, 2).assembly, {40, 0});
   scene.hold(0, {0, 1, 2});
-  check_says(scene.refusal(), {"3 pieces (of 14, 8 and 3 discs)", "2 of them", "the 8 discs with",
-                               "disc 14 at", "translation along x and along y, and rotation"});
+  check_says(scene.refusal(), {"3 pieces (of 14, 8 and 3 discs)", "2 of them", "the 8 discs with", "disc 14 at",
+                               "translation along x and along y, and rotation"});
   scene.hold(22, {0, 1, 2}).hold(14, {0, 1});
   check_says(scene.refusal(), {"one of them", "rotation about " + at(scene.assembly.centres[14])});
   CHECK(scene.hold(15, {1}).refusal().empty());
@@ -341,9 +340,8 @@ TEST_CASE("the_verdict_does_not_depend_on_the_frame") {
     const Vec2 shift{random.uniform(-100, 100), random.uniform(-100, 100)};
     CAPTURE(trial, angle, scale, shift.x, shift.y);
     for (Vec2& x : scene.assembly.centres) {
-      x = scale * (Vec2{std::cos(angle) * x.x - std::sin(angle) * x.y,
-                        std::sin(angle) * x.x + std::cos(angle) * x.y} +
-                   shift);
+      x = scale *
+          (Vec2{std::cos(angle) * x.x - std::sin(angle) * x.y, std::sin(angle) * x.x + std::cos(angle) * x.y} + shift);
     }
     for (double& r : scene.assembly.radii) r *= scale;
     for (Contact& c : scene.assembly.contacts) c.lever_i *= scale, c.lever_j *= scale;

@@ -62,8 +62,8 @@ std::vector<double> eigenvalues(Dense a) {
   return values;
 }
 
-/// Zero eigenvalues of a positive semi-definite matrix whose stiffnesses are of the order of 1; none may lie
-/// where zero or not is in doubt.
+/// Zero eigenvalues of a positive semi-definite matrix whose stiffnesses are of the order of 1; none may lie where
+/// zero or not is in doubt.
 std::int64_t nullity(const Dense& a) {
   std::int64_t zero = 0;
   for (const double value : eigenvalues(a)) {
@@ -86,8 +86,7 @@ struct Scene {
 Dense dense_stiffness(const Scene& scene) {
   DegreesOfFreedom all = scene.unknowns;
   std::fill(all.held.begin(), all.held.end(), std::uint8_t{0});
-  const StiffnessMatrix K =
-      assemble_stiffness(scene.assembly, ContactGraph(scene.assembly), scene.springs, all);
+  const StiffnessMatrix K = assemble_stiffness(scene.assembly, ContactGraph(scene.assembly), scene.springs, all);
   const std::size_t b = K.block;
   Dense dense(all.held.size(), std::vector<double>(all.held.size(), 0.0));
   for (std::size_t d = 0; d < scene.assembly.size(); ++d) {
@@ -155,8 +154,8 @@ std::vector<bool> resisted(const Assembly& assembly, const ContactSprings& sprin
   return result;
 }
 
-/// Motions in which the centres of every piece move rigidly and every disc turns as it likes: the columns of
-/// P. Zero eigenvalues of P^T K P, with supports added as springs of stiffness 1.
+/// Motions in which the centres of every piece move rigidly and every disc turns as it likes: the columns of P. Zero
+/// eigenvalues of P^T K P, with supports added as springs of stiffness 1.
 std::int64_t rigid_zero_modes(const Scene& scene, const Dense& K) {
   const Assembly& a = scene.assembly;
   const std::size_t b = scene.unknowns.per_disc;
@@ -310,8 +309,7 @@ TEST_CASE("a_triangulated_assembly_has_no_other_zero_modes") {
   for (int trial = 0; trial < 200; ++trial) {
     Scene scene;
     const bool periodic = trial % 4 == 0;
-    scene.assembly =
-        hexagonal_lattice({.columns = 3, .rows = periodic ? 4 : 3, .radius = 0.5, .periodic = periodic});
+    scene.assembly = hexagonal_lattice({.columns = 3, .rows = periodic ? 4 : 3, .radius = 0.5, .periodic = periodic});
     for (Vec2& x : scene.assembly.centres) x += {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)};
     for (Contact& c : scene.assembly.contacts) {
       c.lever_i = c.lever_j = 0.5 * norm(scene.assembly.branch(c));

@@ -14,8 +14,7 @@ namespace equidem::test {
 namespace {
 
 /// A contact whose point divides the branch as the radii do, seen from disc i.
-void join(Assembly& assembly, std::int32_t i, std::int32_t j, std::int32_t shift_x = 0,
-          std::int32_t shift_y = 0) {
+void join(Assembly& assembly, std::int32_t i, std::int32_t j, std::int32_t shift_x = 0, std::int32_t shift_y = 0) {
   Contact contact{i, j, shift_x, shift_y, 0, 0};
   const double length = norm(assembly.branch(contact));
   const double share = assembly.radii[i] / (assembly.radii[i] + assembly.radii[j]);
@@ -42,8 +41,7 @@ Assembly cell_of_one() {
   return cell;
 }
 
-/// The hexagonal lattice in its smallest rectangular cell: the two discs touch four times, and each its own
-/// image.
+/// The hexagonal lattice in its smallest rectangular cell: the two discs touch four times, and each its own image.
 Assembly cell_of_two() {
   const double h = std::numbers::sqrt3;
   Assembly cell = discs_in_cell({1, h}, {{0.1, 0.2}, {0.6, 0.2 + h / 2}}, {0.5, 0.5});
@@ -93,9 +91,7 @@ void name_groups(Assembly& assembly) {
   auto& groups = assembly.groups;
   groups["anchor"].discs = {0};
   std::int32_t guide = 0;
-  const auto distance = [&](std::int32_t disc) {
-    return std::abs(assembly.centres[disc].x - assembly.centres[0].x);
-  };
+  const auto distance = [&](std::int32_t disc) { return std::abs(assembly.centres[disc].x - assembly.centres[0].x); };
   for (std::int32_t disc = 0; disc < static_cast<std::int32_t>(assembly.size()); ++disc) {
     if (distance(disc) > distance(guide)) guide = disc;
     if (disc % 3 == 1) groups["a"].discs.push_back(disc);
@@ -114,8 +110,7 @@ void name_groups(Assembly& assembly) {
 
 std::vector<AssemblyKind> make_kinds() {
   std::vector<AssemblyKind> kinds;
-  const auto add = [&](std::string name, Assembly assembly, bool triangulated, bool chain = false,
-                       bool loose = false) {
+  const auto add = [&](std::string name, Assembly assembly, bool triangulated, bool chain = false, bool loose = false) {
     name_groups(assembly);
     kinds.push_back({std::move(name), std::move(assembly), triangulated, chain, loose});
   };

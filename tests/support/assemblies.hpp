@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Small assemblies of every kind, for tests with one body over all of them, and scenes in which they are
-/// held.
+/// Small assemblies of every kind, for tests with one body over all of them, and scenes in which they are held.
 #pragma once
 
 #include <functional>
@@ -15,8 +14,8 @@
 
 namespace equidem::test {
 
-/// Every kind has facet lengths, contacts whose levers add up to their branch, and the groups "anchor" (disc
-/// 0), "a" and "b" (every third disc, from the second and the third on; disc 0 where there is none).
+/// Every kind has facet lengths, contacts whose levers add up to their branch, and the groups "anchor" (disc 0), "a"
+/// and "b" (every third disc, from the second and the third on; disc 0 where there is none).
 struct AssemblyKind {
   std::string name;
   Assembly assembly;
@@ -29,12 +28,10 @@ const std::vector<AssemblyKind>& assembly_kinds();
 /// \throws std::out_of_range where there is none of that name
 const AssemblyKind& assembly_kind(const std::string& name);
 
-/// Discs of equal radius in a row along x, the first at the origin, each touching the next; groups "first",
-/// "last".
+/// Discs of equal radius in a row along x, the first at the origin, each touching the next; groups "first", "last".
 Assembly chain_of_discs(int count, double radius);
 
-/// An assembly, its springs, and supports that leave K regular: "anchor" held, and where free "guide" along
-/// y.
+/// An assembly, its springs, and supports that leave K regular: "anchor" held, and where free "guide" along y.
 struct Scene {
   std::string name;
   const AssemblyKind& kind;
@@ -45,8 +42,8 @@ struct Scene {
   [[nodiscard]] const Assembly& assembly() const { return kind.assembly; }
 };
 
-/// Every kind with free and with restrained rotation, kT/kN = 0.5, 0 (triangulated kinds) and -0.05, springs
-/// uniform and weighted; kN = 1e9 Pa.
+/// Every kind with free and with restrained rotation, kT/kN = 0.5, 0 (triangulated kinds) and -0.05, springs uniform
+/// and weighted; kN = 1e9 Pa.
 std::vector<Scene> held_scenes();
 
 }  // namespace equidem::test

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Equilibrium in long double, straight from the contact law and dense: for springs and radii of very
-/// different size, where doubles leave few digits.
+/// Equilibrium in long double, straight from the contact law and dense: for springs and radii of very different size,
+/// where doubles leave few digits.
 #pragma once
 
 #include <cmath>
@@ -16,11 +16,9 @@
 
 namespace equidem::test {
 
-/// Motions (u_x, u_y, theta) per disc that balance `forces` (f_x, f_y, moment); components marked in `held`
-/// are zero.
+/// Motions (u_x, u_y, theta) per disc that balance `forces` (f_x, f_y, moment); components marked in `held` are zero.
 inline std::vector<long double> solve_in_long_double(const Assembly& assembly, const ContactSprings& springs,
-                                                     std::span<const char> held,
-                                                     std::span<const double> forces) {
+                                                     std::span<const char> held, std::span<const double> forces) {
   using Number = long double;
   const std::size_t n = 3 * assembly.size();
   std::vector<std::vector<Number>> k(n, std::vector<Number>(n + 1, 0));

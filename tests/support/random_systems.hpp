@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Symmetric matrices of random blocks on random graphs: nothing that comes from springs, so that
-/// factorizations meet zero diagonals, pivots that grow and pivots that must wait.
+/// Symmetric matrices of random blocks on random graphs: nothing that comes from springs, so that factorizations meet
+/// zero diagonals, pivots that grow and pivots that must wait.
 #pragma once
 
 #include <algorithm>
@@ -22,8 +22,7 @@
 
 namespace equidem::test {
 
-/// Discs at random points, each joined to its nearest neighbours and some to discs anywhere; pairs may
-/// repeat.
+/// Discs at random points, each joined to its nearest neighbours and some to discs anywhere; pairs may repeat.
 inline Assembly random_graph(int discs, int near, int far, Random& random) {
   Assembly assembly;
   for (int d = 0; d < discs; ++d) {

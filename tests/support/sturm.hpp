@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// How many eigenvalues of a dense symmetric matrix lie below a number: Householder's reduction to a
-/// tridiagonal matrix, then a Sturm sequence (Golub & Van Loan, Matrix Computations, sections 8.3 and 8.4).
-/// Nothing iterates.
+/// How many eigenvalues of a dense symmetric matrix lie below a number: Householder's reduction to a tridiagonal
+/// matrix, then a Sturm sequence (Golub & Van Loan, Matrix Computations, sections 8.3 and 8.4). Nothing iterates.
 #pragma once
 
 #include <cmath>

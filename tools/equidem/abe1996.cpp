@@ -45,9 +45,8 @@ std::vector<RatioPoint> test_ratios(const Block& block, Progress& progress) {
   for (int step = first; step <= last; ++step) {
     const double ratio = step / 20.0;
     const TestRun run = run_test(assembly, block, ratio, Rotation::from_scene);
-    points.push_back({ratio, run.result.poisson_ratio, run.result.stiffness_ratio,
-                      run.equilibrium.negative_pivots, run.equilibrium.unstable_modes,
-                      run.equilibrium.relative_residual});
+    points.push_back({ratio, run.result.poisson_ratio, run.result.stiffness_ratio, run.equilibrium.negative_pivots,
+                      run.equilibrium.unstable_modes, run.equilibrium.relative_residual});
     progress.update(0.4 * (step - first + 1.0) / (last - first + 1.0));
   }
   return points;
@@ -59,9 +58,8 @@ std::vector<Convergence> test_sizes(const Block& block, Progress& progress) {
     Convergence convergence{ratio, {}};
     for (const int rows : {9, 17, 33, 65, 129}) {
       const TestRun run = run_test(block_of(block, rows, rows), block, ratio, Rotation::from_scene);
-      convergence.points.push_back(
-          {rows, std::abs(run.result.poisson_ratio - poisson_ratio_of_ratio(ratio)),
-           std::abs(run.result.stiffness_ratio / hexagonal_stiffness_ratio(ratio) - 1)});
+      convergence.points.push_back({rows, std::abs(run.result.poisson_ratio - poisson_ratio_of_ratio(ratio)),
+                                    std::abs(run.result.stiffness_ratio / hexagonal_stiffness_ratio(ratio) - 1)});
     }
     all.push_back(std::move(convergence));
     progress.update(0.4 + 0.5 * static_cast<double>(all.size()) / 4);
@@ -77,8 +75,8 @@ Tensor2 stress_of_continuum(const SpringConstants& springs, const Tensor2& h) {
   return {volume + 2 * g * h.xx, shear, shear, volume + 2 * g * h.yy};
 }
 
-/// Eq. (55) over the cell 2 sqrt3 a², its first bracket completed by d_2i d_2j (u_1,1 + 3 u_2,2):
-/// (sqrt3/4) [(kN - kT) d_ij e_mm + 2 (kN + kT) e_ij] + (sqrt3/2) kT e_ji W with W = u_2,1 - u_1,2.
+/// Eq. (55) over the cell 2 sqrt3 a², its first bracket completed by d_2i d_2j (u_1,1 + 3 u_2,2): (sqrt3/4) [(kN -
+/// kT) d_ij e_mm + 2 (kN + kT) e_ij] + (sqrt3/2) kT e_ji W with W = u_2,1 - u_1,2.
 Tensor2 restrained_stress(const SpringConstants& k, const Tensor2& h) {
   const double volume = (k.kN - k.kT) * (h.xx + h.yy), sum = k.kN + k.kT, shear = sum * (h.xy + h.yx);
   const double spin = 0.5 * sqrt3 * k.kT * (h.yx - h.xy);
@@ -91,16 +89,15 @@ double deviation(const std::vector<Tensor2>& stresses, const Tensor2& expected) 
       std::max({std::abs(expected.xx), std::abs(expected.yy), std::abs(expected.xy), std::abs(expected.yx)});
   double worst = 0;
   for (const Tensor2& s : stresses) {
-    worst = std::max({worst, std::abs(s.xx - expected.xx), std::abs(s.yy - expected.yy),
-                      std::abs(s.xy - expected.xy), std::abs(s.yx - expected.yx)});
+    worst = std::max({worst, std::abs(s.xx - expected.xx), std::abs(s.yy - expected.yy), std::abs(s.xy - expected.xy),
+                      std::abs(s.yx - expected.yx)});
   }
   return worst / size;
 }
 
 StressCheck check_stress(const Block& block) {
   StressCheck check;
-  const Assembly cell =
-      hexagonal_lattice({.columns = 8, .rows = 8, .radius = block.radius, .periodic = true});
+  const Assembly cell = hexagonal_lattice({.columns = 8, .rows = 8, .radius = block.radius, .periodic = true});
   const Tensor2 gradients[] = {
       {1e-3, 0, 0, 0}, {0, 0, 0, 1e-3}, {0, 1e-3, 0, 0}, {0, 0, 1e-3, 0}, {7e-4, -3e-4, 9e-4, 2e-4}};
   for (const double ratio : {-0.3, -0.1, 0.0, 0.25, 0.5, 1.0}) {
@@ -129,8 +126,7 @@ StressCheck check_stress(const Block& block) {
   check.moment_density = found.moment_density;
   check.expected_asymmetry = -sqrt3 * k.kT * check.spin;
   const Assembly free = block_of(block, block.columns, block.rows);
-  check.restrained_poisson_ratio =
-      run_test(free, block, check.ratio, Rotation::restrained).result.poisson_ratio;
+  check.restrained_poisson_ratio = run_test(free, block, check.ratio, Rotation::restrained).result.poisson_ratio;
   return check;
 }
 
@@ -144,10 +140,8 @@ Reproduction reproduce(const Block& block) {
   const Assembly assembly = block_of(block, block.columns, block.rows);
   const TensionSetup setup = tension_setup(assembly, block.test);
   result.height = setup.height;
-  result.gauge_length =
-      norm(assembly.centres[setup.horizontal.second] - assembly.centres[setup.horizontal.first]);
-  result.gauge_height =
-      norm(assembly.centres[setup.vertical.second] - assembly.centres[setup.vertical.first]);
+  result.gauge_length = norm(assembly.centres[setup.horizontal.second] - assembly.centres[setup.horizontal.first]);
+  result.gauge_height = norm(assembly.centres[setup.vertical.second] - assembly.centres[setup.vertical.first]);
   result.points = test_ratios(block, progress);
   result.times.add("figures 7 and 8", watch.lap());
   result.convergence = test_sizes(block, progress);

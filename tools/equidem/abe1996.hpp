@@ -47,8 +47,8 @@ struct Convergence {
   std::vector<SizePoint> points;
 };
 
-/// Section 4: macroscopic stress of uniform strain on the periodic lattice, largest deviation over discs,
-/// strains and ratios, relative to the largest stress.
+/// Section 4: macroscopic stress of uniform strain on the periodic lattice, largest deviation over discs, strains and
+/// ratios, relative to the largest stress.
 struct StressCheck {
   double free_rotation = 0;             ///< from eq. (52)
   double restrained_rotation = 0;       ///< from eq. (55)

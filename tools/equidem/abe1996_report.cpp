@@ -15,12 +15,11 @@ std::string table_of_ratios(const Reproduction& result) {
       "  kT/kN    nu (35)   (1-r)/4   difference     (36)      (37)    difference  negative pivots\n";
   for (const RatioPoint& p : result.points) {
     const double nu = poisson_ratio_of_ratio(p.ratio), stiffness = hexagonal_stiffness_ratio(p.ratio);
-    text += format("  {:>5.2f}  {:>9.5f}  {:>8.5f}   {:>9.1e}  {:>9.5f}  {:>8.5f}   {:>9.1e}  {}\n", p.ratio,
-                   p.poisson_ratio, nu, p.poisson_ratio - nu, p.stiffness_ratio, stiffness,
-                   p.stiffness_ratio - stiffness,
-                   p.stable()
-                       ? format("{}, stable", p.negative_pivots)
-                       : format("{}, UNSTABLE by {}", p.negative_pivots, counted(p.unstable_modes, "mode")));
+    text +=
+        format("  {:>5.2f}  {:>9.5f}  {:>8.5f}   {:>9.1e}  {:>9.5f}  {:>8.5f}   {:>9.1e}  {}\n", p.ratio,
+               p.poisson_ratio, nu, p.poisson_ratio - nu, p.stiffness_ratio, stiffness, p.stiffness_ratio - stiffness,
+               p.stable() ? format("{}, stable", p.negative_pivots)
+                          : format("{}, UNSTABLE by {}", p.negative_pivots, counted(p.unstable_modes, "mode")));
   }
   return text;
 }
@@ -33,8 +32,7 @@ std::string table_of_sizes(const Reproduction& result) {
   for (std::size_t k = 0; k < result.convergence.front().points.size(); ++k) {
     text += format("  {:>4} ", result.convergence.front().points[k].rows);
     for (const Convergence& c : result.convergence) {
-      text +=
-          format("  {:>9.1e} {:>9.1e}  ", c.points[k].poisson_ratio_error, c.points[k].stiffness_ratio_error);
+      text += format("  {:>9.1e} {:>9.1e}  ", c.points[k].poisson_ratio_error, c.points[k].stiffness_ratio_error);
     }
     text += "\n";
   }
@@ -55,15 +53,12 @@ std::string table_of_sizes(const Reproduction& result) {
 }
 
 std::string section_4(const StressCheck& s) {
-  std::string text =
-      "Section 4: macroscopic stress (50) of uniform strain on the periodic lattice, disc by disc\n";
-  text += format("  rotation free: differs from eq. (52) by at most {:.1e} of the largest stress\n",
-                 s.free_rotation);
-  text +=
-      format("  rotation restrained: differs from eq. (55) (its first bracket completed) by at most {:.1e}\n",
-             s.restrained_rotation);
-  text += format("  at kT/kN = {}, u_2,1 - u_1,2 = {}: s_12 - s_21 = {:.6g} Pa, eq. (55) gives {:.6g} Pa;\n",
-                 s.ratio, s.spin, s.asymmetry, s.expected_asymmetry);
+  std::string text = "Section 4: macroscopic stress (50) of uniform strain on the periodic lattice, disc by disc\n";
+  text += format("  rotation free: differs from eq. (52) by at most {:.1e} of the largest stress\n", s.free_rotation);
+  text += format("  rotation restrained: differs from eq. (55) (its first bracket completed) by at most {:.1e}\n",
+                 s.restrained_rotation);
+  text += format("  at kT/kN = {}, u_2,1 - u_1,2 = {}: s_12 - s_21 = {:.6g} Pa, eq. (55) gives {:.6g} Pa;\n", s.ratio,
+                 s.spin, s.asymmetry, s.expected_asymmetry);
   text += format(
       "  the moments that hold the discs come to {:.6g} Pa (N m per m² and metre of depth): they are its "
       "cause\n",
@@ -82,8 +77,8 @@ std::string section_4(const StressCheck& s) {
 std::string report(const Reproduction& result) {
   const Block& b = result.block;
   std::string text = "Abe (1996): spring constants of discs and the continuum they stand for\n\n";
-  text += format("Block: {} rows of {} and {} discs in turn, radius {} m, kN = {:g} Pa; s11 = {:g} Pa\n",
-                 b.rows, b.columns, b.columns - 1, b.radius, b.kN, b.test.stress);
+  text += format("Block: {} rows of {} and {} discs in turn, radius {} m, kN = {:g} Pa; s11 = {:g} Pa\n", b.rows,
+                 b.columns, b.columns - 1, b.radius, b.kN, b.test.stress);
   text += format("Gauges A-B {:g} m along x and C-D {:g} m along y; height {:g} m = rows * sqrt3 a\n",
                  result.gauge_length, result.gauge_height, result.height);
   text += "(the paper prints neither the size of its block nor gauges and height)\n\n";

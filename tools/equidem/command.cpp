@@ -16,8 +16,7 @@ namespace equidem {
 void add_result_options(CLI::App& command, CommonOptions& options) {
   command.add_option("--out", options.out, "write tables, pictures and files for ParaView into this folder")
       ->type_name("DIR");
-  command
-      .add_option("--json", options.json, "write the result as JSON; '-': to stdout, in place of the report")
+  command.add_option("--json", options.json, "write the result as JSON; '-': to stdout, in place of the report")
       ->type_name("FILE|-");
   command.add_option("--threads", options.threads, "threads; left out: one per processor")
       ->check(CLI::Range(1, 4096))
@@ -30,8 +29,7 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_option("CASE", options.case_file, "the case file (TOML); 'equidem help case' lists its keys")
       ->required()
       ->type_name("FILE");
-  command
-      .add_option("--set", options.set, "set a key of the case file, such as springs.kT=0.3e9; repeatable")
+  command.add_option("--set", options.set, "set a key of the case file, such as springs.kT=0.3e9; repeatable")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
   command.add_option("--seed", options.seed, "short for --set assembly.seed=S")->type_name("S");

@@ -44,9 +44,11 @@ class OutputPlan {
  public:
   explicit OutputPlan(const CommonOptions& options) : options_(options) {}
 
-  /// A file NAME in --out, if there is one. \throws Error (bad_input) where it could not be written
+  /// A file NAME in --out, if there is one.
+  /// \throws Error (bad_input) where it could not be written
   void expect(const std::string& name) const;
-  /// The file of --json, if there is one. \throws Error (bad_input)
+  /// The file of --json, if there is one.
+  /// \throws Error (bad_input)
   void expect_json() const;
   [[nodiscard]] bool has_folder() const { return options_.out.has_value(); }
   [[nodiscard]] const std::filesystem::path& folder() const { return *options_.out; }
@@ -55,8 +57,7 @@ class OutputPlan {
   const CommonOptions& options_;
 };
 
-/// Report on stdout (unless quiet, or stdout is taken by the JSON), the object to --json and to
-/// OUT/result.json.
+/// Report on stdout (unless quiet, or stdout is taken by the JSON), the object to --json and to OUT/result.json.
 void deliver(const CommonOptions& options, const std::string& report, const JsonObject& object);
 
 /// One line on stderr, unless quiet.

@@ -51,8 +51,8 @@ std::string version_text() {
   const char* optimized = "not optimized";
 #endif
   return format("equidem {}\n{}, {}, compiler {}\nCLI11 {}, fmt {}.{}.{}, {}\n", library_version(), optimized,
-                assertions, __VERSION__, CLI11_VERSION, FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
-                FMT_VERSION % 100, toml_parser());
+                assertions, __VERSION__, CLI11_VERSION, FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100,
+                toml_parser());
 }
 
 std::vector<std::string> verb_names() {
@@ -113,9 +113,8 @@ int show_help(const CLI::App& program, const std::vector<std::string>& arguments
     auto topics = verb_names();
     topics.back() = "case";
     const auto meant = nearest(arguments[1], topics);
-    usage_error(
-        format("there is no help on '{}'", arguments[1]), "",
-        meant ? format("Perhaps you mean '{}'", *meant) : format("There is help on {}", listed(topics)));
+    usage_error(format("there is no help on '{}'", arguments[1]), "",
+                meant ? format("Perhaps you mean '{}'", *meant) : format("There is help on {}", listed(topics)));
   }
   std::fputs(program.help().c_str(), stdout);
   return 0;
@@ -192,7 +191,6 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return fail("there is too little memory. Make the assembly smaller; --dry-run says what it needs.", 1);
   } catch (const std::exception& error) {
-    return fail(format("this is a defect of equidem: {}. Please report it with the case file.", error.what()),
-                1);
+    return fail(format("this is a defect of equidem: {}. Please report it with the case file.", error.what()), 1);
   }
 }

@@ -18,9 +18,8 @@ double outer_moment(const Problem& problem, const LoadCase& loads, const Equilib
   double sum = std::accumulate(restraining.begin(), restraining.end(), 0.0);
   for (const Reaction& reaction : equilibrium.reactions) sum += reaction.moment;
   for (const Load& load : loads) {
-    const double times = load.kind == LoadKind::total
-                             ? 1.0
-                             : static_cast<double>(group(problem.assembly, load.group).discs.size());
+    const double times =
+        load.kind == LoadKind::total ? 1.0 : static_cast<double>(group(problem.assembly, load.group).discs.size());
     sum += times * load.moment;
   }
   return sum;

@@ -41,8 +41,8 @@ struct SolvedCase {
   Equilibrium equilibrium;
   std::vector<Tensor2> stresses;  ///< Pa, per disc; empty where the cells are unknown
   std::optional<Tensor2> stress;  ///< Pa, of the assembly, not made symmetric
-  /// Pa: all moments that act on discs from outside (restrained rotation, supports, loads) over the area. It
-  /// equals the asymmetry of the stress, xy - yx (Abe 1996, eq. 55).
+  /// Pa: all moments that act on discs from outside (restrained rotation, supports, loads) over the area. It equals
+  /// the asymmetry of the stress, xy - yx (Abe 1996, eq. 55).
   double moment_per_area = 0;
   std::optional<TensionResult> tension;
 
@@ -52,8 +52,8 @@ struct SolvedCase {
 
 SolvedCase solve_case(const Problem& problem, const EquilibriumSolver& solver, const NamedLoads& loads);
 
-/// What theory says of the tension test on a lattice of equal springs, plane strain: hexagonal nu = (1 - r)/4
-/// and (37) with r = kT/kN; square nu = 0 and s11/(kN e11) = 1.
+/// What theory says of the tension test on a lattice of equal springs, plane strain: hexagonal nu = (1 - r)/4 and
+/// (37) with r = kT/kN; square nu = 0 and s11/(kN e11) = 1.
 struct TensionTheory {
   double poisson_ratio = 0;
   double stiffness_ratio = 0;

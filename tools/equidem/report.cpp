@@ -50,16 +50,15 @@ void append_stress(std::string& out, const SolvedCase& result) {
   const auto shown = [&](double value) { return component(value, largest); };
   const bool symmetric = std::abs(asymmetry(s)) <= 1e-9 * largest;
   if (symmetric) {
-    out += report_line("stress", format("xx {}, yy {}, xy {} Pa, mean over the assembly", shown(s.xx),
-                                        shown(s.yy), shown(s.xy)));
+    out += report_line("stress",
+                       format("xx {}, yy {}, xy {} Pa, mean over the assembly", shown(s.xx), shown(s.yy), shown(s.xy)));
     return;
   }
-  out += report_line("stress", format("xx {}, yy {}, xy {}, yx {} Pa, mean over the assembly", shown(s.xx),
-                                      shown(s.yy), shown(s.xy), shown(s.yx)));
-  out += report_line(
-      "", format("not symmetric: xy - yx = {:.6g} Pa (Abe 1996, eq. 55). The moments that restrained "
-                 "rotation, supports and loads put on the discs are {:.6g} N m per m²",
-                 asymmetry(s), result.moment_per_area));
+  out += report_line("stress", format("xx {}, yy {}, xy {}, yx {} Pa, mean over the assembly", shown(s.xx), shown(s.yy),
+                                      shown(s.xy), shown(s.yx)));
+  out += report_line("", format("not symmetric: xy - yx = {:.6g} Pa (Abe 1996, eq. 55). The moments that restrained "
+                                "rotation, supports and loads put on the discs are {:.6g} N m per m²",
+                                asymmetry(s), result.moment_per_area));
 }
 
 void append_tension(std::string& out, const Problem& problem, const SolvedCase& result) {
@@ -67,11 +66,10 @@ void append_tension(std::string& out, const Problem& problem, const SolvedCase& 
   const TensionSetup& setup = *problem.tension;
   const auto theory = tension_theory(problem);
   const TomlValue& test = *problem.resolved.document.find("test");
-  out +=
-      report_line("tension test",
-                  format("s11 = {:.6g} Pa, height {:.6g} m, gauge \"{}\": discs {}-{} along x, {}-{} along y",
-                         t.stress.xx, setup.height, test.find("gauge")->text, setup.horizontal.first,
-                         setup.horizontal.second, setup.vertical.first, setup.vertical.second));
+  out += report_line("tension test",
+                     format("s11 = {:.6g} Pa, height {:.6g} m, gauge \"{}\": discs {}-{} along x, {}-{} along y",
+                            t.stress.xx, setup.height, test.find("gauge")->text, setup.horizontal.first,
+                            setup.horizontal.second, setup.vertical.first, setup.vertical.second));
   out += report_line("  strain", format("e11 = {:.9g}, e22 = {:.9g}", t.strain.xx, t.strain.yy));
   const auto compared = [&](const std::string& name, double value, double expected) {
     std::string line = format("{:<14.9g}", value);
@@ -114,9 +112,8 @@ std::string describe_problem(const Problem& problem, const Effects& effects) {
   std::string out;
   if (!problem.resolved.title.empty()) out += problem.resolved.title + "\n\n";
   out += report_line(
-      "assembly",
-      format("{}, {} discs, {} contacts, z = {:.4g}", a.kind, grouped(static_cast<std::int64_t>(a.size())),
-             grouped(static_cast<std::int64_t>(a.contacts.size())), a.coordination_number()));
+      "assembly", format("{}, {} discs, {} contacts, z = {:.4g}", a.kind, grouped(static_cast<std::int64_t>(a.size())),
+                         grouped(static_cast<std::int64_t>(a.contacts.size())), a.coordination_number()));
   if (a.periodic() || !a.cell_areas.empty())
     out += report_line("", format("area {:.6g} m², solid fraction {:.6g}{}", a.area(), a.solid_fraction(),
                                   a.periodic() ? ", periodic" : ""));
@@ -130,13 +127,12 @@ std::string describe_problem(const Problem& problem, const Effects& effects) {
   return out;
 }
 
-std::string describe_results(const Problem& problem, std::span<const SolvedCase> results,
-                             const StageTimes& times) {
+std::string describe_results(const Problem& problem, std::span<const SolvedCase> results, const StageTimes& times) {
   std::string out;
   const Equilibrium& first = results.front().equilibrium;
   out += report_line("unknowns", grouped(first.unknowns));
-  out += report_line("solver", format("{}, {:.3g} entries in the factor ({})", first.solver,
-                                      first.factor_nonzeros, readable_bytes(first.factor_bytes)));
+  out += report_line("solver", format("{}, {:.3g} entries in the factor ({})", first.solver, first.factor_nonzeros,
+                                      readable_bytes(first.factor_bytes)));
   out += report_line("stability", stability(problem, first));
   for (const SolvedCase& result : results) {
     if (!result.name.empty()) out += format("\nload case {}\n", result.name);
@@ -157,9 +153,9 @@ std::string describe_results(const Problem& problem, std::span<const SolvedCase>
 
 std::string describe_estimate(const SolveEstimate& e) {
   return report_line("unknowns", grouped(e.unknowns)) +
-         report_line("memory", format("{} at the peak, {} of it for the factor ({:.3g} entries)",
-                                      readable_bytes(e.peak_bytes), readable_bytes(e.factor_bytes),
-                                      e.factor_nonzeros)) +
+         report_line("memory",
+                     format("{} at the peak, {} of it for the factor ({:.3g} entries)", readable_bytes(e.peak_bytes),
+                            readable_bytes(e.factor_bytes), e.factor_nonzeros)) +
          report_line("work", format("{:.3g} multiplications and additions to factorize", e.operations)) +
          "nothing was solved (--dry-run)\n";
 }

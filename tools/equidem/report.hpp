@@ -13,10 +13,9 @@ namespace equidem {
 /// Title, assembly, springs, effects.
 std::string describe_problem(const Problem& problem, const Effects& effects);
 
-/// Unknowns, solver and what it says about the answer; then stress and, of the tension test, the moduli
-/// beside theory, for each load case; then times.
-std::string describe_results(const Problem& problem, std::span<const SolvedCase> results,
-                             const StageTimes& times);
+/// Unknowns, solver and what it says about the answer; then stress and, of the tension test, the moduli beside
+/// theory, for each load case; then times.
+std::string describe_results(const Problem& problem, std::span<const SolvedCase> results, const StageTimes& times);
 
 /// Unknowns, memory and work of a computation that was not done.
 std::string describe_estimate(const SolveEstimate& estimate);

@@ -59,10 +59,8 @@ Series theory_line(double from, double to, double (*formula)(double), const std:
 }
 
 Plot figure7(const abe1996::Reproduction& result) {
-  Series stable{.label = "computed, stable",
-                .style = SeriesStyle::points,
-                .colour = PlotColour::blue,
-                .column = "nu_stable"};
+  Series stable{
+      .label = "computed, stable", .style = SeriesStyle::points, .colour = PlotColour::blue, .column = "nu_stable"};
   Series unstable{.label = "computed, unstable",
                   .style = SeriesStyle::points,
                   .colour = PlotColour::vermilion,
@@ -73,14 +71,13 @@ Plot figure7(const abe1996::Reproduction& result) {
     series.x.push_back(p.ratio);
     series.y.push_back(p.poisson_ratio);
   }
-  Plot plot{.title = format("Abe (1996), Fig. 7: {} rows of {} and {} discs", result.block.rows,
-                            result.block.columns, result.block.columns - 1),
+  Plot plot{.title = format("Abe (1996), Fig. 7: {} rows of {} and {} discs", result.block.rows, result.block.columns,
+                            result.block.columns - 1),
             .x = {.label = "kT/kN", .min = -1, .max = 1},
             .y = {.label = "Poisson's ratio (plane strain)", .min = -0.2, .max = 0.8}};
   plot.series = {theory_line(-1, 1, poisson_ratio_of_ratio, "eq. (22): (1 - kT/kN)/4"), stable, unstable};
-  plot.vertical_lines = {
-      {result.lattice_limit, "infinite lattice: -1/3", PlotColour::black},
-      {result.block_limit, format("this block: {:.4f}", result.block_limit), PlotColour::vermilion}};
+  plot.vertical_lines = {{result.lattice_limit, "infinite lattice: -1/3", PlotColour::black},
+                         {result.block_limit, format("this block: {:.4f}", result.block_limit), PlotColour::vermilion}};
   return plot;
 }
 
@@ -91,8 +88,8 @@ Plot figure8(const abe1996::Reproduction& result) {
     computed.x.push_back(p.ratio);
     computed.y.push_back(p.stiffness_ratio);
   }
-  Plot plot{.title = format("Abe (1996), Fig. 8: {} rows of {} and {} discs", result.block.rows,
-                            result.block.columns, result.block.columns - 1),
+  Plot plot{.title = format("Abe (1996), Fig. 8: {} rows of {} and {} discs", result.block.rows, result.block.columns,
+                            result.block.columns - 1),
             .x = {.label = "kT/kN", .min = 0, .max = 1},
             .y = {.label = "2G/((1 - nu) kN)", .min = 1, .max = 2}};
   plot.series = {theory_line(0, 1, hexagonal_stiffness_ratio, "eq. (37)"), computed};
@@ -137,20 +134,16 @@ Plot error_by_size(const abe1996::Reproduction& result) {
 /// The block under tension, for the eye and for ParaView.
 void show_block(const ReproduceOptions& options) {
   const abe1996::Block& block = options.block;
-  const Assembly assembly =
-      hexagonal_lattice({.columns = block.columns, .rows = block.rows, .radius = block.radius});
+  const Assembly assembly = hexagonal_lattice({.columns = block.columns, .rows = block.rows, .radius = block.radius});
   const ContactSprings springs(SpringConstants{block.kN, shown_ratio * block.kN});
   const TensionSetup setup = tension_setup(assembly, block.test);
   const Equilibrium rest = solve_equilibrium(assembly, springs, setup.supports, setup.loads);
   const auto stresses = disc_stresses(assembly, rest.contact_forces);
-  const AssemblyState state{.assembly = assembly,
-                            .motions = rest.motions,
-                            .contact_forces = rest.contact_forces,
-                            .stresses = stresses};
+  const AssemblyState state{
+      .assembly = assembly, .motions = rest.motions, .contact_forces = rest.contact_forces, .stresses = stresses};
   write_vtk(*options.common.out, "tension", state, options.common.overwrite);
-  PictureOptions picture{
-      .title = format("Abe (1996), Fig. 6: tension of {} rows, kT/kN = {}", block.rows, shown_ratio),
-      .colour = DiscColour::stress_xx};
+  PictureOptions picture{.title = format("Abe (1996), Fig. 6: tension of {} rows, kT/kN = {}", block.rows, shown_ratio),
+                         .colour = DiscColour::stress_xx};
   write_picture(*options.common.out, "tension", state, picture, options.common.overwrite);
 }
 
@@ -159,16 +152,12 @@ JsonObject as_json(const abe1996::Reproduction& result, const std::string& text)
   const ContactSprings springs(SpringConstants{result.block.kN, shown_ratio * result.block.kN});
   add_common(object, "done", text, result.times, derive_effects(springs, Rotation::from_scene));
   object.set("paper", "abe1996").set("columns", result.block.columns).set("rows", result.block.rows);
-  object.set("height", result.height)
-      .set("gauge_length", result.gauge_length)
-      .set("gauge_height", result.gauge_height);
+  object.set("height", result.height).set("gauge_length", result.gauge_length).set("gauge_height", result.gauge_height);
   object.set("critical_ratio_lattice", result.lattice_limit).set("critical_ratio_block", result.block_limit);
   std::vector<JsonObject> points, convergence;
   for (const auto& p : result.points) {
     JsonObject point;
-    point.set("ratio", p.ratio)
-        .set("poisson_ratio", p.poisson_ratio)
-        .set("stiffness_ratio", p.stiffness_ratio);
+    point.set("ratio", p.ratio).set("poisson_ratio", p.poisson_ratio).set("stiffness_ratio", p.stiffness_ratio);
     point.set("negative_pivots", p.negative_pivots).set("unstable_modes", p.unstable_modes);
     point.set("relative_residual", p.relative_residual).set("stable", p.stable());
     point.set("theory_poisson_ratio", poisson_ratio_of_ratio(p.ratio));
@@ -188,8 +177,7 @@ JsonObject as_json(const abe1996::Reproduction& result, const std::string& text)
   JsonObject stress;
   stress.set("free_rotation_deviation", result.stress.free_rotation);
   stress.set("restrained_rotation_deviation", result.stress.restrained_rotation);
-  stress.set("asymmetry", result.stress.asymmetry)
-      .set("expected_asymmetry", result.stress.expected_asymmetry);
+  stress.set("asymmetry", result.stress.asymmetry).set("expected_asymmetry", result.stress.expected_asymmetry);
   stress.set("moment_density", result.stress.moment_density);
   stress.set("restrained_poisson_ratio", result.stress.restrained_poisson_ratio);
   object.set("macroscopic_stress", stress);
@@ -229,8 +217,7 @@ Run declare_reproduce(CLI::App& command) {
   const auto options = std::make_shared<ReproduceOptions>();
   command.add_option("PAPER", options->paper, "abe1996")->required()->type_name("NAME");
   add_result_options(command, options->common);
-  command.add_option("--columns", options->block.columns, "discs in a long row of the block")
-      ->capture_default_str();
+  command.add_option("--columns", options->block.columns, "discs in a long row of the block")->capture_default_str();
   command.add_option("--rows", options->block.rows, "rows of the block")->capture_default_str();
   command.add_option("--gauge", options->gauge, "where strains are read: centre, quarter or ends")
       ->capture_default_str();

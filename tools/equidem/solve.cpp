@@ -35,8 +35,7 @@ void check_outputs(const CommonOptions& options, const Case& resolved) {
     if (resolved.output.csv)
       for (const char* stem : {"discs", "contacts"}) plan.expect(file_stem(stem, loads.name) + ".csv");
     if (resolved.output.vtk)
-      for (const char* end : {".vtm", "_discs.vtp", "_contacts.vtp"})
-        plan.expect(file_stem("state", loads.name) + end);
+      for (const char* end : {".vtm", "_discs.vtp", "_contacts.vtp"}) plan.expect(file_stem("state", loads.name) + end);
     if (resolved.output.picture)
       for (const char* end : {".svg", ".png"}) plan.expect(file_stem("picture", loads.name) + end);
   }
@@ -159,8 +158,7 @@ int solve(const CommonOptions& options) {
   const Problem problem = build_problem(std::move(resolved));
   if (options.dry_run) return dry_run(options, problem);
 
-  const EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports,
-                                 problem.options());
+  const EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, problem.options());
   std::vector<SolvedCase> results;
   for (const NamedLoads& loads : problem.load_cases) results.push_back(solve_case(problem, solver, loads));
 

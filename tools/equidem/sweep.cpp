@@ -64,8 +64,7 @@ std::vector<double> values_of(const SweepOptions& options) {
 std::string override_of(const SweepOptions& options, const Case& base, double value) {
   if (options.key != "ratio") {
     const TomlValue& now = value_at(base.document, options.key);
-    const bool whole =
-        now.type == TomlValue::Type::integer && value == std::floor(value) && std::abs(value) < 1e15;
+    const bool whole = now.type == TomlValue::Type::integer && value == std::floor(value) && std::abs(value) < 1e15;
     return format("{}={}", options.key, whole ? format("{:.0f}", value) : toml_number(value));
   }
   return format("springs={{kN = {}, kT = {}, weighting = \"{}\"}}", toml_number(base.springs->kN),
@@ -91,8 +90,8 @@ class ProblemFactory {
   std::optional<Assembly> last_;
 };
 
-SweepPoint compute(const SweepOptions& options, const Case& base, double value, ProblemFactory& build,
-                   Effects& effects, StageTimes& times) {
+SweepPoint compute(const SweepOptions& options, const Case& base, double value, ProblemFactory& build, Effects& effects,
+                   StageTimes& times) {
   SweepPoint point;
   point.value = value;
   try {
@@ -100,10 +99,8 @@ SweepPoint compute(const SweepOptions& options, const Case& base, double value, 
     common.set.push_back(override_of(options, base, value));
     const auto problem = build(read_case(common));
     if (problem->load_cases.size() > 1)
-      usage_error("the case has several load cases", "a sweep shows one",
-                  "Leave one [[load]] case in the file");
-    const EquilibriumSolver solver(problem->assembly, problem->springs.springs, problem->supports,
-                                   problem->options());
+      usage_error("the case has several load cases", "a sweep shows one", "Leave one [[load]] case in the file");
+    const EquilibriumSolver solver(problem->assembly, problem->springs.springs, problem->supports, problem->options());
     const SolvedCase result = solve_case(*problem, solver, problem->load_cases.front());
     effects = solver.effects();
     for (const auto& [stage, seconds] : problem->times.stages()) times.add(stage, seconds);
@@ -145,10 +142,10 @@ std::string plot_curves(const SweepOptions& options, const Case& base, const std
     double SweepPoint::*computed;
     double SweepPoint::*theory;
   };
-  const std::array curves{Curve{plot_names[0], "Poisson's ratio (plane strain)", &SweepPoint::poisson_ratio,
-                                &SweepPoint::theory_poisson_ratio},
-                          Curve{plot_names[1], "2G/((1 - nu) kN)", &SweepPoint::stiffness_ratio,
-                                &SweepPoint::theory_stiffness_ratio}};
+  const std::array curves{
+      Curve{plot_names[0], "Poisson's ratio (plane strain)", &SweepPoint::poisson_ratio,
+            &SweepPoint::theory_poisson_ratio},
+      Curve{plot_names[1], "2G/((1 - nu) kN)", &SweepPoint::stiffness_ratio, &SweepPoint::theory_stiffness_ratio}};
   std::vector<SweepPoint> ordered = points;
   std::stable_sort(ordered.begin(), ordered.end(),
                    [](const SweepPoint& a, const SweepPoint& b) { return a.value < b.value; });
@@ -178,10 +175,7 @@ std::string plot_curves(const SweepOptions& options, const Case& base, const std
       series.x.push_back(point.value);
       series.y.push_back(point.*curve.computed);
     }
-    Plot plot{.title = base.title,
-              .x = {.label = axis_label(options.key)},
-              .y = {.label = curve.label},
-              .series = {}};
+    Plot plot{.title = base.title, .x = {.label = axis_label(options.key)}, .y = {.label = curve.label}, .series = {}};
     for (const Series* series : {&theory, &stable, &unstable})
       if (!series->x.empty()) plot.series.push_back(*series);
     if (stable.x.empty() && unstable.x.empty()) continue;
@@ -194,13 +188,11 @@ std::string plot_curves(const SweepOptions& options, const Case& base, const std
 std::vector<SweepPoint> points_to_keep(const SweepOptions& options, const Case& base) {
   if (!options.resume) return {};
   if (!options.common.out)
-    usage_error("--resume has nothing to continue", "the points done lie in the folder of --out",
-                "Add --out DIR");
+    usage_error("--resume has nothing to continue", "the points done lie in the folder of --out", "Add --out DIR");
   const auto table = *options.common.out / table_name;
   if (!std::filesystem::exists(table)) return {};
   if (read_file(*options.common.out / case_name) != to_toml(base, *options.common.out)) {
-    throw Error(ErrorKind::bad_input, "the sweep there is of another case",
-                "its points would not fit together",
+    throw Error(ErrorKind::bad_input, "the sweep there is of another case", "its points would not fit together",
                 "Choose another --out, or leave out --resume and pass --overwrite",
                 (*options.common.out / case_name).string());
   }
@@ -222,8 +214,7 @@ std::vector<SweepPoint> merged(std::vector<SweepPoint> points, const std::vector
   const std::size_t own = points.size();
   for (const SweepPoint& point : kept) {
     const auto same = [&](const SweepPoint& other) { return other.value == point.value; };
-    if (std::none_of(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(own), same))
-      points.push_back(point);
+    if (std::none_of(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(own), same)) points.push_back(point);
   }
   return points;
 }
@@ -245,11 +236,11 @@ void check_key(const SweepOptions& options, const Case& base, double first) {
 int dry_run(const SweepOptions& options, const Case& base, const std::vector<double>& values) {
   const Problem problem = build_problem(base);
   const Effects effects = derive_effects(problem.springs.springs, problem.resolved.rotation);
-  const std::string report = format("{} of {}, each about as large as this one:\n\n",
-                                    counted(static_cast<long long>(values.size()), "point"), options.key) +
-                             describe_problem(problem, effects) +
-                             describe_estimate(estimate_solve(problem.assembly, problem.springs.springs,
-                                                              problem.supports, problem.options()));
+  const std::string report =
+      format("{} of {}, each about as large as this one:\n\n", counted(static_cast<long long>(values.size()), "point"),
+             options.key) +
+      describe_problem(problem, effects) +
+      describe_estimate(estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options()));
   JsonObject object;
   add_common(object, "dry_run", report, problem.times, effects);
   object.set("key", options.key).set("values", values);
@@ -267,8 +258,7 @@ struct Progressed {
   StageTimes times;                ///< of all points
 };
 
-/// Compute the points that are not kept, and save the table every second: whatever ends the program, little
-/// is lost.
+/// Compute the points that are not kept, and save the table every second: whatever ends the program, little is lost.
 Progressed compute_points(const SweepOptions& options, const Case& base, const std::vector<double>& values,
                           const std::vector<SweepPoint>& kept) {
   Progressed run;
@@ -285,8 +275,8 @@ Progressed compute_points(const SweepOptions& options, const Case& base, const s
       const auto done = std::find_if(kept.begin(), kept.end(), [&](const SweepPoint& point) {
         return point.value == values[k] && point.status != "failed";
       });
-      run.points.push_back(
-          done != kept.end() ? *done : compute(options, base, values[k], build, run.effects, run.times));
+      run.points.push_back(done != kept.end() ? *done
+                                              : compute(options, base, values[k], build, run.effects, run.times));
       if (since_saved.seconds() < 1) continue;
       save();
       since_saved.lap();
@@ -301,8 +291,7 @@ Progressed compute_points(const SweepOptions& options, const Case& base, const s
 
 int sweep(const SweepOptions& options) {
   if (options.verb != "solve")
-    usage_error(format("--verb {} cannot be swept", options.verb), "this version sweeps solve",
-                "Leave out --verb");
+    usage_error(format("--verb {} cannot be swept", options.verb), "this version sweeps solve", "Leave out --verb");
   const std::vector<double> values = values_of(options);
   const Case base = read_case(options.common);
   check_key(options, base, values.front());
@@ -315,24 +304,19 @@ int sweep(const SweepOptions& options) {
   Progressed run = compute_points(options, base, values, kept);
   const std::size_t done = run.points.size();
   const std::vector<SweepPoint> points = merged(std::move(run.points), kept);
-  const auto failed = static_cast<std::size_t>(std::count_if(
-      points.begin(), points.end(), [](const SweepPoint& point) { return point.status == "failed"; }));
+  const auto failed = static_cast<std::size_t>(
+      std::count_if(points.begin(), points.end(), [](const SweepPoint& point) { return point.status == "failed"; }));
   const bool all_failed = failed == points.size();
 
   std::string report = base.title.empty() ? "" : base.title + "\n\n";
   report += describe_sweep(options.key, points);
   if (failed > 0)
-    report += format("{} failed, {} done\n", counted(static_cast<long long>(failed), "point"),
-                     points.size() - failed);
+    report += format("{} failed, {} done\n", counted(static_cast<long long>(failed), "point"), points.size() - failed);
   if (run.stopped) report += format("INCOMPLETE: stopped after {} of {} points\n", done, values.size());
   if (folder && !run.stopped && base.test) report += plot_curves(options, base, points, true);
 
   JsonObject object;
-  add_common(object,
-             run.stopped  ? "interrupted"
-             : all_failed ? "failed"
-                          : "done",
-             report, run.times, run.effects);
+  add_common(object, run.stopped ? "interrupted" : all_failed ? "failed" : "done", report, run.times, run.effects);
   object.set("key", options.key).set("complete", !run.stopped);
   std::vector<JsonObject> rows;
   for (const SweepPoint& point : points) rows.push_back(sweep_json("value", point));
@@ -342,10 +326,9 @@ int sweep(const SweepOptions& options) {
   deliver(common, report, object);
   if (folder) say(options.common, format("written to {}", folder->string()));
   if (run.stopped) {
-    throw Error(ErrorKind::interrupted, "stopped as asked",
-                format("{} of {} points are done", done, values.size()),
-                folder ? "Run the same command with --resume to do the rest"
-                       : "With --out DIR the points done would be kept");
+    throw Error(
+        ErrorKind::interrupted, "stopped as asked", format("{} of {} points are done", done, values.size()),
+        folder ? "Run the same command with --resume to do the rest" : "With --out DIR the points done would be kept");
   }
   if (all_failed)
     computation_failed("none of the points could be computed", "the first: " + points.front().message, "");
@@ -357,8 +340,7 @@ int sweep(const SweepOptions& options) {
 Run declare_sweep(CLI::App& command) {
   const auto options = std::make_shared<SweepOptions>();
   add_common_options(command, options->common);
-  command
-      .add_option("--key", options->key, "the key to vary, such as springs.kT or assembly.rows; ratio: kT/kN")
+  command.add_option("--key", options->key, "the key to vary, such as springs.kT or assembly.rows; ratio: kT/kN")
       ->required()
       ->type_name("KEY");
   command.add_option("--from", options->from, "first value")->type_name("A");

@@ -139,16 +139,13 @@ JsonObject sweep_json(const std::string& key, const SweepPoint& point) {
 }
 
 std::string describe_sweep(const std::string& key, const std::vector<SweepPoint>& points) {
-  const bool tension = std::any_of(points.begin(), points.end(),
-                                   [](const SweepPoint& p) { return !std::isnan(p.poisson_ratio); });
-  const auto moduli = [&](const auto& nu, const auto& nu_theory, const auto& stiffness,
-                          const auto& stiffness_theory) {
-    return tension ? format("{:>14} {:>14} {:>14} {:>14} ", nu, nu_theory, stiffness, stiffness_theory)
-                   : std::string();
+  const bool tension =
+      std::any_of(points.begin(), points.end(), [](const SweepPoint& p) { return !std::isnan(p.poisson_ratio); });
+  const auto moduli = [&](const auto& nu, const auto& nu_theory, const auto& stiffness, const auto& stiffness_theory) {
+    return tension ? format("{:>14} {:>14} {:>14} {:>14} ", nu, nu_theory, stiffness, stiffness_theory) : std::string();
   };
-  std::string out =
-      format("{:>14}  {:<8} {}{:>14}  {:>9} {:>9}\n", key, "status",
-             moduli("nu", "theory", "2G/((1-nu)kN)", "theory"), "energy, N", "residual", "unstable");
+  std::string out = format("{:>14}  {:<8} {}{:>14}  {:>9} {:>9}\n", key, "status",
+                           moduli("nu", "theory", "2G/((1-nu)kN)", "theory"), "energy, N", "residual", "unstable");
   for (const SweepPoint& p : points) {
     out += format("{:>14.8g}  {:<8} ", p.value, p.status);
     if (p.status == "failed") {

@@ -18,8 +18,8 @@ bool finite(Vec2 v) {
 /// "contact 7, of discs 3 and 4"; where they touch across the period, with the shift.
 std::string described(const Contact& c, std::size_t index) {
   if (c.shift_x == 0 && c.shift_y == 0) return format("contact {}, of discs {} and {}", index, c.i, c.j);
-  return format("contact {}, of disc {} and the image of disc {} shifted by ({}, {}) periods", index, c.i,
-                c.j, c.shift_x, c.shift_y);
+  return format("contact {}, of disc {} and the image of disc {} shifted by ({}, {}) periods", index, c.i, c.j,
+                c.shift_x, c.shift_y);
 }
 
 void check_count(const char* what, std::size_t count, const char* per, std::size_t expected) {
@@ -38,8 +38,8 @@ void check_discs(const Assembly& assembly) {
                 "centres must be finite", "Correct its coordinates");
     }
     if (!(assembly.radii[d] > 0) || !std::isfinite(assembly.radii[d])) {
-      bad_input(format("disc {} has the radius {}", d, assembly.radii[d]),
-                "radii must be positive and finite", "Correct it");
+      bad_input(format("disc {} has the radius {}", d, assembly.radii[d]), "radii must be positive and finite",
+                "Correct it");
     }
   }
   if (assembly.cell_areas.empty()) return;
@@ -57,8 +57,8 @@ void check_contact(const Assembly& assembly, std::size_t index) {
   const auto n = static_cast<std::int64_t>(assembly.size());
   for (const std::int32_t disc : {c.i, c.j}) {
     if (disc < 0 || disc >= n) {
-      bad_input(format("contact {} names disc {}", index, disc),
-                format("the discs are numbered from 0 to {}", n - 1), "Correct the contact or add the disc");
+      bad_input(format("contact {} names disc {}", index, disc), format("the discs are numbered from 0 to {}", n - 1),
+                "Correct the contact or add the disc");
     }
   }
   const bool shifted = c.shift_x != 0 || c.shift_y != 0;
@@ -91,8 +91,7 @@ void check_contacts(const Assembly& assembly) {
     check_count("facet lengths", assembly.facet_lengths.size(), "contacts", m);
     for (std::size_t c = 0; c < m; ++c) {
       if (!(assembly.facet_lengths[c] >= 0) || !std::isfinite(assembly.facet_lengths[c])) {
-        bad_input(format("{}, has the facet length {}", described(assembly.contacts[c], c),
-                         assembly.facet_lengths[c]),
+        bad_input(format("{}, has the facet length {}", described(assembly.contacts[c], c), assembly.facet_lengths[c]),
                   "facet lengths must be finite and not negative", "Measure the cells anew");
       }
     }
@@ -125,13 +124,13 @@ void check_group(const Assembly& assembly, const std::string& name, const DiscGr
     }
   }
   if (discs.tributary_lengths.empty()) return;
-  check_count(format("tributary lengths of group '{}'", name).c_str(), discs.tributary_lengths.size(),
-              "discs of it", discs.discs.size());
+  check_count(format("tributary lengths of group '{}'", name).c_str(), discs.tributary_lengths.size(), "discs of it",
+              discs.discs.size());
   for (std::size_t k = 0; k < discs.discs.size(); ++k) {
     if (!(discs.tributary_lengths[k] >= 0) || !std::isfinite(discs.tributary_lengths[k])) {
-      bad_input(format("disc {} of group '{}' has the tributary length {}", discs.discs[k], name,
-                       discs.tributary_lengths[k]),
-                "tributary lengths must be finite and not negative", "Correct it");
+      bad_input(
+          format("disc {} of group '{}' has the tributary length {}", discs.discs[k], name, discs.tributary_lengths[k]),
+          "tributary lengths must be finite and not negative", "Correct it");
     }
   }
 }
@@ -158,8 +157,7 @@ double Assembly::coordination_number() const {
 }
 
 double Assembly::mean_radius() const {
-  return radii.empty() ? 0
-                       : std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
+  return radii.empty() ? 0 : std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
 }
 
 void check(const Assembly& assembly) {
@@ -177,10 +175,9 @@ const DiscGroup& group(const Assembly& assembly, const std::string& name) {
   if (found != assembly.groups.end()) return found->second;
   std::string names;
   for (const auto& [known, discs] : assembly.groups) names += (names.empty() ? "" : ", ") + known;
-  bad_input(
-      format("the assembly has no group '{}'", name),
-      names.empty() ? std::string("it has no groups at all") : "its groups are " + names,
-      assembly.periodic() ? "Name one of them; a periodic cell has no sides of its own" : "Name one of them");
+  bad_input(format("the assembly has no group '{}'", name),
+            names.empty() ? std::string("it has no groups at all") : "its groups are " + names,
+            assembly.periodic() ? "Name one of them; a periodic cell has no sides of its own" : "Name one of them");
 }
 
 }  // namespace equidem

@@ -13,8 +13,8 @@
 
 namespace equidem {
 
-/// A bond between disc i and an image of disc j. The contact point lies at the distance lever_i from the
-/// centre of i and lever_j from the centre of j, along the normal n from i to j.
+/// A bond between disc i and an image of disc j. The contact point lies at the distance lever_i from the centre of i
+/// and lever_j from the centre of j, along the normal n from i to j.
 struct Contact {
   std::int32_t i = 0;
   std::int32_t j = 0;
@@ -24,8 +24,8 @@ struct Contact {
   double lever_j = 0;  ///< m
 };
 
-/// Discs chosen by name, for supports and loads. On the sides of a free assembly every disc also stands for a
-/// stretch of the side, over which a traction is spread.
+/// Discs chosen by name, for supports and loads. On the sides of a free assembly every disc also stands for a stretch
+/// of the side, over which a traction is spread.
 struct DiscGroup {
   std::vector<std::int32_t> discs;        ///< ascending, without repetition
   std::vector<double> tributary_lengths;  ///< m, one per disc; empty where the group is not a side
@@ -37,12 +37,11 @@ struct Assembly {
   std::vector<Vec2> centres;  ///< m
   std::vector<double> radii;  ///< m
   std::vector<Contact> contacts;
-  std::optional<Vec2> period;  ///< (Lx, Ly) in m of a periodic cell; none: free boundary
-  std::vector<double>
-      cell_areas;  ///< m², the Voronoi (power) cell of each disc, clipped to the sides where free
+  std::optional<Vec2> period;         ///< (Lx, Ly) in m of a periodic cell; none: free boundary
+  std::vector<double> cell_areas;     ///< m², the Voronoi (power) cell of each disc, clipped to the sides where free
   std::vector<double> facet_lengths;  ///< m, per contact: the edge its two cells share; empty where unknown
-  std::vector<double> contact_kN;  ///< Pa, per contact: overrides the springs of the case; empty: none given
-  std::vector<double> contact_kT;  ///< Pa, likewise
+  std::vector<double> contact_kN;     ///< Pa, per contact: overrides the springs of the case; empty: none given
+  std::vector<double> contact_kT;     ///< Pa, likewise
   std::map<std::string, DiscGroup> groups;  ///< left, right, bottom, top, bottom_left, ... and the user's own
 
   [[nodiscard]] std::size_t size() const { return centres.size(); }
@@ -63,9 +62,10 @@ struct Assembly {
   [[nodiscard]] double mean_radius() const;
 };
 
-/// Check everything that later parts rely on: sizes agree, radii are positive and finite, contacts join two
-/// existing discs (or a disc and another image of itself) a finite, non-zero distance apart with lever arms
-/// that are not negative. \throws Error (bad_input) naming the first disc or contact that breaks this
+/// Check everything that later parts rely on: sizes agree, radii are positive and finite, contacts join two existing
+/// discs (or a disc and another image of itself) a finite, non-zero distance apart with lever arms that are not
+/// negative.
+/// \throws Error (bad_input) naming the first disc or contact that breaks this
 void check(const Assembly& assembly);
 
 /// The disc group of that name.

@@ -21,27 +21,23 @@ void check(const DelaunayOptions& options) {
   constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max() / 2;
   if (options.discs < least || options.discs > most) {
     bad_input(format("discs = {}", options.discs),
-              format("a {} triangulation needs {} to {} discs", options.periodic ? "periodic" : "free", least,
-                     most),
+              format("a {} triangulation needs {} to {} discs", options.periodic ? "periodic" : "free", least, most),
               "Correct the count");
   }
   if (!(options.disorder >= 0 && options.disorder < 0.5)) {
-    bad_input(format("disorder = {}", options.disorder),
-              "it must lie in [0, 0.5), or neighbours could change places",
+    bad_input(format("disorder = {}", options.disorder), "it must lie in [0, 0.5), or neighbours could change places",
               "Correct it, or ask for poisson_disc points");
   }
   const RadiusDistribution& radii = options.radii;
   if (!(radii.smallest > 0) || !std::isfinite(radii.smallest)) {
-    bad_input(format("the smallest radius is {} m", radii.smallest), "radii must be positive and finite",
-              "Correct it");
+    bad_input(format("the smallest radius is {} m", radii.smallest), "radii must be positive and finite", "Correct it");
   }
   if (!(radii.largest >= radii.smallest) || !std::isfinite(radii.largest)) {
     bad_input(format("the largest radius is {} m", radii.largest),
               format("it must be finite and at least the smallest, {} m", radii.smallest), "Correct it");
   }
   if (!(options.aspect >= 1e-3 && options.aspect <= 1e3)) {
-    bad_input(format("aspect = {}", options.aspect), "width over height must lie in [0.001, 1000]",
-              "Correct it");
+    bad_input(format("aspect = {}", options.aspect), "width over height must lie in [0.001, 1000]", "Correct it");
   }
 }
 
@@ -63,8 +59,8 @@ PointSet points_of(const DelaunayOptions& options, Random& random) {
 
 /// Contacts at the midpoint of the branch as the assembly measures it; unequal discs keep the radical axis.
 void set_midpoints(Assembly& assembly) {
-  const bool equal = std::all_of(assembly.radii.begin(), assembly.radii.end(),
-                                 [&](double r) { return r == assembly.radii.front(); });
+  const bool equal =
+      std::all_of(assembly.radii.begin(), assembly.radii.end(), [&](double r) { return r == assembly.radii.front(); });
   if (!equal) return;
   for (Contact& contact : assembly.contacts) {
     contact.lever_i = contact.lever_j = 0.5 * norm(assembly.branch(contact));
@@ -95,8 +91,8 @@ void take_network(Assembly& assembly, PowerCells&& cells) {
   };
   const std::size_t one = furthest(assembly.centres[0]);
   const std::size_t other = furthest(assembly.centres[one]);
-  bad_input(format("all {} discs lie on the line through discs {} and {}", assembly.size(),
-                   std::min(one, other), std::max(one, other)),
+  bad_input(format("all {} discs lie on the line through discs {} and {}", assembly.size(), std::min(one, other),
+                   std::max(one, other)),
             "points on one line have no triangles", "Move some of them, or list the contacts");
 }
 
@@ -112,8 +108,7 @@ Assembly delaunay_assembly(const DelaunayOptions& options) {
   for (const std::int32_t k : hilbert_order(set.points)) assembly.centres.push_back(set.points[k]);
   assembly.radii.resize(assembly.size(), options.radii.smallest);
   if (options.radii.largest > options.radii.smallest) {
-    for (double& radius : assembly.radii)
-      radius = random.uniform(options.radii.smallest, options.radii.largest);
+    for (double& radius : assembly.radii) radius = random.uniform(options.radii.smallest, options.radii.largest);
   }
   if (options.periodic) assembly.period = set.extent;
   PowerCells cells = power_cells(assembly, Rectangle{.low = {0, 0}, .high = set.extent});
@@ -151,8 +146,7 @@ void measure_cells(Assembly& assembly) {
     const auto found = std::lower_bound(cells.neighbours.begin(), cells.neighbours.end(), contact,
                                         [&](const Contact& a, const Contact& b) { return key(a) < key(b); });
     if (found == cells.neighbours.end() || key(*found) != key(contact)) continue;
-    assembly.facet_lengths[k] =
-        cells.facet_lengths[static_cast<std::size_t>(found - cells.neighbours.begin())];
+    assembly.facet_lengths[k] = cells.facet_lengths[static_cast<std::size_t>(found - cells.neighbours.begin())];
   }
   assembly.cell_areas = std::move(cells.areas);
   take_sides(assembly, cells);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Random assemblies: a point process, its Delaunay (or, for discs of different radii, regular)
-/// triangulation, whose edges are the contacts.
+/// Random assemblies: a point process, its Delaunay (or, for discs of different radii, regular) triangulation, whose
+/// edges are the contacts.
 #pragma once
 
 #include <cstdint>
@@ -18,38 +18,36 @@ struct RadiusDistribution {
 };
 
 struct DelaunayOptions {
-  std::int64_t discs =
-      10000;  ///< wanted count, >= 3 (>= 1 where periodic); `random` meets it, perturbed_hexagonal
-              ///< and poisson_disc come near it: assembly.size() says how near
+  std::int64_t discs = 10000;  ///< wanted count, >= 3 (>= 1 where periodic); `random` meets it, perturbed_hexagonal
+                               ///< and poisson_disc come near it: assembly.size() says how near
   PointProcess points = PointProcess::poisson_disc;
   double disorder = 0.1;  ///< perturbed_hexagonal: in [0, 0.5)
   std::uint64_t seed = 1;
   RadiusDistribution radii = {};
-  double aspect =
-      1;  ///< width over height of the rectangle, in [1e-3, 1e3]; perturbed_hexagonal comes near it
+  double aspect = 1;  ///< width over height of the rectangle, in [1e-3, 1e3]; perturbed_hexagonal comes near it
   bool periodic = false;
 };
 
-/// The mean spacing of neighbours is the mean diameter: the rectangle, from the origin to its upper right
-/// corner, has 2 sqrt3 a² for each disc, a = (smallest + largest)/2. Contacts are the edges of the
-/// triangulation, each at the midpoint of its branch (equal radii) or at the radical axis, kept between the
-/// two centres; facet lengths are those of the Voronoi (power) cells, clipped to the rectangle where free. An
-/// edge whose facet is a single point or lies outside the rectangle is no contact. A disc that lies wholly
-/// within another one's power cell has none, and a cell area of 0. Discs are numbered along a Hilbert curve.
-/// Groups of a free assembly: the discs whose cells touch a side or hold a corner, with the length of the
-/// side in their cell. Same options, same assembly, on every machine. \throws Error (bad_input) on options
-/// out of range
+/// The mean spacing of neighbours is the mean diameter: the rectangle, from the origin to its upper right corner, has
+/// 2 sqrt3 a² for each disc, a = (smallest + largest)/2. Contacts are the edges of the triangulation, each at the
+/// midpoint of its branch (equal radii) or at the radical axis, kept between the two centres; facet lengths are those
+/// of the Voronoi (power) cells, clipped to the rectangle where free. An edge whose facet is a single point or lies
+/// outside the rectangle is no contact. A disc that lies wholly within another one's power cell has none, and a cell
+/// area of 0. Discs are numbered along a Hilbert curve. Groups of a free assembly: the discs whose cells touch a side
+/// or hold a corner, with the length of the side in their cell. Same options, same assembly, on every machine.
+/// \throws Error (bad_input) on options out of range
 Assembly delaunay_assembly(const DelaunayOptions& options);
 
-/// Contacts, facets, cells and, where free, sides by (regular) triangulation of given discs; `assembly`
-/// brings centres, radii and period. Cells of a free assembly fill the smallest rectangle that holds all
-/// discs. Contacts and cells are replaced; groups are added where there is none of that name. \throws Error
-/// (bad_input) on duplicate centres, and where free on fewer than three discs or collinear centres (named)
+/// Contacts, facets, cells and, where free, sides by (regular) triangulation of given discs; `assembly` brings
+/// centres, radii and period. Cells of a free assembly fill the smallest rectangle that holds all discs. Contacts and
+/// cells are replaced; groups are added where there is none of that name.
+/// \throws Error (bad_input) on duplicate centres, and where free on fewer than three discs or collinear centres
+///         (named)
 void triangulate(Assembly& assembly);
 
-/// Voronoi (power) cell areas of given discs whose contacts are already known, and facet lengths of those
-/// contacts that are edges of the triangulation (0 for the others); where free, also the groups of sides and
-/// corners, where there is none of that name. Any number of discs, also on one line.
+/// Voronoi (power) cell areas of given discs whose contacts are already known, and facet lengths of those contacts
+/// that are edges of the triangulation (0 for the others); where free, also the groups of sides and corners, where
+/// there is none of that name. Any number of discs, also on one line.
 /// \throws Error (bad_input) on duplicate centres (named)
 void measure_cells(Assembly& assembly);
 

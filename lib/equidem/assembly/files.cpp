@@ -78,16 +78,13 @@ double number(const Json& value, const std::string& entry) {
 std::int32_t integer(const Json& value, const std::string& entry) {
   if (!value.is_number_integer()) {
     if (value.is_number()) {
-      refuse(format("{} stands where a whole number is expected", value.dump()), "", "Correct the entry",
-             entry);
+      refuse(format("{} stands where a whole number is expected", value.dump()), "", "Correct the entry", entry);
     }
     wrong_kind(value, "a whole number", entry);
   }
-  const bool fits = value.is_number_unsigned()
-                        ? value.get<std::uint64_t>() <= std::numeric_limits<std::int32_t>::max()
-                        : value.get<std::int64_t>() >= std::numeric_limits<std::int32_t>::min();
-  if (!fits)
-    refuse(format("{} is beyond all numbers of discs", value.dump()), "", "Correct the entry", entry);
+  const bool fits = value.is_number_unsigned() ? value.get<std::uint64_t>() <= std::numeric_limits<std::int32_t>::max()
+                                               : value.get<std::int64_t>() >= std::numeric_limits<std::int32_t>::min();
+  if (!fits) refuse(format("{} is beyond all numbers of discs", value.dump()), "", "Correct the entry", entry);
   return value.get<std::int32_t>();
 }
 
@@ -100,8 +97,7 @@ const Json& list(const Json& value, const std::string& entry) {
 const Json& row(const Json& value, std::size_t count, const char* names, const std::string& entry) {
   list(value, entry);
   if (value.size() == count) return value;
-  refuse(format("{} stand where {} are expected", counted(static_cast<long long>(value.size()), "number"),
-                count),
+  refuse(format("{} stand where {} are expected", counted(static_cast<long long>(value.size()), "number"), count),
          format("an entry is [{}]", names), "Correct the entry", entry);
 }
 
@@ -117,22 +113,20 @@ void check_keys(const Json& file) {
   if (!file.is_object()) wrong_kind(file, "an object with the keys schema, discs, ...", "");
   const auto found = file.find("schema");
   if (found == file.end() || *found != schema) {
-    refuse(found == file.end() ? std::string("the key 'schema' is missing")
-                               : format("the schema is {}", found->dump()),
-           format("an assembly file says \"schema\": \"{}\"", schema),
-           "Add or correct it, if this is an assembly file", "schema");
+    refuse(found == file.end() ? std::string("the key 'schema' is missing") : format("the schema is {}", found->dump()),
+           format("an assembly file says \"schema\": \"{}\"", schema), "Add or correct it, if this is an assembly file",
+           "schema");
   }
   for (const auto& [key, value] : file.items()) {
     if (std::find(known_keys.begin(), known_keys.end(), key) != known_keys.end()) continue;
-    const auto* nearest = std::min_element(
-        known_keys.begin(), known_keys.end(),
-        [&, k = key](auto a, auto b) { return letters_changed(k, a) < letters_changed(k, b); });
-    refuse(format("there is no key '{}'", key), format("the nearest is '{}'", *nearest),
-           "Correct or remove it", key);
+    const auto* nearest = std::min_element(known_keys.begin(), known_keys.end(), [&, k = key](auto a, auto b) {
+      return letters_changed(k, a) < letters_changed(k, b);
+    });
+    refuse(format("there is no key '{}'", key), format("the nearest is '{}'", *nearest), "Correct or remove it", key);
   }
   if (!file.contains("discs")) {
-    refuse("the key 'discs' is missing", "an assembly is made of discs",
-           "Add \"discs\": [[x, y, radius], ...]", "discs");
+    refuse("the key 'discs' is missing", "an assembly is made of discs", "Add \"discs\": [[x, y, radius], ...]",
+           "discs");
   }
   if (file.contains("title") && !file["title"].is_string()) wrong_kind(file["title"], "a text", "title");
 }
@@ -164,15 +158,14 @@ void refuse_repeated(const Assembly& assembly) {
   }
   std::sort(named.begin(), named.end());
   const auto same = [](const auto& a, const auto& b) {
-    return std::get<0>(a) == std::get<0>(b) && std::get<1>(a) == std::get<1>(b) &&
-           std::get<2>(a) == std::get<2>(b) && std::get<3>(a) == std::get<3>(b);
+    return std::get<0>(a) == std::get<0>(b) && std::get<1>(a) == std::get<1>(b) && std::get<2>(a) == std::get<2>(b) &&
+           std::get<3>(a) == std::get<3>(b);
   };
   const auto twice = std::adjacent_find(named.begin(), named.end(), same);
   if (twice == named.end()) return;
-  refuse(format("contacts {} and {} are the same, of discs {} and {}", std::get<4>(*twice),
-                std::get<4>(*(twice + 1)), std::get<0>(*twice), std::get<1>(*twice)),
-         "its springs would count twice", "Remove one of them",
-         format("contacts[{}]", std::get<4>(*(twice + 1))));
+  refuse(format("contacts {} and {} are the same, of discs {} and {}", std::get<4>(*twice), std::get<4>(*(twice + 1)),
+                std::get<0>(*twice), std::get<1>(*twice)),
+         "its springs would count twice", "Remove one of them", format("contacts[{}]", std::get<4>(*(twice + 1))));
 }
 
 void read_contacts(const Json& file, Assembly& assembly) {
@@ -250,8 +243,7 @@ DiscGroup read_group(const Json& value, const std::string& entry) {
   std::vector<std::pair<std::int32_t, double>> members;
   for (std::size_t k = 0; k < discs->size(); ++k) {
     const std::string member = format("{}[{}]", entry, k);
-    members.emplace_back(integer((*discs)[k], member),
-                         lengths != nullptr ? number((*lengths)[k], member) : 0);
+    members.emplace_back(integer((*discs)[k], member), lengths != nullptr ? number((*lengths)[k], member) : 0);
   }
   std::sort(members.begin(), members.end());
   DiscGroup result;
@@ -298,8 +290,7 @@ Assembly assembly_of(const Json& file) {
   return assembly;
 }
 
-/// The shortest text that reads back to the same bits; the sign of -0 needs a point, or it reads as a whole
-/// number.
+/// The shortest text that reads back to the same bits; the sign of -0 needs a point, or it reads as a whole number.
 std::string shortest(double value) {
   return value == 0 && std::signbit(value) ? "-0.0" : format("{}", value);
 }
@@ -322,9 +313,8 @@ std::string joined(const Values& values, const Write& write) {
 std::string text_of(const Assembly& assembly) {
   std::string text = format("{{\"schema\": \"{}\"", schema);
   text += ",\n\"title\": " + Json(assembly.kind).dump();
-  text += assembly.period
-              ? format(",\n\"cell\": [{}, {}]", shortest(assembly.period->x), shortest(assembly.period->y))
-              : ",\n\"cell\": null";
+  text += assembly.period ? format(",\n\"cell\": [{}, {}]", shortest(assembly.period->x), shortest(assembly.period->y))
+                          : ",\n\"cell\": null";
   append_list(text, "discs", assembly.size(), [&](std::size_t k) {
     return format("[{}, {}, {}]", shortest(assembly.centres[k].x), shortest(assembly.centres[k].y),
                   shortest(assembly.radii[k]));
@@ -347,8 +337,8 @@ std::string text_of(const Assembly& assembly) {
       const std::string discs = joined(members.discs, [](std::int32_t disc) { return format("{}", disc); });
       text += separator + Json(name).dump() + ": ";
       text += members.tributary_lengths.empty() ? discs
-                                                : format("{{\"discs\": {}, \"tributary_lengths\": {}}}",
-                                                         discs, joined(members.tributary_lengths, shortest));
+                                                : format("{{\"discs\": {}, \"tributary_lengths\": {}}}", discs,
+                                                         joined(members.tributary_lengths, shortest));
       separator = ",\n";
     }
     text += "}";

@@ -23,8 +23,7 @@ struct RowPattern {
 
 void check(const LatticeOptions& o, bool staggered) {
   if (o.columns < 1) {
-    bad_input(format("columns = {}", o.columns), "a row of a lattice has at least one disc",
-              "Ask for 1 or more");
+    bad_input(format("columns = {}", o.columns), "a row of a lattice has at least one disc", "Ask for 1 or more");
   }
   if (o.rows < 1) {
     bad_input(format("rows = {}", o.rows), "a lattice has at least one row", "Ask for 1 or more");
@@ -45,16 +44,14 @@ void check(const LatticeOptions& o, bool staggered) {
   const std::int64_t discs = std::int64_t{o.columns} * o.rows;
   if (discs > std::numeric_limits<std::int32_t>::max()) {
     bad_input(format("{} columns and {} rows make {} discs", o.columns, o.rows, discs),
-              format("at most {} can be numbered", std::numeric_limits<std::int32_t>::max()),
-              "Ask for fewer");
+              format("at most {} can be numbered", std::numeric_limits<std::int32_t>::max()), "Ask for fewer");
   }
 }
 
 /// A lattice under construction: the place of every row in the numbering of discs.
 class LatticeBuilder {
  public:
-  LatticeBuilder(const LatticeOptions& options, const RowPattern& pattern)
-      : options_(options), pattern_(pattern) {}
+  LatticeBuilder(const LatticeOptions& options, const RowPattern& pattern) : options_(options), pattern_(pattern) {}
 
   Assembly build() {
     place_discs();
@@ -89,8 +86,7 @@ class LatticeBuilder {
         assembly_.centres[disc++] = {half_diameters * a, y};
       }
     }
-    if (options_.periodic)
-      assembly_.period = {2.0 * options_.columns * a, options_.rows * pattern_.row_distance};
+    if (options_.periodic) assembly_.period = {2.0 * options_.columns * a, options_.rows * pattern_.row_distance};
   }
 
   /// Each disc brings its contacts to the right and to the next row, so that every contact is made once.

@@ -88,8 +88,7 @@ PointSet perturbed_hexagonal_points(const PointOptions& options, double disorder
   const Vec2 wanted = wanted_extent(options);
   const std::int64_t step = options.periodic ? 2 : 1;
   const std::int64_t rows = nearest_multiple(wanted.y / row_distance, step, step);
-  const std::int64_t columns =
-      nearest_multiple(static_cast<double>(options.count) / static_cast<double>(rows), 1, 1);
+  const std::int64_t columns = nearest_multiple(static_cast<double>(options.count) / static_cast<double>(rows), 1, 1);
   PointSet set;
   set.extent = {static_cast<double>(columns) * s, static_cast<double>(rows) * row_distance};
   set.points.reserve(static_cast<std::size_t>(rows * columns));
@@ -98,9 +97,8 @@ PointSet perturbed_hexagonal_points(const PointOptions& options, double disorder
       const Vec2 site = {(static_cast<double>(column) + (row % 2 == 0 ? 0.25 : 0.75)) * s,
                          (static_cast<double>(row) + 0.5) * row_distance};
       const Vec2 moved = site + disorder * s * in_unit_disc(random);
-      set.points.push_back(options.periodic
-                               ? Vec2{wrapped(moved.x, set.extent.x), wrapped(moved.y, set.extent.y)}
-                               : Vec2{mirrored(moved.x, set.extent.x), mirrored(moved.y, set.extent.y)});
+      set.points.push_back(options.periodic ? Vec2{wrapped(moved.x, set.extent.x), wrapped(moved.y, set.extent.y)}
+                                            : Vec2{mirrored(moved.x, set.extent.x), mirrored(moved.y, set.extent.y)});
     }
   }
   return set;

@@ -13,11 +13,11 @@
 namespace equidem {
 namespace {
 
-/// Area that points r apart take of the plane once no more fit, over r²: the discs of diameter r then cover
-/// 0.547070 of it (Zhang & Torquato 2013, Phys. Rev. E 88, 053312).
+/// Area that points r apart take of the plane once no more fit, over r²: the discs of diameter r then cover 0.547070
+/// of it (Zhang & Torquato 2013, Phys. Rev. E 88, 053312).
 constexpr double saturation_density = 4 * 0.547070 / std::numbers::pi;
-/// A free side is crowded: nothing outside takes space from it. It counts as if it were this share of r
-/// further out (measured on samples of this generator; only the closeness to the wanted count depends on it).
+/// A free side is crowded: nothing outside takes space from it. It counts as if it were this share of r further out
+/// (measured on samples of this generator; only the closeness to the wanted count depends on it).
 constexpr double side_gain = 1.0 / 3;
 
 /// A square of the 2^level-th part of a base square of the grid.
@@ -66,17 +66,16 @@ class Adsorption {
  private:
   static constexpr double nothing = std::numeric_limits<double>::infinity();
 
-  /// A few throws for every square, each into any of them, so that points stay uniform in the free space. The
-  /// throws of a round are made block by block, in which they keep their order: neighbouring blocks then stay
-  /// in the cache, and only throws of one round on both sides of a block's border may change places in time.
+  /// A few throws for every square, each into any of them, so that points stay uniform in the free space. The throws
+  /// of a round are made block by block, in which they keep their order: neighbouring blocks then stay in the cache,
+  /// and only throws of one round on both sides of a block's border may change places in time.
   void throw_darts(std::vector<Square>& squares, int level, Random& random) {
     const double part = 1.0 / static_cast<double>(1U << level);
     for (int round = 0; round < 6 && !squares.empty(); ++round) {
       std::vector<Dart> darts((squares.size() + 7) / 8);
       for (Dart& dart : darts) {
         const Square square = squares[random.below(squares.size())];
-        dart.point = {(square.x + random.uniform()) * part * size_.x,
-                      (square.y + random.uniform()) * part * size_.y};
+        dart.point = {(square.x + random.uniform()) * part * size_.x, (square.y + random.uniform()) * part * size_.y};
         dart.column = static_cast<std::int32_t>(square.x >> level);
         dart.row = static_cast<std::int32_t>(square.y >> level);
       }
@@ -92,8 +91,7 @@ class Adsorption {
   }
 
   [[nodiscard]] bool taken(const Square& square, int level) const {
-    return points_[static_cast<std::size_t>((square.y >> level) * columns_ + (square.x >> level))].x !=
-           nothing;
+    return points_[static_cast<std::size_t>((square.y >> level) * columns_ + (square.x >> level))].x != nothing;
   }
 
   /// Stable counting sort.
@@ -103,8 +101,7 @@ class Adsorption {
     const auto block = [&](const Dart& dart) {
       return static_cast<std::size_t>(dart.row / width * blocks_in_row + dart.column / width);
     };
-    std::vector<std::size_t> place(static_cast<std::size_t>((rows_ + width - 1) / width * blocks_in_row) + 1,
-                                   0);
+    std::vector<std::size_t> place(static_cast<std::size_t>((rows_ + width - 1) / width * blocks_in_row) + 1, 0);
     for (const Dart& dart : darts) ++place[block(dart) + 1];
     for (std::size_t k = 1; k < place.size(); ++k) place[k] += place[k - 1];
     std::vector<Dart> sorted(darts.size());
@@ -112,8 +109,7 @@ class Adsorption {
     darts.swap(sorted);
   }
 
-  /// Call body(point) for the points near a base square, nearest images where periodic, until it returns
-  /// true.
+  /// Call body(point) for the points near a base square, nearest images where periodic, until it returns true.
   template <typename Body>
   bool any_near(std::int64_t column, std::int64_t row, const Body& body) const {
     for (std::int64_t y = row - reach_y_; y <= row + reach_y_; ++y) {
@@ -191,8 +187,7 @@ class Adsorption {
   std::vector<Vec2> found_;
 };
 
-/// The distance r at which `count` points are expected: count r² = density (width + 2 gain r) (height + 2
-/// gain r).
+/// The distance r at which `count` points are expected: count r² = density (width + 2 gain r) (height + 2 gain r).
 double distance_for(double count, Vec2 extent, double gain) {
   const double a = count / saturation_density - 4 * gain * gain;
   const double b = 2 * gain * (extent.x + extent.y);

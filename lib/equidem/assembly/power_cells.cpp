@@ -22,8 +22,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Facets below this share of the distance of the centres are rounding of no facet at all.
 constexpr double smallest_facet = 1e-9;
 
-/// Name an edge from the end that a contact starts at: the lower disc, between images of one disc that with
-/// the positive shift to the other.
+/// Name an edge from the end that a contact starts at: the lower disc, between images of one disc that with the
+/// positive shift to the other.
 void orient(TriangulationEdge& edge, const Sites& sites) {
   const Image a = sites.image(edge.a);
   const Image b = sites.image(edge.b);
@@ -55,8 +55,8 @@ std::vector<TriangulationEdge> sorted(std::span<const TriangulationEdge> edges, 
   return result;
 }
 
-/// The line of equal power of two sites a and b, at `lever` from a along the normal n from a to b, and the
-/// stretch of it from `low` to `high`, along s = (-n_y, n_x), on which no third site has less power.
+/// The line of equal power of two sites a and b, at `lever` from a along the normal n from a to b, and the stretch of
+/// it from `low` to `high`, along s = (-n_y, n_x), on which no third site has less power.
 struct Facet {
   double distance = 0;
   double lever = 0;
@@ -90,12 +90,10 @@ class DualGeometry {
   }
 
  private:
-  /// Where on the line of a and b, along s, the power of the site c is the same too. With u = b - a, v = c -
-  /// a, w = c - b: t = |u| (v.w + (w_a - w_c) - (w_a - w_b) u.v/|u|²) / (2 u x v), for equal weights |u|/2
-  /// times the cotangent of the angle at c. The product u x v is taken of the two shorter sides, where it
-  /// loses least.
-  [[nodiscard]] double radical_centre(const TriangulationEdge& edge, std::int32_t c, Vec2 u,
-                                      double length) const {
+  /// Where on the line of a and b, along s, the power of the site c is the same too. With u = b - a, v = c - a, w = c
+  /// - b: t = |u| (v.w + (w_a - w_c) - (w_a - w_b) u.v/|u|²) / (2 u x v), for equal weights |u|/2 times the cotangent
+  /// of the angle at c. The product u x v is taken of the two shorter sides, where it loses least.
+  [[nodiscard]] double radical_centre(const TriangulationEdge& edge, std::int32_t c, Vec2 u, double length) const {
     const Vec2 v = sites_.branch(edge.a, c);
     const Vec2 w = sites_.branch(edge.b, c);
     const double uu = dot(u, u);
@@ -132,8 +130,8 @@ class DualGeometry {
     facet.cut = facet.low != low || facet.high != high;
   }
 
-  /// Whether no site outside the region of images can have less power at the end t of the facet than a has:
-  /// its distance from there is at least `clear`, its weight at most the largest.
+  /// Whether no site outside the region of images can have less power at the end t of the facet than a has: its
+  /// distance from there is at least `clear`, its weight at most the largest.
   [[nodiscard]] bool certain(const Facet& facet, double t, std::int32_t a, Vec2 l) const {
     if (!std::isfinite(t)) return false;
     const Vec2 n = l / facet.distance;
@@ -155,9 +153,8 @@ std::vector<TriangulationEdge> edges_of_cell(const Sites& sites) {
   std::vector<TriangulationEdge> edges =
       triangulation_edges(sites.positions(), sites.weights(), sites.insertion_order());
   if (sites.images() > 0) {
-    std::erase_if(edges, [&](const TriangulationEdge& edge) {
-      return !sites.in_cell(edge.a) && !sites.in_cell(edge.b);
-    });
+    std::erase_if(edges,
+                  [&](const TriangulationEdge& edge) { return !sites.in_cell(edge.a) && !sites.in_cell(edge.b); });
   }
   parallel_ranges(edges.size(), 65536, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) orient(edges[k], sites);
@@ -173,10 +170,10 @@ std::vector<Facet> facets_of(std::span<const TriangulationEdge> edges, const Dua
   return facets;
 }
 
-/// Neighbours, facets, and the part of the areas that lies between centres and facets: half of lever times
-/// length on either side, the lever negative where the facet lies behind the centre.
-PowerCells cells_between(const Sites& sites, std::span<const TriangulationEdge> edges,
-                         std::span<const Facet> facets, std::size_t discs) {
+/// Neighbours, facets, and the part of the areas that lies between centres and facets: half of lever times length on
+/// either side, the lever negative where the facet lies behind the centre.
+PowerCells cells_between(const Sites& sites, std::span<const TriangulationEdge> edges, std::span<const Facet> facets,
+                         std::size_t discs) {
   PowerCells cells;
   cells.areas.assign(discs, 0);
   cells.neighbours.reserve(edges.size());
@@ -213,8 +210,8 @@ PowerCells free_cells(const Assembly& assembly, const Rectangle& domain) {
   const std::vector<TriangulationEdge> edges = edges_of_cell(sites);
   const std::vector<Facet> facets = facets_of(edges, DualGeometry(sites, domain));
   PowerCells cells = cells_between(sites, edges, facets, assembly.size());
-  cells.collinear = std::all_of(edges.begin(), edges.end(),
-                                [](const TriangulationEdge& e) { return e.left < 0 && e.right < 0; });
+  cells.collinear =
+      std::all_of(edges.begin(), edges.end(), [](const TriangulationEdge& e) { return e.left < 0 && e.right < 0; });
   // A cell that takes a stretch of a side has a facet that the side cuts, unless it is the only one.
   std::vector<std::int32_t> outermost;
   for (std::size_t k = 0; k < edges.size(); ++k) {
@@ -223,8 +220,7 @@ PowerCells free_cells(const Assembly& assembly, const Rectangle& domain) {
   std::sort(outermost.begin(), outermost.end());
   outermost.erase(std::unique(outermost.begin(), outermost.end()), outermost.end());
   if (outermost.empty()) {
-    for (std::size_t disc = 0; disc < assembly.size(); ++disc)
-      outermost.push_back(static_cast<std::int32_t>(disc));
+    for (std::size_t disc = 0; disc < assembly.size(); ++disc) outermost.push_back(static_cast<std::int32_t>(disc));
   }
   cells.sides = side_cells(assembly, outermost, domain, cells.areas);
   return cells;
@@ -245,9 +241,8 @@ Rectangle bounding_rectangle(const Assembly& assembly) {
 
 PowerCells power_cells(const Assembly& assembly, const std::optional<Rectangle>& domain) {
   assert(assembly.size() > 0 && assembly.radii.size() == assembly.size());
-  PowerCells cells = assembly.periodic()
-                         ? periodic_cells(assembly)
-                         : free_cells(assembly, domain ? *domain : bounding_rectangle(assembly));
+  PowerCells cells = assembly.periodic() ? periodic_cells(assembly)
+                                         : free_cells(assembly, domain ? *domain : bounding_rectangle(assembly));
   // Rounding may leave an empty cell a shade below nothing.
   for (double& area : cells.areas) area = std::max(area, 0.0);
   return cells;

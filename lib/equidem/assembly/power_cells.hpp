@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Voronoi cells of equal discs, power cells of unequal ones (Aurenhammer 1987): facets, areas, and the
-/// stretches of the sides of a rectangle that the cells take.
+/// Voronoi cells of equal discs, power cells of unequal ones (Aurenhammer 1987): facets, areas, and the stretches of
+/// the sides of a rectangle that the cells take.
 #pragma once
 
 #include <array>
@@ -25,23 +25,22 @@ Rectangle bounding_rectangle(const Assembly& assembly);
 
 /// The power diagram of discs, the power of a place x being |x - centre|² - radius².
 struct PowerCells {
-  std::vector<Contact> neighbours;    ///< pairs of cells that share a facet, ascending by i, then j, then
-                                      ///< shift; levers reach to the facet, kept between the two centres
-  std::vector<double> facet_lengths;  ///< m, one per pair of neighbours
-  std::vector<double> areas;          ///< m², one per disc; 0 where a cell is empty
-  std::map<std::string, DiscGroup>
-      sides;               ///< free: left, right, bottom, top with the length that each cell takes
-                           ///< of the side; bottom_left, ... the cell that holds the corner
-  bool collinear = false;  ///< all centres lie on one line
+  std::vector<Contact> neighbours;         ///< pairs of cells that share a facet, ascending by i, then j, then
+                                           ///< shift; levers reach to the facet, kept between the two centres
+  std::vector<double> facet_lengths;       ///< m, one per pair of neighbours
+  std::vector<double> areas;               ///< m², one per disc; 0 where a cell is empty
+  std::map<std::string, DiscGroup> sides;  ///< free: left, right, bottom, top with the length that each cell takes
+                                           ///< of the side; bottom_left, ... the cell that holds the corner
+  bool collinear = false;                  ///< all centres lie on one line
 };
 
-/// Cells of a periodic assembly, or of a free one in its bounding rectangle or the given one, which must hold
-/// all centres. Facets shorter than 1e-9 of the distance of the centres are left out: they are corners where
-/// more than three cells meet.
+/// Cells of a periodic assembly, or of a free one in its bounding rectangle or the given one, which must hold all
+/// centres. Facets shorter than 1e-9 of the distance of the centres are left out: they are corners where more than
+/// three cells meet.
 ///
-/// A periodic diagram is that of the cell and of as many images around it as it takes to prove that none
-/// further away matters: no power circle of a triangle at the cell reaches beyond the images. \throws Error
-/// (bad_input) naming two discs with the same centre; Error (computation_failed) where the period is so
+/// A periodic diagram is that of the cell and of as many images around it as it takes to prove that none further away
+/// matters: no power circle of a triangle at the cell reaches beyond the images.
+/// \throws Error (bad_input) naming two discs with the same centre; Error (computation_failed) where the period is so
 ///         narrow that too many images would be needed
 PowerCells power_cells(const Assembly& assembly, const std::optional<Rectangle>& domain = {});
 

@@ -52,13 +52,11 @@ SideCells cells_along(std::vector<Parabola> parabolas, double low, double high, 
   std::vector<std::pair<std::int32_t, double>> stretches;
   double begin = low;
   for (std::size_t k = 0; k < envelope.size(); ++k) {
-    const double end =
-        k + 1 < envelope.size() ? std::clamp(crossing(envelope[k], envelope[k + 1]), low, high) : high;
+    const double end = k + 1 < envelope.size() ? std::clamp(crossing(envelope[k], envelope[k + 1]), low, high) : high;
     const double length = end - begin;
     begin = end;
     areas[envelope[k].disc] += 0.5 * envelope[k].distance * length;
-    if (length > 2 * smallest_stretch * envelope[k].distance)
-      stretches.emplace_back(envelope[k].disc, length);
+    if (length > 2 * smallest_stretch * envelope[k].distance) stretches.emplace_back(envelope[k].disc, length);
   }
   SideCells side;
   if (stretches.empty()) return side;
@@ -74,9 +72,8 @@ SideCells cells_along(std::vector<Parabola> parabolas, double low, double high, 
 
 }  // namespace
 
-std::map<std::string, DiscGroup> side_cells(const Assembly& assembly,
-                                            std::span<const std::int32_t> candidates, const Rectangle& domain,
-                                            std::vector<double>& areas) {
+std::map<std::string, DiscGroup> side_cells(const Assembly& assembly, std::span<const std::int32_t> candidates,
+                                            const Rectangle& domain, std::vector<double>& areas) {
   const auto seen = [&](const auto& along, const auto& distance) {
     std::vector<Parabola> parabolas;
     parabolas.reserve(candidates.size());

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The points that are triangulated for an assembly: its discs and, where periodic, images of them around the
-/// cell.
+/// The points that are triangulated for an assembly: its discs and, where periodic, images of them around the cell.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +19,7 @@ struct Image {
 };
 
 /// Whole periods k by which x lies above the cell: x - k L is in [0, L).
-/// \throws Error (bad_input) naming the disc where that is so far that its place in the cell is lost to
-/// rounding
+/// \throws Error (bad_input) naming the disc where that is so far that its place in the cell is lost to rounding
 std::int32_t periods_below(double x, double period, std::size_t disc);
 
 /// Sites 0 to n - 1 are the discs, moved into the cell where periodic; images follow.
@@ -31,7 +29,8 @@ class Sites {
   /// \throws Error (bad_input) naming two discs with the same centre
   explicit Sites(const Assembly& assembly);
 
-  /// Double the margin. \throws Error (computation_failed) where that would make too many images
+  /// Double the margin.
+  /// \throws Error (computation_failed) where that would make too many images
   void widen();
 
   [[nodiscard]] std::span<const Vec2> positions() const { return positions_; }
@@ -40,9 +39,7 @@ class Sites {
   [[nodiscard]] std::span<const std::int32_t> insertion_order() const { return order_; }
   [[nodiscard]] std::size_t images() const { return images_.size(); }
   /// The rectangle of cell and margin: all images of discs in it are among the sites.
-  [[nodiscard]] Rectangle region() const {
-    return {{-margin_, -margin_}, {period_.x + margin_, period_.y + margin_}};
-  }
+  [[nodiscard]] Rectangle region() const { return {{-margin_, -margin_}, {period_.x + margin_, period_.y + margin_}}; }
 
   [[nodiscard]] bool in_cell(std::int32_t site) const { return site < discs_; }
   [[nodiscard]] Image image(std::int32_t site) const {
@@ -53,8 +50,7 @@ class Sites {
   [[nodiscard]] double weight(std::int32_t site) const { return weights_.empty() ? 0 : weights_[site]; }
   [[nodiscard]] double largest_weight() const { return largest_weight_; }
 
-  /// From site a to site b, the same to the last bit for every pair of images with the same shift between
-  /// them.
+  /// From site a to site b, the same to the last bit for every pair of images with the same shift between them.
   [[nodiscard]] Vec2 branch(std::int32_t a, std::int32_t b) const {
     if (images_.empty()) return positions_[b] - positions_[a];
     const Image p = image(a);
@@ -62,8 +58,8 @@ class Sites {
     return (positions_[q.disc] - positions_[p.disc]) +
            Vec2{(q.shift_x - p.shift_x) * period_.x, (q.shift_y - p.shift_y) * period_.y};
   }
-  /// The contact of a disc of the cell and a site, with the shift between the centres as the assembly gives
-  /// them, which need not lie in the cell.
+  /// The contact of a disc of the cell and a site, with the shift between the centres as the assembly gives them,
+  /// which need not lie in the cell.
   [[nodiscard]] Contact contact(std::int32_t a, std::int32_t b) const;
 
  private:

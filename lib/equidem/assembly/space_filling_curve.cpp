@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::uint32_t side = 1U << 16;
 
-/// Distance along Hilbert's curve of the cell (x, y), both below `side`: quadrant by quadrant, turning the
-/// frame so that the curve enters each quadrant where it left the one before.
+/// Distance along Hilbert's curve of the cell (x, y), both below `side`: quadrant by quadrant, turning the frame so
+/// that the curve enters each quadrant where it left the one before.
 std::uint32_t hilbert_distance(std::uint32_t x, std::uint32_t y) {
   std::uint32_t distance = 0;
   for (std::uint32_t s = side / 2; s > 0; s /= 2) {
@@ -64,8 +64,7 @@ std::vector<std::int32_t> hilbert_order(std::span<const Vec2> points) {
   std::vector<Key> keys(points.size());
   parallel_ranges(points.size(), 16384, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      keys[k] = {hilbert_distance(cell(points[k].x - low.x), cell(points[k].y - low.y)),
-                 static_cast<std::int32_t>(k)};
+      keys[k] = {hilbert_distance(cell(points[k].x - low.x), cell(points[k].y - low.y)), static_cast<std::int32_t>(k)};
     }
   });
   sort_by_distance(keys);

@@ -11,9 +11,9 @@
 
 namespace equidem {
 
-/// The indices of finite points in the order in which Hilbert's curve (Hilbert 1891) of 2^16 x 2^16 cells,
-/// over the square from the lowest corner of the points to the larger of their two extents, passes them;
-/// points in one cell follow each other by x, then y, then index, so that equal points are neighbours.
+/// The indices of finite points in the order in which Hilbert's curve (Hilbert 1891) of 2^16 x 2^16 cells, over the
+/// square from the lowest corner of the points to the larger of their two extents, passes them; points in one cell
+/// follow each other by x, then y, then index, so that equal points are neighbours.
 std::vector<std::int32_t> hilbert_order(std::span<const Vec2> points);
 
 }  // namespace equidem

@@ -18,13 +18,11 @@ constexpr double largest_gap = 1e-9;
 /// Discs wider than this many periods are taken for a mistake.
 constexpr int most_periods = 16;
 
-/// Discs sorted into squares at least one largest diameter wide, so that touching discs lie in squares that
-/// touch.
+/// Discs sorted into squares at least one largest diameter wide, so that touching discs lie in squares that touch.
 class Grid {
  public:
   explicit Grid(const Assembly& assembly) : assembly_(assembly) {
-    const double reach =
-        2 * (1 + largest_gap) * *std::max_element(assembly.radii.begin(), assembly.radii.end());
+    const double reach = 2 * (1 + largest_gap) * *std::max_element(assembly.radii.begin(), assembly.radii.end());
     low_ = high_ = assembly.centres.front();
     for (const Vec2 x : assembly.centres) {
       low_ = {std::min(low_.x, x.x), std::min(low_.y, x.y)};
@@ -33,8 +31,8 @@ class Grid {
     if (assembly.period) {
       const double narrow = std::min(assembly.period->x, assembly.period->y);
       if (reach > most_periods * narrow) {
-        bad_input(format("the largest disc, of diameter {:.6g} m, spans more than {} periods of {:.6g} m",
-                         reach, most_periods, narrow),
+        bad_input(format("the largest disc, of diameter {:.6g} m, spans more than {} periods of {:.6g} m", reach,
+                         most_periods, narrow),
                   "it would touch itself that many times", "Correct the radii or the cell");
       }
       low_ = {0, 0};
@@ -102,8 +100,7 @@ class Grid {
                 static_cast<double>(p.moved_y) * assembly_.period->y};
     }
     if (width_ > 0) {
-      p.column =
-          std::clamp<std::int64_t>(static_cast<std::int64_t>((x.x - low_.x) / width_), 0, columns_ - 1);
+      p.column = std::clamp<std::int64_t>(static_cast<std::int64_t>((x.x - low_.x) / width_), 0, columns_ - 1);
     }
     if (height_ > 0) {
       p.row = std::clamp<std::int64_t>(static_cast<std::int64_t>((x.y - low_.y) / height_), 0, rows_ - 1);

@@ -16,12 +16,10 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using DelaunayVertex = CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, Kernel>;
 using Delaunay = CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<DelaunayVertex>>;
 
-using RegularVertex =
-    CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, Kernel,
-                                                CGAL::Regular_triangulation_vertex_base_2<Kernel>>;
+using RegularVertex = CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, Kernel,
+                                                                  CGAL::Regular_triangulation_vertex_base_2<Kernel>>;
 using RegularFace = CGAL::Regular_triangulation_face_base_2<Kernel>;
-using Regular =
-    CGAL::Regular_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<RegularVertex, RegularFace>>;
+using Regular = CGAL::Regular_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<RegularVertex, RegularFace>>;
 
 /// Insert point after point, each search starting where the last one ended.
 template <typename Triangulation, typename PointOf>
@@ -61,8 +59,7 @@ std::vector<TriangulationEdge> edges(const Triangulation& triangulation) {
 
 }  // namespace
 
-std::vector<TriangulationEdge> triangulation_edges(std::span<const Vec2> points,
-                                                   std::span<const double> weights,
+std::vector<TriangulationEdge> triangulation_edges(std::span<const Vec2> points, std::span<const double> weights,
                                                    std::span<const std::int32_t> order) {
   assert(order.size() == points.size() && (weights.empty() || weights.size() == points.size()));
   if (weights.empty()) {

@@ -68,9 +68,8 @@ void add_groups(Assembly& assembly, const Case& resolved) {
     const GroupCase& wanted = resolved.groups[k];
     const std::string where = resolved.where(format("group.{}.{}", k, wanted.box_low ? "box" : "discs"));
     if (assembly.groups.contains(wanted.name)) {
-      fail(resolved.where(format("group.{}.name", k)),
-           format("the assembly has a group '{}' of its own", wanted.name), "a name means one group",
-           "Choose another name");
+      fail(resolved.where(format("group.{}.name", k)), format("the assembly has a group '{}' of its own", wanted.name),
+           "a name means one group", "Choose another name");
     }
     assembly.groups[wanted.name] = discs_of(wanted, assembly, where);
   }
@@ -106,8 +105,7 @@ SpringConstants springs_of_material(const Case& resolved, const Assembly& assemb
   if (resolved.weighting != SpringWeighting::uniform) {
     if (packing == Packing::square) {
       bad_input(format("the weighting is \"{}\" on the square lattice", to_string(resolved.weighting)),
-                "its relation to moduli (Abe 1996, eq. 31) is for equal springs",
-                "Use weighting = \"uniform\"");
+                "its relation to moduli (Abe 1996, eq. 31) is for equal springs", "Use weighting = \"uniform\"");
     }
     packing = Packing::isotropic;
   }
@@ -136,9 +134,9 @@ std::string described(const SpringConstants& springs, SpringWeighting weighting)
 
 std::string described(const MaterialCase& material, const SpringConstants& springs, SpringWeighting weighting,
                       Packing packing) {
-  return format("G = {:.6g} Pa, nu = {:.6g} (plane {}) gives {}. The relation {}",
-                material.moduli.shear_modulus, material.moduli.poisson_ratio,
-                to_string(material.moduli.plane), described(springs, weighting), validity(packing));
+  return format("G = {:.6g} Pa, nu = {:.6g} (plane {}) gives {}. The relation {}", material.moduli.shear_modulus,
+                material.moduli.poisson_ratio, to_string(material.moduli.plane), described(springs, weighting),
+                validity(packing));
 }
 
 }  // namespace
@@ -148,8 +146,7 @@ Assembly build_assembly(const Case& resolved) {
   try {
     assembly = generate(resolved.assembly);
   } catch (const Error& error) {
-    throw error.at(
-        resolved.where(resolved.assembly.kind == AssemblyKind::file ? "assembly.path" : "assembly"));
+    throw error.at(resolved.where(resolved.assembly.kind == AssemblyKind::file ? "assembly.path" : "assembly"));
   }
   add_groups(assembly, resolved);
   check_group_names(assembly, resolved);
@@ -161,8 +158,7 @@ BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
   const bool own = !assembly.contact_kN.empty();
   if (!resolved.springs && !resolved.material && !own) {
     fail(resolved.where("assembly.path"), "the springs are missing",
-         "neither the case file nor the assembly file gives any",
-         "Add [springs] with kN and kT to the case file");
+         "neither the case file nor the assembly file gives any", "Add [springs] with kN and kT to the case file");
   }
   const std::string where = resolved.where(resolved.material ? "material" : "springs");
   try {
@@ -176,9 +172,8 @@ BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
     Packing packing = Packing::isotropic;
     const SpringConstants constants =
         resolved.material ? springs_of_material(resolved, assembly, packing) : *resolved.springs;
-    const std::string report = resolved.material
-                                   ? described(*resolved.material, constants, resolved.weighting, packing)
-                                   : described(constants, resolved.weighting);
+    const std::string report = resolved.material ? described(*resolved.material, constants, resolved.weighting, packing)
+                                                 : described(constants, resolved.weighting);
     return {contact_springs(assembly, constants, resolved.weighting), constants, report};
   } catch (const Error& error) {
     throw error.at(where);

@@ -13,24 +13,22 @@
 namespace equidem {
 
 /// The assembly of a case, checked, with cells measured and the groups of [[group]] added.
-/// \throws Error (bad_input), with the line of the case file: no such file, a group that names an absent
-/// disc,
-///         holds none or takes a name that is taken, a support or load on a group that does not exist
+/// \throws Error (bad_input), with the line of the case file: no such file, a group that names an absent disc, holds
+///         none or takes a name that is taken, a support or load on a group that does not exist
 Assembly build_assembly(const Case& resolved);
 
 /// The springs of every contact and where they come from.
 struct BuiltSprings {
   ContactSprings springs;
-  std::optional<SpringConstants>
-      constants;       ///< before weighting; none where the assembly file gives all springs
-  std::string report;  ///< one or two sentences for people
+  std::optional<SpringConstants> constants;  ///< before weighting; none where the assembly file gives all springs
+  std::string report;                        ///< one or two sentences for people
 };
 
-/// [material] is turned into springs by the relation of the assembly's kind (Abe 1996): hexagonal (34),
-/// square (31), else isotropic (20), (21) with the measured solid fraction and coordination number. Weighted
-/// springs: contact_density gives k psi = K/phi by (21); voronoi gives K = kN/2, since the facets of Voronoi
-/// cells obey sum h l = 2 V and uniform strain then stores w = kN <(n e n)²>. \throws Error (bad_input), with
-/// the line of the case file: what the relation cannot represent, springs that
+/// [material] is turned into springs by the relation of the assembly's kind (Abe 1996): hexagonal (34), square (31),
+/// else isotropic (20), (21) with the measured solid fraction and coordination number. Weighted springs:
+/// contact_density gives k psi = K/phi by (21); voronoi gives K = kN/2, since the facets of Voronoi cells obey sum h
+/// l = 2 V and uniform strain then stores w = kN <(n e n)²>.
+/// \throws Error (bad_input), with the line of the case file: what the relation cannot represent, springs that
 ///         are missing or not positive
 BuiltSprings build_springs(const Case& resolved, const Assembly& assembly);
 

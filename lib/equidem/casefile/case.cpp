@@ -13,8 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const TomlValue& at, const std::string& key, const std::string& problem,
-                       const std::string& why, const std::string& remedy) {
+[[noreturn]] void fail(const TomlValue& at, const std::string& key, const std::string& problem, const std::string& why,
+                       const std::string& remedy) {
   throw Error(ErrorKind::bad_input, problem, why, remedy, format("{}: {}", at.where(), key));
 }
 
@@ -79,8 +79,8 @@ AssemblyCase read_assembly_table(TomlValue& table, const fs::path& folder) {
     options.radii = {number(*radii, "smallest"), number(*radii, "largest")};
     if (options.radii.smallest > options.radii.largest) {
       fail(*radii, "assembly.radii",
-           format("smallest = {} is larger than largest = {}", options.radii.smallest, options.radii.largest),
-           "", "Exchange them");
+           format("smallest = {} is larger than largest = {}", options.radii.smallest, options.radii.largest), "",
+           "Exchange them");
     }
   }
   return result;
@@ -116,16 +116,14 @@ GroupCase read_group(const TomlValue& table) {
   const TomlValue* discs = table.find("discs");
   const TomlValue* box = table.find("box");
   if (result.name.empty())
-    fail(table, "group.name", "the name is empty", "[[support]] and [[load]] choose a group by its name",
-         "Name it");
+    fail(table, "group.name", "the name is empty", "[[support]] and [[load]] choose a group by its name", "Name it");
   if ((discs == nullptr) == (box == nullptr)) {
     fail(box != nullptr ? *box : table, format("group '{}'", result.name),
          box != nullptr ? "discs and box are both given" : "it has neither discs nor box",
          "a group is a list of discs, or the discs in a box", "Give one of the two");
   }
   if (discs != nullptr) {
-    for (const TomlValue& item : discs->items)
-      result.discs.push_back(static_cast<std::int32_t>(item.integer));
+    for (const TomlValue& item : discs->items) result.discs.push_back(static_cast<std::int32_t>(item.integer));
     return result;
   }
   result.box_low = Vec2{box->items[0].real, box->items[1].real};
@@ -165,8 +163,8 @@ Load read_load(const TomlValue& table) {
   const TomlValue* force = table.find("force");
   const TomlValue* moment = table.find("moment");
   if (force == nullptr && moment == nullptr)
-    fail(table, "load", format("the load on '{}' has neither force nor moment", result.group),
-         "it would do nothing", "Add one, such as force = [1.0e3, 0.0]");
+    fail(table, "load", format("the load on '{}' has neither force nor moment", result.group), "it would do nothing",
+         "Add one, such as force = [1.0e3, 0.0]");
   if (moment != nullptr && result.kind == LoadKind::traction)
     fail(*moment, "load.moment", "a traction has no moment", "it is a force per area of a side",
          "Give the moment in a [[load]] of its own");
@@ -181,8 +179,8 @@ void check_name_of_case(const TomlValue& value) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   };
   if (std::all_of(value.text.begin(), value.text.end(), plain)) return;
-  fail(value, "load.case", format("{} cannot name a load case", value.shown()),
-       "it becomes part of the names of files", "Use letters, digits, '_' and '-' only");
+  fail(value, "load.case", format("{} cannot name a load case", value.shown()), "it becomes part of the names of files",
+       "Use letters, digits, '_' and '-' only");
 }
 
 /// Loads with a name act in the case of that name, loads without in every case.
@@ -224,13 +222,12 @@ void check_contradictions(const TomlValue& root, const AssemblyCase& assembly) {
   const TomlValue* springs = root.find("springs");
   const TomlValue* material = root.find("material");
   if (springs != nullptr && material != nullptr) {
-    fail(*material, "material", "springs and [material] are both given",
-         "[material] says which springs to take", "Remove one of them");
+    fail(*material, "material", "springs and [material] are both given", "[material] says which springs to take",
+         "Remove one of them");
   }
   const bool springs_in_file = assembly.kind == AssemblyKind::file;
   if (springs == nullptr && material == nullptr && !springs_in_file) {
-    fail(root, "springs", "the springs are missing",
-         "every contact has a normal spring kN and a tangential spring kT",
+    fail(root, "springs", "the springs are missing", "every contact has a normal spring kN and a tangential spring kT",
          "Add [springs] with kN and kT, or [material], or springs = \"FILE\"");
   }
   const TomlValue* test = root.find("test");
@@ -240,9 +237,8 @@ void check_contradictions(const TomlValue& root, const AssemblyCase& assembly) {
          "the test brings its own supports and loads", "Remove one of them");
   }
   if (test != nullptr && (assembly.lattice.periodic || assembly.delaunay.periodic)) {
-    fail(*root.find("assembly")->find("periodic"), "assembly.periodic",
-         "a periodic assembly has no sides to pull", "[test] pulls at the left and right sides",
-         "Set periodic = false, or remove [test]");
+    fail(*root.find("assembly")->find("periodic"), "assembly.periodic", "a periodic assembly has no sides to pull",
+         "[test] pulls at the left and right sides", "Set periodic = false, or remove [test]");
   }
 }
 
@@ -250,8 +246,7 @@ void check_group_names(const std::vector<TomlValue>& tables) {
   for (std::size_t k = 0; k < tables.size(); ++k) {
     for (std::size_t earlier = 0; earlier < k; ++earlier) {
       if (text(tables[earlier], "name") != text(tables[k], "name")) continue;
-      fail(*tables[k].find("name"), "group.name",
-           format("there are two groups '{}'", text(tables[k], "name")),
+      fail(*tables[k].find("name"), "group.name", format("there are two groups '{}'", text(tables[k], "name")),
            format("the other is at {}", tables[earlier].where()), "Give each its own name");
     }
   }
@@ -282,16 +277,14 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
   result.assembly = read_assembly_table(*root.find("assembly"), folder);
   check_contradictions(root, result.assembly);
   for (const char* source : {"springs", "material"})
-    if (const TomlValue* table = root.find(source))
-      result.weighting = spring_weighting_from(text(*table, "weighting"));
+    if (const TomlValue* table = root.find(source)) result.weighting = spring_weighting_from(text(*table, "weighting"));
   if (const TomlValue* springs = root.find("springs"))
     result.springs = SpringConstants{number(*springs, "kN"), number(*springs, "kT")};
   if (const TomlValue* material = root.find("material")) result.material = read_material(*material);
   if (const TomlValue* rotation = root.find("effects")->find("rotation"))
     result.rotation = rotation->text == "free" ? Rotation::free : Rotation::restrained;
   if (const TomlValue* test = root.find("test"))
-    result.test =
-        TensionTest{.stress = number(*test, "stress"), .gauge = gauge_placement_from(text(*test, "gauge"))};
+    result.test = TensionTest{.stress = number(*test, "stress"), .gauge = gauge_placement_from(text(*test, "gauge"))};
   check_group_names(repeated(root, "group"));
   for (const TomlValue& table : repeated(root, "group")) result.groups.push_back(read_group(table));
   for (const TomlValue& table : repeated(root, "support")) result.supports.push_back(read_support(table));

@@ -59,8 +59,8 @@ struct OutputCase {
   bool picture = true;
 };
 
-/// A checked case file: complete, in range and without contradiction. What only the assembly can tell
-/// (whether a group holds discs, whether supports suffice) is checked where the case is built and solved.
+/// A checked case file: complete, in range and without contradiction. What only the assembly can tell (whether a
+/// group holds discs, whether supports suffice) is checked where the case is built and solved.
 struct Case {
   std::string title;
   AssemblyCase assembly;
@@ -84,8 +84,8 @@ struct Case {
 
 /// Read and check a case file.
 /// \param overrides "springs.kT=0.3e9", in order
-/// \throws Error (bad_input) with file, line and key: unreadable file, no TOML, unknown or missing key, wrong
-///         type, out of range, contradiction
+/// \throws Error (bad_input) with file, line and key: unreadable file, no TOML, unknown or missing key, wrong type,
+///         out of range, contradiction
 Case read_case(const std::filesystem::path& path, std::span<const std::string> overrides = {});
 
 /// The same from text.
@@ -94,8 +94,7 @@ Case read_case(const std::filesystem::path& path, std::span<const std::string> o
 Case parse_case(std::string_view text, const std::string& name, const std::filesystem::path& folder,
                 std::span<const std::string> overrides = {});
 
-/// The resolved case as TOML: every default written out, overrides applied. Reading it back gives the same
-/// case.
+/// The resolved case as TOML: every default written out, overrides applied. Reading it back gives the same case.
 /// \param folder where it will lie: paths are written relative to it
 std::string to_toml(const Case& resolved, const std::filesystem::path& folder);
 

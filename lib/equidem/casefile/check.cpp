@@ -56,8 +56,7 @@ class Checker {
     return nullptr;
   }
 
-  [[nodiscard]] std::vector<const KeySpec*> key_specs(const std::string& path,
-                                                      const std::string& name) const {
+  [[nodiscard]] std::vector<const KeySpec*> key_specs(const std::string& path, const std::string& name) const {
     std::vector<const KeySpec*> found;
     for (const KeySpec& key : spec_.keys)
       if (path == key.table && name == key.name) found.push_back(&key);
@@ -120,10 +119,8 @@ class Checker {
     const std::string prefix = path.empty() ? "" : path + ".";
     for (const TableSpec& inner : spec_.tables) {
       const std::string full = inner.name;
-      const bool directly_below =
-          full.starts_with(prefix) && full.find('.', prefix.size()) == std::string::npos;
-      if (directly_below && !contains(here, full.substr(prefix.size())))
-        here.push_back(full.substr(prefix.size()));
+      const bool directly_below = full.starts_with(prefix) && full.find('.', prefix.size()) == std::string::npos;
+      if (directly_below && !contains(here, full.substr(prefix.size()))) here.push_back(full.substr(prefix.size()));
     }
     std::string remedy = format("Known here: {}", listed(here));
     if (const auto meant = nearest(name, here)) {
@@ -136,18 +133,16 @@ class Checker {
         break;
       }
     }
-    const bool as_table =
-        value.is_table() || (value.is_array() && !value.items.empty() && value.items[0].is_table());
-    fail(value, joined(path, name), as_table ? "unknown table" : "unknown key",
-         format("the {} is strict", spec_.noun), remedy);
+    const bool as_table = value.is_table() || (value.is_array() && !value.items.empty() && value.items[0].is_table());
+    fail(value, joined(path, name), as_table ? "unknown table" : "unknown key", format("the {} is strict", spec_.noun),
+         remedy);
   }
 
-  void check_inner_table(const std::string& path, const TomlValue& outer, TomlValue& value,
-                         const TableSpec& spec) {
+  void check_inner_table(const std::string& path, const TomlValue& outer, TomlValue& value, const TableSpec& spec) {
     const std::string full = spec.name;
     if (!applies(path, outer, spec.when_key, spec.when)) {
-      fail(value, full, "this table does not apply here",
-           format("it is for {} = {}", spec.when_key, listed(spec.when)), "Remove it");
+      fail(value, full, "this table does not apply here", format("it is for {} = {}", spec.when_key, listed(spec.when)),
+           "Remove it");
     }
     if (spec.repeated) {
       if (!value.is_array()) {
@@ -165,8 +160,7 @@ class Checker {
     if (!value.is_table()) {
       const bool heading = value.is_array() && !value.items.empty() && value.items[0].is_table();
       fail(value, full,
-           heading ? format("[[{}]] is a list of tables", full)
-                   : format("{} is {}", value.shown(), value.type_name()),
+           heading ? format("[[{}]] is a list of tables", full) : format("{} is {}", value.shown(), value.type_name()),
            "one table is needed", format("Write [{}] and its keys below", full));
     }
     check_table(full, value);
@@ -182,25 +176,22 @@ class Checker {
         continue;
       }
       if (keys.empty()) fail_unknown(path, table, name, value);
-      const auto applying = std::find_if(keys.begin(), keys.end(), [&](const KeySpec* key) {
-        return applies(path, table, key->when_key, key->when);
-      });
+      const auto applying = std::find_if(
+          keys.begin(), keys.end(), [&](const KeySpec* key) { return applies(path, table, key->when_key, key->when); });
       if (applying == keys.end()) fail_not_applying(path, table, name, value, keys);
       check_value(value, **applying);
     }
     complete(path, table);
   }
 
-  [[noreturn]] void fail_not_applying(const std::string& path, const TomlValue& table,
-                                      const std::string& name, const TomlValue& value,
-                                      const std::vector<const KeySpec*>& keys) const {
+  [[noreturn]] void fail_not_applying(const std::string& path, const TomlValue& table, const std::string& name,
+                                      const TomlValue& value, const std::vector<const KeySpec*>& keys) const {
     std::vector<std::string> kinds;
     for (const KeySpec* key : keys) kinds.insert(kinds.end(), key->when.begin(), key->when.end());
     const std::string selecting = keys.front()->when_key;
     const std::string chosen = selector(path, table, selecting);
-    const std::string problem = chosen.empty()
-                                    ? format("this key does not apply here")
-                                    : format("this key does not apply to {} = \"{}\"", selecting, chosen);
+    const std::string problem = chosen.empty() ? format("this key does not apply here")
+                                               : format("this key does not apply to {} = \"{}\"", selecting, chosen);
     fail(value, joined(path, name), problem, format("it is for {}", listed(kinds)),
          format("Remove it, or change {}", selecting));
   }
@@ -208,8 +199,7 @@ class Checker {
   void complete(const std::string& path, TomlValue& table) {
     for (const KeySpec& key : spec_.keys) {
       if (path != key.table || table.find(key.name) != nullptr) continue;
-      if (!(key.is_required() || key.has_default()) || !applies(path, table, key.when_key, key.when))
-        continue;
+      if (!(key.is_required() || key.has_default()) || !applies(path, table, key.when_key, key.when)) continue;
       if (key.is_required()) fail_missing(path, table, key);
       TomlValue value = *parse_toml(format("value = {}", key.fallback), "").find("value");
       value.source = table.source;

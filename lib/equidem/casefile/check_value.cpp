@@ -83,16 +83,14 @@ void check_number(const TomlValue& value, const KeySpec& key) {
   if (!std::isfinite(value.real))
     fail(value, key, format("{} is not a finite number", value.shown()), "Give a finite one");
   if (!key.range.contains(value.real))
-    fail(value, key, format("{} is out of range", value.shown()),
-         format("Give a number {}", key.range.text()));
+    fail(value, key, format("{} is out of range", value.shown()), format("Give a number {}", key.range.text()));
 }
 
 void check_numbers(const TomlValue& value, const KeySpec& key, std::size_t count) {
   if (!value.is_array()) fail_type(value, key);
   if (value.items.size() != count) {
     fail(value, key,
-         format("{} has {}", value.shown(),
-                counted(static_cast<long long>(value.items.size()), "entry", "entries")),
+         format("{} has {}", value.shown(), counted(static_cast<long long>(value.items.size()), "entry", "entries")),
          format("Give {} of them", count));
   }
   for (const TomlValue& item : value.items) check_number(item, key);
@@ -128,8 +126,7 @@ std::string expected(const KeySpec& key) {
     case KeyType::text:
       return "text in quotes";
     case KeyType::choice:
-      return key.choices.size() == 1 ? quoted_list(key.choices)
-                                     : format("one of {}", quoted_list(key.choices));
+      return key.choices.size() == 1 ? quoted_list(key.choices) : format("one of {}", quoted_list(key.choices));
     case KeyType::path:
       return "the name of a file, in quotes";
     case KeyType::flag:
@@ -209,8 +206,7 @@ void check_value(const TomlValue& value, const KeySpec& key) {
       const auto bytes = bytes_of(value);
       if (!bytes) fail_type(value, key);
       if (!key.range.contains(*bytes))
-        fail(value, key, format("{} is out of range", value.shown()),
-             format("Give a number {}", key.range.text()));
+        fail(value, key, format("{} is out of range", value.shown()), format("Give a number {}", key.range.text()));
       return;
     }
   }

@@ -22,8 +22,7 @@ std::string literal(const TomlValue& value) {
       return toml_number(value.real);
     case TomlValue::Type::array: {
       std::string text = "[";
-      for (std::size_t k = 0; k < value.items.size(); ++k)
-        text += (k > 0 ? ", " : "") + literal(value.items[k]);
+      for (std::size_t k = 0; k < value.items.size(); ++k) text += (k > 0 ? ", " : "") + literal(value.items[k]);
       return text + "]";
     }
     default:
@@ -61,9 +60,7 @@ std::string to_toml(const Case& resolved, const fs::path& folder) {
     const fs::path relative = to.lexically_relative(from);
     path->text = relative.empty() ? to.string() : relative.string();
   }
-  const auto place = [](const auto& entry) {
-    return entry.first == "schema" ? 0 : entry.first == "title" ? 1 : 2;
-  };
+  const auto place = [](const auto& entry) { return entry.first == "schema" ? 0 : entry.first == "title" ? 1 : 2; };
   std::stable_sort(document.entries.begin(), document.entries.end(),
                    [&](const auto& a, const auto& b) { return place(a) < place(b); });
   std::string out;

@@ -21,15 +21,8 @@ std::vector<KeySpec> case_keys() {
   const std::vector<std::string> lattices = {"square", "hexagonal"};
   const std::vector<std::string> delaunay = {"delaunay"};
   return {
-      {.table = "",
-       .name = "schema",
-       .type = text,
-       .help = "says which rules the file follows: \"equidem/1\""},
-      {.table = "",
-       .name = "title",
-       .type = text,
-       .fallback = "\"\"",
-       .help = "shown in reports and pictures"},
+      {.table = "", .name = "schema", .type = text, .help = "says which rules the file follows: \"equidem/1\""},
+      {.table = "", .name = "title", .type = text, .fallback = "\"\"", .help = "shown in reports and pictures"},
       {.table = "",
        .name = "springs",
        .type = path,
@@ -41,9 +34,8 @@ std::vector<KeySpec> case_keys() {
        .type = choice,
        .choices = {"square", "hexagonal", "delaunay", "file"},
        .later = {"packing"},
-       .help =
-           "square and hexagonal: lattices of equal touching discs; delaunay: random points, the edges of "
-           "their triangulation are the contacts; file: read from a file"},
+       .help = "square and hexagonal: lattices of equal touching discs; delaunay: random points, the edges of "
+               "their triangulation are the contacts; file: read from a file"},
       {.table = "assembly",
        .name = "columns",
        .type = whole,
@@ -138,12 +130,7 @@ std::vector<KeySpec> case_keys() {
        .range = positive,
        .help = "radii are uniform between the two"},
 
-      {.table = "springs",
-       .name = "kN",
-       .type = number,
-       .unit = "Pa",
-       .range = positive,
-       .help = "normal spring"},
+      {.table = "springs", .name = "kN", .type = number, .unit = "Pa", .range = positive, .help = "normal spring"},
       {.table = "springs",
        .name = "kT",
        .type = number,
@@ -300,11 +287,7 @@ std::vector<KeySpec> case_keys() {
 
       {.table = "output", .name = "csv", .type = flag, .fallback = "true", .help = "discs.csv, contacts.csv"},
       {.table = "output", .name = "vtk", .type = flag, .fallback = "true", .help = "state for ParaView"},
-      {.table = "output",
-       .name = "picture",
-       .type = flag,
-       .fallback = "true",
-       .help = "picture.svg, picture.png"},
+      {.table = "output", .name = "picture", .type = flag, .fallback = "true", .help = "picture.svg, picture.png"},
   };
 }
 
@@ -339,8 +322,7 @@ const FileSpec& case_file_spec() {
                   .when = {"delaunay"},
                   .help = "discs of different sizes, instead of radius"},
                  {.name = "springs", .help = "the two springs of a contact"},
-                 {.name = "material",
-                  .help = "the continuum that the springs shall stand for, instead of [springs]"},
+                 {.name = "material", .help = "the continuum that the springs shall stand for, instead of [springs]"},
                  {.name = "effects", .completed = true, .help = "what may be switched off"},
                  {.name = "test", .help = "a standard test, instead of [[support]] and [[load]]"},
                  {.name = "group", .repeated = true, .help = "discs chosen by name"},
@@ -361,8 +343,7 @@ const FileSpec& springs_file_spec() {
                   .keys = {}};
     for (const KeySpec& key : case_file_spec().keys) {
       const std::string_view table = key.table, name = key.name;
-      if (table == "springs" || (table.empty() && (name == "schema" || name == "title")))
-        file.keys.push_back(key);
+      if (table == "springs" || (table.empty() && (name == "schema" || name == "title"))) file.keys.push_back(key);
     }
     return file;
   }();

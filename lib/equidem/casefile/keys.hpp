@@ -88,10 +88,10 @@ const FileSpec& springs_file_spec();
 /// Every key of the case file with type, unit, range, default and meaning, as text of at most 100 columns.
 std::string describe_case_file();
 
-/// Check a document against its table of keys and fill in the defaults: afterwards every key that applies and
-/// has a default is there, with the right type and in range.
-/// \throws Error (bad_input), where = "file:line: table.key": unknown key (with the nearest known one), wrong
-///         type, missing key, a number that is not finite or out of range, a key that does not apply
+/// Check a document against its table of keys and fill in the defaults: afterwards every key that applies and has a
+/// default is there, with the right type and in range.
+/// \throws Error (bad_input), where = "file:line: table.key": unknown key (with the nearest known one), wrong type,
+///         missing key, a number that is not finite or out of range, a key that does not apply
 void check_and_complete(TomlValue& root, const FileSpec& spec);
 
 /// Whether a path such as "springs.kT" or "load.0.moment" names a key of the case file.
@@ -100,10 +100,9 @@ bool is_known_key(std::string_view path);
 /// Bytes meant by a value of KeyType::bytes; none where it is not one.
 std::optional<double> bytes_of(const TomlValue& value);
 
-/// Set one key of a document as `--set` does: "springs.kT=0.3e9", "load.0.moment=2" (entries of repeated
-/// tables count from 0). The value is TOML; a bare word is taken as text. Missing tables are made.
-/// \throws Error (bad_input) where this is no assignment, the value is no TOML, or the path leads through a
-/// value
+/// Set one key of a document as `--set` does: "springs.kT=0.3e9", "load.0.moment=2" (entries of repeated tables count
+/// from 0). The value is TOML; a bare word is taken as text. Missing tables are made.
+/// \throws Error (bad_input) where this is no assignment, the value is no TOML, or the path leads through a value
 void apply_override(TomlValue& root, const std::string& assignment, const std::string& option = "--set");
 
 /// The value at a path such as "load.0.group"; where it ends early, the last value on it.

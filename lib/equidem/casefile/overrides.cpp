@@ -29,8 +29,8 @@ std::optional<std::size_t> index_of(const std::string& segment) {
 
 bool is_bare_word(const std::string& text) {
   const auto allowed = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-' || c == '.' || c == '/' || c == ' ';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
+           c == '.' || c == '/' || c == ' ';
   };
   return !text.empty() && !(text[0] >= '0' && text[0] <= '9') && text[0] != '-' && text[0] != ' ' &&
          std::all_of(text.begin(), text.end(), allowed);
@@ -92,8 +92,8 @@ void apply_override(TomlValue& root, const std::string& assignment, const std::s
       const auto index = index_of(segment);
       if (!index || *index >= at->items.size()) {
         throw Error(ErrorKind::bad_input, format("there is no entry '{}'", segment),
-                    format("the case file has {} of them, counted from 0", at->items.size()),
-                    "Name one that exists", *source);
+                    format("the case file has {} of them, counted from 0", at->items.size()), "Name one that exists",
+                    *source);
       }
       next = &at->items[*index];
     } else if (at->is_table()) {
@@ -106,8 +106,7 @@ void apply_override(TomlValue& root, const std::string& assignment, const std::s
       }
     } else {
       throw Error(ErrorKind::bad_input, format("there is nothing below '{}'", segments[k - 1]),
-                  format("in the case file it is {}", at->shown()), "Set the key itself, or change the file",
-                  *source);
+                  format("in the case file it is {}", at->shown()), "Set the key itself, or change the file", *source);
     }
     at = next;
   }
@@ -120,8 +119,7 @@ bool is_known_key(std::string_view path) {
     if (!index_of(segment)) without_indices += (without_indices.empty() ? "" : ".") + segment;
   const auto& keys = case_file_spec().keys;
   return std::any_of(keys.begin(), keys.end(), [&](const KeySpec& key) {
-    return without_indices ==
-           (*key.table == '\0' ? std::string(key.name) : format("{}.{}", key.table, key.name));
+    return without_indices == (*key.table == '\0' ? std::string(key.name) : format("{}.{}", key.table, key.name));
   });
 }
 

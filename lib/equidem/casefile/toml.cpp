@@ -54,8 +54,7 @@ TomlValue plain(const toml::node& node, const Source& source) {
 /// Control characters, which would break a message into lines, as spaces.
 std::string in_one_line(std::string text) {
   std::replace_if(
-      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; },
-      ' ');
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, ' ');
   return text;
 }
 
@@ -129,8 +128,7 @@ std::string TomlValue::shown() const {
       return "a date";
     case Type::array: {
       std::string shown_items;
-      for (std::size_t k = 0; k < items.size() && k < 4; ++k)
-        shown_items += (k > 0 ? ", " : "") + items[k].shown();
+      for (std::size_t k = 0; k < items.size() && k < 4; ++k) shown_items += (k > 0 ? ", " : "") + items[k].shown();
       return format("[{}{}]", shown_items, items.size() > 4 ? ", ..." : "");
     }
   }

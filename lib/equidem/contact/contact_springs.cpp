@@ -47,10 +47,9 @@ std::vector<double> weights(const Assembly& assembly, SpringWeighting weighting)
     const std::vector<double> psi = contact_density(assembly);
     for (std::size_t c = 0; c < count; ++c) {
       if (!(psi[c] > 0)) {
-        bad_input(
-            format("the contact density is {:.6g} contacts per radian at {}", psi[c], name_of(assembly, c)),
-            "its second and fourth harmonics do not describe so anisotropic an assembly",
-            "Use the weighting \"uniform\"");
+        bad_input(format("the contact density is {:.6g} contacts per radian at {}", psi[c], name_of(assembly, c)),
+                  "its second and fourth harmonics do not describe so anisotropic an assembly",
+                  "Use the weighting \"uniform\"");
       }
       weight[c] = 1 / psi[c];
     }
@@ -65,8 +64,7 @@ std::vector<double> weights(const Assembly& assembly, SpringWeighting weighting)
     weight[c] = assembly.facet_lengths[c] / norm(assembly.branch(assembly.contacts[c]));
     if (!(weight[c] > 0)) {
       bad_input(format("the cells share no edge at {}", name_of(assembly, c)),
-                "the weighting \"voronoi\" would give it kN = 0",
-                "Move one of the discs, or use another weighting");
+                "the weighting \"voronoi\" would give it kN = 0", "Move one of the discs, or use another weighting");
     }
   }
   return weight;
@@ -90,14 +88,12 @@ std::string to_string(SpringWeighting weighting) {
 
 bool ContactSprings::any_tangential() const {
   if (uniform()) return uniform_.kT != 0;
-  return std::any_of(per_contact_.begin(), per_contact_.end(),
-                     [](const SpringConstants& k) { return k.kT != 0; });
+  return std::any_of(per_contact_.begin(), per_contact_.end(), [](const SpringConstants& k) { return k.kT != 0; });
 }
 
 bool ContactSprings::any_negative() const {
   if (uniform()) return uniform_.kT < 0;
-  return std::any_of(per_contact_.begin(), per_contact_.end(),
-                     [](const SpringConstants& k) { return k.kT < 0; });
+  return std::any_of(per_contact_.begin(), per_contact_.end(), [](const SpringConstants& k) { return k.kT < 0; });
 }
 
 double ContactSprings::largest() const {

@@ -48,14 +48,12 @@ class ContactSprings {
 };
 
 /// The springs of every contact: the assembly's own where it gives some, else `springs` weighted as asked.
-/// \throws Error (bad_input) where kN is not positive or a spring is not finite, where `voronoi` is asked of
-/// an assembly
-///         without facet lengths, where a shared edge has no length, or psi is not positive at a contact
+/// \throws Error (bad_input) where kN is not positive or a spring is not finite, where `voronoi` is asked of an
+///         assembly without facet lengths, where a shared edge has no length, or psi is not positive at a contact
 ContactSprings contact_springs(const Assembly& assembly, SpringConstants springs, SpringWeighting weighting);
 
-/// Contacts per radian around one disc at each contact's direction, psi(theta) = (z/2pi) (1 + sum a_k cos k
-/// theta + b_k sin k theta), k = 2, 4: the harmonics that stiffness, a fourth-order tensor, can see (Abe
-/// 1996, eq. 11).
+/// Contacts per radian around one disc at each contact's direction, psi(theta) = (z/2pi) (1 + sum a_k cos k theta +
+/// b_k sin k theta), k = 2, 4: the harmonics that stiffness, a fourth-order tensor, can see (Abe 1996, eq. 11).
 std::vector<double> contact_density(const Assembly& assembly);
 
 }  // namespace equidem

@@ -10,8 +10,7 @@ namespace {
 Effects::Entry rotation_entry(bool tangential_springs, Rotation rotation) {
   if (!tangential_springs) return {"rotation", false, "kT = 0 everywhere: nothing can turn a disc"};
   if (rotation == Rotation::restrained) {
-    return {"rotation", false,
-            "restrained as asked: moments hold the discs, and the stress need not be symmetric"};
+    return {"rotation", false, "restrained as asked: moments hold the discs, and the stress need not be symmetric"};
   }
   return {"rotation", true, "tangential springs turn the discs"};
 }

@@ -32,14 +32,12 @@ struct Effects {
   bool rotation = false;  ///< rotations are unknowns
 
   [[nodiscard]] int unknowns_per_disc() const { return rotation ? 3 : 2; }
-  /// "active: normal springs, tangential springs. inactive: rotation (kT = 0 everywhere: nothing can turn a
-  /// disc)."
+  /// "active: normal springs, tangential springs. inactive: rotation (kT = 0 everywhere: nothing can turn a disc)."
   [[nodiscard]] std::string report() const;
 };
 
-/// Normal springs always; tangential springs where some kT != 0; rotation where moreover it is not
-/// restrained. Free rotation with kT = 0 would leave rotations without stiffness: they are inert and are no
-/// unknowns.
+/// Normal springs always; tangential springs where some kT != 0; rotation where moreover it is not restrained. Free
+/// rotation with kT = 0 would leave rotations without stiffness: they are inert and are no unknowns.
 Effects derive_effects(const ContactSprings& springs, Rotation rotation);
 
 }  // namespace equidem

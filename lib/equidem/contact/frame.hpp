@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// From the motion of two bodies to stretch and slip at their contact, and back from contact forces to the
-/// bodies.
+/// From the motion of two bodies to stretch and slip at their contact, and back from contact forces to the bodies.
 #pragma once
 
 #include "equidem/assembly/assembly.hpp"
@@ -30,8 +29,8 @@ struct ContactDeformation {
   double tangential = 0;
 };
 
-/// Normal (tension positive) and tangential force of a contact, N/m: F on i is normal * n + tangential * s,
-/// and -F on j.
+/// Normal (tension positive) and tangential force of a contact, N/m: F on i is normal * n + tangential * s, and -F on
+/// j.
 struct ContactForce {
   double normal = 0;
   double tangential = 0;
@@ -42,12 +41,11 @@ inline ContactFrame frame_of(const Assembly& assembly, const Contact& contact) {
   return {l / norm(l), contact.lever_i, contact.lever_j};
 }
 
-/// dn = (u_j - u_i) . n,  ds = (u_j - u_i) . s - (r_i theta_i + r_j theta_j): Abe 1996, eqs. (1)-(3) with r_i
-/// = r_j = a.
+/// dn = (u_j - u_i) . n,  ds = (u_j - u_i) . s - (r_i theta_i + r_j theta_j): Abe 1996, eqs. (1)-(3) with r_i = r_j =
+/// a.
 inline ContactDeformation deformation(const ContactFrame& frame, const DiscMotion& i, const DiscMotion& j) {
   const Vec2 du = j.u - i.u;
-  return {dot(du, frame.normal),
-          dot(du, frame.tangent()) - (frame.lever_i * i.theta + frame.lever_j * j.theta)};
+  return {dot(du, frame.normal), dot(du, frame.tangent()) - (frame.lever_i * i.theta + frame.lever_j * j.theta)};
 }
 
 /// The force that disc i feels through the contact; disc j feels its negative.

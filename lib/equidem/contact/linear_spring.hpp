@@ -6,8 +6,8 @@
 ///   force    f = dW/d(dn, ds) = (kN dn, kT ds)
 ///   tangent  K = d²W/dq² with q = (u_i, a theta_i, u_j, a theta_j)
 ///
-/// (Abe 1996, eqs. 1-5.) kN > 0; kT may be negative in statics, where the assembly stays regular down to its
-/// critical ratio kT/kN.
+/// (Abe 1996, eqs. 1-5.) kN > 0; kT may be negative in statics, where the assembly stays regular down to its critical
+/// ratio kT/kN.
 #pragma once
 
 #include <array>
@@ -26,8 +26,8 @@ inline double linear_spring_energy(const SpringConstants& k, const ContactDeform
   return 0.5 * (k.kN * d.normal * d.normal + k.kT * d.tangential * d.tangential);
 }
 
-/// Derivatives of the deformation by the motion (u_x, u_y, a theta) of one of the two discs; the tangent is
-/// made of them: K_pq = kN n_p n_q^T + kT t_p t_q^T for p, q in {i, j}.
+/// Derivatives of the deformation by the motion (u_x, u_y, a theta) of one of the two discs; the tangent is made of
+/// them: K_pq = kN n_p n_q^T + kT t_p t_q^T for p, q in {i, j}.
 struct DeformationGradient {
   std::array<double, 3> normal_i, normal_j;          ///< d dn / d(u_x, u_y, a theta)
   std::array<double, 3> tangential_i, tangential_j;  ///< d ds / d(u_x, u_y, a theta)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The one way bad input and failed computations are told. Broken promises between functions are asserted
-/// instead.
+/// The one way bad input and failed computations are told. Broken promises between functions are asserted instead.
 #pragma once
 
 #include <cassert>

@@ -30,8 +30,7 @@ fs::path folder_of(const fs::path& path) {
 std::string read_file(const fs::path& path) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) {
-    bad_input(format("cannot read '{}'", path.string()), "there is no such file",
-              "Check its name and the folder");
+    bad_input(format("cannot read '{}'", path.string()), "there is no such file", "Check its name and the folder");
   }
   if (fs::is_directory(path, ignored)) {
     bad_input(format("cannot read '{}'", path.string()), "it is a folder", "Name a file in it");
@@ -57,8 +56,7 @@ void check_writable(const fs::path& path, bool overwrite) {
   }
   if (folder.empty() || !fs::exists(folder, ignored)) folder = ".";
   if (!fs::is_directory(folder, ignored)) cannot_write(path, format("'{}' is not a folder", folder.string()));
-  if (access(folder.c_str(), W_OK) != 0)
-    cannot_write(path, format("'{}': {}", folder.string(), std::strerror(errno)));
+  if (access(folder.c_str(), W_OK) != 0) cannot_write(path, format("'{}': {}", folder.string(), std::strerror(errno)));
 }
 
 void write_file(const fs::path& path, std::string_view content, bool overwrite) {

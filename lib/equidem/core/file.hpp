@@ -13,8 +13,8 @@ namespace equidem {
 std::string read_file(const std::filesystem::path& path);
 
 /// Write a file whole or not at all: into a temporary file beside it, then renamed. Missing folders are made.
-/// \throws Error (bad_input) where it exists and `overwrite` is false, or where it cannot be written (with
-/// the reason)
+/// \throws Error (bad_input) where it exists and `overwrite` is false, or where it cannot be written (with the
+///         reason)
 void write_file(const std::filesystem::path& path, std::string_view content, bool overwrite);
 
 /// Fail early: the error that write_file would give, without writing.

@@ -12,8 +12,8 @@ namespace equidem {
 /// Whether progress may be shown at all; on by default, and even then only where stderr is a terminal.
 void set_progress_shown(bool shown);
 
-/// A line on stderr that says how far a long computation is: "factorizing 42 %, 7 s left".
-/// Shown from the second second on, so that short computations stay silent.
+/// A line on stderr that says how far a long computation is: "factorizing 42 %, 7 s left". Shown from the second
+/// second on, so that short computations stay silent.
 class Progress {
  public:
   explicit Progress(std::string task);
@@ -32,8 +32,8 @@ class Progress {
   bool shown_ = false;
 };
 
-/// From now on Ctrl-C (SIGINT) and SIGTERM ask the running computation to stop at its next safe point; a
-/// second one ends the process at once.
+/// From now on Ctrl-C (SIGINT) and SIGTERM ask the running computation to stop at its next safe point; a second one
+/// ends the process at once.
 void catch_interrupts();
 /// \throws Error of kind interrupted where the user asked to stop
 void stop_if_interrupted();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Seeded random numbers that are the same on every machine. The distributions of the standard library are
-/// not: their algorithms are left to each implementation.
+/// Seeded random numbers that are the same on every machine. The distributions of the standard library are not: their
+/// algorithms are left to each implementation.
 #pragma once
 
 #include <bit>
@@ -39,8 +39,7 @@ class Random {
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
   /// Uniform in [low, high).
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// Uniform in {0, ..., count - 1}; the bias of the multiplication, count / 2^64, is far below what can be
-  /// seen.
+  /// Uniform in {0, ..., count - 1}; the bias of the multiplication, count / 2^64, is far below what can be seen.
   std::uint64_t below(std::uint64_t count) {
     __extension__ using Wide = unsigned __int128;
     return static_cast<std::uint64_t>((static_cast<Wide>(bits()) * count) >> 64);

@@ -6,8 +6,7 @@
 namespace equidem {
 
 void StageTimes::add(const std::string& stage, double seconds) {
-  const auto known =
-      std::find_if(stages_.begin(), stages_.end(), [&](const auto& s) { return s.first == stage; });
+  const auto known = std::find_if(stages_.begin(), stages_.end(), [&](const auto& s) { return s.first == stage; });
   if (known == stages_.end()) {
     stages_.emplace_back(stage, seconds);
   } else {

@@ -124,15 +124,13 @@ int thread_count() {
 
 void set_thread_count(int count) {
   if (count < 1) {
-    bad_input(format("the number of threads is {}", count), "at least one thread is needed",
-              "Ask for 1 or more");
+    bad_input(format("the number of threads is {}", count), "at least one thread is needed", "Ask for 1 or more");
   }
   requested_threads = count;
 }
 
 void parallel_tasks(std::size_t tasks, const std::function<void(std::size_t, int)>& body) {
-  const int threads =
-      static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(thread_count()), tasks));
+  const int threads = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(thread_count()), tasks));
   if (threads <= 1 || inside_task) {
     for (std::size_t task = 0; task < tasks; ++task) body(task, 0);
     return;
@@ -144,8 +142,7 @@ void parallel_tasks(std::size_t tasks, const std::function<void(std::size_t, int
   if (job.failure) std::rethrow_exception(job.failure);
 }
 
-void parallel_ranges(std::size_t count, std::size_t grain,
-                     const std::function<void(std::size_t, std::size_t)>& body) {
+void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   grain = std::max<std::size_t>(grain, 1);
   parallel_tasks((count + grain - 1) / grain,
                  [&](std::size_t task, int) { body(task * grain, std::min(count, (task + 1) * grain)); });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Threads. Every parallel loop of the library gives each index the same work whichever thread runs it, and
-/// combines results in a fixed order: the bits of an answer do not depend on the number of threads.
+/// Threads. Every parallel loop of the library gives each index the same work whichever thread runs it, and combines
+/// results in a fixed order: the bits of an answer do not depend on the number of threads.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +14,9 @@ int thread_count();
 /// \throws Error where count < 1
 void set_thread_count(int count);
 
-/// Call body(task, worker) for every task in [0, tasks), each once, in any order; worker in [0,
-/// thread_count()) says which thread runs it. The calling thread takes part. An exception thrown by a task is
-/// thrown again here once all running tasks have ended. Inside a running task it runs serially.
+/// Call body(task, worker) for every task in [0, tasks), each once, in any order; worker in [0, thread_count()) says
+/// which thread runs it. The calling thread takes part. An exception thrown by a task is thrown again here once all
+/// running tasks have ended. Inside a running task it runs serially.
 void parallel_tasks(std::size_t tasks, const std::function<void(std::size_t task, int worker)>& body);
 
 /// Call body(begin, end) for pieces of [0, count) of at most `grain` indices.

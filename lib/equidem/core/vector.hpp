@@ -2,9 +2,9 @@
 /// \file
 /// Vectors and second-order tensors of the plane.
 ///
-/// Sign conventions of the whole library, said here once: SI units per metre of depth (springs in Pa, forces
-/// in N/m, stress in Pa), angles in radians counter-clockwise, tension positive. For a contact of discs i and
-/// j the normal n points from i to j and the tangent is s = (-n_y, n_x).
+/// Sign conventions of the whole library, said here once: SI units per metre of depth (springs in Pa, forces in N/m,
+/// stress in Pa), angles in radians counter-clockwise, tension positive. For a contact of discs i and j the normal n
+/// points from i to j and the tangent is s = (-n_y, n_x).
 #pragma once
 
 #include <cmath>
@@ -56,17 +56,15 @@ inline double norm(Vec2 a) {
   return std::sqrt(dot(a, a));
 }
 
-/// A second-order tensor, not assumed symmetric: stress s_ij = sum F_i l_j is symmetric only where no moment
-/// acts on the discs (Abe 1996, eq. 55).
+/// A second-order tensor, not assumed symmetric: stress s_ij = sum F_i l_j is symmetric only where no moment acts on
+/// the discs (Abe 1996, eq. 55).
 struct Tensor2 {
   double xx = 0;
   double xy = 0;
   double yx = 0;
   double yy = 0;
 
-  constexpr Tensor2& operator+=(const Tensor2& b) {
-    return xx += b.xx, xy += b.xy, yx += b.yx, yy += b.yy, *this;
-  }
+  constexpr Tensor2& operator+=(const Tensor2& b) { return xx += b.xx, xy += b.xy, yx += b.yx, yy += b.yy, *this; }
   constexpr Tensor2& operator*=(double c) { return xx *= c, xy *= c, yx *= c, yy *= c, *this; }
 };
 

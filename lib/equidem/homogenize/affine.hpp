@@ -12,19 +12,19 @@
 
 namespace equidem {
 
-/// The rotation of a continuum with the displacement gradient h_ij = du_i/dx_j: (h_yx - h_xy)/2, rad. Discs
-/// of the hexagonal and of the square lattice that turn by it feel no moment: it is their free rotation.
+/// The rotation of a continuum with the displacement gradient h_ij = du_i/dx_j: (h_yx - h_xy)/2, rad. Discs of the
+/// hexagonal and of the square lattice that turn by it feel no moment: it is their free rotation.
 constexpr double mean_rotation(const Tensor2& gradient) {
   return 0.5 * (gradient.yx - gradient.xy);
 }
 
-/// Contact forces, N/m, where each contact sees the affine motion u = h x and all discs turn by the same
-/// `rotation` (rad):
+/// Contact forces, N/m, where each contact sees the affine motion u = h x and all discs turn by the same `rotation`
+/// (rad):
 ///
 ///   dn = n . h l,   ds = s . h l - (r_i + r_j) rotation,   l the branch vector.
 ///
-/// With rotation = 0 these are the forces of Abe 1996, eq. (54). On a lattice with one disc in its primitive
-/// cell they balance on every disc; elsewhere they do not, and their energy is the Voigt bound.
+/// With rotation = 0 these are the forces of Abe 1996, eq. (54). On a lattice with one disc in its primitive cell
+/// they balance on every disc; elsewhere they do not, and their energy is the Voigt bound.
 std::vector<ContactForce> affine_contact_forces(const Assembly& assembly, const ContactSprings& springs,
                                                 const Tensor2& gradient, double rotation);
 

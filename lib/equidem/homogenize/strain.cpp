@@ -26,9 +26,7 @@ Tensor2 fitted_displacement_gradient(const Assembly& assembly, std::span<const D
   std::vector<std::size_t> chosen;
   for (std::size_t disc = 0; disc < assembly.size(); ++disc)
     if (inside(disc)) chosen.push_back(disc);
-  const auto weight = [&](std::size_t disc) {
-    return assembly.cell_areas.empty() ? 1.0 : assembly.cell_areas[disc];
-  };
+  const auto weight = [&](std::size_t disc) { return assembly.cell_areas.empty() ? 1.0 : assembly.cell_areas[disc]; };
 
   double total = 0;
   Vec2 centre;
@@ -62,10 +60,9 @@ Tensor2 fitted_displacement_gradient(const Assembly& assembly, std::span<const D
               "it takes three discs or more that are not on one line", "Choose a larger region");
   }
   const Tensor2 inverse = (1 / determinant) * Tensor2{s.yy, -s.xy, -s.yx, s.xx};
-  return {covariance.xx * inverse.xx + covariance.xy * inverse.yx,
-          covariance.xx * inverse.xy + covariance.xy * inverse.yy,
-          covariance.yx * inverse.xx + covariance.yy * inverse.yx,
-          covariance.yx * inverse.xy + covariance.yy * inverse.yy};
+  return {
+      covariance.xx * inverse.xx + covariance.xy * inverse.yx, covariance.xx * inverse.xy + covariance.xy * inverse.yy,
+      covariance.yx * inverse.xx + covariance.yy * inverse.yx, covariance.yx * inverse.xy + covariance.yy * inverse.yy};
 }
 
 }  // namespace equidem

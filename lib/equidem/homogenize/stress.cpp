@@ -14,8 +14,7 @@ namespace {
 
 void check_cells(const Assembly& assembly) {
   if (assembly.cell_areas.size() != assembly.size()) {
-    bad_input("the discs have no cell areas",
-              "the stress of a disc is a sum over its contacts divided by its cell",
+    bad_input("the discs have no cell areas", "the stress of a disc is a sum over its contacts divided by its cell",
               "Measure the cells first");
   }
   for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
@@ -56,8 +55,7 @@ Tensor2 average_stress(const Assembly& assembly, std::span<const Tensor2> stress
     area += assembly.cell_areas[disc];
   }
   if (!(area > 0)) {
-    bad_input("the region holds no disc", "there is no stress to average",
-              "Choose a region around some disc centres");
+    bad_input("the region holds no disc", "there is no stress to average", "Choose a region around some disc centres");
   }
   return (1 / area) * sum;
 }

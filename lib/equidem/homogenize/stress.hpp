@@ -13,35 +13,35 @@
 
 namespace equidem {
 
-/// Stress of every disc, Pa: s_ij = (1/V) sum F_i l_j with l = r n from its centre to each contact point and
-/// V its cell area (Abe 1996, eq. 50, in general form). Not symmetric where a moment holds the disc (eq. 55);
-/// never made so here. \throws Error (bad_input) where the assembly has no cell areas, or a disc an empty
-/// cell
+/// Stress of every disc, Pa: s_ij = (1/V) sum F_i l_j with l = r n from its centre to each contact point and V its
+/// cell area (Abe 1996, eq. 50, in general form). Not symmetric where a moment holds the disc (eq. 55); never made so
+/// here.
+/// \throws Error (bad_input) where the assembly has no cell areas, or a disc an empty cell
 std::vector<Tensor2> disc_stresses(const Assembly& assembly, std::span<const ContactForce> forces);
 
-/// Stress of a region, Pa: the average of disc stresses weighted by cell area over the discs that `inside`
-/// accepts. \throws Error (bad_input) where the region holds no disc
+/// Stress of a region, Pa: the average of disc stresses weighted by cell area over the discs that `inside` accepts.
+/// \throws Error (bad_input) where the region holds no disc
 Tensor2 average_stress(const Assembly& assembly, std::span<const Tensor2> stresses,
                        const std::function<bool(std::size_t disc)>& inside);
 
-/// Stress of the whole assembly, Pa: the average of the stresses of all discs. Where the levers of each
-/// contact add up to its branch it is also the stress of the outer forces f on the discs, (1/A) sum f_i x_j.
+/// Stress of the whole assembly, Pa: the average of the stresses of all discs. Where the levers of each contact add
+/// up to its branch it is also the stress of the outer forces f on the discs, (1/A) sum f_i x_j.
 Tensor2 macroscopic_stress(const Assembly& assembly, std::span<const ContactForce> forces);
 
-/// Why a stress is not symmetric. The contact forces of a disc turn it with the moment sum l x F = V (s_yx -
-/// s_xy); at rest an outer moment balances it, so that
+/// Why a stress is not symmetric. The contact forces of a disc turn it with the moment sum l x F = V (s_yx - s_xy);
+/// at rest an outer moment balances it, so that
 ///
 ///   s_xy - s_yx = (outer moments, counter-clockwise) / (area).
 ///
-/// Abe 1996, section 4.3, in numbers: uniform strain of the hexagonal lattice with rotation restrained gives
-/// s_xy - s_yx = -sqrt3 kT (u_2,1 - u_1,2).
+/// Abe 1996, section 4.3, in numbers: uniform strain of the hexagonal lattice with rotation restrained gives s_xy -
+/// s_yx = -sqrt3 kT (u_2,1 - u_1,2).
 struct StressAsymmetry {
   double difference = 0;      ///< s_xy - s_yx of the macroscopic stress, Pa
   double moment_density = 0;  ///< sum of the outer moments over the area, N/m² = Pa; equal to it at rest
 };
 
 /// \param moments N, per disc, counter-clockwise: those that hold discs against rotation
-///        (Equilibrium::rotation_moments) and those applied by loads; empty: none act
+///         (Equilibrium::rotation_moments) and those applied by loads; empty: none act
 StressAsymmetry stress_asymmetry(const Assembly& assembly, std::span<const ContactForce> forces,
                                  std::span<const double> moments);
 

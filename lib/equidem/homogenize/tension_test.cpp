@@ -39,12 +39,10 @@ double mean_branch_length(const Assembly& assembly) {
   return sum / static_cast<double>(assembly.contacts.size());
 }
 
-[[noreturn]] void refuse_size(GaugePlacement placement, const std::string& present,
-                              const std::string& needed) {
-  bad_input(
-      format("the block has {}, too few for the gauges '{}'", present, to_string(placement)),
-      format("they need at least {}", needed),
-      placement == GaugePlacement::ends ? "Take a larger block" : "Take a larger block or another gauge");
+[[noreturn]] void refuse_size(GaugePlacement placement, const std::string& present, const std::string& needed) {
+  bad_input(format("the block has {}, too few for the gauges '{}'", present, to_string(placement)),
+            format("they need at least {}", needed),
+            placement == GaugePlacement::ends ? "Take a larger block" : "Take a larger block or another gauge");
 }
 
 /// How far out from the middle of `count` discs (or rows) in line a gauge reaches, in half spacings.
@@ -60,8 +58,8 @@ int half_reach(GaugePlacement placement, int count) {
   return count - 1;
 }
 
-/// The nearest pair, symmetric about the middle of 0 ... count - 1, at least as far out as the placement
-/// says; negative where there is none.
+/// The nearest pair, symmetric about the middle of 0 ... count - 1, at least as far out as the placement says;
+/// negative where there is none.
 std::pair<int, int> symmetric_pair(GaugePlacement placement, int count) {
   const int twice_first = count - 1 - half_reach(placement, count);
   const int first = twice_first < 0 ? -1 : twice_first / 2;
@@ -109,9 +107,7 @@ class LatticeGauges {
     const int short_by = staggered_ ? (rows_then - 1) / 2 % 2 : 0;  // discs that the middle row lacks
     return (centre ? 5 : 2) + short_by;
   }
-  [[nodiscard]] int least_rows() const {
-    return placement_ == GaugePlacement::centre ? 5 : staggered_ ? 3 : 2;
-  }
+  [[nodiscard]] int least_rows() const { return placement_ == GaugePlacement::centre ? 5 : staggered_ ? 3 : 2; }
   [[nodiscard]] std::pair<int, int> rows_of_vertical_gauge(int middle) const {
     if (!staggered_) return symmetric_pair(placement_, rows());
     // Rows an even number apart have discs at the same x.
@@ -161,12 +157,11 @@ void place_nearest_gauges(const Assembly& assembly, GaugePlacement placement, Te
   setup.vertical = pair_at({0, half.y});
   const double slack = 1e-9 * spacing;
   const bool inside = 2 * half.x <= block.size().x + slack && 2 * half.y <= block.size().y + slack;
-  if (!inside || setup.horizontal.first == setup.horizontal.second ||
-      setup.vertical.first == setup.vertical.second) {
-    refuse_size(placement, format("disc centres over {:.3g} m by {:.3g} m", block.size().x, block.size().y),
-                format("{0:.3g} m by {0:.3g} m, {1} mean spacings each way",
-                       (placement == GaugePlacement::centre ? 4 : 2) * spacing,
-                       placement == GaugePlacement::centre ? 4 : 2));
+  if (!inside || setup.horizontal.first == setup.horizontal.second || setup.vertical.first == setup.vertical.second) {
+    refuse_size(
+        placement, format("disc centres over {:.3g} m by {:.3g} m", block.size().x, block.size().y),
+        format("{0:.3g} m by {0:.3g} m, {1} mean spacings each way",
+               (placement == GaugePlacement::centre ? 4 : 2) * spacing, placement == GaugePlacement::centre ? 4 : 2));
   }
 }
 
@@ -195,8 +190,7 @@ double mean_normal_spring(const Assembly& assembly, const ContactSprings& spring
 }  // namespace
 
 GaugePlacement gauge_placement_from(const std::string& name) {
-  for (const GaugePlacement placement :
-       {GaugePlacement::centre, GaugePlacement::quarter, GaugePlacement::ends})
+  for (const GaugePlacement placement : {GaugePlacement::centre, GaugePlacement::quarter, GaugePlacement::ends})
     if (name == to_string(placement)) return placement;
   bad_input(format("gauge = \"{}\"", name), "there is no such placement of the strain gauges",
             "Choose \"centre\", \"quarter\" or \"ends\"");
@@ -217,8 +211,7 @@ std::string to_string(GaugePlacement placement) {
 TensionSetup tension_setup(const Assembly& assembly, const TensionTest& test) {
   if (!std::isfinite(test.stress) || test.stress == 0) {
     bad_input(format("the tension test pulls with a stress of {} Pa", test.stress),
-              "the ratios it measures need a finite stress other than zero",
-              "Give a stress, 1e6 for example");
+              "the ratios it measures need a finite stress other than zero", "Give a stress, 1e6 for example");
   }
   if (assembly.periodic()) {
     bad_input("the tension test is asked of a periodic cell", "a periodic cell has no sides to pull at",
@@ -247,9 +240,8 @@ TensionSetup tension_setup(const Assembly& assembly, const TensionTest& test) {
   return setup;
 }
 
-TensionResult evaluate_tension(const Assembly& assembly, const ContactSprings& springs,
-                               const TensionTest& test, const TensionSetup& setup,
-                               const Equilibrium& equilibrium) {
+TensionResult evaluate_tension(const Assembly& assembly, const ContactSprings& springs, const TensionTest& test,
+                               const TensionSetup& setup, const Equilibrium& equilibrium) {
   const std::vector<DiscMotion>& motions = equilibrium.motions;
   TensionResult result;
   const double e11 = gauge_strain(assembly, motions, setup.horizontal);
@@ -263,14 +255,12 @@ TensionResult evaluate_tension(const Assembly& assembly, const ContactSprings& s
   const Vec2 middle = block.middle();
   const double spacing = mean_branch_length(assembly);
   const double slack = 1e-9 * spacing;  // rounding must not decide which discs on the rim of the region count
-  const Vec2 half{std::max(block.size().x / 4, spacing) + slack,
-                  std::max(block.size().y / 4, spacing) + slack};
+  const Vec2 half{std::max(block.size().x / 4, spacing) + slack, std::max(block.size().y / 4, spacing) + slack};
   result.fitted_gradient = fitted_displacement_gradient(assembly, motions, [&](std::size_t disc) {
     const Vec2 d = assembly.centres[disc] - middle;
     return std::abs(d.x) <= half.x && std::abs(d.y) <= half.y;
   });
-  result.fitted_poisson_ratio =
-      poisson_ratio_of_strains(result.fitted_gradient.xx, result.fitted_gradient.yy);
+  result.fitted_poisson_ratio = poisson_ratio_of_strains(result.fitted_gradient.xx, result.fitted_gradient.yy);
   const Voigt fitted = voigt_strain(result.fitted_gradient);
   result.strain = {.xx = e11, .yy = e22, .xy = fitted.xy};
   return result;

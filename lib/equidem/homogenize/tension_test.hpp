@@ -12,19 +12,20 @@
 
 namespace equidem {
 
-/// Where the two strain gauges A-B (along x) and C-D (along y) sit. On the lattices A and B are discs of the
-/// middle row (of two middle rows of a hexagonal block, the one with a disc in its middle), the nearest pair
-/// symmetric about its middle that is at least as far out as said. C and D share one x, that of the disc in
-/// or next to the middle, and lie as many rows above as below the middle one; `ends` leaves out the last of
-/// an even number of hexagonal rows, since only every other row has discs at the same x. Elsewhere all four
-/// are the discs nearest to the points said, one spacing being the mean branch length.
+/// Where the two strain gauges A-B (along x) and C-D (along y) sit. On the lattices A and B are discs of the middle
+/// row (of two middle rows of a hexagonal block, the one with a disc in its middle), the nearest pair symmetric about
+/// its middle that is at least as far out as said. C and D share one x, that of the disc in or next to the middle,
+/// and lie as many rows above as below the middle one; `ends` leaves out the last of an even number of hexagonal
+/// rows, since only every other row has discs at the same x. Elsewhere all four are the discs nearest to the points
+/// said, one spacing being the mean branch length.
 enum class GaugePlacement {
   centre,   ///< discs two spacings (rows) either side of the middle
   quarter,  ///< discs a quarter of the block either side of the middle
   ends,     ///< from side to side through the middle
 };
 
-/// "centre" | "quarter" | "ends". \throws Error (bad_input)
+/// "centre" | "quarter" | "ends".
+/// \throws Error (bad_input)
 GaugePlacement gauge_placement_from(const std::string& name);
 std::string to_string(GaugePlacement placement);
 
@@ -33,35 +34,33 @@ struct TensionTest {
   GaugePlacement gauge = GaugePlacement::centre;
 };
 
-/// Loads, supports and gauges of the test on an assembly with a free boundary: the traction s11 on the discs
-/// of the left and right sides by their tributary length (equal loads on a lattice), the bottom row held
-/// vertically, the bottom-left disc held both ways.
+/// Loads, supports and gauges of the test on an assembly with a free boundary: the traction s11 on the discs of the
+/// left and right sides by their tributary length (equal loads on a lattice), the bottom row held vertically, the
+/// bottom-left disc held both ways.
 struct TensionSetup {
   std::vector<Support> supports;
   LoadCase loads;
   StrainGauge horizontal;  ///< A-B
   StrainGauge vertical;    ///< C-D
-  double height = 0;  ///< m, by which the total load is divided: the tributary height, rows * sqrt3 a on the
-                      ///< hexagonal lattice
+  double height = 0;       ///< m, by which the total load is divided: the tributary height, rows * sqrt3 a on the
+                           ///< hexagonal lattice
 };
 
-/// \throws Error (bad_input) where the assembly is periodic, too small for the gauges (with the least size)
-/// or has
-///         no sides to pull at, or where the stress is zero or not finite
+/// \throws Error (bad_input) where the assembly is periodic, too small for the gauges (with the least size) or has no
+///         sides to pull at, or where the stress is zero or not finite
 TensionSetup tension_setup(const Assembly& assembly, const TensionTest& test);
 
 struct TensionResult {
-  double poisson_ratio = 0;    ///< nu = -e22/(e11 - e22), plane strain, eq. (35), from the two gauges
-  double stiffness_ratio = 0;  ///< 2G/((1 - nu) kN) = s11/(kN e11), eq. (36); kN is the mean over contacts
-  Voigt strain;                ///< gauges: e11, e22; shear from the fitted field
-  Voigt stress;                ///< s11 = total load / height
-  Tensor2 fitted_gradient;     ///< displacement gradient fitted to the inner half of the block, at least one
-                               ///< spacing either side of its middle
+  double poisson_ratio = 0;         ///< nu = -e22/(e11 - e22), plane strain, eq. (35), from the two gauges
+  double stiffness_ratio = 0;       ///< 2G/((1 - nu) kN) = s11/(kN e11), eq. (36); kN is the mean over contacts
+  Voigt strain;                     ///< gauges: e11, e22; shear from the fitted field
+  Voigt stress;                     ///< s11 = total load / height
+  Tensor2 fitted_gradient;          ///< displacement gradient fitted to the inner half of the block, at least one
+                                    ///< spacing either side of its middle
   double fitted_poisson_ratio = 0;  ///< eq. (35) from the fitted field
 };
 
-TensionResult evaluate_tension(const Assembly& assembly, const ContactSprings& springs,
-                               const TensionTest& test, const TensionSetup& setup,
-                               const Equilibrium& equilibrium);
+TensionResult evaluate_tension(const Assembly& assembly, const ContactSprings& springs, const TensionTest& test,
+                               const TensionSetup& setup, const Equilibrium& equilibrium);
 
 }  // namespace equidem

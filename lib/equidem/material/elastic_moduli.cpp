@@ -78,12 +78,11 @@ ElasticModuli moduli_from_bulk(double bulk_modulus_2d, double shear_modulus, Pla
   // A sheet with G >= 3 K is stable, but as a section of a solid in plane strain it would have nu <= -1, that
   // is E <= 0.
   if (plane == Plane::strain && G >= 3 * K) {
-    bad_input(
-        format("a shear modulus of {:.6g} Pa with a two-dimensional bulk modulus of {:.6g} Pa has no "
-               "reading in plane strain",
-               G, K),
-        format("Poisson's ratio would be {:.6g}, and no solid has one of -1 or less", (K - G) / (2 * K)),
-        "Read it in plane stress");
+    bad_input(format("a shear modulus of {:.6g} Pa with a two-dimensional bulk modulus of {:.6g} Pa has no "
+                     "reading in plane strain",
+                     G, K),
+              format("Poisson's ratio would be {:.6g}, and no solid has one of -1 or less", (K - G) / (2 * K)),
+              "Read it in plane stress");
   }
   return {G, plane == Plane::strain ? (K - G) / (2 * K) : (K - G) / (K + G), plane};
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Isotropic elastic moduli in two dimensions. The same sheet of discs has one shear modulus and one
-/// two-dimensional bulk modulus, but its Poisson's ratio and Young's modulus depend on the reading, plane
-/// strain or plane stress.
+/// Isotropic elastic moduli in two dimensions. The same sheet of discs has one shear modulus and one two-dimensional
+/// bulk modulus, but its Poisson's ratio and Young's modulus depend on the reading, plane strain or plane stress.
 #pragma once
 
 #include <string>
@@ -11,7 +10,8 @@ namespace equidem {
 
 enum class Plane { strain, stress };
 
-/// "strain" | "stress". \throws Error (bad_input)
+/// "strain" | "stress".
+/// \throws Error (bad_input)
 Plane plane_from(const std::string& name);
 std::string to_string(Plane plane);
 
@@ -31,9 +31,11 @@ struct ElasticModuli {
   [[nodiscard]] double lame_lambda() const;
 };
 
-/// From E and nu of the given reading. \throws Error (bad_input) out of range
+/// From E and nu of the given reading.
+/// \throws Error (bad_input) out of range
 ElasticModuli moduli_from_young(double young_modulus, double poisson_ratio, Plane plane);
-/// From the two-dimensional bulk modulus and G: nu2 = (K - G)/(K + G). \throws Error (bad_input) out of range
+/// From the two-dimensional bulk modulus and G: nu2 = (K - G)/(K + G).
+/// \throws Error (bad_input) out of range
 ElasticModuli moduli_from_bulk(double bulk_modulus_2d, double shear_modulus, Plane plane);
 /// \throws Error (bad_input) where a modulus is not positive and finite or nu is outside its range
 void check(const ElasticModuli& moduli);

@@ -72,14 +72,14 @@ void refuse_square(const ElasticModuli& moduli) {
 void refuse_negative_tangential(const ElasticModuli& moduli, Packing packing) {
   const bool strain = moduli.plane == Plane::strain;
   bad_input(format("Poisson's ratio is {:.6g} in plane {}", moduli.poisson_ratio, to_string(moduli.plane)),
-            format("above {} it needs kT < 0, and no motion of the discs is stable then; {}",
-                   strain ? "1/4" : "1/3", static_limit(packing)),
+            format("above {} it needs kT < 0, and no motion of the discs is stable then; {}", strain ? "1/4" : "1/3",
+                   static_limit(packing)),
             format("Choose a Poisson's ratio of at most {}, or ask for the static-only continuation",
                    strain ? "1/4" : "1/3"));
 }
 
-/// 1 - 4 nu, nu in plane strain; exactly 0 where nu is 1/4 (1/3 in plane stress) to rounding, so that kT = 0
-/// is hit, which takes the rotations out of the unknowns.
+/// 1 - 4 nu, nu in plane strain; exactly 0 where nu is 1/4 (1/3 in plane stress) to rounding, so that kT = 0 is hit,
+/// which takes the rotations out of the unknowns.
 double tangential_factor(const ElasticModuli& moduli) {
   const double nu = moduli.poisson_ratio;
   const double numerator = moduli.plane == Plane::strain ? 1 - 4 * nu : 1 - 3 * nu;
@@ -122,8 +122,7 @@ SpringConstants springs_for(const ElasticModuli& moduli, Packing packing, const 
   }
   if (packing == Packing::isotropic) check(measures);
   const double one_minus_4nu = tangential_factor(moduli);
-  if (one_minus_4nu < 0 && negative == NegativeTangential::refuse)
-    refuse_negative_tangential(moduli, packing);
+  if (one_minus_4nu < 0 && negative == NegativeTangential::refuse) refuse_negative_tangential(moduli, packing);
 
   const double K = moduli.bulk_modulus_2d();  // G/(1 - 2 nu)
   switch (packing) {
@@ -150,8 +149,8 @@ ElasticModuli moduli_of(const SpringConstants& springs, Packing packing, const I
   if (!(sheet.shear > 0)) {
     const bool restrained = packing == Packing::hexagonal_restrained;
     bad_input(format("kT/kN is {:.6g}", springs.ratio()),
-              format("the shear modulus is no longer positive at {} and below; {}",
-                     restrained ? "-1/3" : "-1", static_limit(packing)),
+              format("the shear modulus is no longer positive at {} and below; {}", restrained ? "-1/3" : "-1",
+                     static_limit(packing)),
               format("Choose kT/kN above {}", restrained ? "-1/3" : "-1"));
   }
   if (!(sheet.bulk > 0)) {

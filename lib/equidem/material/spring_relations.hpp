@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Abe (1996): contact springs and the moduli of the continuum that an assembly of discs stands for, both
-/// ways.
+/// Abe (1996): contact springs and the moduli of the continuum that an assembly of discs stands for, both ways.
 #pragma once
 
 #include <string>
@@ -32,20 +31,17 @@ enum class NegativeTangential {
                 ///< does
 };
 
-/// \throws Error (bad_input) with the sentence that says what is representable: nu > 1/4 in plane strain (1/3
-/// in plane stress)
-///         unless the static-only continuation is asked for, anything but nu = 0 on the square lattice,
+/// \throws Error (bad_input) with the sentence that says what is representable: nu > 1/4 in plane strain (1/3 in
+///         plane stress) unless the static-only continuation is asked for, anything but nu = 0 on the square lattice,
 ///         missing measures
-SpringConstants springs_for(const ElasticModuli& moduli, Packing packing,
-                            const IsotropicMeasures& measures = {},
+SpringConstants springs_for(const ElasticModuli& moduli, Packing packing, const IsotropicMeasures& measures = {},
                             NegativeTangential negative = NegativeTangential::refuse);
 
 /// The moduli that springs stand for, the inverse of springs_for.
-/// \throws Error (bad_input) where the springs stand for no isotropic continuum (square lattice with kT !=
-/// kN) or for no stable
-///         one (kN <= 0, kT/kN at or below the limit where G or K is no longer positive)
-ElasticModuli moduli_of(const SpringConstants& springs, Packing packing,
-                        const IsotropicMeasures& measures = {}, Plane plane = Plane::strain);
+/// \throws Error (bad_input) where the springs stand for no isotropic continuum (square lattice with kT != kN) or for
+///         no stable one (kN <= 0, kT/kN at or below the limit where G or K is no longer positive)
+ElasticModuli moduli_of(const SpringConstants& springs, Packing packing, const IsotropicMeasures& measures = {},
+                        Plane plane = Plane::strain);
 
 /// "holds for nu <= 1/4 (plane strain): ...", one sentence for reports.
 std::string validity(Packing packing);

@@ -56,15 +56,14 @@ std::string valid_utf8(const std::string& text) {
   return valid;
 }
 
-/// cairo numbers images and surfaces of an SVG by a counter of the whole process ("image177"): numbered anew
-/// in order of appearance, the same drawing gives the same bytes.
+/// cairo numbers images and surfaces of an SVG by a counter of the whole process ("image177"): numbered anew in order
+/// of appearance, the same drawing gives the same bytes.
 std::string number_anew(const std::string& svg) {
   std::map<std::string, std::size_t> numbers;
   std::string result;
   result.reserve(svg.size());
   std::size_t copied = 0;
-  for (std::size_t at = svg.find_first_of("\"#"); at != std::string::npos;
-       at = svg.find_first_of("\"#", at + 1)) {
+  for (std::size_t at = svg.find_first_of("\"#"); at != std::string::npos; at = svg.find_first_of("\"#", at + 1)) {
     const std::size_t start = at + 1;
     for (const std::string_view word : {"surface", "image"}) {
       if (svg.compare(start, word.size(), word) != 0) continue;
@@ -82,8 +81,8 @@ std::string number_anew(const std::string& svg) {
 }  // namespace
 
 void Raster::set(int x, int y, const Colour& colour) {
-  std::uint8_t* pixel = &bytes[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                    static_cast<std::size_t>(x))];
+  std::uint8_t* pixel =
+      &bytes[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x))];
   const std::uint32_t argb = 0xff000000U | static_cast<std::uint32_t>(std::lround(255 * colour.red)) << 16 |
                              static_cast<std::uint32_t>(std::lround(255 * colour.green)) << 8 |
                              static_cast<std::uint32_t>(std::lround(255 * colour.blue));
@@ -191,8 +190,7 @@ void Canvas::image(const Raster& raster, Vec2 upper_left, double width, double h
   cairo_surface_destroy(pixels);
 }
 
-void Canvas::text(const std::string& text, Vec2 at, double size, TextAnchor anchor, const Colour& colour,
-                  bool bold) {
+void Canvas::text(const std::string& text, Vec2 at, double size, TextAnchor anchor, const Colour& colour, bool bold) {
   const double width = anchor == TextAnchor::left ? 0 : text_width(text, size, bold);
   const double back = anchor == TextAnchor::right ? width : 0.5 * width;
   implementation_->choose_font(size, bold);

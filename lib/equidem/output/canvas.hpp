@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A page to draw on, in pixels from its upper left corner, x to the right and y down: PNG or SVG, made in
-/// memory.
+/// A page to draw on, in pixels from its upper left corner, x to the right and y down: PNG or SVG, made in memory.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +16,14 @@ namespace equidem {
 enum class PageFormat { png, svg };
 enum class TextAnchor { left, centre, right };
 
-/// An image of its own resolution: 32-bit numbers 0xAARRGGBB in the byte order of the machine, row by row
-/// from the top; transparent until set.
+/// An image of its own resolution: 32-bit numbers 0xAARRGGBB in the byte order of the machine, row by row from the
+/// top; transparent until set.
 struct Raster {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> bytes;
 
-  Raster(int w, int h)
-      : width(w), height(h), bytes(4 * static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
+  Raster(int w, int h) : width(w), height(h), bytes(4 * static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
   void set(int x, int y, const Colour& colour);
 };
 
@@ -49,11 +47,11 @@ class Canvas {
   void image(const Raster& raster, Vec2 upper_left, double width, double height);
 
   /// \param at the anchor on the base line; the text is UTF-8, other bytes are shown as '?'
-  void text(const std::string& text, Vec2 at, double size, TextAnchor anchor, const Colour& colour,
-            bool bold = false);
+  void text(const std::string& text, Vec2 at, double size, TextAnchor anchor, const Colour& colour, bool bold = false);
   [[nodiscard]] double text_width(const std::string& text, double size, bool bold = false);
 
-  /// End the page. \return the bytes of the file
+  /// End the page.
+  /// \return the bytes of the file
   /// \throws Error (computation_failed) with the reason
   [[nodiscard]] std::string finish();
 

@@ -81,8 +81,7 @@ double lightness(const Colour& colour) {
 
 ColourScale colour_scale(std::span<const double> values) {
   std::vector<double> finite;
-  std::copy_if(values.begin(), values.end(), std::back_inserter(finite),
-               [](double v) { return std::isfinite(v); });
+  std::copy_if(values.begin(), values.end(), std::back_inserter(finite), [](double v) { return std::isfinite(v); });
   if (finite.empty()) return {};
   const auto [least, most] = std::minmax_element(finite.begin(), finite.end());
   const double smallest = *least, largest = *most;
@@ -96,8 +95,7 @@ ColourScale colour_scale(std::span<const double> values) {
   if (low < 0 && high > 0 && std::min(-low, high) > minor_sign * size) {
     scale = {ColourMap::diverging, -size, size, false, false};
   } else if (equal) {
-    scale = {ColourMap::sequential, 0, low + high, false,
-             false};  // the common value in the middle of the map
+    scale = {ColourMap::sequential, 0, low + high, false, false};  // the common value in the middle of the map
   } else if (high > -low) {
     scale = {ColourMap::sequential, low, high, false, false};
   } else {

@@ -21,8 +21,8 @@ enum class ColourMap {
   sequential,  ///< pale yellow (0) over green to dark blue (1), for numbers of one sign
 };
 
-/// The colour at t, clamped to [0, 1]; grey where t is NaN. Both maps run along straight pieces in Oklab
-/// (Ottosson 2020) with linear lightness, so that equal steps of the number look equal.
+/// The colour at t, clamped to [0, 1]; grey where t is NaN. Both maps run along straight pieces in Oklab (Ottosson
+/// 2020) with linear lightness, so that equal steps of the number look equal.
 Colour colour_at(ColourMap map, double t);
 
 /// Perceived lightness of a colour, the L of Oklab, in [0, 1].
@@ -39,14 +39,13 @@ struct ColourScale {
   [[nodiscard]] Colour colour_of(double value) const { return colour_at(map, (value - low) / (high - low)); }
 };
 
-/// A scale for given numbers, NaN left aside: [-m, m] and diverging where both signs matter, else sequential,
-/// dark for the largest magnitude. Single extremes do not set the range: it covers the middle 99 % where the
-/// whole is more than 1.5 times as wide. Numbers that differ by less than 1e-6 of their size count as equal,
-/// so that rounding is never shown as a pattern.
+/// A scale for given numbers, NaN left aside: [-m, m] and diverging where both signs matter, else sequential, dark
+/// for the largest magnitude. Single extremes do not set the range: it covers the middle 99 % where the whole is more
+/// than 1.5 times as wide. Numbers that differ by less than 1e-6 of their size count as equal, so that rounding is
+/// never shown as a pattern.
 ColourScale colour_scale(std::span<const double> values);
 
-/// Multiples of a step 1, 2 or 5 times a power of ten within [low, high], about `wanted` of them; low <=
-/// high.
+/// Multiples of a step 1, 2 or 5 times a power of ten within [low, high], about `wanted` of them; low <= high.
 std::vector<double> nice_ticks(double low, double high, int wanted = 5);
 
 /// A factor of a unit and its prefix: {1e-6, "M"} for numbers of some million.

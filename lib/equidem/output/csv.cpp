@@ -24,8 +24,7 @@ void append_number(std::string& text, Number value) {
 
 }  // namespace
 
-CsvText::CsvText(const std::vector<std::string>& columns, std::size_t expected_rows)
-    : columns_(columns.size()) {
+CsvText::CsvText(const std::vector<std::string>& columns, std::size_t expected_rows) : columns_(columns.size()) {
   text_.reserve((expected_rows + 1) * columns_ * typical_cell_length);
   for (const std::string& name : columns) cell(std::string_view(name));
   end_row();
@@ -77,8 +76,7 @@ Table& Table::add(std::string name, Values values) {
   }
   const std::size_t length = std::visit([](const auto& v) { return v.size(); }, values);
   if (!columns_.empty() && length != rows()) {
-    bad_input(format("column '{}' has {} but the table has {}", name, counted(length, "value"),
-                     counted(rows(), "row")),
+    bad_input(format("column '{}' has {} but the table has {}", name, counted(length, "value"), counted(rows(), "row")),
               "columns of a table are equally long", "Give one value per row");
   }
   columns_.push_back({std::move(name), std::move(values)});
@@ -91,13 +89,11 @@ std::size_t Table::rows() const {
 }
 
 const Table::Column& Table::column(const std::string& name) const {
-  const auto found =
-      std::find_if(columns_.begin(), columns_.end(), [&](const Column& c) { return c.name == name; });
+  const auto found = std::find_if(columns_.begin(), columns_.end(), [&](const Column& c) { return c.name == name; });
   if (found == columns_.end()) {
     std::string names;
     for (const Column& c : columns_) names += (names.empty() ? "" : ", ") + c.name;
-    bad_input(format("the table has no column '{}'", name), format("its columns are: {}", names),
-              "Choose one of them");
+    bad_input(format("the table has no column '{}'", name), format("its columns are: {}", names), "Choose one of them");
   }
   return *found;
 }
@@ -159,8 +155,8 @@ void write_contact_csv(const std::filesystem::path& path, const AssemblyState& s
   std::vector<std::string> columns{"i",          "j",          "shift_x",   "shift_y",
                                    "branch_x_m", "branch_y_m", "lever_i_m", "lever_j_m"};
   if (!state.contact_forces.empty()) {
-    columns.insert(columns.end(), {"normal_force_N_per_m", "tangential_force_N_per_m", "force_x_N_per_m",
-                                   "force_y_N_per_m"});
+    columns.insert(columns.end(),
+                   {"normal_force_N_per_m", "tangential_force_N_per_m", "force_x_N_per_m", "force_y_N_per_m"});
   }
 
   CsvText text(columns, assembly.contacts.size());

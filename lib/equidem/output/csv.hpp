@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Tables as comma-separated values (RFC 4180): one header line, units in the names of columns (x_m,
-/// stress_xx_Pa), numbers in the shortest form that reads back to the same bits.
+/// Tables as comma-separated values (RFC 4180): one header line, units in the names of columns (x_m, stress_xx_Pa),
+/// numbers in the shortest form that reads back to the same bits.
 #pragma once
 
 #include <cstdint>
@@ -50,7 +50,8 @@ class Table {
 
   [[nodiscard]] std::size_t rows() const;
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
-  /// The column of that name. \throws Error (bad_input) where there is none
+  /// The column of that name.
+  /// \throws Error (bad_input) where there is none
   [[nodiscard]] const Column& column(const std::string& name) const;
   [[nodiscard]] std::string csv() const;
 
@@ -61,14 +62,14 @@ class Table {
 /// \throws Error (bad_input) as write_file does
 void write_csv(const std::filesystem::path& path, const Table& table, bool overwrite);
 
-/// One row per disc: disc, x_m, y_m, radius_m, [ux_m, uy_m, rotation_rad,] [stress_xx_Pa, stress_yy_Pa,
-/// stress_xy_Pa, stress_yx_Pa,] [cell_area_m2]; columns in brackets where known. \throws Error (bad_input) as
-/// write_file does
+/// One row per disc: disc, x_m, y_m, radius_m, [ux_m, uy_m, rotation_rad,] [stress_xx_Pa, stress_yy_Pa, stress_xy_Pa,
+/// stress_yx_Pa,] [cell_area_m2]; columns in brackets where known.
+/// \throws Error (bad_input) as write_file does
 void write_disc_csv(const std::filesystem::path& path, const AssemblyState& state, bool overwrite);
 
-/// One row per contact: i, j, shift_x, shift_y, branch_x_m, branch_y_m, lever_i_m, lever_j_m,
-/// [normal_force_N_per_m (tension positive), tangential_force_N_per_m, force_x_N_per_m, force_y_N_per_m (on
-/// disc i)]. \throws Error (bad_input) as write_file does
+/// One row per contact: i, j, shift_x, shift_y, branch_x_m, branch_y_m, lever_i_m, lever_j_m, [normal_force_N_per_m
+/// (tension positive), tangential_force_N_per_m, force_x_N_per_m, force_y_N_per_m (on disc i)].
+/// \throws Error (bad_input) as write_file does
 void write_contact_csv(const std::filesystem::path& path, const AssemblyState& state, bool overwrite);
 
 }  // namespace equidem

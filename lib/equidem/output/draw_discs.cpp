@@ -18,8 +18,7 @@ constexpr double finest_image = 2500;    // image pixels across; below, two per 
 /// On the hexagonal lattice every point is within 2/sqrt3 radii of a centre.
 constexpr double cell_reach = 1.1547005383792517;
 constexpr double irregular_reach = 1.35;  // of the radius of a circle as large as the cell
-constexpr double too_small_to_see =
-    0.6;  // image pixels, radius: below it a pixel takes the mean of its discs
+constexpr double too_small_to_see = 0.6;  // image pixels, radius: below it a pixel takes the mean of its discs
 
 Colour colour_of(const Scene& scene, std::size_t disc) {
   return scene.values.empty() ? uncoloured : scene.colours.colour_of(scene.values[disc]);
@@ -35,8 +34,8 @@ double reach_of(const Assembly& assembly, std::size_t disc) {
   return reach;
 }
 
-/// Each pixel shows the disc with the smallest power distance d² - r²; where discs are smaller than pixels,
-/// the mean of those in it.
+/// Each pixel shows the disc with the smallest power distance d² - r²; where discs are smaller than pixels, the mean
+/// of those in it.
 Raster paint_cells(const Scene& scene, double per_unit) {
   const PageFrame& frame = scene.frame;
   const Assembly& assembly = scene.state.assembly;
@@ -54,9 +53,9 @@ Raster paint_cells(const Scene& scene, double per_unit) {
     const double y = (frame.corner.y + frame.extent.y - scene.centres[disc].y) * scale;
     const double radius = assembly.radii[disc] * scale;
     if (radius < too_small_to_see) {
-      const auto at = static_cast<std::size_t>(std::clamp(static_cast<int>(y), 0, height - 1)) *
-                          static_cast<std::size_t>(width) +
-                      static_cast<std::size_t>(std::clamp(static_cast<int>(x), 0, width - 1));
+      const auto at =
+          static_cast<std::size_t>(std::clamp(static_cast<int>(y), 0, height - 1)) * static_cast<std::size_t>(width) +
+          static_cast<std::size_t>(std::clamp(static_cast<int>(x), 0, width - 1));
       const Colour colour = colour_of(scene, disc);
       red[at] += static_cast<float>(colour.red);
       green[at] += static_cast<float>(colour.green);
@@ -74,8 +73,8 @@ Raster paint_cells(const Scene& scene, double per_unit) {
         const double dx = column + 0.5 - x, dy = row + 0.5 - y;
         const double squared = dx * dx + dy * dy;
         if (squared > reach * reach) continue;
-        const auto at = static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
-                        static_cast<std::size_t>(column);
+        const auto at =
+            static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
         const auto power = static_cast<float>(squared - radius * radius);
         if (power < nearest[at]) {
           nearest[at] = power;
@@ -104,8 +103,7 @@ void draw_discs(Canvas& canvas, const Scene& scene) {
   const PageFrame& frame = scene.frame;
   const Assembly& assembly = scene.state.assembly;
   if (scene.as_image) {
-    const double per_unit =
-        std::max(frame.pixels, std::min(2 * frame.pixels, finest_image / PageFrame::width));
+    const double per_unit = std::max(frame.pixels, std::min(2 * frame.pixels, finest_image / PageFrame::width));
     const Raster raster = paint_cells(scene, per_unit);
     canvas.image(raster, frame.origin, raster.width / per_unit, raster.height / per_unit);
     return;

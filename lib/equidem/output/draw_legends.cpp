@@ -44,18 +44,16 @@ void draw_colour_bar(Canvas& canvas, const Scene& scene) {
   canvas.image(gradient, {left, top}, width, length);
   const double centre = left + 0.5 * width;
   const std::vector<Vec2> upper{{left, top}, {left + width, top}, {centre, top - tip}};
-  const std::vector<Vec2> lower{
-      {left, top + length}, {left + width, top + length}, {centre, top + length + tip}};
+  const std::vector<Vec2> lower{{left, top + length}, {left + width, top + length}, {centre, top + length + tip}};
   if (scale.clipped_above) canvas.fill_polygon(upper, scale.colour_of(high));
   if (scale.clipped_below) canvas.fill_polygon(lower, scale.colour_of(low));
-  canvas.stroke_polygon(
-      {{left, top}, {left + width, top}, {left + width, top + length}, {left, top + length}}, 0.7, grey);
+  canvas.stroke_polygon({{left, top}, {left + width, top}, {left + width, top + length}, {left, top + length}}, 0.7,
+                        grey);
 
   for (const double tick : nice_ticks(low, high)) {
     const double y = height_of(tick);
     canvas.line({left + width, y}, {left + width + 5, y}, 0.8, grey);
-    canvas.text(tick_text(tick), {left + width + 9, y + 0.36 * small_text}, small_text, TextAnchor::left,
-                ink);
+    canvas.text(tick_text(tick), {left + width + 9, y + 0.36 * small_text}, small_text, TextAnchor::left, ink);
   }
   canvas.text(scene.colour_label, {left, top - tip - 27}, small_text, TextAnchor::left, ink);
   canvas.text(scene.colour_unit, {left, top - tip - 11}, small_text, TextAnchor::left, ink);
@@ -130,8 +128,8 @@ void draw_supports_and_loads(Canvas& canvas, const Scene& scene) {
   const Assembly& assembly = scene.state.assembly;
   for (const DrawnSupport& support : scene.options.supports) {
     if (!support.x && !support.y) continue;
-    draw_support(canvas, frame.to_page(scene.centres[support.disc]),
-                 assembly.radii[support.disc] * frame.scale, support);
+    draw_support(canvas, frame.to_page(scene.centres[support.disc]), assembly.radii[support.disc] * frame.scale,
+                 support);
   }
   double largest = 0;
   for (const DrawnLoad& load : scene.options.loads) largest = std::max(largest, norm(load.force));

@@ -16,7 +16,6 @@ struct GnuplotRun {
 
 /// Run `gnuplot script` in a folder, no shell between; ended after `time_limit` seconds.
 /// \param script a plain file name in the folder
-GnuplotRun run_gnuplot(const std::filesystem::path& folder, const std::string& script,
-                       double time_limit = 120);
+GnuplotRun run_gnuplot(const std::filesystem::path& folder, const std::string& script, double time_limit = 120);
 
 }  // namespace equidem

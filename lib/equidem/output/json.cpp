@@ -161,8 +161,8 @@ std::string library_version() {
   return EQUIDEM_VERSION;
 }
 
-void add_common(JsonObject& object, const std::string& status, const std::string& report,
-                const StageTimes& times, const Effects& effects) {
+void add_common(JsonObject& object, const std::string& status, const std::string& report, const StageTimes& times,
+                const Effects& effects) {
   JsonObject seconds;
   for (const auto& [stage, time] : times.stages()) seconds.set(stage, time);
   std::vector<std::string> active;
@@ -196,8 +196,7 @@ void add_equilibrium(JsonObject& object, const Equilibrium& equilibrium) {
       .set("energy", equilibrium.energy);
 }
 
-void add_tension(JsonObject& object, const TensionTest& test, const TensionSetup& setup,
-                 const TensionResult& result) {
+void add_tension(JsonObject& object, const TensionTest& test, const TensionSetup& setup, const TensionResult& result) {
   JsonObject gauge;
   gauge.set("placement", name_of(test.gauge))
       .set("horizontal", discs_of(setup.horizontal))

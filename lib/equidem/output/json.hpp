@@ -18,9 +18,9 @@
 
 namespace equidem {
 
-/// An object whose keys keep the order in which they were set; setting a key again replaces its value.
-/// Numbers are written in the shortest form that reads back to the same bits; NaN and infinity, which JSON
-/// lacks, become null. Text that is not UTF-8 has its bad bytes replaced.
+/// An object whose keys keep the order in which they were set; setting a key again replaces its value. Numbers are
+/// written in the shortest form that reads back to the same bits; NaN and infinity, which JSON lacks, become null.
+/// Text that is not UTF-8 has its bad bytes replaced.
 class JsonObject {
  public:
   JsonObject();
@@ -62,19 +62,18 @@ class JsonObject {
 /// The version of the library, "0.1.0".
 std::string library_version();
 
-/// The keys of every verb: status, report, times (seconds per stage), effects {active: [names], inactive:
-/// {name: why}}, version.
-void add_common(JsonObject& object, const std::string& status, const std::string& report,
-                const StageTimes& times, const Effects& effects);
+/// The keys of every verb: status, report, times (seconds per stage), effects {active: [names], inactive: {name:
+/// why}}, version.
+void add_common(JsonObject& object, const std::string& status, const std::string& report, const StageTimes& times,
+                const Effects& effects);
 
 /// unknowns, relative_residual, negative_pivots, unstable_modes, refinements, pivot_growth, factor_nonzeros,
 /// factor_bytes, solver, energy (N).
 void add_equilibrium(JsonObject& object, const Equilibrium& equilibrium);
 
-/// poisson_ratio, stiffness_ratio, strain and stress (Voigt), fitted_poisson_ratio, displacement_gradient
-/// (fitted), height (m), gauge {placement, horizontal: [disc, disc], vertical: [disc, disc]}.
-void add_tension(JsonObject& object, const TensionTest& test, const TensionSetup& setup,
-                 const TensionResult& result);
+/// poisson_ratio, stiffness_ratio, strain and stress (Voigt), fitted_poisson_ratio, displacement_gradient (fitted),
+/// height (m), gauge {placement, horizontal: [disc, disc], vertical: [disc, disc]}.
+void add_tension(JsonObject& object, const TensionTest& test, const TensionSetup& setup, const TensionResult& result);
 
 /// The whole object of `equidem solve` but for the tension test: add_common, then add_equilibrium.
 /// \param times of all stages of the verb, those of the equilibrium among them

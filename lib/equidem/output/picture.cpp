@@ -38,8 +38,8 @@ DiscColour disc_colour_from(const std::string& name) {
             "Choose none, mean_stress, stress_xx, stress_yy, stress_xy or displacement");
 }
 
-PictureResult write_picture(const std::filesystem::path& folder, const std::string& name,
-                            const AssemblyState& state, const PictureOptions& options, bool overwrite) {
+PictureResult write_picture(const std::filesystem::path& folder, const std::string& name, const AssemblyState& state,
+                            const PictureOptions& options, bool overwrite) {
   const Scene scene = plan_scene(state, options);
   const auto svg = folder / (name + ".svg");
   const auto png = folder / (name + ".png");

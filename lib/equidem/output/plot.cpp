@@ -17,12 +17,11 @@ namespace {
 
 /// gnuplot takes a file name that begins with '<' or '|' as a command, so only plain names pass.
 void check_name(const std::string& name) {
-  const bool plain =
-      !name.empty() && name.front() != '-' && name.front() != '.' &&
-      std::all_of(name.begin(), name.end(), [](unsigned char c) {
-        return c >= 0x80 || std::isalnum(c) != 0 ||
-               (c != 0 && std::string("_-+.=, ").find(static_cast<char>(c)) != std::string::npos);
-      });
+  const bool plain = !name.empty() && name.front() != '-' && name.front() != '.' &&
+                     std::all_of(name.begin(), name.end(), [](unsigned char c) {
+                       return c >= 0x80 || std::isalnum(c) != 0 ||
+                              (c != 0 && std::string("_-+.=, ").find(static_cast<char>(c)) != std::string::npos);
+                     });
   if (!plain) {
     bad_input(format("'{}' cannot name the files of a plot", name),
               "it must be made of letters, digits and _ - + . = , or spaces, and not begin with - or .",
@@ -51,16 +50,15 @@ void check_plot(const Plot& plot) {
   bool any_point = false;
   for (const Series& series : plot.series) {
     if (series.x.size() != series.y.size()) {
-      bad_input(format("series '{}' of a plot has {} of x and {} of y", series.label,
-                       counted(series.x.size(), "value"), counted(series.y.size(), "value")),
+      bad_input(format("series '{}' of a plot has {} of x and {} of y", series.label, counted(series.x.size(), "value"),
+                       counted(series.y.size(), "value")),
                 "each point has both", "Give as many x as y");
     }
     for (std::size_t k = 0; k < series.x.size(); ++k) {
       if (!std::isfinite(series.x[k]) || !std::isfinite(series.y[k])) continue;
       any_point = true;
       if ((plot.x.logarithmic && series.x[k] <= 0) || (plot.y.logarithmic && series.y[k] <= 0)) {
-        bad_input(format("point {} of series '{}' of a plot is ({}, {})", k, series.label, series.x[k],
-                         series.y[k]),
+        bad_input(format("point {} of series '{}' of a plot is ({}, {})", k, series.label, series.x[k], series.y[k]),
                   "a logarithmic axis shows positive values only", "Leave it out, or use a linear axis");
       }
     }
@@ -70,8 +68,7 @@ void check_plot(const Plot& plot) {
 
 }  // namespace
 
-PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const Plot& plot,
-                      bool overwrite) {
+PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const Plot& plot, bool overwrite) {
   check_name(name);
   check_plot(plot);
   const auto path = [&](const char* extension) { return folder / (name + extension); };
@@ -87,16 +84,16 @@ PlotResult write_plot(const std::filesystem::path& folder, const std::string& na
   for (const char* extension : {".svg", ".png"}) std::filesystem::remove(path(extension), ignored);
 
   const GnuplotRun run = run_gnuplot(folder, name + ".gp");
-  result.drawn = run.succeeded && std::filesystem::exists(path(".svg"), ignored) &&
-                 std::filesystem::exists(path(".png"), ignored);
+  result.drawn =
+      run.succeeded && std::filesystem::exists(path(".svg"), ignored) && std::filesystem::exists(path(".png"), ignored);
   if (result.drawn) {
     result.files.insert(result.files.end(), {path(".svg"), path(".png")});
     result.message = format("The plot is in '{}' and '{}'.", path(".svg").string(), path(".png").string());
   } else {
     for (const char* extension : {".svg", ".png"}) std::filesystem::remove(path(extension), ignored);
-    result.message = format("No picture was drawn ({}): data and script are in '{}' and '{}'.",
-                            run.reason.empty() ? "gnuplot wrote no file" : run.reason, path(".csv").string(),
-                            path(".gp").string());
+    result.message =
+        format("No picture was drawn ({}): data and script are in '{}' and '{}'.",
+               run.reason.empty() ? "gnuplot wrote no file" : run.reason, path(".csv").string(), path(".gp").string());
   }
   return result;
 }

@@ -59,8 +59,8 @@ struct Plot {
   std::vector<Series> series = {};  ///< later ones are drawn on top
   std::vector<VerticalLine> vertical_lines = {};
   std::vector<Band> bands = {};
-  /// Labels use gnuplot's enhanced text: "k_T/k_N", "{/:Italic x}". Only for text that is not the user's;
-  /// Greek as Unicode, since viewers of SVG lack the font of "{/Symbol n}".
+  /// Labels use gnuplot's enhanced text: "k_T/k_N", "{/:Italic x}". Only for text that is not the user's; Greek as
+  /// Unicode, since viewers of SVG lack the font of "{/Symbol n}".
   bool enhanced = false;
   /// A marker whose y lies outside the given range is shown as a small triangle at that edge.
   bool mark_points_outside = true;
@@ -73,14 +73,14 @@ struct PlotResult {
   std::vector<std::filesystem::path> files = {};
 };
 
-/// Write NAME.csv (the data), NAME.gp (the script; `gnuplot NAME.gp` in that folder draws again) and, by
-/// gnuplot, NAME.svg and NAME.png (900 x 650 pixels). Where gnuplot is absent or fails, data and script are
-/// there and the result says so. The legend takes the corner with the fewest points, or stands under the plot
-/// where all are crowded. \throws Error (bad_input) on a plot that cannot be drawn (x and y of different
-/// length, no finite point, a value not
+/// Write NAME.csv (the data), NAME.gp (the script; `gnuplot NAME.gp` in that folder draws again) and, by gnuplot,
+/// NAME.svg and NAME.png (900 x 650 pixels). Where gnuplot is absent or fails, data and script are there and the
+/// result says so. The legend takes the corner with the fewest points, or stands under the plot where all are
+/// crowded.
+/// \throws Error (bad_input) on a plot that cannot be drawn (x and y of different length, no finite point, a value
+///         not
 ///         positive on a logarithmic axis, an empty range, a name that is no plain file name), and as
 ///         write_file does
-PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const Plot& plot,
-                      bool overwrite);
+PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const Plot& plot, bool overwrite);
 
 }  // namespace equidem

@@ -24,14 +24,11 @@ struct Point {
 struct Box {
   double left = 0, right = 0, bottom = 0, top = 0;
 
-  [[nodiscard]] bool holds(Point p) const {
-    return p.x >= left && p.x <= right && p.y >= bottom && p.y <= top;
-  }
+  [[nodiscard]] bool holds(Point p) const { return p.x >= left && p.x <= right && p.y >= bottom && p.y <= top; }
 };
 
 std::size_t characters(const std::string& utf8) {
-  return static_cast<std::size_t>(
-      std::count_if(utf8.begin(), utf8.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+  return static_cast<std::size_t>(std::count_if(utf8.begin(), utf8.end(), [](char c) { return (c & 0xc0) != 0x80; }));
 }
 
 /// Outwards to a multiple of a 1-2-5 step near a fiftieth of the span.
@@ -110,8 +107,7 @@ LineLabelPlace place_label(const VerticalLine& line, double x, std::vector<Point
   std::size_t least = std::numeric_limits<std::size_t>::max();
   LineLabelPlace best;
   Box taken;
-  for (const LineLabelPlace place :
-       {LineLabelPlace{true, false}, {true, true}, {false, false}, {false, true}}) {
+  for (const LineLabelPlace place : {LineLabelPlace{true, false}, {true, true}, {false, false}, {false, true}}) {
     Box box;
     box.left = place.right ? x + 0.001 : x - 0.001 - label_width;
     box.right = box.left + label_width;

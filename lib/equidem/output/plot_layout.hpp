@@ -27,9 +27,8 @@ struct PlotLayout {
   std::vector<LineLabelPlace> line_labels;
 };
 
-/// Ranges that were not given are those of the data with a small margin, rounded outwards; the legend takes
-/// the corner, and each label the end and side of its line, under which fewest points lie. Widths of text are
-/// estimated.
+/// Ranges that were not given are those of the data with a small margin, rounded outwards; the legend takes the
+/// corner, and each label the end and side of its line, under which fewest points lie. Widths of text are estimated.
 PlotLayout lay_out(const Plot& plot);
 
 }  // namespace equidem

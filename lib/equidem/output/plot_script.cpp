@@ -20,8 +20,7 @@ const char* hex(PlotColour colour) {
   return palette[static_cast<std::size_t>(colour)];
 }
 
-/// A single-quoted string of gnuplot: nothing in it is expanded (no backslash, no backtick), a quote is
-/// doubled.
+/// A single-quoted string of gnuplot: nothing in it is expanded (no backslash, no backtick), a quote is doubled.
 std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) {
@@ -70,13 +69,12 @@ std::vector<std::string> plot_clauses(const Plot& plot, const Series& series, co
   const std::string columns = format("data using \"{}\":\"{}\"", place.x, place.y);
   const std::string title = series.label.empty() ? "notitle" : "title " + quoted(series.label) + plain;
   const std::string face = format("with points pt {} ps marker", point_type(series.marker, true));
-  const std::string outline = format("with points pt {} ps marker lw 1.6 lc rgb '{}'",
-                                     point_type(series.marker, false), hex(series.colour));
+  const std::string outline =
+      format("with points pt {} ps marker lw 1.6 lc rgb '{}'", point_type(series.marker, false), hex(series.colour));
   std::vector<std::string> clauses;
   if (series.style == SeriesStyle::line || series.style == SeriesStyle::dashed_line) {
     clauses.push_back(format("{} with lines lw 1.8{} lc rgb '{}' {}", columns,
-                             series.style == SeriesStyle::dashed_line ? " dt (8,5)" : "", hex(series.colour),
-                             title));
+                             series.style == SeriesStyle::dashed_line ? " dt (8,5)" : "", hex(series.colour), title));
   }
   if (series.style == SeriesStyle::line_with_points) {
     clauses.push_back(format("{} with linespoints pt {} ps marker lw 1.6 lc rgb '{}' {}", columns,
@@ -94,9 +92,8 @@ std::vector<std::string> plot_clauses(const Plot& plot, const Series& series, co
   if (has_markers(series) && plot.mark_points_outside && !plot.y.logarithmic) {
     const double margin = 0.018 * (y_range.max - y_range.min);
     const auto outside = [&](bool above) {
-      return std::any_of(series.y.begin(), series.y.end(), [&](double y) {
-        return std::isfinite(y) && (above ? y > y_range.max : y < y_range.min);
-      });
+      return std::any_of(series.y.begin(), series.y.end(),
+                         [&](double y) { return std::isfinite(y) && (above ? y > y_range.max : y < y_range.min); });
     };
     const auto triangle = [&](const char* relation, double bound, double at, int type) {
       return format(
@@ -105,8 +102,7 @@ std::vector<std::string> plot_clauses(const Plot& plot, const Series& series, co
           "notitle",
           place.x, place.y, relation, bound, at, type, hex(series.colour));
     };
-    if (outside(true))
-      clauses.push_back(triangle(">", y_range.max, y_range.max - margin, series.filled ? 9 : 8));
+    if (outside(true)) clauses.push_back(triangle(">", y_range.max, y_range.max - margin, series.filled ? 9 : 8));
     if (outside(false)) {
       clauses.push_back(triangle("<", y_range.min, y_range.min + margin, series.filled ? 11 : 10));
     }
@@ -115,20 +111,19 @@ std::vector<std::string> plot_clauses(const Plot& plot, const Series& series, co
 }
 
 std::string vertical_line(const VerticalLine& line, const LineLabelPlace& place, const std::string& plain) {
-  std::string text = format(
-      "set arrow from first {0}, graph 0 to first {0}, graph 1 nohead back lw 1.1 dt (5,4) lc rgb '{1}'\n",
-      line.x, hex(line.colour));
+  std::string text =
+      format("set arrow from first {0}, graph 0 to first {0}, graph 1 nohead back lw 1.1 dt (5,4) lc rgb '{1}'\n",
+             line.x, hex(line.colour));
   if (!line.label.empty()) {
-    text +=
-        format("set label {} at first {}, graph {} {} rotate by 90 offset char {},0 tc rgb '{}' front{}\n",
-               quoted(line.label), line.x, place.top ? 0.985 : 0.015, place.top ? "right" : "left",
-               place.right ? 1 : -1, hex(line.colour), plain);
+    text += format("set label {} at first {}, graph {} {} rotate by 90 offset char {},0 tc rgb '{}' front{}\n",
+                   quoted(line.label), line.x, place.top ? 0.985 : 0.015, place.top ? "right" : "left",
+                   place.right ? 1 : -1, hex(line.colour), plain);
   }
   return text;
 }
 
-/// Scale and tic labels. A logarithmic axis shorter than two decades is labelled at 1, 2 and 5, a longer one
-/// at powers of ten.
+/// Scale and tic labels. A logarithmic axis shorter than two decades is labelled at 1, 2 and 5, a longer one at
+/// powers of ten.
 std::string axis_scale(char letter, const Axis& axis, const AxisRange& range) {
   if (!axis.logarithmic) return format("set format {} '%g'\n", letter);
   std::string text = format("set logscale {}\n", letter);
@@ -197,8 +192,7 @@ std::string plot_script(const std::string& name, const Plot& plot, const PlotDat
       "set border 3 lw 0.8 lc rgb '#333333'\nset tics out nomirror scale 0.7 tc rgb '#222222'\n"
       "set title {2} offset 0,-0.2{3}\nset xlabel {4}{3}\nset ylabel {5}{3}\n",
       name, quoted(name + ".csv"), quoted(plot.title), plain, quoted(plot.x.label), quoted(plot.y.label));
-  text += format("set xrange [{}:{}]\nset yrange [{}:{}]\n", layout.x.min, layout.x.max, layout.y.min,
-                 layout.y.max);
+  text += format("set xrange [{}:{}]\nset yrange [{}:{}]\n", layout.x.min, layout.x.max, layout.y.min, layout.y.max);
   text += axis_scale('x', plot.x, layout.x) + axis_scale('y', plot.y, layout.y);
   text += format("set key {} Left reverse samplen 2.2 spacing 1.25 width 1{}\n",
                  layout.legend == "below" ? "below horizontal" : "inside " + layout.legend, plain);
@@ -208,9 +202,8 @@ std::string plot_script(const std::string& name, const Plot& plot, const PlotDat
         "behind\n",
         band.from, band.to);
     if (!band.label.empty()) {
-      text +=
-          format("set label {} at first {}, graph 0.965 center tc rgb '#666666'{}\n", quoted(band.label),
-                 plot.x.logarithmic ? std::sqrt(band.from * band.to) : 0.5 * (band.from + band.to), plain);
+      text += format("set label {} at first {}, graph 0.965 center tc rgb '#666666'{}\n", quoted(band.label),
+                     plot.x.logarithmic ? std::sqrt(band.from * band.to) : 0.5 * (band.from + band.to), plain);
     }
   }
   for (std::size_t k = 0; k < plot.vertical_lines.size(); ++k) {

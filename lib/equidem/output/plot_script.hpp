@@ -20,8 +20,8 @@ struct PlotData {
   std::vector<Place> places;  ///< per series
 };
 
-/// Columns of different length are padded with empty cells; a value that is not finite is written "nan", at
-/// which gnuplot breaks a line.
+/// Columns of different length are padded with empty cells; a value that is not finite is written "nan", at which
+/// gnuplot breaks a line.
 PlotData plot_data(const Plot& plot);
 
 /// A script that reads NAME.csv and draws NAME.svg and NAME.png in the folder in which it runs.

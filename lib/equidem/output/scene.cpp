@@ -41,9 +41,8 @@ void check(const AssemblyState& state, const PictureOptions& options) {
     const Vec2 u = state.motions.empty() ? Vec2{} : state.motions[disc].u;
     const Vec2 c = assembly.centres[disc];
     if (!std::isfinite(c.x + c.y + u.x + u.y + assembly.radii[disc])) {
-      bad_input(
-          format("disc {} at ({}, {}) with displacement ({}, {}) cannot be drawn", disc, c.x, c.y, u.x, u.y),
-          "its place is not finite", "Check the solution that it comes from");
+      bad_input(format("disc {} at ({}, {}) with displacement ({}, {}) cannot be drawn", disc, c.x, c.y, u.x, u.y),
+                "its place is not finite", "Check the solution that it comes from");
     }
   }
 }
@@ -128,13 +127,12 @@ void colour_discs(Scene& scene) {
   scene.colour_unit = format("({}{})", unit.prefix, by_motion ? "m" : "Pa");
 }
 
-/// Widths are taken from the force below which 99.5 % of the contacts lie, so that one loaded corner does not
-/// thin all others.
+/// Widths are taken from the force below which 99.5 % of the contacts lie, so that one loaded corner does not thin
+/// all others.
 void plan_force_chains(Scene& scene, double mean_radius) {
   const auto forces = scene.state.contact_forces;
   const double radius = mean_radius * scene.frame.scale;  // units
-  if (!scene.options.force_chains || forces.empty() || scene.as_image ||
-      radius * scene.frame.pixels < finest_chained)
+  if (!scene.options.force_chains || forces.empty() || scene.as_image || radius * scene.frame.pixels < finest_chained)
     return;
   std::vector<double> sizes;
   for (const ContactForce& force : forces) {

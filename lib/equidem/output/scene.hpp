@@ -13,8 +13,8 @@
 
 namespace equidem {
 
-/// From metres, y up, to units of the page, y down. The page is 1000 units wide whatever its pixels, so that
-/// text and lines keep their proportion.
+/// From metres, y up, to units of the page, y down. The page is 1000 units wide whatever its pixels, so that text and
+/// lines keep their proportion.
 struct PageFrame {
   static constexpr double width = 1000;
   double height = 0;
@@ -53,11 +53,11 @@ struct Scene {
   std::string caption = {};
 };
 
-/// Everything that is decided before drawing. \throws Error (bad_input) as write_picture does
+/// Everything that is decided before drawing.
+/// \throws Error (bad_input) as write_picture does
 Scene plan_scene(const AssemblyState& state, const PictureOptions& options);
 
-/// Whether a load points away from the middle of the assembly: its arrow then starts at the disc, else it
-/// ends there.
+/// Whether a load points away from the middle of the assembly: its arrow then starts at the disc, else it ends there.
 inline bool pulls(const Scene& scene, const DrawnLoad& load) {
   return dot(load.force, scene.centres[load.disc] - scene.middle) >= 0;
 }

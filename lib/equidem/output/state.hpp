@@ -12,8 +12,8 @@
 
 namespace equidem {
 
-/// A view: all that it names must outlive it. An empty span means "not computed": the columns, arrays and
-/// colours made of it are left out.
+/// A view: all that it names must outlive it. An empty span means "not computed": the columns, arrays and colours
+/// made of it are left out.
 struct AssemblyState {
   const Assembly& assembly;
   std::span<const DiscMotion> motions = {};           ///< per disc

@@ -46,19 +46,17 @@ constexpr const char* vtk_type() {
   if constexpr (std::is_same_v<Number, std::int64_t>) return "Int64";
 }
 
-/// One PolyData piece. Arrays are declared first and generated when the file is put together, so that only
-/// the text of the file itself is ever held. Appended raw data: an underscore, then for each array its length
-/// in bytes (UInt64) and its numbers; the offsets in the declarations count from behind the underscore.
+/// One PolyData piece. Arrays are declared first and generated when the file is put together, so that only the text
+/// of the file itself is ever held. Appended raw data: an underscore, then for each array its length in bytes
+/// (UInt64) and its numbers; the offsets in the declarations count from behind the underscore.
 class PolyData {
  public:
   PolyData(std::size_t points, std::size_t vertices, std::size_t lines)
-      : counts_(format("NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\"", points, vertices,
-                       lines)) {}
+      : counts_(format("NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\"", points, vertices, lines)) {}
 
   /// value(tuple, component) for every tuple in [0, tuples).
   template <class Number, class Value>
-  void declare(const std::string& section, const std::string& name, std::size_t tuples, int components,
-               Value value) {
+  void declare(const std::string& section, const std::string& name, std::size_t tuples, int components, Value value) {
     if (section != section_) {
       close_section();
       header_ += format("      <{}>\n", section);
@@ -155,8 +153,7 @@ std::string contacts_text(const AssemblyState& state) {
     return point % 2 == 0 ? contact.i : contact.j;
   };
   const auto scalar = [&](const std::string& name, auto value) {
-    data.declare<double>("CellData", name, m, 1,
-                         [value](std::size_t contact, int) { return value(contact); });
+    data.declare<double>("CellData", name, m, 1, [value](std::size_t contact, int) { return value(contact); });
   };
 
   if (!state.motions.empty()) {
@@ -168,8 +165,7 @@ std::string contacts_text(const AssemblyState& state) {
                              [&](std::size_t contact, int) { return assembly.contacts[contact].i; });
   data.declare<std::int32_t>("CellData", "j", m, 1,
                              [&](std::size_t contact, int) { return assembly.contacts[contact].j; });
-  scalar("branch_length",
-         [&](std::size_t contact) { return norm(assembly.branch(assembly.contacts[contact])); });
+  scalar("branch_length", [&](std::size_t contact) { return norm(assembly.branch(assembly.contacts[contact])); });
   if (!state.contact_forces.empty()) {
     scalar("normal_force", [&](std::size_t contact) { return state.contact_forces[contact].normal; });
     scalar("tangential_force", [&](std::size_t contact) { return state.contact_forces[contact].tangential; });
@@ -180,8 +176,7 @@ std::string contacts_text(const AssemblyState& state) {
     return component_of(point % 2 == 0 ? start : start + assembly.branch(contact), c);
   });
   data.declare<std::int64_t>("Lines", "connectivity", 2 * m, 1, [](std::size_t point, int) { return point; });
-  data.declare<std::int64_t>("Lines", "offsets", m, 1,
-                             [](std::size_t contact, int) { return 2 * (contact + 1); });
+  data.declare<std::int64_t>("Lines", "offsets", m, 1, [](std::size_t contact, int) { return 2 * (contact + 1); });
   return data.text();
 }
 

@@ -52,10 +52,10 @@ struct Library<SuiteSparse_long> {
   static constexpr auto free_dense = cholmod_l_free_dense;
 };
 
-/// Keeps CHOLMOD on the calling thread. As Debian builds it, it asks OpenMP for four threads at every
-/// supernode, a request that outranks omp_set_num_threads and OMP_NUM_THREADS: most supernodes are small, and
-/// the threads cost more than they bring. With no active parallel region allowed, each runs on its caller.
-/// The OpenMP runtime is the one that CHOLMOD has brought along, if any, so it is asked for by name.
+/// Keeps CHOLMOD on the calling thread. As Debian builds it, it asks OpenMP for four threads at every supernode, a
+/// request that outranks omp_set_num_threads and OMP_NUM_THREADS: most supernodes are small, and the threads cost
+/// more than they bring. With no active parallel region allowed, each runs on its caller. The OpenMP runtime is the
+/// one that CHOLMOD has brought along, if any, so it is asked for by name.
 class OneThread {
  public:
   explicit OneThread(bool wanted) {
@@ -180,8 +180,8 @@ class CholmodCholesky final : public Factorization {
     if (common_.status == CHOLMOD_TOO_LARGE) return false;
     if (factor_ == nullptr) fail("analyzing");
     report_.nonzeros = common_.lnz;
-    report_.bytes = static_cast<double>(factor_->xsize) * sizeof(double) +
-                    static_cast<double>(factor_->ssize) * sizeof(Index);
+    report_.bytes =
+        static_cast<double>(factor_->xsize) * sizeof(double) + static_cast<double>(factor_->ssize) * sizeof(Index);
     times.add("analysis", watch.lap());
     return true;
   }
@@ -215,8 +215,7 @@ class CholmodCholesky final : public Factorization {
     const std::string problem =
         format("{} the stiffness matrix of {} unknowns failed in CHOLMOD", doing, component_.size());
     if (common_.status == CHOLMOD_OUT_OF_MEMORY) {
-      computation_failed(problem, "there is not enough memory",
-                         "Use a smaller assembly or a machine with more memory");
+      computation_failed(problem, "there is not enough memory", "Use a smaller assembly or a machine with more memory");
     }
     computation_failed(problem, format("its status is {}", common_.status),
                        "Choose another solver: method = \"multifrontal\"");
@@ -270,8 +269,8 @@ std::unique_ptr<Factorization> cholmod_cholesky(const MatrixOnGraph& matrix, con
     factor = std::move(longer.factor);
   }
   if (outcome == Outcome::indices_too_short) {
-    computation_failed("the stiffness matrix is too large for CHOLMOD",
-                       "its factor would not fit into memory", "Use a smaller assembly");
+    computation_failed("the stiffness matrix is too large for CHOLMOD", "its factor would not fit into memory",
+                       "Use a smaller assembly");
   }
   if (report != nullptr) *report = factor->report();
   if (trial != nullptr) trial->times = std::move(times);

@@ -27,15 +27,14 @@ struct CholmodTrial {
   StageTimes times;                   ///< compression, ordering, analysis, factorization
 };
 
-/// K = L L^T over the components that are not held, with 32-bit indices as long as they reach. Returns a null
-/// pointer where K is not positive definite to working precision; `report`, where given, tells where. Held
-/// components are solved as rows of a unit matrix times the largest spring. One factorization must not be
-/// used by two threads at once.
+/// K = L L^T over the components that are not held, with 32-bit indices as long as they reach. Returns a null pointer
+/// where K is not positive definite to working precision; `report`, where given, tells where. Held components are
+/// solved as rows of a unit matrix times the largest spring. One factorization must not be used by two threads at
+/// once.
 /// \param order discs in elimination order, for CholmodOrdering::ours
 /// \throws Error (computation_failed) where memory does not suffice or CHOLMOD fails
 std::unique_ptr<Factorization> cholmod_cholesky(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
                                                 CholmodOrdering ordering, std::span<const std::int32_t> order,
-                                                FactorReport* report = nullptr,
-                                                CholmodTrial* trial = nullptr);
+                                                FactorReport* report = nullptr, CholmodTrial* trial = nullptr);
 
 }  // namespace equidem

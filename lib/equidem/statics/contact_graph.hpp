@@ -11,8 +11,7 @@
 
 namespace equidem {
 
-/// Compressed lists of the contacts of every disc. A contact of a disc with an image of itself is listed
-/// once.
+/// Compressed lists of the contacts of every disc. A contact of a disc with an image of itself is listed once.
 class ContactGraph {
  public:
   /// One contact seen from a disc.
@@ -29,8 +28,8 @@ class ContactGraph {
     return {incidences_.data() + first_[disc], incidences_.data() + first_[disc + 1]};
   }
 
-  /// A number for every disc that is the same within one connected piece; pieces are numbered from 0 in the
-  /// order of their first disc.
+  /// A number for every disc that is the same within one connected piece; pieces are numbered from 0 in the order of
+  /// their first disc.
   [[nodiscard]] std::vector<std::int32_t> pieces() const;
 
  private:

@@ -27,8 +27,7 @@ double critical_ratio(const Assembly& assembly, std::span<const Support> support
     const StiffnessMatrix matrix = assemble_stiffness(assembly, graph, springs, unknowns);
     const MatrixOnGraph k{matrix, assembly, graph};
     const auto report = multifrontal_ldlt(symbolic, k)->report();
-    return report.zero_pivots == 0 &&
-           report.negative_pivots == negative_rotations({k, springs, unknowns, symbolic});
+    return report.zero_pivots == 0 && report.negative_pivots == negative_rotations({k, springs, unknowns, symbolic});
   };
   double unstable = options.lowest, safe = -options.tolerance;
   if (!stable(safe)) return 0;

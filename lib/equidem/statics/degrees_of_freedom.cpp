@@ -25,20 +25,19 @@ void hold(DegreesOfFreedom& unknowns, std::int32_t disc, int k, double value, co
 
 void check_value(const std::optional<double>& value, const std::string& key, const std::string& group) {
   if (value && !std::isfinite(*value)) {
-    bad_input(format("the support of '{}' prescribes {} = {}", group, key, *value),
-              "a motion must be a finite number", "Give a number in metres or radians");
+    bad_input(format("the support of '{}' prescribes {} = {}", group, key, *value), "a motion must be a finite number",
+              "Give a number in metres or radians");
   }
 }
 
-void apply(const Assembly& assembly, const Effects& effects, const Support& support,
-           DegreesOfFreedom& unknowns) {
+void apply(const Assembly& assembly, const Effects& effects, const Support& support, DegreesOfFreedom& unknowns) {
   const DiscGroup& discs = group(assembly, support.group);
   check_value(support.ux, "ux", support.group);
   check_value(support.uy, "uy", support.group);
   check_value(support.rotation, "rotation", support.group);
   if (discs.discs.empty()) {
-    bad_input(format("the support acts on the group '{}', which is empty", support.group),
-              "it would hold nothing", "Choose a group with discs or mend its definition");
+    bad_input(format("the support acts on the group '{}', which is empty", support.group), "it would hold nothing",
+              "Choose a group with discs or mend its definition");
   }
   if (support.rotation && *support.rotation != 0 && !effects.rotation) {
     bad_input(format("the support of '{}' prescribes a rotation of {} rad", support.group, *support.rotation),
@@ -55,8 +54,7 @@ void apply(const Assembly& assembly, const Effects& effects, const Support& supp
 }
 
 /// Rotations that no contact resists: every contact of the disc has kT = 0 or a lever arm of zero.
-void hold_inert_rotations(const Assembly& assembly, const ContactSprings& springs,
-                          DegreesOfFreedom& unknowns) {
+void hold_inert_rotations(const Assembly& assembly, const ContactSprings& springs, DegreesOfFreedom& unknowns) {
   std::vector<std::uint8_t> resisted(assembly.size(), 0);
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     if (springs[c].kT == 0) continue;
@@ -74,8 +72,8 @@ void hold_inert_rotations(const Assembly& assembly, const ContactSprings& spring
 
 }  // namespace
 
-DegreesOfFreedom number_unknowns(const Assembly& assembly, const ContactSprings& springs,
-                                 const Effects& effects, std::span<const Support> supports) {
+DegreesOfFreedom number_unknowns(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
+                                 std::span<const Support> supports) {
   DegreesOfFreedom unknowns;
   unknowns.per_disc = effects.unknowns_per_disc();
   unknowns.rotation_scale = assembly.mean_radius();

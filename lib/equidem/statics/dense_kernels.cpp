@@ -35,52 +35,48 @@ void solve_right_transposed(std::size_t m, std::size_t n, const double* l, std::
               as_int(ldl), b, as_int(ldb));
 }
 
-void subtract_square(std::size_t n, std::size_t k, const double* a, std::size_t lda, double* c,
-                     std::size_t ldc) {
+void subtract_square(std::size_t n, std::size_t k, const double* a, std::size_t lda, double* c, std::size_t ldc) {
   if (n == 0 || k == 0) return;
-  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, as_int(n), as_int(k), -1.0, a, as_int(lda), 1.0, c,
-              as_int(ldc));
+  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, as_int(n), as_int(k), -1.0, a, as_int(lda), 1.0, c, as_int(ldc));
 }
 
-void subtract_product_transposed(std::size_t m, std::size_t n, std::size_t k, const double* a,
-                                 std::size_t lda, const double* b, std::size_t ldb, double* c,
-                                 std::size_t ldc) {
+void subtract_product_transposed(std::size_t m, std::size_t n, std::size_t k, const double* a, std::size_t lda,
+                                 const double* b, std::size_t ldb, double* c, std::size_t ldc) {
   if (m == 0 || n == 0 || k == 0) return;
-  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, as_int(m), as_int(n), as_int(k), -1.0, a, as_int(lda),
-              b, as_int(ldb), 1.0, c, as_int(ldc));
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, as_int(m), as_int(n), as_int(k), -1.0, a, as_int(lda), b,
+              as_int(ldb), 1.0, c, as_int(ldc));
 }
 
-void subtract_product(std::size_t m, std::size_t n, std::size_t k, const double* a, std::size_t lda,
-                      const double* b, std::size_t ldb, double* c, std::size_t ldc) {
+void subtract_product(std::size_t m, std::size_t n, std::size_t k, const double* a, std::size_t lda, const double* b,
+                      std::size_t ldb, double* c, std::size_t ldc) {
   if (m == 0 || n == 0 || k == 0) return;
   if (n == 1) {
     cblas_dgemv(CblasColMajor, CblasNoTrans, as_int(m), as_int(k), -1.0, a, as_int(lda), b, 1, 1.0, c, 1);
   } else {
-    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, as_int(m), as_int(n), as_int(k), -1.0, a,
-                as_int(lda), b, as_int(ldb), 1.0, c, as_int(ldc));
+    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, as_int(m), as_int(n), as_int(k), -1.0, a, as_int(lda), b,
+                as_int(ldb), 1.0, c, as_int(ldc));
   }
 }
 
-void subtract_transposed_product(std::size_t m, std::size_t n, std::size_t k, const double* a,
-                                 std::size_t lda, const double* b, std::size_t ldb, double* c,
-                                 std::size_t ldc) {
+void subtract_transposed_product(std::size_t m, std::size_t n, std::size_t k, const double* a, std::size_t lda,
+                                 const double* b, std::size_t ldb, double* c, std::size_t ldc) {
   if (m == 0 || n == 0 || k == 0) return;
   if (n == 1) {
     cblas_dgemv(CblasColMajor, CblasTrans, as_int(k), as_int(m), -1.0, a, as_int(lda), b, 1, 1.0, c, 1);
   } else {
-    cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, as_int(m), as_int(n), as_int(k), -1.0, a,
-                as_int(lda), b, as_int(ldb), 1.0, c, as_int(ldc));
+    cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, as_int(m), as_int(n), as_int(k), -1.0, a, as_int(lda), b,
+                as_int(ldb), 1.0, c, as_int(ldc));
   }
 }
 
-void solve_lower(std::size_t n, std::size_t columns, const double* l, std::size_t ldl, double* x,
-                 std::size_t ldx, bool unit) {
+void solve_lower(std::size_t n, std::size_t columns, const double* l, std::size_t ldl, double* x, std::size_t ldx,
+                 bool unit) {
   if (n == 0 || columns == 0) return;
   if (columns == 1) {
     cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, diagonal(unit), as_int(n), l, as_int(ldl), x, 1);
   } else {
-    cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, diagonal(unit), as_int(n),
-                as_int(columns), 1.0, l, as_int(ldl), x, as_int(ldx));
+    cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, diagonal(unit), as_int(n), as_int(columns), 1.0, l,
+                as_int(ldl), x, as_int(ldx));
   }
 }
 
@@ -90,8 +86,8 @@ void solve_lower_transposed(std::size_t n, std::size_t columns, const double* l,
   if (columns == 1) {
     cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, diagonal(unit), as_int(n), l, as_int(ldl), x, 1);
   } else {
-    cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans, diagonal(unit), as_int(n), as_int(columns),
-                1.0, l, as_int(ldl), x, as_int(ldx));
+    cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans, diagonal(unit), as_int(n), as_int(columns), 1.0, l,
+                as_int(ldl), x, as_int(ldx));
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Dense linear algebra on column-major panels; the only place that calls BLAS and LAPACK. Each call runs on
-/// one thread: the library divides the work itself, so that results do not depend on the number of threads.
+/// Dense linear algebra on column-major panels; the only place that calls BLAS and LAPACK. Each call runs on one
+/// thread: the library divides the work itself, so that results do not depend on the number of threads.
 #pragma once
 
 #include <cstddef>
@@ -11,29 +11,25 @@ namespace equidem::dense {
 /// Keep BLAS from starting threads of its own; called once by whoever uses these kernels.
 void use_one_thread_per_call();
 
-/// A = L L^T in the lower triangle of the n x n matrix a. Returns 0, or the 1-based index of the first pivot
-/// that is not positive.
+/// A = L L^T in the lower triangle of the n x n matrix a. Returns 0, or the 1-based index of the first pivot that is
+/// not positive.
 int cholesky(std::size_t n, double* a, std::size_t lda);
 /// B := B L^-T with L the lower triangle n x n, B of m rows.
-void solve_right_transposed(std::size_t m, std::size_t n, const double* l, std::size_t ldl, double* b,
-                            std::size_t ldb);
+void solve_right_transposed(std::size_t m, std::size_t n, const double* l, std::size_t ldl, double* b, std::size_t ldb);
 /// Lower triangle of C (n x n) -= A A^T, A of k columns.
-void subtract_square(std::size_t n, std::size_t k, const double* a, std::size_t lda, double* c,
-                     std::size_t ldc);
+void subtract_square(std::size_t n, std::size_t k, const double* a, std::size_t lda, double* c, std::size_t ldc);
 /// C (m x n) -= A B^T, A of m rows and B of n rows, both of k columns.
-void subtract_product_transposed(std::size_t m, std::size_t n, std::size_t k, const double* a,
-                                 std::size_t lda, const double* b, std::size_t ldb, double* c,
-                                 std::size_t ldc);
+void subtract_product_transposed(std::size_t m, std::size_t n, std::size_t k, const double* a, std::size_t lda,
+                                 const double* b, std::size_t ldb, double* c, std::size_t ldc);
 /// C (m x n) -= A B with A (m x k), B (k x n).
-void subtract_product(std::size_t m, std::size_t n, std::size_t k, const double* a, std::size_t lda,
-                      const double* b, std::size_t ldb, double* c, std::size_t ldc);
+void subtract_product(std::size_t m, std::size_t n, std::size_t k, const double* a, std::size_t lda, const double* b,
+                      std::size_t ldb, double* c, std::size_t ldc);
 /// C (m x n) -= A^T B with A (k x m), B (k x n).
-void subtract_transposed_product(std::size_t m, std::size_t n, std::size_t k, const double* a,
-                                 std::size_t lda, const double* b, std::size_t ldb, double* c,
-                                 std::size_t ldc);
+void subtract_transposed_product(std::size_t m, std::size_t n, std::size_t k, const double* a, std::size_t lda,
+                                 const double* b, std::size_t ldb, double* c, std::size_t ldc);
 /// X := L^-1 X, or L^-T X, for n x columns right-hand sides; `unit`: the diagonal of L is taken as 1.
-void solve_lower(std::size_t n, std::size_t columns, const double* l, std::size_t ldl, double* x,
-                 std::size_t ldx, bool unit = false);
+void solve_lower(std::size_t n, std::size_t columns, const double* l, std::size_t ldl, double* x, std::size_t ldx,
+                 bool unit = false);
 void solve_lower_transposed(std::size_t n, std::size_t columns, const double* l, std::size_t ldl, double* x,
                             std::size_t ldx, bool unit = false);
 

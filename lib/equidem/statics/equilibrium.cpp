@@ -33,16 +33,15 @@ void check_load(const Load& load) {
 }
 
 /// Force on every component: N/m; moments over a.
-std::vector<double> assemble_loads(const Assembly& assembly, const DegreesOfFreedom& unknowns,
-                                   const LoadCase& loads) {
+std::vector<double> assemble_loads(const Assembly& assembly, const DegreesOfFreedom& unknowns, const LoadCase& loads) {
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
   std::vector<double> f(assembly.size() * b, 0.0);
   for (const Load& load : loads) {
     check_load(load);
     const DiscGroup& discs = group(assembly, load.group);
     if (discs.discs.empty()) {
-      bad_input(format("a load acts on the group '{}', which is empty", load.group),
-                "there is no disc to carry it", "Choose a group with discs or mend its definition");
+      bad_input(format("a load acts on the group '{}', which is empty", load.group), "there is no disc to carry it",
+                "Choose a group with discs or mend its definition");
     }
     if (load.kind == LoadKind::traction && discs.tributary_lengths.empty()) {
       bad_input(format("a traction acts on the group '{}'", load.group),
@@ -50,8 +49,7 @@ std::vector<double> assemble_loads(const Assembly& assembly, const DegreesOfFree
                 "Use kind = \"per_disc\" or \"total\", or one of the groups left, right, bottom, top");
     }
     if (load.moment != 0 && b != 3) {
-      bad_input(format("a moment acts on the group '{}'", load.group),
-                "rotations are no unknowns of this scene",
+      bad_input(format("a moment acts on the group '{}'", load.group), "rotations are no unknowns of this scene",
                 "Remove the moment, or let rotation = \"free\" with tangential springs");
     }
     const double share = load.kind == LoadKind::total ? 1.0 / static_cast<double>(discs.discs.size()) : 1.0;
@@ -67,8 +65,7 @@ std::vector<double> assemble_loads(const Assembly& assembly, const DegreesOfFree
 }
 
 /// A moment on a disc that no contact keeps from turning, and no support either, could not be balanced.
-void check_inert_loads(const Assembly& assembly, const DegreesOfFreedom& unknowns,
-                       std::span<const double> f) {
+void check_inert_loads(const Assembly& assembly, const DegreesOfFreedom& unknowns, std::span<const double> f) {
   if (unknowns.per_disc != 3 || unknowns.inert_rotations == 0) return;
   for (std::size_t d = 0; d < assembly.size(); ++d) {
     if (f[3 * d + 2] == 0 || unknowns.held[3 * d + 2] != DegreesOfFreedom::inert) continue;
@@ -92,8 +89,7 @@ struct EquilibriumSolver::Implementation {
   std::int64_t unstable_modes = 0;
   StageTimes times;
 
-  Implementation(const Assembly& assembly_in, const ContactSprings& springs_in,
-                 const EquilibriumOptions& options_in)
+  Implementation(const Assembly& assembly_in, const ContactSprings& springs_in, const EquilibriumOptions& options_in)
       : assembly(assembly_in),
         springs(springs_in),
         options(options_in),
@@ -257,21 +253,19 @@ Equilibrium solve_equilibrium(const Assembly& assembly, const ContactSprings& sp
   return EquilibriumSolver(assembly, springs, supports, options).solve(loads);
 }
 
-SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& springs,
-                             std::span<const Support> supports, const EquilibriumOptions& options) {
+SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
+                             const EquilibriumOptions& options) {
   check(assembly);
   const ContactGraph graph(assembly);
   const Effects effects = derive_effects(springs, options.rotation);
   const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, supports);
-  return estimate(analyze(dissect(assembly, graph), graph, unknowns.per_disc), unknowns,
-                  springs.any_negative());
+  return estimate(analyze(dissect(assembly, graph), graph, unknowns.per_disc), unknowns, springs.any_negative());
 }
 
 std::string Equilibrium::report() const {
   std::string text = format("{} unknowns, {}, {:.3g} entries in L ({})\n", unknowns, solver, factor_nonzeros,
                             readable_bytes(factor_bytes));
-  text +=
-      format("relative residual {:.1e} after {}\n", relative_residual, counted(refinements, "refinement"));
+  text += format("relative residual {:.1e} after {}\n", relative_residual, counted(refinements, "refinement"));
   if (negative_pivots > 0 || unstable_modes != 0) {
     text += format("{} negative pivots: ", negative_pivots);
     if (unstable_modes == 0) {

@@ -31,15 +31,13 @@ struct Equilibrium {
   std::vector<DiscMotion> motions;           ///< per disc
   std::vector<ContactForce> contact_forces;  ///< per contact
   std::vector<Reaction> reactions;           ///< discs with a held component
-  std::vector<double>
-      rotation_moments;  ///< N, per disc: moment that holds it where rotation is restrained; else empty
-  double relative_residual =
-      0;                ///< |f - K u| over |f| (prescribed motions included in f), 2-norms over the unknowns
-  int refinements = 0;  ///< steps of iterative refinement done
+  std::vector<double> rotation_moments;  ///< N, per disc: moment that holds it where rotation is restrained; else empty
+  double relative_residual = 0;  ///< |f - K u| over |f| (prescribed motions included in f), 2-norms over the unknowns
+  int refinements = 0;           ///< steps of iterative refinement done
   std::int64_t unknowns = 0;
   std::int64_t negative_pivots = 0;  ///< negative eigenvalues of K (Sylvester's law of inertia)
-  /// Negative eigenvalues beyond the one that each rotation brings where kT < 0: modes by which the assembly
-  /// would give way.
+  /// Negative eigenvalues beyond those that the rotations bring by themselves where kT < 0 (one each): independent motions
+  /// by which the assembly would give way. 0: the state of rest is stable as statics sees it; -1: the solver cannot tell.
   std::int64_t unstable_modes = 0;
   double pivot_growth = 0;     ///< largest |L_ij| of the factorization
   double factor_nonzeros = 0;  ///< entries of L
@@ -58,23 +56,22 @@ struct EquilibriumOptions {
   SolverOptions solver;
 };
 
-/// A factorized stiffness matrix of an assembly with its supports: any number of load cases, one
-/// factorization.
+/// A factorized stiffness matrix of an assembly with its supports: any number of load cases, one factorization.
 class EquilibriumSolver {
  public:
-  /// Decide the unknowns, check the supports, assemble K, order, analyze and factorize.
-  /// The assembly and the springs must outlive this object.
-  /// \throws Error (bad_input) on discs without contacts, an assembly in pieces of which some can move
-  /// freely, a rigid motion
-  ///         that the supports leave free (named), a mechanism (named); Error (computation_failed) where the
-  ///         factor would not fit into memory or K is singular
-  EquilibriumSolver(const Assembly& assembly, const ContactSprings& springs,
-                    std::span<const Support> supports, const EquilibriumOptions& options = {});
+  /// Decide the unknowns, check the supports, assemble K, order, analyze and factorize. The assembly and the springs
+  /// must outlive this object.
+  /// \throws Error (bad_input) on discs without contacts, an assembly in pieces of which some can move freely, a
+  ///         rigid motion that the supports leave free (named), a mechanism (named); Error (computation_failed) where
+  ///         the factor would not fit into memory or K is singular
+  EquilibriumSolver(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
+                    const EquilibriumOptions& options = {});
   ~EquilibriumSolver();
   EquilibriumSolver(EquilibriumSolver&&) noexcept;
 
-  /// \throws Error (bad_input) where a load names no group or an empty one, or acts on a component that is
-  /// held
+  /// A load on a component that is held goes straight into its reaction.
+  /// \throws Error (bad_input) where a load names no group or an empty one, or gives a moment to a disc that nothing keeps
+  ///         from turning; Error (computation_failed) where the residual shows that K is too near to singular
   [[nodiscard]] Equilibrium solve(const LoadCase& loads) const;
   [[nodiscard]] const Effects& effects() const;
   [[nodiscard]] std::int64_t unknowns() const;
@@ -86,8 +83,8 @@ class EquilibriumSolver {
 
 /// Order and analyze, without assembling or factorizing: what a solve will take.
 /// \throws Error (bad_input) as EquilibriumSolver does for supports
-SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& springs,
-                             std::span<const Support> supports, const EquilibriumOptions& options = {});
+SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
+                             const EquilibriumOptions& options = {});
 
 /// One load case.
 Equilibrium solve_equilibrium(const Assembly& assembly, const ContactSprings& springs,

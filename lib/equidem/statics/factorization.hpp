@@ -17,16 +17,15 @@ struct FactorReport {
   double bytes = 0;
   std::int64_t negative_pivots = -1;  ///< negative eigenvalues (Sylvester); -1 where the method cannot tell
   double growth = 0;                  ///< largest |L_ij|; 0 where not watched
-  /// Smallest pivot over the diagonal entry it started from: the share of a stiffness that is left when all
-  /// others have given way. Near round-off the matrix is singular.
+  /// Smallest pivot over the diagonal entry it started from: the share of a stiffness that is left when all others
+  /// have given way. Near round-off the matrix is singular.
   double smallest_pivot = 1;
   std::int64_t smallest_component = -1;  ///< the component (disc * block + k) it belongs to
   std::int64_t delayed_pivots = 0;       ///< eliminated later than planned, for stability
-  std::int64_t zero_pivots = 0;  ///< unknowns that nothing holds: the dimension of the null space found
+  std::int64_t zero_pivots = 0;          ///< unknowns that nothing holds: the dimension of the null space found
 };
 
-/// A factorized matrix. Vectors hold discs x block components, in the order of discs, held components
-/// included.
+/// A factorized matrix. Vectors hold discs x block components, in the order of discs, held components included.
 class Factorization {
  public:
   Factorization() = default;
@@ -36,9 +35,8 @@ class Factorization {
 
   /// x := K^-1 x for right-hand sides stored one after another.
   virtual void solve(std::span<double> x, int right_hand_sides) const = 0;
-  /// The motion of least resistance that the factorization came across, not normalized: L^-T e for the unit
-  /// vector e of the smallest pivot. Where K is singular it is a mechanism. Empty where the method does not
-  /// tell.
+  /// The motion of least resistance that the factorization came across, not normalized: L^-T e for the unit vector e
+  /// of the smallest pivot. Where K is singular it is a mechanism. Empty where the method does not tell.
   [[nodiscard]] virtual std::vector<double> softest_motion() const { return {}; }
   [[nodiscard]] virtual const FactorReport& report() const = 0;
 };

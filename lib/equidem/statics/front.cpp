@@ -20,8 +20,7 @@ struct Tile {
 std::vector<Tile> lower_tiles(std::size_t n) {
   std::vector<Tile> tiles;
   for (std::size_t r = 0; r < n; r += tile) {
-    for (std::size_t c = 0; c <= r; c += tile)
-      tiles.push_back({r, c, std::min(tile, n - r), std::min(tile, n - c)});
+    for (std::size_t c = 0; c <= r; c += tile) tiles.push_back({r, c, std::min(tile, n - r), std::min(tile, n - c)});
   }
   return tiles;
 }
@@ -68,8 +67,7 @@ void subtract_in_tiles(std::size_t m, std::size_t k, Strided<const double> a, St
     if (row == column && a.data == b.data) {
       dense::subtract_square(rows, k, a.data + row, a.ld, target, c.ld);
     } else {
-      dense::subtract_product_transposed(rows, columns, k, a.data + row, a.ld, b.data + column, b.ld, target,
-                                         c.ld);
+      dense::subtract_product_transposed(rows, columns, k, a.data + row, a.ld, b.data + column, b.ld, target, c.ld);
     }
   });
 }
@@ -101,15 +99,13 @@ void add_matrix_columns(const SymbolicFactor& symbolic, const MatrixOnGraph& k, 
       const std::int32_t q = symbolic.position[edge.other];
       if (q <= p) continue;
       const std::int32_t row =
-          q < node.end
-              ? q - node.begin
-              : own + static_cast<std::int32_t>(std::lower_bound(rows.begin(), rows.end(), q) - rows.begin());
+          q < node.end ? q - node.begin
+                       : own + static_cast<std::int32_t>(std::lower_bound(rows.begin(), rows.end(), q) - rows.begin());
       const double* block = k.matrix.coupling_block(edge.contact);
       const bool transposed = k.assembly.contacts[edge.contact].i == disc;  // wanted: K_qp
       at = column + static_cast<std::size_t>(row) * b;
       for (std::size_t c = 0; c < b; ++c) {
-        for (std::size_t r = 0; r < b; ++r)
-          at[c * ld + r] += transposed ? block[c * b + r] : block[r * b + c];
+        for (std::size_t r = 0; r < b; ++r) at[c * ld + r] += transposed ? block[c * b + r] : block[r * b + c];
       }
     }
   }
@@ -126,8 +122,8 @@ void extend_add(const std::vector<RowRun>& runs, int block, const double* child,
       const double* from = child + (columns.child * b + j) * child_size;
       const std::size_t column = columns.parent * b + j;
       // Rows count from the parent's first own unknown; the update matrix starts at row `own`.
-      double* to = column < own ? parent.panel + column * parent.ld
-                                : parent.update + (column - own) * update_size - own;
+      double* to =
+          column < own ? parent.panel + column * parent.ld : parent.update + (column - own) * update_size - own;
       for (std::size_t k = first; k < runs.size(); ++k) {
         const std::size_t skip = k == first ? j : 0;
         const std::size_t count = runs[k].count * b - skip;

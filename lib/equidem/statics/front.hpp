@@ -25,9 +25,9 @@ struct MatrixOnGraph {
 void add_matrix_columns(const SymbolicFactor& symbolic, const MatrixOnGraph& k, std::size_t t, double* panel,
                         std::size_t ld);
 
-/// Factorize a front: panel (k + m rows, k columns) and update matrix (m x m, leading dimension m, lower
-/// triangle). Large fronts are worked on in tiles, by all threads where they are free; the tiles, and so the
-/// bits, are always the same. Returns 0, or the 1-based index of the first pivot that is not positive.
+/// Factorize a front: panel (k + m rows, k columns) and update matrix (m x m, leading dimension m, lower triangle).
+/// Large fronts are worked on in tiles, by all threads where they are free; the tiles, and so the bits, are always
+/// the same. Returns 0, or the 1-based index of the first pivot that is not positive.
 int factorize_front(std::size_t k, std::size_t m, double* panel, double* update);
 
 /// A column-major matrix inside a larger one.
@@ -37,8 +37,8 @@ struct Strided {
   std::size_t ld;
 };
 
-/// Lower triangle of C (m x m) -= A B^T for A, B of m rows and k columns, in tiles, by all threads where they
-/// are free.
+/// Lower triangle of C (m x m) -= A B^T for A, B of m rows and k columns, in tiles, by all threads where they are
+/// free.
 void subtract_in_tiles(std::size_t m, std::size_t k, Strided<const double> a, Strided<const double> b,
                        Strided<double> c);
 

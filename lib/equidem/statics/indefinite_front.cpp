@@ -56,8 +56,7 @@ class Elimination {
     if (pivots == 0) return;
     coefficients_.resize(pivots);
     for (std::size_t p = 0; p < pivots; ++p) coefficients_[p] = scaled(j, block_ + p);
-    dense::subtract_product(n_ - done_, 1, pivots, &at(done_, block_), n_, coefficients_.data(), pivots,
-                            &v[done_], n_);
+    dense::subtract_product(n_ - done_, 1, pivots, &at(done_, block_), n_, coefficients_.data(), pivots, &v[done_], n_);
   }
 
   /// Largest entry outside the rows a and b, and the row of the largest among the candidates.
@@ -162,8 +161,8 @@ class Elimination {
       const std::size_t left = front_.candidates - done_;
       parallel_tasks((left + strip - 1) / strip, [&](std::size_t task, int) {
         const std::size_t c = done_ + task * strip;
-        dense::subtract_product_transposed(n_ - c, std::min(strip, front_.candidates - c), pivots,
-                                           &at(c, block_), n_, &scaled(c, block_), n_, &at(c, c), n_);
+        dense::subtract_product_transposed(n_ - c, std::min(strip, front_.candidates - c), pivots, &at(c, block_), n_,
+                                           &scaled(c, block_), n_, &at(c, c), n_);
       });
     }
     block_ = done_;

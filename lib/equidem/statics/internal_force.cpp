@@ -46,9 +46,8 @@ void PreciseMotion::add(std::span<const double> correction) {
   }
 }
 
-void contact_forces_of(const Assembly& assembly, const ContactSprings& springs,
-                       const DegreesOfFreedom& unknowns, const PreciseMotion& motion,
-                       std::span<ContactForce> forces) {
+void contact_forces_of(const Assembly& assembly, const ContactSprings& springs, const DegreesOfFreedom& unknowns,
+                       const PreciseMotion& motion, std::span<ContactForce> forces) {
   parallel_ranges(assembly.contacts.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       const Contact& contact = assembly.contacts[c];

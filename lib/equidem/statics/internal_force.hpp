@@ -14,9 +14,9 @@
 
 namespace equidem {
 
-/// Motion of all discs as an unevaluated sum of two doubles, discs x per_disc components (u_x, u_y[, a
-/// theta]), m. One double would not do: a displacement of 1000 stretches carries the round-off of 1000
-/// stretches, and the residual with it.
+/// Motion of all discs as an unevaluated sum of two doubles, discs x per_disc components (u_x, u_y[, a theta]), m.
+/// One double would not do: a displacement of 1000 stretches carries the round-off of 1000 stretches, and the
+/// residual with it.
 struct PreciseMotion {
   std::vector<double> high;
   std::vector<double> low;
@@ -26,19 +26,17 @@ struct PreciseMotion {
   void add(std::span<const double> correction);
 };
 
-/// Force of every contact, from the differences of the motion of its discs, evaluated in extended precision:
-/// a disc that has turned far stretches its contacts by small differences of large products.
-void contact_forces_of(const Assembly& assembly, const ContactSprings& springs,
-                       const DegreesOfFreedom& unknowns, const PreciseMotion& motion,
-                       std::span<ContactForce> forces);
+/// Force of every contact, from the differences of the motion of its discs, evaluated in extended precision: a disc
+/// that has turned far stretches its contacts by small differences of large products.
+void contact_forces_of(const Assembly& assembly, const ContactSprings& springs, const DegreesOfFreedom& unknowns,
+                       const PreciseMotion& motion, std::span<ContactForce> forces);
 
-/// Internal force f_int = K u per component (N/m; moments over a): the negative of what contacts exert on the
-/// discs.
+/// Internal force f_int = K u per component (N/m; moments over a): the negative of what contacts exert on the discs.
 void internal_force(const Assembly& assembly, const ContactGraph& graph, const DegreesOfFreedom& unknowns,
                     std::span<const ContactForce> forces, std::span<double> result);
 
-/// What is left of the load f once the contacts have answered: f - f_int(motion) on free components, 0 on
-/// held ones. Stretch, slip, forces and their sums are all evaluated in extended precision.
+/// What is left of the load f once the contacts have answered: f - f_int(motion) on free components, 0 on held ones.
+/// Stretch, slip, forces and their sums are all evaluated in extended precision.
 void residual_force(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
                     const DegreesOfFreedom& unknowns, const PreciseMotion& motion, std::span<const double> f,
                     std::span<double> residual);

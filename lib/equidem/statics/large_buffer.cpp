@@ -18,11 +18,10 @@ LargeBuffer::LargeBuffer(std::size_t doubles) : size_(doubles) {
   const std::size_t bytes = (doubles * sizeof(double) + huge_page - 1) / huge_page * huge_page;
   data_ = static_cast<double*>(bytes > huge_page ? std::aligned_alloc(huge_page, bytes) : std::malloc(bytes));
   if (data_ == nullptr) {
-    computation_failed(format("no memory for {}", readable_bytes(static_cast<double>(bytes))),
-                       "the system refused it", "Use a smaller assembly or a machine with more memory");
+    computation_failed(format("no memory for {}", readable_bytes(static_cast<double>(bytes))), "the system refused it",
+                       "Use a smaller assembly or a machine with more memory");
   }
-  if (bytes > huge_page)
-    madvise(data_, bytes, MADV_HUGEPAGE);  // advice: nothing is lost where it is not taken
+  if (bytes > huge_page) madvise(data_, bytes, MADV_HUGEPAGE);  // advice: nothing is lost where it is not taken
 }
 
 LargeBuffer::~LargeBuffer() {

@@ -9,8 +9,8 @@
 
 namespace equidem {
 
-/// Uninitialized doubles on huge pages where the system has them: the first touch of small pages would cost a
-/// good part of a factorization.
+/// Uninitialized doubles on huge pages where the system has them: the first touch of small pages would cost a good
+/// part of a factorization.
 class LargeBuffer {
  public:
   LargeBuffer() = default;

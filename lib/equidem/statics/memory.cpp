@@ -39,8 +39,7 @@ double available_memory() {
     if (word == "MemAvailable:" && meminfo >> kilobytes) available = 1024 * kilobytes;
   }
   const std::string group = "/sys/fs/cgroup/";
-  available = std::min(available,
-                       bytes_in(group + "memory.max") - std::min(bytes_in(group + "memory.current"), 1e18));
+  available = std::min(available, bytes_in(group + "memory.max") - std::min(bytes_in(group + "memory.current"), 1e18));
   rlimit limit{};
   for (const auto resource : {RLIMIT_AS, RLIMIT_DATA}) {
     if (getrlimit(resource, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {

@@ -37,9 +37,7 @@ struct Field {
 class Description {
  public:
   Description(const Assembly& assembly, std::span<const DiscMotion> motions)
-      : assembly_(assembly),
-        motions_(motions),
-        centres_(unwrap_pieces(assembly, ContactGraph(assembly)).centres) {
+      : assembly_(assembly), motions_(motions), centres_(unwrap_pieces(assembly, ContactGraph(assembly)).centres) {
     assert(motions.size() == assembly.size());
     measure();
   }
@@ -108,8 +106,7 @@ class Description {
       scale += squared(i) + squared(j);
     }
     const bool gears = slip <= negligible * scale;
-    return format("a {} of {} in place{}", gears ? "counter-rotation" : "rotation",
-                  describe_moving(moving_.size()),
+    return format("a {} of {} in place{}", gears ? "counter-rotation" : "rotation", describe_moving(moving_.size()),
                   gears ? ", neighbours turning against one another like gears" : "");
   }
 
@@ -179,8 +176,7 @@ class Description {
   [[nodiscard]] std::string describe_rolling(double turn, const std::vector<std::size_t>& discs) const {
     double own = 0;
     for (const std::size_t d : discs) own += squared(spin_[d] - assembly_.radii[d] * turn);
-    return rotation_ > negligible * total_ && own > negligible * total_ ? ", discs rolling on one another"
-                                                                        : "";
+    return rotation_ > negligible * total_ && own > negligible * total_ ? ", discs rolling on one another" : "";
   }
 
   [[nodiscard]] Field rotation_about_mean(const std::vector<std::size_t>& discs) const {
@@ -202,12 +198,11 @@ class Description {
   [[nodiscard]] std::string describe_local() const {
     const auto about = std::max(1LL, std::llround(participants_));
     std::string names;
-    for (std::size_t k = 0; k < std::min<std::size_t>({5, static_cast<std::size_t>(about), moving_.size()});
-         ++k) {
+    for (std::size_t k = 0; k < std::min<std::size_t>({5, static_cast<std::size_t>(about), moving_.size()}); ++k) {
       names += (k == 0 ? "" : ", ") + describe_disc(assembly_, largest_first_[k]);
     }
-    return format("a local motion of about {} of {}: {}{}", about,
-                  counted(as_count(assembly_.size()), "disc"), names, about > 5 ? ", ..." : "");
+    return format("a local motion of about {} of {}: {}{}", about, counted(as_count(assembly_.size()), "disc"), names,
+                  about > 5 ? ", ..." : "");
   }
 
   /// "a uniform shear ", "a uniform strain " or "a motion ".
@@ -251,19 +246,16 @@ std::string describe_disc(const Assembly& assembly, std::size_t disc) {
   return format("disc {} at ({:.6g}, {:.6g})", disc, assembly.centres[disc].x, assembly.centres[disc].y);
 }
 
-double elastic_energy(const Assembly& assembly, const ContactSprings& springs,
-                      std::span<const DiscMotion> motions) {
+double elastic_energy(const Assembly& assembly, const ContactSprings& springs, std::span<const DiscMotion> motions) {
   double energy = 0;
   for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
     const Contact& c = assembly.contacts[k];
-    energy +=
-        linear_spring_energy(springs[k], deformation(frame_of(assembly, c), motions[c.i], motions[c.j]));
+    energy += linear_spring_energy(springs[k], deformation(frame_of(assembly, c), motions[c.i], motions[c.j]));
   }
   return energy;
 }
 
-double reference_energy(const Assembly& assembly, const ContactSprings& springs,
-                        std::span<const DiscMotion> motions) {
+double reference_energy(const Assembly& assembly, const ContactSprings& springs, std::span<const DiscMotion> motions) {
   double energy = 0;
   for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
     const Contact& c = assembly.contacts[k];
@@ -275,8 +267,7 @@ double reference_energy(const Assembly& assembly, const ContactSprings& springs,
   return energy;
 }
 
-double softness(const Assembly& assembly, const ContactSprings& springs,
-                std::span<const DiscMotion> motions) {
+double softness(const Assembly& assembly, const ContactSprings& springs, std::span<const DiscMotion> motions) {
   const double reference = reference_energy(assembly, springs, motions);
   return reference > 0 ? elastic_energy(assembly, springs, motions) / reference : 0;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A motion of an assembly in words and in energy: what a mode of zero or negative stiffness looks like, and
-/// whether it is a mechanism or merely soft.
+/// A motion of an assembly in words and in energy: what a mode of zero or negative stiffness looks like, and whether
+/// it is a mechanism or merely soft.
 #pragma once
 
 #include <cstddef>
@@ -14,11 +14,11 @@
 
 namespace equidem {
 
-/// What kind of motion this is, as words that fit into a sentence (no capital, no full stop): "a rigid
-/// rotation of the whole assembly about (0.1, 0.05)", "a local motion of about 3 of 900 discs: disc 17 at
-/// (0.02, 0.01), ...". Told apart are rigid translation and rotation (of all discs, or of those that move),
-/// counter-rotation of discs, motion of a few discs, uniform strain, and whatever else spreads over the
-/// assembly. Does not depend on the scale or the sign of the motions.
+/// What kind of motion this is, as words that fit into a sentence (no capital, no full stop): "a rigid rotation of
+/// the whole assembly about (0.1, 0.05)", "a local motion of about 3 of 900 discs: disc 17 at (0.02, 0.01), ...".
+/// Told apart are rigid translation and rotation (of all discs, or of those that move), counter-rotation of discs,
+/// motion of a few discs, uniform strain, and whatever else spreads over the assembly. Does not depend on the scale
+/// or the sign of the motions.
 /// \param motions per disc, finite
 std::string describe_motion(const Assembly& assembly, std::span<const DiscMotion> motions);
 
@@ -28,18 +28,16 @@ std::string describe_direction(Vec2 direction);
 std::string describe_disc(const Assembly& assembly, std::size_t disc);
 
 /// Elastic energy of a motion, N (J/m per m): sum over contacts of kN dn²/2 + kT ds²/2.
-double elastic_energy(const Assembly& assembly, const ContactSprings& springs,
-                      std::span<const DiscMotion> motions);
+double elastic_energy(const Assembly& assembly, const ContactSprings& springs, std::span<const DiscMotion> motions);
 
-/// The scale of that energy, N: the same sum with the motions of the two discs of a contact in place of the
-/// stretch and slip that they share, kN (|u_i|² + |u_j|²)/2 + |kT| ((r_i theta_i)² + (r_j theta_j)²)/2.
-double reference_energy(const Assembly& assembly, const ContactSprings& springs,
-                        std::span<const DiscMotion> motions);
+/// The scale of that energy, N: the same sum with the motions of the two discs of a contact in place of the stretch
+/// and slip that they share, kN (|u_i|² + |u_j|²)/2 + |kT| ((r_i theta_i)² + (r_j theta_j)²)/2.
+double reference_energy(const Assembly& assembly, const ContactSprings& springs, std::span<const DiscMotion> motions);
 
-/// elastic_energy / reference_energy of a motion; 0 where nothing moves, negative for an unstable mode (kT <
-/// 0). A mechanism has what rounding leaves, below 1e-27. A stable mode may be soft, but not that soft: the
-/// bending of a clamped strip, N rows long and two discs wide, has 0.3/N⁴ (1.7e-12 for 660 rows), and a mode
-/// that only tangential springs resist about kT/kN times 1/N².
+/// elastic_energy / reference_energy of a motion; 0 where nothing moves, negative for an unstable mode (kT < 0). A
+/// mechanism has what rounding leaves, below 1e-27. A stable mode may be soft, but not that soft: the bending of a
+/// clamped strip, N rows long and two discs wide, has 0.3/N⁴ (1.7e-12 for 660 rows), and a mode that only tangential
+/// springs resist about kT/kN times 1/N².
 double softness(const Assembly& assembly, const ContactSprings& springs, std::span<const DiscMotion> motions);
 
 }  // namespace equidem

@@ -57,8 +57,7 @@ class Cholesky final : public Factorization {
     double done = 0;
     sweep.up([&](std::size_t t) { return symbolic_->updates(t) * symbolic_->updates(t); },
              [&](std::size_t t, double* update, const std::vector<TreeSweep::Child>& children) {
-               const std::size_t pivots = symbolic_->pivots(t), updates = symbolic_->updates(t),
-                                 ld = pivots + updates;
+               const std::size_t pivots = symbolic_->pivots(t), updates = symbolic_->updates(t), ld = pivots + updates;
                double* panel = panels_.data() + offset_[t];
                std::memset(panel, 0, pivots * ld * sizeof(double));
                std::memset(update, 0, updates * updates * sizeof(double));
@@ -138,8 +137,8 @@ class Cholesky final : public Factorization {
   }
 
   // L y = b on the front: y_own := L_11^-1 (b_own + children), update := children - L_21 y_own.
-  void forward(std::size_t t, double* own, std::size_t n, double* update,
-               const std::vector<TreeSweep::Child>& children, std::size_t columns) const {
+  void forward(std::size_t t, double* own, std::size_t n, double* update, const std::vector<TreeSweep::Child>& children,
+               std::size_t columns) const {
     const auto b = static_cast<std::size_t>(symbolic_->block);
     const std::size_t pivots = symbolic_->pivots(t), updates = symbolic_->updates(t), ld = pivots + updates;
     std::fill(update, update + updates * columns, 0.0);
@@ -175,8 +174,7 @@ class Cholesky final : public Factorization {
     }
     double* own = &y[symbolic_->tree.nodes[t].begin * b];
     const double* panel = panels_.data() + offset_[t];
-    dense::subtract_transposed_product(pivots, columns, updates, panel + pivots, ld, gathered.data(), updates,
-                                       own, n);
+    dense::subtract_transposed_product(pivots, columns, updates, panel + pivots, ld, gathered.data(), updates, own, n);
     dense::solve_lower_transposed(pivots, columns, panel, ld, own, n);
   }
 

@@ -20,14 +20,12 @@ namespace {
 /// What a front leaves behind: its pivots with their part of L, and the rows that they update.
 struct FrontFactor {
   FrontPivots pivots;
-  std::vector<std::int64_t>
-      ids;            ///< unknowns (in elimination order): pivots first, then delayed ones, then later rows
-  LargeBuffer lower;  ///< ids.size() x pivots.count, column-major
+  std::vector<std::int64_t> ids;  ///< unknowns (in elimination order): pivots first, then delayed ones, then later rows
+  LargeBuffer lower;              ///< ids.size() x pivots.count, column-major
   std::size_t delayed = 0;
 };
 
-/// Index of each unknown in the front at hand; one per thread, never cleared: only ids of the front are
-/// looked up.
+/// Index of each unknown in the front at hand; one per thread, never cleared: only ids of the front are looked up.
 std::vector<std::int32_t>& index_of_unknown(std::size_t unknowns) {
   thread_local std::vector<std::int32_t> index;
   if (index.size() < unknowns) index.resize(unknowns);
@@ -36,8 +34,7 @@ std::vector<std::int32_t>& index_of_unknown(std::size_t unknowns) {
 
 class Ldlt final : public Factorization {
  public:
-  Ldlt(std::shared_ptr<const SymbolicFactor> symbolic, const MatrixOnGraph& k,
-       const IndefiniteOptions& options)
+  Ldlt(std::shared_ptr<const SymbolicFactor> symbolic, const MatrixOnGraph& k, const IndefiniteOptions& options)
       : symbolic_(std::move(symbolic)), options_(options), fronts_(symbolic_->fronts()) {
     dense::use_one_thread_per_call();
     choose_scales(k);
@@ -86,8 +83,8 @@ class Ldlt final : public Factorization {
     pool_.clear();
   }
 
-  void factorize_front_of(std::size_t t, const MatrixOnGraph& k,
-                          const std::vector<TreeSweep::Child>& children, std::vector<LargeBuffer>& updates) {
+  void factorize_front_of(std::size_t t, const MatrixOnGraph& k, const std::vector<TreeSweep::Child>& children,
+                          std::vector<LargeBuffer>& updates) {
     const auto b = static_cast<std::int64_t>(symbolic_->block);
     const auto& node = symbolic_->tree.nodes[t];
     IndefiniteFront front;
@@ -125,8 +122,8 @@ class Ldlt final : public Factorization {
     pool_.give_back(std::move(values));
   }
 
-  /// Rows and columns are scaled to entries about 1, by powers of two, so that nothing is rounded: a pivot
-  /// then counts as zero by its own stiffness, however much smaller than others that is.
+  /// Rows and columns are scaled to entries about 1, by powers of two, so that nothing is rounded: a pivot then
+  /// counts as zero by its own stiffness, however much smaller than others that is.
   void choose_scales(const MatrixOnGraph& k) {
     const auto b = static_cast<std::size_t>(symbolic_->block);
     std::vector<double> largest(unknowns(), 0.0);
@@ -253,8 +250,7 @@ class Ldlt final : public Factorization {
                for (const auto& child : children) {
                  const FrontFactor& g = fronts_[child.node];
                  const auto& values = handed[child.node];
-                 for (std::size_t r = 0; r < values.size(); ++r)
-                   x[index[g.ids[g.pivots.count + r]]] += values[r];
+                 for (std::size_t r = 0; r < values.size(); ++r) x[index[g.ids[g.pivots.count + r]]] += values[r];
                  handed[child.node] = {};
                }
                dense::solve_lower(k, 1, f.lower.data(), n, x.data(), n, true);
@@ -319,8 +315,7 @@ class Ldlt final : public Factorization {
 }  // namespace
 
 std::unique_ptr<Factorization> multifrontal_ldlt(std::shared_ptr<const SymbolicFactor> symbolic,
-                                                 const MatrixOnGraph& matrix,
-                                                 const IndefiniteOptions& options) {
+                                                 const MatrixOnGraph& matrix, const IndefiniteOptions& options) {
   return std::make_unique<Ldlt>(std::move(symbolic), matrix, options);
 }
 

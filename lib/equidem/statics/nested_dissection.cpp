@@ -27,15 +27,14 @@ struct Part {
   [[nodiscard]] std::int32_t size() const { return end - begin; }
 };
 
-/// What became of a part: it eliminates items [begin, end) after its children, which are named by their
-/// labels.
+/// What became of a part: it eliminates items [begin, end) after its children, which are named by their labels.
 struct Division {
   std::int32_t begin = 0, end = 0;
   std::array<std::int32_t, 2> children{-1, -1};
 };
 
-/// A division of a part into two sides and their separator. Discs in the strip about the cut have the side
-/// that is listed; the others are low below `place`, else high.
+/// A division of a part into two sides and their separator. Discs in the strip about the cut have the side that is
+/// listed; the others are low below `place`, else high.
 struct Cut {
   int axis = 0;
   float place = 0;
@@ -103,9 +102,7 @@ class Dissection {
       reach.y = std::max(reach.y, std::abs(y.y - x.y));
     }
     // Rounding to single precision must not let the reach come out short.
-    const auto generous = [](double r, double at) {
-      return static_cast<float>(1.000001 * r + 1e-6 * std::abs(at));
-    };
+    const auto generous = [](double r, double at) { return static_cast<float>(1.000001 * r + 1e-6 * std::abs(at)); };
     return {{static_cast<float>(x.x), static_cast<float>(x.y)},
             {generous(reach.x, x.x), generous(reach.y, x.y)},
             static_cast<std::int32_t>(d)};
@@ -113,15 +110,12 @@ class Dissection {
 
   // Threads read labels of discs that belong to other threads' parts; whatever they read, it is not their own
   // label.
-  std::int32_t label_of(std::int32_t disc) {
-    return std::atomic_ref(label_[disc]).load(std::memory_order_relaxed);
-  }
+  std::int32_t label_of(std::int32_t disc) { return std::atomic_ref(label_[disc]).load(std::memory_order_relaxed); }
   void set_label(std::int32_t disc, std::int32_t label) {
     std::atomic_ref(label_[disc]).store(label, std::memory_order_relaxed);
   }
 
-  /// Large parts level by level, each level in parallel; then the small ones, each by one thread to its
-  /// leaves.
+  /// Large parts level by level, each level in parallel; then the small ones, each by one thread to its leaves.
   void divide_all(Part root) {
     constexpr std::int32_t small = 20000;
     std::vector<Part> level{root}, small_parts;
@@ -143,8 +137,8 @@ class Dissection {
     });
   }
 
-  /// Divide a part and append its children. A binary tree over n discs has at most 2n - 1 nodes: a part of n
-  /// discs owns the labels [label, label + 2n - 1), so that parts can be divided in any order.
+  /// Divide a part and append its children. A binary tree over n discs has at most 2n - 1 nodes: a part of n discs
+  /// owns the labels [label, label + 2n - 1), so that parts can be divided in any order.
   void divide(const Part& part, std::vector<Part>& open) {
     thread_local Scratch scratch;
     Division& division = divisions_[part.label];
@@ -155,8 +149,7 @@ class Dissection {
 
     std::array<std::int32_t, 3> counts{};  // low side, high side, separator
     for (std::int32_t k = part.begin; k < part.end; ++k) ++counts[side_of(items_[k], cut)];
-    if (counts[0] == part.size() || counts[1] == part.size() || counts[2] == part.size())
-      return;  // discs coincide
+    if (counts[0] == part.size() || counts[1] == part.size() || counts[2] == part.size()) return;  // discs coincide
     const Part low{part.begin, part.begin + counts[0], part.label + 1};
     const Part high{low.end, low.end + counts[1], low.label + std::max(0, 2 * counts[0] - 1)};
 
@@ -215,8 +208,7 @@ class Dissection {
     return cut;
   }
 
-  /// The smallest separator in a strip about the median coordinate, or, in a small part, along the median
-  /// itself.
+  /// The smallest separator in a strip about the median coordinate, or, in a small part, along the median itself.
   Cut median_cut(const Part& part, int axis, Scratch& scratch) {
     auto& x = scratch.coordinates;
     x.clear();
@@ -225,8 +217,8 @@ class Dissection {
     std::nth_element(x.begin(), middle, x.end());
     if (part.size() >= options_.strip_from) {
       const double n = part.size();
-      const auto half_strip = static_cast<std::ptrdiff_t>(
-          std::min(options_.strip_layers * std::sqrt(n), options_.strip_share * n));
+      const auto half_strip =
+          static_cast<std::ptrdiff_t>(std::min(options_.strip_layers * std::sqrt(n), options_.strip_share * n));
       std::nth_element(x.begin(), middle - half_strip, middle);
       std::nth_element(middle, middle + half_strip, x.end());
       const float lowest = *std::min_element(x.begin(), middle - half_strip + 1);
@@ -245,9 +237,8 @@ class Dissection {
     return cut_in_strip(part, axis, place, place, scratch);
   }
 
-  /// The smallest separator made of discs between `below` and `above` and of the ends of contacts that reach
-  /// across. Where the strip has no width, those ends are all: a minimum vertex cover of the contacts that
-  /// are cut (Koenig).
+  /// The smallest separator made of discs between `below` and `above` and of the ends of contacts that reach across.
+  /// Where the strip has no width, those ends are all: a minimum vertex cover of the contacts that are cut (Koenig).
   Cut cut_in_strip(const Part& part, int axis, float below, float above, Scratch& scratch) {
     Cut cut{axis, below, {}, {}, 0};
     const bool line = below == above;
@@ -294,9 +285,8 @@ class Dissection {
     return cut;
   }
 
-  /// Append the nodes of a division in postorder; nodes without discs are left out. The index of the node of
-  /// `label`, or -1 where it is left out and its children stay without a parent here; they are then adopted
-  /// by the caller.
+  /// Append the nodes of a division in postorder; nodes without discs are left out. The index of the node of `label`,
+  /// or -1 where it is left out and its children stay without a parent here; they are then adopted by the caller.
   void emit(std::int32_t label, DissectionTree& tree) {
     std::vector<std::int32_t> orphans;  // roots that wait for a parent
     emit(label, tree, orphans);
@@ -330,8 +320,7 @@ class Dissection {
 
 }  // namespace
 
-DissectionTree dissect(const Assembly& assembly, const ContactGraph& graph,
-                       const DissectionOptions& options) {
+DissectionTree dissect(const Assembly& assembly, const ContactGraph& graph, const DissectionOptions& options) {
   return Dissection(assembly, graph, options).run();
 }
 

@@ -16,8 +16,8 @@ namespace {
 /// Below this share of their terms, sums count as zero.
 constexpr double tolerance = 1e-9;
 
-/// The triangular factor of a matrix of N columns whose rows come one at a time (Givens rotations): the null
-/// space of all rows, without squaring them as a Gram matrix would.
+/// The triangular factor of a matrix of N columns whose rows come one at a time (Givens rotations): the null space of
+/// all rows, without squaring them as a Gram matrix would.
 template <int N>
 struct TriangularFactor {
   std::array<std::array<double, N>, N> r{};
@@ -189,13 +189,12 @@ class Equations {
           reached.push_back(j);
         }
       }
-      components_.push_back(
-          {static_cast<std::int32_t>(start), static_cast<std::int64_t>(reached.size()), {}});
+      components_.push_back({static_cast<std::int32_t>(start), static_cast<std::int64_t>(reached.size()), {}});
     }
   }
 
-  /// The tolerance, or more where rounding of the coordinates (far from the origin, or over a long way) hides
-  /// more of the lengths and adds up around a ring.
+  /// The tolerance, or more where rounding of the coordinates (far from the origin, or over a long way) hides more of
+  /// the lengths and adds up around a ring.
   [[nodiscard]] double closing_tolerance() const {
     double largest = 0;
     for (const Vec2 x : unwrapped_.centres) largest = std::max({largest, std::abs(x.x), std::abs(x.y)});
@@ -259,8 +258,8 @@ class Equations {
 
 }  // namespace
 
-FreeMotions find_free_motions(const Assembly& assembly, const ContactGraph& graph,
-                              const ContactSprings& springs, const DegreesOfFreedom& unknowns) {
+FreeMotions find_free_motions(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
+                              const DegreesOfFreedom& unknowns) {
   return Equations(assembly, graph, springs, unknowns).solve();
 }
 

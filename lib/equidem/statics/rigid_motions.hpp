@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Motions that neither contacts nor supports resist and that follow from the contact graph alone: rigid
-/// motions of connected pieces, and the counter-rotation of discs like gears.
+/// Motions that neither contacts nor supports resist and that follow from the contact graph alone: rigid motions of
+/// connected pieces, and the counter-rotation of discs like gears.
 ///
-/// Let the centres of a connected piece move rigidly, u = t + omega e_z x (x - c). No contact stretches. The
-/// slip of a contact of length l,
+/// Let the centres of a connected piece move rigidly, u = t + omega e_z x (x - c). No contact stretches. The slip of
+/// a contact of length l,
 ///
 ///   ds = omega l - (r_i theta_i + r_j theta_j),
 ///
-/// must vanish where kT != 0: a disc that rolls on its neighbour turns by theta_j = (omega l - r_i theta_i) /
-/// r_j. Along contacts with kT != 0 all rotations of a component thus follow from omega and the rotation
-/// gamma of one disc, theta_i = alpha_i omega + beta_i gamma, and every contact that closes a ring asks
+/// must vanish where kT != 0: a disc that rolls on its neighbour turns by theta_j = (omega l - r_i theta_i) / r_j.
+/// Along contacts with kT != 0 all rotations of a component thus follow from omega and the rotation gamma of one
+/// disc, theta_i = alpha_i omega + beta_i gamma, and every contact that closes a ring asks
 ///
 ///   (r_i alpha_i + r_j alpha_j - l) omega + (r_i beta_i + r_j beta_j) gamma = 0.
 ///
-/// Together with one row for each held component these are the equations for (t, omega, gamma), and their
-/// null space is what can move. gamma alone is the gear mode: it exists where every ring of the component
-/// closes, that is, has an even number of contacts and equal products of lever arms either way round. With
-/// rotation restrained every theta is zero and any kT != 0 resists omega. A piece that winds around the
-/// period cannot rotate.
+/// Together with one row for each held component these are the equations for (t, omega, gamma), and their null space
+/// is what can move. gamma alone is the gear mode: it exists where every ring of the component closes, that is, has
+/// an even number of contacts and equal products of lever arms either way round. With rotation restrained every theta
+/// is zero and any kT != 0 resists omega. A piece that winds around the period cannot rotate.
 #pragma once
 
 #include <cstdint>
@@ -60,10 +59,10 @@ struct FreeMotions {
   std::vector<GearMode> gears;
 };
 
-/// In a time proportional to the contacts. Sums below 1e-9 of their terms count as zero, below the rounding
-/// of coordinates where that is more (discs a million radii from the origin). Rotations that no contact
-/// resists are none of these motions (number_unknowns holds them).
-FreeMotions find_free_motions(const Assembly& assembly, const ContactGraph& graph,
-                              const ContactSprings& springs, const DegreesOfFreedom& unknowns);
+/// In a time proportional to the contacts. Sums below 1e-9 of their terms count as zero, below the rounding of
+/// coordinates where that is more (discs a million radii from the origin). Rotations that no contact resists are none
+/// of these motions (number_unknowns holds them).
+FreeMotions find_free_motions(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
+                              const DegreesOfFreedom& unknowns);
 
 }  // namespace equidem

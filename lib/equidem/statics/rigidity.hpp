@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Is an assembly held? What can be told before any factorization: rigid motions of its pieces and the
-/// counter-rotation of discs (rigid_motions.hpp). Other mechanisms, such as the shear of a square lattice
-/// without tangential springs, depend on every angle and show only in the factorization.
+/// counter-rotation of discs (rigid_motions.hpp). Other mechanisms, such as the shear of a square lattice without
+/// tangential springs, depend on every angle and show only in the factorization.
 #pragma once
 
 #include <cstdint>
@@ -24,13 +24,13 @@ struct RigidityReport {
   [[nodiscard]] bool rigid() const { return free_rigid_motions == 0 && gear_modes == 0; }
 };
 
-RigidityReport examine_rigidity(const Assembly& assembly, const ContactGraph& graph,
-                                const ContactSprings& springs, const DegreesOfFreedom& unknowns);
+RigidityReport examine_rigidity(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
+                                const DegreesOfFreedom& unknowns);
 
 /// Refuse an assembly that can move without resistance.
-/// \throws Error (bad_input) where there is no disc, a single free disc, a disc without contacts that is not
-///         held, a piece that is not held, a rigid motion (named) that the supports leave free, or discs that
-///         can counter-rotate
+/// \throws Error (bad_input) where there is no disc, a single free disc, a disc without contacts that is not held, a
+///         piece that is not held, a rigid motion (named) that the supports leave free, or discs that can
+///         counter-rotate
 void check_rigidity(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
                     const DegreesOfFreedom& unknowns);
 

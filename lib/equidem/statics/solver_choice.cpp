@@ -37,23 +37,21 @@ std::vector<DiscMotion> as_motions(const DegreesOfFreedom& unknowns, const std::
 }
 
 [[noreturn]] void report_mechanism(const System& system, const Factorization& factor) {
-  const std::string motion =
-      describe_motion(system.k.assembly, as_motions(system.unknowns, factor.softest_motion()));
+  const std::string motion = describe_motion(system.k.assembly, as_motions(system.unknowns, factor.softest_motion()));
   bad_input("the assembly is a mechanism", format("it can move at no cost: {}", motion),
             "Hold that motion by a support, add contacts, or give the contacts tangential springs (kT > 0)");
 }
 
 constexpr double suspicious = 1e-9;  // share of a stiffness left when all others have given way
 
-/// K is singular where the softest motion that elimination met costs, or with kT < 0 yields, no more energy
-/// than its own round-off.
+/// K is singular where the softest motion that elimination met costs, or with kT < 0 yields, no more energy than its
+/// own round-off.
 void refuse_mechanism(const System& system, const Factorization& factor) {
   constexpr double no_energy = 1e-21;  // over the energy of the same motions without cooperation
   if (factor.report().smallest_pivot > suspicious) return;
   const std::vector<double> softest = factor.softest_motion();
   if (softest.empty()) return;
-  if (std::abs(softness(system.k.assembly, system.springs, as_motions(system.unknowns, softest))) <
-      no_energy) {
+  if (std::abs(softness(system.k.assembly, system.springs, as_motions(system.unknowns, softest))) < no_energy) {
     report_mechanism(system, factor);
   }
 }
@@ -74,8 +72,8 @@ std::unique_ptr<Factorization> multifrontal(const System& system) {
   return indefinite(system);  // no spring is negative: a pivot that is not positive is round-off of zero
 }
 
-/// What a library's factorization cannot tell, ours can: where it failed or met a pivot near nothing, K is
-/// factorized once more to name the mechanism, if there is one.
+/// What a library's factorization cannot tell, ours can: where it failed or met a pivot near nothing, K is factorized
+/// once more to name the mechanism, if there is one.
 std::unique_ptr<Factorization> judged(std::unique_ptr<Factorization> factor, const System& system) {
   if (factor && factor->report().smallest_pivot > suspicious) return factor;
   auto judge = multifrontal(system);
@@ -87,9 +85,8 @@ std::unique_ptr<Factorization> by_cholmod(const System& system) {
     bad_input("method 'cholmod' cannot solve this case",
               "some kT is negative, and Cholesky wants a positive definite matrix", "Use method = \"auto\"");
   }
-  return judged(
-      cholmod_cholesky(system.k, system.unknowns, CholmodOrdering::ours, system.symbolic->tree.order),
-      system);
+  return judged(cholmod_cholesky(system.k, system.unknowns, CholmodOrdering::ours, system.symbolic->tree.order),
+                system);
 }
 
 std::unique_ptr<Factorization> by_umfpack(const System& system) {
@@ -131,15 +128,13 @@ void check_memory(const SolveEstimate& estimate, double memory_limit) {
   const double available = memory_limit > 0 ? memory_limit : available_memory();
   if (available == 0 || estimate.peak_bytes <= available) return;
   computation_failed(
-      format("the factorization of {} unknowns needs about {}", estimate.unknowns,
-             readable_bytes(estimate.peak_bytes)),
+      format("the factorization of {} unknowns needs about {}", estimate.unknowns, readable_bytes(estimate.peak_bytes)),
       format("{} {}", readable_bytes(available),
              memory_limit > 0 ? "are allowed by memory_limit" : "of memory are available"),
       "Use fewer discs, restrain rotation, raise the limit, or take a machine with more memory");
 }
 
-std::unique_ptr<Factorization> factorize(const System& system, const SolverOptions& options,
-                                         StageTimes& times) {
+std::unique_ptr<Factorization> factorize(const System& system, const SolverOptions& options, StageTimes& times) {
   const Stopwatch watch;
   std::unique_ptr<Factorization> factor;
   switch (options.method) {

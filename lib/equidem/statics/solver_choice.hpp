@@ -25,18 +25,17 @@ struct System {
 
 SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns, bool indefinite);
 
-/// \throws Error (computation_failed) where the estimated peak exceeds `memory_limit` bytes, or what the
-/// machine has where it is 0
+/// \throws Error (computation_failed) where the estimated peak exceeds `memory_limit` bytes, or what the machine has
+///         where it is 0
 void check_memory(const SolveEstimate& estimate, double memory_limit);
 
 /// Cholesky where no spring is negative, else L D L^T with delayed pivots, unless the user names a method. A
-/// factorization that breaks down, or whose softest motion costs no energy, means a mechanism. \throws Error
-/// (bad_input) naming the mechanism; (computation_failed) where the chosen method cannot factorize K
-std::unique_ptr<Factorization> factorize(const System& system, const SolverOptions& options,
-                                         StageTimes& times);
+/// factorization that breaks down, or whose softest motion costs no energy, means a mechanism.
+/// \throws Error (bad_input) naming the mechanism; (computation_failed) where the chosen method cannot factorize K
+std::unique_ptr<Factorization> factorize(const System& system, const SolverOptions& options, StageTimes& times);
 
-/// Negative eigenvalues that the rotations bring by themselves: those of the rotational block of K
-/// (Haynsworth: the inertia of K is that of this block and of the stiffness with rotations eliminated).
+/// Negative eigenvalues that the rotations bring by themselves: those of the rotational block of K (Haynsworth: the
+/// inertia of K is that of this block and of the stiffness with rotations eliminated).
 std::int64_t negative_rotations(const System& system);
 
 }  // namespace equidem

@@ -14,9 +14,8 @@ constexpr std::size_t grain = 1 << 12;
 
 /// block += kN g p^T + kT h q^T for the derivatives of stretch and slip by two motions.
 template <int B>
-void add_outer(double* block, const SpringConstants& k, const std::array<double, 3>& g,
-               const std::array<double, 3>& p, const std::array<double, 3>& h,
-               const std::array<double, 3>& q) {
+void add_outer(double* block, const SpringConstants& k, const std::array<double, 3>& g, const std::array<double, 3>& p,
+               const std::array<double, 3>& h, const std::array<double, 3>& q) {
   for (int r = 0; r < B; ++r) {
     for (int c = 0; c < B; ++c) block[r * B + c] += k.kN * g[r] * p[c] + k.kT * h[r] * q[c];
   }
@@ -74,8 +73,8 @@ void assemble(const Assembly& assembly, const ContactGraph& graph, const Contact
 
 }  // namespace
 
-StiffnessMatrix assemble_stiffness(const Assembly& assembly, const ContactGraph& graph,
-                                   const ContactSprings& springs, const DegreesOfFreedom& unknowns) {
+StiffnessMatrix assemble_stiffness(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
+                                   const DegreesOfFreedom& unknowns) {
   StiffnessMatrix matrix;
   matrix.block = unknowns.per_disc;
   const std::size_t entries = static_cast<std::size_t>(matrix.block) * matrix.block;

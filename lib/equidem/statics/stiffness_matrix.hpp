@@ -14,28 +14,23 @@
 
 namespace equidem {
 
-/// A symmetric matrix of small blocks on the graph of discs: K_dd for every disc d and K_ij for every contact
-/// (i, j); K_ji is its transpose. Two discs that touch twice have two blocks, to be added. Unknowns are
-/// scaled (u_x, u_y, a theta), entries in Pa.
+/// A symmetric matrix of small blocks on the graph of discs: K_dd for every disc d and K_ij for every contact (i, j);
+/// K_ji is its transpose. Two discs that touch twice have two blocks, to be added. Unknowns are scaled (u_x, u_y, a
+/// theta), entries in Pa.
 struct StiffnessMatrix {
   int block = 2;                 ///< rows of a block: DegreesOfFreedom::per_disc
   std::vector<double> diagonal;  ///< discs x block x block, row-major
   std::vector<double>
       coupling;  ///< contacts x block x block, row-major; zero for a contact of a disc with its own image
 
-  [[nodiscard]] const double* diagonal_block(std::size_t disc) const {
-    return &diagonal[disc * block * block];
-  }
-  [[nodiscard]] const double* coupling_block(std::size_t contact) const {
-    return &coupling[contact * block * block];
-  }
+  [[nodiscard]] const double* diagonal_block(std::size_t disc) const { return &diagonal[disc * block * block]; }
+  [[nodiscard]] const double* coupling_block(std::size_t contact) const { return &coupling[contact * block * block]; }
 };
 
-/// Tangent of the linear contact law, summed over contacts: K = sum kN g g^T + kT h h^T with the derivatives
-/// g, h of stretch and slip. Rows and columns of held components are those of a unit matrix times the largest
-/// spring.
-StiffnessMatrix assemble_stiffness(const Assembly& assembly, const ContactGraph& graph,
-                                   const ContactSprings& springs, const DegreesOfFreedom& unknowns);
+/// Tangent of the linear contact law, summed over contacts: K = sum kN g g^T + kT h h^T with the derivatives g, h of
+/// stretch and slip. Rows and columns of held components are those of a unit matrix times the largest spring.
+StiffnessMatrix assemble_stiffness(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
+                                   const DegreesOfFreedom& unknowns);
 
 /// y = K x; vectors hold discs x block components.
 void multiply(const StiffnessMatrix& matrix, const Assembly& assembly, const ContactGraph& graph,

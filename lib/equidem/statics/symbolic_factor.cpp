@@ -112,8 +112,7 @@ void permute_to_elimination(const SymbolicFactor& symbolic, std::span<const doub
   }
 }
 
-void permute_from_elimination(const SymbolicFactor& symbolic, std::span<const double> y,
-                              std::span<double> x) {
+void permute_from_elimination(const SymbolicFactor& symbolic, std::span<const double> y, std::span<double> x) {
   const int b = symbolic.block;
   for (std::size_t p = 0; p < symbolic.position.size(); ++p) {
     for (int r = 0; r < b; ++r) x[static_cast<std::size_t>(symbolic.tree.order[p]) * b + r] = y[p * b + r];

@@ -12,17 +12,16 @@
 
 namespace equidem {
 
-/// Fronts of a multifrontal factorization (Duff & Reid 1983), one for each node of the dissection tree. Discs
-/// are named by their position in the elimination order.
+/// Fronts of a multifrontal factorization (Duff & Reid 1983), one for each node of the dissection tree. Discs are
+/// named by their position in the elimination order.
 struct SymbolicFactor {
   DissectionTree tree;
-  int block = 2;                       ///< unknowns of a disc
-  std::vector<std::int32_t> position;  ///< of each disc in the elimination order
-  std::vector<std::vector<std::int32_t>>
-      rows;                  ///< per node, ascending: the later discs that its own couple to
-  double nonzeros = 0;       ///< of L, lower triangle
-  double operations = 0;     ///< multiplications and additions of the factorization
-  double largest_front = 0;  ///< rows of the largest front
+  int block = 2;                                ///< unknowns of a disc
+  std::vector<std::int32_t> position;           ///< of each disc in the elimination order
+  std::vector<std::vector<std::int32_t>> rows;  ///< per node, ascending: the later discs that its own couple to
+  double nonzeros = 0;                          ///< of L, lower triangle
+  double operations = 0;                        ///< multiplications and additions of the factorization
+  double largest_front = 0;                     ///< rows of the largest front
 
   [[nodiscard]] std::size_t fronts() const { return tree.nodes.size(); }
   /// Unknowns that front t eliminates.

@@ -32,9 +32,7 @@ class ValueStack {
     top_ = to + size;
   }
   /// Entry `depth` below the top one.
-  const double* below_top(std::size_t depth) const {
-    return memory_.data() + starts_[starts_.size() - 1 - depth];
-  }
+  const double* below_top(std::size_t depth) const { return memory_.data() + starts_[starts_.size() - 1 - depth]; }
   void clear() { top_ = 0, starts_.clear(); }
 
  private:
@@ -92,8 +90,7 @@ void TreeSweep::up(const Size& size, const Visit& visit, const std::function<voi
       double* values = is_root ? handed[root].data() : stack.push(sizes[t]);
       children.clear();
       for (std::size_t c = 0; c < count; ++c) {
-        children.push_back(
-            {static_cast<std::size_t>(children_[t][c]), stack.below_top(count - c - (is_root ? 1 : 0))});
+        children.push_back({static_cast<std::size_t>(children_[t][c]), stack.below_top(count - c - (is_root ? 1 : 0))});
       }
       visit(t, values, children);
       if (!is_root) stack.drop_below_top(count);
@@ -118,8 +115,7 @@ void TreeSweep::up(const Size& size, const Visit& visit, const std::function<voi
     unreported = 0;
   };
   for (const TreeSchedule::Wave& wave : schedule_.waves) {
-    parallel_tasks(wave.subtrees.size(),
-                   [&](std::size_t s, int worker) { visit_subtree(wave.subtrees[s], worker); });
+    parallel_tasks(wave.subtrees.size(), [&](std::size_t s, int worker) { visit_subtree(wave.subtrees[s], worker); });
     for (const std::int32_t t : wave.above) visit_above(t);
   }
 }

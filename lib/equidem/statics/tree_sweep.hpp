@@ -26,9 +26,10 @@ class TreeSweep {
   /// \param work of a front, in any unit, to share it out
   TreeSweep(const SymbolicFactor& symbolic, const std::function<double(std::size_t node)>& work);
 
-  /// Children first. `visit` fills `values`, of size(node) doubles, from those of the children, in ascending
-  /// order of node; the children's are then freed. Within a subtree they live on one stack. \param report is
-  /// called by the calling thread, from time to time, with the share of the work done since the last call
+  /// Children first. `visit` fills `values`, of size(node) doubles, from those of the children, in ascending order of
+  /// node; the children's are then freed. Within a subtree they live on one stack.
+  /// \param report is called by the calling thread, from time to time, with the share of the work done since the last
+  ///         call
   void up(const Size& size, const Visit& visit, const std::function<void(double work_done)>& report) const;
   /// Parents first.
   void down(const std::function<void(std::size_t node)>& visit) const;

@@ -81,11 +81,11 @@ class UmfpackLu final : public Factorization {
     const auto n = static_cast<Index>(component_.size());
     std::array<double, UMFPACK_INFO> info{};
     void* symbolic = nullptr;
-    Index status = umfpack_dl_symbolic(n, n, k.first.data(), k.rows.data(), k.values.data(), &symbolic,
-                                       control_.data(), info.data());
+    Index status = umfpack_dl_symbolic(n, n, k.first.data(), k.rows.data(), k.values.data(), &symbolic, control_.data(),
+                                       info.data());
     if (status < UMFPACK_OK) fail("analyzing", status);
-    status = umfpack_dl_numeric(k.first.data(), k.rows.data(), k.values.data(), symbolic, &numeric_,
-                                control_.data(), info.data());
+    status = umfpack_dl_numeric(k.first.data(), k.rows.data(), k.values.data(), symbolic, &numeric_, control_.data(),
+                                info.data());
     umfpack_dl_free_symbolic(&symbolic);
     if (status < UMFPACK_OK) fail("factorizing", status);
     report_.nonzeros = info[UMFPACK_LNZ];
@@ -103,8 +103,8 @@ class UmfpackLu final : public Factorization {
       for (std::size_t k = 0; k < free; ++k) b[k] = column[component_[k]];
       for (std::size_t k = 0; k < n; ++k) column[k] /= held_stiffness_;
       if (free == 0) continue;
-      const Index status = umfpack_dl_solve(UMFPACK_A, nullptr, nullptr, nullptr, y.data(), b.data(),
-                                            numeric_, control_.data(), nullptr);
+      const Index status = umfpack_dl_solve(UMFPACK_A, nullptr, nullptr, nullptr, y.data(), b.data(), numeric_,
+                                            control_.data(), nullptr);
       if (status != UMFPACK_OK) fail("solving with", status);
       for (std::size_t k = 0; k < free; ++k) column[component_[k]] = y[k];
     }
@@ -135,11 +135,9 @@ class UmfpackLu final : public Factorization {
     const std::string problem =
         format("{} the stiffness matrix of {} unknowns failed in UMFPACK", doing, component_.size());
     if (status == UMFPACK_ERROR_out_of_memory) {
-      computation_failed(problem, "there is not enough memory",
-                         "Use a smaller assembly or a machine with more memory");
+      computation_failed(problem, "there is not enough memory", "Use a smaller assembly or a machine with more memory");
     }
-    computation_failed(problem, format("its status is {}", status),
-                       "Choose another solver: method = \"multifrontal\"");
+    computation_failed(problem, format("its status is {}", status), "Choose another solver: method = \"multifrontal\"");
   }
 
   double held_stiffness_ = 1;

@@ -14,7 +14,7 @@ namespace equidem {
 
 struct UnwrappedPieces {
   std::vector<std::int32_t> piece;  ///< per disc, as ContactGraph::pieces() numbers them
-  std::vector<Vec2> centres;  ///< m, per disc: of the image that contacts join to the piece's first disc
+  std::vector<Vec2> centres;        ///< m, per disc: of the image that contacts join to the piece's first disc
   std::vector<std::uint8_t> winds;  ///< per piece: 1 where it meets an image of itself across the period
 
   [[nodiscard]] std::size_t count() const { return winds.size(); }

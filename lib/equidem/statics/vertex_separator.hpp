@@ -10,9 +10,9 @@
 
 namespace equidem {
 
-/// Finds a smallest set of vertices whose removal leaves no path from the source to the sink: by Menger's
-/// theorem as many as there are vertex-disjoint paths, found by augmentation in the residual of the graph
-/// with split vertices (Even 1979). The object can be used again, so that its memory is, too.
+/// Finds a smallest set of vertices whose removal leaves no path from the source to the sink: by Menger's theorem as
+/// many as there are vertex-disjoint paths, found by augmentation in the residual of the graph with split vertices
+/// (Even 1979). The object can be used again, so that its memory is, too.
 class VertexSeparator {
  public:
   enum class Side : std::uint8_t { low, separator, high };
@@ -24,8 +24,8 @@ class VertexSeparator {
   void touch_low(std::int32_t vertex) { touches_low_[vertex] = 1; }
   void touch_high(std::int32_t vertex) { touches_high_[vertex] = 1; }
 
-  /// The side of every vertex. Of all smallest separators the one nearest to the low or the one nearest to
-  /// the high side is taken, whichever leaves the sides more alike.
+  /// The side of every vertex. Of all smallest separators the one nearest to the low or the one nearest to the high
+  /// side is taken, whichever leaves the sides more alike.
   std::span<const Side> solve();
   /// Vertices in the separator that was found.
   [[nodiscard]] std::size_t size() const { return flow_; }

@@ -63,31 +63,29 @@ std::string markdown(const std::vector<Row>& rows) {
 }
 
 std::string medians_table(const Comparison& comparison) {
-  std::vector<Row> rows = {{"solver", "threads", "order", "analyze", "factorize", "solve",
-                            "total (min..max), s", "K", "nnz(L)", "stored/nnz(L)", "factor, MB", "peak, MB",
-                            "peak/factor", "CPU", "residual"}};
+  std::vector<Row> rows = {{"solver", "threads", "order", "analyze", "factorize", "solve", "total (min..max), s", "K",
+                            "nnz(L)", "stored/nnz(L)", "factor, MB", "peak, MB", "peak/factor", "CPU", "residual"}};
   for (const Series& s : comparison.series) {
     const auto median = [&](double Measurement::*value) {
       return range_of(s, [value](const Measurement& run) { return run.*value; }).median;
     };
     const auto stage = [&](double Measurement::*value) { return format("{:.3g}", median(value)); };
-    rows.push_back({solver_of(s.trial).label, format("{}", s.trial.threads), stage(&Measurement::order),
-                    stage(&Measurement::analyze), stage(&Measurement::factorize), stage(&Measurement::solve),
-                    with_range(range_of(s, [](const Measurement& run) { return run.total(); })),
-                    stage(&Measurement::assembly), format("{:.3e}", median(&Measurement::nonzeros)),
-                    format("{:.2f}", median(&Measurement::factor_bytes) / sizeof(double) /
-                                         median(&Measurement::nonzeros)),
-                    format("{:.0f}", median(&Measurement::factor_bytes) * 1e-6),
-                    format("{:.0f}", median(&Measurement::peak_bytes) * 1e-6),
-                    format("{:.2f}", median(&Measurement::peak_bytes) / median(&Measurement::factor_bytes)),
-                    stage(&Measurement::cpu), format("{:.1e}", median(&Measurement::residual))});
+    rows.push_back(
+        {solver_of(s.trial).label, format("{}", s.trial.threads), stage(&Measurement::order),
+         stage(&Measurement::analyze), stage(&Measurement::factorize), stage(&Measurement::solve),
+         with_range(range_of(s, [](const Measurement& run) { return run.total(); })), stage(&Measurement::assembly),
+         format("{:.3e}", median(&Measurement::nonzeros)),
+         format("{:.2f}", median(&Measurement::factor_bytes) / sizeof(double) / median(&Measurement::nonzeros)),
+         format("{:.0f}", median(&Measurement::factor_bytes) * 1e-6),
+         format("{:.0f}", median(&Measurement::peak_bytes) * 1e-6),
+         format("{:.2f}", median(&Measurement::peak_bytes) / median(&Measurement::factor_bytes)),
+         stage(&Measurement::cpu), format("{:.1e}", median(&Measurement::residual))});
   }
   return markdown(rows);
 }
 
 std::string ratios_table(const Comparison& comparison) {
-  std::vector<Row> rows = {
-      {"equidem over", "threads", "total (min..max)", "nnz(L)", "peak", "K / total of equidem"}};
+  std::vector<Row> rows = {{"equidem over", "threads", "total (min..max)", "nnz(L)", "peak", "K / total of equidem"}};
   for (const Series& ours : comparison.series) {
     if (ours.trial.solver != "equidem") continue;
     for (const Series& theirs : comparison.series) {
@@ -97,10 +95,8 @@ std::string ratios_table(const Comparison& comparison) {
       rows.push_back(
           {solver_of(theirs.trial).label, format("{}", ours.trial.threads),
            with_range(ratio_of(ours, theirs, [](const Measurement& run) { return run.total(); })),
-           format("{:.3f}",
-                  ratio_of(ours, theirs, [](const Measurement& run) { return run.nonzeros; }).median),
-           format("{:.2f}",
-                  ratio_of(ours, theirs, [](const Measurement& run) { return run.peak_bytes; }).median),
+           format("{:.3f}", ratio_of(ours, theirs, [](const Measurement& run) { return run.nonzeros; }).median),
+           format("{:.2f}", ratio_of(ours, theirs, [](const Measurement& run) { return run.peak_bytes; }).median),
            format("{:.1f} %", 100 * share.median)});
     }
   }
@@ -144,9 +140,8 @@ std::string explain_tables() {
 
 std::string tables(const Comparison& comparison) {
   const Measurement& first = comparison.series.at(0).runs.at(0);
-  return format("{}, {:.0f} discs, {:.0f} unknowns, {} rounds\n\n{}\n{}", comparison.kind, first.discs,
-                first.unknowns, comparison.series[0].runs.size(), medians_table(comparison),
-                ratios_table(comparison));
+  return format("{}, {:.0f} discs, {:.0f} unknowns, {} rounds\n\n{}\n{}", comparison.kind, first.discs, first.unknowns,
+                comparison.series[0].runs.size(), medians_table(comparison), ratios_table(comparison));
 }
 
 JsonObject json(const Comparison& comparison) {
@@ -173,8 +168,7 @@ std::string describe_machine() {
     processor = line.substr(std::min(line.find(':') + 2, line.size()));
     break;
   }
-  return format("{}, {}, compiler {}", processor, counted(std::thread::hardware_concurrency(), "core"),
-                __VERSION__);
+  return format("{}, {}, compiler {}", processor, counted(std::thread::hardware_concurrency(), "core"), __VERSION__);
 }
 
 }  // namespace equidem::bench

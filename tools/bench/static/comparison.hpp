@@ -37,8 +37,7 @@ struct ComparisonOptions {
 
 /// Rounds in which every solver runs once, so that a disturbance of the machine hits all of them.
 /// \param progress is told each trial before it runs
-Comparison compare(const ComparisonOptions& options,
-                   const std::function<void(int repetition, const Trial&)>& progress);
+Comparison compare(const ComparisonOptions& options, const std::function<void(int repetition, const Trial&)>& progress);
 
 /// What the tables' columns mean, and how things were measured.
 std::string explain_tables();

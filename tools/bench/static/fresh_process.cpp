@@ -81,8 +81,7 @@ double seconds(const timeval& time) {
 /// Bytes that a solution touches, roughly and rather more; at most half of what is free.
 double memory_of(const Trial& trial) {
   const double wanted = 2e8 + 8e3 * static_cast<double>(trial.discs);
-  const double free =
-      static_cast<double>(sysconf(_SC_AVPHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  const double free = static_cast<double>(sysconf(_SC_AVPHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
   return std::min(wanted, 0.5 * free);
 }
 
@@ -97,8 +96,7 @@ Measurement measure_in_fresh_process(const Trial& trial) {
                                       {"OMP_NUM_THREADS", "1"},
                                       {"OMP_THREAD_LIMIT", "1"}});
   const Ended ended = run_again(
-      {measure_option, trial.solver, trial.kind, format("{}", trial.discs), format("{}", trial.threads)},
-      variables);
+      {measure_option, trial.solver, trial.kind, format("{}", trial.discs), format("{}", trial.threads)}, variables);
   if (!WIFEXITED(ended.status) || WEXITSTATUS(ended.status) != 0) {
     computation_failed(format("{} failed on {} discs", trial.solver, trial.discs),
                        WIFSIGNALED(ended.status) ? "it was ended by a signal" : "its message is above", "");

@@ -41,8 +41,7 @@ void write(const std::string& path, const std::string& text) {
 }
 
 void run(const Request& request) {
-  std::string report =
-      format("equidem {}, {}\n\n{}", library_version(), describe_machine(), explain_tables());
+  std::string report = format("equidem {}, {}\n\n{}", library_version(), describe_machine(), explain_tables());
   std::printf("%s", report.c_str());
   std::vector<JsonObject> comparisons;
   for (const std::string& kind : request.kinds) {
@@ -57,8 +56,8 @@ void run(const Request& request) {
       const Comparison comparison = compare(options, [&](int repetition, const Trial& trial) {
         if (!watched) return;
         std::fprintf(stderr, "\r\033[K%s, %lld discs, round %d of %d: %s, %s", kind.c_str(),
-                     static_cast<long long>(trial.discs), repetition + 1, options.repetitions,
-                     trial.solver.c_str(), counted(trial.threads, "thread").c_str());
+                     static_cast<long long>(trial.discs), repetition + 1, options.repetitions, trial.solver.c_str(),
+                     counted(trial.threads, "thread").c_str());
       });
       if (watched) std::fprintf(stderr, "\r\033[K");
       const std::string text = "\n" + tables(comparison);
@@ -82,18 +81,10 @@ int parse_and_run(int argc, char** argv) {
   std::vector<std::string> names;
   for (const Solver& solver : solvers()) names.push_back(solver.name);
   request.solvers = names;
-  program.add_option("--discs", request.discs, "numbers of discs")
-      ->delimiter(',')
-      ->check(CLI::PositiveNumber);
-  program.add_option("--kinds", request.kinds, "assemblies")
-      ->delimiter(',')
-      ->check(CLI::IsMember(problem_kinds()));
-  program.add_option("--solvers", request.solvers, "who takes part")
-      ->delimiter(',')
-      ->check(CLI::IsMember(names));
-  program.add_option("--threads", request.threads, "numbers of threads")
-      ->delimiter(',')
-      ->check(CLI::PositiveNumber);
+  program.add_option("--discs", request.discs, "numbers of discs")->delimiter(',')->check(CLI::PositiveNumber);
+  program.add_option("--kinds", request.kinds, "assemblies")->delimiter(',')->check(CLI::IsMember(problem_kinds()));
+  program.add_option("--solvers", request.solvers, "who takes part")->delimiter(',')->check(CLI::IsMember(names));
+  program.add_option("--threads", request.threads, "numbers of threads")->delimiter(',')->check(CLI::PositiveNumber);
   program.add_option("--repetitions", request.repetitions, "rounds; the default falls with the size");
   program.add_option("--json", request.json_file, "file for all numbers");
   program.add_option("--markdown", request.markdown_file, "file for the tables");

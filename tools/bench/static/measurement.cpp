@@ -38,8 +38,8 @@ std::unique_ptr<Factorization> multifrontal(const Problem& problem, const Stiffn
   return factor;
 }
 
-std::unique_ptr<Factorization> cholmod(const Problem& problem, const StiffnessMatrix& matrix,
-                                       CholmodOrdering ordering, Measurement& result) {
+std::unique_ptr<Factorization> cholmod(const Problem& problem, const StiffnessMatrix& matrix, CholmodOrdering ordering,
+                                       Measurement& result) {
   Stopwatch watch;
   const ContactGraph graph(problem.assembly);
   std::vector<std::int32_t> order;
@@ -49,8 +49,7 @@ std::unique_ptr<Factorization> cholmod(const Problem& problem, const StiffnessMa
     result.order = watch.lap();
   }
   CholmodTrial trial{.keep_thread_settings = true, .times = {}};
-  auto factor =
-      cholmod_cholesky({matrix, problem.assembly, graph}, problem.unknowns, ordering, order, nullptr, &trial);
+  auto factor = cholmod_cholesky({matrix, problem.assembly, graph}, problem.unknowns, ordering, order, nullptr, &trial);
   result.convert = trial.times.of("compression");
   result.order += trial.times.of("ordering");
   result.analyze = trial.times.of("analysis");
