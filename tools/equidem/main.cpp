@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <memory>
 #include <new>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <unistd.h>
 
 #include "equidem/casefile/keys.hpp"
 #include "equidem/casefile/nearest.hpp"
@@ -175,11 +177,20 @@ int fail(const std::string& sentence, int exit_code) {
   return exit_code;
 }
 
+/// OpenBLAS starts its threads when it is loaded, before main, and lets them spin for a while beside ours, although every call
+/// here runs on one thread. Only its environment can tell it not to: where the user says nothing, start again and say it.
+void start_without_blas_threads(char** argv) {
+  constexpr const char* variable = "OPENBLAS_NUM_THREADS";
+  if (std::getenv(variable) != nullptr || setenv(variable, "1", 0) != 0) return;
+  execv("/proc/self/exe", argv);  // returns only where that is not possible: then it is merely slower
+}
+
 }  // namespace
 }  // namespace equidem
 
 int main(int argc, char** argv) {
   using namespace equidem;
+  start_without_blas_threads(argv);
   catch_interrupts();
   try {
     const int code = run(std::vector<std::string>(argv + 1, argv + argc));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/statics/large_buffer.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstdlib>
 #include <utility>
@@ -12,20 +13,28 @@
 
 namespace equidem {
 
-LargeBuffer::LargeBuffer(std::size_t doubles) : size_(doubles) {
-  if (doubles == 0) return;
+void* allocate_large(std::size_t bytes) {
   constexpr std::size_t huge_page = std::size_t{1} << 21;
-  const std::size_t bytes = (doubles * sizeof(double) + huge_page - 1) / huge_page * huge_page;
-  data_ = static_cast<double*>(bytes > huge_page ? std::aligned_alloc(huge_page, bytes) : std::malloc(bytes));
-  if (data_ == nullptr) {
-    computation_failed(format("no memory for {}", readable_bytes(static_cast<double>(bytes))), "the system refused it",
-                       "Use a smaller assembly or a machine with more memory");
+  const bool large = bytes > huge_page;
+  const std::size_t rounded = large ? (bytes + huge_page - 1) / huge_page * huge_page : std::max<std::size_t>(bytes, 1);
+  void* memory = large ? std::aligned_alloc(huge_page, rounded) : std::malloc(rounded);
+  if (memory == nullptr) {
+    computation_failed(format("no memory for {}", readable_bytes(static_cast<double>(rounded))),
+                       "the system refused it", "Use a smaller assembly or a machine with more memory");
   }
-  if (bytes > huge_page) madvise(data_, bytes, MADV_HUGEPAGE);  // advice: nothing is lost where it is not taken
+  if (large) madvise(memory, rounded, MADV_HUGEPAGE);  // advice: nothing is lost where it is not taken
+  return memory;
 }
 
+void free_large(void* memory) {
+  std::free(memory);
+}
+
+LargeBuffer::LargeBuffer(std::size_t doubles)
+    : data_(doubles > 0 ? static_cast<double*>(allocate_large(doubles * sizeof(double))) : nullptr), size_(doubles) {}
+
 LargeBuffer::~LargeBuffer() {
-  std::free(data_);
+  free_large(data_);
 }
 
 LargeBuffer::LargeBuffer(LargeBuffer&& other) noexcept

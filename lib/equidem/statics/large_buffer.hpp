@@ -6,8 +6,16 @@
 #include <cstddef>
 #include <map>
 #include <mutex>
+#include <new>
+#include <utility>
+#include <vector>
 
 namespace equidem {
+
+/// Uninitialized memory, on huge pages where it is large and the system has them.
+/// \throws Error (computation_failed) where there is not enough
+void* allocate_large(std::size_t bytes);
+void free_large(void* memory);
 
 /// Uninitialized doubles on huge pages where the system has them: the first touch of small pages would cost a good
 /// part of a factorization.
@@ -27,6 +35,30 @@ class LargeBuffer {
   double* data_ = nullptr;
   std::size_t size_ = 0;
 };
+
+/// Memory of a LargeVector. It is not touched before it is written: the threads that fill it bring its pages in.
+template <typename T>
+struct UntouchedAllocator {
+  using value_type = T;
+  UntouchedAllocator() = default;
+  template <typename U>
+  explicit UntouchedAllocator(const UntouchedAllocator<U>&) {}
+  T* allocate(std::size_t count) { return static_cast<T*>(allocate_large(count * sizeof(T))); }
+  void deallocate(T* memory, std::size_t) { free_large(memory); }
+  template <typename U>
+  void construct(U* place) {
+    ::new (static_cast<void*>(place)) U;  // no value: a resize leaves numbers as they are
+  }
+  template <typename U, typename... Values>
+  void construct(U* place, Values&&... values) {
+    ::new (static_cast<void*>(place)) U(std::forward<Values>(values)...);
+  }
+  bool operator==(const UntouchedAllocator&) const = default;
+};
+
+/// A vector whose resize leaves new elements uninitialized.
+template <typename T>
+using LargeVector = std::vector<T, UntouchedAllocator<T>>;
 
 /// Buffers that come and go, kept for reuse: fresh memory is slow to touch. Safe to use from several threads.
 class BufferPool {

@@ -21,52 +21,50 @@ void add_outer(double* block, const SpringConstants& k, const std::array<double,
   }
 }
 
+/// The blocks of a disc and of the contacts that name it first: every block is written once, by one thread.
+template <int B>
+void assemble_disc(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
+                   const DegreesOfFreedom& unknowns, double held_stiffness, std::size_t d, StiffnessMatrix& matrix) {
+  const auto held = [&](std::size_t disc, int k) { return unknowns.held[disc * B + k] != 0; };
+  double diagonal[B * B] = {};
+  for (const auto& edge : graph.of(d)) {
+    const Contact& contact = assembly.contacts[edge.contact];
+    const SpringConstants k = springs[edge.contact];
+    DeformationGradient g = deformation_gradient(frame_of(assembly, contact), unknowns.rotation_scale);
+    if (contact.i == contact.j) {  // both ends move alike
+      for (int r = 0; r < 3; ++r) {
+        g.normal_i[r] += g.normal_j[r];
+        g.tangential_i[r] += g.tangential_j[r];
+      }
+    } else if (static_cast<std::size_t>(contact.j) == d) {
+      add_outer<B>(diagonal, k, g.normal_j, g.normal_j, g.tangential_j, g.tangential_j);
+      continue;
+    }
+    add_outer<B>(diagonal, k, g.normal_i, g.normal_i, g.tangential_i, g.tangential_i);
+    double coupling[B * B] = {};
+    if (contact.i != contact.j) add_outer<B>(coupling, k, g.normal_i, g.normal_j, g.tangential_i, g.tangential_j);
+    for (int r = 0; r < B; ++r) {
+      for (int c = 0; c < B; ++c) {
+        if (held(contact.i, r) || held(contact.j, c)) coupling[r * B + c] = 0;
+      }
+    }
+    std::copy(coupling, coupling + B * B, &matrix.coupling[static_cast<std::size_t>(edge.contact) * B * B]);
+  }
+  for (int k = 0; k < B; ++k) {
+    if (!held(d, k)) continue;
+    for (int r = 0; r < B; ++r) diagonal[r * B + k] = diagonal[k * B + r] = 0;
+    diagonal[k * B + k] = held_stiffness;
+  }
+  std::copy(diagonal, diagonal + B * B, &matrix.diagonal[d * B * B]);
+}
+
 template <int B>
 void assemble(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
               const DegreesOfFreedom& unknowns, StiffnessMatrix& matrix) {
-  const double scale = unknowns.rotation_scale;
   const double held_stiffness = springs.largest();
-  const auto held = [&](std::size_t disc, int k) { return unknowns.held[disc * B + k] != 0; };
-  parallel_ranges(assembly.contacts.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      const Contact& contact = assembly.contacts[c];
-      double* block = &matrix.coupling[c * B * B];
-      std::fill(block, block + B * B, 0.0);
-      if (contact.i == contact.j) continue;
-      const DeformationGradient g = deformation_gradient(frame_of(assembly, contact), scale);
-      add_outer<B>(block, springs[c], g.normal_i, g.normal_j, g.tangential_i, g.tangential_j);
-      for (int k = 0; k < B; ++k) {
-        if (held(contact.i, k)) std::fill(block + k * B, block + k * B + B, 0.0);
-        if (held(contact.j, k)) {
-          for (int r = 0; r < B; ++r) block[r * B + k] = 0;
-        }
-      }
-    }
-  });
   parallel_ranges(assembly.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t d = begin; d < end; ++d) {
-      double* block = &matrix.diagonal[d * B * B];
-      std::fill(block, block + B * B, 0.0);
-      for (const auto& edge : graph.of(d)) {
-        const Contact& contact = assembly.contacts[edge.contact];
-        const SpringConstants k = springs[edge.contact];
-        DeformationGradient g = deformation_gradient(frame_of(assembly, contact), scale);
-        if (contact.i == contact.j) {  // both ends move alike
-          for (int r = 0; r < 3; ++r) {
-            g.normal_i[r] += g.normal_j[r];
-            g.tangential_i[r] += g.tangential_j[r];
-          }
-        } else if (static_cast<std::size_t>(contact.j) == d) {
-          std::swap(g.normal_i, g.normal_j);
-          std::swap(g.tangential_i, g.tangential_j);
-        }
-        add_outer<B>(block, k, g.normal_i, g.normal_i, g.tangential_i, g.tangential_i);
-      }
-      for (int k = 0; k < B; ++k) {
-        if (!held(d, k)) continue;
-        for (int r = 0; r < B; ++r) block[r * B + k] = block[k * B + r] = 0;
-        block[k * B + k] = held_stiffness;
-      }
+      assemble_disc<B>(assembly, graph, springs, unknowns, held_stiffness, d, matrix);
     }
   });
 }

@@ -11,6 +11,7 @@
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/statics/contact_graph.hpp"
 #include "equidem/statics/degrees_of_freedom.hpp"
+#include "equidem/statics/large_buffer.hpp"
 
 namespace equidem {
 
@@ -19,7 +20,7 @@ namespace equidem {
 /// theta), entries in Pa.
 struct StiffnessMatrix {
   int block = 2;                 ///< rows of a block: DegreesOfFreedom::per_disc
-  std::vector<double> diagonal;  ///< discs x block x block, row-major
+  LargeVector<double> diagonal;  ///< discs x block x block, row-major
   std::vector<double>
       coupling;  ///< contacts x block x block, row-major; zero for a contact of a disc with its own image
 
