@@ -183,7 +183,7 @@ TEST_CASE("wrong_entries_are_named") {
     const char* sentence;
   };
   const std::vector<Case> cases = {
-      {"dics", "[]", "a.json: dics: there is no key 'dics' (the nearest is 'discs'). Correct or remove it."},
+      {"dics", "[]", "a.json: dics: there is no key 'dics' (an assembly file is read strictly). Did you mean 'discs'?"},
       {"discs", "",
        "a.json: discs: the key 'discs' is missing (an assembly is made of discs). Add \"discs\": [[x, y, "
        "radius], "

@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "equidem/casefile/keys.hpp"
-#include "equidem/casefile/nearest.hpp"
+#include "equidem/core/nearest.hpp"
 #include "equidem/casefile/toml.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
@@ -89,7 +89,7 @@ int parse_failure(const CLI::App& verb, const CLI::ParseError& error) {
       if (extra.starts_with("-")) {
         const auto meant = nearest(extra, options);
         return usage_error(format("unknown option '{}'", extra), "",
-                           meant ? format("Perhaps you mean '{}'", *meant) : help);
+                           meant ? format("Did you mean '{}'?", *meant) : help);
       }
       return usage_error(format("'{}' is one argument too many", extra), "a verb takes one case file", help);
     }
@@ -116,7 +116,7 @@ int show_help(const CLI::App& program, const std::vector<std::string>& arguments
     topics.back() = "case";
     const auto meant = nearest(arguments[1], topics);
     usage_error(format("there is no help on '{}'", arguments[1]), "",
-                meant ? format("Perhaps you mean '{}'", *meant) : format("There is help on {}", listed(topics)));
+                meant ? format("Did you mean '{}'?", *meant) : format("There is help on {}", listed(topics)));
   }
   std::fputs(program.help().c_str(), stdout);
   return 0;
@@ -145,7 +145,7 @@ int run(const std::vector<std::string>& arguments) {
   if (!arguments[0].starts_with("-") && !is_verb) {
     const auto meant = nearest(arguments[0], verb_names());
     usage_error(format("unknown verb '{}'", arguments[0]), format("the verbs are {}", listed(verb_names())),
-                meant ? format("Perhaps you mean '{}'", *meant) : "'equidem --help' shows examples");
+                meant ? format("Did you mean '{}'?", *meant) : "'equidem --help' shows examples");
   }
 
   std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());

@@ -7,6 +7,7 @@
 #include <limits>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "equidem/assembly/power_cells.hpp"
 #include "equidem/assembly/space_filling_curve.hpp"
@@ -81,6 +82,27 @@ void take_network(Assembly& assembly, PowerCells&& cells) {
   take_sides(assembly, cells);
 }
 
+/// Leave out discs that hang loose: those without contacts, whose power cell their neighbours have taken, and those in a corner
+/// with a single neighbour, which would roll about it at no cost. Where many have a single neighbour the rectangle is a strip one
+/// disc wide, and they stay. Returns how many are left out.
+std::size_t drop_loose_discs(Assembly& assembly, const PowerCells& cells) {
+  std::vector<int> contacts(assembly.size(), 0);
+  for (const Contact& c : cells.neighbours) ++contacts[c.i], ++contacts[c.j];
+  const auto single = static_cast<std::size_t>(std::count(contacts.begin(), contacts.end(), 1));
+  const int least = 20 * single <= assembly.size() ? 2 : 1;
+  std::size_t kept = 0;
+  for (std::size_t d = 0; d < assembly.size(); ++d) {
+    if (contacts[d] < least) continue;
+    assembly.centres[kept] = assembly.centres[d];
+    assembly.radii[kept] = assembly.radii[d];
+    ++kept;
+  }
+  const std::size_t dropped = assembly.size() - kept;
+  assembly.centres.resize(kept);
+  assembly.radii.resize(kept);
+  return dropped;
+}
+
 [[noreturn]] void refuse_collinear(const Assembly& assembly) {
   const auto furthest = [&](Vec2 from) {
     std::size_t best = 0;
@@ -111,7 +133,9 @@ Assembly delaunay_assembly(const DelaunayOptions& options) {
     for (double& radius : assembly.radii) radius = random.uniform(options.radii.smallest, options.radii.largest);
   }
   if (options.periodic) assembly.period = set.extent;
-  PowerCells cells = power_cells(assembly, Rectangle{.low = {0, 0}, .high = set.extent});
+  const Rectangle rectangle{.low = {0, 0}, .high = set.extent};
+  PowerCells cells = power_cells(assembly, rectangle);
+  while (!cells.collinear && drop_loose_discs(assembly, cells) > 0) cells = power_cells(assembly, rectangle);
   if (cells.collinear && !assembly.periodic()) refuse_collinear(assembly);
   take_network(assembly, std::move(cells));
   return assembly;

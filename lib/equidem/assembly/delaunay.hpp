@@ -18,8 +18,8 @@ struct RadiusDistribution {
 };
 
 struct DelaunayOptions {
-  std::int64_t discs = 10000;  ///< wanted count, >= 3 (>= 1 where periodic); `random` meets it, perturbed_hexagonal
-                               ///< and poisson_disc come near it: assembly.size() says how near
+  std::int64_t discs = 10000;  ///< wanted count, >= 3 (>= 1 where periodic); all processes come near it:
+                               ///< assembly.size() says how near
   PointProcess points = PointProcess::poisson_disc;
   double disorder = 0.1;  ///< perturbed_hexagonal: in [0, 0.5)
   std::uint64_t seed = 1;
@@ -32,8 +32,8 @@ struct DelaunayOptions {
 /// 2 sqrt3 a² for each disc, a = (smallest + largest)/2. Contacts are the edges of the triangulation, each at the
 /// midpoint of its branch (equal radii) or at the radical axis, kept between the two centres; facet lengths are those
 /// of the Voronoi (power) cells, clipped to the rectangle where free. An edge whose facet is a single point or lies
-/// outside the rectangle is no contact. A disc that lies wholly within another one's power cell has none, and a cell
-/// area of 0. Discs are numbered along a Hilbert curve. Groups of a free assembly: the discs whose cells touch a side
+/// outside the rectangle is no contact. Discs that fewer than two contacts would hold are
+/// left out: one whose power cell its neighbours have taken, one in a corner with a single neighbour. Discs are numbered along a Hilbert curve. Groups of a free assembly: the discs whose cells touch a side
 /// or hold a corner, with the length of the side in their cell. Same options, same assembly, on every machine.
 /// \throws Error (bad_input) on options out of range
 Assembly delaunay_assembly(const DelaunayOptions& options);

@@ -2,7 +2,6 @@
 #include "equidem/assembly/files.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -17,6 +16,7 @@
 #include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/nearest.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -25,22 +25,8 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* schema = "equidem-assembly/1";
-constexpr std::array<std::string_view, 8> known_keys = {"schema",   "title",  "cell",    "discs",
-                                                        "contacts", "levers", "springs", "groups"};
-
-/// Changes of one letter (put in, left out, replaced) that turn one word into another (Levenshtein 1966).
-std::size_t letters_changed(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t k = 0; k <= b.size(); ++k) row[k] = k;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t k = 1; k <= b.size(); ++k) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[k - 1] ? 0 : 1);
-      diagonal = std::exchange(row[k], std::min({row[k] + 1, row[k - 1] + 1, replaced}));
-    }
-  }
-  return row.back();
-}
+const std::vector<std::string> known_keys = {"schema",   "title",  "cell",    "discs",
+                                             "contacts", "levers", "springs", "groups"};
 
 const char* kind_of(const Json& value) {
   switch (value.type()) {
@@ -119,10 +105,9 @@ void check_keys(const Json& file) {
   }
   for (const auto& [key, value] : file.items()) {
     if (std::find(known_keys.begin(), known_keys.end(), key) != known_keys.end()) continue;
-    const auto* nearest = std::min_element(known_keys.begin(), known_keys.end(), [&, k = key](auto a, auto b) {
-      return letters_changed(k, a) < letters_changed(k, b);
-    });
-    refuse(format("there is no key '{}'", key), format("the nearest is '{}'", *nearest), "Correct or remove it", key);
+    const auto meant = nearest(key, known_keys);
+    refuse(format("there is no key '{}'", key), "an assembly file is read strictly",
+           meant ? format("Did you mean '{}'?", *meant) : "Remove it", key);
   }
   if (!file.contains("discs")) {
     refuse("the key 'discs' is missing", "an assembly is made of discs", "Add \"discs\": [[x, y, radius], ...]",

@@ -5,7 +5,7 @@
 
 #include "equidem/casefile/check_value.hpp"
 #include "equidem/casefile/keys.hpp"
-#include "equidem/casefile/nearest.hpp"
+#include "equidem/core/nearest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 
@@ -124,7 +124,7 @@ class Checker {
     }
     std::string remedy = format("Known here: {}", listed(here));
     if (const auto meant = nearest(name, here)) {
-      remedy = format("Perhaps you mean '{}'", *meant);
+      remedy = format("Did you mean '{}'?", *meant);
     } else {
       for (const KeySpec& key : spec_.keys) {
         if (name != key.name) continue;

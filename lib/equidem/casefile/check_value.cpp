@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "equidem/casefile/nearest.hpp"
+#include "equidem/core/nearest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 
@@ -114,7 +114,7 @@ void check_choice(const TomlValue& value, const KeySpec& key) {
   }
   const auto meant = nearest(value.text, key.choices);
   fail(value, key, format("{} is no known {}", value.shown(), key.name),
-       meant ? format("Perhaps you mean \"{}\"", *meant) : "Choose one of these");
+       meant ? format("Did you mean \"{}\"?", *meant) : "Choose one of these");
 }
 
 }  // namespace

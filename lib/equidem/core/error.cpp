@@ -12,7 +12,7 @@ std::string sentence(const std::string& problem, const std::string& why, const s
   text += problem;
   if (!why.empty()) text += " (" + why + ")";
   text += ".";
-  if (!remedy.empty()) text += " " + remedy + ".";
+  if (!remedy.empty()) text += " " + remedy + (remedy.ends_with('?') ? "" : ".");
   return text;
 }
 

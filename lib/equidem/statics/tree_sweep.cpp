@@ -116,7 +116,12 @@ void TreeSweep::up(const Size& size, const Visit& visit, const std::function<voi
   };
   for (const TreeSchedule::Wave& wave : schedule_.waves) {
     parallel_tasks(wave.subtrees.size(), [&](std::size_t s, int worker) { visit_subtree(wave.subtrees[s], worker); });
-    for (const std::int32_t t : wave.above) visit_above(t);
+    const bool last = &wave == &schedule_.waves.back();
+    if (last) stacks.clear();
+    for (const std::int32_t t : wave.above) {
+      if (last) pool.clear();  // nothing is left to reuse it, and memory is at its highest
+      visit_above(t);
+    }
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/nearest.hpp"
+#include "equidem/core/nearest.hpp"
 
 #include <algorithm>
 #include <vector>
