@@ -12,9 +12,9 @@
 #include <unistd.h>
 
 #include "equidem/casefile/keys.hpp"
-#include "equidem/core/nearest.hpp"
 #include "equidem/casefile/toml.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/nearest.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/json.hpp"
@@ -25,9 +25,9 @@ namespace equidem {
 namespace {
 
 constexpr const char* examples = R"(Examples:
-  equidem solve cases/abe1996_fig6.toml
-  equidem solve cases/abe1996_fig6.toml --set springs.kT=0.3e9 --out result
-  equidem sweep cases/abe1996_fig6.toml --key ratio --from 0 --to 1 --steps 11 --out curve
+  equidem solve data/cases/abe1996_fig6.toml
+  equidem solve data/cases/abe1996_fig6.toml --set springs.kT=0.3e9 --out result
+  equidem sweep data/cases/abe1996_fig6.toml --key ratio --from 0 --to 1 --steps 11 --out curve
   equidem help case          every key of the case file
 
 Exit codes: 0 done; 1 the computation failed, and says why; 2 bad input or usage; 130 interrupted.)";

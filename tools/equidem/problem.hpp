@@ -46,8 +46,10 @@ struct SolvedCase {
   double moment_per_area = 0;
   std::optional<TensionResult> tension;
 
-  /// "solved", or "unstable" where the assembly would give way.
-  [[nodiscard]] std::string status() const { return equilibrium.unstable_modes > 0 ? "unstable" : "solved"; }
+  /// "solved"; "unstable" where the assembly would give way; "unjudged" where the solver cannot tell.
+  [[nodiscard]] std::string status() const {
+    return equilibrium.unstable_modes > 0 ? "unstable" : equilibrium.unstable_modes < 0 ? "unjudged" : "solved";
+  }
 };
 
 SolvedCase solve_case(const Problem& problem, const EquilibriumSolver& solver, const NamedLoads& loads);

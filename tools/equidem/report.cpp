@@ -19,7 +19,9 @@ std::string grouped(std::int64_t value) {
 
 /// What the inertia of K says about the answer.
 std::string stability(const Problem& problem, const Equilibrium& result) {
-  if (result.negative_pivots < 0) return "not known: the solver does not count negative pivots";
+  if (result.unstable_modes < 0) {
+    return "NOT KNOWN: this solver does not count the negative pivots that would tell; method = \"auto\" does";
+  }
   if (result.unstable_modes > 0) {
     return format(
         "UNSTABLE: {} beyond one for each rotation; the assembly would give way by so many modes, this "
@@ -137,8 +139,13 @@ std::string describe_results(const Problem& problem, std::span<const SolvedCase>
   for (const SolvedCase& result : results) {
     if (!result.name.empty()) out += format("\nload case {}\n", result.name);
     const Equilibrium& e = result.equilibrium;
-    out += report_line("residual", format("{:.2e} relative, after {} of refinement", e.relative_residual,
-                                          counted(e.refinements, "step")));
+    out += report_line("residual",
+                       format("{:.1e} relative, after {} of refinement; {:.1e} for the motions rounded to double",
+                              e.relative_residual, counted(e.refinements, "step"), e.rounded_residual));
+    constexpr double doubtful = 1e-10;
+    if (e.relative_residual > doubtful) {
+      out += report_line("", "WARNING: K is nearly singular; do not trust more digits than the residual leaves");
+    }
     out += report_line("energy", scientific(e.energy) + " N (J per m of depth, per m)");
     append_stress(out, result);
     if (result.tension) append_tension(out, problem, result);

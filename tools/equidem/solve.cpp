@@ -163,7 +163,12 @@ int solve(const CommonOptions& options) {
   for (const NamedLoads& loads : problem.load_cases) results.push_back(solve_case(problem, solver, loads));
 
   StageTimes times = problem.times;
-  for (const auto& [stage, seconds] : results.back().equilibrium.times.stages()) times.add(stage, seconds);
+  for (const SolvedCase& result : results) {
+    const bool first = &result == &results.front();  // all load cases share one factorization
+    for (const auto& [stage, seconds] : result.equilibrium.times.stages()) {
+      if (first || stage == "solve" || stage == "refine") times.add(stage, seconds);
+    }
+  }
   Stopwatch watch;
   if (options.out) {
     for (std::size_t k = 0; k < results.size(); ++k)
@@ -201,9 +206,9 @@ Run declare_solve(CLI::App& command) {
   add_common_options(command, *options);
   command.footer(
       "Examples:\n"
-      "  equidem solve cases/abe1996_fig6.toml\n"
-      "  equidem solve cases/cantilever.toml --out result      tables, picture, files for ParaView\n"
-      "  equidem solve cases/abe1996_fig6.toml --set springs.kT=0 --json -");
+      "  equidem solve data/cases/abe1996_fig6.toml\n"
+      "  equidem solve data/cases/cantilever.toml --out result      tables, picture, files for ParaView\n"
+      "  equidem solve data/cases/abe1996_fig6.toml --set springs.kT=0 --json -");
   return [options] { return solve(*options); };
 }
 

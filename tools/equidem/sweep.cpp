@@ -158,7 +158,7 @@ std::string plot_curves(const SweepOptions& options, const Case& base, const std
                   .style = SeriesStyle::points,
                   .colour = PlotColour::blue,
                   .column = "computed"};
-    Series unstable{.label = "computed, unstable",
+    Series unstable{.label = "computed, unstable or not judged",
                     .x = {},
                     .y = {},
                     .style = SeriesStyle::points,
@@ -171,7 +171,7 @@ std::string plot_curves(const SweepOptions& options, const Case& base, const std
         theory.y.push_back(point.*curve.theory);
       }
       if (std::isnan(point.*curve.computed)) continue;
-      Series& series = point.unstable_modes > 0 ? unstable : stable;
+      Series& series = point.unstable_modes != 0 ? unstable : stable;
       series.x.push_back(point.value);
       series.y.push_back(point.*curve.computed);
     }
@@ -356,8 +356,8 @@ Run declare_sweep(CLI::App& command) {
   command.add_flag("--resume", options->resume, "keep the points that lie in --out, compute the others");
   command.footer(
       "Examples:\n"
-      "  equidem sweep cases/abe1996_fig6.toml --key ratio --from 0 --to 1 --steps 11 --out curve\n"
-      "  equidem sweep cases/abe1996_fig6.toml --key assembly.rows --values 5,11,21,41\n"
+      "  equidem sweep data/cases/abe1996_fig6.toml --key ratio --from 0 --to 1 --steps 11 --out curve\n"
+      "  equidem sweep data/cases/abe1996_fig6.toml --key assembly.rows --values 5,11,21,41\n"
       "A point that fails stays in the table with its reason. Ctrl-C keeps what is done; --resume "
       "continues.");
   return [options] { return sweep(*options); };

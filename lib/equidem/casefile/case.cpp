@@ -252,13 +252,6 @@ void check_group_names(const std::vector<TomlValue>& tables) {
   }
 }
 
-SolverMethod method_from(const std::string& name) {
-  if (name == "multifrontal") return SolverMethod::multifrontal;
-  if (name == "cholmod") return SolverMethod::cholmod;
-  if (name == "umfpack") return SolverMethod::umfpack;
-  return SolverMethod::automatic;
-}
-
 }  // namespace
 
 std::string Case::where(std::string_view key) const {
@@ -290,7 +283,7 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
   for (const TomlValue& table : repeated(root, "support")) result.supports.push_back(read_support(table));
   result.load_cases = read_load_cases(repeated(root, "load"));
   const TomlValue& solver = *root.find("solver");
-  result.solver = {.method = method_from(text(solver, "method")),
+  result.solver = {.method = solver_method_from(text(solver, "method")),
                    .max_refinements = whole(solver, "max_refinements"),
                    .memory_limit = *bytes_of(*solver.find("memory_limit"))};
   const TomlValue& output = *root.find("output");

@@ -5,8 +5,8 @@
 
 #include "equidem/casefile/check_value.hpp"
 #include "equidem/casefile/keys.hpp"
-#include "equidem/core/nearest.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/nearest.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {

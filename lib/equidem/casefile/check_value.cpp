@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "equidem/core/nearest.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/nearest.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {

@@ -17,13 +17,20 @@
 
 namespace equidem {
 
-inline ContactForce linear_spring_force(const SpringConstants& k, const ContactDeformation& d) {
+template <typename Number>
+ForceOf<Number> linear_spring_force(const SpringConstants& k, const DeformationOf<Number>& d) {
   return {k.kN * d.normal, k.kT * d.tangential};
 }
 
-/// N, per metre of depth (J/m per m).
+/// N (J per metre, per metre of depth).
 inline double linear_spring_energy(const SpringConstants& k, const ContactDeformation& d) {
   return 0.5 * (k.kN * d.normal * d.normal + k.kT * d.tangential * d.tangential);
+}
+
+/// The same from the force: f_N²/2kN + f_T²/2kT, a spring that is absent storing nothing.
+inline double linear_spring_energy_of(const SpringConstants& k, const ContactForce& f) {
+  const double tangential = k.kT != 0 ? f.tangential * f.tangential / k.kT : 0.0;
+  return 0.5 * (f.normal * f.normal / k.kN + tangential);
 }
 
 /// Derivatives of the deformation by the motion (u_x, u_y, a theta) of one of the two discs; the tangent is made of
@@ -41,6 +48,19 @@ inline DeformationGradient deformation_gradient(const ContactFrame& frame, doubl
           {n.x, n.y, 0.0},
           {-s.x, -s.y, -frame.lever_i / rotation_scale},
           {s.x, s.y, -frame.lever_j / rotation_scale}};
+}
+
+/// block += kN g_p g_q^T + kT h_p h_q^T, row-major B x B: the tangent between the ends p and q of a contact, from the derivatives g
+/// of stretch and h of slip by the motion of each end. B = 2 leaves rotations out.
+template <int B>
+void add_linear_spring_tangent(const SpringConstants& k, const std::array<double, 3>& normal_p,
+                               const std::array<double, 3>& normal_q, const std::array<double, 3>& tangential_p,
+                               const std::array<double, 3>& tangential_q, double* block) {
+  for (int r = 0; r < B; ++r) {
+    for (int c = 0; c < B; ++c) {
+      block[r * B + c] += k.kN * normal_p[r] * normal_q[c] + k.kT * tangential_p[r] * tangential_q[c];
+    }
+  }
 }
 
 }  // namespace equidem

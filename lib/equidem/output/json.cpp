@@ -60,18 +60,6 @@ void append(std::string& text, const Json& value, std::size_t depth) {
   }
 }
 
-const char* name_of(GaugePlacement placement) {
-  switch (placement) {
-    case GaugePlacement::centre:
-      return "centre";
-    case GaugePlacement::quarter:
-      return "quarter";
-    case GaugePlacement::ends:
-      return "ends";
-  }
-  return "";
-}
-
 std::vector<std::int64_t> discs_of(const StrainGauge& gauge) {
   return {gauge.first, gauge.second};
 }
@@ -186,6 +174,7 @@ void add_common(JsonObject& object, const std::string& status, const std::string
 void add_equilibrium(JsonObject& object, const Equilibrium& equilibrium) {
   object.set("unknowns", equilibrium.unknowns)
       .set("relative_residual", equilibrium.relative_residual)
+      .set("rounded_residual", equilibrium.rounded_residual)
       .set("negative_pivots", equilibrium.negative_pivots)
       .set("unstable_modes", equilibrium.unstable_modes)
       .set("refinements", equilibrium.refinements)
@@ -194,11 +183,13 @@ void add_equilibrium(JsonObject& object, const Equilibrium& equilibrium) {
       .set("factor_bytes", equilibrium.factor_bytes)
       .set("solver", equilibrium.solver)
       .set("energy", equilibrium.energy);
+  if (equilibrium.negative_pivots < 0) object.set_null("negative_pivots");
+  if (equilibrium.unstable_modes < 0) object.set_null("unstable_modes");
 }
 
 void add_tension(JsonObject& object, const TensionTest& test, const TensionSetup& setup, const TensionResult& result) {
   JsonObject gauge;
-  gauge.set("placement", name_of(test.gauge))
+  gauge.set("placement", to_string(test.gauge))
       .set("horizontal", discs_of(setup.horizontal))
       .set("vertical", discs_of(setup.vertical));
   object.set("poisson_ratio", result.poisson_ratio)

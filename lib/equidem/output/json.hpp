@@ -67,7 +67,7 @@ std::string library_version();
 void add_common(JsonObject& object, const std::string& status, const std::string& report, const StageTimes& times,
                 const Effects& effects);
 
-/// unknowns, relative_residual, negative_pivots, unstable_modes, refinements, pivot_growth, factor_nonzeros,
+/// unknowns, relative_residual, rounded_residual, negative_pivots and unstable_modes (null where unknown), refinements, pivot_growth, factor_nonzeros,
 /// factor_bytes, solver, energy (N).
 void add_equilibrium(JsonObject& object, const Equilibrium& equilibrium);
 

@@ -6,6 +6,8 @@
 
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
 #include "equidem/statics/multifrontal_ldlt.hpp"
 #include "equidem/statics/rigidity.hpp"
 #include "equidem/statics/solver_choice.hpp"
@@ -14,6 +16,11 @@ namespace equidem {
 
 double critical_ratio(const Assembly& assembly, std::span<const Support> supports,
                       const CriticalRatioOptions& options) {
+  if (!(options.tolerance > 0) || !(options.lowest >= -1 && options.lowest < -options.tolerance)) {
+    bad_input(
+        format("the search for the critical ratio from {} with the tolerance {}", options.lowest, options.tolerance),
+        "it needs a tolerance > 0 and a start in [-1, -tolerance)", "Correct them");
+  }
   check(assembly);
   const ContactGraph graph(assembly);
   const ContactSprings positive(SpringConstants{1, 1});

@@ -100,6 +100,7 @@ struct EquilibriumSolver::Implementation {
   void judge_inertia(const System& system);
   [[nodiscard]] Equilibrium solve(const LoadCase& loads) const;
   void refine(std::span<const double> f, PreciseMotion& motion, Equilibrium& result) const;
+  [[nodiscard]] double residual_of_rounded(std::span<const double> f, const PreciseMotion& motion) const;
   void describe_state(std::span<const double> f, const PreciseMotion& motion, Equilibrium& result) const;
 };
 
@@ -112,7 +113,10 @@ void EquilibriumSolver::Implementation::build(std::span<const Support> supports)
   times.add("order", watch.lap());
   auto symbolic = std::make_shared<const SymbolicFactor>(analyze(std::move(tree), graph, unknowns.per_disc));
   times.add("analyze", watch.lap());
-  check_memory(estimate(*symbolic, unknowns, springs.any_negative()), options.solver.memory_limit);
+  SolveEstimate size = estimate(*symbolic, unknowns, springs.any_negative());
+  if (options.solver.method == SolverMethod::umfpack)
+    size.peak_bytes *= 4;  // LU of the whole matrix in an order of its own
+  check_memory(size, options.solver.memory_limit);
   watch.lap();
   matrix = assemble_stiffness(assembly, graph, springs, unknowns);
   times.add("assemble", watch.lap());
@@ -131,7 +135,8 @@ void EquilibriumSolver::Implementation::judge_inertia(const System& system) {
   } else if (negative < 0) {
     unstable_modes = -1;
   } else {
-    unstable_modes = negative - negative_rotations(system);
+    const std::int64_t of_rotations = negative_rotations(system);
+    unstable_modes = of_rotations < 0 ? -1 : negative - of_rotations;
   }
 }
 
@@ -149,7 +154,7 @@ Equilibrium EquilibriumSolver::Implementation::solve(const LoadCase& loads) cons
   describe_state(f, motion, result);
   const FactorReport& report = factor->report();
   result.solver = report.name;
-  result.negative_pivots = std::max<std::int64_t>(report.negative_pivots, 0);
+  result.negative_pivots = report.negative_pivots;
   result.unstable_modes = unstable_modes;
   result.pivot_growth = report.growth;
   result.factor_nonzeros = report.nonzeros;
@@ -190,12 +195,23 @@ void EquilibriumSolver::Implementation::refine(std::span<const double> f, Precis
     if (now <= good_enough || (pass > 0 && now > 0.5 * before)) break;
     before = now;
   }
+  result.rounded_residual = residual_of_rounded(f, motion) / reference;
   constexpr double worthless = 1e-3;
   if (!(result.relative_residual <= worthless)) {
     computation_failed(format("the solution leaves a relative residual of {:.1e}", result.relative_residual),
                        "the stiffness matrix is too close to singular for the digits of a double",
                        "Check supports and springs; springs of very different size are the usual cause");
   }
+}
+
+double EquilibriumSolver::Implementation::residual_of_rounded(std::span<const double> f,
+                                                              const PreciseMotion& motion) const {
+  PreciseMotion rounded(0);
+  rounded.high = motion.high;
+  rounded.low.assign(motion.high.size(), 0.0);
+  std::vector<double> residual(f.size());
+  residual_force(assembly, graph, springs, unknowns, rounded, f, residual);
+  return norm_of_free(unknowns, residual);
 }
 
 void EquilibriumSolver::Implementation::describe_state(std::span<const double> f, const PreciseMotion& motion,
@@ -220,16 +236,14 @@ void EquilibriumSolver::Implementation::describe_state(std::span<const double> f
     for (double& moment : result.rotation_moments) moment = -moment;
   }
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
-    const ContactForce& force = result.contact_forces[c];
-    const SpringConstants k = springs[c];
-    result.energy += 0.5 * (force.normal * force.normal / k.kN);
-    if (k.kT != 0) result.energy += 0.5 * (force.tangential * force.tangential / k.kT);
+    result.energy += linear_spring_energy_of(springs[c], result.contact_forces[c]);
   }
 }
 
 EquilibriumSolver::EquilibriumSolver(const Assembly& assembly, const ContactSprings& springs,
                                      std::span<const Support> supports, const EquilibriumOptions& options) {
   check(assembly);
+  check(options.solver);
   implementation_ = std::make_unique<Implementation>(assembly, springs, options);
   implementation_->build(supports);
 }
@@ -265,9 +279,10 @@ SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& spr
 std::string Equilibrium::report() const {
   std::string text = format("{} unknowns, {}, {:.3g} entries in L ({})\n", unknowns, solver, factor_nonzeros,
                             readable_bytes(factor_bytes));
-  text += format("relative residual {:.1e} after {}\n", relative_residual, counted(refinements, "refinement"));
+  text += format("relative residual {:.1e} after {}, {:.1e} for the motions rounded to double\n", relative_residual,
+                 counted(refinements, "refinement"), rounded_residual);
   if (negative_pivots > 0 || unstable_modes != 0) {
-    text += format("{} negative pivots: ", negative_pivots);
+    text += negative_pivots < 0 ? "negative pivots not counted: " : format("{} negative pivots: ", negative_pivots);
     if (unstable_modes == 0) {
       text += "those of the rotations alone (kT < 0); the state of rest is stable in statics\n";
     } else if (unstable_modes < 0) {

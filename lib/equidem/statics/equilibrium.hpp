@@ -32,10 +32,13 @@ struct Equilibrium {
   std::vector<ContactForce> contact_forces;  ///< per contact
   std::vector<Reaction> reactions;           ///< discs with a held component
   std::vector<double> rotation_moments;  ///< N, per disc: moment that holds it where rotation is restrained; else empty
-  double relative_residual = 0;  ///< |f - K u| over |f| (prescribed motions included in f), 2-norms over the unknowns
-  int refinements = 0;           ///< steps of iterative refinement done
+  /// |f - K u| over |f| (prescribed motions included in f), 2-norms over the unknowns, for the motion u that refinement keeps to
+  /// twice the digits of a double: the residual of the contact forces.
+  double relative_residual = 0;
+  double rounded_residual = 0;  ///< the same for `motions`, which are u rounded to doubles
+  int refinements = 0;          ///< steps of iterative refinement done
   std::int64_t unknowns = 0;
-  std::int64_t negative_pivots = 0;  ///< negative eigenvalues of K (Sylvester's law of inertia)
+  std::int64_t negative_pivots = 0;  ///< negative eigenvalues of K (Sylvester's law of inertia); -1: not counted
   /// Negative eigenvalues beyond those that the rotations bring by themselves where kT < 0 (one each): independent motions
   /// by which the assembly would give way. 0: the state of rest is stable as statics sees it; -1: the solver cannot tell.
   std::int64_t unstable_modes = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/statics/internal_force.hpp"
 
+#include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/threads.hpp"
 
 namespace equidem {
@@ -10,9 +11,7 @@ constexpr std::size_t grain = 1 << 13;
 
 using Extended = long double;  // 64 bits of mantissa on x86, more elsewhere
 
-struct ExtendedForce {
-  Extended normal, tangential;
-};
+using ExtendedForce = ForceOf<Extended>;
 
 ExtendedForce evaluate(const Contact& contact, const ContactFrame& frame, const SpringConstants& k,
                        const DegreesOfFreedom& unknowns, const PreciseMotion& motion) {
@@ -22,16 +21,13 @@ ExtendedForce evaluate(const Contact& contact, const ContactFrame& frame, const 
     return (static_cast<Extended>(motion.high[j + c]) - motion.high[i + c]) +
            (static_cast<Extended>(motion.low[j + c]) - motion.low[i + c]);
   };
-  const Extended ux = difference(0), uy = difference(1);
-  const Vec2 n = frame.normal;
-  const Extended stretch = ux * n.x + uy * n.y;
-  Extended slip = uy * n.x - ux * n.y;
+  Extended turn = 0;
   if (b == 3) {
     const Extended turn_i = static_cast<Extended>(motion.high[i + 2]) + motion.low[i + 2];
     const Extended turn_j = static_cast<Extended>(motion.high[j + 2]) + motion.low[j + 2];
-    slip -= (frame.lever_i * turn_i + frame.lever_j * turn_j) / unknowns.rotation_scale;
+    turn = (frame.lever_i * turn_i + frame.lever_j * turn_j) / unknowns.rotation_scale;
   }
-  return {k.kN * stretch, k.kT * slip};
+  return linear_spring_force(k, deformation(frame, difference(0), difference(1), turn));
 }
 
 }  // namespace

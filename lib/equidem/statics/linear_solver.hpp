@@ -8,12 +8,12 @@
 
 namespace equidem {
 
-/// The back ends; `solver_method_names()` lists them for users.
+/// The back ends.
 enum class SolverMethod {
   automatic,     ///< multifrontal: Cholesky where no spring is negative, else L D L^T
   multifrontal,  ///< ours: geometric nested dissection on the graph of discs, threads over subtrees
   cholmod,       ///< SuiteSparse's supernodal Cholesky with our ordering
-  umfpack,       ///< SuiteSparse's unsymmetric LU with partial pivoting, our ordering left to it
+  umfpack,       ///< SuiteSparse's unsymmetric LU with partial pivoting, ordered by itself
 };
 
 /// \throws Error (bad_input) naming the choices
@@ -23,8 +23,11 @@ std::string to_string(SolverMethod method);
 struct SolverOptions {
   SolverMethod method = SolverMethod::automatic;
   int max_refinements = 4;  ///< steps of iterative refinement, >= 0
-  double memory_limit = 0;  ///< bytes the factor may take; 0: what the machine has free
+  double memory_limit = 0;  ///< bytes that factor and factorization may take; 0: what the machine has free
 };
+
+/// \throws Error (bad_input) on a negative number of refinements or a memory limit that is negative or no number
+void check(const SolverOptions& options);
 
 /// What a factorization will take, known before it is tried.
 struct SolveEstimate {

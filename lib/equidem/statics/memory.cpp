@@ -18,12 +18,13 @@ double bytes_in(const std::string& path) {
   return file >> bytes ? bytes : std::numeric_limits<double>::infinity();
 }
 
-double resident_bytes() {
+/// What this process takes already: "VmRSS:" resident, "VmSize:" address space, "VmData:" data segment.
+double bytes_of_process(const std::string& what) {
   std::ifstream status("/proc/self/status");
   std::string word;
   while (status >> word) {
     double kilobytes = 0;
-    if (word == "VmRSS:" && status >> kilobytes) return 1024 * kilobytes;
+    if (word == what && status >> kilobytes) return 1024 * kilobytes;
   }
   return 0;
 }
@@ -38,14 +39,15 @@ double available_memory() {
     double kilobytes = 0;
     if (word == "MemAvailable:" && meminfo >> kilobytes) available = 1024 * kilobytes;
   }
-  const std::string group = "/sys/fs/cgroup/";
-  available = std::min(available, bytes_in(group + "memory.max") - std::min(bytes_in(group + "memory.current"), 1e18));
-  rlimit limit{};
-  for (const auto resource : {RLIMIT_AS, RLIMIT_DATA}) {
-    if (getrlimit(resource, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
-      available = std::min(available, static_cast<double>(limit.rlim_cur) - resident_bytes());
-    }
-  }
+  // Caches of the control group give way, so only what is resident counts against its limit.
+  available = std::min(available, bytes_in("/sys/fs/cgroup/memory.max") - bytes_of_process("VmRSS:"));
+  const auto limited = [&](auto resource, const std::string& used) {
+    rlimit limit{};
+    if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
+    available = std::min(available, static_cast<double>(limit.rlim_cur) - bytes_of_process(used));
+  };
+  limited(RLIMIT_AS, "VmSize:");
+  limited(RLIMIT_DATA, "VmData:");
   return available == std::numeric_limits<double>::infinity() ? 0 : std::max(available, 1.0);
 }
 

@@ -2,8 +2,6 @@
 #include "equidem/statics/multifrontal_cholesky.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <cstring>
 #include <limits>
 #include <mutex>
 #include <utility>
@@ -49,7 +47,8 @@ class Cholesky final : public Factorization {
 
   /// Whether all pivots are positive.
   bool factorize(const MatrixOnGraph& k) {
-    std::atomic<bool> positive{true};
+    bool positive = true;
+    std::vector<std::uint8_t> failed(symbolic_->fronts(), 0);  // here or below: what stands above is not tried
     std::mutex watch_mutex;
     PivotWatch watch;
     TreeSweep sweep(*symbolic_, [&](std::size_t t) { return symbolic_->front_operations(t) + 1000; });
@@ -59,8 +58,8 @@ class Cholesky final : public Factorization {
              [&](std::size_t t, double* update, const std::vector<TreeSweep::Child>& children) {
                const std::size_t pivots = symbolic_->pivots(t), updates = symbolic_->updates(t), ld = pivots + updates;
                double* panel = panels_.data() + offset_[t];
-               std::memset(panel, 0, pivots * ld * sizeof(double));
-               std::memset(update, 0, updates * updates * sizeof(double));
+               std::fill_n(panel, pivots * ld, 0.0);
+               std::fill_n(update, updates * updates, 0.0);
                add_matrix_columns(*symbolic_, k, t, panel, ld);
                thread_local std::vector<RowRun> runs;
                for (const auto& child : children) {
@@ -68,10 +67,14 @@ class Cholesky final : public Factorization {
                  extend_add(runs, symbolic_->block, child.values, symbolic_->updates(child.node),
                             {panel, ld, update, pivots / symbolic_->block});
                }
-               if (!positive) return;
+               if (std::any_of(children.begin(), children.end(), [&](const auto& c) { return failed[c.node] != 0; })) {
+                 failed[t] = 1;
+                 return;
+               }
                const int bad = factorize_front(pivots, updates, panel, update);
                const PivotWatch found = watch_front(k, t, bad);
                const std::lock_guard lock(watch_mutex);
+               failed[t] = bad != 0 ? 1 : 0;
                if (bad != 0) positive = false;
                watch.merge(found);
              },

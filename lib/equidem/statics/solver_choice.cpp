@@ -111,6 +111,17 @@ std::string to_string(SolverMethod method) {
   return "auto";
 }
 
+void check(const SolverOptions& options) {
+  if (options.max_refinements < 0) {
+    bad_input(format("max_refinements = {}", options.max_refinements), "a number of steps cannot be negative",
+              "Give 0 or more");
+  }
+  if (!(options.memory_limit >= 0)) {
+    bad_input(format("memory_limit = {}", options.memory_limit), "it must be a number of bytes, or 0 for what is free",
+              "Correct it");
+  }
+}
+
 SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns, bool indefinite) {
   SolveEstimate result;
   result.unknowns = unknowns.unknowns;
@@ -167,9 +178,8 @@ std::int64_t negative_rotations(const System& system) {
   SymbolicFactor symbolic = *system.symbolic;
   symbolic.block = 1;
   const MatrixOnGraph matrix{rotations, system.k.assembly, system.k.graph};
-  return multifrontal_ldlt(std::make_shared<const SymbolicFactor>(std::move(symbolic)), matrix)
-      ->report()
-      .negative_pivots;
+  const auto factor = multifrontal_ldlt(std::make_shared<const SymbolicFactor>(std::move(symbolic)), matrix);
+  return factor->report().zero_pivots > 0 ? -1 : factor->report().negative_pivots;
 }
 
 }  // namespace equidem

@@ -35,7 +35,7 @@ void check_memory(const SolveEstimate& estimate, double memory_limit);
 std::unique_ptr<Factorization> factorize(const System& system, const SolverOptions& options, StageTimes& times);
 
 /// Negative eigenvalues that the rotations bring by themselves: those of the rotational block of K (Haynsworth: the
-/// inertia of K is that of this block and of the stiffness with rotations eliminated).
+/// inertia of K is that of this block and of the stiffness with rotations eliminated); -1 where the block is singular.
 std::int64_t negative_rotations(const System& system);
 
 }  // namespace equidem

@@ -12,15 +12,6 @@ namespace {
 
 constexpr std::size_t grain = 1 << 12;
 
-/// block += kN g p^T + kT h q^T for the derivatives of stretch and slip by two motions.
-template <int B>
-void add_outer(double* block, const SpringConstants& k, const std::array<double, 3>& g, const std::array<double, 3>& p,
-               const std::array<double, 3>& h, const std::array<double, 3>& q) {
-  for (int r = 0; r < B; ++r) {
-    for (int c = 0; c < B; ++c) block[r * B + c] += k.kN * g[r] * p[c] + k.kT * h[r] * q[c];
-  }
-}
-
 /// The blocks of a disc and of the contacts that name it first: every block is written once, by one thread.
 template <int B>
 void assemble_disc(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
@@ -37,12 +28,13 @@ void assemble_disc(const Assembly& assembly, const ContactGraph& graph, const Co
         g.tangential_i[r] += g.tangential_j[r];
       }
     } else if (static_cast<std::size_t>(contact.j) == d) {
-      add_outer<B>(diagonal, k, g.normal_j, g.normal_j, g.tangential_j, g.tangential_j);
+      add_linear_spring_tangent<B>(k, g.normal_j, g.normal_j, g.tangential_j, g.tangential_j, diagonal);
       continue;
     }
-    add_outer<B>(diagonal, k, g.normal_i, g.normal_i, g.tangential_i, g.tangential_i);
+    add_linear_spring_tangent<B>(k, g.normal_i, g.normal_i, g.tangential_i, g.tangential_i, diagonal);
     double coupling[B * B] = {};
-    if (contact.i != contact.j) add_outer<B>(coupling, k, g.normal_i, g.normal_j, g.tangential_i, g.tangential_j);
+    if (contact.i != contact.j)
+      add_linear_spring_tangent<B>(k, g.normal_i, g.normal_j, g.tangential_i, g.tangential_j, coupling);
     for (int r = 0; r < B; ++r) {
       for (int c = 0; c < B; ++c) {
         if (held(contact.i, r) || held(contact.j, c)) coupling[r * B + c] = 0;

@@ -2,7 +2,6 @@
 #include "equidem/statics/tree_sweep.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <memory>
 #include <mutex>
 #include <numeric>
@@ -28,7 +27,7 @@ class ValueStack {
     const std::size_t from = starts_.back(), size = top_ - from;
     starts_.resize(starts_.size() - count);
     const std::size_t to = starts_.back();
-    std::memmove(memory_.data() + to, memory_.data() + from, size * sizeof(double));
+    std::copy_n(memory_.data() + from, size, memory_.data() + to);  // downwards: overlap does no harm
     top_ = to + size;
   }
   /// Entry `depth` below the top one.
