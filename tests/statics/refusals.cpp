@@ -93,6 +93,9 @@ TEST_CASE("assemblies_of_no_or_one_disc_are_refused") {
   one.centres = {{0.1, 0.2}};
   one.radii = {1};
   check_refused(one, stiff, {}, {}, {"single disc", "free to move", "(0.1, 0.2)"});
+  one.groups["it"] = {.discs = {0}, .tributary_lengths = {}};
+  check_refused(one, stiff, {{.group = "it", .ux = 0.0, .uy = 0.0, .rotation = {}}}, {},
+                {"single disc", "touches nothing"});
 }
 
 TEST_CASE("contacts_that_cannot_be_are_refused") {

@@ -36,8 +36,9 @@ Exit codes: 0 done; 1 the computation failed, and says why; 2 bad input or usage
 class HelpText : public CLI::Formatter {
  public:
   std::string make_usage(const CLI::App* command, std::string) const override {
-    const bool whole_program = command->get_parent() == nullptr;
-    return format("Usage: equidem {} CASE.toml [OPTIONS]\n", whole_program ? "VERB" : command->get_name());
+    if (command->get_parent() == nullptr) return "Usage: equidem VERB CASE.toml [OPTIONS]\n";
+    const bool takes_case = command->get_option_no_throw("CASE") != nullptr;
+    return format("Usage: equidem {} {} [OPTIONS]\n", command->get_name(), takes_case ? "CASE.toml" : "PAPER");
   }
 };
 

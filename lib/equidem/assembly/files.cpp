@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
+#include <set>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -240,8 +242,21 @@ DiscGroup read_group(const Json& value, const std::string& entry) {
 }
 
 Json parse(const std::string& text) {
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    refuse("the file is empty", "an assembly is made of discs", "Write it again", "line 1, column 1");
+  }
+  std::vector<std::set<std::string>> keys;  // of the objects that are open
+  const auto refuse_repeated = [&](int, Json::parse_event_t event, Json& parsed) {
+    if (event == Json::parse_event_t::object_start) keys.emplace_back();
+    if (event == Json::parse_event_t::object_end) keys.pop_back();
+    if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second) {
+      const auto key = parsed.get<std::string>();
+      refuse(format("the key '{}' is there twice", key), "one of the two would be dropped", "Remove one", key);
+    }
+    return true;
+  };
   try {
-    return Json::parse(text);
+    return Json::parse(text, refuse_repeated);
   } catch (const Json::parse_error& error) {
     const std::size_t byte = std::min(error.byte, text.size());
     const std::string_view before(text.data(), byte);

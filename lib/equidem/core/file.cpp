@@ -7,6 +7,7 @@
 #include <iterator>
 #include <system_error>
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "equidem/core/error.hpp"
@@ -35,6 +36,10 @@ std::string read_file(const fs::path& path) {
   if (fs::is_directory(path, ignored)) {
     bad_input(format("cannot read '{}'", path.string()), "it is a folder", "Name a file in it");
   }
+  if (!fs::is_regular_file(path, ignored)) {
+    bad_input(format("cannot read '{}'", path.string()), "it is no regular file, and reading it might never end",
+              "Copy what it holds into a file");
+  }
   std::ifstream file(path, std::ios::binary);
   std::string content((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   if (!file || file.bad()) {
@@ -56,7 +61,10 @@ void check_writable(const fs::path& path, bool overwrite) {
   }
   if (folder.empty() || !fs::exists(folder, ignored)) folder = ".";
   if (!fs::is_directory(folder, ignored)) cannot_write(path, format("'{}' is not a folder", folder.string()));
-  if (access(folder.c_str(), W_OK) != 0) cannot_write(path, format("'{}': {}", folder.string(), std::strerror(errno)));
+  // Some file systems refuse what their permissions allow: try it.
+  const fs::path trial = folder / format(".equidem.{}.part", getpid());
+  if (mkdir(trial.c_str(), 0700) != 0) cannot_write(path, format("'{}': {}", folder.string(), std::strerror(errno)));
+  fs::remove(trial, ignored);
 }
 
 void write_file(const fs::path& path, std::string_view content, bool overwrite) {

@@ -108,6 +108,10 @@ void EquilibriumSolver::Implementation::build(std::span<const Support> supports)
   Stopwatch watch;
   unknowns = number_unknowns(assembly, springs, effects, supports);
   check_rigidity(assembly, graph, springs, unknowns);
+  if (assembly.size() == 1 && assembly.contacts.empty()) {
+    bad_input("the assembly is a single disc", "it touches nothing, so there is no equilibrium to find",
+              "Add discs that touch it");
+  }
   times.add("check", watch.lap());
   DissectionTree tree = dissect(assembly, graph);
   times.add("order", watch.lap());
@@ -197,6 +201,11 @@ void EquilibriumSolver::Implementation::refine(std::span<const double> f, Precis
   }
   result.rounded_residual = residual_of_rounded(f, motion) / reference;
   constexpr double worthless = 1e-3;
+  if (!std::isfinite(result.relative_residual)) {
+    computation_failed("the numbers of this case overflow a double",
+                       format("the residual comes out as {}", result.relative_residual),
+                       "Check the units of sizes, springs and loads");
+  }
   if (!(result.relative_residual <= worthless)) {
     computation_failed(format("the solution leaves a relative residual of {:.1e}", result.relative_residual),
                        "the stiffness matrix is too close to singular for the digits of a double",

@@ -38,8 +38,22 @@ std::vector<DiscMotion> as_motions(const DegreesOfFreedom& unknowns, const std::
 
 [[noreturn]] void report_mechanism(const System& system, const Factorization& factor) {
   const std::string motion = describe_motion(system.k.assembly, as_motions(system.unknowns, factor.softest_motion()));
+  double smallest = system.springs.largest();
+  for (std::size_t c = 0; c < system.k.assembly.contacts.size(); ++c) {
+    const SpringConstants k = system.springs[c];
+    smallest = std::min(smallest, k.kN);
+    if (k.kT != 0) smallest = std::min(smallest, std::abs(k.kT));
+  }
+  constexpr double digits = 1e11;  // springs further apart than this leave too few of the digits of a double
+  if (system.springs.largest() > digits * smallest) {
+    computation_failed(format("the springs differ by a factor of {:.1e}", system.springs.largest() / smallest),
+                       "the softest of them is lost in the round-off of the stiffest",
+                       "Choose springs within a factor of 1e10 of each other");
+  }
   bad_input("the assembly is a mechanism", format("it can move at no cost: {}", motion),
-            "Hold that motion by a support, add contacts, or give the contacts tangential springs (kT > 0)");
+            system.springs.any_tangential()
+                ? "Hold that motion by a support, or add contacts"
+                : "Hold that motion by a support, add contacts, or give the contacts tangential springs (kT > 0)");
 }
 
 constexpr double suspicious = 1e-9;  // share of a stiffness left when all others have given way
