@@ -67,7 +67,8 @@ class Dissection {
         coordinates_(graph.size()),
         label_(graph.size(), 0),
         strip_index_(graph.size(), -1),
-        divisions_(2 * graph.size() + 1) {
+        divisions_(2 * graph.size() + 1),
+        scratch_(static_cast<std::size_t>(thread_count())) {
     // Counted from the lower left corner, so that single precision is spent on the assembly and not on where
     // it lies.
     for (std::size_t d = 0; d < assembly.size(); ++d) {
@@ -121,26 +122,25 @@ class Dissection {
     std::vector<Part> level{root}, small_parts;
     while (!level.empty()) {
       std::vector<std::vector<Part>> children(level.size());
-      parallel_tasks(level.size(), [&](std::size_t k, int) { divide(level[k], children[k]); });
+      parallel_tasks(level.size(), [&](std::size_t k, int worker) { divide(level[k], children[k], scratch_[worker]); });
       level.clear();
       for (const auto& parts : children) {
         for (const Part& part : parts) (part.size() > small ? level : small_parts).push_back(part);
       }
     }
-    parallel_tasks(small_parts.size(), [&](std::size_t k, int) {
+    parallel_tasks(small_parts.size(), [&](std::size_t k, int worker) {
       std::vector<Part> open{small_parts[k]};
       while (!open.empty()) {
         const Part part = open.back();
         open.pop_back();
-        divide(part, open);
+        divide(part, open, scratch_[worker]);
       }
     });
   }
 
   /// Divide a part and append its children. A binary tree over n discs has at most 2n - 1 nodes: a part of n discs
   /// owns the labels [label, label + 2n - 1), so that parts can be divided in any order.
-  void divide(const Part& part, std::vector<Part>& open) {
-    thread_local Scratch scratch;
+  void divide(const Part& part, std::vector<Part>& open, Scratch& scratch) {
     Division& division = divisions_[part.label];
     division = {part.begin, part.end, {-1, -1}};
     if (part.size() <= std::max(1, options_.leaf_size)) return;
@@ -316,6 +316,7 @@ class Dissection {
   std::vector<std::int32_t> label_;                // by disc
   std::vector<std::int32_t> strip_index_;          // by disc: place in the strip of the cut at hand, or -1
   std::vector<Division> divisions_;                // by label
+  std::vector<Scratch> scratch_;                   // by worker
 };
 
 }  // namespace

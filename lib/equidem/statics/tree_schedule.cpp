@@ -28,7 +28,7 @@ class Scheduler {
 
   TreeSchedule run() {
     TreeSchedule schedule;
-    const double most = 0.25 * total_;
+    const double most = 0.2 * total_;
     const auto small = [&](std::int32_t t) { return below_[t] <= most || children_[t].empty(); };
     std::vector<std::int32_t> roots;  // of the wave that is being filled
     double filled = 0;

@@ -22,7 +22,7 @@ struct TreeSchedule {
   std::vector<Wave> waves;
 };
 
-/// Waves take a quarter of the work each: what waits for its parent is then the update matrices of a few small
+/// Waves take a fifth of the work each: what waits for its parent is then the update matrices of a few small
 /// subtrees and of some finished waves, not of all subtrees at once.
 /// \param work of each node, in any unit
 TreeSchedule schedule_tree(const DissectionTree& tree, std::span<const double> work);
