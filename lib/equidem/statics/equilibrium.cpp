@@ -259,6 +259,7 @@ EquilibriumSolver::EquilibriumSolver(const Assembly& assembly, const ContactSpri
 
 EquilibriumSolver::~EquilibriumSolver() = default;
 EquilibriumSolver::EquilibriumSolver(EquilibriumSolver&&) noexcept = default;
+EquilibriumSolver& EquilibriumSolver::operator=(EquilibriumSolver&&) noexcept = default;
 
 Equilibrium EquilibriumSolver::solve(const LoadCase& loads) const {
   return implementation_->solve(loads);

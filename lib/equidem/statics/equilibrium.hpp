@@ -71,6 +71,9 @@ class EquilibriumSolver {
                     const EquilibriumOptions& options = {});
   ~EquilibriumSolver();
   EquilibriumSolver(EquilibriumSolver&&) noexcept;
+  EquilibriumSolver& operator=(EquilibriumSolver&&) noexcept;
+  EquilibriumSolver(const EquilibriumSolver&) = delete;
+  EquilibriumSolver& operator=(const EquilibriumSolver&) = delete;
 
   /// A load on a component that is held goes straight into its reaction.
   /// \throws Error (bad_input) where a load names no group or an empty one, or gives a moment to a disc that nothing keeps

@@ -27,6 +27,8 @@ class LargeBuffer {
   ~LargeBuffer();
   LargeBuffer(LargeBuffer&& other) noexcept;
   LargeBuffer& operator=(LargeBuffer&& other) noexcept;
+  LargeBuffer(const LargeBuffer&) = delete;
+  LargeBuffer& operator=(const LargeBuffer&) = delete;
 
   [[nodiscard]] double* data() const { return data_; }
   [[nodiscard]] std::size_t size() const { return size_; }
@@ -39,7 +41,7 @@ class LargeBuffer {
 /// Memory of a LargeVector. It is not touched before it is written: the threads that fill it bring its pages in.
 template <typename T>
 struct UntouchedAllocator {
-  using value_type = T;
+  using value_type = T;  // NOLINT(readability-identifier-naming): the standard library asks for this name
   UntouchedAllocator() = default;
   template <typename U>
   explicit UntouchedAllocator(const UntouchedAllocator<U>&) {}

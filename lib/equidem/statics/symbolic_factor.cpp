@@ -33,7 +33,7 @@ void collect_rows(SymbolicFactor& symbolic, const ContactGraph& graph,
 
 double SymbolicFactor::front_operations(std::size_t t) const {
   // Column c of k pivots updates a triangle of r = k + m - c rows: r + r (r + 1) operations.
-  const double k = static_cast<double>(pivots(t)), m = static_cast<double>(updates(t));
+  const auto k = static_cast<double>(pivots(t)), m = static_cast<double>(updates(t));
   const double n = k + m;
   const auto sum_of_squares = [](double x) { return x * (x + 1) * (2 * x + 1) / 6; };
   return sum_of_squares(n) - sum_of_squares(m);
@@ -42,7 +42,7 @@ double SymbolicFactor::front_operations(std::size_t t) const {
 double SymbolicFactor::factor_bytes() const {
   double bytes = 0;
   for (std::size_t t = 0; t < fronts(); ++t) {
-    const double k = static_cast<double>(pivots(t));
+    const auto k = static_cast<double>(pivots(t));
     bytes += 8 * k * (k + static_cast<double>(updates(t)));
   }
   return bytes;
@@ -75,7 +75,7 @@ SymbolicFactor analyze(DissectionTree tree, const ContactGraph& graph, int block
   }
 
   for (std::size_t t = 0; t < fronts; ++t) {
-    const double k = static_cast<double>(symbolic.pivots(t)), m = static_cast<double>(symbolic.updates(t));
+    const auto k = static_cast<double>(symbolic.pivots(t)), m = static_cast<double>(symbolic.updates(t));
     symbolic.nonzeros += k * (k + 1) / 2 + k * m;
     symbolic.operations += symbolic.front_operations(t);
     symbolic.largest_front = std::max(symbolic.largest_front, k + m);
