@@ -214,6 +214,42 @@ class Solve(ProgramTest):
         self.check_error(done, 2, "free")
 
 
+class Hostile(ProgramTest):
+    """Input that must end in a sentence, never in a hang or a wrong verdict."""
+
+    def truss_reading(self, write):
+        (self.folder / "truss.toml").write_text((CASES / "truss.toml").read_text())
+        write(self.folder / "truss.json")
+        return equidem("solve", self.folder / "truss.toml")
+
+    def test_a_file_that_may_never_end_is_refused(self):
+        self.check_error(self.truss_reading(os.mkfifo), 2, "truss.json", "no regular file")
+
+    def test_an_empty_assembly_file_is_called_empty(self):
+        self.check_error(self.truss_reading(lambda path: path.write_text(" \n")), 2, "truss.json", "empty")
+
+    def test_a_key_given_twice_is_refused(self):
+        text = (CASES / "truss.json").read_text().replace('"discs"', '"discs": [], "discs"', 1)
+        self.check_error(self.truss_reading(lambda path: path.write_text(text)), 2, "'discs'", "twice")
+
+    def test_springs_too_far_apart_are_no_mechanism(self):
+        done = equidem("solve", TENSION, "--set", "springs.kT=1e30")
+        self.check_error(done, 1, "springs differ by a factor")
+        self.assertNotIn("mechanism", done.stderr)
+
+    def test_numbers_that_overflow_are_called_that(self):
+        self.check_error(equidem("solve", TENSION, "--set", "test.stress=1e300"), 1, "overflow")
+
+    def test_a_state_that_the_solver_cannot_judge_is_not_called_stable(self):
+        given = ["--set", "springs.kT=-0.35e9", "--set", 'solver.method="umfpack"']
+        self.assertIn("NOT KNOWN", self.check_done(equidem("solve", TENSION, *given)).stdout)
+        result = parse_json(self.check_done(equidem("solve", TENSION, *given, "--json", "-")).stdout)
+        self.assertEqual(result["status"], "unjudged")
+        self.assertIsNone(result["unstable_modes"])
+        judged = parse_json(self.check_done(equidem("solve", TENSION, *given[:2], "--json", "-")).stdout)
+        self.assertEqual(judged["status"], "unstable")
+
+
 class Sweep(ProgramTest):
     def rows(self, out):
         with open(out / "sweep.csv", newline="") as file:
