@@ -89,4 +89,14 @@ DegreesOfFreedom number_unknowns(const Assembly& assembly, const ContactSprings&
   return unknowns;
 }
 
+std::vector<DiscMotion> disc_motions(const DegreesOfFreedom& unknowns, std::span<const double> components) {
+  const auto b = static_cast<std::size_t>(unknowns.per_disc);
+  std::vector<DiscMotion> motions(components.size() / b);
+  for (std::size_t d = 0; d < motions.size(); ++d) {
+    const double turn = b == 3 ? components[d * b + 2] / unknowns.rotation_scale : 0.0;
+    motions[d] = {{components[d * b], components[d * b + 1]}, turn};
+  }
+  return motions;
+}
+
 }  // namespace equidem

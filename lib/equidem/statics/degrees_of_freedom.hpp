@@ -11,6 +11,7 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
+#include "equidem/contact/frame.hpp"
 #include "equidem/statics/supports.hpp"
 
 namespace equidem {
@@ -33,5 +34,8 @@ struct DegreesOfFreedom {
 ///         different values, or prescribes a rotation that is not an unknown of the scene
 DegreesOfFreedom number_unknowns(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
                                  std::span<const Support> supports);
+
+/// Components (u_x, u_y[, a theta]) of all discs as their motions.
+std::vector<DiscMotion> disc_motions(const DegreesOfFreedom& unknowns, std::span<const double> components);
 
 }  // namespace equidem

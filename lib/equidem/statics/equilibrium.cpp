@@ -11,17 +11,10 @@
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/rigidity.hpp"
 #include "equidem/statics/solver_choice.hpp"
+#include "equidem/statics/stiffness_solver.hpp"
 
 namespace equidem {
 namespace {
-
-double norm_of_free(const DegreesOfFreedom& unknowns, std::span<const double> x) {
-  double sum = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    if (unknowns.held[k] == 0) sum += x[k] * x[k];
-  }
-  return std::sqrt(sum);
-}
 
 void check_load(const Load& load) {
   for (const double value : {load.force.x, load.force.y, load.moment}) {
@@ -82,157 +75,86 @@ struct EquilibriumSolver::Implementation {
   const ContactSprings& springs;
   EquilibriumOptions options;
   Effects effects;
-  ContactGraph graph;
-  DegreesOfFreedom unknowns;
-  StiffnessMatrix matrix;
-  std::unique_ptr<Factorization> factor;
-  std::int64_t unstable_modes = 0;
   StageTimes times;
+  StiffnessSolver solver;
 
-  Implementation(const Assembly& assembly_in, const ContactSprings& springs_in, const EquilibriumOptions& options_in)
+  Implementation(const Assembly& assembly_in, const ContactSprings& springs_in, std::span<const Support> supports,
+                 const EquilibriumOptions& options_in)
       : assembly(assembly_in),
         springs(springs_in),
         options(options_in),
         effects(derive_effects(springs_in, options_in.rotation)),
-        graph(assembly_in) {}
+        solver(build(supports)) {}
 
-  void build(std::span<const Support> supports);
-  void judge_inertia(const System& system);
+  StiffnessSolver build(std::span<const Support> supports);
   [[nodiscard]] Equilibrium solve(const LoadCase& loads) const;
-  void refine(std::span<const double> f, PreciseMotion& motion, Equilibrium& result) const;
-  [[nodiscard]] double residual_of_rounded(std::span<const double> f, const PreciseMotion& motion) const;
+  void bound_error(const Solution& solution, Equilibrium& result) const;
   void describe_state(std::span<const double> f, const PreciseMotion& motion, Equilibrium& result) const;
 };
 
-void EquilibriumSolver::Implementation::build(std::span<const Support> supports) {
+StiffnessSolver EquilibriumSolver::Implementation::build(std::span<const Support> supports) {
   Stopwatch watch;
-  unknowns = number_unknowns(assembly, springs, effects, supports);
+  ContactGraph graph(assembly);
+  DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, supports);
   check_rigidity(assembly, graph, springs, unknowns);
   if (assembly.size() == 1 && assembly.contacts.empty()) {
     bad_input("the assembly is a single disc", "it touches nothing, so there is no equilibrium to find",
               "Add discs that touch it");
   }
   times.add("check", watch.lap());
-  DissectionTree tree = dissect(assembly, graph);
-  times.add("order", watch.lap());
-  auto symbolic = std::make_shared<const SymbolicFactor>(analyze(std::move(tree), graph, unknowns.per_disc));
-  times.add("analyze", watch.lap());
-  SolveEstimate size = estimate(*symbolic, unknowns, springs.any_negative());
-  if (options.solver.method == SolverMethod::umfpack)
-    size.peak_bytes *= 4;  // LU of the whole matrix in an order of its own
-  check_memory(size, options.solver.memory_limit);
-  watch.lap();
-  matrix = assemble_stiffness(assembly, graph, springs, unknowns);
-  times.add("assemble", watch.lap());
-  const MatrixOnGraph k{matrix, assembly, graph};
-  const System system{k, springs, unknowns, std::move(symbolic)};
-  factor = factorize(system, options.solver, times);
-  watch.lap();
-  judge_inertia(system);
-  times.add("inertia", watch.lap());
-}
-
-void EquilibriumSolver::Implementation::judge_inertia(const System& system) {
-  const std::int64_t negative = factor->report().negative_pivots;
-  if (!springs.any_negative()) {
-    unstable_modes = 0;
-  } else if (negative < 0) {
-    unstable_modes = -1;
-  } else {
-    const std::int64_t of_rotations = negative_rotations(system);
-    unstable_modes = of_rotations < 0 ? -1 : negative - of_rotations;
-  }
+  return {assembly, springs, std::move(graph), std::move(unknowns), options.solver, Mechanisms::refuse, times};
 }
 
 Equilibrium EquilibriumSolver::Implementation::solve(const LoadCase& loads) const {
   Equilibrium result;
   result.times = times;
+  const DegreesOfFreedom& unknowns = solver.unknowns();
   result.unknowns = unknowns.unknowns;
-  const std::vector<double> f = assemble_loads(assembly, unknowns, loads);
-  check_inert_loads(assembly, unknowns, f);
-  PreciseMotion motion(f.size());
-  for (std::size_t k = 0; k < f.size(); ++k) motion.high[k] = unknowns.prescribed[k];
+  RightHandSide given;
+  given.force = assemble_loads(assembly, unknowns, loads);
+  check_inert_loads(assembly, unknowns, given.force);
+  given.prescribed = unknowns.prescribed;
+  Solution solution = std::move(solver.solve({&given, 1}, result.times).front());
+  Stopwatch watch;
+  result.relative_residual = solution.relative_residual();
+  result.refinements = solution.refinements;
+  if (solution.scale > 0) result.rounded_residual = solver.rounded_residual(given, solution.motion) / solution.scale;
+  result.times.add("refine", watch.lap());
   result.contact_forces.resize(assembly.contacts.size());
-  refine(f, motion, result);
-  contact_forces_of(assembly, springs, unknowns, motion, result.contact_forces);
-  describe_state(f, motion, result);
-  const FactorReport& report = factor->report();
+  contact_forces_of(assembly, springs, unknowns, solution.motion, result.contact_forces);
+  describe_state(given.force, solution.motion, result);
+  if (options.error_bound) {
+    watch.lap();
+    bound_error(solution, result);
+    result.times.add("error bound", watch.lap());
+  }
+  const FactorReport& report = solver.factor().report();
   result.solver = report.name;
   result.negative_pivots = report.negative_pivots;
-  result.unstable_modes = unstable_modes;
+  result.unstable_modes = solver.unstable_modes();
   result.pivot_growth = report.growth;
   result.factor_nonzeros = report.nonzeros;
   result.factor_bytes = report.bytes;
   return result;
 }
 
-// Solve K d = f - f_int(u), u := u + d, until the residual no longer falls: the first pass is the solution
-// itself, the others are iterative refinement with the residual taken from the contact law and the motion
-// kept to twice the digits.
-void EquilibriumSolver::Implementation::refine(std::span<const double> f, PreciseMotion& motion,
-                                               Equilibrium& result) const {
-  constexpr double good_enough = 1e-15;
-  std::vector<double> residual(f.size());
-  const auto evaluate = [&] {
-    residual_force(assembly, graph, springs, unknowns, motion, f, residual);
-    return norm_of_free(unknowns, residual);
-  };
-  const double reference = evaluate();
-  if (reference == 0) return;
-  Stopwatch watch;
-  double before = 1;
-  for (int pass = 0; pass <= options.solver.max_refinements; ++pass) {
-    factor->solve(residual, 1);
-    for (std::size_t k = 0; k < f.size(); ++k) {
-      if (unknowns.held[k] != 0) residual[k] = 0;
-    }
-    const PreciseMotion previous = motion;
-    motion.add(residual);
-    const double now = evaluate() / reference;
-    result.times.add(pass == 0 ? "solve" : "refine", watch.lap());
-    if (pass > 0 && !(now < before)) {  // no better: keep what was
-      motion = previous;
-      break;
-    }
-    result.relative_residual = now;
-    result.refinements = pass;
-    if (now <= good_enough || (pass > 0 && now > 0.5 * before)) break;
-    before = now;
-  }
-  result.rounded_residual = residual_of_rounded(f, motion) / reference;
-  constexpr double worthless = 1e-3;
-  if (!std::isfinite(result.relative_residual)) {
-    computation_failed("the numbers of this case overflow a double",
-                       format("the residual comes out as {}", result.relative_residual),
-                       "Check the units of sizes, springs and loads");
-  }
-  if (!(result.relative_residual <= worthless)) {
-    computation_failed(format("the solution leaves a relative residual of {:.1e}", result.relative_residual),
-                       "the stiffness matrix is too close to singular for the digits of a double",
-                       "Check supports and springs; springs of very different size are the usual cause");
-  }
-}
-
-double EquilibriumSolver::Implementation::residual_of_rounded(std::span<const double> f,
-                                                              const PreciseMotion& motion) const {
-  PreciseMotion rounded(0);
-  rounded.high = motion.high;
-  rounded.low.assign(motion.high.size(), 0.0);
-  std::vector<double> residual(f.size());
-  residual_force(assembly, graph, springs, unknowns, rounded, f, residual);
-  return norm_of_free(unknowns, residual);
+void EquilibriumSolver::Implementation::bound_error(const Solution& solution, Equilibrium& result) const {
+  const double inverse_norm = solver.inverse_norm(solution.motion.high);
+  result.condition = solver.norm() * inverse_norm;
+  double size = 0;
+  for (const double u : solution.motion.high) size += u * u;
+  constexpr double safety = 10;           // the norm of the inverse is estimated from below
+  constexpr double rounding = 0x1.0p-53;  // of the motions handed out
+  result.error_bound = rounding + (size > 0 ? safety * inverse_norm * solution.residual / std::sqrt(size) : 0.0);
 }
 
 void EquilibriumSolver::Implementation::describe_state(std::span<const double> f, const PreciseMotion& motion,
                                                        Equilibrium& result) const {
+  const DegreesOfFreedom& unknowns = solver.unknowns();
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
-  result.motions.resize(assembly.size());
-  for (std::size_t d = 0; d < assembly.size(); ++d) {
-    const double turn = b == 3 ? motion.high[d * b + 2] / unknowns.rotation_scale : 0.0;
-    result.motions[d] = {{motion.high[d * b], motion.high[d * b + 1]}, turn};
-  }
+  result.motions = disc_motions(unknowns, motion.high);
   std::vector<double> internal(f.size());
-  internal_force(assembly, graph, unknowns, result.contact_forces, internal);
+  internal_force(assembly, solver.graph(), unknowns, result.contact_forces, internal);
   for (std::size_t d = 0; d < assembly.size(); ++d) {
     const auto held = [&](std::size_t k) { return unknowns.held[d * b + k] != 0; };
     const auto reaction = [&](std::size_t k) { return held(k) ? internal[d * b + k] - f[d * b + k] : 0.0; };
@@ -253,8 +175,7 @@ EquilibriumSolver::EquilibriumSolver(const Assembly& assembly, const ContactSpri
                                      std::span<const Support> supports, const EquilibriumOptions& options) {
   check(assembly);
   check(options.solver);
-  implementation_ = std::make_unique<Implementation>(assembly, springs, options);
-  implementation_->build(supports);
+  implementation_ = std::make_unique<Implementation>(assembly, springs, supports, options);
 }
 
 EquilibriumSolver::~EquilibriumSolver() = default;
@@ -268,7 +189,7 @@ const Effects& EquilibriumSolver::effects() const {
   return implementation_->effects;
 }
 std::int64_t EquilibriumSolver::unknowns() const {
-  return implementation_->unknowns.unknowns;
+  return implementation_->solver.unknowns().unknowns;
 }
 
 Equilibrium solve_equilibrium(const Assembly& assembly, const ContactSprings& springs,
@@ -291,6 +212,9 @@ std::string Equilibrium::report() const {
                             readable_bytes(factor_bytes));
   text += format("relative residual {:.1e} after {}, {:.1e} for the motions rounded to double\n", relative_residual,
                  counted(refinements, "refinement"), rounded_residual);
+  if (condition > 0)
+    text +=
+        format("condition about {:.1e}; relative error of the motions at most about {:.1e}\n", condition, error_bound);
   if (negative_pivots > 0 || unstable_modes != 0) {
     text += negative_pivots < 0 ? "negative pivots not counted: " : format("{} negative pivots: ", negative_pivots);
     if (unstable_modes == 0) {

@@ -11,10 +11,8 @@ constexpr std::size_t grain = 1 << 13;
 
 using Extended = long double;  // 64 bits of mantissa on x86, more elsewhere
 
-using ExtendedForce = ForceOf<Extended>;
-
-ExtendedForce evaluate(const Contact& contact, const ContactFrame& frame, const SpringConstants& k,
-                       const DegreesOfFreedom& unknowns, const PreciseMotion& motion) {
+DeformationOf<Extended> evaluate(const Contact& contact, const ContactFrame& frame, const DegreesOfFreedom& unknowns,
+                                 const PreciseMotion& motion) {
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
   const std::size_t i = contact.i * b, j = contact.j * b;
   const auto difference = [&](std::size_t c) {
@@ -27,7 +25,7 @@ ExtendedForce evaluate(const Contact& contact, const ContactFrame& frame, const 
     const Extended turn_j = static_cast<Extended>(motion.high[j + 2]) + motion.low[j + 2];
     turn = (frame.lever_i * turn_i + frame.lever_j * turn_j) / unknowns.rotation_scale;
   }
-  return linear_spring_force(k, deformation(frame, difference(0), difference(1), turn));
+  return deformation(frame, difference(0), difference(1), turn);
 }
 
 }  // namespace
@@ -47,23 +45,41 @@ void contact_forces_of(const Assembly& assembly, const ContactSprings& springs, 
   parallel_ranges(assembly.contacts.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       const Contact& contact = assembly.contacts[c];
-      const ExtendedForce f = evaluate(contact, frame_of(assembly, contact), springs[c], unknowns, motion);
+      const auto f = linear_spring_force(springs[c], evaluate(contact, frame_of(assembly, contact), unknowns, motion));
       forces[c] = {static_cast<double>(f.normal), static_cast<double>(f.tangential)};
     }
   });
 }
 
-void residual_force(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
-                    const DegreesOfFreedom& unknowns, const PreciseMotion& motion, std::span<const double> f,
+void deformations_of(const SpringNetwork& network, const PreciseMotion& motion,
+                     std::span<const ContactDeformation> imposed, std::span<ContactDeformation> deformations) {
+  parallel_ranges(network.assembly.contacts.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const Contact& contact = network.assembly.contacts[c];
+      auto d = evaluate(contact, frame_of(network.assembly, contact), network.unknowns, motion);
+      if (!imposed.empty()) d.normal += imposed[c].normal, d.tangential += imposed[c].tangential;
+      deformations[c] = {static_cast<double>(d.normal), static_cast<double>(d.tangential)};
+    }
+  });
+}
+
+void residual_force(const SpringNetwork& network, const PreciseMotion& motion,
+                    std::span<const ContactDeformation> imposed, std::span<const double> f,
                     std::span<double> residual) {
+  const auto& [assembly, graph, springs, unknowns] = network;
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
   parallel_ranges(assembly.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t d = begin; d < end; ++d) {
-      Extended x = f[d * b], y = f[d * b + 1], moment = 0;
+      Extended x = 0, y = 0, moment = 0;
       for (const auto& edge : graph.of(d)) {
         const Contact& contact = assembly.contacts[edge.contact];
         const ContactFrame frame = frame_of(assembly, contact);
-        const ExtendedForce force = evaluate(contact, frame, springs[edge.contact], unknowns, motion);
+        auto stretch_and_slip = evaluate(contact, frame, unknowns, motion);
+        if (!imposed.empty()) {
+          stretch_and_slip.normal += imposed[edge.contact].normal;
+          stretch_and_slip.tangential += imposed[edge.contact].tangential;
+        }
+        const auto force = linear_spring_force(springs[edge.contact], stretch_and_slip);
         const Vec2 n = frame.normal;
         const Extended fx = force.normal * n.x - force.tangential * n.y;
         const Extended fy = force.normal * n.y + force.tangential * n.x;
@@ -77,11 +93,12 @@ void residual_force(const Assembly& assembly, const ContactGraph& graph, const C
         }
       }
       const auto keep = [&](std::size_t k, Extended value) {
+        if (!f.empty()) value += f[d * b + k];
         residual[d * b + k] = unknowns.held[d * b + k] != 0 ? 0.0 : static_cast<double>(value);
       };
       keep(0, x);
       keep(1, y);
-      if (b == 3) keep(2, f[d * b + 2] + moment / unknowns.rotation_scale);
+      if (b == 3) keep(2, moment / unknowns.rotation_scale);
     }
   });
 }

@@ -26,6 +26,19 @@ struct PreciseMotion {
   void add(std::span<const double> correction);
 };
 
+/// Discs, contacts, springs and unknowns, as forces are evaluated on them.
+struct SpringNetwork {
+  const Assembly& assembly;
+  const ContactGraph& graph;
+  const ContactSprings& springs;
+  const DegreesOfFreedom& unknowns;
+};
+
+/// Stretch and slip of every contact: those of the motion, from differences in extended precision, and those imposed.
+/// \param imposed per contact, or empty
+void deformations_of(const SpringNetwork& network, const PreciseMotion& motion,
+                     std::span<const ContactDeformation> imposed, std::span<ContactDeformation> deformations);
+
 /// Force of every contact, from the differences of the motion of its discs, evaluated in extended precision: a disc
 /// that has turned far stretches its contacts by small differences of large products.
 void contact_forces_of(const Assembly& assembly, const ContactSprings& springs, const DegreesOfFreedom& unknowns,
@@ -37,9 +50,10 @@ void internal_force(const Assembly& assembly, const ContactGraph& graph, const D
 
 /// What is left of the load f once the contacts have answered: f - f_int(motion) on free components, 0 on held ones.
 /// Stretch, slip, forces and their sums are all evaluated in extended precision.
-void residual_force(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
-                    const DegreesOfFreedom& unknowns, const PreciseMotion& motion, std::span<const double> f,
-                    std::span<double> residual);
+/// \param imposed deformation of each contact beside that of the motion; empty: none
+/// \param f per component; empty: no load
+void residual_force(const SpringNetwork& network, const PreciseMotion& motion,
+                    std::span<const ContactDeformation> imposed, std::span<const double> f, std::span<double> residual);
 
 /// Moment that contacts exert on each disc, N: sum of lever * tangential force.
 std::vector<double> contact_moments(const Assembly& assembly, std::span<const ContactForce> forces);

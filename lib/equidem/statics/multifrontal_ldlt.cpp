@@ -56,18 +56,22 @@ class Ldlt final : public Factorization {
     }
   }
 
-  [[nodiscard]] std::vector<double> softest_motion() const override {
+  [[nodiscard]] std::vector<double> softest_motion() const override { return motion_of(softest_); }
+  [[nodiscard]] std::vector<double> null_motion(std::int64_t k) const override { return motion_of(null_.at(k)); }
+
+  [[nodiscard]] const FactorReport& report() const override { return report_; }
+
+ private:
+  /// L^-T e of the unit vector of one unknown.
+  [[nodiscard]] std::vector<double> motion_of(std::int64_t unknown) const {
     std::vector<double> y(unknowns(), 0.0), x(unknowns());
-    if (softest_ >= 0) y[softest_] = 1;
+    if (unknown >= 0) y[unknown] = 1;
     backward(y);
     scale(y);
     permute_from_elimination(*symbolic_, y, x);
     return x;
   }
 
-  [[nodiscard]] const FactorReport& report() const override { return report_; }
-
- private:
   [[nodiscard]] std::size_t unknowns() const { return symbolic_->position.size() * symbolic_->block; }
 
   void factorize(const MatrixOnGraph& k) {
@@ -224,6 +228,7 @@ class Ldlt final : public Factorization {
       }
       if (symbolic_->tree.nodes[t].parent >= 0 || f.delayed == 0) continue;
       report_.zero_pivots += static_cast<std::int64_t>(f.delayed);
+      for (std::size_t r = f.pivots.count; r < f.pivots.count + f.delayed; ++r) null_.push_back(f.ids[r]);
       smallest = 0;
       softest_ = f.ids[f.pivots.count];
     }
@@ -307,8 +312,9 @@ class Ldlt final : public Factorization {
   IndefiniteOptions options_;
   std::vector<double> scale_;  // of each unknown, in elimination order
   std::vector<FrontFactor> fronts_;
-  BufferPool pool_;            // empty but during factorization
-  std::int64_t softest_ = -1;  // unknown of the smallest pivot, in elimination order
+  BufferPool pool_;                 // empty but during factorization
+  std::int64_t softest_ = -1;       // unknown of the smallest pivot, in elimination order
+  std::vector<std::int64_t> null_;  // unknowns that no front could eliminate
   FactorReport report_;
 };
 

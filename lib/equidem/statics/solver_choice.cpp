@@ -27,17 +27,8 @@ constexpr MethodName method_names[] = {{SolverMethod::automatic, "auto"},
                                        {SolverMethod::cholmod, "cholmod"},
                                        {SolverMethod::umfpack, "umfpack"}};
 
-std::vector<DiscMotion> as_motions(const DegreesOfFreedom& unknowns, const std::vector<double>& x) {
-  const auto b = static_cast<std::size_t>(unknowns.per_disc);
-  std::vector<DiscMotion> motions(x.size() / b);
-  for (std::size_t d = 0; d < motions.size(); ++d) {
-    motions[d] = {{x[d * b], x[d * b + 1]}, b == 3 ? x[d * b + 2] / unknowns.rotation_scale : 0.0};
-  }
-  return motions;
-}
-
 [[noreturn]] void report_mechanism(const System& system, const Factorization& factor) {
-  const std::string motion = describe_motion(system.k.assembly, as_motions(system.unknowns, factor.softest_motion()));
+  const std::string motion = describe_motion(system.k.assembly, disc_motions(system.unknowns, factor.softest_motion()));
   double smallest = system.springs.largest();
   for (std::size_t c = 0; c < system.k.assembly.contacts.size(); ++c) {
     const SpringConstants k = system.springs[c];
@@ -58,53 +49,67 @@ std::vector<DiscMotion> as_motions(const DegreesOfFreedom& unknowns, const std::
 
 constexpr double suspicious = 1e-9;  // share of a stiffness left when all others have given way
 
+bool costs_no_energy(const System& system, const std::vector<double>& motion) {
+  constexpr double no_energy = 1e-21;  // over the energy of the same motions without cooperation
+  return std::abs(softness(system.k.assembly, system.springs, disc_motions(system.unknowns, motion))) < no_energy;
+}
+
 /// K is singular where the softest motion that elimination met costs, or with kT < 0 yields, no more energy than its
 /// own round-off.
-void refuse_mechanism(const System& system, const Factorization& factor) {
-  constexpr double no_energy = 1e-21;  // over the energy of the same motions without cooperation
-  if (factor.report().smallest_pivot > suspicious) return;
+bool is_mechanism(const System& system, const Factorization& factor) {
+  if (factor.report().smallest_pivot > suspicious) return false;
   const std::vector<double> softest = factor.softest_motion();
-  if (softest.empty()) return;
-  if (std::abs(softness(system.k.assembly, system.springs, as_motions(system.unknowns, softest))) < no_energy) {
-    report_mechanism(system, factor);
+  return !softest.empty() && costs_no_energy(system, softest);
+}
+
+/// Unknowns may be held only against motions that truly cost nothing.
+void check_null_motions(const System& system, const Factorization& factor) {
+  constexpr std::int64_t most = 32;
+  for (std::int64_t k = 0; k < std::min(most, factor.report().zero_pivots); ++k) {
+    if (!costs_no_energy(system, factor.null_motion(k))) report_mechanism(system, factor);
   }
 }
 
-std::unique_ptr<Factorization> indefinite(const System& system) {
+std::unique_ptr<Factorization> indefinite(const System& system, Mechanisms mechanisms) {
   auto factor = multifrontal_ldlt(system.symbolic, system.k);
-  if (factor->report().zero_pivots > 0) report_mechanism(system, *factor);
-  refuse_mechanism(system, *factor);
+  if (factor->report().zero_pivots > 0) {
+    if (mechanisms == Mechanisms::refuse) report_mechanism(system, *factor);
+    check_null_motions(system, *factor);
+  } else if (is_mechanism(system, *factor)) {
+    report_mechanism(system, *factor);
+  }
   return factor;
 }
 
-std::unique_ptr<Factorization> multifrontal(const System& system) {
-  if (system.springs.any_negative()) return indefinite(system);
+std::unique_ptr<Factorization> multifrontal(const System& system, Mechanisms mechanisms) {
+  if (system.springs.any_negative()) return indefinite(system, mechanisms);
   if (auto factor = multifrontal_cholesky(system.symbolic, system.k)) {
-    refuse_mechanism(system, *factor);
-    return factor;
+    if (!is_mechanism(system, *factor)) return factor;
+    if (mechanisms == Mechanisms::refuse) report_mechanism(system, *factor);
   }
-  return indefinite(system);  // no spring is negative: a pivot that is not positive is round-off of zero
+  return indefinite(system, mechanisms);  // no spring is negative: a pivot that is not positive is round-off of zero
 }
 
 /// What a library's factorization cannot tell, ours can: where it failed or met a pivot near nothing, K is factorized
 /// once more to name the mechanism, if there is one.
-std::unique_ptr<Factorization> judged(std::unique_ptr<Factorization> factor, const System& system) {
+std::unique_ptr<Factorization> judged(std::unique_ptr<Factorization> factor, const System& system,
+                                      Mechanisms mechanisms) {
   if (factor && factor->report().smallest_pivot > suspicious) return factor;
-  auto judge = multifrontal(system);
-  return factor ? std::move(factor) : std::move(judge);
+  auto judge = multifrontal(system, mechanisms);
+  return factor && judge->report().zero_pivots == 0 ? std::move(factor) : std::move(judge);
 }
 
-std::unique_ptr<Factorization> by_cholmod(const System& system) {
+std::unique_ptr<Factorization> by_cholmod(const System& system, Mechanisms mechanisms) {
   if (system.springs.any_negative()) {
     bad_input("method 'cholmod' cannot solve this case",
               "some kT is negative, and Cholesky wants a positive definite matrix", "Use method = \"auto\"");
   }
-  return judged(cholmod_cholesky(system.k, system.unknowns, CholmodOrdering::ours, system.symbolic->tree.order),
-                system);
+  return judged(cholmod_cholesky(system.k, system.unknowns, CholmodOrdering::ours, system.symbolic->tree.order), system,
+                mechanisms);
 }
 
-std::unique_ptr<Factorization> by_umfpack(const System& system) {
-  return judged(umfpack_lu(system.k, system.unknowns), system);
+std::unique_ptr<Factorization> by_umfpack(const System& system, Mechanisms mechanisms) {
+  return judged(umfpack_lu(system.k, system.unknowns), system, mechanisms);
 }
 
 }  // namespace
@@ -159,19 +164,20 @@ void check_memory(const SolveEstimate& estimate, double memory_limit) {
       "Use fewer discs, restrain rotation, raise the limit, or take a machine with more memory");
 }
 
-std::unique_ptr<Factorization> factorize(const System& system, const SolverOptions& options, StageTimes& times) {
+std::unique_ptr<Factorization> factorize(const System& system, const SolverOptions& options, Mechanisms mechanisms,
+                                         StageTimes& times) {
   const Stopwatch watch;
   std::unique_ptr<Factorization> factor;
   switch (options.method) {
     case SolverMethod::automatic:
     case SolverMethod::multifrontal:
-      factor = multifrontal(system);
+      factor = multifrontal(system, mechanisms);
       break;
     case SolverMethod::cholmod:
-      factor = by_cholmod(system);
+      factor = by_cholmod(system, mechanisms);
       break;
     case SolverMethod::umfpack:
-      factor = by_umfpack(system);
+      factor = by_umfpack(system, mechanisms);
       break;
   }
   times.add("factorize", watch.seconds());

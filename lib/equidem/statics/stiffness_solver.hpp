@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The factorized stiffness matrix of an assembly, solved and refined against the contact law for any right-hand sides.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/contact/frame.hpp"
+#include "equidem/core/stopwatch.hpp"
+#include "equidem/statics/contact_graph.hpp"
+#include "equidem/statics/degrees_of_freedom.hpp"
+#include "equidem/statics/factorization.hpp"
+#include "equidem/statics/internal_force.hpp"
+#include "equidem/statics/linear_solver.hpp"
+#include "equidem/statics/solver_choice.hpp"
+
+namespace equidem {
+
+/// What pulls: loads on discs, prescribed motions of held components, deformations imposed on contacts.
+struct RightHandSide {
+  std::vector<double> force;                ///< per component, N/m (moments over a); empty: none
+  std::vector<double> prescribed;           ///< per component, m, read where held; empty: held at 0
+  std::vector<ContactDeformation> imposed;  ///< per contact, m, in addition to that of the motion; empty: none
+};
+
+/// The motion that balances one right-hand side.
+struct Solution {
+  PreciseMotion motion{0};
+  double residual = 0;  ///< |f - f_int|, 2-norm over the unknowns, N/m
+  double scale =
+      0;  ///< N/m, what relative residuals refer to: |f| with prescribed motions and imposed deformations included
+  int refinements = 0;
+
+  [[nodiscard]] double relative_residual() const { return scale > 0 ? residual / scale : 0.0; }
+};
+
+class StiffnessSolver {
+ public:
+  /// Order, analyze, assemble and factorize. The assembly and the springs must outlive this object.
+  /// \throws Error (computation_failed) where the factor would not fit into memory or K is singular to working precision;
+  ///         (bad_input) naming a mechanism, unless mechanisms are held
+  StiffnessSolver(const Assembly& assembly, const ContactSprings& springs, ContactGraph graph,
+                  DegreesOfFreedom unknowns, const SolverOptions& options, Mechanisms mechanisms, StageTimes& times);
+
+  /// \param times gets "solve" and "refine"
+  /// \throws Error (computation_failed) where the residual shows that K is too near to singular, or numbers overflow
+  [[nodiscard]] std::vector<Solution> solve(std::span<const RightHandSide> cases, StageTimes& times) const;
+
+  /// Residual of the motion rounded to doubles, N/m.
+  [[nodiscard]] double rounded_residual(const RightHandSide& given, const PreciseMotion& motion) const;
+  /// Deformation of every contact, imposed one included.
+  [[nodiscard]] std::vector<ContactDeformation> deformations(const RightHandSide& given,
+                                                             const PreciseMotion& motion) const;
+  /// Estimate of |K^-1| (2-norm) by inverse iteration from `start` (empty: from a fixed rough vector), which finds the softest
+  /// motion that `start` has a part in: a lower bound, mostly within a factor of 2. 1/Pa.
+  [[nodiscard]] double inverse_norm(std::span<const double> start = {}) const;
+  /// |K| (largest sum of the magnitudes of a row), Pa.
+  [[nodiscard]] double norm() const;
+  [[nodiscard]] const ContactGraph& graph() const { return graph_; }
+  [[nodiscard]] const DegreesOfFreedom& unknowns() const { return unknowns_; }
+  [[nodiscard]] const Factorization& factor() const { return *factor_; }
+  /// Negative eigenvalues beyond those that rotations bring by themselves where kT < 0; -1: not known.
+  [[nodiscard]] std::int64_t unstable_modes() const { return unstable_modes_; }
+
+ private:
+  struct Refinement;
+  void judge_inertia(const System& system);
+  void evaluate_residual(const RightHandSide& given, const PreciseMotion& motion, std::span<double> residual) const;
+  [[nodiscard]] double norm_of_free(std::span<const double> x) const;
+
+  const Assembly& assembly_;
+  const ContactSprings& springs_;
+  ContactGraph graph_;
+  DegreesOfFreedom unknowns_;
+  SolverOptions options_;
+  StiffnessMatrix matrix_;
+  std::unique_ptr<Factorization> factor_;
+  std::int64_t unstable_modes_ = 0;
+};
+
+}  // namespace equidem
