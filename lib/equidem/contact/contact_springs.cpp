@@ -39,6 +39,16 @@ void check(const SpringConstants& k, const std::string& where) {
   }
 }
 
+/// cos 2 theta, sin 2 theta, cos 4 theta, sin 4 theta at the direction of a contact. Odd harmonics of psi vanish: each
+/// contact is seen from both of its discs.
+std::array<double, 4> harmonics_at(const Assembly& assembly, const Contact& contact) {
+  const Vec2 l = assembly.branch(contact);
+  const Vec2 n = l / norm(l);
+  const double c2 = n.x * n.x - n.y * n.y;
+  const double s2 = 2 * n.x * n.y;
+  return {c2, s2, c2 * c2 - s2 * s2, 2 * c2 * s2};
+}
+
 /// By how much the springs of the case are multiplied at each contact.
 std::vector<double> weights(const Assembly& assembly, SpringWeighting weighting) {
   const std::size_t count = assembly.contacts.size();
@@ -126,30 +136,27 @@ ContactSprings contact_springs(const Assembly& assembly, SpringConstants springs
   return ContactSprings(std::move(result));
 }
 
-std::vector<double> contact_density(const Assembly& assembly) {
-  // psi(theta) has the period pi, since each contact is seen from both of its discs, so only even harmonics
-  // exist.
-  const std::size_t count = assembly.contacts.size();
-  std::vector<Vec2> normals(count);
-  std::array<double, 4> mean{};  // of cos 2 theta, sin 2 theta, cos 4 theta, sin 4 theta over the contacts
-  const auto harmonics = [](Vec2 n) {
-    const double c2 = n.x * n.x - n.y * n.y;
-    const double s2 = 2 * n.x * n.y;
-    return std::array<double, 4>{c2, s2, c2 * c2 - s2 * s2, 2 * c2 * s2};
-  };
-  for (std::size_t c = 0; c < count; ++c) {
-    const Vec2 l = assembly.branch(assembly.contacts[c]);
-    normals[c] = l / norm(l);
-    const auto h = harmonics(normals[c]);
-    for (std::size_t k = 0; k < 4; ++k) mean[k] += h[k] / static_cast<double>(count);
+ContactHarmonics contact_harmonics(const Assembly& assembly) {
+  ContactHarmonics sum;
+  const auto count = static_cast<double>(assembly.contacts.size());
+  for (const Contact& contact : assembly.contacts) {
+    const auto h = harmonics_at(assembly, contact);
+    sum.a2 += 2 * h[0] / count;
+    sum.b2 += 2 * h[1] / count;
+    sum.a4 += 2 * h[2] / count;
+    sum.b4 += 2 * h[3] / count;
   }
+  return sum;
+}
+
+std::vector<double> contact_density(const Assembly& assembly) {
+  const ContactHarmonics mean = contact_harmonics(assembly);
   const double psi_mean = assembly.coordination_number() / (2 * std::numbers::pi);
-  std::vector<double> psi(count);
-  for (std::size_t c = 0; c < count; ++c) {
-    const auto h = harmonics(normals[c]);
-    double series = 1;
-    for (std::size_t k = 0; k < 4; ++k) series += 2 * mean[k] * h[k];
-    psi[c] = psi_mean * series;
+  std::vector<double> psi;
+  psi.reserve(assembly.contacts.size());
+  for (const Contact& contact : assembly.contacts) {
+    const auto h = harmonics_at(assembly, contact);
+    psi.push_back(psi_mean * (1 + mean.a2 * h[0] + mean.b2 * h[1] + mean.a4 * h[2] + mean.b4 * h[3]));
   }
   return psi;
 }

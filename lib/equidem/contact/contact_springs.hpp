@@ -52,8 +52,14 @@ class ContactSprings {
 ///         assembly without facet lengths, where a shared edge has no length, or psi is not positive at a contact
 ContactSprings contact_springs(const Assembly& assembly, SpringConstants springs, SpringWeighting weighting);
 
-/// Contacts per radian around one disc at each contact's direction, psi(theta) = (z/2pi) (1 + sum a_k cos k theta +
-/// b_k sin k theta), k = 2, 4: the harmonics that stiffness, a fourth-order tensor, can see (Abe 1996, eq. 11).
+/// How contacts are directed: psi(theta) = (z/2pi) (1 + sum a_k cos k theta + b_k sin k theta), k = 2, 4, the harmonics
+/// that stiffness, a fourth-order tensor, can see. Measured: a_k = 2 <cos k theta> over the contacts.
+struct ContactHarmonics {
+  double a2 = 0, b2 = 0, a4 = 0, b4 = 0;
+};
+ContactHarmonics contact_harmonics(const Assembly& assembly);
+
+/// Contacts per radian around one disc at each contact's direction, psi(theta) of its harmonics (Abe 1996, eq. 11).
 std::vector<double> contact_density(const Assembly& assembly);
 
 }  // namespace equidem

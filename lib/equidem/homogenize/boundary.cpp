@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/homogenize/boundary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "equidem/contact/frame.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/statics/contact_graph.hpp"
+
+namespace equidem {
+namespace {
+
+struct Side {
+  const char* name;
+  Vec2 outward;
+};
+constexpr Side sides[] = {{"left", {-1, 0}}, {"right", {1, 0}}, {"bottom", {0, -1}}, {"top", {0, 1}}};
+
+bool crosses(const Contact& contact) {
+  return contact.shift_x != 0 || contact.shift_y != 0;
+}
+
+const DiscGroup& side_of(const Assembly& assembly, const Side& side) {
+  const auto found = assembly.groups.find(side.name);
+  if (found == assembly.groups.end() || found->second.discs.empty()) {
+    bad_input(format("the assembly has no discs in the group '{}'", side.name),
+              "the boundary of a sample that is not periodic is made of left, right, bottom and top",
+              "Define these groups, or use a periodic assembly");
+  }
+  return found->second;
+}
+
+/// Add m x to every vector, m such that sum a x = area I.
+void satisfy_mean_strain(std::vector<Vec2>& a, const std::vector<Vec2>& x, double area) {
+  Tensor2 has, square;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    has += outer(a[k], x[k]);
+    square += outer(x[k], x[k]);
+  }
+  const double determinant = square.xx * square.yy - square.xy * square.yx;
+  const double trace = square.xx + square.yy;
+  if (!(determinant > 1e-12 * trace * trace)) {
+    bad_input("no contact crosses the period one of the two ways", "the cell can be pulled along one direction only",
+              "Use a network that is joined to its images both ways");
+  }
+  const Tensor2 lacking = Tensor2{area, 0, 0, area} + (-1.0) * has;
+  const Tensor2 inverse = (1 / determinant) * Tensor2{square.yy, -square.xy, -square.yx, square.xx};
+  const Tensor2 m{lacking.xx * inverse.xx + lacking.xy * inverse.yx, lacking.xx * inverse.xy + lacking.xy * inverse.yy,
+                  lacking.yx * inverse.xx + lacking.yy * inverse.yx, lacking.yx * inverse.xy + lacking.yy * inverse.yy};
+  for (std::size_t k = 0; k < a.size(); ++k) a[k] += m * x[k];
+}
+
+struct Shift {
+  std::int32_t x = 0, y = 0;
+  bool operator==(const Shift&) const = default;
+};
+
+/// The same periodic network with every disc at that image that has the most contacts without crossing the period: a
+/// boundary that is cut then leaves few discs hanging by a single contact. Each move lowers the number of crossing
+/// contacts, so that this ends.
+Assembly wrapped_compactly(const Assembly& assembly) {
+  Assembly wrapped = assembly;
+  std::vector<Contact>& contacts = wrapped.contacts;
+  const ContactGraph graph(assembly);
+  bool moved = true;
+  while (moved) {
+    moved = false;
+    for (std::size_t d = 0; d < assembly.size(); ++d) {
+      const auto disc = static_cast<std::int32_t>(d);
+      std::vector<std::pair<Shift, int>> votes = {{{}, 0}};  // the move by which contacts come to lie inside
+      for (const auto& edge : graph.of(d)) {
+        const Contact& contact = contacts[edge.contact];
+        if (contact.i == contact.j) continue;
+        const int sign = contact.i == disc ? 1 : -1;
+        const Shift step{sign * contact.shift_x, sign * contact.shift_y};
+        const auto same =
+            std::find_if(votes.begin(), votes.end(), [&](const auto& vote) { return vote.first == step; });
+        same != votes.end() ? ++same->second : (votes.push_back({step, 1}), 1);
+      }
+      const auto best = std::max_element(votes.begin(), votes.end(),
+                                         [](const auto& a, const auto& b) { return a.second < b.second; });
+      if (best->second <= votes.front().second) continue;
+      moved = true;
+      const Shift step = best->first;
+      wrapped.centres[d] -= Vec2{step.x * assembly.period->x, step.y * assembly.period->y};
+      for (const auto& edge : graph.of(d)) {
+        Contact& contact = contacts[edge.contact];
+        if (contact.i == contact.j) continue;
+        const int sign = contact.i == disc ? -1 : 1;
+        contact.shift_x += sign * step.x;
+        contact.shift_y += sign * step.y;
+      }
+    }
+  }
+  return wrapped;
+}
+
+TractionSample cut_open(const Assembly& assembly, const ContactSprings& springs) {
+  std::vector<SpringConstants> left;
+  TractionSample sample{wrapped_compactly(assembly), ContactSprings(SpringConstants{}), {}, {}};
+  Assembly& opened = sample.assembly;
+  opened.period.reset();
+  const std::vector<Contact> contacts = std::move(opened.contacts);
+  opened.contacts.clear();
+  opened.facet_lengths.clear();
+  opened.contact_kN.clear();
+  opened.contact_kT.clear();
+  std::vector<Vec2> a, steps;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const Contact& contact = contacts[c];
+    if (!crosses(contact)) {
+      opened.contacts.push_back(contact);
+      left.push_back(springs[c]);
+      continue;
+    }
+    if (springs[c].kT == 0) {
+      bad_input(format("contact {} crosses the period and has kT = 0", c),
+                "cut open, it could not carry the shear of a uniform stress",
+                "Leave out the traction bound, or give the contacts kT > 0");
+    }
+    const Vec2 l = assembly.branch(contact);
+    const double facet = assembly.facet_lengths.empty() ? norm(l) : assembly.facet_lengths[c];
+    a.push_back(facet / norm(l) * l);
+    steps.push_back({contact.shift_x * assembly.period->x, contact.shift_y * assembly.period->y});
+    sample.cuts.push_back({c, {}});
+  }
+  satisfy_mean_strain(a, steps, assembly.area());
+  for (std::size_t k = 0; k < a.size(); ++k) sample.cuts[k].a = a[k];
+  sample.springs = springs.uniform() ? springs : ContactSprings(std::move(left));
+  return sample;
+}
+
+TractionSample load_sides(const Assembly& assembly, const ContactSprings& springs) {
+  TractionSample sample{assembly, springs, {}, {}};
+  std::vector<Vec2> a, x;
+  Vec2 sum, mean;
+  for (const Side& side : sides) {
+    const DiscGroup& discs = side_of(assembly, side);
+    if (discs.tributary_lengths.empty()) {
+      bad_input(format("the discs of the group '{}' have no lengths", side.name),
+                "a stress is spread over the sides by the length that each disc stands for",
+                "Use boundary = \"displacement\", or a lattice or Delaunay assembly");
+    }
+    for (std::size_t k = 0; k < discs.discs.size(); ++k) {
+      sample.shares.push_back({discs.discs[k], {}});
+      a.push_back(discs.tributary_lengths[k] * side.outward);
+      x.push_back(assembly.centres[discs.discs[k]]);
+      sum += a.back();
+      mean += x.back();
+    }
+  }
+  const double count = static_cast<double>(a.size());
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    a[k] -= sum / count;
+    x[k] -= mean / count;
+  }
+  satisfy_mean_strain(a, x, assembly.area());
+  for (std::size_t k = 0; k < a.size(); ++k) sample.shares[k].a = a[k];
+  return sample;
+}
+
+}  // namespace
+
+Boundary boundary_from(const std::string& name) {
+  for (const Boundary boundary : {Boundary::periodic, Boundary::displacement, Boundary::traction}) {
+    if (name == to_string(boundary)) return boundary;
+  }
+  bad_input(format("'{}' is no kind of boundary", name), "", "Choose one of periodic, displacement, traction");
+}
+
+std::string to_string(Boundary boundary) {
+  switch (boundary) {
+    case Boundary::periodic:
+      return "periodic";
+    case Boundary::displacement:
+      return "displacement";
+    case Boundary::traction:
+      return "traction";
+  }
+  return "";
+}
+
+std::vector<std::uint8_t> boundary_discs(const Assembly& assembly) {
+  std::vector<std::uint8_t> at_boundary(assembly.size(), 0);
+  if (assembly.periodic()) {
+    for (const Contact& contact : assembly.contacts) {
+      if (crosses(contact)) at_boundary[contact.i] = at_boundary[contact.j] = 1;
+    }
+  } else {
+    for (const Side& side : sides) {
+      for (const std::int32_t disc : side_of(assembly, side).discs) at_boundary[disc] = 1;
+    }
+  }
+  return at_boundary;
+}
+
+TractionSample traction_sample(const Assembly& assembly, const ContactSprings& springs) {
+  return assembly.periodic() ? cut_open(assembly, springs) : load_sides(assembly, springs);
+}
+
+}  // namespace equidem

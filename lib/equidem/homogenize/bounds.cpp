@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/homogenize/bounds.hpp"
+
+#include <array>
+#include <cstddef>
+
+#include "equidem/contact/frame.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/homogenize/contact_sums.hpp"
+#include "equidem/homogenize/fabric.hpp"
+
+namespace equidem {
+namespace {
+
+/// Upper triangle of a symmetric 3x3 matrix: 11, 12, 13, 22, 23, 33.
+using Triangle = std::array<double, 6>;
+
+/// sum += k v v^T.
+template <typename Sums>
+void add_square(double k, const std::array<double, 3>& v, Sums& sum, std::size_t first = 0) {
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t s = r; s < 3; ++s) sum[first++] += k * v[r] * v[s];
+  }
+}
+
+Matrix3 symmetric(const Triangle& t) {
+  return {{{t[0], t[1], t[2]}, {t[1], t[3], t[4]}, {t[2], t[4], t[5]}}};
+}
+
+void refuse_negative_springs(const Assembly& assembly, const ContactSprings& springs) {
+  if (!springs.any_negative()) return;
+  std::size_t c = 0;
+  while (springs[c].kT >= 0) ++c;
+  bad_input(format("the tangential spring is kT = {:.6g} Pa at contact {} (discs {} and {})", springs[c].kT, c,
+                   assembly.contacts[c].i, assembly.contacts[c].j),
+            "the uniform-stress estimate adds up the energies that contacts store under given forces, which must not "
+            "be negative",
+            "Give kT >= 0, or do without this estimate");
+}
+
+/// The branch fabric B/A.
+Tensor2 spanning_fabric(const Assembly& assembly) {
+  const Tensor2 h = fabric(assembly).branch;
+  const double trace = h.xx + h.yy;
+  if (!(h.xx * h.yy - h.xy * h.yx > 1e-13 * trace * trace)) {  // the ratio of the principal values, about
+    bad_input("all branches are parallel", "a uniform stress across them is carried by no contact",
+              "Give an assembly whose contacts span the plane");
+  }
+  return h;
+}
+
+/// A symmetric 2x2 matrix.
+struct Symmetric2 {
+  double xx = 0, xy = 0, yy = 0;
+  [[nodiscard]] double determinant() const { return xx * yy - xy * xy; }
+};
+
+/// Limit of (finite + t infinite)^-1 as t -> infinity, both positive semi-definite, their sum definite.
+Symmetric2 inverse_in_the_limit(const Symmetric2& finite, const Symmetric2& infinite) {
+  const double trace = infinite.xx + infinite.yy;
+  if (trace == 0) {
+    const double d = finite.determinant();
+    return {finite.yy / d, -finite.xy / d, finite.xx / d};
+  }
+  if (infinite.determinant() > 1e-13 * trace * trace) return {};
+  // Of rank one: only its null vector v is left, v v^T / (v^T finite v).
+  const Vec2 v = infinite.xx > infinite.yy ? Vec2{-infinite.xy, infinite.xx} : Vec2{infinite.yy, -infinite.xy};
+  const double energy = finite.xx * v.x * v.x + 2 * finite.xy * v.x * v.y + finite.yy * v.y * v.y;
+  return {v.x * v.x / energy, v.x * v.y / energy, v.y * v.y / energy};
+}
+
+}  // namespace
+
+Matrix3 voigt_stiffness(const Assembly& assembly, const ContactSprings& springs) {
+  const Triangle sum = contact_sums<6>(assembly.contacts.size(), [&](std::size_t c, Triangle& sums) {
+    const Vec2 l = assembly.branch(assembly.contacts[c]);
+    const double length = norm(l);
+    const Vec2 n = l / length, s = perpendicular(n);
+    const auto [kN, kT] = springs[c];
+    // n . e l and s . e l for unit strains e_xx, e_yy, gamma_xy.
+    add_square(kN, {n.x * l.x, n.y * l.y, n.x * l.y}, sums);
+    add_square(kT, {s.x * l.x, s.y * l.y, 0.5 * (s.x * l.y + s.y * l.x)}, sums);
+  });
+  Matrix3 stiffness = symmetric(sum);
+  const double area = assembly.area();
+  for (auto& row : stiffness) {
+    for (double& entry : row) entry /= area;
+  }
+  return stiffness;
+}
+
+Matrix3 uniform_stress_estimate(const Assembly& assembly, const ContactSprings& springs) {
+  const Tensor2 h = spanning_fabric(assembly);
+  refuse_negative_springs(assembly, springs);
+  const double area = assembly.area();
+  const Tensor2 h_inverse = (1 / (h.xx * h.yy - h.xy * h.yx)) * Tensor2{h.yy, -h.xy, -h.yx, h.xx};
+
+  // Stresses in the basis B/A, (1, -1, 0), (0, 0, 1). The first loads no tangential spring, F = l, so that however soft
+  // they are its stiffness stays exact. Energies per area, doubled: of springs that there are, and of unit ones where
+  // springs are absent.
+  const auto sum = contact_sums<12>(assembly.contacts.size(), [&](std::size_t c, std::array<double, 12>& sums) {
+    const Vec2 l = assembly.branch(assembly.contacts[c]);
+    const Vec2 n = l / norm(l), s = perpendicular(n);
+    const Vec2 m = h_inverse * l;
+    const Vec2 deviator{m.x, -m.y}, shear{m.y, m.x};
+    const auto [kN, kT] = springs[c];
+    add_square(1 / (kN * area), {norm(l), dot(n, deviator), dot(n, shear)}, sums);
+    const std::array<double, 3> tangential{0, dot(s, deviator), dot(s, shear)};
+    if (kT != 0) add_square(1 / (kT * area), tangential, sums);
+    if (kT == 0) add_square(1 / area, tangential, sums, 6);
+  });
+  const auto [s11, s12, s13, s22, s23, s33, t11, t12, t13, t22, t23, t33] = sum;
+
+  // The compliance [a b^T; b D] inverted by its block D of deviators, whose inverse g is zero where springs are absent.
+  const Symmetric2 g = inverse_in_the_limit({s22, s23, s33}, {t22, t23, t33});
+  const Vec2 gb{g.xx * s12 + g.xy * s13, g.xy * s12 + g.yy * s13};
+  const double first = 1 / (s11 - (s12 * gb.x + s13 * gb.y));
+  // C = sum of the squares of stresses: that of the first, p = B/A - g b, and those of the deviators.
+  const std::array<double, 3> p{h.xx - gb.x, h.yy + gb.x, h.xy - gb.y};
+  Triangle stiffness{g.xx, -g.xx, g.xy, g.xx, -g.xy, g.yy};
+  add_square(first, p, stiffness);
+  return symmetric(stiffness);
+}
+
+}  // namespace equidem

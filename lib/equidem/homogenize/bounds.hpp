@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Estimates of the effective stiffness that need no solution.
+#pragma once
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/core/matrix.hpp"
+
+namespace equidem {
+
+/// Every disc follows the uniform strain (and the mean rotation, which a strain has none of): C_V = (1/A) sum kN d_n
+/// d_n + kT d_s d_s over contacts, with the deformations of unit strains; an upper bound as a quadratic form where
+/// kT >= 0 (Bathurst & Rothenburg 1988). Springs equal at all contacts give effective_moduli K = S kN/4 and
+/// G = S (kN + kT)/8 with S = sum l²/A, whatever the fabric. Exact on lattices with one disc in the primitive cell. Pa.
+/// \throws Error (bad_input) where a free assembly has no cell areas
+Matrix3 voigt_stiffness(const Assembly& assembly, const ContactSprings& springs);
+
+/// Every contact carries its share of a uniform stress, F = A sigma B^-1 l with B = sum l l^T, whose Love-Weber stress
+/// is sigma: C = (compliance of those forces)^-1 (Liao et al. 1997, Kruyt & Rothenburg 2002). An estimate, no lower
+/// bound, since forces do not balance on a disc; never above C_V, since the forces do the work A sigma : e along every
+/// strain e (Cauchy-Schwarz). For isotropic assemblies of equal springs K = S kN/4, G = (S/2) kN kT/(kN + kT). Pa.
+///
+/// Where springs are absent (kT = 0) this is the limit kT -> 0: no stress that loads them is resisted. What is left is
+/// at least the stress sigma = B/A, whose forces F = l load no tangential spring: for isotropic assemblies K without G.
+/// \throws Error (bad_input) where some kT < 0, there are no contacts, their branches do not span the plane, or a free
+///         assembly has no cell areas
+Matrix3 uniform_stress_estimate(const Assembly& assembly, const ContactSprings& springs);
+
+}  // namespace equidem

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The stiffness of the continuum that an assembly stands for: all load cases on one factorization.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/contact/effects.hpp"
+#include "equidem/contact/frame.hpp"
+#include "equidem/core/matrix.hpp"
+#include "equidem/core/stopwatch.hpp"
+#include "equidem/homogenize/boundary.hpp"
+#include "equidem/homogenize/harmless_motions.hpp"
+#include "equidem/statics/linear_solver.hpp"
+
+namespace equidem {
+
+struct HomogenizeOptions {
+  Boundary boundary = Boundary::periodic;
+  Rotation rotation = Rotation::from_scene;
+  SolverOptions solver;
+};
+
+/// Effective stiffness with what is needed to trust it.
+struct EffectiveStiffness {
+  Boundary boundary = Boundary::periodic;
+  double area = 0;  ///< m², by which energies are divided
+  /// Pa, symmetric part of the stress by strain (Voigt, engineering shear), from the energies of the load cases:
+  /// its error is the square of that of the motions.
+  Matrix3 stiffness{};
+  /// Pa, dC/dkT times kT and dC/dkN times kN (they add up to C): the strain energies in tangential and in normal springs. Exact
+  /// derivatives for springs scaled by a common factor, since the motion is stationary.
+  Matrix3 tangential_part{};
+  Matrix3 normal_part{};
+  /// Pa, Love-Weber stress (1/A) sum F_i l_j by displacement gradient. With free rotation columns xy and yx agree, and so do
+  /// the rows; with rotation restrained neither need (Abe 1996, eq. 55). Only for Boundary::periodic and displacement.
+  Matrix4 gradient_stiffness{};
+  double stress_asymmetry = 0;  ///< largest |s_xy - s_yx| of any unit gradient over the largest entry
+
+  double relative_residual = 0;  ///< largest of the load cases
+  double condition = 0;          ///< estimate of |K| |K^-1|
+  double error_bound = 0;  ///< Pa: bound on the error of an entry of `stiffness` from the residual and the condition
+  double hill_mandel = 0;  ///< largest |macroscopic - microscopic power| over the latter
+
+  std::int64_t rattlers = 0;            ///< discs without contacts, left out
+  std::int64_t discs_removed = 0;       ///< that carry no load: rattlers, dangling discs, floating pieces
+  std::vector<std::string> removed;     ///< sentences that name them
+  std::vector<HarmlessMotion> motions;  ///< held, since they do not change the stiffness; at most a few are described
+  std::int64_t gear_modes = 0;
+  std::int64_t local_mechanisms = 0;
+  std::int64_t self_stresses = 0;  ///< independent states of self-stress (Maxwell & Calladine); -1: not counted
+  Effects effects;
+  std::int64_t unknowns = 0;
+  std::int64_t negative_pivots = 0;
+  std::int64_t unstable_modes = 0;  ///< as of Equilibrium; 0: stable in statics within this cell
+  std::string solver;
+  double factor_bytes = 0;
+  StageTimes times;
+  /// Motion of every disc for unit strain xx, yy, xy beside the uniform strain, m; discs removed stand still. Empty for tractions.
+  std::vector<std::vector<DiscMotion>> fluctuations;
+};
+
+/// Solve for unit strains xx, yy and xy (and the unit rotation where rotation is restrained) on one factorization.
+/// \throws Error (bad_input) where the boundary does not suit the assembly, no piece spans the cell, the network is a
+///         mechanism (named) or some strain costs no energy (named): a floppy network has no modulus;
+///         (computation_failed) as EquilibriumSolver
+EffectiveStiffness effective_stiffness(const Assembly& assembly, const ContactSprings& springs,
+                                       const HomogenizeOptions& options = {});
+
+}  // namespace equidem

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/homogenize/sample_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/statics/motion_description.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr double negligible = 1e-8;  // over the size of the terms: what rounding leaves where loads balance
+
+}  // namespace
+
+SampleSolver::SampleSolver(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options,
+                           const std::vector<std::uint8_t>& held, bool hold_translations, EffectiveStiffness& result)
+    : whole_(assembly), whole_springs_(springs), options_(options) {
+  prune(held, result);
+  factorize(held, hold_translations, result);
+}
+
+void SampleSolver::prune(const std::vector<std::uint8_t>& held, EffectiveStiffness& result) {
+  Stopwatch watch;
+  network_ = load_bearing_network(whole_, whole_springs_, result.effects, held);
+  result.rattlers = network_.rattlers;
+  result.discs_removed = network_.removed();
+  result.removed = network_.sentences;
+  result.times.add("network", watch.lap());
+  if (options_.boundary == Boundary::traction || (network_.spanned == 2 && network_.pieces > 0)) return;
+  std::string removed;
+  for (const std::string& sentence : network_.sentences) removed += (removed.empty() ? "" : "; ") + sentence;
+  bad_input(network_.spanned == 0 || network_.pieces == 0 ? "no piece of the network spans the cell"
+                                                          : "the network spans the cell in one direction only",
+            removed.empty() ? "some mean strain costs it no energy" : removed,
+            "A modulus would say nothing of it. Add contacts, or pack the discs more densely");
+}
+
+void SampleSolver::factorize(const std::vector<std::uint8_t>& held, bool hold_translations,
+                             EffectiveStiffness& result) {
+  Stopwatch watch;
+  ContactGraph graph(assembly());
+  DegreesOfFreedom unknowns = number_unknowns(assembly(), springs(), result.effects, {});
+  for (std::size_t d = 0; hold_translations && d < assembly().size(); ++d) {
+    if (held[network_.part ? network_.part->discs[d] : d] == 0) continue;
+    for (int k = 0; k < 2; ++k) unknowns.held[d * unknowns.per_disc + k] = DegreesOfFreedom::supported;
+    unknowns.unknowns -= 2;
+  }
+  const std::int64_t free_unknowns = unknowns.unknowns;
+  held_motions_ = hold_free_motions(assembly(), graph, springs(), unknowns);
+  result.times.add("network", watch.lap());
+  solver_.emplace(assembly(), springs(), std::move(graph), std::move(unknowns), options_.solver, Mechanisms::hold,
+                  result.times);
+  const FactorReport& report = solver_->factor().report();
+  result.motions = harmless_motions(assembly(), *solver_, held_motions_,
+                                    options_.boundary == Boundary::traction && !whole_.groups.contains("left")
+                                        ? "the cell, cut open at its boundary,"
+                                        : "the network");
+  result.gear_modes = static_cast<std::int64_t>(held_motions_.gears.size());
+  result.local_mechanisms = report.zero_pivots;
+  result.self_stresses =
+      count_self_stresses(assembly(), springs(), free_unknowns,
+                          static_cast<std::int64_t>(held_motions_.components.size()) + result.local_mechanisms);
+  result.unknowns = solver_->unknowns().unknowns;
+  result.negative_pivots = report.negative_pivots;
+  result.unstable_modes = solver_->unstable_modes();
+  result.solver = report.name;
+  result.factor_bytes = report.bytes;
+}
+
+std::vector<std::int32_t> SampleSolver::indices() const {
+  std::vector<std::int32_t> index(whole_.size(), -1);
+  for (std::size_t d = 0; d < assembly().size(); ++d) {
+    index[network_.part ? network_.part->discs[d] : d] = static_cast<std::int32_t>(d);
+  }
+  return index;
+}
+
+std::vector<DiscMotion> SampleSolver::motions_of_whole(const PreciseMotion& motion) const {
+  std::vector<DiscMotion> motions = disc_motions(unknowns(), motion.high);
+  if (!network_.part) return motions;
+  std::vector<DiscMotion> all(whole_.size());
+  for (std::size_t d = 0; d < motions.size(); ++d) all[network_.part->discs[d]] = motions[d];
+  return all;
+}
+
+void SampleSolver::tear_off(std::size_t disc) const {
+  bad_input(format("the boundary tears {} off", describe_disc(assembly(), disc)),
+            "its piece of the network cannot balance the tractions of a uniform stress",
+            "Use boundary = \"periodic\" or \"displacement\", or a larger sample");
+}
+
+void SampleSolver::check_loads_on_mechanisms(const RightHandSide& given) const {
+  for (std::int64_t k = 0; k < solver_->factor().report().zero_pivots; ++k) {
+    const std::vector<double> motion = solver_->factor().null_motion(k);
+    double work = 0, size = 0, largest = 0;
+    std::size_t most = 0;
+    for (std::size_t e = 0; e < motion.size(); ++e) {
+      work += motion[e] * given.force[e];
+      size += std::abs(motion[e] * given.force[e]);
+      if (std::abs(motion[e]) > largest) largest = std::abs(motion[e]), most = e;
+    }
+    if (std::abs(work) > negligible * size) tear_off(most / unknowns().per_disc);
+  }
+}
+
+std::vector<Solution> SampleSolver::solve(std::span<const RightHandSide> cases, EffectiveStiffness& result) {
+  if (options_.boundary == Boundary::traction) {
+    for (const RightHandSide& given : cases) check_loads_on_mechanisms(given);
+  }
+  std::vector<Solution> solutions = solver_->solve(cases, result.times);
+  Stopwatch watch;
+  // Without negative springs a motion without energy deforms no contact: mean strains do no work on it.
+  const bool may_react = options_.boundary == Boundary::traction || springs().any_negative();
+  for (std::size_t k = 0; may_react && k < cases.size(); ++k) check_reactions(cases[k], solutions[k]);
+  const double inverse_norm = solver_->inverse_norm(solutions[0].motion.high);
+  result.condition = solver_->norm() * inverse_norm;
+  double residual = 0;
+  for (const Solution& solution : solutions) {
+    result.relative_residual = std::max(result.relative_residual, solution.relative_residual());
+    residual = std::max(residual, solution.residual);
+  }
+  constexpr double safety = 10;  // the norm of the inverse is estimated from below
+  energy_error_ = safety * residual * residual * inverse_norm;
+  result.times.add("error bound", watch.lap());
+  return solutions;
+}
+
+void SampleSolver::check_reactions(const RightHandSide& given, const Solution& solution) const {
+  if (held_motions_.components.empty()) return;
+  const auto deformations = solver_->deformations(given, solution.motion);
+  std::vector<ContactForce> forces(deformations.size());
+  double size = 0;
+  for (std::size_t c = 0; c < forces.size(); ++c) {
+    forces[c] = linear_spring_force(springs()[c], deformations[c]);
+    size = std::max({size, std::abs(forces[c].normal), std::abs(forces[c].tangential)});
+  }
+  std::vector<double> internal(unknowns().held.size());
+  internal_force(assembly(), solver_->graph(), unknowns(), forces, internal);
+  for (const std::size_t k : held_motions_.components) {
+    const double load = given.force.empty() ? 0.0 : given.force[k];
+    if (std::abs(internal[k] - load) <= negligible * std::max(size, std::abs(load))) continue;
+    if (options_.boundary == Boundary::traction) tear_off(k / unknowns().per_disc);
+    computation_failed("a motion that nothing resists is driven by the mean strain",
+                       "at this kT/kN the cell is at its limit of stability",
+                       "Choose another kT/kN; 'equidem stability' finds the limit");
+  }
+}
+
+}  // namespace equidem

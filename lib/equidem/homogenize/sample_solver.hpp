@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A sample made ready for homogenization: what carries no load left out, what moves freely held, the rest factorized.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/statics/hold_free_motions.hpp"
+#include "equidem/statics/load_bearing.hpp"
+#include "equidem/statics/stiffness_solver.hpp"
+
+namespace equidem {
+
+class SampleSolver {
+ public:
+  /// \param held discs that the boundary holds or loads: never left out; empty: none
+  /// \param hold_translations whether the translations of these discs are prescribed
+  /// \param result gets what there is to say about the network, and the stages
+  /// \throws Error as effective_stiffness
+  SampleSolver(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options,
+               const std::vector<std::uint8_t>& held, bool hold_translations, EffectiveStiffness& result);
+
+  /// The part that carries load.
+  [[nodiscard]] const Assembly& assembly() const { return network_.part ? network_.part->assembly : whole_; }
+  [[nodiscard]] const ContactSprings& springs() const {
+    return network_.part ? network_.part->springs : whole_springs_;
+  }
+  [[nodiscard]] const StiffnessSolver& solver() const { return *solver_; }
+  [[nodiscard]] const DegreesOfFreedom& unknowns() const { return solver_->unknowns(); }
+  /// Index in assembly() of a disc of the whole; -1 where it is left out.
+  [[nodiscard]] std::vector<std::int32_t> indices() const;
+  /// Motions of assembly() as motions of the whole, 0 where left out.
+  [[nodiscard]] std::vector<DiscMotion> motions_of_whole(const PreciseMotion& motion) const;
+
+  /// Solve, check that balanced loads leave no reaction where free motions are held, and report residual and condition.
+  std::vector<Solution> solve(std::span<const RightHandSide> cases, EffectiveStiffness& result);
+  /// Bound on the error of an energy of two cases, r K^-1 r, with the residuals of the last solve, N.
+  [[nodiscard]] double energy_error() const { return energy_error_; }
+
+ private:
+  void prune(const std::vector<std::uint8_t>& held, EffectiveStiffness& result);
+  void factorize(const std::vector<std::uint8_t>& held, bool hold_translations, EffectiveStiffness& result);
+  [[noreturn]] void tear_off(std::size_t disc) const;
+  void check_loads_on_mechanisms(const RightHandSide& given) const;
+  void check_reactions(const RightHandSide& given, const Solution& solution) const;
+
+  const Assembly& whole_;
+  const ContactSprings& whole_springs_;
+  HomogenizeOptions options_;
+  LoadBearingNetwork network_;
+  HeldMotions held_motions_;
+  std::optional<StiffnessSolver> solver_;
+  double energy_error_ = 0;
+};
+
+}  // namespace equidem

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/homogenize/strain_stiffness.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/homogenize/affine.hpp"
+#include "equidem/homogenize/pair_energies.hpp"
+#include "equidem/homogenize/sample_solver.hpp"
+
+namespace equidem {
+namespace {
+
+/// Displacement gradients of unit strains xx, yy, xy (engineering) and of the unit rotation.
+constexpr Tensor2 unit_gradients[] = {{1, 0, 0, 0}, {0, 0, 0, 1}, {0, 0.5, 0.5, 0}, {0, -1, 1, 0}};
+
+/// Hill & Mandel: mean stress times mean strain is the mean of the powers.
+double power_difference(const std::vector<Tensor2>& stresses, const Matrix3& stiffness) {
+  double largest = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Voigt s = voigt_stress(stresses[k]);
+    const double row[] = {s.xx, s.yy, s.xy};
+    for (int a = 0; a < 3; ++a) largest = std::max(largest, std::abs(row[a] - stiffness[a][k]));
+  }
+  return largest / largest_entry(stiffness);
+}
+
+/// Stresses of unit displacement gradients xx, yy, xy, yx from those of unit strains and of the unit rotation.
+void keep_gradient_stiffness(const std::vector<Tensor2>& stresses, EffectiveStiffness& result) {
+  const Tensor2 turned = stresses.size() > 3 ? stresses[3] : Tensor2{};
+  const Tensor2 columns[] = {stresses[0], stresses[1], stresses[2] + (-0.5) * turned, stresses[2] + 0.5 * turned};
+  double asymmetric = 0;
+  for (int c = 0; c < 4; ++c) {
+    const Tensor2& s = columns[c];
+    const double column[] = {s.xx, s.yy, s.xy, s.yx};
+    for (int r = 0; r < 4; ++r) result.gradient_stiffness[r][c] = column[r];
+    asymmetric = std::max(asymmetric, std::abs(asymmetry(s)));
+  }
+  result.stress_asymmetry = asymmetric / largest_entry(result.gradient_stiffness);
+}
+
+}  // namespace
+
+void solve_strains(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options,
+                   EffectiveStiffness& result) {
+  const bool displaced = options.boundary == Boundary::displacement;
+  SampleSolver solver(assembly, springs, options, displaced ? boundary_discs(assembly) : std::vector<std::uint8_t>{},
+                      displaced, result);
+  const bool turned = result.effects.tangential_springs && !result.effects.rotation;
+  std::vector<RightHandSide> cases(turned ? 4 : 3);
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    cases[k].imposed = affine_deformations(solver.assembly(), unit_gradients[k], 0);
+  }
+  const std::vector<Solution> solutions = solver.solve(cases, result);
+
+  Stopwatch watch;
+  std::vector<std::vector<ContactDeformation>> deformations;
+  std::vector<Tensor2> stresses;
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    deformations.push_back(solver.solver().deformations(cases[k], solutions[k].motion));
+    stresses.push_back(mean_stress(solver.assembly(), solver.springs(), deformations[k], result.area));
+  }
+  const PairEnergies energies = pair_energies(solver.springs(), deformations);
+  result.normal_part = (1 / result.area) * energies.normal;
+  result.tangential_part = (1 / result.area) * energies.tangential;
+  result.stiffness = result.normal_part + result.tangential_part;
+  result.error_bound = solver.energy_error() / result.area;
+  result.hill_mandel = power_difference(stresses, result.stiffness);
+  keep_gradient_stiffness(stresses, result);
+  for (std::size_t k = 0; k < 3; ++k) {
+    result.fluctuations.push_back(solver.motions_of_whole(solutions[k].motion));
+  }
+  result.times.add("stiffness", watch.lap());
+}
+
+}  // namespace equidem

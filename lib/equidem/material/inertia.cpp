@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/material/inertia.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+
+Body body_from(const std::string& name) {
+  if (name == "disc") return Body::disc;
+  if (name == "sphere") return Body::sphere;
+  bad_input(format("'{}' is no body", name), "mass and moment of inertia are those of a disc or of a sphere",
+            "Write \"disc\" or \"sphere\"");
+}
+
+std::string to_string(Body body) {
+  return body == Body::disc ? "disc" : "sphere";
+}
+
+double inertia_factor(Body body) {
+  return body == Body::disc ? 0.5 : 0.4;
+}
+
+Inertia inertia_of(double radius, double density, Body body) {
+  assert(radius > 0);
+  if (!(density > 0 && std::isfinite(density))) {
+    bad_input(format("the density of the discs is {:.6g} kg/m³", density), "it must be positive and finite",
+              "Give a density above 0 kg/m³");
+  }
+  const double section = std::numbers::pi * radius * radius;
+  const double mass = density * (body == Body::disc ? section : 4.0 / 3 * section * radius);
+  return {mass, inertia_factor(body) * mass * radius * radius};
+}
+
+std::vector<Inertia> inertia_of(const std::vector<double>& radii, double density, Body body) {
+  std::vector<Inertia> all;
+  all.reserve(radii.size());
+  for (const double radius : radii) all.push_back(inertia_of(radius, density, body));
+  return all;
+}
+
+}  // namespace equidem

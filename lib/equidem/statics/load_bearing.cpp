@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/statics/load_bearing.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "equidem/contact/frame.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/statics/contact_graph.hpp"
+#include "equidem/statics/motion_description.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr double round_off = 1e-9;  ///< sine of an angle, share of a length: less counts as zero
+
+enum class Fate : std::uint8_t { left, rattler, dangling, floating };
+
+/// Multiples of the period.
+struct Shift {
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+
+  [[nodiscard]] bool zero() const { return x == 0 && y == 0; }
+};
+
+/// How many directions the windings met so far span.
+struct Span {
+  Shift first;
+  int rank = 0;
+
+  void add(Shift winding) {
+    if (rank == 0) first = winding;
+    const std::int64_t area = std::int64_t{first.x} * winding.y - std::int64_t{first.y} * winding.x;
+    rank = std::max(rank, area != 0 ? 2 : 1);
+  }
+};
+
+/// Whether the centres of a rigid group may turn with its discs: no slip where levers add up to their branch.
+bool turns_rigidly(const Assembly& assembly, const ContactSprings& springs, const Effects& effects) {
+  if (!effects.rotation) return true;  // it translates
+  for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
+    const Contact& c = assembly.contacts[k];
+    const double length = norm(assembly.branch(c));
+    if (springs[k].kT != 0 && std::abs(length - c.lever_i - c.lever_j) > round_off * length) return false;
+  }
+  return true;
+}
+
+class Pruning {
+ public:
+  Pruning(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
+          const std::vector<std::uint8_t>& held)
+      : assembly_(assembly),
+        springs_(springs),
+        rotation_(effects.rotation),
+        held_(held),
+        anchored_(assembly.periodic() ||
+                  std::any_of(held.begin(), held.end(), [](std::uint8_t value) { return value != 0; })),
+        cut_at_discs_(turns_rigidly(assembly, springs, effects)),
+        graph_(assembly),
+        fate_(assembly.size(), Fate::left),
+        contacts_left_(assembly.size()) {
+    assert(held.empty() || held.size() == assembly.size());
+    for (std::size_t d = 0; d < assembly.size(); ++d) {
+      contacts_left_[d] = static_cast<std::int32_t>(graph_.of(d).size());
+      if (contacts_left_[d] == 0 && !is_held(d)) fate_[d] = Fate::rattler;
+    }
+  }
+
+  LoadBearingNetwork prune() {
+    do walk();
+    while (leave_out_single_discs());
+    LoadBearingNetwork network;
+    network.pieces = pieces_;
+    network.spanned = assembly_.periodic() ? span_.rank : 2;
+    tell(network);
+    if (network.removed() > 0) network.part = part();
+    return network;
+  }
+
+ private:
+  [[nodiscard]] bool is_held(std::size_t disc) const { return !held_.empty() && held_[disc] != 0; }
+  [[nodiscard]] bool left(std::size_t disc) const { return fate_[disc] == Fate::left; }
+
+  void leave_out(std::size_t disc, Fate fate) {
+    if (!left(disc)) return;
+    fate_[disc] = fate;
+    for (const auto& edge : graph_.of(disc)) {
+      --contacts_left_[edge.other];
+      open_.push_back(edge.other);
+    }
+  }
+
+  /// The equations of equilibrium of a disc admit no contact force but zero: with columns (n, 0) for the normal and
+  /// (s, lever) for the tangential force of each contact, where rotation is free, they have full column rank. Three
+  /// rows allow two contacts at most.
+  [[nodiscard]] bool carries_nothing(std::size_t disc) const {
+    if (contacts_left_[disc] > 2 || is_held(disc)) return false;
+    Vec2 normals[2];
+    int count = 0;
+    int tangential = 0;
+    for (const auto& edge : graph_.of(disc)) {
+      if (!left(edge.other)) continue;
+      if (static_cast<std::size_t>(edge.other) == disc) return false;  // a column (0, 0)
+      const Contact& c = assembly_.contacts[edge.contact];
+      const double lever = edge.other == c.j ? c.lever_i : c.lever_j;
+      normals[count++] = frame_of(assembly_, c).normal;
+      if (springs_[edge.contact].kT != 0) tangential += rotation_ && lever > 0 ? 1 : 2;
+    }
+    return count < 2 || (tangential < 2 && std::abs(cross(normals[0], normals[1])) > round_off);
+  }
+
+  /// Whether there were any.
+  bool leave_out_single_discs() {
+    open_.clear();
+    bool any = false;
+    const auto visit = [&](std::size_t disc) {
+      if (!left(disc) || !carries_nothing(disc)) return;
+      leave_out(disc, Fate::dangling);
+      any = true;
+    };
+    for (std::size_t disc = 0; disc < assembly_.size(); ++disc) visit(disc);
+    while (!open_.empty()) {
+      const std::int32_t disc = open_.back();
+      open_.pop_back();
+      visit(disc);
+    }
+    return any;
+  }
+
+  /// A disc in the order in which a depth-first walk meets them; those that it meets through this one follow it in one
+  /// stretch.
+  struct Step {
+    std::int32_t disc = 0;
+    std::int32_t parent = -1;   ///< step
+    std::int32_t contact = -1;  ///< with the parent
+    std::int32_t next = 0;      ///< of its contacts to look at
+    std::int32_t low = 0;       ///< first step that a contact joins to this stretch (Tarjan 1972)
+    std::int32_t size = 1;      ///< of the stretch
+    std::int32_t anchors = 0;   ///< of the stretch: held discs, and contacts that close a ring around the period
+    Shift image{};              ///< of the disc, joined to the first one of its piece inside the cell
+  };
+
+  /// Walk over all pieces; leave out those that float and what dangles from the others.
+  void walk() {
+    pieces_ = 0;
+    span_ = {};
+    step_of_.assign(assembly_.size(), -1);
+    for (std::size_t disc = 0; disc < assembly_.size(); ++disc) {
+      if (!left(disc) || step_of_[disc] >= 0) continue;
+      steps_.clear();
+      follow(static_cast<std::int32_t>(disc));
+      for (std::size_t k = steps_.size(); k-- > 1;) {
+        const Step& step = steps_[k];
+        Step& parent = steps_[step.parent];
+        parent.low = std::min(parent.low, step.low);
+        parent.size += step.size;
+        parent.anchors += step.anchors;
+      }
+      if (anchored_ && steps_.front().anchors == 0) {
+        leave_out_steps(0, steps_.size(), Fate::floating);
+        continue;
+      }
+      ++pieces_;
+      if (anchored_) leave_out_dangling();
+    }
+  }
+
+  void follow(std::int32_t first_disc) {
+    add_step({.disc = first_disc});
+    std::int32_t here = 0;
+    while (here >= 0) {
+      Step& step = steps_[here];
+      const auto edges = graph_.of(step.disc);
+      if (step.next == static_cast<std::int32_t>(edges.size())) {
+        here = step.parent;
+        continue;
+      }
+      const auto [other, contact] = edges[step.next++];
+      if (contact == step.contact || !left(other)) continue;
+      const Contact& c = assembly_.contacts[contact];
+      const int sign = c.i == step.disc ? 1 : -1;
+      const Shift image{step.image.x + sign * c.shift_x, step.image.y + sign * c.shift_y};
+      const std::int32_t there = step_of_[other];
+      if (there < 0) {
+        add_step({.disc = other, .parent = here, .contact = contact, .image = image});
+        here = static_cast<std::int32_t>(steps_.size()) - 1;
+      } else if (there <= here) {  // the other end has seen the contact where it comes later
+        step.low = std::min(step.low, there);
+        const Shift winding{image.x - steps_[there].image.x, image.y - steps_[there].image.y};
+        if (winding.zero()) continue;
+        span_.add(winding);
+        ++step.anchors;
+      }
+    }
+  }
+
+  void add_step(Step step) {
+    step.low = step_of_[step.disc] = static_cast<std::int32_t>(steps_.size());
+    step.anchors = is_held(step.disc) ? 1 : 0;
+    steps_.push_back(step);
+  }
+
+  void leave_out_steps(std::size_t first, std::size_t end, Fate fate, std::int32_t but = -1) {
+    for (std::size_t k = first; k < end; ++k) {
+      if (steps_[k].disc != but) leave_out(steps_[k].disc, fate);
+    }
+  }
+
+  /// A stretch is joined to the rest of its piece at its parent alone where low is not before the parent, and by a
+  /// single contact where low is after it. The side without anchors dangles. Stretches that hold all anchors lie
+  /// within one another: the last one says what is left.
+  void leave_out_dangling() {
+    const auto end = static_cast<std::int32_t>(steps_.size());
+    std::int32_t core = 0;
+    for (std::int32_t k = 1; k < end;) {
+      const Step& step = steps_[k];
+      const bool parts = step.low > step.parent || (cut_at_discs_ && step.low == step.parent);
+      if (parts && step.anchors == 0) {
+        leave_out_steps(k, k + step.size, Fate::dangling);
+        k += step.size;
+        continue;
+      }
+      if (parts && step.anchors == steps_.front().anchors) core = k;
+      ++k;
+    }
+    if (core == 0) return;
+    const std::int32_t joint = cut_at_discs_ ? steps_[steps_[core].parent].disc : -1;
+    leave_out_steps(0, core, Fate::dangling, joint);
+    leave_out_steps(core + steps_[core].size, end, Fate::dangling, joint);
+  }
+
+  /// Counts, and a sentence for each kind of disc left out.
+  void tell(LoadBearingNetwork& network) const {
+    const auto add = [&](Fate fate, const char* name, const char* one, const char* several) {
+      std::int64_t count = 0;
+      std::string names;
+      for (std::size_t d = 0; d < assembly_.size(); ++d) {
+        if (fate_[d] != fate || ++count > 3) continue;
+        names += (names.empty() ? "" : ", ") + describe_disc(assembly_, d);
+      }
+      if (count > 0) {
+        network.sentences.push_back(format("{} ({}{}) {} left out", counted(count, name), names,
+                                           count > 3 ? ", ..." : "", count == 1 ? one : several));
+      }
+      return count;
+    };
+    network.rattlers = add(Fate::rattler, "rattler", "touches nothing and is", "touch nothing and are");
+    network.dangling = add(Fate::dangling, "dangling disc", "can carry no force and is", "can carry no force and are");
+    const bool periodic = assembly_.periodic();
+    network.floating = add(Fate::floating, "floating disc",
+                           periodic ? "belongs to a piece joined to none of its images and is"
+                                    : "belongs to a piece joined to nothing that is held and is",
+                           periodic ? "belong to pieces joined to none of their images and are"
+                                    : "belong to pieces joined to nothing that is held and are");
+  }
+
+  [[nodiscard]] LoadBearingNetwork::Part part() const {
+    const Assembly& whole = assembly_;
+    LoadBearingNetwork::Part result{{}, springs_, {}, {}};
+    Assembly& rest = result.assembly;
+    rest.kind = whole.kind;
+    rest.period = whole.period;
+    std::vector<std::int32_t> number(whole.size(), -1);
+    for (std::size_t d = 0; d < whole.size(); ++d) {
+      if (!left(d)) continue;
+      number[d] = static_cast<std::int32_t>(result.discs.size());
+      result.discs.push_back(static_cast<std::int32_t>(d));
+    }
+    for (std::size_t k = 0; k < whole.contacts.size(); ++k) {
+      Contact c = whole.contacts[k];
+      if (!left(c.i) || !left(c.j)) continue;
+      c.i = number[c.i], c.j = number[c.j];
+      rest.contacts.push_back(c);
+      result.contacts.push_back(static_cast<std::int32_t>(k));
+    }
+    const auto take = [](const auto& from, const std::vector<std::int32_t>& which, auto& to) {
+      if (from.empty()) return;
+      to.reserve(which.size());
+      for (const std::int32_t k : which) to.push_back(from[k]);
+    };
+    take(whole.centres, result.discs, rest.centres);
+    take(whole.radii, result.discs, rest.radii);
+    take(whole.cell_areas, result.discs, rest.cell_areas);
+    take(whole.facet_lengths, result.contacts, rest.facet_lengths);
+    take(whole.contact_kN, result.contacts, rest.contact_kN);
+    take(whole.contact_kT, result.contacts, rest.contact_kT);
+    for (const auto& [name, group] : whole.groups) {
+      DiscGroup& kept = rest.groups[name];
+      for (std::size_t k = 0; k < group.discs.size(); ++k) {
+        if (!left(group.discs[k])) continue;
+        kept.discs.push_back(number[group.discs[k]]);
+        if (!group.tributary_lengths.empty()) kept.tributary_lengths.push_back(group.tributary_lengths[k]);
+      }
+    }
+    if (!springs_.uniform()) {
+      std::vector<SpringConstants> springs;
+      for (const std::int32_t k : result.contacts) springs.push_back(springs_[k]);
+      result.springs = ContactSprings(std::move(springs));
+    }
+    return result;
+  }
+
+  const Assembly& assembly_;
+  const ContactSprings& springs_;
+  bool rotation_;
+  const std::vector<std::uint8_t>& held_;
+  bool anchored_;      ///< something can pull: the period, or held discs
+  bool cut_at_discs_;  ///< what a single disc joins to the rest can follow it
+  ContactGraph graph_;
+  std::vector<Fate> fate_;
+  std::vector<std::int32_t> contacts_left_;  ///< per disc
+  std::vector<std::int32_t> open_;           ///< discs that have lost a contact
+  std::vector<std::int32_t> step_of_;        ///< per disc, within its piece; -1: not met yet
+  std::vector<Step> steps_;                  ///< of one piece
+  std::int64_t pieces_ = 0;
+  Span span_;
+};
+
+}  // namespace
+
+LoadBearingNetwork load_bearing_network(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
+                                        const std::vector<std::uint8_t>& held) {
+  return Pruning(assembly, springs, effects, held).prune();
+}
+
+std::int64_t count_self_stresses(const Assembly& assembly, const ContactSprings& springs, std::int64_t unknowns,
+                                 std::int64_t free_motions) {
+  std::int64_t constraints = 0;
+  for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
+    constraints += (springs[k].kN > 0 ? 1 : 0) + (springs[k].kT != 0 ? 1 : 0);
+  }
+  return constraints - unknowns + free_motions;
+}
+
+}  // namespace equidem

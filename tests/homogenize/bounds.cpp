@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Voigt stiffness and uniform-stress estimate against closed forms, against the forces that they stand for, and
+/// against each other.
+#include "equidem/homogenize/bounds.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/statistics.hpp"
+#include "equidem/homogenize/affine.hpp"
+#include "equidem/homogenize/elasticity_tensor.hpp"
+#include "equidem/homogenize/fabric.hpp"
+#include "equidem/homogenize/stress.hpp"
+
+#include "homogenize/samples.hpp"
+#include "homogenize/tensors.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace samples;
+using std::numbers::pi;
+
+namespace {
+
+constexpr double sqrt3 = std::numbers::sqrt3;
+
+Assembly lattice(const std::string& kind) {
+  const LatticeOptions options{.columns = 4, .rows = 6, .radius = 0.005, .periodic = true};
+  return kind == "square" ? square_lattice(options) : hexagonal_lattice(options);
+}
+
+ContactSprings uniform(double kN, double kT) {
+  return ContactSprings(SpringConstants{kN, kT});
+}
+
+}  // namespace
+
+TEST_CASE("voigt_stiffness_of_lattices_is_exact") {
+  const double kN = GENERATE(1.0, 3e9), ratio = GENERATE(-0.3, 0.0, 1e-8, 0.2, 1.0, 1e8), kT = ratio * kN;
+  const Matrix3 hexagonal = isotropic_stiffness(sqrt3 / 2 * kN, sqrt3 / 4 * (kN + kT));
+  const Matrix3 square{{{kN, 0, 0}, {0, kN, 0}, {0, 0, kT / 2}}};
+  const Matrix3 hexagonal_found = voigt_stiffness(lattice("hexagonal"), uniform(kN, kT));
+  const Matrix3 square_found = voigt_stiffness(lattice("square"), uniform(kN, kT));
+  CAPTURE(kN, ratio, shown(hexagonal_found), shown(square_found));
+  CHECK(relative_difference(hexagonal_found, hexagonal) < 1e-13);
+  CHECK(relative_difference(square_found, square) < 1e-13);
+  if (ratio >= -0.3 && ratio <= 1) {
+    const EffectiveModuli moduli = effective_moduli(hexagonal_found);
+    CHECK(moduli.poisson_strain == Approx((1 - ratio) / 4).margin(1e-13));
+    CHECK(moduli.poisson_stress == Approx((kN - kT) / (3 * kN + kT)).margin(1e-13));
+    CHECK(moduli.young_stress == Approx(2 * sqrt3 * kN * (kN + kT) / (3 * kN + kT)).epsilon(1e-13));
+    CHECK(moduli.anisotropy < 1e-13);
+  }
+}
+
+TEST_CASE("voigt_stiffness_is_the_stress_of_affine_motion") {
+  Random random(31);
+  for (const bool periodic : {false, true}) {
+    for (const auto& [name, assembly] : assemblies(periodic)) {
+      const ContactSprings springs = random_springs(assembly, -0.2, 32);
+      const Tensor2 h = random_tensor(random);
+      const Tensor2 strain{h.xx, 0.5 * (h.xy + h.yx), 0.5 * (h.xy + h.yx), h.yy};
+      const Voigt expected = voigt_stress(
+          macroscopic_stress(assembly, affine_contact_forces(assembly, springs, strain, mean_rotation(strain))));
+      const Voigt found = stress_of(voigt_stiffness(assembly, springs), voigt_strain(h));
+      CAPTURE(name, periodic, samples::shown(h));
+      CHECK(found.xx == Approx(expected.xx).epsilon(1e-12).margin(1e-13));
+      CHECK(found.yy == Approx(expected.yy).epsilon(1e-12).margin(1e-13));
+      CHECK(found.xy == Approx(expected.xy).epsilon(1e-12).margin(1e-13));
+    }
+  }
+}
+
+TEST_CASE("voigt_moduli_of_equal_springs_depend_on_fabric_through_S_alone") {
+  // Averaged over directions, (n n)(n n) and (n s)(n s) are isotropic, whatever n: K = S kN/4, G = S (kN + kT)/8.
+  for (const bool periodic : {false, true}) {
+    for (const auto& [name, assembly] : assemblies(periodic)) {
+      const Tensor2 branch = fabric(assembly).branch;
+      const double S = branch.xx + branch.yy;
+      const EffectiveModuli moduli = effective_moduli(voigt_stiffness(assembly, uniform(2, 0.6)));
+      CAPTURE(name, periodic, S, moduli.bulk_modulus_2d, moduli.shear_modulus, moduli.anisotropy);
+      CHECK(moduli.bulk_modulus_2d == Approx(S * 2 / 4).epsilon(1e-13));
+      CHECK(moduli.shear_modulus == Approx(S * (2 + 0.6) / 8).epsilon(1e-13));
+      CHECK(moduli.poisson_strain == Approx((1 - 0.3) / 4).epsilon(1e-13));
+    }
+  }
+}
+
+TEST_CASE("affine_stiffness_of_poisson_delaunay_assemblies_is_isotropic_with_S_15_over_pi") {
+  // E[l²] = 5/(pi n) and z = 6 give S = 15/pi: K = 15/(4 pi) kN, G = 15/(8 pi) (kN + kT).
+  constexpr double kN = 2, kT = 0.5;
+  const Matrix3 expected = isotropic_stiffness(15 / (4 * pi) * kN, 15 / (8 * pi) * (kN + kT));
+  std::vector<double> bulk, shear, bulk_of_other_points;
+  std::vector<double> entries[3][3];
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    const auto stiffness = [&](PointProcess points) {
+      return voigt_stiffness(delaunay_assembly({.discs = 1500, .points = points, .seed = seed, .periodic = true}),
+                             uniform(kN, kT));
+    };
+    const Matrix3 found = stiffness(PointProcess::uniform);
+    const EffectiveModuli moduli = effective_moduli(found);
+    bulk.push_back(moduli.bulk_modulus_2d);
+    shear.push_back(moduli.shear_modulus);
+    bulk_of_other_points.push_back(effective_moduli(stiffness(PointProcess::poisson_disc)).bulk_modulus_2d);
+    for (std::size_t r = 0; r < 3; ++r) {
+      for (std::size_t s = r; s < 3; ++s) entries[r][s].push_back(found[r][s]);
+    }
+  }
+  const double K = 15 / (4 * pi) * kN;
+  const auto check = [&](const std::string& what, const std::vector<double>& values, double wanted) {
+    const MeanEstimate found = estimate_mean(values, 0.95);
+    CAPTURE(what, found.mean, found.standard_error, wanted);
+    CHECK(found.standard_error < 0.005 * largest(expected));  // or three of them would allow anything
+    CHECK(std::abs(found.mean - wanted) < 3 * found.standard_error);
+  };
+  check("K", bulk, K);
+  check("G", shear, 15 / (8 * pi) * (kN + kT));
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t s = r; s < 3; ++s) {
+      check("C" + std::to_string(r) + std::to_string(s), entries[r][s], expected[r][s]);
+    }
+  }
+  const MeanEstimate other = estimate_mean(bulk_of_other_points, 0.95);
+  CAPTURE(other.mean, other.standard_error);
+  CHECK(std::abs(other.mean - K) > 10 * other.standard_error);  // points that keep their distance have another S
+}
+
+TEST_CASE("uniform_stress_estimate_of_the_hexagonal_lattice_has_its_closed_form") {
+  // However soft the tangential springs, K and C66 keep all their digits; C11 - C12 can but keep those of K.
+  const double kN = GENERATE(1.0, 3e9), ratio = GENERATE(1e-12, 1e-8, 0.1, 0.25, 0.5, 1.0, 1e8), kT = ratio * kN;
+  const Assembly assembly = lattice("hexagonal");
+  const Matrix3 found = uniform_stress_estimate(assembly, uniform(kN, kT));
+  const EffectiveModuli moduli = effective_moduli(found);
+  const double affine = effective_moduli(voigt_stiffness(assembly, uniform(kN, kT))).shear_modulus;
+  constexpr double S = 2 * sqrt3;
+  const double K = S * kN / 4, G = S / 2 * kN * kT / (kN + kT);
+  CAPTURE(kN, ratio, moduli.bulk_modulus_2d / K, found[2][2] / G, moduli.shear_modulus / G, moduli.anisotropy);
+  CHECK(moduli.bulk_modulus_2d == Approx(K).epsilon(1e-13));
+  CHECK(found[2][2] == Approx(G).epsilon(1e-13));
+  CHECK(moduli.shear_modulus == Approx(G).epsilon(1e-13).margin(1e-15 * K));
+  CHECK(found[2][2] / affine == Approx(4 * ratio / ((1 + ratio) * (1 + ratio))).epsilon(1e-13));
+  CHECK(moduli.poisson_strain == Approx((1 - ratio) / (2 * (1 + ratio))).margin(1e-13));
+  CHECK(moduli.poisson_stress == Approx((1 - ratio) / (1 + 3 * ratio)).margin(1e-13));
+  CHECK(moduli.anisotropy < 1e-13);
+}
+
+TEST_CASE("poisson_ratios_of_both_estimates_bracket_as_tabulated") {
+  // nu in plane strain to the digits printed: (1 - r)/4 and (1 - r)/(2 (1 + r)), r = kT/kN.
+  struct Row {
+    double ratio, affine, uniform_stress;
+  };
+  const Row row = GENERATE(Row{0, 0.250, 0.500}, Row{0.1, 0.225, 0.409}, Row{0.25, 0.1875, 0.300},
+                           Row{0.5, 0.125, 0.1667}, Row{1, 0, 0});
+  const Assembly assembly = lattice("hexagonal");
+  const double affine = effective_moduli(voigt_stiffness(assembly, uniform(1, row.ratio))).poisson_strain;
+  const double other = effective_moduli(uniform_stress_estimate(assembly, uniform(1, row.ratio))).poisson_strain;
+  CAPTURE(row.ratio, affine, other);
+  CHECK(affine == Approx(row.affine).margin(5e-4));
+  CHECK(other == Approx(row.uniform_stress).margin(5e-4));
+  CHECK(affine <= other + 1e-15);
+}
+
+TEST_CASE("uniform_stress_estimate_stores_the_energy_of_forces_that_carry_the_stress") {
+  // F = A s B^-1 l has the Love-Weber stress s, and its energy is A s : C^-1 s / 2.
+  Random random(33);
+  for (const bool periodic : {false, true}) {
+    for (const auto& [name, assembly] : assemblies(periodic)) {
+      const ContactSprings springs = random_springs(assembly, 0.1, 34);
+      const double area = assembly.area(), xx = random.uniform(-1, 1), yy = random.uniform(-1, 1);
+      const double xy = random.uniform(-1, 1);
+      const Tensor2 stress{xx, xy, xy, yy};
+      Tensor2 b;
+      for (const Contact& contact : assembly.contacts) b += outer(assembly.branch(contact), assembly.branch(contact));
+      const double determinant = b.xx * b.yy - b.xy * b.yx;
+      std::vector<ContactForce> forces;
+      double energy = 0;
+      for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+        const Vec2 l = assembly.branch(assembly.contacts[c]);
+        const Vec2 m = Vec2{b.yy * l.x - b.xy * l.y, b.xx * l.y - b.yx * l.x} / determinant;
+        const Vec2 force = area * (stress * m);
+        const ContactFrame frame = frame_of(assembly, assembly.contacts[c]);
+        forces.push_back({dot(force, frame.normal), dot(force, frame.tangent())});
+        energy += linear_spring_energy_of(springs[c], forces.back());
+      }
+      const Tensor2 carried = macroscopic_stress(assembly, forces);
+      const Voigt strain = stress_of(inverse(uniform_stress_estimate(assembly, springs)), {xx, yy, xy});
+      const double work = 0.5 * area * (xx * strain.xx + yy * strain.yy + xy * strain.xy);
+      CAPTURE(name, periodic, samples::shown(stress), samples::shown(carried), energy, work);
+      CHECK(difference(carried, stress) < 1e-12);
+      CHECK(work == Approx(energy).epsilon(1e-12));
+    }
+  }
+}
+
+TEST_CASE("uniform_stress_estimate_is_never_above_the_voigt_stiffness") {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    for (const bool periodic : {false, true}) {
+      for (const auto& [name, assembly] : assemblies(periodic)) {
+        for (const double least : {0.0, 0.9}) {
+          const ContactSprings springs = random_springs(assembly, least, seed);
+          const Matrix3 low = uniform_stress_estimate(assembly, springs), high = voigt_stiffness(assembly, springs);
+          CAPTURE(name, periodic, seed, least, shown(low), shown(high));
+          CHECK(margin(low, high) > -1e-14);
+          CHECK(margin(Matrix3{}, low) > 0);
+        }
+      }
+    }
+  }
+  // Equal springs of equal length on an isotropic network leave no room between them.
+  const Assembly hexagonal = lattice("hexagonal");
+  const Matrix3 low = uniform_stress_estimate(hexagonal, uniform(1, 1));
+  CHECK(relative_difference(low, voigt_stiffness(hexagonal, uniform(1, 1))) < 1e-14);
+}
+
+TEST_CASE("stiffnesses_turn_with_the_assembly") {
+  const double angle = GENERATE(0.2, pi / 4, 1.9, -2.7);
+  for (const auto& [name, assembly] : assemblies(false)) {
+    const ContactSprings springs = random_springs(assembly, 0.1, 35);
+    const Assembly after = turned(assembly, angle);
+    const Matrix3 voigt = voigt_stiffness(assembly, springs), low = uniform_stress_estimate(assembly, springs);
+    CAPTURE(name, angle, shown(voigt), shown(low));
+    CHECK(relative_difference(voigt_stiffness(after, springs), rotated(voigt, -angle)) < 1e-13);
+    CHECK(relative_difference(uniform_stress_estimate(after, springs), rotated(low, -angle)) < 1e-13);
+    CHECK(relative_difference(voigt_stiffness(after, springs), rotated(voigt, angle)) > 1e-4);  // the sense counts
+  }
+}
+
+TEST_CASE("without_tangential_springs_only_stresses_that_load_none_are_resisted") {
+  SECTION("hexagonal: the bulk modulus is left") {
+    const Matrix3 found = uniform_stress_estimate(lattice("hexagonal"), uniform(2, 0));
+    CAPTURE(shown(found));
+    CHECK(relative_difference(found, isotropic_stiffness(sqrt3 / 2 * 2, 0)) < 1e-14);
+  }
+  SECTION("square, turned: tension along its rows is left") {
+    const double angle = GENERATE(0.0, 0.3, 0.6, pi / 4, 1.2);
+    const Assembly free = square_lattice({.columns = 6, .rows = 6, .radius = 0.005});
+    const Matrix3 upright = voigt_stiffness(free, uniform(2, 0));
+    const Matrix3 found = uniform_stress_estimate(turned(free, angle), uniform(2, 0));
+    CAPTURE(angle, shown(upright), shown(found));
+    CHECK(upright[2][2] == 0);
+    CHECK(relative_difference(found, rotated(upright, -angle)) < 1e-13);
+  }
+  SECTION("any: it is the limit kT -> 0, wherever springs are absent") {
+    for (const bool all : {true, false}) {
+      for (const auto& [name, assembly] : assemblies(false)) {
+        const auto springs = [&](double kT) {
+          Random random(36);
+          std::vector<SpringConstants> k(assembly.contacts.size());
+          for (SpringConstants& spring : k) {
+            spring.kN = random.uniform(0.5, 1.5);
+            spring.kT = all || random.uniform() < 0.1 ? kT : 0.5;
+          }
+          return ContactSprings(k);
+        };
+        const Matrix3 limit = uniform_stress_estimate(assembly, springs(0));
+        const Matrix3 near = uniform_stress_estimate(assembly, springs(1e-9));
+        const Tensor2 b = fabric(assembly).branch;
+        const StiffnessEigen eigen = eigenstrains(limit);
+        CAPTURE(name, all, shown(limit), shown(near), eigen.values[0], eigen.values[2]);
+        CHECK(all_finite(limit));
+        CHECK(relative_difference(near, limit) < 1e-7);
+        CHECK(relative_difference(near, limit) > 1e-12);
+        CHECK(eigen.values[2] > 0.1);
+        if (name == "square") continue;  // its deviator along the axes loads no tangential spring either
+        CHECK(std::abs(eigen.values[1]) < 1e-14 * eigen.values[2]);
+        // As a stress, the one left is along B.
+        const auto& e = eigen.strains[2];
+        CHECK(e[1] / e[0] == Approx(b.yy / b.xx).epsilon(1e-12));
+        CHECK(e[2] / 2 / e[0] == Approx(b.xy / b.xx).epsilon(1e-12).margin(1e-14));
+      }
+    }
+  }
+}
+
+TEST_CASE("uniform_stress_estimate_refuses_what_it_cannot_estimate") {
+  const auto message = [](const Assembly& assembly, double kT) {
+    return message_of([&] { static_cast<void>(uniform_stress_estimate(assembly, uniform(1, kT))); });
+  };
+  Assembly chain = square_lattice({.columns = 5, .rows = 1, .radius = 0.005});
+  CHECK(contains(message(lattice("square"), -0.1), "the tangential spring is kT = -0.1 Pa at contact 0"));
+  CHECK(contains(message(chain, 1), "all branches are parallel"));
+  CHECK(contains(message(turned(chain, 0.7), 1), "all branches are parallel"));
+  chain.contacts.clear();
+  CHECK(contains(message(chain, 1), "the assembly has no contacts"));
+}

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/homogenize/effective_stiffness.hpp"
+
+#include <cmath>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "equidem/assembly/files.hpp"
+#include "equidem/homogenize/bounds.hpp"
+#include "equidem/homogenize/elasticity_tensor.hpp"
+
+#include "homogenize/samples.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace samples;
+
+namespace {
+
+constexpr double sqrt3 = 1.7320508075688772;
+
+double difference(const Matrix3& a, const Matrix3& b) {
+  return largest_entry(a + (-1.0) * b) / largest_entry(b);
+}
+
+EffectiveStiffness of(const Assembly& assembly, SpringConstants k, Rotation rotation = Rotation::from_scene,
+                      Boundary boundary = Boundary::periodic) {
+  return effective_stiffness(assembly, ContactSprings(k), {.boundary = boundary, .rotation = rotation, .solver = {}});
+}
+
+Assembly lattice_cell(bool hexagonal, int columns, int rows) {
+  const LatticeOptions options{.columns = columns, .rows = rows, .radius = 0.005, .periodic = true};
+  return hexagonal ? hexagonal_lattice(options) : square_lattice(options);
+}
+
+}  // namespace
+
+TEST_CASE("lattices_have_the_stiffness_of_the_closed_forms") {
+  const double ratio = GENERATE(-0.3, -0.1, 0.0, 1e-8, 0.05, 0.25, 0.5, 1.0, 1e8);
+  const auto [columns, rows] = GENERATE(std::pair{1, 2}, std::pair{2, 2}, std::pair{3, 4}, std::pair{8, 6});
+  const Rotation rotation = GENERATE(Rotation::from_scene, Rotation::restrained);
+  const SpringConstants k{1e9, ratio * 1e9};
+  CAPTURE(ratio, columns, rows, rotation == Rotation::restrained);
+  // Rotation restrained or not, a symmetric strain turns no disc: the stiffness is that of F1; (55) has the same.
+  SECTION("hexagonal: F1, Abe (34)") {
+    const EffectiveStiffness c = of(lattice_cell(true, columns, rows), k, rotation);
+    const double K = sqrt3 / 2 * k.kN, G = sqrt3 / 4 * (k.kN + k.kT);
+    CHECK(difference(c.stiffness, isotropic_stiffness(K, G)) < 1e-12);
+    CHECK(c.unstable_modes == 0);
+  }
+  SECTION("square: F2") {
+    if (ratio <= 0) return;
+    const EffectiveStiffness c = of(lattice_cell(false, columns, rows), k, rotation);
+    const Matrix3 exact{{{k.kN, 0, 0}, {0, k.kN, 0}, {0, 0, k.kT / 2}}};
+    CHECK(difference(c.stiffness, exact) < 1e-12);
+    CHECK(std::abs(c.stiffness[2][2] / exact[2][2] - 1) < 1e-12);
+  }
+}
+
+TEST_CASE("restrained_rotation_makes_the_stress_unsymmetric_as_equation_55_says") {
+  const double ratio = GENERATE(-0.2, 0.25, 1.0);
+  const double kN = 1e9, kT = ratio * kN;
+  const EffectiveStiffness c = of(lattice_cell(true, 4, 4), {kN, kT}, Rotation::restrained);
+  // sigma = sqrt3/4 [(kN - kT) d_ij e_mm + 2 (kN + kT) e_ij] + sqrt3/2 kT e_ji W, W = u_2,1 - u_1,2 (errata A4).
+  const double l = sqrt3 / 4 * (kN - kT), m = sqrt3 / 4 * (kN + kT), t = sqrt3 / 2 * kT;
+  const Matrix4 exact{{{l + 2 * m, l, 0, 0}, {l, l + 2 * m, 0, 0}, {0, 0, m + t, m - t}, {0, 0, m - t, m + t}}};
+  CAPTURE(ratio, c.gradient_stiffness[2][2], exact[2][2], c.gradient_stiffness[2][3], exact[2][3]);
+  CHECK(largest_entry(c.gradient_stiffness + (-1.0) * exact) < 1e-12 * largest_entry(exact));
+}
+
+TEST_CASE("a_random_cell_has_the_stiffness_of_the_independent_implementation") {
+  const std::string folder = std::string(EQUIDEM_SOURCE_DIR) + "/data/reference/";
+  const Assembly assembly = read_assembly(folder + "perturbed_hexagonal_400.json");
+  nlohmann::json reference;
+  std::ifstream(folder + "perturbed_hexagonal_400_stiffness.json") >> reference;
+  for (const auto& expected : reference["results"]) {
+    const double ratio = expected["kT_over_kN"];
+    const std::string rotations = expected["rotations"];
+    CAPTURE(ratio, rotations);
+    const EffectiveStiffness c =
+        of(assembly, {1, ratio}, rotations == "free" ? Rotation::from_scene : Rotation::restrained);
+    const double size = largest_entry(c.stiffness);
+    for (int r = 0; r < 3; ++r) {
+      for (int s = 0; s < 3; ++s) {
+        CAPTURE(r, s);
+        // Off-diagonal entries are small differences: relative to the entry where it counts.
+        const double wanted = expected["C_voigt"][r][s];
+        CHECK(std::abs(c.stiffness[r][s] - wanted) <= 1e-9 * std::max(std::abs(wanted), 1e-3 * size));
+      }
+    }
+    for (int r = 0; r < 4; ++r) {
+      for (int s = 0; s < 4; ++s) {
+        CAPTURE(r, s);
+        CHECK(std::abs(c.gradient_stiffness[r][s] - expected["C4"][r][s].get<double>()) <= 1e-10 * size);
+      }
+    }
+  }
+}
+
+TEST_CASE("strain_energies_are_the_derivatives_of_the_stiffness") {
+  const Boundary boundary = GENERATE(Boundary::periodic, Boundary::displacement, Boundary::traction);
+  const Rotation rotation = GENERATE(Rotation::from_scene, Rotation::restrained);
+  for (const Sample& sample : assemblies(true)) {
+    CAPTURE(sample.name, to_string(boundary), rotation == Rotation::restrained);
+    const double r = 0.4, h = 1e-4;
+    const EffectiveStiffness c = of(sample.assembly, {1, r}, rotation, boundary);
+    const EffectiveStiffness ahead = of(sample.assembly, {1, r + h}, rotation, boundary);
+    const EffectiveStiffness behind = of(sample.assembly, {1, r - h}, rotation, boundary);
+    const Matrix3 slope = (r / (2 * h)) * (ahead.stiffness + (-1.0) * behind.stiffness);
+    CHECK(difference(c.tangential_part, slope) < 1e-6);
+    CHECK(difference(c.tangential_part + c.normal_part, c.stiffness) < 1e-12);
+  }
+}
+
+TEST_CASE("macroscopic_power_is_microscopic_power") {  // Hill & Mandel
+  const double ratio = GENERATE(0.0, 0.3, 1.0, -0.1);
+  const Boundary boundary = GENERATE(Boundary::periodic, Boundary::displacement);
+  for (const Sample& sample : assemblies(true)) {
+    if (sample.name == "square" && ratio <= 0) continue;
+    CAPTURE(sample.name, ratio, to_string(boundary));
+    const EffectiveStiffness c = of(sample.assembly, {1e9, ratio * 1e9}, Rotation::from_scene, boundary);
+    CHECK(c.relative_residual < 1e-14);
+    if (boundary == Boundary::periodic) CHECK(c.hill_mandel < 1e-12);
+    CHECK(c.error_bound < 1e-12 * largest_entry(c.stiffness));
+  }
+}
+
+TEST_CASE("bounds_stand_in_their_order") {  // F7 and the Voigt bound
+  int opened = 0;
+  constexpr int seeds = 200;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const PointProcess points = seed % 3 == 0   ? PointProcess::uniform
+                                : seed % 3 == 1 ? PointProcess::perturbed_hexagonal
+                                                : PointProcess::poisson_disc;
+    const Assembly assembly = delaunay_assembly({.discs = 20 + static_cast<std::int64_t>(seed % 60),
+                                                 .points = points,
+                                                 .disorder = 0.3,
+                                                 .seed = seed,
+                                                 .periodic = true});
+    const double ratio = std::pow(10.0, static_cast<double>(seed % 7) / 2 - 2.5);
+    const ContactSprings springs(SpringConstants{1, ratio});
+    CAPTURE(seed, assembly.size(), ratio);
+    const auto stiffness = [&](Boundary boundary) {
+      return effective_stiffness(assembly, springs, {.boundary = boundary, .rotation = {}, .solver = {}}).stiffness;
+    };
+    const Matrix3 periodic = stiffness(Boundary::periodic), displacement = stiffness(Boundary::displacement);
+    constexpr double rounding = -1e-13;
+    CHECK(margin(periodic, displacement) > rounding);
+    CHECK(margin(displacement, voigt_stiffness(assembly, springs)) > rounding);
+    Matrix3 traction{};  // nothing, where a disc at the cut hangs by a single contact
+    const std::string refusal = message_of([&] { traction = stiffness(Boundary::traction); });
+    CAPTURE(refusal);
+    CHECK(margin(traction, periodic) > rounding);
+    if (refusal.empty()) ++opened;
+  }
+  CAPTURE(opened);
+  CHECK(opened >= 0.95 * seeds);
+}
+
+TEST_CASE("a_free_sample_lies_between_its_tractions_and_its_displacements") {
+  for (const Sample& sample : assemblies(false)) {
+    CAPTURE(sample.name);
+    const ContactSprings springs(SpringConstants{1e9, 0.3e9});
+    const auto stiffness = [&](Boundary boundary) {
+      return effective_stiffness(sample.assembly, springs, {.boundary = boundary, .rotation = {}, .solver = {}});
+    };
+    const EffectiveStiffness traction = stiffness(Boundary::traction), displacement = stiffness(Boundary::displacement);
+    CHECK(margin(traction.stiffness, displacement.stiffness) > -1e-13);
+    CHECK(margin(displacement.stiffness, voigt_stiffness(sample.assembly, springs)) > -1e-13);
+    CHECK(displacement.gear_modes == (sample.name == "square" ? 1 : 0));
+  }
+}
+
+TEST_CASE("larger_samples_close_the_gap_between_the_boundaries_as_one_over_their_size") {
+  const ContactSprings springs(SpringConstants{1, 0.3});
+  const auto gap = [&](int n) {
+    const Assembly cell = hexagonal_lattice({.columns = n, .rows = n, .radius = 0.005, .periodic = true});
+    const auto shear = [&](Boundary boundary) {
+      return effective_moduli(
+                 effective_stiffness(cell, springs, {.boundary = boundary, .rotation = {}, .solver = {}}).stiffness)
+          .shear_modulus;
+    };
+    return shear(Boundary::displacement) - shear(Boundary::traction);
+  };
+  const double small = gap(12), large = gap(48);
+  const double order = std::log(small / large) / std::log(4.0);
+  CAPTURE(small, large, order);
+  CHECK(order > 0.9);
+  CHECK(order < 1.1);
+}
+
+TEST_CASE("discs_that_carry_nothing_change_nothing") {
+  Assembly cell = lattice_cell(true, 6, 6);
+  const ContactSprings springs(SpringConstants{1e9, 0.4e9});
+  const EffectiveStiffness bare = effective_stiffness(cell, springs);
+  const auto add_disc = [&](Vec2 at) {
+    cell.centres.push_back(at);
+    cell.radii.push_back(0.001);
+    cell.cell_areas.clear();
+    cell.facet_lengths.clear();
+    return static_cast<std::int32_t>(cell.size() - 1);
+  };
+  const std::int32_t rattler = add_disc({0.0101, 0.0203});
+  const std::int32_t first = add_disc({0.0301, 0.0203}), second = add_disc({0.0311, 0.0203});
+  cell.contacts.push_back({.i = 0, .j = first, .lever_i = 0.005, .lever_j = 0.001});
+  cell.contacts.push_back({.i = first, .j = second, .lever_i = 0.0005, .lever_j = 0.0005});
+  CAPTURE(rattler, first, second);
+  const EffectiveStiffness c = effective_stiffness(cell, springs);
+  CHECK(difference(c.stiffness, bare.stiffness) < 1e-13);
+  CHECK(c.rattlers == 1);
+  CHECK(c.discs_removed == 3);
+  CHECK(!c.removed.empty());
+}
+
+TEST_CASE("a_floppy_network_prints_no_modulus") {
+  const SpringConstants no_slip_resistance{1e9, 0};
+  SECTION("square lattice without tangential springs") {
+    const std::string message =
+        message_of([&] { static_cast<void>(of(lattice_cell(false, 4, 4), no_slip_resistance)); });
+    CAPTURE(message);
+    CHECK(contains(message, "no energy") + contains(message, "at no cost") > 0);
+  }
+  SECTION("one column of the square lattice without tangential springs") {
+    const std::string message =
+        message_of([&] { static_cast<void>(of(lattice_cell(false, 1, 1), no_slip_resistance)); });
+    CAPTURE(message);
+    CHECK(contains(message, "costs no energy"));
+  }
+  SECTION("chains along x only") {
+    Assembly chains = lattice_cell(false, 4, 4);
+    std::erase_if(chains.contacts, [&](const Contact& c) { return std::abs(chains.branch(c).y) > 1e-3; });
+    chains.facet_lengths.clear();
+    const std::string message = message_of([&] { static_cast<void>(of(chains, {1e9, 0.5e9})); });
+    CAPTURE(message);
+    CHECK(contains(message, "one direction only"));
+  }
+  SECTION("honeycomb without tangential springs") {
+    Assembly honeycomb = lattice_cell(true, 6, 6);  // a third of the discs taken out
+    std::vector<std::uint8_t> out(honeycomb.size(), 0);
+    for (std::size_t d = 0; d < honeycomb.size(); ++d) {
+      const int row = static_cast<int>(d) / 6, column = static_cast<int>(d) % 6;
+      if ((column + (row % 2 == 1 ? 2 : 0)) % 3 == 0) out[d] = 1;
+    }
+    std::erase_if(honeycomb.contacts, [&](const Contact& c) { return out[c.i] != 0 || out[c.j] != 0; });
+    honeycomb.facet_lengths.clear();
+    CHECK(honeycomb.contacts.size() == honeycomb.size());  // 2/3 of the discs, 3/2 contacts each
+    const std::string message = message_of([&] { static_cast<void>(of(honeycomb, no_slip_resistance)); });
+    CAPTURE(message);
+    CHECK(!message.empty());
+  }
+  SECTION("no contacts") {
+    Assembly loose = lattice_cell(true, 4, 4);
+    loose.contacts.clear();
+    loose.facet_lengths.clear();
+    CHECK(contains(message_of([&] { static_cast<void>(of(loose, {1, 1})); }), "no contacts"));
+  }
+}

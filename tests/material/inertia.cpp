@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Mass and moment of inertia against the integrals that define them.
+#include "equidem/material/inertia.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "equidem/core/error.hpp"
+
+#include "support/catch.hpp"
+
+using namespace equidem;
+using std::numbers::pi;
+
+TEST_CASE("mass_and_moment_are_the_integrals_over_the_body") {
+  // Cylindrical shells about the axis of rotation, 2 pi x times their height: 1 of the disc, 2 sqrt(r² - x²) of the
+  // sphere. x = r sin t smooths the end.
+  const Body body = GENERATE(Body::disc, Body::sphere);
+  const double radius = GENERATE(0.005, 1.0, 112.5), density = GENERATE(1.0, 2480.0);
+  double mass = 0, moment = 0;
+  constexpr int shells = 4000;
+  for (int k = 0; k < shells; ++k) {
+    const double t = (k + 0.5) * pi / 2 / shells, x = radius * std::sin(t);
+    const double height = body == Body::disc ? 1 : 2 * radius * std::cos(t);
+    const double shell = density * 2 * pi * x * height * radius * std::cos(t) * (pi / 2 / shells);
+    mass += shell;
+    moment += shell * x * x;
+  }
+  const Inertia found = inertia_of(radius, density, body);
+  CAPTURE(to_string(body), radius, density, mass, moment);
+  CHECK(found.mass == Approx(mass).epsilon(1e-6));
+  CHECK(found.moment == Approx(moment).epsilon(1e-6));
+  CHECK(inertia_factor(body) == Approx(moment / (mass * radius * radius)).epsilon(1e-6));
+}
+
+TEST_CASE("every_disc_has_the_inertia_of_its_radius") {
+  const std::vector<double> radii{0.5, 1, 2};
+  for (const Body body : {Body::disc, Body::sphere}) {
+    const std::vector<Inertia> all = inertia_of(radii, 3, body);
+    REQUIRE(all.size() == radii.size());
+    for (std::size_t d = 0; d < radii.size(); ++d) {
+      CHECK(all[d].mass == inertia_of(radii[d], 3, body).mass);
+      CHECK(all[d].moment == inertia_of(radii[d], 3, body).moment);
+    }
+  }
+}
+
+TEST_CASE("bodies_have_the_names_of_the_case_file") {
+  for (const Body body : {Body::disc, Body::sphere}) CHECK(body_from(to_string(body)) == body);
+  CHECK(to_string(Body::disc) == "disc");
+  CHECK_THROWS_WITH(body_from("cube"), Catch::Contains("'cube' is no body") && Catch::Contains("\"sphere\""));
+}
+
+TEST_CASE("density_that_gives_no_mass_is_refused") {
+  for (const double density : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    CAPTURE(density);
+    CHECK_THROWS_WITH(inertia_of(1, density, Body::disc), Catch::Contains("the density of the discs is"));
+  }
+}
