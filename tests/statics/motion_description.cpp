@@ -170,17 +170,17 @@ TEST_CASE("a_piece_that_moves_alone_is_named") {
   Assembly assembly = hexagonal(8, 8);
   std::vector<DiscMotion> motions(assembly.size());
   for (std::size_t d = 0; d < 8; ++d) motions[d] = {{0, 1}, 0};
-  check_says(assembly, motions, {"rigid translation along y of 8 of 60 discs", "disc 0 at (0.005, "});
+  check_says(assembly, motions, {"rigid translation along y of 8 of 60 discs, such as disc 0 at (0.005, "});
 }
 
 TEST_CASE("counter_rotation_is_named") {
   const Assembly assembly = square(6, 5);
-  check_says(assembly, gears(assembly), {"counter-rotation of all 30 discs", "gears"});
+  check_says(assembly, gears(assembly), {"counter-rotation in place of all 30 discs", "gears"});
   std::vector<DiscMotion> spin(assembly.size(), {{}, 1.0});
   const std::string words = describe_motion(assembly, spin);
   INFO(words);
   CHECK(words.find("counter") == std::string::npos);
-  CHECK(words.find("rotation of all 30 discs in place") != std::string::npos);
+  CHECK(words.find("rotation in place of all 30 discs") != std::string::npos);
 }
 
 TEST_CASE("local_motions_name_their_discs") {
@@ -209,6 +209,87 @@ TEST_CASE("motions_of_the_whole_are_told_apart") {
                return Vec2{std::sin(300 * x.y), std::sin(200 * x.x)};
              }),
              {"a motion spread over 144 of 144 discs, largest at disc "});
+}
+
+TEST_CASE("mechanisms_of_periodic_cells_are_named") {
+  const auto check_mechanism = [](const Assembly& assembly, double kT, const std::vector<DiscMotion>& motions,
+                                  const std::vector<std::string>& words) {
+    CHECK(softness(assembly, ContactSprings(SpringConstants{1e9, kT}), motions) < 1e-27);
+    check_says(assembly, motions, words);
+  };
+  const auto cell_of_squares = [](int size) {
+    return square_lattice({.columns = size, .rows = size, .radius = radius, .periodic = true});
+  };
+  SECTION("the gears of a bipartite network") {
+    const Assembly assembly = cell_of_squares(GENERATE(2, 6));
+    check_mechanism(assembly, 0.5e9, gears(assembly),
+                    {"a counter-rotation in place of all ", "neighbours turning against one another like gears"});
+  }
+  SECTION("a disc between two contacts in line") {
+    const int size = GENERATE(2, 6);
+    Assembly assembly = hexagonal(size, size, true);
+    std::erase_if(assembly.contacts, [&](const Contact& c) {
+      return (c.i == 1 || c.j == 1) && std::abs(assembly.branch(c).y) > 0.1 * radius;
+    });
+    std::vector<DiscMotion> motions(assembly.size());
+    motions[1].u = {0, 1};
+    check_mechanism(assembly, 0, motions, {"a motion of " + describe_disc(assembly, 1) + " alone, along y"});
+  }
+  SECTION("rows that slide") {
+    const int size = GENERATE(2, 6);
+    const Assembly assembly = cell_of_squares(size);
+    std::vector<DiscMotion> motions(assembly.size());
+    for (int d = 0; d < size; ++d) motions[d].u = {1, 0};
+    check_mechanism(assembly, 0, motions, {format("a rigid translation along x of {} of {} discs", size, size * size)});
+    if (size == 2) return;
+    for (int d = 3 * size; d < 4 * size; ++d) motions[d].u = {-0.3, 0};
+    check_mechanism(assembly, 0, motions,
+                    {"a sliding of 2 groups of discs along x, each of which moves as one: 12 of 36 discs"});
+  }
+  SECTION("a ring that turns, across the period too") {
+    // The discs around a hole of the honeycomb; its other contacts are radial.
+    Assembly assembly = hexagonal(6, 6, true);
+    const auto hole = [](std::int32_t d) { return (d % 6 + 2 * (d / 12) + 2 * (d / 6)) % 3 == 0; };
+    std::erase_if(assembly.contacts, [&](const Contact& c) { return hole(c.i) || hole(c.j); });
+    const std::int32_t middle = GENERATE(15, 0);
+    REQUIRE(hole(middle));
+    std::vector<DiscMotion> motions(assembly.size());
+    const Vec2 period = *assembly.period;
+    int ring = 0;
+    for (std::size_t d = 0; d < assembly.size(); ++d) {
+      Vec2 l = assembly.centres[d] - assembly.centres[middle];
+      l -= {std::round(l.x / period.x) * period.x, std::round(l.y / period.y) * period.y};
+      if (norm(l) > 2.1 * radius || norm(l) == 0) continue;
+      motions[d].u = perpendicular(l);
+      ++ring;
+    }
+    REQUIRE(ring == 6);
+    check_mechanism(assembly, 0, motions, {"a rigid rotation about (", format("of 6 of {} discs", assembly.size())});
+  }
+  SECTION("the shear of a honeycomb") {
+    // The branches b from the one disc of a cell to the other, 2a (1, 0) and a (-1, +-sqrt3), keep their length where
+    // b . (H b + w) = 0: for the gradient H = (0 1; 1 0) with the shift w = (0, 2a) of all other discs, and for
+    // H = (1 0; 0 -1) with w = (-2a, 0).
+    Assembly assembly = hexagonal(12, 12);
+    const auto row = [&](std::size_t d) {
+      return std::lround(assembly.centres[d].y / (std::sqrt(3.0) * radius) - 0.5);
+    };
+    const auto kind = [&](std::size_t d) {
+      const long half = std::lround(assembly.centres[d].x / radius) - 1;
+      return (((half - row(d)) / 2 - row(d)) % 3 + 3) % 3;
+    };
+    std::erase_if(assembly.contacts, [&](const Contact& c) { return kind(c.i) == 0 || kind(c.j) == 0; });
+    const bool diagonal = GENERATE(false, true);
+    std::vector<DiscMotion> motions;
+    for (std::size_t d = 0; d < assembly.size(); ++d) {
+      const Vec2 x = assembly.centres[d];
+      Vec2 u = diagonal ? Vec2{x.x, -x.y} : Vec2{x.y, x.x};
+      if (kind(d) == 2) u += diagonal ? Vec2{-2 * radius, 0} : Vec2{0, 2 * radius};
+      motions.push_back({u, 0});
+    }
+    check_mechanism(assembly, 0, motions,
+                    {"a nearly uniform shear spread over ", "contacts slipping but not stretching"});
+  }
 }
 
 TEST_CASE("mechanisms_have_no_stiffness_but_rounding") {

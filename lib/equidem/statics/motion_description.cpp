@@ -20,6 +20,7 @@ namespace {
 constexpr double negligible = 1e-6;    ///< what is left of a motion that is called rigid, or pure rotation
 constexpr double roughly = 0.05;       ///< what uniform strain leaves of what a rigid motion leaves
 constexpr double moving_least = 1e-6;  ///< of the largest motion: less counts as rest
+constexpr double mechanical = 1e-18;   ///< what rounding leaves of a deformation that a mechanism does without
 
 double squared(double x) {
   return x * x;
@@ -37,7 +38,7 @@ struct Field {
 class Description {
  public:
   Description(const Assembly& assembly, std::span<const DiscMotion> motions)
-      : assembly_(assembly), motions_(motions), centres_(unwrap_pieces(assembly, ContactGraph(assembly)).centres) {
+      : assembly_(assembly), motions_(motions), laid_out_(unwrap_pieces(assembly, ContactGraph(assembly))) {
     assert(motions.size() == assembly.size());
     measure();
   }
@@ -45,15 +46,17 @@ class Description {
   [[nodiscard]] std::string text() const {
     if (moving_.empty()) return "no motion";
     if (rotation_ > (1 - negligible) * total_) return describe_rotations();
-    if (moving_.size() > 2) {
-      std::string rigid = describe_rigid();
-      if (!rigid.empty()) return rigid;
+    if (moving_.size() == 1) return describe_single();
+    if (std::string rigid = describe_rigid(); !rigid.empty()) return rigid;
+    const std::string strain = describe_uniform_strain();
+    if (strain.empty()) {
+      if (std::string sliding = describe_sliding(); !sliding.empty()) return sliding;
     }
     const auto count = static_cast<double>(assembly_.size());
     if (participants_ <= std::max(2.0, 0.1 * count) && participants_ < 0.5 * count) return describe_local();
-    return describe_uniform_strain() + format("spread over {} of {}, largest at {}", moving_.size(),
-                                              counted(as_count(assembly_.size()), "disc"),
-                                              describe_disc(assembly_, largest_first_.front()));
+    return (strain.empty() ? "a motion " : strain) +
+           format("spread over {} of {}, largest at {}{}", moving_.size(), counted(as_count(assembly_.size()), "disc"),
+                  describe_disc(assembly_, largest_first_.front()), describe_contacts());
   }
 
  private:
@@ -85,15 +88,39 @@ class Description {
     std::stable_sort(largest_first_.begin(), largest_first_.end(),
                      [&](std::size_t p, std::size_t q) { return weight_[p] > weight_[q]; });
     for (std::size_t d = 0; d < assembly_.size(); ++d) {
-      if (weight_[d] > moving_least * weight_[largest_first_.front()]) moving_.push_back(d);
+      if (moves(d)) moving_.push_back(d);
     }
   }
 
-  /// "all 25 discs" or "12 of 25 discs, disc 3 at (0.1, 0.2) the most".
+  /// "all 25 discs", "12 of 25 discs, such as disc 3 at (0.1, 0.2)" or "disc 3 at (0.1, 0.2) alone".
   [[nodiscard]] std::string describe_moving(std::size_t moving) const {
     if (moving == assembly_.size()) return "all " + counted(as_count(moving), "disc");
-    return format("{} of {}, {} the most", moving, counted(as_count(assembly_.size()), "disc"),
-                  describe_disc(assembly_, largest_first_.front()));
+    const std::string disc = describe_disc(assembly_, largest_first_.front());
+    if (moving == 1) return disc + " alone";
+    return format("{} of {}, such as {}", moving, counted(as_count(assembly_.size()), "disc"), disc);
+  }
+
+  [[nodiscard]] std::string describe_single() const {
+    const Vec2 u = u_[moving_.front()];
+    const bool translates = rotation_ <= negligible * total_;
+    return format("a motion of {}{}", describe_moving(1), translates ? ", along " + describe_direction(u) : "");
+  }
+
+  /// What a mechanism does to its contacts.
+  [[nodiscard]] std::string describe_contacts() const {
+    double stretch = 0;
+    double slip = 0;
+    double scale = 0;
+    for (const Contact& c : assembly_.contacts) {
+      const DiscMotion i{u_[c.i], spin_[c.i] / assembly_.radii[c.i]};
+      const DiscMotion j{u_[c.j], spin_[c.j] / assembly_.radii[c.j]};
+      const ContactDeformation d = deformation(frame_of(assembly_, c), i, j);
+      stretch += squared(d.normal);
+      slip += squared(d.tangential);
+      scale += weight_[c.i] + weight_[c.j];
+    }
+    if (stretch > mechanical * scale) return {};
+    return slip > mechanical * scale ? ", contacts slipping but not stretching" : ", discs rolling on one another";
   }
 
   [[nodiscard]] std::string describe_rotations() const {
@@ -106,18 +133,18 @@ class Description {
       scale += squared(i) + squared(j);
     }
     const bool gears = slip <= negligible * scale;
-    return format("a {} of {} in place{}", gears ? "counter-rotation" : "rotation", describe_moving(moving_.size()),
+    return format("a {} in place of {}{}", gears ? "counter-rotation" : "rotation", describe_moving(moving_.size()),
                   gears ? ", neighbours turning against one another like gears" : "");
   }
 
-  /// Least squares over some discs, with the unwrapped centres.
-  [[nodiscard]] Field fit(const std::vector<std::size_t>& discs) const {
+  /// Least squares over some discs.
+  [[nodiscard]] Field fit(const std::vector<std::size_t>& discs, const std::vector<Vec2>& centres) const {
     const double share = 1 / static_cast<double>(discs.size());
     Field f;
-    for (const std::size_t d : discs) f.c += share * centres_[d], f.t += share * u_[d];
+    for (const std::size_t d : discs) f.c += share * centres[d], f.t += share * u_[d];
     Tensor2 xx, ux;
     for (const std::size_t d : discs) {
-      const Vec2 x = centres_[d] - f.c;
+      const Vec2 x = centres[d] - f.c;
       xx += outer(x, x);
       ux += outer(u_[d] - f.t, x);
     }
@@ -133,11 +160,12 @@ class Description {
   }
 
   /// Share of the motion of some discs that a field leaves over.
-  [[nodiscard]] double left_over(const Field& f, const std::vector<std::size_t>& discs) const {
+  [[nodiscard]] double left_over(const Field& f, const std::vector<std::size_t>& discs,
+                                 const std::vector<Vec2>& centres) const {
     double sum = 0;
     double scale = 0;
     for (const std::size_t d : discs) {
-      const Vec2 e = u_[d] - f.at(centres_[d]);
+      const Vec2 e = u_[d] - f.at(centres[d]);
       sum += dot(e, e);
       scale += dot(u_[d], u_[d]);
     }
@@ -150,26 +178,67 @@ class Description {
     return discs;
   }
 
+  /// Centres of discs that move, laid out by the contacts among them: a cluster of them may reach across the period.
+  [[nodiscard]] std::vector<Vec2> lay_out_moving() const {
+    Assembly cluster;
+    cluster.centres = assembly_.centres;
+    cluster.period = assembly_.period;
+    for (const Contact& c : assembly_.contacts) {
+      if (moves(c.i) && moves(c.j)) cluster.contacts.push_back(c);
+    }
+    return unwrap_pieces(cluster, ContactGraph(cluster)).centres;
+  }
+
+  [[nodiscard]] bool moves(std::size_t disc) const {
+    return weight_[disc] > moving_least * weight_[largest_first_.front()];
+  }
+
   /// Of all discs, or else of those that move; empty where neither is rigid.
   [[nodiscard]] std::string describe_rigid() const {
-    const std::vector<std::size_t> all = every_disc();
-    for (const auto* discs : {&all, &moving_}) {
-      Field f = rotation_about_mean(*discs);
-      if (!(left_over(f, *discs) <= negligible)) continue;
-      double extent = 0;
-      for (const std::size_t d : *discs) extent = std::max(extent, norm(centres_[d] - f.c));
-      const double turn = f.rotation();
-      const std::string of = describe_moving(discs->size()) + describe_rolling(f.rotation(), *discs);
-      if (std::abs(turn) * extent <= 1e-4 * norm(f.t)) {
-        return format("a rigid translation along {} of {}", describe_direction(f.t), of);
-      }
-      Vec2 x = f.c + perpendicular(f.t) / turn;
-      for (double* value : {&x.x, &x.y}) {
-        if (std::abs(*value) < 1e-6 * extent) *value = 0;
-      }
-      return format("a rigid rotation about ({:.6g}, {:.6g}) of {}", x.x, x.y, of);
+    std::string words = describe_rigid(every_disc(), laid_out_.centres);
+    return words.empty() ? describe_rigid(moving_, lay_out_moving()) : words;
+  }
+
+  [[nodiscard]] std::string describe_rigid(const std::vector<std::size_t>& discs,
+                                           const std::vector<Vec2>& centres) const {
+    const Field f = rotation_about_mean(discs, centres);
+    if (!(left_over(f, discs, centres) <= negligible)) return {};
+    double extent = 0;
+    for (const std::size_t d : discs) extent = std::max(extent, norm(centres[d] - f.c));
+    const double turn = f.rotation();
+    const std::string of = describe_moving(discs.size()) + describe_rolling(turn, discs);
+    if (std::abs(turn) * extent <= 1e-4 * norm(f.t)) {
+      return format("a rigid translation along {} of {}", describe_direction(f.t), of);
     }
-    return {};
+    if (discs.size() == 2) return {};  // any two discs turn about some point
+    Vec2 x = f.c + perpendicular(f.t) / turn;
+    for (double* value : {&x.x, &x.y}) {
+      if (std::abs(*value) < 1e-6 * extent) *value = 0;
+    }
+    return format("a rigid rotation about ({:.6g}, {:.6g}) of {}", x.x, x.y, of);
+  }
+
+  /// Groups of discs, such as rows, of which each translates as one; empty where some disc moves by itself.
+  [[nodiscard]] std::string describe_sliding() const {
+    if (rotation_ > negligible * total_) return {};
+    Assembly rigid;
+    rigid.centres = assembly_.centres;
+    for (const Contact& c : assembly_.contacts) {
+      const Vec2 apart = u_[c.j] - u_[c.i];
+      if (dot(apart, apart) <= negligible) rigid.contacts.push_back({.i = c.i, .j = c.j});
+    }
+    const std::vector<std::int32_t> group = ContactGraph(rigid).pieces();
+    std::vector<std::size_t> sizes(assembly_.size(), 0);
+    for (const std::size_t d : moving_) ++sizes[group[d]];
+    if (std::count(sizes.begin(), sizes.end(), 1) > 0) return {};
+    const Vec2 u = u_[largest_first_.front()];
+    double across = 0;
+    for (const std::size_t d : moving_) across += squared(cross(u, u_[d]));
+    const bool along = across <= negligible * total_ * dot(u, u);
+    return format("a sliding of {} groups of discs{}, each of which moves as one: {} of {}, such as {}",
+                  as_count(assembly_.size()) - std::count(sizes.begin(), sizes.end(), 0),
+                  along ? " along " + describe_direction(u) : "", moving_.size(),
+                  counted(as_count(assembly_.size()), "disc"), describe_disc(assembly_, largest_first_.front()));
   }
 
   /// Discs that turn, but not as the rigid motion does.
@@ -179,14 +248,15 @@ class Description {
     return rotation_ > negligible * total_ && own > negligible * total_ ? ", discs rolling on one another" : "";
   }
 
-  [[nodiscard]] Field rotation_about_mean(const std::vector<std::size_t>& discs) const {
+  [[nodiscard]] Field rotation_about_mean(const std::vector<std::size_t>& discs,
+                                          const std::vector<Vec2>& centres) const {
     const double share = 1 / static_cast<double>(discs.size());
     Field f;
-    for (const std::size_t d : discs) f.c += share * centres_[d], f.t += share * u_[d];
+    for (const std::size_t d : discs) f.c += share * centres[d], f.t += share * u_[d];
     double turning = 0;
     double square = 0;
     for (const std::size_t d : discs) {
-      const Vec2 x = centres_[d] - f.c;
+      const Vec2 x = centres[d] - f.c;
       turning += cross(x, u_[d] - f.t);
       square += dot(x, x);
     }
@@ -201,15 +271,18 @@ class Description {
     for (std::size_t k = 0; k < std::min<std::size_t>({5, static_cast<std::size_t>(about), moving_.size()}); ++k) {
       names += (k == 0 ? "" : ", ") + describe_disc(assembly_, largest_first_[k]);
     }
-    return format("a local motion of about {} of {}: {}{}", about, counted(as_count(assembly_.size()), "disc"), names,
-                  about > 5 ? ", ..." : "");
+    return format("a local motion of about {} of {}: {}{}{}", about, counted(as_count(assembly_.size()), "disc"), names,
+                  about > 5 ? ", ..." : "", describe_contacts());
   }
 
-  /// "a uniform shear ", "a uniform strain " or "a motion ".
+  /// "a nearly uniform shear ", "a nearly uniform strain " or "": images of one disc move alike, which strain forbids.
   [[nodiscard]] std::string describe_uniform_strain() const {
+    if (std::count(laid_out_.winds.begin(), laid_out_.winds.end(), 1) > 0) return {};
     const std::vector<std::size_t> all = every_disc();
-    const Field f = fit(all);
-    if (left_over(f, all) > roughly * left_over(rotation_about_mean(all), all)) return "a motion ";
+    const std::vector<Vec2>& centres = laid_out_.centres;
+    const Field f = fit(all, centres);
+    const double rigid = left_over(rotation_about_mean(all, centres), all, centres);
+    if (left_over(f, all, centres) > roughly * rigid) return {};
     const double volume = 0.5 * squared(f.H.xx + f.H.yy);
     const double shear = 0.5 * (squared(f.H.xx - f.H.yy) + squared(f.H.xy + f.H.yx));
     return volume < 0.1 * shear ? "a nearly uniform shear " : "a nearly uniform strain ";
@@ -217,7 +290,7 @@ class Description {
 
   const Assembly& assembly_;
   std::span<const DiscMotion> motions_;
-  std::vector<Vec2> centres_;
+  UnwrappedPieces laid_out_;
   std::vector<Vec2> u_;         ///< over the largest component of any motion
   std::vector<double> spin_;    ///< radius times rotation, likewise
   std::vector<double> weight_;  ///< |u|² + spin²
