@@ -35,6 +35,11 @@ BadCase loaded(const std::string& what, const std::string& by, const std::string
   return {changed(load_case, what, by), {}, line, key, std::move(words)};
 }
 
+BadCase sampled(const std::string& what, const std::string& by, const std::string& line, const std::string& key,
+                std::vector<std::string> words) {
+  return {changed(ensemble_case, what, by), {}, line, key, std::move(words)};
+}
+
 BadCase overridden(const std::string& text, const std::string& assignment, const std::string& key,
                    std::vector<std::string> words) {
   return {text, {assignment}, {}, key, std::move(words)};
@@ -85,8 +90,14 @@ std::vector<BadCase> bad_cases() {
       {"schema = \"equidem/1\"\n", {}, "", "[assembly]", {"missing table"}},
       {"", {}, "", "schema", {"missing key"}},
       loaded("plane = \"strain\"\n", "", "[material]", "material.plane", {"missing key"}),
-      loaded("shear_modulus = 1.0e9\n", "", "[material]", "material.shear_modulus",
-             {"a modulus is missing", "young_modulus"}),
+      loaded("shear_modulus = 1.0e9\n", "", "[material]", "material",
+             {"poisson_ratio alone does not describe", "shear_modulus is missing", "young_modulus and poisson_ratio"}),
+      loaded("shear_modulus = 1.0e9\npoisson_ratio = 0.2\n", "", "[material]", "material", {"moduli are missing"}),
+      loaded("poisson_ratio = 0.2\n", "", "[material]", "material",
+             {"shear_modulus alone does not", "poisson_ratio is missing", "bulk_modulus_2d and shear_modulus"}),
+      sampled("density = 2200.0\n", "", "[material]", "material",
+              {"p_wave_speed and s_wave_speed do not describe", "density is missing"}),
+      sampled("s_wave_speed = 900.0\n", "", "[material]", "material", {"s_wave_speed is missing"}),
       loaded("[assembly.radii]\nsmallest = 0.004\nlargest = 0.006\n", "", "[assembly]", "assembly.radius",
              {"size of the discs is missing"}),
       loaded("name = \"some\"\n", "", "[[group]]", "group.name", {"missing key", "[[group]]"}),
@@ -134,7 +145,23 @@ std::vector<BadCase> bad_cases() {
       loaded("\"4 GB\"", "-1", "memory_limit = -1", "solver.memory_limit", {"out of range"}),
       loaded("[0.0, 0.0, 0.02, 0.02]", "[0.02, 0.0, 0.0, 0.02]", "box = [0.02, 0.0, 0.0, 0.02]", "group.box",
              {"the box", "empty"}),
+      sampled("2650.0", "0.0", "density = 0.0", "assembly.density", {"out of range", "kg/m³"}),
+      sampled("density = 2200.0", "density = -1", "density = -1", "material.density", {"-1 is out of range"}),
+      sampled("[30, 60, 120]", "[30, 120, 60]", "discs = [30, 120, 60]", "ensemble.discs",
+              {"60 comes after 120", "ascending"}),
+      sampled("[30, 60, 120]", "[30, 30]", "discs = [30, 30]", "ensemble.discs", {"30 comes after 30"}),
+      sampled("[30, 60, 120]", "[2, 60]", "discs = [2, 60]", "ensemble.discs", {"2 is out of range", "from 3"}),
+      sampled("[30, 60, 120]", "[30, 60.5]", "discs = [30, 60.5]", "ensemble.discs", {"60.5 is a number"}),
+      sampled("[30, 60, 120]", "[]", "discs = []", "ensemble.discs", {"empty"}),
+      sampled("[30, 60, 120]", "30", "discs = 30", "ensemble.discs", {"[100, 400, 1600]"}),
+      sampled("samples = 4", "samples = 1", "samples = 1", "ensemble.samples", {"1 is out of range"}),
+      sampled("accuracy = 0.02", "accuracy = 1.0", "accuracy = 1.0", "ensemble.accuracy", {"between 0 and 1"}),
+      sampled("confidence = 0.9", "confidence = 0.5", "confidence = 0.5", "ensemble.confidence", {"between 0.5 and 1"}),
       // choices
+      sampled("\"displacement\"", "\"displacements\"", "boundary = \"displacements\"", "homogenize.boundary",
+              {"Did you mean \"displacement\"?"}),
+      sampled("\"all\"", "\"some\"", "bounds = \"some\"", "homogenize.bounds", {"\"affine\""}),
+      sampled("body = \"disc\"", "body = \"cube\"", "body = \"cube\"", "assembly.body", {"\"sphere\""}),
       tension("\"hexagonal\"", "\"hexagnal\"", "kind    = \"hexagnal\"", "assembly.kind",
               {"Did you mean \"hexagonal\"?"}),
       tension("\"hexagonal\"", "\"packing\"", "kind    = \"packing\"", "assembly.kind",
@@ -152,7 +179,18 @@ std::vector<BadCase> bad_cases() {
       tension("rows    = 21", "rows    = 21\nperiodic = true", "periodic = true", "assembly.periodic",
               {"no sides to pull"}),
       loaded("shear_modulus = 1.0e9", "shear_modulus = 1.0e9\nyoung_modulus = 1.0e9", "young_modulus = 1.0e9",
-             "material.shear_modulus", {"both given"}),
+             "material.young_modulus", {"young_modulus is too much"}),
+      sampled("p_wave_speed", "poisson_ratio = 0.2\np_wave_speed", "poisson_ratio = 0.2", "material.poisson_ratio",
+              {"poisson_ratio is too much"}),
+      loaded("poisson_ratio = 0.2", "p_wave_speed = 9.0", "p_wave_speed = 9.0", "material.p_wave_speed",
+             {"poisson_ratio is missing, p_wave_speed is too much"}),
+      sampled("s_wave_speed = 900.0", "s_wave_speed = 1500.0", "s_wave_speed = 1500.0", "material.s_wave_speed",
+              {"1500 is not below", "K = density"}),
+      sampled("s_wave_speed = 900.0", "s_wave_speed = 1400.0", "[material]", "material",
+              {"no reading in plane strain"}),
+      loaded("poisson_ratio = 0.2", "bulk_modulus_2d = 1.0e8", "[material]", "material",
+             {"no reading in plane strain"}),
+      tension("[test]", "[ensemble]\n[test]", "[ensemble]", "ensemble", {"kind = \"hexagonal\"", "delaunay"}),
       loaded("seed = 7", "seed = 7\nradius = 0.1", "[assembly.radii]", "assembly.radius", {"both given"}),
       loaded("ux = true\nuy = 1e-3\n", "", "[[support]]", "support", {"holds nothing"}),
       loaded("force = [1.0, -2.0]\n", "", "[[load]]", "load", {"neither force nor moment"}),
@@ -172,6 +210,8 @@ std::vector<BadCase> bad_cases() {
       overridden(tension_case, "springs.kN.x=1", "", {"nothing below 'kN'"}),
       overridden(load_case, "load.7.moment=1", "", {"no entry '7'"}),
       overridden(load_case, "load.0.force=[1]", "load.force", {"1 entry"}),
+      overridden(ensemble_case, "ensemble.discs=[3, 2]", "ensemble.discs", {"2 is out of range"}),
+      overridden(ensemble_case, "homogenize.boundary=open", "homogenize.boundary", {"\"open\" is no known boundary"}),
       overridden(tension_case, "assembly.seed=3", "assembly.seed", {"does not apply"}),
       overridden(tension_case, "assembly.rows=x", "assembly.rows", {"\"x\" is text"}),
   };

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/casefile/case.hpp"
+
 #include <filesystem>
 
 #include "equidem/casefile/build.hpp"
-#include "equidem/casefile/case.hpp"
 #include "equidem/casefile/keys.hpp"
 #include "equidem/core/file.hpp"
 
@@ -61,6 +62,37 @@ TEST_CASE("supports_and_loads_keep_what_is_free_and_what_is_held") {
   CHECK(c.output.vtk);
 }
 
+TEST_CASE("homogenization_and_ensembles_say_what_their_file_says") {
+  const Case c = parsed(ensemble_case);
+
+  CHECK(c.assembly.density == 2650.0);
+  CHECK(c.assembly.body == Body::disc);
+  CHECK(parsed(ensemble_case, {"assembly.body=sphere"}).assembly.body == Body::sphere);
+  CHECK(c.homogenize.boundary == Boundary::displacement);
+  CHECK(c.homogenize.bounds == BoundsWanted::all);
+  REQUIRE(c.ensemble);
+  CHECK(c.ensemble->discs == std::vector<std::int64_t>{30, 60, 120});
+  CHECK(c.ensemble->samples == 4);
+  CHECK(c.ensemble->accuracy == 0.02);
+  CHECK(c.ensemble->confidence == 0.9);
+}
+
+TEST_CASE("homogenization_has_defaults_and_an_ensemble_only_where_it_is_asked_for") {
+  const Case c = parsed(tension_case);
+
+  CHECK_FALSE(c.homogenize.boundary);
+  CHECK(c.homogenize.bounds == BoundsWanted::automatic);
+  CHECK_FALSE(c.ensemble);
+  CHECK_FALSE(c.assembly.density);
+  CHECK(c.assembly.body == Body::disc);
+
+  const Case asked = parsed(load_case + "[ensemble]\n");
+  REQUIRE(asked.ensemble);
+  CHECK(asked.ensemble->discs == std::vector<std::int64_t>{100, 400, 1600});
+  CHECK(asked.ensemble->samples == 10);
+  CHECK_FALSE(asked.ensemble->accuracy);
+}
+
 TEST_CASE("a_load_without_a_case_acts_in_every_case") {
   const Case c = parsed(load_case + "[[load]]\ngroup = \"left\"\nforce = [5.0, 0.0]\n");
 
@@ -73,8 +105,8 @@ TEST_CASE("a_load_without_a_case_acts_in_every_case") {
 }
 
 TEST_CASE("the_resolved_case_reads_back_as_the_same_case") {
-  const bool tension = GENERATE(true, false);
-  const Case first = parsed(tension ? tension_case : load_case, {R"(title="a \"quoted\" \\ title, äöü")"});
+  const std::string& example = example_cases[GENERATE(range(std::size_t{0}, example_cases.size()))];
+  const Case first = parsed(example, {R"(title="a \"quoted\" \\ title, äöü")"});
   const std::string echoed = to_toml(first, ".");
   CAPTURE(echoed);
   const Case second = parsed(echoed);
@@ -84,6 +116,10 @@ TEST_CASE("the_resolved_case_reads_back_as_the_same_case") {
   CHECK(second.load_cases.size() == first.load_cases.size());
   CHECK(second.solver.memory_limit == first.solver.memory_limit);
   CHECK(second.assembly.delaunay.radii.largest == first.assembly.delaunay.radii.largest);
+  CHECK(second.assembly.density == first.assembly.density);
+  CHECK(second.homogenize.boundary == first.homogenize.boundary);
+  REQUIRE(second.ensemble.has_value() == first.ensemble.has_value());
+  if (first.ensemble) CHECK(second.ensemble->discs == first.ensemble->discs);
 }
 
 TEST_CASE("paths_are_relative_to_the_case_file_and_follow_the_echo") {

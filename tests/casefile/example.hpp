@@ -70,6 +70,33 @@ memory_limit = "4 GB"
 picture = false
 )";
 
+inline const std::string ensemble_case = R"(schema = "equidem/1"
+[assembly]
+kind = "delaunay"
+discs = 50
+radius = 0.005
+periodic = true
+density = 2650.0
+body = "disc"
+[material]
+p_wave_speed = 1500.0
+s_wave_speed = 900.0
+density = 2200.0
+plane = "strain"
+weighting = "voronoi"
+[homogenize]
+boundary = "displacement"
+bounds = "all"
+[ensemble]
+discs = [30, 60, 120]
+samples = 4
+accuracy = 0.02
+confidence = 0.9
+)";
+
+/// One of each kind: a test, supports and loads, many samples.
+inline const std::vector<std::string> example_cases = {tension_case, load_case, ensemble_case};
+
 inline Case parsed(const std::string& text, const std::vector<std::string>& overrides = {}) {
   return parse_case(text, "a.toml", ".", overrides);
 }

@@ -2,6 +2,7 @@
 #include "equidem/casefile/build.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "equidem/assembly/delaunay.hpp"
@@ -93,37 +94,15 @@ void check_group_names(const Assembly& assembly, const Case& resolved) {
   }
 }
 
-Packing packing_of(AssemblyKind kind) {
-  if (kind == AssemblyKind::hexagonal) return Packing::hexagonal;
-  return kind == AssemblyKind::square ? Packing::square : Packing::isotropic;
-}
-
 SpringConstants springs_of_material(const Case& resolved, const Assembly& assembly, Packing& packing) {
   const MaterialCase& material = *resolved.material;
-  IsotropicMeasures measures;
-  packing = packing_of(resolved.assembly.kind);
-  if (resolved.weighting != SpringWeighting::uniform) {
-    if (packing == Packing::square) {
-      bad_input(format("the weighting is \"{}\" on the square lattice", to_string(resolved.weighting)),
-                "its relation to moduli (Abe 1996, eq. 31) is for equal springs", "Use weighting = \"uniform\"");
-    }
-    packing = Packing::isotropic;
+  if (resolved.weighting != SpringWeighting::uniform && resolved.assembly.kind == AssemblyKind::square) {
+    bad_input(format("the weighting is \"{}\" on the square lattice", to_string(resolved.weighting)),
+              "its relation to moduli (Abe 1996, eq. 31) is for equal springs", "Use weighting = \"uniform\"");
   }
-  if (packing == Packing::isotropic) {
-    const double psi = assembly.coordination_number() / (2 * std::numbers::pi);
-    switch (resolved.weighting) {
-      case SpringWeighting::uniform:
-        measures = {assembly.solid_fraction(), psi};
-        break;
-      case SpringWeighting::contact_density:
-        measures = {assembly.solid_fraction(), 1.0};
-        break;
-      case SpringWeighting::voronoi:
-        measures = {0.5, 1.0};
-        break;
-    }
-  }
-  return springs_for(material.moduli, packing, measures,
+  const SpringRelation relation = spring_relation(resolved, assembly);
+  packing = relation.packing;
+  return springs_for(material.moduli, packing, relation.measures,
                      material.static_only ? NegativeTangential::static_only : NegativeTangential::refuse);
 }
 
@@ -152,6 +131,42 @@ Assembly build_assembly(const Case& resolved) {
   check_group_names(assembly, resolved);
   check(assembly);
   return assembly;
+}
+
+std::optional<double> disc_density(const Case& resolved, const Assembly& assembly) {
+  const std::optional<double>& rho = resolved.assembly.density;
+  if (!resolved.material || !resolved.material->density) return rho;
+  const double gamma = *resolved.material->density;
+  const std::string where = resolved.where("material.density");
+  if (resolved.assembly.body == Body::sphere) {
+    if (rho) return rho;
+    fail(where, "the density of a continuum does not give that of spheres",
+         "a sheet of spheres has no mass per metre of depth", "Give assembly.density");
+  }
+  const double phi = assembly.solid_fraction();
+  if (!rho) return gamma / phi;
+  constexpr double tolerance = 1e-6;
+  if (std::abs(gamma - *rho * phi) <= tolerance * gamma) return rho;
+  fail(where, format("density = {:.9g} kg/m³ contradicts the density of the discs", gamma),
+       format("discs of {:.9g} kg/m³ that fill {:.6g} of the area make {:.9g} kg/m³", *rho, phi, *rho * phi),
+       "Remove one of the two");
+}
+
+SpringRelation spring_relation(const Case& resolved, const Assembly& assembly) {
+  if (resolved.weighting == SpringWeighting::uniform) {
+    if (resolved.assembly.kind == AssemblyKind::hexagonal) return {Packing::hexagonal, {}};
+    if (resolved.assembly.kind == AssemblyKind::square) return {Packing::square, {}};
+  }
+  switch (resolved.weighting) {
+    case SpringWeighting::contact_density:
+      return {Packing::isotropic, {assembly.solid_fraction(), 1.0}};
+    case SpringWeighting::voronoi:
+      return {Packing::isotropic, {0.5, 1.0}};
+    case SpringWeighting::uniform:
+      break;
+  }
+  const double psi = assembly.coordination_number() / (2 * std::numbers::pi);
+  return {Packing::isotropic, {assembly.solid_fraction(), psi}};
 }
 
 BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "equidem/casefile/keys.hpp"
+#include "equidem/casefile/read_value.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
@@ -13,24 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const TomlValue& at, const std::string& key, const std::string& problem, const std::string& why,
-                       const std::string& remedy) {
-  throw Error(ErrorKind::bad_input, problem, why, remedy, format("{}: {}", at.where(), key));
-}
-
 /// A path of the file as the program opens it.
 fs::path opened(const fs::path& written, const fs::path& folder) {
   return (written.is_absolute() ? written : folder / written).lexically_normal();
-}
-
-double number(const TomlValue& table, const char* key) {
-  return table.find(key)->real;
-}
-const std::string& text(const TomlValue& table, const char* key) {
-  return table.find(key)->text;
-}
-int whole(const TomlValue& table, const char* key) {
-  return static_cast<int>(table.find(key)->integer);
 }
 
 std::vector<TomlValue> no_items;
@@ -42,6 +28,8 @@ const std::vector<TomlValue>& repeated(const TomlValue& root, const char* name) 
 
 AssemblyCase read_assembly_table(TomlValue& table, const fs::path& folder) {
   AssemblyCase result;
+  if (const TomlValue* density = table.find("density")) result.density = density->real;
+  result.body = body_from(text(table, "body"));
   const std::string& kind = text(table, "kind");
   if (kind == "file") {
     result.kind = AssemblyKind::file;
@@ -55,7 +43,7 @@ AssemblyCase read_assembly_table(TomlValue& table, const fs::path& folder) {
     result.lattice = {.columns = whole(table, "columns"),
                       .rows = whole(table, "rows"),
                       .radius = number(table, "radius"),
-                      .periodic = table.find("periodic")->boolean};
+                      .periodic = flag(table, "periodic")};
     return result;
   }
   result.kind = AssemblyKind::delaunay;
@@ -65,49 +53,24 @@ AssemblyCase read_assembly_table(TomlValue& table, const fs::path& folder) {
   if (const TomlValue* disorder = table.find("disorder")) options.disorder = disorder->real;
   options.seed = static_cast<std::uint64_t>(table.find("seed")->integer);
   options.aspect = number(table, "aspect");
-  options.periodic = table.find("periodic")->boolean;
+  options.periodic = flag(table, "periodic");
   const TomlValue* radius = table.find("radius");
   const TomlValue* radii = table.find("radii");
   if ((radius == nullptr) == (radii == nullptr)) {
-    fail(radius != nullptr ? *radii : table, "assembly.radius",
-         radius != nullptr ? "radius and radii are both given" : "the size of the discs is missing",
-         "discs are of one radius, or of radii between two", "Give either radius = ... or [assembly.radii]");
+    fail_at(radius != nullptr ? *radii : table, "assembly.radius",
+            radius != nullptr ? "radius and radii are both given" : "the size of the discs is missing",
+            "discs are of one radius, or of radii between two", "Give either radius = ... or [assembly.radii]");
   }
   if (radius != nullptr) {
     options.radii = {radius->real, radius->real};
   } else {
     options.radii = {number(*radii, "smallest"), number(*radii, "largest")};
     if (options.radii.smallest > options.radii.largest) {
-      fail(*radii, "assembly.radii",
-           format("smallest = {} is larger than largest = {}", options.radii.smallest, options.radii.largest), "",
-           "Exchange them");
+      fail_at(*radii, "assembly.radii",
+              format("smallest = {} is larger than largest = {}", options.radii.smallest, options.radii.largest), "",
+              "Exchange them");
     }
   }
-  return result;
-}
-
-MaterialCase read_material(const TomlValue& table) {
-  const TomlValue* shear = table.find("shear_modulus");
-  const TomlValue* young = table.find("young_modulus");
-  if ((shear == nullptr) == (young == nullptr)) {
-    fail(young != nullptr ? *young : table, "material.shear_modulus",
-         young != nullptr ? "shear_modulus and young_modulus are both given" : "a modulus is missing",
-         "with poisson_ratio, one modulus says all", "Give either shear_modulus or young_modulus");
-  }
-  MaterialCase result;
-  const double nu = number(table, "poisson_ratio");
-  const Plane plane = plane_from(text(table, "plane"));
-  try {
-    if (shear != nullptr) {
-      result.moduli = {shear->real, nu, plane};
-      check(result.moduli);
-    } else {
-      result.moduli = moduli_from_young(young->real, nu, plane);
-    }
-  } catch (const Error& error) {
-    throw error.at(format("{}: material", table.where()));
-  }
-  result.static_only = table.find("static_only")->boolean;
   return result;
 }
 
@@ -116,11 +79,11 @@ GroupCase read_group(const TomlValue& table) {
   const TomlValue* discs = table.find("discs");
   const TomlValue* box = table.find("box");
   if (result.name.empty())
-    fail(table, "group.name", "the name is empty", "[[support]] and [[load]] choose a group by its name", "Name it");
+    fail_at(table, "group.name", "the name is empty", "[[support]] and [[load]] choose a group by its name", "Name it");
   if ((discs == nullptr) == (box == nullptr)) {
-    fail(box != nullptr ? *box : table, format("group '{}'", result.name),
-         box != nullptr ? "discs and box are both given" : "it has neither discs nor box",
-         "a group is a list of discs, or the discs in a box", "Give one of the two");
+    fail_at(box != nullptr ? *box : table, format("group '{}'", result.name),
+            box != nullptr ? "discs and box are both given" : "it has neither discs nor box",
+            "a group is a list of discs, or the discs in a box", "Give one of the two");
   }
   if (discs != nullptr) {
     for (const TomlValue& item : discs->items) result.discs.push_back(static_cast<std::int32_t>(item.integer));
@@ -129,8 +92,8 @@ GroupCase read_group(const TomlValue& table) {
   result.box_low = Vec2{box->items[0].real, box->items[1].real};
   result.box_high = Vec2{box->items[2].real, box->items[3].real};
   if (result.box_low->x >= result.box_high->x || result.box_low->y >= result.box_high->y) {
-    fail(*box, "group.box", format("the box {} is empty", box->shown()), "it is [x_min, y_min, x_max, y_max]",
-         "Put the smaller numbers first");
+    fail_at(*box, "group.box", format("the box {} is empty", box->shown()), "it is [x_min, y_min, x_max, y_max]",
+            "Put the smaller numbers first");
   }
   return result;
 }
@@ -146,8 +109,8 @@ Support read_support(const TomlValue& table) {
                  .uy = held(table.find("uy")),
                  .rotation = held(table.find("rotation"))};
   if (!result.ux && !result.uy && !result.rotation) {
-    fail(table, "support", format("the support of '{}' holds nothing", result.group),
-         "ux, uy and rotation are all left out", "Add one, such as uy = true");
+    fail_at(table, "support", format("the support of '{}' holds nothing", result.group),
+            "ux, uy and rotation are all left out", "Add one, such as uy = true");
   }
   return result;
 }
@@ -163,11 +126,11 @@ Load read_load(const TomlValue& table) {
   const TomlValue* force = table.find("force");
   const TomlValue* moment = table.find("moment");
   if (force == nullptr && moment == nullptr)
-    fail(table, "load", format("the load on '{}' has neither force nor moment", result.group), "it would do nothing",
-         "Add one, such as force = [1.0e3, 0.0]");
+    fail_at(table, "load", format("the load on '{}' has neither force nor moment", result.group), "it would do nothing",
+            "Add one, such as force = [1.0e3, 0.0]");
   if (moment != nullptr && result.kind == LoadKind::traction)
-    fail(*moment, "load.moment", "a traction has no moment", "it is a force per area of a side",
-         "Give the moment in a [[load]] of its own");
+    fail_at(*moment, "load.moment", "a traction has no moment", "it is a force per area of a side",
+            "Give the moment in a [[load]] of its own");
   if (force != nullptr) result.force = {force->items[0].real, force->items[1].real};
   if (moment != nullptr) result.moment = moment->real;
   return result;
@@ -179,8 +142,8 @@ void check_name_of_case(const TomlValue& value) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   };
   if (std::all_of(value.text.begin(), value.text.end(), plain)) return;
-  fail(value, "load.case", format("{} cannot name a load case", value.shown()), "it becomes part of the names of files",
-       "Use letters, digits, '_' and '-' only");
+  fail_at(value, "load.case", format("{} cannot name a load case", value.shown()),
+          "it becomes part of the names of files", "Use letters, digits, '_' and '-' only");
 }
 
 /// Loads with a name act in the case of that name, loads without in every case.
@@ -218,27 +181,51 @@ void resolve_springs_file(TomlValue& root, const fs::path& folder) {
   *named = *document.find("springs");
 }
 
+HomogenizeCase read_homogenize(const TomlValue& table) {
+  HomogenizeCase result;
+  if (const std::string& boundary = text(table, "boundary"); boundary != "auto")
+    result.boundary = boundary_from(boundary);
+  const std::string& bounds = text(table, "bounds");
+  if (bounds != "auto") result.bounds = bounds == "affine" ? BoundsWanted::affine : BoundsWanted::all;
+  return result;
+}
+
+EnsembleCase read_ensemble(const TomlValue& table) {
+  EnsembleCase result{
+      .discs = {}, .samples = whole(table, "samples"), .accuracy = {}, .confidence = number(table, "confidence")};
+  for (const TomlValue& item : table.find("discs")->items) result.discs.push_back(item.integer);
+  if (const TomlValue* accuracy = table.find("accuracy")) result.accuracy = accuracy->real;
+  return result;
+}
+
 void check_contradictions(const TomlValue& root, const AssemblyCase& assembly) {
   const TomlValue* springs = root.find("springs");
   const TomlValue* material = root.find("material");
   if (springs != nullptr && material != nullptr) {
-    fail(*material, "material", "springs and [material] are both given", "[material] says which springs to take",
-         "Remove one of them");
+    fail_at(*material, "material", "springs and [material] are both given", "[material] says which springs to take",
+            "Remove one of them");
   }
   const bool springs_in_file = assembly.kind == AssemblyKind::file;
   if (springs == nullptr && material == nullptr && !springs_in_file) {
-    fail(root, "springs", "the springs are missing", "every contact has a normal spring kN and a tangential spring kT",
-         "Add [springs] with kN and kT, or [material], or springs = \"FILE\"");
+    fail_at(root, "springs", "the springs are missing",
+            "every contact has a normal spring kN and a tangential spring kT",
+            "Add [springs] with kN and kT, or [material], or springs = \"FILE\"");
+  }
+  if (const TomlValue* ensemble = root.find("ensemble");
+      ensemble != nullptr && assembly.kind != AssemblyKind::delaunay) {
+    fail_at(*ensemble, "ensemble", "an ensemble needs random assemblies",
+            format("kind = \"{}\" makes the same one every time", text(*root.find("assembly"), "kind")),
+            "Set kind = \"delaunay\", or remove [ensemble]");
   }
   const TomlValue* test = root.find("test");
   for (const char* other : {"support", "load"}) {
     if (test == nullptr || repeated(root, other).empty()) continue;
-    fail(repeated(root, other).front(), other, format("[test] and [[{}]] are both given", other),
-         "the test brings its own supports and loads", "Remove one of them");
+    fail_at(repeated(root, other).front(), other, format("[test] and [[{}]] are both given", other),
+            "the test brings its own supports and loads", "Remove one of them");
   }
   if (test != nullptr && (assembly.lattice.periodic || assembly.delaunay.periodic)) {
-    fail(*root.find("assembly")->find("periodic"), "assembly.periodic", "a periodic assembly has no sides to pull",
-         "[test] pulls at the left and right sides", "Set periodic = false, or remove [test]");
+    fail_at(*root.find("assembly")->find("periodic"), "assembly.periodic", "a periodic assembly has no sides to pull",
+            "[test] pulls at the left and right sides", "Set periodic = false, or remove [test]");
   }
 }
 
@@ -246,8 +233,8 @@ void check_group_names(const std::vector<TomlValue>& tables) {
   for (std::size_t k = 0; k < tables.size(); ++k) {
     for (std::size_t earlier = 0; earlier < k; ++earlier) {
       if (text(tables[earlier], "name") != text(tables[k], "name")) continue;
-      fail(*tables[k].find("name"), "group.name", format("there are two groups '{}'", text(tables[k], "name")),
-           format("the other is at {}", tables[earlier].where()), "Give each its own name");
+      fail_at(*tables[k].find("name"), "group.name", format("there are two groups '{}'", text(tables[k], "name")),
+              format("the other is at {}", tables[earlier].where()), "Give each its own name");
     }
   }
 }
@@ -282,14 +269,14 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
   for (const TomlValue& table : repeated(root, "group")) result.groups.push_back(read_group(table));
   for (const TomlValue& table : repeated(root, "support")) result.supports.push_back(read_support(table));
   result.load_cases = read_load_cases(repeated(root, "load"));
+  result.homogenize = read_homogenize(*root.find("homogenize"));
+  if (const TomlValue* ensemble = root.find("ensemble")) result.ensemble = read_ensemble(*ensemble);
   const TomlValue& solver = *root.find("solver");
   result.solver = {.method = solver_method_from(text(solver, "method")),
                    .max_refinements = whole(solver, "max_refinements"),
                    .memory_limit = *bytes_of(*solver.find("memory_limit"))};
   const TomlValue& output = *root.find("output");
-  result.output = {.csv = output.find("csv")->boolean,
-                   .vtk = output.find("vtk")->boolean,
-                   .picture = output.find("picture")->boolean};
+  result.output = {.csv = flag(output, "csv"), .vtk = flag(output, "vtk"), .picture = flag(output, "picture")};
   result.document = std::move(root);
   return result;
 }

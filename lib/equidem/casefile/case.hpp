@@ -13,11 +13,13 @@
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
+#include "equidem/casefile/material_case.hpp"
 #include "equidem/casefile/toml.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
+#include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/homogenize/tension_test.hpp"
-#include "equidem/material/elastic_moduli.hpp"
+#include "equidem/material/inertia.hpp"
 #include "equidem/statics/linear_solver.hpp"
 #include "equidem/statics/supports.hpp"
 
@@ -30,13 +32,9 @@ struct AssemblyCase {
   AssemblyKind kind = AssemblyKind::hexagonal;
   LatticeOptions lattice;
   DelaunayOptions delaunay;
-  std::filesystem::path path;  ///< as the program opens it
-};
-
-/// [material]: the continuum that the springs shall stand for.
-struct MaterialCase {
-  ElasticModuli moduli;
-  bool static_only = false;  ///< kT < 0 allowed
+  std::filesystem::path path;     ///< as the program opens it
+  std::optional<double> density;  ///< kg/m³, of the discs themselves
+  Body body = Body::disc;
 };
 
 /// [[group]]: discs listed, or those with their centre inside a box.
@@ -59,6 +57,27 @@ struct OutputCase {
   bool picture = true;
 };
 
+/// Which bounds are printed beside the effective stiffness.
+enum class BoundsWanted {
+  automatic,  ///< all of them where that costs little
+  affine,     ///< those that need no solution
+  all,        ///< also those by uniform displacements and tractions at the boundary
+};
+
+/// [homogenize].
+struct HomogenizeCase {
+  std::optional<Boundary> boundary;  ///< none: periodic where the assembly is, else displacement and traction both
+  BoundsWanted bounds = BoundsWanted::automatic;
+};
+
+/// [ensemble]: random samples of one kind, from the seeds s, s + 1, ..., s that of the assembly.
+struct EnsembleCase {
+  std::vector<std::int64_t> discs;  ///< wanted in a sample, ascending; in place of that of the assembly
+  int samples = 10;                 ///< of each size
+  std::optional<double> accuracy;   ///< wanted of the moduli, relative
+  double confidence = 0.95;         ///< of intervals
+};
+
 /// A checked case file: complete, in range and without contradiction. What only the assembly can tell (whether a
 /// group holds discs, whether supports suffice) is checked where the case is built and solved.
 struct Case {
@@ -72,6 +91,8 @@ struct Case {
   std::vector<Support> supports;       ///< with
   std::vector<NamedLoads> load_cases;  ///< at least one: without [[load]] one empty case
   std::vector<GroupCase> groups;
+  HomogenizeCase homogenize;
+  std::optional<EnsembleCase> ensemble;
   SolverOptions solver;
   OutputCase output;
 

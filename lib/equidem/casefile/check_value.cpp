@@ -59,6 +59,8 @@ std::string example(const KeySpec& key) {
       return "[0.0, 0.0, 1.0, 1.0]";
     case KeyType::discs:
       return "[0, 1, 2]";
+    case KeyType::sizes:
+      return "[100, 400, 1600]";
     case KeyType::held:
       return "0.001";
     case KeyType::bytes:
@@ -105,6 +107,21 @@ void check_discs(const TomlValue& value, const KeySpec& key) {
   }
 }
 
+void check_sizes(const TomlValue& value, const KeySpec& key) {
+  if (!value.is_array()) fail_type(value, key);
+  if (value.items.empty())
+    fail(value, key, "the list is empty", format("Write it like {} = {}", key.name, example(key)));
+  for (std::size_t k = 0; k < value.items.size(); ++k) {
+    const TomlValue& item = value.items[k];
+    if (item.type != Type::integer) fail_type(item, key);
+    check_number(item, key);
+    if (k > 0 && item.integer <= value.items[k - 1].integer) {
+      fail(item, key, format("{} comes after {}", item.integer, value.items[k - 1].integer),
+           "Write each number once, the smallest first");
+    }
+  }
+}
+
 void check_choice(const TomlValue& value, const KeySpec& key) {
   if (value.type != Type::text) fail_type(value, key);
   if (std::find(key.choices.begin(), key.choices.end(), value.text) != key.choices.end()) return;
@@ -141,6 +158,8 @@ std::string expected(const KeySpec& key) {
       return "four numbers [x_min, y_min, x_max, y_max]" + unit;
     case KeyType::discs:
       return "a list of disc numbers, such as [0, 1, 2]";
+    case KeyType::sizes:
+      return "a list of ascending whole numbers" + range;
     case KeyType::held:
       return "a number" + unit + ", or true for 0";
     case KeyType::bytes:
@@ -196,6 +215,8 @@ void check_value(const TomlValue& value, const KeySpec& key) {
       return check_numbers(value, key, 4);
     case KeyType::discs:
       return check_discs(value, key);
+    case KeyType::sizes:
+      return check_sizes(value, key);
     case KeyType::held:
       if (value.type == Type::boolean) {
         if (value.boolean) return;

@@ -24,6 +24,7 @@ enum class KeyType {
   vector,  ///< [x, y]
   box,     ///< [x_min, y_min, x_max, y_max]
   discs,   ///< [0, 1, 2, ...]
+  sizes,   ///< ascending whole numbers, [100, 400, 1600]
   held,    ///< a number, or true for 0
   bytes,   ///< a number of bytes, or text such as "4 GB"
 };
@@ -35,6 +36,10 @@ struct Range {
   bool low_open = false;
   bool high_open = false;
   bool zero_excluded = false;
+
+  static constexpr Range positive() { return {.low = 0, .low_open = true}; }
+  static constexpr Range not_negative() { return {.low = 0}; }
+  static constexpr Range from(double low, double high) { return {.low = low, .high = high}; }
 
   [[nodiscard]] bool contains(double value) const;
   /// "> 0", "from 1 to 100", ">= 0 and < 0.5", "not 0"; empty for any number.

@@ -22,7 +22,7 @@ namespace equidem {
 struct HomogenizeOptions {
   Boundary boundary = Boundary::periodic;
   Rotation rotation = Rotation::from_scene;
-  SolverOptions solver;
+  SolverOptions solver = {};
 };
 
 /// Effective stiffness with what is needed to trust it.

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/casefile/springs_file.hpp"
+
+#include <sstream>
+
+#include "equidem/casefile/keys.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+
+std::string springs_file(const SpringConstants& springs, SpringWeighting weighting, const std::string& title,
+                         const std::string& comment) {
+  std::string out;
+  std::istringstream lines(comment);
+  for (std::string line; std::getline(lines, line);) {
+    // TOML allows no control characters in a comment.
+    for (char& c : line)
+      if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    out += line.empty() ? "#\n" : format("# {}\n", line);
+  }
+  return out + format("schema = \"{}\"\ntitle = {}\n\n[springs]\nkN = {}\nkT = {}\nweighting = {}\n",
+                      springs_file_spec().schema, toml_text(title), toml_number(springs.kN), toml_number(springs.kT),
+                      toml_text(to_string(weighting)));
+}
+
+}  // namespace equidem
