@@ -1,55 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drives the built program as a user does: run_program.py PROGRAM SOURCE_FOLDER [unittest options]."""
+"""Usage, solve and sweep, as a user does: run_program.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import csv
-import json
 import math
 import os
 import pathlib
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 import unittest
 
-PROGRAM = ""
-CASES = pathlib.Path()
-TENSION = ""
-
-
-def equidem(*arguments, cwd=None):
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=120)
-
-
-def refuse_constant(name):
-    raise ValueError(f"{name} is not JSON")
-
-
-def parse_json(text):
-    return json.loads(text, parse_constant=refuse_constant)
-
-
-class ProgramTest(unittest.TestCase):
-    def setUp(self):
-        self.temporary = tempfile.TemporaryDirectory(prefix="equidem_test_")
-        self.folder = pathlib.Path(self.temporary.name)
-
-    def tearDown(self):
-        self.temporary.cleanup()
-
-    def check_error(self, done, exit_code, *words):
-        """One sentence on stderr, nothing on stdout."""
-        self.assertEqual(done.returncode, exit_code, done.stderr)
-        self.assertEqual(done.stdout, "")
-        self.assertTrue(done.stderr.startswith("equidem: "), done.stderr)
-        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
-        for word in words:
-            self.assertIn(word, done.stderr)
-
-    def check_done(self, done):
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done
+from program import CASES, PROGRAM, TENSION, ProgramTest, equidem, parse_json
 
 
 class Usage(ProgramTest):
@@ -138,8 +99,11 @@ class Solve(ProgramTest):
             self.assertEqual(answer["strain"], answers[0]["strain"])
             self.assertEqual(answer["energy"], answers[0]["energy"])
 
-    def test_every_case_of_the_data_folder_is_solved(self):
-        for case in sorted(CASES.glob("*.toml")):
+    def test_every_case_of_the_data_folder_in_which_something_acts_is_solved(self):
+        acts = [case for case in sorted(CASES.glob("*.toml"))
+                if any(table in case.read_text() for table in ("\n[test]", "\n[[load]]", "\n[[support]]"))]
+        self.assertGreaterEqual(len(acts), 5)
+        for case in acts:
             with self.subTest(case=case.name):
                 done = self.check_done(equidem("solve", case))
                 self.assertIn("residual", done.stdout)
@@ -331,7 +295,4 @@ class Sweep(ProgramTest):
 
 
 if __name__ == "__main__":
-    PROGRAM = sys.argv.pop(1)
-    CASES = pathlib.Path(sys.argv.pop(1)) / "data" / "cases"
-    TENSION = str(CASES / "abe1996_fig6.toml")
     unittest.main()

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Wanted moduli -> contact springs of a given assembly.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/core/stopwatch.hpp"
+#include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/homogenize/elasticity_tensor.hpp"
+#include "equidem/material/elastic_moduli.hpp"
+#include "equidem/material/spring_constants.hpp"
+#include "equidem/material/spring_relations.hpp"
+
+namespace equidem {
+
+struct CalibrateOptions {
+  /// Boundary::periodic is taken as displacement where the assembly is not periodic.
+  HomogenizeOptions homogenize = {};
+  SpringWeighting weighting = SpringWeighting::uniform;
+  /// Packing::hexagonal or square: the assembly is a block of this lattice, of touching equal discs; springs are then
+  /// those of the infinite lattice in closed form.
+  std::optional<Packing> lattice = {};
+  bool static_only = false;  ///< kT < 0 allowed, down to where the cell gives way
+  double tolerance = 1e-11;  ///< relative, of the moduli reached, in [1e-14, 1e-2]
+};
+
+/// Springs that give an assembly the wanted moduli, and how well.
+struct Calibration {
+  SpringConstants springs;      ///< before weighting
+  EffectiveStiffness achieved;  ///< with them; where not `verified` only its stiffness, that of the infinite lattice
+  EffectiveModuli moduli;       ///< with them
+  double relative_error = 0;    ///< larger of those of G and K
+  bool verified = true;         ///< homogenized with these springs; false: closed form, on a block with free edges
+  int factorizations = 0;       ///< all of them, those for the range included
+  int iterations = 0;           ///< steps on kT/kN
+  /// G/K that this assembly shows without negative springs: at kT = 0 and as kT/kN -> infinity, where it is infinite
+  /// if slip resists shear.
+  double smallest_shear_to_bulk = 0;
+  double largest_shear_to_bulk = std::numeric_limits<double>::infinity();
+  bool rising = true;  ///< G/K rose with kT/kN at every ratio tried, as FoundRatio
+  std::string method;  ///< "closed form, Abe 1996, eq. (34)", "Newton on kT/kN"
+  StageTimes times;    ///< of all factorizations
+
+  /// Poisson's ratios without negative springs: (K - G)/(2K) or (K - G)/(K + G) at the ends, and at least -1, which
+  /// no solid reaches.
+  [[nodiscard]] double lowest_poisson_ratio(Plane plane) const;
+  [[nodiscard]] double highest_poisson_ratio(Plane plane) const;
+};
+
+/// The stiffness is C = kN c(r), r = kT/kN: Poisson's ratio, that is q = G/K, fixes r, then G fixes kN. Newton on r
+/// with the exact derivative dC/dr = C_T/r from the tangential strain energies C_T of EffectiveStiffness; two
+/// factorizations at the ends of the range of r, then few more (ratio_search.hpp). G and K are those of the nearest
+/// isotropic tensor.
+///
+/// On a lattice the springs are (34) or (31) of Abe 1996. (34) also holds with rotation restrained: moduli are read
+/// from the symmetric part of stress by strain, which does not know the mean rotation; (53), the relation by wave
+/// speeds and prescribed displacements, is springs_for(..., Packing::hexagonal_restrained). The square lattice can
+/// show nu = 0 only.
+/// \throws Error (bad_input) where nu is out of the range of this assembly, with the range and the nearest feasible
+///         value; springs in the assembly file; as effective_stiffness and springs_for;
+///         (computation_failed) as effective_stiffness; where the tolerance is not reached
+Calibration calibrate(const Assembly& assembly, const ElasticModuli& target, const CalibrateOptions& options = {});
+
+}  // namespace equidem

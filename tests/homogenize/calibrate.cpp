@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/homogenize/calibrate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "equidem/assembly/delaunay.hpp"
+#include "equidem/assembly/files.hpp"
+#include "equidem/assembly/lattices.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/random.hpp"
+
+#include "homogenize/samples.hpp"
+#include "support/catch.hpp"
+
+namespace {
+
+using namespace equidem;
+using samples::message_of;
+
+Assembly random_cell(PointProcess points, std::int64_t discs, bool periodic = true) {
+  return delaunay_assembly({.discs = discs, .points = points, .disorder = 0.3, .seed = 5, .periodic = periodic});
+}
+
+/// A Delaunay assembly with contacts taken out at random: four to six contacts per disc, stiff or soft against slip.
+Assembly diluted_cell(double kept) {
+  Assembly cell = random_cell(PointProcess::poisson_disc, 600);
+  Random random(7);
+  std::vector<Contact> contacts;
+  for (const Contact& contact : cell.contacts)
+    if (random.uniform(0, 1) < kept) contacts.push_back(contact);
+  cell.contacts = contacts;
+  cell.facet_lengths.clear();
+  return cell;
+}
+
+struct Kind {
+  std::string name;
+  Assembly assembly;
+  CalibrateOptions options;
+};
+
+/// Every kind of assembly, boundary and weighting.
+std::vector<Kind> kinds() {
+  const LatticeOptions lattice{.columns = 6, .rows = 6, .periodic = true};
+  std::vector<Kind> all{
+      {"hexagonal, closed form", hexagonal_lattice(lattice), {.lattice = Packing::hexagonal}},
+      {"hexagonal, Newton", hexagonal_lattice(lattice), {}},
+      {"square, Newton on its mean over all directions", square_lattice(lattice), {}},
+      {"Poisson disc", random_cell(PointProcess::poisson_disc, 300), {}},
+      {"perturbed hexagonal", random_cell(PointProcess::perturbed_hexagonal, 300), {}},
+      {"uniform points", random_cell(PointProcess::uniform, 300), {}},
+      {"file", read_assembly(EQUIDEM_SOURCE_DIR "/data/reference/perturbed_hexagonal_400.json"), {}},
+      {"free block, displaced boundary", random_cell(PointProcess::poisson_disc, 300, false), {}},
+      {"free block, tractions",
+       random_cell(PointProcess::poisson_disc, 300, false),
+       {.homogenize = {.boundary = Boundary::traction, .solver = {}}}},
+      {"five contacts a disc", diluted_cell(0.83), {}},
+  };
+  for (const PointProcess points : {PointProcess::poisson_disc, PointProcess::uniform}) {
+    for (const SpringWeighting weighting : {SpringWeighting::contact_density, SpringWeighting::voronoi})
+      all.push_back({to_string(weighting), random_cell(points, 300), {.weighting = weighting}});
+  }
+  const std::size_t free = all.size();
+  for (std::size_t k = 0; k < free; ++k) {
+    if (all[k].options.homogenize.boundary == Boundary::traction) continue;
+    all.push_back(all[k]);
+    all.back().name += ", rotation restrained";
+    all.back().options.homogenize.rotation = Rotation::restrained;
+  }
+  return all;
+}
+
+EffectiveStiffness stiffness_of(const Kind& kind, SpringConstants springs) {
+  HomogenizeOptions options = kind.options.homogenize;
+  if (!kind.assembly.periodic() && options.boundary == Boundary::periodic) options.boundary = Boundary::displacement;
+  return effective_stiffness(kind.assembly, contact_springs(kind.assembly, springs, kind.options.weighting), options);
+}
+
+TEST_CASE("springs_come_back_from_their_moduli") {
+  for (const Kind& kind : kinds()) {
+    const bool closed_form = kind.options.lattice.has_value();
+    for (const double ratio : {0.05, 0.4, 1.0, 3.0}) {
+      if (closed_form && ratio > 1) continue;
+      const SpringConstants springs{3.7e8, ratio * 3.7e8};
+      const EffectiveModuli moduli = effective_moduli(stiffness_of(kind, springs).stiffness);
+      const Calibration found = calibrate(
+          kind.assembly, moduli_from_bulk(moduli.bulk_modulus_2d, moduli.shear_modulus, Plane::stress), kind.options);
+      CAPTURE(kind.name, ratio, found.springs.ratio(), found.factorizations, found.relative_error, found.method);
+      CHECK(found.springs.kN == Approx(springs.kN).epsilon(1e-9));
+      CHECK(found.springs.kT == Approx(springs.kT).epsilon(1e-9));
+      CHECK(found.factorizations <= (closed_form ? 1 : 6));
+    }
+  }
+}
+
+TEST_CASE("moduli_are_reached_to_1e_10_within_6_factorizations") {
+  for (const PointProcess points :
+       {PointProcess::poisson_disc, PointProcess::perturbed_hexagonal, PointProcess::uniform}) {
+    const Kind kind{to_string(points), random_cell(points, points == PointProcess::poisson_disc ? 10000 : 2000), {}};
+    for (const double nu : {0.19, -0.2}) {
+      const ElasticModuli target{2.5e7, nu, Plane::strain};
+      const Calibration found = calibrate(kind.assembly, target, kind.options);
+      CAPTURE(kind.name, kind.assembly.size(), nu, found.factorizations, found.iterations, found.relative_error);
+      CHECK(found.factorizations <= 6);
+      CHECK(found.factorizations == found.iterations + 2);
+      CHECK(found.rising);
+      // Homogenized anew.
+      const EffectiveModuli moduli = effective_moduli(stiffness_of(kind, found.springs).stiffness);
+      CHECK(moduli.shear_modulus == Approx(target.shear_modulus).epsilon(1e-10));
+      CHECK(moduli.bulk_modulus_2d == Approx(target.bulk_modulus_2d()).epsilon(1e-10));
+      CHECK(moduli.poisson_strain == Approx(nu).epsilon(1e-10));
+    }
+  }
+}
+
+TEST_CASE("what_is_reported_as_achieved_belongs_to_the_springs_reported") {
+  for (const Kind& kind : kinds()) {
+    const Calibration found = calibrate(kind.assembly, {5e6, 0.03, Plane::stress}, [&] {
+      CalibrateOptions options = kind.options;
+      options.lattice.reset();
+      return options;
+    }());
+    const EffectiveStiffness anew = stiffness_of(kind, found.springs);
+    CAPTURE(kind.name, found.relative_error);
+    CHECK(found.relative_error <= 1e-11);
+    for (std::size_t row = 0; row < 3; ++row) {
+      for (std::size_t column = 0; column < 3; ++column) {
+        CAPTURE(row, column);
+        const double scale = 1e-11 * anew.stiffness[0][0];
+        CHECK(std::abs(found.achieved.stiffness[row][column] - anew.stiffness[row][column]) <= scale);
+        CHECK(std::abs(found.achieved.tangential_part[row][column] - anew.tangential_part[row][column]) <= scale);
+        CHECK(std::abs(found.achieved.normal_part[row][column] - anew.normal_part[row][column]) <= scale);
+      }
+    }
+  }
+}
+
+TEST_CASE("the_derivative_by_kT_is_the_energy_in_tangential_springs") {
+  for (const Kind& kind : kinds()) {
+    const double ratio = 0.3, h = 1e-3;
+    const auto at = [&](double r) { return stiffness_of(kind, {1, r}).stiffness; };
+    const auto low = at(ratio - h), high = at(ratio + h), far_low = at(ratio - 2 * h), far_high = at(ratio + 2 * h);
+    const EffectiveStiffness middle = stiffness_of(kind, {1, ratio});
+    for (std::size_t row = 0; row < 3; ++row) {
+      for (std::size_t column = 0; column < 3; ++column) {
+        // Central difference of fourth order.
+        const double difference =
+            (8 * (high[row][column] - low[row][column]) - (far_high[row][column] - far_low[row][column])) / (12 * h);
+        CAPTURE(kind.name, row, column);
+        CHECK(middle.tangential_part[row][column] / ratio ==
+              Approx(difference).epsilon(1e-6).margin(1e-9 * middle.stiffness[0][0]));
+      }
+    }
+  }
+}
+
+/// The number that a remedy asks for.
+double advised(const std::string& message) {
+  std::smatch found;
+  INFO(message);
+  REQUIRE(std::regex_search(message, found, std::regex("at (?:most|least) (-?[0-9.]+[0-9])")));
+  return std::stod(found[1]);
+}
+
+TEST_CASE("what_is_out_of_range_is_refused_with_a_value_that_is_feasible") {
+  const Assembly cell = random_cell(PointProcess::poisson_disc, 300), sparse = diluted_cell(0.8);
+  struct Wish {
+    const Assembly& assembly;
+    double nu;
+    bool static_only;
+  };
+  for (const Wish& wish :
+       {Wish{cell, 0.45, false}, {sparse, 0.45, false}, {sparse, -0.99, false}, {cell, 0.45, true}}) {
+    for (const Plane plane : {Plane::strain, Plane::stress}) {
+      const CalibrateOptions options{.static_only = wish.static_only};
+      const auto ask = [&](double nu) { return calibrate(wish.assembly, {1e9, nu, plane}, options); };
+      const std::string message = message_of([&] { ask(wish.nu); });
+      const double nearest = advised(message);
+      CAPTURE(message, nearest);
+      const Calibration found = ask(nearest);
+      CHECK(found.relative_error <= 1e-10);
+      CHECK((found.springs.kT < 0) == wish.static_only);
+      if (!wish.static_only) {
+        CHECK(nearest <= found.highest_poisson_ratio(plane));
+        CHECK(nearest >= found.lowest_poisson_ratio(plane));
+        // As near as six decimals allow.
+        CHECK(std::min(found.highest_poisson_ratio(plane) - nearest, nearest - found.lowest_poisson_ratio(plane)) <
+              2e-6);
+      }
+    }
+  }
+}
+
+TEST_CASE("kT_is_0_at_the_end_of_the_range") {
+  const Assembly cell = random_cell(PointProcess::poisson_disc, 300);
+  const double highest = calibrate(cell, {1e9, 0.1, Plane::strain}).highest_poisson_ratio(Plane::strain);
+  const Calibration found = calibrate(cell, {1e9, highest, Plane::strain});
+  CHECK(found.springs.kT == 0);
+  CHECK(found.relative_error <= 1e-10);
+}
+
+TEST_CASE("negative_tangential_springs_are_for_statics_and_stop_at_the_static_limit") {
+  const Assembly lattice = hexagonal_lattice({.columns = 6, .rows = 6, .periodic = true});
+  for (const bool closed_form : {true, false}) {
+    CalibrateOptions options{.static_only = true};
+    if (closed_form) options.lattice = Packing::hexagonal;
+    CAPTURE(closed_form);
+    // nu = (1 - r)/4, eq. (22): stable for r > -1/3.
+    const Calibration found = calibrate(lattice, {1e9, 0.33, Plane::strain}, options);
+    CHECK(found.springs.ratio() == Approx(1 - 4 * 0.33).epsilon(1e-10));
+    CHECK(found.achieved.unstable_modes == 0);
+    const std::string message = message_of([&] { calibrate(lattice, {1e9, 0.34, Plane::strain}, options); });
+    CAPTURE(message);
+    CHECK(samples::contains(message, "static limit"));
+    options.static_only = false;
+    CHECK(samples::contains(message_of([&] { calibrate(lattice, {1e9, 0.33, Plane::strain}, options); }), "at most"));
+  }
+}
+
+TEST_CASE("plane_stress_asks_for_the_same_springs_as_the_same_body_in_plane_strain") {
+  for (const Kind& kind : kinds()) {
+    const ElasticModuli stress{1e9, 0.05, Plane::stress};
+    CalibrateOptions options = kind.options;
+    const Calibration a = calibrate(kind.assembly, stress, options);
+    const Calibration b = calibrate(kind.assembly, stress.read_as(Plane::strain), options);
+    CAPTURE(kind.name);
+    CHECK(a.springs.kN == Approx(b.springs.kN).epsilon(1e-10));
+    CHECK(a.springs.kT == Approx(b.springs.kT).epsilon(1e-10));
+    const double low = a.lowest_poisson_ratio(Plane::stress), high = a.highest_poisson_ratio(Plane::stress);
+    CHECK(high / (1 + high) == Approx(a.highest_poisson_ratio(Plane::strain)));
+    if (low > -0.4) CHECK(low / (1 + low) == Approx(a.lowest_poisson_ratio(Plane::strain)));
+  }
+}
+
+TEST_CASE("stiffer_moduli_take_springs_stiffer_by_the_same_factor") {
+  const Assembly cell = random_cell(PointProcess::poisson_disc, 300);
+  const Calibration soft = calibrate(cell, {1.0, 0.1, Plane::strain});
+  const Calibration stiff = calibrate(cell, {1e12, 0.1, Plane::strain});
+  CHECK(stiff.springs.kN == Approx(1e12 * soft.springs.kN).epsilon(1e-12));
+  CHECK(stiff.springs.kT == Approx(1e12 * soft.springs.kT).epsilon(1e-10));
+}
+
+// With kT = kN and rotation restrained each contact resists the relative motion alike in all directions, so that u_x
+// and u_y do not know of each other: K = G whatever the network.
+TEST_CASE("with_rotation_restrained_nu_0_asks_for_equal_springs_on_every_assembly") {
+  for (const Kind& kind : kinds()) {
+    if (kind.options.homogenize.rotation != Rotation::restrained) continue;
+    const Calibration found = calibrate(kind.assembly, {1e9, 0, Plane::strain}, kind.options);
+    CAPTURE(kind.name, found.springs.ratio());
+    CHECK(found.springs.ratio() == Approx(1).epsilon(1e-10));
+  }
+}
+
+// Uniform dilation is in equilibrium where springs are kN h/l: the edges of a Voronoi cell close, sum h n = 0.
+TEST_CASE("springs_weighted_by_cell_edges_have_twice_the_bulk_modulus") {
+  for (const PointProcess points : {PointProcess::poisson_disc, PointProcess::uniform}) {
+    const ElasticModuli target{1e9, 0.15, Plane::strain};
+    const Calibration found = calibrate(random_cell(points, 300), target, {.weighting = SpringWeighting::voronoi});
+    CHECK(found.springs.kN == Approx(2 * target.bulk_modulus_2d()).epsilon(1e-10));
+  }
+}
+
+TEST_CASE("lattices_take_the_closed_form") {
+  const ElasticModuli target{1e9, 0.2, Plane::strain};
+  for (const Rotation rotation : {Rotation::free, Rotation::restrained}) {
+    for (const bool periodic : {true, false}) {
+      const Assembly lattice = hexagonal_lattice({.columns = 6, .rows = 6, .periodic = periodic});
+      const Calibration found = calibrate(
+          lattice, target, {.homogenize = {.rotation = rotation, .solver = {}}, .lattice = Packing::hexagonal});
+      const SpringConstants abe = springs_for(target, Packing::hexagonal);
+      CAPTURE(periodic, found.method, found.relative_error);
+      CHECK(found.springs.kN == abe.kN);
+      CHECK(found.springs.kT == abe.kT);
+      CHECK(found.iterations == 0);
+      CHECK(found.verified == periodic);
+      CHECK(found.factorizations == (periodic ? 1 : 0));
+      CHECK(found.relative_error < 1e-13);
+      CHECK(found.highest_poisson_ratio(Plane::strain) == 0.25);
+    }
+  }
+  const Assembly square = square_lattice({.columns = 6, .rows = 6, .periodic = true});
+  const Calibration found = calibrate(square, {1e9, 0, Plane::strain}, {.lattice = Packing::square});
+  CHECK(found.springs.kN == 2e9);
+  CHECK(found.springs.kT == 2e9);
+  CHECK(found.moduli.anisotropy < 1e-13);
+  CHECK(samples::contains(message_of([&] { calibrate(square, target, {.lattice = Packing::square}); }), "nu = 0"));
+}
+
+TEST_CASE("a_lattice_that_is_none_is_found_out") {
+  const Assembly cell = random_cell(PointProcess::poisson_disc, 300);
+  const std::string message = message_of([&] {
+    calibrate(cell, {1e9, 0.2, Plane::strain}, {.lattice = Packing::hexagonal});
+  });
+  CAPTURE(message);
+  CHECK(samples::contains(message, "off by"));
+}
+
+TEST_CASE("what_cannot_be_calibrated_is_refused") {
+  const Assembly cell = random_cell(PointProcess::poisson_disc, 100);
+  const auto refusal = [](const Assembly& assembly, const ElasticModuli& target, const CalibrateOptions& options) {
+    return message_of([&] { calibrate(assembly, target, options); });
+  };
+  const ElasticModuli target{1e9, 0.2, Plane::strain};
+  CHECK(samples::contains(refusal(cell, {-1, 0.2, Plane::strain}, {}), "shear modulus"));
+  CHECK(samples::contains(refusal(cell, {1e9, 0.5, Plane::strain}, {}), "between -1 and 0.5"));
+  CHECK(samples::contains(refusal(cell, target, {.tolerance = 0}), "tolerance"));
+  CHECK(samples::contains(refusal(hexagonal_lattice({.columns = 4, .rows = 4, .periodic = true}), target,
+                                  {.weighting = SpringWeighting::voronoi, .lattice = Packing::hexagonal}),
+                          "weighting"));
+  Assembly with_springs = cell;
+  with_springs.contact_kN.assign(cell.contacts.size(), 1e9);
+  CHECK(samples::contains(refusal(with_springs, target, {}), "springs of its own"));
+}
+
+}  // namespace

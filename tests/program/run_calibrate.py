@@ -1,0 +1,144 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Drives `equidem calibrate` as a user does: run_calibrate.py PROGRAM SOURCE_FOLDER [unittest options]."""
+import math
+import re
+import unittest
+
+import program
+from program import CASES, equidem, parse_json
+
+RANDOM = CASES / "calibrate_random.toml"
+LATTICE = CASES / "calibrate_lattice.toml"
+
+
+class Calibrate(program.ProgramTest):
+    def calibrated(self, *arguments):
+        return parse_json(self.check_done(equidem("calibrate", *arguments, "--json", "-")).stdout)
+
+    def check_close(self, value, wanted, tolerance):
+        self.assertTrue(math.isclose(value, wanted, rel_tol=tolerance), (value, wanted))
+
+    def case_with_springs(self, case, file):
+        """The case with a springs file in place of [material]."""
+        text = re.sub(r"\[material\][^\[]*", "", case.read_text())
+        path = self.folder / "with_springs.toml"
+        path.write_text(text.replace("[assembly]", f'springs = "{file}"\n[assembly]', 1))
+        return path
+
+    def test_json_has_the_documented_keys_and_the_moduli_wanted(self):
+        result = self.calibrated(RANDOM)
+        for key in ("status", "report", "times", "effects", "version", "kN", "kT", "ratio", "achieved", "iterations",
+                    "factorizations", "feasible_poisson_ratio", "method"):
+            self.assertIn(key, result)
+        self.assertEqual(result["status"], "calibrated")
+        achieved = result["achieved"]
+        self.check_close(achieved["shear_modulus"], 1e9, 1e-10)
+        self.check_close(achieved["poisson_ratio"]["plane_strain"], 0.2, 1e-10)
+        self.check_close(achieved["poisson_ratio"]["plane_stress"], 0.25, 1e-10)
+        self.check_close(achieved["young_modulus"]["plane_strain"], 2.4e9, 1e-10)
+        self.assertLess(achieved["relative_error"], 1e-10)
+        self.assertLess(achieved["anisotropy"], 0.05)
+        self.assertLessEqual(result["factorizations"], 6)
+        self.check_close(result["ratio"], result["kT"] / result["kN"], 1e-15)
+        low, high = result["feasible_poisson_ratio"]
+        self.assertEqual(low, -1)
+        self.assertTrue(0.2 < high < 0.25, high)
+        # The mean field is near, and off by more than rounding.
+        guess = result["mean_field"]["achieved"]["poisson_ratio"]["plane_strain"]
+        self.assertTrue(1e-3 < abs(guess - 0.2) < 0.05, guess)
+
+    def test_the_springs_file_gives_the_moduli_to_the_other_verbs(self):
+        file = self.folder / "springs.toml"
+        done = self.check_done(equidem("calibrate", RANDOM, "--springs", file))
+        self.assertIn(str(file), done.stderr)
+        case = self.case_with_springs(RANDOM, "springs.toml")
+        moduli = parse_json(self.check_done(equidem("homogenize", case, "--set", "homogenize.bounds=affine",
+                                                    "--json", "-")).stdout)
+        self.check_close(moduli["shear_modulus"], 1e9, 1e-10)
+        self.check_close(moduli["poisson_ratio"]["plane_strain"], 0.2, 1e-10)
+
+    def test_weighting_is_part_of_the_springs_file(self):
+        file = self.folder / "springs.toml"
+        self.check_done(equidem("calibrate", RANDOM, "--set", "material.weighting=voronoi", "--springs", file))
+        self.assertIn('weighting = "voronoi"', file.read_text())
+
+    def test_files_are_written_as_asked_and_never_replaced_unasked(self):
+        out = self.folder / "out"
+        first = self.check_done(equidem("calibrate", LATTICE, "--out", out))
+        self.assertEqual({path.name for path in out.iterdir()}, {"result.json", "case.toml", "springs.toml"})
+        self.assertIn("springs.toml", first.stdout)
+        before = (out / "springs.toml").read_bytes()
+        self.check_error(equidem("calibrate", LATTICE, "--springs", out / "springs.toml"), 2, "exists already",
+                         "--overwrite")
+        self.check_error(equidem("calibrate", LATTICE, "--out", out), 2, "exists already")
+        self.assertEqual((out / "springs.toml").read_bytes(), before)
+        self.check_done(equidem("calibrate", LATTICE, "--springs", out / "springs.toml", "--overwrite", "--set",
+                                "material.poisson_ratio=0.1"))
+        self.assertNotEqual((out / "springs.toml").read_bytes(), before)
+
+    def test_without_a_file_the_springs_are_printed(self):
+        done = self.check_done(equidem("calibrate", LATTICE))
+        self.assertIn('schema = "equidem-springs/1"', done.stdout)
+        self.assertIsNone(self.calibrated(LATTICE)["springs_file"])
+
+    def test_a_lattice_takes_the_closed_form(self):
+        # Plane stress: kN = E/(sqrt3 (1 - nu)), kT = E (1 - 3 nu)/(sqrt3 (1 - nu²)).
+        for given in ([], ["--set", "effects.rotation=restrained"], ["--set", "assembly.periodic=false"]):
+            with self.subTest(given=given):
+                result = self.calibrated(LATTICE, *given)
+                self.check_close(result["kN"], 2e9 / (math.sqrt(3) * 0.7), 1e-14)
+                self.check_close(result["kT"], 2e9 * 0.1 / (math.sqrt(3) * 0.91), 1e-13)
+                self.assertEqual(result["iterations"], 0)
+                self.assertEqual(result["verified"], "assembly.periodic=false" not in given)
+                self.assertEqual(result["feasible_poisson_ratio"][0], -1)
+                self.check_close(result["feasible_poisson_ratio"][1], 1 / 3, 1e-15)
+
+    def test_out_of_range_is_refused_with_a_value_that_works(self):
+        done = equidem("calibrate", RANDOM, "--set", "material.poisson_ratio=0.4")
+        self.check_error(done, 2, "0.4", "plane strain", "static_only")
+        nearest = re.search(r"at most ([0-9.]+[0-9])", done.stderr).group(1)
+        result = self.calibrated(RANDOM, "--set", f"material.poisson_ratio={nearest}")
+        self.check_close(result["achieved"]["poisson_ratio"]["plane_strain"], float(nearest), 1e-9)
+
+    def test_static_only_is_said_in_the_report(self):
+        done = self.check_done(equidem("calibrate", LATTICE, "--set", "material.poisson_ratio=0.4", "--set",
+                                       "material.static_only=true"))
+        self.assertIn("kT < 0", done.stdout)
+
+    def test_a_free_sample_says_at_which_boundary_it_was_calibrated(self):
+        for boundary in ("displacement", "traction"):
+            result = self.calibrated(RANDOM, "--set", "assembly.periodic=false", "--set", "assembly.discs=300",
+                                     "--set", f"homogenize.boundary={boundary}")
+            self.assertEqual(result["boundary"], boundary)
+            self.assertIn(boundary, result["report"])
+        unasked = self.calibrated(RANDOM, "--set", "assembly.periodic=false", "--set", "assembly.discs=300")
+        self.assertEqual(unasked["boundary"], "displacement")
+
+    def test_what_cannot_be_calibrated_is_refused(self):
+        self.check_error(equidem("calibrate", CASES / "abe1996_fig6.toml"), 2, "[material]")
+        self.check_error(equidem("calibrate", LATTICE, "--set", "assembly.kind=square"), 2, "square lattice", "nu = 0")
+        self.check_error(equidem("calibrate", LATTICE, "--set", "material.poisson_ratio=0.4"), 2, "1/3")
+        self.check_error(equidem("calibrate", LATTICE, "--set", "material.poisson_ratio=1"), 2, "poisson_ratio")
+        assembly = self.folder / "own.json"
+        assembly.write_text('{"schema": "equidem-assembly/1", "cell": [2, 2], "discs": [[0, 0, 0.5], [1, 0, 0.5], '
+                            '[0.5, 1, 0.5]], "contacts": [[0, 1, 0, 0]], "springs": [[1e9, 1e9]]}')
+        case = self.folder / "own.toml"
+        case.write_text('schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "own.json"\n[material]\n'
+                        'shear_modulus = 1e9\npoisson_ratio = 0.1\nplane = "strain"\n')
+        self.check_error(equidem("calibrate", case), 2, "springs of its own", "Remove")
+
+    def test_dry_run_and_quiet(self):
+        size = self.calibrated(RANDOM, "--dry-run")
+        self.assertEqual(size["status"], "dry_run")
+        self.assertGreater(size["unknowns"], 5000)
+        done = self.check_done(equidem("calibrate", LATTICE, "--quiet"))
+        self.assertEqual((done.stdout, done.stderr), ("", ""))
+
+    def test_the_springs_do_not_depend_on_the_number_of_threads(self):
+        one, two = (self.calibrated(RANDOM, "--threads", n) for n in (1, 2))
+        self.assertEqual((one["kN"], one["kT"]), (two["kN"], two["kT"]))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""equidem stability, as a user runs it: run_stability.py PROGRAM SOURCE_FOLDER [unittest options]."""
+import csv
+import math
+import unittest
+
+from program import CASES, TENSION, ProgramTest, equidem, parse_json
+
+LATTICE = CASES / "hexagonal_cell.toml"
+RADIUS, DENSITY, KN = 0.005, 2500.0, 1e9
+MASS = DENSITY * math.pi * RADIUS**2
+
+
+class StabilityTest(ProgramTest):
+    def stability(self, case, *options):
+        return parse_json(self.check_done(equidem("stability", case, "--json", "-", *options)).stdout)
+
+    def lattice(self, kind, ratio, *options):
+        return self.stability(LATTICE, "--set", f"assembly.kind={kind}", "--set", f"springs.kT={ratio * KN!r}", *options)
+
+    def check_relative(self, value, expected, tolerance):
+        self.assertLessEqual(abs(value - expected), tolerance * abs(expected), f"{value} against {expected}")
+
+
+class Lattices(StabilityTest):
+    def test_the_hexagonal_lattice_is_lost_at_m(self):
+        result = self.lattice("hexagonal", 0.5)
+        self.assertLess(abs(result["critical_ratio"] + 1 / 3), 1e-10)
+        self.assertEqual(result["critical_wave_vector_name"], "M")
+        self.assertEqual([p["name"] for p in result["critical_wave_vectors"]], ["M", "M", "M"])
+        self.check_relative(math.hypot(*result["critical_wave_vector"]), 2 * math.pi / (2 * math.sqrt(3) * RADIUS), 1e-12)
+        self.assertEqual(result["primitive_cell"]["discs"], 1)
+        self.assertEqual(result["primitive_cell"]["copies"], 16)
+        self.assertEqual(result["status"], "stable")
+        self.assertEqual(result["mechanisms"]["count"], 0)
+
+    def test_frequencies_and_time_steps_of_f10(self):
+        for ratio in (0, 0.2, 1 / 3, 0.5, 1):
+            for body, beta in (("disc", 0.5), ("sphere", 0.4)):
+                mass = MASS if body == "disc" else DENSITY * 4 / 3 * math.pi * RADIUS**3
+                for kind, squared in (("hexagonal", max(6 + 2 * ratio, 12 * ratio / beta)),
+                                      ("square", max(4 + 4 * ratio, 8 * ratio / beta))):
+                    with self.subTest(ratio=ratio, body=body, kind=kind):
+                        result = self.lattice(kind, ratio, "--set", f"assembly.body={body}")
+                        omega = math.sqrt(squared * KN / mass)
+                        self.check_relative(result["omega_max"], omega, 1e-10)
+                        self.check_relative(result["zone_omega_max"], omega, 1e-10)
+                        self.check_relative(result["critical_time_step"], 2 / omega, 1e-10)
+                        self.assertLessEqual(result["element_bound_time_step"], result["critical_time_step"] * (1 + 1e-12))
+
+    def test_sound_and_rotational_gap_of_f9(self):
+        for ratio in (0.1, 0.5, 1):
+            result = self.lattice("hexagonal", ratio)
+            scale = KN * 4 * RADIUS**2 / MASS
+            for key in ("longitudinal", "homogenized_longitudinal"):
+                for speed in result["sound_speeds"][key]:
+                    self.check_relative(speed, math.sqrt(0.375 * (3 + ratio) * scale), 1e-12)
+            for key in ("transverse", "homogenized_transverse"):
+                for speed in result["sound_speeds"][key]:
+                    self.check_relative(speed, math.sqrt(0.375 * (1 + ratio) * scale), 1e-12)
+            self.check_relative(result["rotational_gap"], math.sqrt(24 * ratio * KN / MASS), 1e-12)
+
+    def test_the_square_lattice_is_lost_at_once_and_turns_like_gears(self):
+        result = self.lattice("square", 0.5)
+        self.assertEqual(result["critical_ratio"], 0)
+        self.assertEqual(result["mechanisms"]["count"], 1)
+        self.assertIn("gears", result["mechanisms"]["description"][0])
+        self.assertEqual(result["status"], "mechanism")
+
+    def test_negative_springs_are_stable_in_statics_and_grow_in_motion(self):
+        result = self.lattice("hexagonal", -0.1)
+        self.assertEqual(result["status"], "stable")
+        self.assertEqual(result["negative_pivots"], 16)
+        self.check_relative(result["growth_rate"], math.sqrt(24 * 0.1 * KN / MASS), 1e-10)
+        self.assertEqual(result["growth_wave_vector_name"], "Gamma")
+        self.check_relative(result["ratio_margin"], 1 / 3 - 0.1, 1e-9)
+        self.assertIn("a maximum of the energy, not a minimum", " ".join(result["report"].split()))
+        self.assertEqual(self.lattice("hexagonal", -0.34)["status"], "unstable")
+
+    def test_times_scale_with_the_root_of_the_density(self):
+        given = self.stability(LATTICE)
+        text = "".join(line for line in LATTICE.read_text().splitlines(True) if "density" not in line)
+        path = self.folder / "without_density.toml"
+        path.write_text(text)
+        assumed = self.stability(path)
+        self.assertIs(given["density_assumed"], False)
+        self.assertIs(assumed["density_assumed"], True)
+        self.check_relative(assumed["critical_time_step"] * math.sqrt(DENSITY), given["critical_time_step"], 1e-12)
+        self.assertIn("DENSITY ASSUMED", assumed["report"])
+
+
+class OtherCases(StabilityTest):
+    def test_free_edges_are_lost_before_the_lattice(self):
+        known = {5: -0.3360, 11: -0.2754, 19: -0.2658}
+        for size, ratio in known.items():
+            result = self.stability(TENSION, "--set", f"assembly.columns={size}", "--set", f"assembly.rows={size}")
+            self.assertAlmostEqual(result["critical_ratio"], ratio, delta=5e-5)
+            self.assertIsNone(result["critical_wave_vector"])
+            self.assertIn("critical_motion", result)
+
+    def test_a_random_cell(self):
+        small = self.stability(CASES / "random_cell.toml", "--set", "assembly.discs=12")
+        self.assertEqual(small["primitive_cell"]["discs"], small["discs"])
+        for key in ("longitudinal", "transverse"):
+            for speed, expected in zip(small["sound_speeds"][key], small["sound_speeds"]["homogenized_" + key]):
+                self.check_relative(speed, expected, 1e-9)
+        large = self.stability(CASES / "random_cell.toml")
+        self.assertNotIn("rotational_gap", large)
+        self.assertIn("other waves were not searched", large["critical_ratio_searched"])
+        for result in (small, large):
+            self.assertTrue(-1 < result["critical_ratio"] < 0)
+            self.assertLess(result["element_bound_time_step"], result["critical_time_step"])
+
+    def test_files(self):
+        folder = self.folder / "waves"
+        self.check_done(equidem("stability", LATTICE, "--out", folder, "--quiet"))
+        with open(folder / "dispersion.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([row["point"] for row in rows if row["point"]], ["Gamma", "M", "K", "Gamma"])
+        with open(folder / "critical_ratio.csv", newline="") as file:
+            grid = list(csv.DictReader(file))
+        self.assertEqual(len(grid), 48 * 48)
+        self.assertAlmostEqual(max(float(row["critical_ratio"]) for row in grid), -1 / 3, delta=1e-12)
+        for name in ("result.json", "case.toml", "dispersion_plot.svg", "dispersion_plot.png", "critical_ratio_plot.png"):
+            self.assertTrue((folder / name).exists(), name)
+        self.check_error(equidem("stability", LATTICE, "--out", folder), 2, "--overwrite")
+
+    def test_dry_run_computes_nothing_but_says_how_much(self):
+        result = self.stability(LATTICE, "--dry-run")
+        self.assertEqual(result["status"], "dry_run")
+        self.assertNotIn("critical_ratio", result)
+        self.assertLess(result["element_bound_time_step"], self.stability(LATTICE)["critical_time_step"])
+
+
+if __name__ == "__main__":
+    unittest.main()
