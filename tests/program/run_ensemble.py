@@ -1,0 +1,164 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ensembles of random cells, as a user does: run_ensemble.py PROGRAM SOURCE_FOLDER [unittest options]."""
+import csv
+import math
+import pathlib
+import signal
+import statistics
+import subprocess
+import time
+import unittest
+
+from program import CASES, PROGRAM, ProgramTest, equidem, parse_json
+
+ENSEMBLE = str(CASES / "ensemble.toml")
+SMALL = ("--set", "ensemble.discs=[20, 60]", "--set", "ensemble.samples=6")
+
+
+def rows(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+class Ensemble(ProgramTest):
+    def run_small(self, *options):
+        return self.check_done(equidem("homogenize", ENSEMBLE, *SMALL, *options))
+
+    def test_means_and_scatter_are_those_of_the_samples(self):
+        out = self.folder / "out"
+        result = parse_json(self.run_small("--out", out, "--json", "-").stdout)
+        self.assertEqual(result["status"], "done")
+        self.assertEqual([size["discs"] for size in result["ensemble"]], [20, 60])
+        for size in result["ensemble"]:
+            samples = [row for row in rows(out / "samples.csv") if int(row["discs"]) == size["discs"]]
+            self.assertEqual([int(row["seed"]) for row in samples], [1, 2, 3, 4, 5, 6])
+            moduli = [float(row["shear_modulus_Pa"]) for row in samples]
+            told = size["shear_modulus"]
+            self.assertAlmostEqual(told["mean"] / statistics.mean(moduli), 1, places=13)
+            self.assertAlmostEqual(told["standard_deviation"] / statistics.stdev(moduli), 1, places=12)
+            self.assertAlmostEqual(told["standard_error"] * math.sqrt(6) / told["standard_deviation"], 1, places=13)
+            low, high = told["confidence_interval"]
+            self.assertTrue(low < told["mean"] < high)
+            for key in ("plane_strain", "plane_stress"):
+                self.assertIn("mean", size["poisson_ratio"][key])
+                self.assertIn("mean", size["young_modulus"][key])
+        self.assertGreater(result["needed_discs"]["bulk_modulus_2d"]["one_cell"],
+                           result["needed_discs"]["bulk_modulus_2d"]["mean_of_samples"] - 1)
+        self.assertGreater(result["scatter_exponent"]["shear_modulus"]["standard_error"], 0)
+        for name in ("ensemble.csv", "shear_modulus.png", "poisson_ratio.png", "scatter.png", "case.toml"):
+            self.assertTrue((out / name).exists(), name)
+
+    def test_a_sample_is_the_cell_that_homogenize_gives_for_its_seed(self):
+        sampled = parse_json(self.run_small("--set", "ensemble.samples=2", "--json", "-").stdout)["ensemble"][1]
+        text = pathlib.Path(ENSEMBLE).read_text(encoding="utf-8")
+        single = self.folder / "cell.toml"
+        single.write_text(text[:text.index("[ensemble]")])
+        values = []
+        for seed in (1, 2):
+            done = equidem("homogenize", single, "--set", "assembly.discs=60", "--seed", seed, "--json", "-")
+            values.append(parse_json(self.check_done(done).stdout)["shear_modulus"])
+        self.assertAlmostEqual(sampled["shear_modulus"]["mean"] / statistics.mean(values), 1, places=13)
+
+    def test_threads_change_no_bit(self):
+        texts = []
+        for threads in (1, 3):
+            out = self.folder / str(threads)
+            self.run_small("--threads", threads, "--out", out)
+            texts.append((out / "samples.csv").read_text())
+        self.assertEqual(*texts)
+
+    def test_springs_h_over_l_with_kT_equal_to_kN_need_no_size(self):
+        report = self.run_small("--set", "springs.weighting=voronoi", "--set", "springs.kT=1e9", "--set",
+                                "effects.rotation=restrained").stdout
+        self.assertIn("all cells agree to round-off", report)
+
+    def test_interrupted_it_keeps_what_is_done_and_resume_gives_the_bits_of_an_uninterrupted_run(self):
+        out, whole = self.folder / "out", self.folder / "whole"
+        # What the user may ask more of on --resume: samples.
+        command = ["homogenize", ENSEMBLE, "--set", "ensemble.discs=[30]"]
+        running = subprocess.Popen([PROGRAM, *command, "--set", "ensemble.samples=1000000", "--out", str(out)],
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        try:
+            deadline = time.monotonic() + 60
+            while not (out / "samples.csv").exists() and time.monotonic() < deadline:
+                self.assertIsNone(running.poll())
+                time.sleep(0.05)
+            running.send_signal(signal.SIGINT)
+            stdout, stderr = running.communicate(timeout=60)
+        finally:
+            if running.poll() is None:
+                running.kill()
+                running.communicate()
+        self.assertEqual(running.returncode, 130, stderr)
+        self.assertIn("INCOMPLETE", stdout)
+        self.assertIn("--resume", stderr)
+        done = rows(out / "samples.csv")
+        self.assertGreater(len(done), 0)
+        self.assertEqual(parse_json((out / "result.json").read_text())["status"], "interrupted")
+
+        more = [*command, "--set", f"ensemble.samples={len(done) + 5}"]
+        self.check_error(equidem(*more, "--out", out), 2, "exists already")
+        for change in ("springs.kT=0.2e9", "assembly.seed=2", "effects.rotation=restrained"):
+            self.check_error(equidem(*more, "--out", out, "--resume", "--set", change), 2, "another case")
+        self.check_done(equidem(*more, "--out", out, "--resume"))
+        self.check_done(equidem(*more, "--out", whole))
+        self.assertEqual((out / "samples.csv").read_bytes(), (whole / "samples.csv").read_bytes())
+        self.assertEqual((out / "ensemble.csv").read_bytes(), (whole / "ensemble.csv").read_bytes())
+        self.assertTrue(parse_json((out / "result.json").read_text())["complete"])
+
+    def test_damaged_samples_are_not_continued(self):
+        out = self.folder / "out"
+        self.run_small("--out", out)
+        table = out / "samples.csv"
+        text = table.read_text()
+        for damaged in (text.replace("seed", "sead", 1), text.replace("\n20,1,", "\n20,one,"),
+                        text[:text.rindex("\n60,6")] + "\n60,6"):
+            table.write_text(damaged)
+            self.check_error(equidem("homogenize", ENSEMBLE, *SMALL, "--out", out, "--resume"), 2, "samples to continue")
+        table.write_text(text)
+        self.run_small("--out", out, "--resume")
+        self.assertEqual(table.read_text(), text)
+
+    def test_what_cannot_be_sampled_is_refused(self):
+        self.check_error(equidem("homogenize", ENSEMBLE, *SMALL, "--resume"), 2, "--out")
+        self.check_error(equidem("homogenize", ENSEMBLE, *SMALL, "--set", "assembly.periodic=false"), 2,
+                         "free boundaries", "periodic = true")
+
+    def test_cells_that_are_all_unstable_fail_with_the_reason(self):
+        done = equidem("homogenize", ENSEMBLE, *SMALL, "--set", "springs.kT=-0.9e9")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("none of the cells", done.stderr)
+        self.assertIn("12 cells of 12 have no moduli", done.stdout)
+
+    def test_dry_run_samples_nothing(self):
+        result = parse_json(self.run_small("--dry-run", "--json", "-").stdout)
+        self.assertEqual(result["status"], "dry_run")
+        self.assertEqual(result["unknowns"], [60, 180])
+
+
+class RandomStudy(ProgramTest):
+    def test_quick_study_answers_in_sentences_tables_and_plots(self):
+        out = self.folder / "out"
+        report = self.check_done(equidem("reproduce", "abe1996_random", "--quick", "--out", out)).stdout
+        for words in ("By how much the mean field errs", "The correction (11)", "Best for nu"):
+            self.assertIn(words, report)
+        points = parse_json((out / "result.json").read_text())["points"]
+        self.assertEqual(len(points), len(rows(out / "mean_field.csv")))
+        for point in points:
+            if point["points"] == "perturbed_hexagonal" and point["disorder"] == 0:
+                self.assertAlmostEqual(point["poisson_ratio_error"]["mean"], 0, places=12)
+                self.assertAlmostEqual(point["shear_modulus_error"]["mean"], 0, places=12)
+            if point["weighting"] == "voronoi":
+                self.assertAlmostEqual(point["bulk_modulus_error"]["mean"], 0, places=12)
+        for name in ("poisson_ratio_uniform", "error_poisson_ratio_voronoi", "error_shear_modulus_contact_density"):
+            self.assertTrue((out / (name + ".png")).exists(), name)
+
+    def test_options_of_the_other_study_are_refused(self):
+        self.check_error(equidem("reproduce", "abe1996", "--quick"), 2, "--quick", "abe1996")
+        self.check_error(equidem("reproduce", "abe1996_random", "--rows", "9"), 2, "--rows", "abe1996_random")
+        self.check_error(equidem("reproduce", "abe1997"), 2, "abe1997", "abe1996_random")
+
+
+if __name__ == "__main__":
+    unittest.main()
