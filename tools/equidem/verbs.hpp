@@ -16,6 +16,9 @@ namespace equidem {
 using Run = std::function<int()>;
 
 Run declare_solve(CLI::App& command);
+Run declare_homogenize(CLI::App& command);
+Run declare_calibrate(CLI::App& command);
+Run declare_stability(CLI::App& command);
 Run declare_sweep(CLI::App& command);
 Run declare_reproduce(CLI::App& command);
 
@@ -27,8 +30,11 @@ struct Verb {
 
 inline constexpr std::array verbs{
     Verb{"solve", "equilibrium under supports and loads, or Abe's tension test", declare_solve},
+    Verb{"homogenize", "effective stiffness and moduli of an assembly, with bounds", declare_homogenize},
+    Verb{"calibrate", "wanted moduli -> springs, as a file that every other verb accepts", declare_calibrate},
+    Verb{"stability", "mechanisms, waves, critical kT/kN, highest frequency and time step", declare_stability},
     Verb{"sweep", "solve over a range of one key: the curves", declare_sweep},
-    Verb{"reproduce", "a paper's tables and figures beside ours: abe1996", declare_reproduce},
+    Verb{"reproduce", "a paper's tables and figures beside ours: abe1996, abe1996_random", declare_reproduce},
 };
 
 }  // namespace equidem

@@ -1,49 +1,242 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/statics/critical_ratio.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
+#include <vector>
 
-#include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
+#include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/multifrontal_ldlt.hpp"
-#include "equidem/statics/rigidity.hpp"
 #include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
+namespace {
+
+void check(const CriticalRatioOptions& options) {
+  if (options.tolerance >= 1e-12 && options.lowest >= -1 && options.lowest < -options.tolerance) return;
+  bad_input(
+      format("the search for the critical ratio from {} with the tolerance {}", options.lowest, options.tolerance),
+      "it needs a tolerance of at least 1e-12 and a start in [-1, -tolerance)", "Correct them");
+}
+
+/// kT = ratio kN, but where the given springs say that there is none.
+ContactSprings with_ratio(const Assembly& assembly, const ContactSprings& springs, double ratio) {
+  const bool all = !springs.any_tangential();
+  if (springs.uniform()) return ContactSprings(SpringConstants{springs[0].kN, ratio * springs[0].kN});
+  std::vector<SpringConstants> scaled(assembly.contacts.size());
+  for (std::size_t c = 0; c < scaled.size(); ++c)
+    scaled[c] = {springs[c].kN, all || springs[c].kT != 0 ? ratio * springs[c].kN : 0};
+  return ContactSprings(std::move(scaled));
+}
+
+/// The stiffness matrix as a function of the ratio.
+class RatioPencil {
+ public:
+  RatioPencil(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
+              const CriticalRatioOptions& options)
+      : assembly_(assembly), springs_(springs), options_(options), graph_(assembly) {
+    const ContactSprings one = with_ratio(assembly, springs, 1);
+    unknowns_ = number_unknowns(
+        assembly, one, derive_effects(one, options.rotation ? Rotation::free : Rotation::restrained), supports);
+    // A wave that changes sign from period to period is no rigid motion, but gears may still turn.
+    if (!options.antiperiodic_x && !options.antiperiodic_y) hold_free_motions(assembly, graph_, one, unknowns_);
+    symbolic_ = std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph_), graph_, unknowns_.per_disc));
+    mechanisms_ = factorize(1)->report().zero_pivots;
+    count_rotations();
+  }
+
+  [[nodiscard]] std::int64_t mechanisms() const { return mechanisms_; }
+  [[nodiscard]] std::int64_t factorizations() const { return factorizations_; }
+
+  bool stable(double ratio) {
+    const FactorReport report = factorize(ratio)->report();
+    return report.zero_pivots == mechanisms_ && report.negative_pivots == negative_rotations_;
+  }
+
+  /// The eigenvalue r < 0 of K_N x = -r K_T x nearest to `shift`, by inverse iteration from x; NaN where it does not
+  /// settle. The Rayleigh quotient errs by the square of the error of x.
+  double nearest_eigenvalue(double shift, std::vector<double>& x) {
+    const auto factor = factorize(shift);
+    const StiffnessMatrix normal = stiffness(0), tangential = difference(stiffness(1), normal);
+    std::vector<double> n(x.size()), t(x.size());
+    double before = std::numeric_limits<double>::quiet_NaN();
+    constexpr int most = 60;
+    for (int k = 0; k < most; ++k) {
+      apply(tangential, x, t);
+      factor->solve(t, 1);
+      clear_held(t);
+      const double size = std::sqrt(product(t, t));
+      if (!(size > 0) || !std::isfinite(size)) break;
+      for (std::size_t c = 0; c < x.size(); ++c) x[c] = t[c] / size;
+      apply(normal, x, n);
+      apply(tangential, x, t);
+      const double ratio = -product(x, n) / product(x, t);
+      if (std::abs(ratio - before) <= 0.01 * options_.tolerance) return ratio;
+      before = ratio;
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+
+  [[nodiscard]] std::vector<DiscMotion> motions_of(const std::vector<double>& x) const {
+    const auto b = static_cast<std::size_t>(unknowns_.per_disc);
+    std::vector<DiscMotion> motions(assembly_.size());
+    for (std::size_t d = 0; d < motions.size(); ++d)
+      motions[d] = {{x[d * b], x[d * b + 1]}, b == 3 ? x[d * b + 2] / unknowns_.rotation_scale : 0.0};
+    return motions;
+  }
+  [[nodiscard]] std::vector<double> random_motion() const {
+    Random random(1);
+    std::vector<double> x(unknowns_.held.size());
+    for (double& value : x) value = random.uniform(-1, 1);
+    clear_held(x);
+    return x;
+  }
+
+ private:
+  [[nodiscard]] StiffnessMatrix stiffness(double ratio) const {
+    const ContactSprings springs = with_ratio(assembly_, springs_, ratio);
+    StiffnessMatrix matrix = assemble_stiffness(assembly_, graph_, springs, unknowns_);
+    if (options_.antiperiodic_x || options_.antiperiodic_y) change_signs(springs, matrix);
+    return matrix;
+  }
+
+  /// The phase exp(i q.L) = -1 of a contact that leads into the next period, or an odd number of periods on.
+  void change_signs(const ContactSprings& springs, StiffnessMatrix& matrix) const {
+    const int b = matrix.block;
+    for (std::size_t c = 0; c < assembly_.contacts.size(); ++c) {
+      const Contact& contact = assembly_.contacts[c];
+      const bool odd = (options_.antiperiodic_x && contact.shift_x % 2 != 0) !=
+                       (options_.antiperiodic_y && contact.shift_y % 2 != 0);
+      if (!odd) continue;
+      double* coupling = &matrix.coupling[c * b * b];
+      for (int k = 0; k < b * b; ++k) coupling[k] = -coupling[k];
+      if (contact.i == contact.j) subtract_self_contact(contact, springs[c], matrix);
+    }
+  }
+  /// From (g_i + g_j)(g_i + g_j)^T to (g_i - g_j)(g_i - g_j)^T.
+  void subtract_self_contact(const Contact& contact, const SpringConstants& k, StiffnessMatrix& matrix) const {
+    const DeformationGradient g = deformation_gradient(frame_of(assembly_, contact), unknowns_.rotation_scale);
+    const int b = matrix.block;
+    double* diagonal = &matrix.diagonal[static_cast<std::size_t>(contact.i) * b * b];
+    for (int r = 0; r < b; ++r) {
+      for (int c = 0; c < b; ++c) {
+        const std::size_t component = static_cast<std::size_t>(contact.i) * b;
+        if (unknowns_.held[component + r] != 0 || unknowns_.held[component + c] != 0) continue;
+        diagonal[r * b + c] -=
+            2 * (k.kN * (g.normal_i[r] * g.normal_j[c] + g.normal_j[r] * g.normal_i[c]) +
+                 k.kT * (g.tangential_i[r] * g.tangential_j[c] + g.tangential_j[r] * g.tangential_i[c]));
+      }
+    }
+  }
+
+  [[nodiscard]] static StiffnessMatrix difference(StiffnessMatrix a, const StiffnessMatrix& b) {
+    for (std::size_t k = 0; k < a.diagonal.size(); ++k) a.diagonal[k] -= b.diagonal[k];
+    for (std::size_t k = 0; k < a.coupling.size(); ++k) a.coupling[k] -= b.coupling[k];
+    return a;
+  }
+
+  std::unique_ptr<Factorization> factorize(double ratio) {
+    stop_if_interrupted();
+    ++factorizations_;
+    const StiffnessMatrix matrix = stiffness(ratio);
+    return multifrontal_ldlt(symbolic_, MatrixOnGraph{matrix, assembly_, graph_});
+  }
+
+  /// The rotational block is r times that at r = 1: one negative eigenvalue for each rotation that is resisted.
+  void count_rotations() {
+    const ContactSprings springs = with_ratio(assembly_, springs_, -1);
+    const StiffnessMatrix matrix = stiffness(-1);
+    const MatrixOnGraph k{matrix, assembly_, graph_};
+    negative_rotations_ = negative_rotations({k, springs, unknowns_, symbolic_});
+    if (negative_rotations_ >= 0) return;
+    computation_failed("some discs can turn without any slip, and no translation comes with it",
+                       "the rotations they leave undecided hide the sign of the others",
+                       "Hold the rotation of one disc of each such group, or restrain rotation");
+  }
+
+  void apply(const StiffnessMatrix& matrix, const std::vector<double>& x, std::vector<double>& y) const {
+    multiply(matrix, assembly_, graph_, x, y);
+    clear_held(y);
+  }
+  void clear_held(std::vector<double>& x) const {
+    for (std::size_t k = 0; k < x.size(); ++k)
+      if (unknowns_.held[k] != 0) x[k] = 0;
+  }
+  static double product(const std::vector<double>& x, const std::vector<double>& y) {
+    double sum = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) sum += x[k] * y[k];
+    return sum;
+  }
+
+  const Assembly& assembly_;
+  const ContactSprings& springs_;
+  const CriticalRatioOptions& options_;
+  ContactGraph graph_;
+  DegreesOfFreedom unknowns_;
+  std::shared_ptr<const SymbolicFactor> symbolic_;
+  std::int64_t mechanisms_ = 0;
+  std::int64_t negative_rotations_ = 0;
+  std::int64_t factorizations_ = 0;
+};
+
+/// \param x the eigenvector that belongs to the value; empty where there is none
+double search(RatioPencil& pencil, const CriticalRatioOptions& options, std::vector<double>& x) {
+  double unstable = options.lowest, safe = -options.tolerance;
+  if (!pencil.stable(safe)) return 0;
+  if (pencil.stable(unstable)) return -std::numeric_limits<double>::infinity();
+  const auto shrink = [&](double at) {
+    if (at <= unstable || at >= safe) return;
+    (pencil.stable(at) ? safe : unstable) = at;
+  };
+  x = pencil.random_motion();
+  constexpr double try_below = 0.1;  // bracket over distance from 0: from here on inverse iteration may get there
+  for (int attempts = 0; safe - unstable > options.tolerance;) {
+    if (pencil.mechanisms() == 0 && attempts < 4 && safe - unstable < try_below * std::abs(safe)) {
+      ++attempts;
+      const double value = pencil.nearest_eigenvalue(safe, x);
+      if (value < safe && value > unstable) {
+        const double before = safe - unstable;
+        shrink(value + 0.4 * options.tolerance);
+        shrink(value - 0.4 * options.tolerance);
+        if (safe - unstable <= options.tolerance) return value;
+        if (safe - unstable < 0.5 * before) continue;
+      }
+    }
+    shrink(0.5 * (safe + unstable));
+    shrink(0.5 * (safe + unstable));
+  }
+  x.clear();
+  return 0.5 * (safe + unstable);
+}
+
+}  // namespace
+
+CriticalRatio find_critical_ratio(const Assembly& assembly, const ContactSprings& springs,
+                                  std::span<const Support> supports, const CriticalRatioOptions& options) {
+  check(options);
+  equidem::check(assembly);
+  RatioPencil pencil(assembly, springs, supports, options);
+  CriticalRatio result;
+  std::vector<double> x;
+  result.ratio = search(pencil, options, x);
+  if (!x.empty()) result.motion = pencil.motions_of(x);
+  result.mechanisms = pencil.mechanisms();
+  result.factorizations = pencil.factorizations();
+  return result;
+}
 
 double critical_ratio(const Assembly& assembly, std::span<const Support> supports,
                       const CriticalRatioOptions& options) {
-  if (!(options.tolerance > 0) || !(options.lowest >= -1 && options.lowest < -options.tolerance)) {
-    bad_input(
-        format("the search for the critical ratio from {} with the tolerance {}", options.lowest, options.tolerance),
-        "it needs a tolerance > 0 and a start in [-1, -tolerance)", "Correct them");
-  }
-  check(assembly);
-  const ContactGraph graph(assembly);
-  const ContactSprings positive(SpringConstants{1, 1});
-  const DegreesOfFreedom unknowns =
-      number_unknowns(assembly, positive, derive_effects(positive, Rotation::free), supports);
-  check_rigidity(assembly, graph, positive, unknowns);
-  const auto symbolic =
-      std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph), graph, unknowns.per_disc));
-  const auto stable = [&](double ratio) {
-    const ContactSprings springs(SpringConstants{1, ratio});
-    const StiffnessMatrix matrix = assemble_stiffness(assembly, graph, springs, unknowns);
-    const MatrixOnGraph k{matrix, assembly, graph};
-    const auto report = multifrontal_ldlt(symbolic, k)->report();
-    return report.zero_pivots == 0 && report.negative_pivots == negative_rotations({k, springs, unknowns, symbolic});
-  };
-  double unstable = options.lowest, safe = -options.tolerance;
-  if (!stable(safe)) return 0;
-  if (stable(unstable)) return -std::numeric_limits<double>::infinity();
-  while (safe - unstable > options.tolerance) {
-    const double middle = 0.5 * (safe + unstable);
-    (stable(middle) ? safe : unstable) = middle;
-  }
-  return 0.5 * (safe + unstable);
+  return find_critical_ratio(assembly, ContactSprings(SpringConstants{1, 1}), supports, options).ratio;
 }
 
 }  // namespace equidem

@@ -3,23 +3,47 @@
 /// The ratio kT/kN at which an assembly with its supports gives way.
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/contact/frame.hpp"
 #include "equidem/statics/supports.hpp"
 
 namespace equidem {
 
 struct CriticalRatioOptions {
-  double lowest = -1;       ///< where the search ends, in [-1, 0)
-  double tolerance = 1e-6;  ///< width of the interval that is left, > 0
+  double lowest = -1;           ///< where the search ends, in [-1, 0)
+  double tolerance = 1e-10;     ///< width of the interval that is left, in [1e-12, 1)
+  bool rotation = true;         ///< free; else restrained
+  bool antiperiodic_x = false;  ///< of a periodic cell: motions that change sign from one period to the next along x
+  bool antiperiodic_y = false;
 };
 
-/// The ratio r_c < 0 of equal springs below which the assembly is unstable in statics: the stiffness with rotations
-/// eliminated is linear in kT, S = K_N + kT S_T with S_T >= 0, so that S loses definiteness once and for good as r
-/// falls. Found by bisection on the number of negative eigenvalues of K beyond those of the rotations. Negative
-/// infinity where the assembly is stable down to `lowest`; 0 where it is not stable for any kT < 0.
-/// \throws Error (bad_input) as EquilibriumSolver does, for kT > 0
+/// What the search found and how.
+struct CriticalRatio {
+  double ratio = 0;             ///< negative infinity: stable down to `lowest`; 0: for no kT < 0
+  std::int64_t mechanisms = 0;  ///< motions that resist for no ratio, beside those held: they are left out
+  std::int64_t factorizations = 0;
+  /// The motion that gives way, per disc, not normalized; empty where the value is a bisection's.
+  std::vector<DiscMotion> motion;
+};
+
+/// The ratio r_c < 0 below which the assembly is unstable in statics where contacts have kT = r kN: the stiffness with
+/// rotations eliminated is linear in r, S = K_N + r S_T with S_T >= 0, so that S loses definiteness once and for good as r falls.
+/// The number of negative eigenvalues of K beyond those of the rotations brackets r_c; inverse iteration on the pencil
+/// K_N x = -r K_T x from the stable end of the bracket then converges to r_c, which is nearest to it; two more
+/// factorizations beside the value prove it. Rigid motions and gears that nothing resists are held, in a periodic cell the
+/// translations; other mechanisms are counted as they are at r = 1.
+/// \param springs kN of every contact; where some kT are zero and others are not, the former have none for any r
+/// \throws Error (bad_input) on options out of range, as number_unknowns does; (computation_failed) where K cannot be
+///         factorized
+CriticalRatio find_critical_ratio(const Assembly& assembly, const ContactSprings& springs,
+                                  std::span<const Support> supports, const CriticalRatioOptions& options = {});
+
+/// The same for equal springs.
 double critical_ratio(const Assembly& assembly, std::span<const Support> supports,
                       const CriticalRatioOptions& options = {});
 

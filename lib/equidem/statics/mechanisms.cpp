@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/statics/mechanisms.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "equidem/core/text.hpp"
+#include "equidem/statics/hold_free_motions.hpp"
+#include "equidem/statics/motion_description.hpp"
+#include "equidem/statics/multifrontal_ldlt.hpp"
+#include "equidem/statics/solver_choice.hpp"
+
+namespace equidem {
+namespace {
+
+/// K with what can be told from the graph held, factorized as indefinite.
+struct HeldSystem {
+  ContactGraph graph;
+  DegreesOfFreedom unknowns;
+  HeldMotions held;
+  StiffnessMatrix matrix;
+  std::shared_ptr<const SymbolicFactor> symbolic;
+  std::unique_ptr<Factorization> factor;
+
+  HeldSystem(const Assembly& assembly, const ContactSprings& springs, Rotation rotation,
+             std::span<const Support> supports)
+      : graph(assembly),
+        unknowns(number_unknowns(assembly, springs, derive_effects(springs, rotation), supports)),
+        held(hold_free_motions(assembly, graph, springs, unknowns)),
+        matrix(assemble_stiffness(assembly, graph, springs, unknowns)),
+        symbolic(std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph), graph, unknowns.per_disc))) {
+    check_memory(estimate(*symbolic, unknowns, true), 0);
+    factor = multifrontal_ldlt(symbolic, MatrixOnGraph{matrix, assembly, graph});
+  }
+};
+
+ContactSprings with_magnitudes(const Assembly& assembly, const ContactSprings& springs) {
+  if (!springs.any_negative()) return springs;
+  if (springs.uniform()) return ContactSprings(SpringConstants{springs[0].kN, std::abs(springs[0].kT)});
+  std::vector<SpringConstants> each(assembly.contacts.size());
+  for (std::size_t c = 0; c < each.size(); ++c) each[c] = {springs[c].kN, std::abs(springs[c].kT)};
+  return ContactSprings(std::move(each));
+}
+
+std::vector<DiscMotion> motions_of(const DegreesOfFreedom& unknowns, const std::vector<double>& x) {
+  const auto b = static_cast<std::size_t>(unknowns.per_disc);
+  std::vector<DiscMotion> motions(x.size() / b);
+  for (std::size_t d = 0; d < motions.size(); ++d) {
+    motions[d] = {{x[d * b], x[d * b + 1]}, b == 3 ? x[d * b + 2] / unknowns.rotation_scale : 0.0};
+  }
+  return motions;
+}
+
+}  // namespace
+
+MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& springs, Rotation rotation,
+                                std::span<const Support> supports) {
+  const ContactSprings positive = with_magnitudes(assembly, springs);
+  const HeldSystem system(assembly, positive, rotation, supports);
+  MechanismReport report;
+  report.gears = static_cast<std::int64_t>(system.held.gears.size());
+  report.others = system.factor->report().zero_pivots;
+  const std::int64_t of_the_whole = !supports.empty() ? 0 : assembly.periodic() ? 2 : 3;
+  report.rigid_motions = std::min(of_the_whole, system.held.rigid);
+  report.free_pieces = system.held.rigid - report.rigid_motions;
+  if (report.free_pieces > 0) {
+    report.sentences.push_back(
+        format("{} of pieces or single discs that nothing holds", counted(report.free_pieces, "rigid motion")));
+  }
+  if (report.gears > 0) {
+    const GearMode& first = system.held.gears.front();
+    report.sentences.push_back(
+        format("{} of discs that counter-rotate like gears, since every ring of contacts is even; the first has {} "
+               "around {}",
+               counted(report.gears, "group"), counted(first.discs, "disc"),
+               describe_disc(assembly, static_cast<std::size_t>(first.first_disc))));
+  }
+  if (report.others > 0) {
+    const std::vector<double> motion = system.factor->softest_motion();
+    report.sentences.push_back(
+        format("{} in which no contact stretches or slips{}", counted(report.others, "motion"),
+               motion.empty() ? "" : ", such as " + describe_motion(assembly, motions_of(system.unknowns, motion))));
+  }
+  return report;
+}
+
+InertiaReport find_inertia(const Assembly& assembly, const ContactSprings& springs, Rotation rotation,
+                           std::span<const Support> supports) {
+  if (!springs.any_negative()) return {};
+  const HeldSystem system(assembly, springs, rotation, supports);
+  InertiaReport report;
+  report.negative_pivots = system.factor->report().negative_pivots;
+  const MatrixOnGraph k{system.matrix, assembly, system.graph};
+  const std::int64_t of_rotations = negative_rotations({k, springs, system.unknowns, system.symbolic});
+  report.unstable_modes = of_rotations < 0 ? -1 : report.negative_pivots - of_rotations;
+  return report;
+}
+
+}  // namespace equidem

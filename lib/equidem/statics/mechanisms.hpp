@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// All motions of an assembly that cost nothing, counted and described, whether or not anything is solved.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/contact/effects.hpp"
+#include "equidem/statics/supports.hpp"
+
+namespace equidem {
+
+/// Motions that neither stretch nor slip, kT of either sign counted by its size. The rigid motions of an assembly in one piece that
+/// no support is given for (a free body 3, a periodic cell 2 translations) are no mechanisms.
+struct MechanismReport {
+  std::int64_t rigid_motions = 0;      ///< of the whole, allowed
+  std::int64_t free_pieces = 0;        ///< rigid motions of pieces or discs that should be held but are not
+  std::int64_t gears = 0;              ///< groups of discs that can counter-rotate
+  std::int64_t others = 0;             ///< found as zero pivots of K
+  std::vector<std::string> sentences;  ///< one for each kind, naming the first
+
+  [[nodiscard]] std::int64_t count() const { return free_pieces + gears + others; }
+};
+
+/// One L D L^T factorization.
+/// \throws Error (bad_input) as number_unknowns does; (computation_failed) where the factor would not fit into memory
+MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& springs, Rotation rotation,
+                                std::span<const Support> supports);
+
+/// Negative eigenvalues of K with its free rigid motions and gears held, and those beyond one for each rotation.
+struct InertiaReport {
+  std::int64_t negative_pivots = 0;
+  std::int64_t unstable_modes = 0;  ///< -1: the rotations alone are singular
+};
+InertiaReport find_inertia(const Assembly& assembly, const ContactSprings& springs, Rotation rotation,
+                           std::span<const Support> supports);
+
+}  // namespace equidem

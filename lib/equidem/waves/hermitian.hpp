@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Small dense Hermitian matrices and their spectra.
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <vector>
+
+namespace equidem {
+
+using Complex = std::complex<double>;
+
+/// A square matrix, column by column.
+struct ComplexMatrix {
+  std::size_t size = 0;
+  std::vector<Complex> entries;
+
+  ComplexMatrix() = default;
+  explicit ComplexMatrix(std::size_t n) : size(n), entries(n * n) {}
+  Complex& operator()(std::size_t r, std::size_t c) { return entries[c * size + r]; }
+  const Complex& operator()(std::size_t r, std::size_t c) const { return entries[c * size + r]; }
+};
+
+/// Eigenvalues, ascending, with orthonormal eigenvectors in the columns of `vectors`.
+struct HermitianSpectrum {
+  std::vector<double> values;
+  ComplexMatrix vectors;
+};
+HermitianSpectrum spectrum(const ComplexMatrix& hermitian);
+/// Eigenvalues alone, ascending.
+std::vector<double> eigenvalues(const ComplexMatrix& hermitian);
+
+/// A - B D^+ B^H for the matrix [A B; B^H D], positive semidefinite, of which A keeps the rows where `eliminated` is 0: what is
+/// left of a stiffness once the eliminated motions are free to follow. D may be singular: its null vectors are null
+/// vectors of B, too.
+ComplexMatrix condense(const ComplexMatrix& matrix, const std::vector<char>& eliminated);
+
+/// Largest lambda in [0, 1] with T v = lambda (N + T) v, for N and T positive semidefinite: the largest share of its energy that
+/// a motion has in T. Motions without energy in either are left out; 0 where there is no other.
+double largest_share(const ComplexMatrix& n, const ComplexMatrix& t);
+
+/// Eigenvalues c² (ascending) of the waves that start at zero frequency, omega² = c² q² + O(q³), where the dynamic
+/// matrix is D0 + q D1 + q² D2: second-order perturbation theory on the null space Z of D0,
+///
+///   H = Z^H (D2 - D1 D0^+ D1) Z,   Z^H D1 Z = 0
+///
+/// the latter because a motion that costs nothing at q = 0 costs O(q²) for small q. `vectors` holds the columns of Z
+/// turned to the eigenvectors of H, size x as many as there are values.
+struct LongWaves {
+  std::vector<double> squared_speeds;
+  std::vector<std::vector<Complex>> vectors;
+};
+LongWaves long_waves(const ComplexMatrix& d0, const ComplexMatrix& d1, const ComplexMatrix& d2);
+
+}  // namespace equidem

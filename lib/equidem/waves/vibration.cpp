@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/waves/vibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/statics/contact_graph.hpp"
+#include "equidem/statics/stiffness_matrix.hpp"
+
+namespace equidem {
+
+ExtremeEigenvalue extreme_squared_frequency(const Assembly& assembly, const ContactSprings& springs,
+                                            const DegreesOfFreedom& unknowns, const std::vector<Inertia>& inertia,
+                                            SpectrumEnd end, const LanczosOptions& options) {
+  const ContactGraph graph(assembly);
+  const StiffnessMatrix matrix = assemble_stiffness(assembly, graph, springs, unknowns);
+  const auto b = static_cast<std::size_t>(unknowns.per_disc);
+  std::vector<std::size_t> component;
+  std::vector<double> inverse_root_mass;
+  for (std::size_t k = 0; k < unknowns.held.size(); ++k) {
+    if (unknowns.held[k] != 0) continue;
+    const Inertia& body = inertia[k / b];
+    const double scale = unknowns.rotation_scale;
+    component.push_back(k);
+    inverse_root_mass.push_back(1 / std::sqrt(k % b == 2 ? body.moment / (scale * scale) : body.mass));
+  }
+  std::vector<double> motion(unknowns.held.size(), 0.0), force(unknowns.held.size());
+  return extreme_eigenvalue(
+      component.size(),
+      [&](std::span<const double> x, std::span<double> y) {
+        for (std::size_t k = 0; k < component.size(); ++k) motion[component[k]] = inverse_root_mass[k] * x[k];
+        multiply(matrix, assembly, graph, motion, force);
+        for (std::size_t k = 0; k < component.size(); ++k) y[k] = inverse_root_mass[k] * force[component[k]];
+      },
+      end, options);
+}
+
+double element_bound(const Assembly& assembly, const ContactSprings& springs, const std::vector<Inertia>& inertia,
+                     bool rotation) {
+  std::vector<double> z(assembly.size(), 0.0);
+  for (const Contact& contact : assembly.contacts) ++z[contact.i], ++z[contact.j];
+  double bound = 0;
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    const Contact& contact = assembly.contacts[c];
+    const Inertia &i = inertia[contact.i], &j = inertia[contact.j];
+    const double translation = z[contact.i] / i.mass + z[contact.j] / j.mass;
+    double slip = translation;
+    if (rotation) {
+      slip += z[contact.i] * contact.lever_i * contact.lever_i / i.moment +
+              z[contact.j] * contact.lever_j * contact.lever_j / j.moment;
+    }
+    bound = std::max({bound, springs[c].kN * translation, springs[c].kT * slip});
+  }
+  return bound;
+}
+
+TimeStepRules time_step_rules(const Assembly& assembly, const ContactSprings& springs,
+                              const std::vector<Inertia>& inertia, bool rotation) {
+  const double scale = assembly.mean_radius();
+  std::vector<double> diagonal(3 * assembly.size(), 0.0);
+  double mass_over_stiffness = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    const Contact& contact = assembly.contacts[c];
+    const SpringConstants k = springs[c];
+    const DeformationGradient g = deformation_gradient(frame_of(assembly, contact), scale);
+    for (std::size_t r = 0; r < 3; ++r) {
+      diagonal[3 * contact.i + r] +=
+          k.kN * g.normal_i[r] * g.normal_i[r] + k.kT * g.tangential_i[r] * g.tangential_i[r];
+      diagonal[3 * contact.j + r] +=
+          k.kN * g.normal_j[r] * g.normal_j[r] + k.kT * g.tangential_j[r] * g.tangential_j[r];
+    }
+    mass_over_stiffness =
+        std::min(mass_over_stiffness, std::min(inertia[contact.i].mass, inertia[contact.j].mass) / k.kN);
+  }
+  double shortest = std::numeric_limits<double>::infinity();
+  for (std::size_t component = 0; component < diagonal.size(); ++component) {
+    const bool turns = component % 3 == 2;
+    if ((turns && !rotation) || diagonal[component] <= 0) continue;
+    const Inertia& body = inertia[component / 3];
+    shortest = std::min(shortest, (turns ? body.moment / (scale * scale) : body.mass) / diagonal[component]);
+  }
+  return {std::sqrt(2 * shortest), 2 * std::numbers::pi * std::sqrt(mass_over_stiffness) / 8};
+}
+
+}  // namespace equidem

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Highest frequency and time steps of assemblies.
+#include "equidem/waves/vibration.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "equidem/homogenize/tension_test.hpp"
+
+#include "support/assemblies.hpp"
+#include "support/catch.hpp"
+#include "support/fields.hpp"
+#include "waves/networks.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+DegreesOfFreedom unknowns_of(const Assembly& assembly, const ContactSprings& springs,
+                             std::span<const Support> supports = {}) {
+  return number_unknowns(assembly, springs, derive_effects(springs, Rotation::from_scene), supports);
+}
+
+ExtremeEigenvalue highest(const Assembly& assembly, const ContactSprings& springs, const std::vector<Inertia>& inertia,
+                          std::span<const Support> supports = {}) {
+  return extreme_squared_frequency(assembly, springs, unknowns_of(assembly, springs, supports), inertia,
+                                   SpectrumEnd::largest);
+}
+
+}  // namespace
+
+TEST_CASE("the_highest_frequency_of_periodic_lattices_is_that_of_f10") {
+  const double kT = GENERATE(0.0, 0.2, 1.0 / 3, 0.5, 1.0), beta = GENERATE(0.5, 0.4);
+  const auto [columns, rows] = GENERATE(std::pair{2, 2}, std::pair{12, 10});
+  const ContactSprings springs(SpringConstants{1, kT});
+  const double turning = kT / beta;
+  const Assembly hexagonal = periodic_hexagonal(columns, rows), square = periodic_square(columns, rows);
+  const ExtremeEigenvalue h = highest(hexagonal, springs, unit_masses(hexagonal, beta));
+  const ExtremeEigenvalue s = highest(square, springs, unit_masses(square, beta));
+  CAPTURE(kT, beta, columns, rows, h.residual, h.products, s.residual, s.products);
+  CHECK(h.converged);
+  CHECK(h.residual < 1e-11);
+  CHECK(h.value == Approx(std::max(6 + 2 * kT, 12 * turning)).epsilon(1e-12));
+  CHECK(s.value == Approx(std::max(4 * (1 + kT), 8 * turning)).epsilon(1e-12));
+}
+
+TEST_CASE("the_table_of_time_steps_for_discs") {
+  struct Row {
+    double kT, hexagonal, square;
+  };
+  for (const Row& row : {Row{0, .8165, 1.000}, Row{.2, .7906, .9129}, Row{1.0 / 3, .7071, .8660}, Row{.5, .5774, .7071},
+                         Row{1, .4082, .5000}}) {
+    const ContactSprings springs(SpringConstants{1, row.kT});
+    const Assembly hexagonal = periodic_hexagonal(4, 4), square = periodic_square(4, 4);
+    CAPTURE(row.kT);
+    CHECK(2 / std::sqrt(highest(hexagonal, springs, unit_masses(hexagonal)).value) ==
+          Approx(row.hexagonal).margin(5e-5));
+    CHECK(2 / std::sqrt(highest(square, springs, unit_masses(square)).value) == Approx(row.square).margin(5e-5));
+  }
+}
+
+TEST_CASE("the_rules_for_the_hexagonal_lattice_of_equal_springs") {
+  const Assembly assembly = periodic_hexagonal(4, 4);
+  const ContactSprings springs(SpringConstants{1, 1});
+  const auto disc = unit_masses(assembly, 0.5), sphere = unit_masses(assembly, 0.4);
+  CHECK(2 / std::sqrt(element_bound(assembly, springs, disc, true)) == Approx(1.0 / 3).epsilon(1e-14));
+  CHECK(2 / std::sqrt(element_bound(assembly, springs, sphere, true)) == Approx(0.3086).margin(5e-5));
+  const TimeStepRules rules = time_step_rules(assembly, springs, disc, true);
+  CHECK(rules.diagonal == Approx(0.4082).margin(5e-5));
+  CHECK(rules.eighth_of_period == Approx(std::numbers::pi / 4).epsilon(1e-14));
+}
+
+// The guarantee: no assembly of any kind, springs of any spread, bodies of any weight, is faster than the bound.
+TEST_CASE("no_assembly_vibrates_faster_than_its_element_bound") {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Random random(seed);
+    DelaunayOptions options;
+    options.discs = 4 + static_cast<std::int64_t>(random.below(60));
+    options.seed = seed;
+    options.periodic = random.below(2) == 0;
+    options.radii = {1, std::pow(10, random.uniform())};
+    options.points = random.below(2) == 0 ? PointProcess::uniform : PointProcess::poisson_disc;
+    const Assembly assembly = delaunay_assembly(options);
+    std::vector<SpringConstants> each(assembly.contacts.size());
+    for (SpringConstants& k : each) k = {std::pow(10, random.uniform(-2, 2)), std::pow(10, random.uniform(-3, 2))};
+    if (random.below(3) == 0) each.assign(each.size(), {1, -0.1});
+    const ContactSprings springs(each);
+    const auto inertia = inertia_of(assembly.radii, 2000, random.below(2) == 0 ? Body::disc : Body::sphere);
+    const ExtremeEigenvalue found = highest(assembly, springs, inertia);
+    const double bound = element_bound(assembly, springs, inertia, true);
+    CAPTURE(seed, assembly.size(), assembly.periodic(), found.value, found.residual, found.products, bound);
+    CHECK(found.converged);
+    CHECK(found.residual <= 2e-12 * found.value);
+    CHECK(found.value <= bound * (1 + 1e-12));
+    CHECK(found.value > 0.05 * bound);  // and it is not idle
+  }
+}
+
+TEST_CASE("holding_discs_lowers_the_highest_frequency") {
+  for (const Scene& scene : held_scenes()) {
+    const Assembly& assembly = scene.assembly();
+    const auto inertia = inertia_of(assembly.radii, 1000, Body::disc);
+    const Effects effects = derive_effects(scene.springs, scene.options.rotation);
+    const auto end_of = [&](std::span<const Support> supports) {
+      return extreme_squared_frequency(assembly, scene.springs,
+                                       number_unknowns(assembly, scene.springs, effects, supports), inertia,
+                                       SpectrumEnd::largest);
+    };
+    const ExtremeEigenvalue held = end_of(scene.supports), free = end_of({});
+    CAPTURE(scene.name, held.value, free.value, element_bound(assembly, scene.springs, inertia, effects.rotation));
+    CHECK(held.value <= free.value * (1 + 1e-12));
+    CHECK(free.value <= element_bound(assembly, scene.springs, inertia, effects.rotation) * (1 + 1e-12));
+  }
+}
+
+TEST_CASE("the_bits_of_the_highest_frequency_do_not_depend_on_threads") {
+  const Assembly assembly = random_cell(400, 8);
+  const ContactSprings springs(SpringConstants{1, 0.4});
+  const auto inertia = unit_masses(assembly);
+  double first = 0;
+  for (const int threads : {1, 2, 5}) {
+    const ThreadsFor here(threads);
+    const ExtremeEigenvalue found = highest(assembly, springs, inertia);
+    if (threads == 1) first = found.value;
+    CHECK(found.value == first);
+  }
+}
+
+// A chain of discs between walls, u_x only: omega² = 2 kN/m (1 + cos(pi/(n + 1))) for n discs between two that are held.
+TEST_CASE("a_chain_between_held_ends_has_the_frequency_of_a_string_of_beads") {
+  const int n = GENERATE(1, 2, 30, 300);
+  Assembly chain = chain_of_discs(n + 2, 1);
+  const ContactSprings springs(SpringConstants{4, 0});
+  const std::vector<Support> supports{{"first", 0.0, 0.0, {}}, {"last", 0.0, 0.0, {}}};
+  const ExtremeEigenvalue found = highest(chain, springs, unit_masses(chain), supports);
+  CAPTURE(n, found.value, found.residual, found.products);
+  CHECK(found.value == Approx(8 * (1 + std::cos(std::numbers::pi / (n + 1)))).epsilon(1e-12));
+}
+
+TEST_CASE("with_negative_kT_the_finite_assembly_grows_no_faster_than_the_lattice") {
+  const double kT = -0.1;
+  const ContactSprings springs(SpringConstants{1, kT});
+  const Assembly block = hexagonal_lattice({.columns = 15, .rows = 15, .radius = 1});
+  const ExtremeEigenvalue found =
+      extreme_squared_frequency(block, springs, unknowns_of(block, springs), unit_masses(block), SpectrumEnd::smallest);
+  CAPTURE(found.value, found.residual);
+  CHECK(found.value < -0.9 * 24 * std::abs(kT));
+  CHECK(found.value > -24 * std::abs(kT));
+}

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Waves and the homogenized continuum tell of the same sound; the survey of a cell says what closed forms say.
+#include "equidem/waves/wave_survey.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/waves/sound.hpp"
+
+#include "support/catch.hpp"
+#include "support/fields.hpp"
+#include "waves/networks.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+// Two independent roads to one number: perturbation of the dynamic matrix, and load cases on a factorized stiffness.
+TEST_CASE("the_sound_of_long_waves_is_that_of_the_homogenized_continuum") {
+  const Assembly assembly = GENERATE(periodic_hexagonal(3, 4), periodic_square(3, 3), random_cell(10, 1),
+                                     random_cell(40, 2), random_cell(25, 7));
+  const Rotation rotation = GENERATE(Rotation::free, Rotation::restrained);
+  const double ratio = GENERATE(-0.1, 0.4, 1.0);
+  const ContactSprings springs(SpringConstants{2, ratio * 2});
+  const BlochWaves waves(primitive_cell(assembly, springs), unit_masses(assembly), rotation == Rotation::free);
+  const EffectiveStiffness homogenized = effective_stiffness(assembly, springs, {.rotation = rotation});
+  for (const double angle : {0.0, 0.4, 0.8, 1.3, 2.5}) {
+    const Vec2 n{std::cos(angle), std::sin(angle)};
+    const auto found = waves.sound_speeds(n);
+    const PlaneWaves expected = plane_waves(homogenized.gradient_stiffness, waves.mass_per_area(), n);
+    CAPTURE(assembly.kind, assembly.size(), ratio, angle, rotation == Rotation::free);
+    CHECK(found.longitudinal_squared == Approx(expected.longitudinal_squared).epsilon(1e-10));
+    CHECK(found.transverse_squared == Approx(expected.transverse_squared).epsilon(1e-10));
+  }
+}
+
+TEST_CASE("the_survey_of_a_lattice_says_what_closed_forms_say") {
+  const double kT = GENERATE(-0.2, 0.5);
+  const ContactSprings springs(SpringConstants{1, kT});
+  const Assembly assembly = periodic_hexagonal(8, 8);
+  const WaveSurvey survey =
+      survey_waves(primitive_cell(assembly, springs), unit_masses(assembly), Rotation::from_scene);
+  CHECK(std::abs(survey.critical.value + 1.0 / 3) < 1e-13);
+  CHECK(survey.critical.at.name == "M");
+  CHECK(*survey.squared_rotational_gap == Approx(24 * kT).epsilon(1e-12));
+  CHECK(survey.highest.value == Approx(std::max(6 + 2 * kT, 24 * kT)).epsilon(1e-12));
+  if (kT < 0) CHECK(survey.growing.value == Approx(-24 * kT).epsilon(1e-12));
+
+  // The path runs through the points of symmetry, in even steps of each side.
+  std::string names;
+  for (const PathPoint& point : survey.path) names += point.at.name.empty() ? "" : point.at.name + " ";
+  CHECK(names == "Gamma M K Gamma ");
+  for (std::size_t k = 0; k + 1 < survey.path.size(); ++k) {
+    const PathPoint &here = survey.path[k], &next = survey.path[k + 1];
+    CHECK(norm(next.at.q - here.at.q) == Approx(next.along - here.along).epsilon(1e-9));
+    CHECK(here.squared_frequencies.size() == 3);
+    CHECK(here.critical_ratio <= survey.critical.value + 1e-13);
+  }
+}
+
+// A mean strain is held in the cell itself, but follows in a long wave: which may give way first.
+TEST_CASE("no_wave_gives_way_before_the_one_that_the_survey_names") {
+  const Assembly assembly = random_cell(GENERATE(8, 30), GENERATE(1, 2));
+  const ContactSprings springs(SpringConstants{1, 0.5});
+  const PrimitiveCell cell = primitive_cell(assembly, springs);
+  const WaveSurvey survey = survey_waves(cell, unit_masses(assembly), Rotation::free);
+  const BlochWaves waves(cell, unit_masses(assembly), true);
+  CAPTURE(assembly.size(), survey.critical.value, survey.critical.at.name);
+  CHECK(waves.critical_ratio(survey.critical.at.q) == Approx(survey.critical.value).epsilon(1e-12));
+  Random random(17);
+  for (int k = 0; k < 40; ++k) {
+    const Vec2 q =
+        random.uniform(-0.5, 0.5) * survey.zone.reciprocal[0] + random.uniform(-0.5, 0.5) * survey.zone.reciprocal[1];
+    CAPTURE(q.x, q.y);
+    CHECK(waves.critical_ratio(q) <= survey.critical.value + 1e-4);
+  }
+}
+
+TEST_CASE("rattlers_make_no_waves") {
+  Assembly assembly = periodic_hexagonal(4, 4);
+  assembly.centres.push_back({0.1, 0.1});
+  assembly.radii.push_back(0.01);
+  assembly.cell_areas.clear();
+  const ContactSprings springs(SpringConstants{1, 0.5});
+  const BlochWaves waves(primitive_cell(assembly, springs), unit_masses(assembly), true);
+  CHECK(waves.size() == 3 * 16);
+  CHECK(waves.squared_frequencies({0.3, 0.2}).front() > 0.01);
+}
