@@ -28,6 +28,9 @@ constexpr const char* examples = R"(Examples:
   equidem solve data/cases/abe1996_fig6.toml
   equidem solve data/cases/abe1996_fig6.toml --set springs.kT=0.3e9 --out result
   equidem sweep data/cases/abe1996_fig6.toml --key ratio --from 0 --to 1 --steps 11 --out curve
+  equidem homogenize data/cases/random_cell.toml
+  equidem calibrate data/cases/calibrate_random.toml --springs springs.toml
+  equidem stability data/cases/random_cell.toml --set assembly.discs=60 --out waves
   equidem help case          every key of the case file
 
 Exit codes: 0 done; 1 the computation failed, and says why; 2 bad input or usage; 130 interrupted.)";

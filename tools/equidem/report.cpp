@@ -142,6 +142,11 @@ std::string describe_results(const Problem& problem, std::span<const SolvedCase>
     out += report_line("residual",
                        format("{:.1e} relative, after {} of refinement; {:.1e} for the motions rounded to double",
                               e.relative_residual, counted(e.refinements, "step"), e.rounded_residual));
+    if (e.condition > 0) {
+      out +=
+          report_line("error bound", format("{:.1e} of the motions, from the residual and a condition of about {:.1e}",
+                                            e.error_bound, e.condition));
+    }
     constexpr double doubtful = 1e-10;
     if (e.relative_residual > doubtful) {
       out += report_line("", "WARNING: K is nearly singular; do not trust more digits than the residual leaves");

@@ -158,7 +158,9 @@ int solve(const CommonOptions& options) {
   const Problem problem = build_problem(std::move(resolved));
   if (options.dry_run) return dry_run(options, problem);
 
-  const EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, problem.options());
+  EquilibriumOptions solver_options = problem.options();
+  solver_options.error_bound = true;
+  const EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, solver_options);
   std::vector<SolvedCase> results;
   for (const NamedLoads& loads : problem.load_cases) results.push_back(solve_case(problem, solver, loads));
 

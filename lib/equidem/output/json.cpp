@@ -175,6 +175,8 @@ void add_equilibrium(JsonObject& object, const Equilibrium& equilibrium) {
   object.set("unknowns", equilibrium.unknowns)
       .set("relative_residual", equilibrium.relative_residual)
       .set("rounded_residual", equilibrium.rounded_residual)
+      .set("condition", equilibrium.condition)
+      .set("error_bound", equilibrium.error_bound)
       .set("negative_pivots", equilibrium.negative_pivots)
       .set("unstable_modes", equilibrium.unstable_modes)
       .set("refinements", equilibrium.refinements)
