@@ -17,11 +17,15 @@ namespace equidem {
 /// long sum.
 template <std::size_t N, typename Add>
 std::array<double, N> contact_sums(std::size_t count, const Add& add) {
-  constexpr std::size_t block = 4096;
+  constexpr std::size_t block = 4096, run = 64;  // equal terms round to the same side: no long run of them
   std::vector<std::array<double, N>> partial((count + block - 1) / block);
   parallel_tasks(partial.size(), [&](std::size_t task, int) {
     const std::size_t end = std::min(count, (task + 1) * block);
-    for (std::size_t index = task * block; index < end; ++index) add(index, partial[task]);
+    for (std::size_t index = task * block; index < end;) {
+      std::array<double, N> sums{};
+      for (const std::size_t stop = std::min(end, index + run); index < stop; ++index) add(index, sums);
+      for (std::size_t k = 0; k < N; ++k) partial[task][k] += sums[k];
+    }
   });
   std::array<double, N> total{};
   for (const auto& sums : partial) {

@@ -25,7 +25,8 @@ void judge(EffectiveStiffness& result) {
     if (std::abs(eigen.values[k]) > nothing * largest + 2 * result.error_bound) continue;
     const auto& e = eigen.strains[k];
     bad_input("the network is floppy",
-              format("the mean strain (xx {:.3f}, yy {:.3f}, shear {:.3f}) costs no energy", e[0], e[1], e[2]),
+              format("the mean strain (xx {:.3f}, yy {:.3f}, shear {:.3f}) costs no energy beyond rounding", e[0], e[1],
+                     e[2]),
               "A modulus would say nothing of it. Add contacts, or give the contacts tangential springs (kT > 0)");
   }
 }

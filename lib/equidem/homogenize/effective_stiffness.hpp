@@ -43,7 +43,8 @@ struct EffectiveStiffness {
 
   double relative_residual = 0;  ///< largest of the load cases
   double condition = 0;          ///< estimate of |K| |K^-1|
-  double error_bound = 0;  ///< Pa: bound on the error of an entry of `stiffness` from the residual and the condition
+  /// Pa: bound on the error of an entry of `stiffness`, from residual, condition and (but for tractions) rounding of normals.
+  double error_bound = 0;
   double hill_mandel = 0;  ///< largest |macroscopic - microscopic power| over the latter
 
   std::int64_t rattlers = 0;            ///< discs without contacts, left out

@@ -116,7 +116,7 @@ std::vector<Solution> SampleSolver::solve(std::span<const RightHandSide> cases, 
   // Without negative springs a motion without energy deforms no contact: mean strains do no work on it.
   const bool may_react = options_.boundary == Boundary::traction || springs().any_negative();
   for (std::size_t k = 0; may_react && k < cases.size(); ++k) check_reactions(cases[k], solutions[k]);
-  const double inverse_norm = solver_->inverse_norm(solutions[0].motion.high);
+  const double inverse_norm = solver_->softest_motion(solutions[0].motion.high).inverse_norm;
   result.condition = solver_->norm() * inverse_norm;
   double residual = 0;
   for (const Solution& solution : solutions) {

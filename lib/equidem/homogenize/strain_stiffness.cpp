@@ -2,9 +2,14 @@
 #include "equidem/homogenize/strain_stiffness.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 
+#include "equidem/contact/linear_spring.hpp"
 #include "equidem/homogenize/affine.hpp"
+#include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/homogenize/pair_energies.hpp"
 #include "equidem/homogenize/sample_solver.hpp"
 
@@ -23,6 +28,27 @@ double power_difference(const std::vector<Tensor2>& stresses, const Matrix3& sti
     for (int a = 0; a < 3; ++a) largest = std::max(largest, std::abs(row[a] - stiffness[a][k]));
   }
   return largest / largest_entry(stiffness);
+}
+
+/// What rounding of normals changes of an energy of two cases, N, at most: the motion is stationary, so that the change of
+/// sum kN dn_a dn_b + kT ds_a ds_b is that of the deformations of given motions.
+double rounding_of_energies(const SampleSolver& solver, const std::vector<Solution>& solutions,
+                            const std::vector<std::vector<ContactDeformation>>& deformations) {
+  const Assembly& assembly = solver.assembly();
+  const auto b = static_cast<std::size_t>(solver.unknowns().per_disc);
+  const auto sum = contact_sums<1>(assembly.contacts.size(), [&](std::size_t c, std::array<double, 1>& total) {
+    const Contact& contact = assembly.contacts[c];
+    double force = 0, distance = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double *u_i = &solutions[k].motion.high[contact.i * b], *u_j = &solutions[k].motion.high[contact.j * b];
+      distance = std::max(distance,
+                          norm(unit_gradients[k] * assembly.branch(contact) + Vec2{u_j[0] - u_i[0], u_j[1] - u_i[1]}));
+      const auto f = linear_spring_force(solver.springs()[c], deformations[k][c]);
+      force = std::max(force, std::abs(f.normal) + std::abs(f.tangential));
+    }
+    total[0] += normal_rounding(assembly, contact) * force * distance;
+  });
+  return 2 * std::numeric_limits<double>::epsilon() * sum[0];
 }
 
 /// Stresses of unit displacement gradients xx, yy, xy, yx from those of unit strains and of the unit rotation.
@@ -64,7 +90,7 @@ void solve_strains(const Assembly& assembly, const ContactSprings& springs, cons
   result.normal_part = (1 / result.area) * energies.normal;
   result.tangential_part = (1 / result.area) * energies.tangential;
   result.stiffness = result.normal_part + result.tangential_part;
-  result.error_bound = solver.energy_error() / result.area;
+  result.error_bound = (solver.energy_error() + rounding_of_energies(solver, solutions, deformations)) / result.area;
   result.hill_mandel = power_difference(stresses, result.stiffness);
   keep_gradient_stiffness(stresses, result);
   for (std::size_t k = 0; k < 3; ++k) {

@@ -88,7 +88,7 @@ struct EquilibriumSolver::Implementation {
 
   StiffnessSolver build(std::span<const Support> supports);
   [[nodiscard]] Equilibrium solve(const LoadCase& loads) const;
-  void bound_error(const Solution& solution, Equilibrium& result) const;
+  void bound_error(const RightHandSide& given, const Solution& solution, Equilibrium& result) const;
   void describe_state(std::span<const double> f, const PreciseMotion& motion, Equilibrium& result) const;
 };
 
@@ -125,7 +125,7 @@ Equilibrium EquilibriumSolver::Implementation::solve(const LoadCase& loads) cons
   describe_state(given.force, solution.motion, result);
   if (options.error_bound) {
     watch.lap();
-    bound_error(solution, result);
+    bound_error(given, solution, result);
     result.times.add("error bound", watch.lap());
   }
   const FactorReport& report = solver.factor().report();
@@ -138,14 +138,18 @@ Equilibrium EquilibriumSolver::Implementation::solve(const LoadCase& loads) cons
   return result;
 }
 
-void EquilibriumSolver::Implementation::bound_error(const Solution& solution, Equilibrium& result) const {
-  const double inverse_norm = solver.inverse_norm(solution.motion.high);
-  result.condition = solver.norm() * inverse_norm;
+void EquilibriumSolver::Implementation::bound_error(const RightHandSide& given, const Solution& solution,
+                                                    Equilibrium& result) const {
+  const SoftestMotion softest = solver.softest_motion(solution.motion.high);
+  result.condition = solver.norm() * softest.inverse_norm;
   double size = 0;
   for (const double u : solution.motion.high) size += u * u;
   constexpr double safety = 10;           // the norm of the inverse is estimated from below
   constexpr double rounding = 0x1.0p-53;  // of the motions handed out
-  result.error_bound = rounding + (size > 0 ? safety * inverse_norm * solution.residual / std::sqrt(size) : 0.0);
+  result.error_bound = rounding;
+  if (size == 0 || softest.motion.empty()) return;
+  const double wrong = solution.residual + solver.rounding_work(given, solution.motion, softest.motion);
+  result.error_bound += safety * softest.inverse_norm * wrong / std::sqrt(size);
 }
 
 void EquilibriumSolver::Implementation::describe_state(std::span<const double> f, const PreciseMotion& motion,

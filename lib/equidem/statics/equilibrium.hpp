@@ -38,7 +38,7 @@ struct Equilibrium {
   double rounded_residual = 0;  ///< the same for `motions`, which are u rounded to doubles
   int refinements = 0;          ///< steps of iterative refinement done
   /// |K| |K^-1|, estimated (2-norm of the inverse by inverse iteration from the solution), and the bound on the relative error of
-  /// `motions` (2-norm) that follows from it and the residual, with a margin of 10; 0 unless asked for.
+  /// `motions` (2-norm) that follows from it, the residual and the rounding of normals, with a margin of 10; 0 unless asked for.
   double condition = 0;
   double error_bound = 0;
   std::int64_t unknowns = 0;
@@ -61,7 +61,7 @@ struct Equilibrium {
 struct EquilibriumOptions {
   Rotation rotation = Rotation::from_scene;
   SolverOptions solver;
-  bool error_bound = false;  ///< estimate the condition of K: three more solves
+  bool error_bound = false;  ///< estimate the condition of K: two more solves
 };
 
 /// A factorized stiffness matrix of an assembly with its supports: any number of load cases, one factorization.

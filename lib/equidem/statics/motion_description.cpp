@@ -235,8 +235,8 @@ class Description {
     double across = 0;
     for (const std::size_t d : moving_) across += squared(cross(u, u_[d]));
     const bool along = across <= negligible * total_ * dot(u, u);
-    return format("a sliding of {} groups of discs{}, each of which moves as one: {} of {}, such as {}",
-                  as_count(assembly_.size()) - std::count(sizes.begin(), sizes.end(), 0),
+    return format("a sliding of {} of discs{}, each of which moves as one: {} of {}, such as {}",
+                  counted(as_count(assembly_.size()) - std::count(sizes.begin(), sizes.end(), 0), "group"),
                   along ? " along " + describe_direction(u) : "", moving_.size(),
                   counted(as_count(assembly_.size()), "disc"), describe_disc(assembly_, largest_first_.front()));
   }

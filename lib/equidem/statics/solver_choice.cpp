@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/cholmod_factorization.hpp"
@@ -27,8 +28,14 @@ constexpr MethodName method_names[] = {{SolverMethod::automatic, "auto"},
                                        {SolverMethod::cholmod, "cholmod"},
                                        {SolverMethod::umfpack, "umfpack"}};
 
-[[noreturn]] void report_mechanism(const System& system, const Factorization& factor) {
-  const std::string motion = describe_motion(system.k.assembly, disc_motions(system.unknowns, factor.softest_motion()));
+constexpr double suspicious = 1e-9;  // share of a stiffness left when all others have given way
+
+bool costs_no_energy(const System& system, const std::vector<double>& motion) {
+  constexpr double no_energy = 1e-21;  // over the energy of the same motions without cooperation
+  return std::abs(softness(system.k.assembly, system.springs, disc_motions(system.unknowns, motion))) < no_energy;
+}
+
+void check_digits(const System& system) {
   double smallest = system.springs.largest();
   for (std::size_t c = 0; c < system.k.assembly.contacts.size(); ++c) {
     const SpringConstants k = system.springs[c];
@@ -36,22 +43,47 @@ constexpr MethodName method_names[] = {{SolverMethod::automatic, "auto"},
     if (k.kT != 0) smallest = std::min(smallest, std::abs(k.kT));
   }
   constexpr double digits = 1e11;  // springs further apart than this leave too few of the digits of a double
-  if (system.springs.largest() > digits * smallest) {
-    computation_failed(format("the springs differ by a factor of {:.1e}", system.springs.largest() / smallest),
-                       "the softest of them is lost in the round-off of the stiffest",
-                       "Choose springs within a factor of 1e10 of each other");
-  }
-  bad_input("the assembly is a mechanism", format("it can move at no cost: {}", motion),
-            system.springs.any_tangential()
-                ? "Hold that motion by a support, or add contacts"
-                : "Hold that motion by a support, add contacts, or give the contacts tangential springs (kT > 0)");
+  if (system.springs.largest() <= digits * smallest) return;
+  computation_failed(format("the springs differ by a factor of {:.1e}", system.springs.largest() / smallest),
+                     "the softest of them is lost in the round-off of the stiffest",
+                     "Choose springs within a factor of 1e10 of each other");
 }
 
-constexpr double suspicious = 1e-9;  // share of a stiffness left when all others have given way
+/// Whether springs that give energy back (kT < 0) leave next to nothing of what the others take.
+bool springs_cancel(const System& system, const std::vector<DiscMotion>& motions) {
+  if (!system.springs.any_negative()) return false;
+  const Assembly& assembly = system.k.assembly;
+  double sum = 0, size = 0;
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    const Contact& contact = assembly.contacts[c];
+    const ContactDeformation d = deformation(frame_of(assembly, contact), motions[contact.i], motions[contact.j]);
+    const double normal = system.springs[c].kN * d.normal * d.normal;
+    const double tangential = system.springs[c].kT * d.tangential * d.tangential;
+    sum += normal + tangential;
+    size += normal + std::abs(tangential);
+  }
+  return std::abs(sum) < 1e-3 * size;
+}
 
-bool costs_no_energy(const System& system, const std::vector<double>& motion) {
-  constexpr double no_energy = 1e-21;  // over the energy of the same motions without cooperation
-  return std::abs(softness(system.k.assembly, system.springs, disc_motions(system.unknowns, motion))) < no_energy;
+/// A motion that elimination found to resist no more than round-off: a mechanism, or too soft for a double.
+[[noreturn]] void report_singular(const System& system, const std::vector<double>& softest) {
+  check_digits(system);
+  const std::vector<DiscMotion> motions = disc_motions(system.unknowns, softest);
+  const std::string motion = describe_motion(system.k.assembly, motions);
+  if (costs_no_energy(system, softest)) {
+    bad_input("the assembly is a mechanism", format("it can move at no cost: {}", motion),
+              system.springs.any_tangential()
+                  ? "Hold that motion by a support, or add contacts"
+                  : "Hold that motion by a support, add contacts, or give the contacts tangential springs (kT > 0)");
+  }
+  if (springs_cancel(system, motions)) {
+    computation_failed("at this kT/kN the assembly is at its limit of stability",
+                       format("a motion resists no more than round-off: {}", motion),
+                       "Choose another kT/kN; 'equidem stability' finds the limit");
+  }
+  computation_failed("the assembly is too soft for the digits of a double",
+                     format("a motion resists no more than round-off does: {}", motion),
+                     "Hold that motion by a support; a slender assembly needs to be held in more places");
 }
 
 /// K is singular where the softest motion that elimination met costs, or with kT < 0 yields, no more energy than its
@@ -66,17 +98,18 @@ bool is_mechanism(const System& system, const Factorization& factor) {
 void check_null_motions(const System& system, const Factorization& factor) {
   constexpr std::int64_t most = 32;
   for (std::int64_t k = 0; k < std::min(most, factor.report().zero_pivots); ++k) {
-    if (!costs_no_energy(system, factor.null_motion(k))) report_mechanism(system, factor);
+    const std::vector<double> motion = factor.null_motion(k);
+    if (!costs_no_energy(system, motion)) report_singular(system, motion);
   }
 }
 
 std::unique_ptr<Factorization> indefinite(const System& system, Mechanisms mechanisms) {
   auto factor = multifrontal_ldlt(system.symbolic, system.k);
   if (factor->report().zero_pivots > 0) {
-    if (mechanisms == Mechanisms::refuse) report_mechanism(system, *factor);
+    if (mechanisms == Mechanisms::refuse) report_singular(system, factor->softest_motion());
     check_null_motions(system, *factor);
   } else if (is_mechanism(system, *factor)) {
-    report_mechanism(system, *factor);
+    report_singular(system, factor->softest_motion());
   }
   return factor;
 }
@@ -85,7 +118,7 @@ std::unique_ptr<Factorization> multifrontal(const System& system, Mechanisms mec
   if (system.springs.any_negative()) return indefinite(system, mechanisms);
   if (auto factor = multifrontal_cholesky(system.symbolic, system.k)) {
     if (!is_mechanism(system, *factor)) return factor;
-    if (mechanisms == Mechanisms::refuse) report_mechanism(system, *factor);
+    if (mechanisms == Mechanisms::refuse) report_singular(system, factor->softest_motion());
   }
   return indefinite(system, mechanisms);  // no spring is negative: a pivot that is not positive is round-off of zero
 }

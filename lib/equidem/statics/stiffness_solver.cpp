@@ -9,6 +9,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/statics/motion_description.hpp"
 
 namespace equidem {
 
@@ -65,13 +66,17 @@ void StiffnessSolver::evaluate_residual(const RightHandSide& given, const Precis
 }
 
 /// Refinement of one right-hand side: K d = f - f_int(u), u := u + d, until the residual no longer falls. The first
-/// pass is the solution itself; the residual comes from the contact law, the motion is kept to twice the digits.
+/// pass is the solution itself; the residual comes from the contact law, the motion is kept to twice the digits. Round-off of
+/// the factor hides the softest motions first, of which a correction then brings only a part, and always the same one: where
+/// corrections shrink slowly, each is scaled to the least energy, u := u + (d.r / d.K d) d, which brings all of one such motion.
 struct StiffnessSolver::Refinement {
   const StiffnessSolver& solver;
   const RightHandSide& given;
   Solution solution;
   PreciseMotion previous{0};
   bool done = false;
+  int corrections = 0;
+  double last_step = 0;  ///< size of the last correction, m
 
   Refinement(const StiffnessSolver& solver_in, const RightHandSide& given_in, std::span<double> residual)
       : solver(solver_in), given(given_in) {
@@ -88,21 +93,26 @@ struct StiffnessSolver::Refinement {
   /// Take in the correction that the factorization answered with, and leave the new residual in its place.
   void correct(std::span<double> x, int pass) {
     constexpr double good_enough = 1e-15;
+    constexpr double slow = 0.05;  // share of the error that a pass leaves
     for (std::size_t k = 0; k < x.size(); ++k) {
       if (solver.unknowns_.held[k] != 0) x[k] = 0;
     }
+    const double step = solver.norm_of_free(x);
+    const bool scaled = pass > 0 && step > slow * last_step && scale_to_least_energy(x);
+    last_step = step;
+    ++corrections;
     previous = solution.motion;
     solution.motion.add(x);
     const double before = solution.residual;
     const double now = evaluate(x);
-    if (pass > 0 && !(now < before)) {  // no better: keep what was
+    if (pass > 0 && !scaled && !(now < before)) {  // no better: keep what was
       solution.motion = std::move(previous);
       done = true;
       return;
     }
     solution.residual = now;
     solution.refinements = pass;
-    done = now <= good_enough * solution.scale || (pass > 0 && now > 0.5 * before);
+    done = now <= good_enough * solution.scale || (pass > 0 && !scaled && now > 0.5 * before);
   }
 
   Solution finish() {
@@ -113,17 +123,51 @@ struct StiffnessSolver::Refinement {
                          "Check the units of sizes, springs and loads");
     }
     if (!(relative <= worthless)) {
-      computation_failed(format("the solution leaves a relative residual of {:.1e}", relative),
-                         "the stiffness matrix is too close to singular for the digits of a double",
-                         "Check supports and springs; springs of very different size are the usual cause");
+      computation_failed(format("the solution leaves a relative residual of {:.1e}", relative), too_soft, remedy);
+    }
+    const double size = std::hypot(norm_of(solution.motion.high), imposed_length());
+    if (corrections > 1 && relative > 0 && !(last_step <= worthless * size)) {
+      computation_failed(format("the last of {} refinements still changed the motions by {:.1e} of their size",
+                                corrections - 1, last_step / size),
+                         too_soft, remedy);
     }
     return std::move(solution);
   }
 
  private:
+  static constexpr const char* too_soft = "the stiffness matrix is too close to singular for the digits of a double";
+  static constexpr const char* remedy =
+      "Hold a slender assembly in more places, bring springs of very different size closer to each other, or use fewer "
+      "discs";
+
   double evaluate(std::span<double> residual) const {
     solver.evaluate_residual(given, solution.motion, residual);
     return solver.norm_of_free(residual);
+  }
+
+  /// x := (x.r / x.K x) x, the multiple of x at which the energy is stationary; false where there is none.
+  bool scale_to_least_energy(std::span<double> x) const {
+    std::vector<double> residual(x.size());
+    evaluate(residual);
+    long double work = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) work += static_cast<long double>(x[k]) * residual[k];
+    const double factor = static_cast<double>(work) / solver.twice_energy(x);
+    constexpr double most = 100;  // more: the motions of the factor are not those of K
+    if (!(factor > 0 && factor < most)) return false;
+    for (double& value : x) value *= factor;
+    return true;
+  }
+
+  static double norm_of(const std::vector<double>& x) {
+    double sum = 0;
+    for (const double value : x) sum += value * value;
+    return std::sqrt(sum);
+  }
+
+  [[nodiscard]] double imposed_length() const {
+    double sum = 0;
+    for (const ContactDeformation& d : given.imposed) sum += d.normal * d.normal + d.tangential * d.tangential;
+    return std::sqrt(sum);
   }
 
   /// Size of the forces that imposed deformations cause, before they cancel on each disc.
@@ -181,25 +225,66 @@ std::vector<ContactDeformation> StiffnessSolver::deformations(const RightHandSid
   return result;
 }
 
-double StiffnessSolver::inverse_norm(std::span<const double> start) const {
+double StiffnessSolver::twice_energy(std::span<const double> x) const {
+  return 2 * elastic_energy(assembly_, springs_, disc_motions(unknowns_, x));
+}
+
+SoftestMotion StiffnessSolver::softest_motion(std::span<const double> start) const {
   std::vector<double> x(start.begin(), start.end());
   if (norm_of_free(x) == 0) {
     x.resize(unknowns_.held.size());
     Random random(1);
     for (double& value : x) value = random.uniform() - 0.5;
   }
-  double result = 0;
-  for (int pass = 0; pass < 2; ++pass) {
+  SoftestMotion result;
+  const auto make_unit = [&] {
     for (std::size_t k = 0; k < x.size(); ++k) {
       if (unknowns_.held[k] != 0) x[k] = 0;
     }
-    const double before = norm_of_free(x);
-    if (!(before > 0)) break;
-    for (double& value : x) value /= before;
+    const double size = norm_of_free(x);
+    if (size > 0) {
+      for (double& value : x) value /= size;
+    }
+    return size;
+  };
+  if (!(make_unit() > 0)) return result;
+  for (int pass = 0; pass < 2; ++pass) {
     factor_->solve(x, 1);
-    result = std::max(result, norm_of_free(x));
+    result.inverse_norm = std::max(result.inverse_norm, make_unit());
   }
+  // Round-off of the factor may make the motion stiffer than it is.
+  const double stiffness = twice_energy(x);
+  if (!springs_.any_negative() && stiffness > 0) result.inverse_norm = std::max(result.inverse_norm, 1 / stiffness);
+  result.motion = std::move(x);
   return result;
+}
+
+double normal_rounding(const Assembly& assembly, const Contact& contact) {
+  if (!assembly.periodic()) return 2;
+  const Vec2 shift{contact.shift_x * assembly.period->x, contact.shift_y * assembly.period->y};
+  return 2 + norm(shift) / norm(assembly.branch(contact));
+}
+
+double StiffnessSolver::rounding_work(const RightHandSide& given, const PreciseMotion& motion,
+                                      std::span<const double> v) const {
+  constexpr double rounding = 0x1.0p-52;
+  PreciseMotion other(v.size());
+  std::copy(v.begin(), v.end(), other.high.begin());
+  const std::vector<ContactDeformation> of_u = deformations(given, motion), of_v = deformations({}, other);
+  const auto b = static_cast<std::size_t>(unknowns_.per_disc);
+  double work = 0;
+  for (std::size_t c = 0; c < of_u.size(); ++c) {
+    const Contact& contact = assembly_.contacts[c];
+    const std::size_t i = contact.i * b, j = contact.j * b;
+    const auto distance = [&](const std::vector<double>& x) { return std::hypot(x[j] - x[i], x[j + 1] - x[i + 1]); };
+    const auto force = [&](const ContactDeformation& d) {
+      const auto f = linear_spring_force(springs_[c], d);
+      return std::abs(f.normal) + std::abs(f.tangential);
+    };
+    work += rounding * normal_rounding(assembly_, contact) *
+            (distance(motion.high) * force(of_v[c]) + distance(other.high) * force(of_u[c]));
+  }
+  return work;
 }
 
 double StiffnessSolver::norm() const {

@@ -39,6 +39,16 @@ struct Solution {
   [[nodiscard]] double relative_residual() const { return scale > 0 ? residual / scale : 0.0; }
 };
 
+/// Rounding error of the unit normal of a contact over 2^-52: of its division and, across a period, of the sum that its branch is.
+double normal_rounding(const Assembly& assembly, const Contact& contact);
+
+/// A motion of least resistance.
+struct SoftestMotion {
+  double inverse_norm =
+      0;  ///< 1/Pa, |K^-1| (2-norm) as this motion shows it: a lower bound, mostly within a factor of 2
+  std::vector<double> motion;  ///< per component, a unit vector; empty where nothing is free
+};
+
 class StiffnessSolver {
  public:
   /// Order, analyze, assemble and factorize. The assembly and the springs must outlive this object.
@@ -56,9 +66,13 @@ class StiffnessSolver {
   /// Deformation of every contact, imposed one included.
   [[nodiscard]] std::vector<ContactDeformation> deformations(const RightHandSide& given,
                                                              const PreciseMotion& motion) const;
-  /// Estimate of |K^-1| (2-norm) by inverse iteration from `start` (empty: from a fixed rough vector), which finds the softest
-  /// motion that `start` has a part in: a lower bound, mostly within a factor of 2. 1/Pa.
-  [[nodiscard]] double inverse_norm(std::span<const double> start = {}) const;
+  /// By inverse iteration from `start` (empty: from a fixed rough vector), which finds the softest motion that `start` has a
+  /// part in.
+  [[nodiscard]] SoftestMotion softest_motion(std::span<const double> start = {}) const;
+  /// Bound on |v^T dK u|, N, where the normals of contacts are wrong by their rounding (normal_rounding): what rounding of the
+  /// geometry does to the motion u along v.
+  [[nodiscard]] double rounding_work(const RightHandSide& given, const PreciseMotion& motion,
+                                     std::span<const double> v) const;
   /// |K| (largest sum of the magnitudes of a row), Pa.
   [[nodiscard]] double norm() const;
   [[nodiscard]] const ContactGraph& graph() const { return graph_; }
@@ -71,6 +85,7 @@ class StiffnessSolver {
   struct Refinement;
   void judge_inertia(const System& system);
   void evaluate_residual(const RightHandSide& given, const PreciseMotion& motion, std::span<double> residual) const;
+  [[nodiscard]] double twice_energy(std::span<const double> x) const;
   [[nodiscard]] double norm_of_free(std::span<const double> x) const;
 
   const Assembly& assembly_;

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hard_cases/ledger.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "equidem/core/text.hpp"
+#include "equidem/statics/degrees_of_freedom.hpp"
+
+#include "hard_cases/oracle.hpp"
+#include "support/catch.hpp"
+
+namespace equidem::test {
+namespace {
+
+template <typename Call>
+void answer_or_refuse(Answer& answer, Call call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    answer.refusal = {error.what(), error.kind()};
+    answer.remedy = error.remedy();
+  }
+}
+
+DegreesOfFreedom unknowns_of(const Problem& problem) {
+  return number_unknowns(problem.assembly, problem.springs, derive_effects(problem.springs, problem.rotation),
+                         problem.supports);
+}
+
+std::vector<double> forces_of(const Problem& problem, const DegreesOfFreedom& unknowns) {
+  const auto b = static_cast<std::size_t>(unknowns.per_disc);
+  std::vector<double> force(problem.assembly.size() * b, 0.0);
+  for (const Load& load : problem.loads) {
+    const auto& discs = group(problem.assembly, load.group).discs;
+    const double share = load.kind == LoadKind::total ? 1 / static_cast<double>(discs.size()) : 1;
+    for (const std::int32_t d : discs) {
+      force[d * b] += share * load.force.x;
+      force[d * b + 1] += share * load.force.y;
+      if (b == 3) force[d * b + 2] += share * load.moment / unknowns.rotation_scale;
+    }
+  }
+  return force;
+}
+
+template <typename Number>
+double error_of(const Equilibrium& state, const DegreesOfFreedom& unknowns, const std::vector<Number>& exact) {
+  const auto b = static_cast<std::size_t>(unknowns.per_disc);
+  Number off = 0, size = 0;
+  for (std::size_t d = 0; d < state.motions.size(); ++d) {
+    const DiscMotion& m = state.motions[d];
+    const double motion[3] = {m.u.x, m.u.y, unknowns.rotation_scale * m.theta};
+    for (std::size_t k = 0; k < b; ++k) {
+      const Number e = exact[d * b + k];
+      off += (motion[k] - e) * (motion[k] - e);
+      size += e * e;
+    }
+  }
+  return std::sqrt(static_cast<double>(off / size));
+}
+
+Equilibrium state_of(const Problem& problem, Answer& answer) {
+  Equilibrium state = solve_equilibrium(problem.assembly, problem.springs, problem.supports, problem.loads,
+                                        {.rotation = problem.rotation, .solver = {}, .error_bound = true});
+  answer.bound = state.error_bound;
+  answer.condition = state.condition;
+  answer.residual = state.relative_residual;
+  answer.unstable_modes = state.unstable_modes;
+  return state;
+}
+
+std::string shown(double x) {
+  return format("{:.1e}", x);
+}
+
+}  // namespace
+
+Answer solve(const Problem& problem) {
+  Answer answer;
+  answer_or_refuse(answer, [&] {
+    const Equilibrium state = state_of(problem, answer);
+    const DegreesOfFreedom unknowns = unknowns_of(problem);
+    answer.error = error_of(state, unknowns,
+                            exact_motion(problem.assembly, problem.springs, unknowns, forces_of(problem, unknowns)));
+  });
+  return answer;
+}
+
+Answer solve(const Problem& problem, const std::vector<double>& exact) {
+  Answer answer;
+  answer_or_refuse(answer, [&] { answer.error = error_of(state_of(problem, answer), unknowns_of(problem), exact); });
+  return answer;
+}
+
+Answer homogenize(const Assembly& cell, const ContactSprings& springs, Rotation rotation, const Matrix3& exact) {
+  Answer answer;
+  answer_or_refuse(answer, [&] {
+    const EffectiveStiffness result = effective_stiffness(cell, springs, {.rotation = rotation, .solver = {}});
+    const double size = largest_entry(exact);
+    answer.error = largest_entry(result.stiffness + (-1.0) * exact) / size;
+    answer.bound = result.error_bound / size;
+    answer.condition = result.condition;
+    answer.residual = result.relative_residual;
+    answer.unstable_modes = result.unstable_modes;
+  });
+  return answer;
+}
+
+Answer homogenize(const Assembly& cell, const ContactSprings& springs, Rotation rotation) {
+  Answer answer = homogenize(cell, springs, rotation, isotropic_stiffness(1, 1));
+  return answer.refusal.message.empty() ? homogenize(cell, springs, rotation, exact_stiffness(cell, springs, rotation))
+                                        : answer;
+}
+
+void HardCase::right(const std::string& task, const Answer& answer, double promised) {
+  CAPTURE(words_.name, task, answer.error, answer.bound, answer.condition, answer.residual, promised,
+          answer.refusal.message);
+  CHECK(answer.refusal.message.empty());
+  CHECK(answer.error <= answer.bound);
+  CHECK(answer.bound <= promised);
+  Accuracy& a = accuracies_[task];
+  ++a.runs;
+  a.error = std::max(a.error, answer.error);
+  a.bound = std::max(a.bound, answer.bound);
+  a.condition = std::max(a.condition, answer.condition);
+  a.promised = std::max(a.promised, promised);
+}
+
+void HardCase::refused(const std::string& task, const Answer& answer, const std::vector<std::string>& words) {
+  CAPTURE(words_.name, task, answer.error, answer.bound, answer.refusal.message);
+  CHECK_FALSE(answer.remedy.empty());
+  for (const std::string& part : words) {
+    CAPTURE(part);
+    CHECK(answer.refusal.says(part));
+  }
+  const bool known = std::any_of(rows_.begin(), rows_.end(), [&](const Row& row) { return row.task == task; });
+  if (!known) note(task, "refused", answer.refusal.message);  // the first of several
+}
+
+void HardCase::note(const std::string& task, const std::string& promised, const std::string& measured) {
+  rows_.push_back({task, promised, measured});
+}
+
+HardCase::~HardCase() {
+  const char* path = std::getenv("EQUIDEM_HARD_CASES");
+  if (path == nullptr) return;
+  std::ofstream file(path, std::ios::app);
+  const auto write = [&](const Row& row) {
+    file << nlohmann::json{{"case", words_.name},
+                           {"why", words_.why},
+                           {"task", row.task},
+                           {"promised", row.promised},
+                           {"measured", row.measured}}
+         << '\n';
+  };
+  for (const auto& [task, a] : accuracies_) {
+    write({task, "error <= bound <= " + shown(a.promised),
+           format("error {}, bound {}, condition {}{}", shown(a.error), shown(a.bound), shown(a.condition),
+                  a.runs > 1 ? format(" (worst of {})", a.runs) : "")});
+  }
+  for (const Row& row : rows_) write(row);
+}
+
+}  // namespace equidem::test

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The table of hard cases: each is right to a stated accuracy, or refused with a sentence that says what to do. What a test
+/// promises and measures becomes a row of data/hard_cases.md (make_table.py).
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/core/matrix.hpp"
+#include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/homogenize/elasticity_tensor.hpp"
+#include "equidem/statics/equilibrium.hpp"
+
+#include "support/fields.hpp"
+
+namespace equidem::test {
+
+/// What the library said and how far it is from the truth: errors and bounds are relative, of motions (2-norm, rotations times
+/// the mean radius) or of the largest entry of the stiffness.
+struct Answer {
+  double error = 0;
+  double bound = 0;  ///< the library's own
+  double condition = 0;
+  double residual = 0;
+  std::int64_t unstable_modes = 0;
+  std::string remedy;  ///< where refused
+  Refusal refusal;     ///< empty where it answered
+};
+
+/// Assembly under supports and loads (no tractions), against quadruple precision.
+struct Problem {
+  Assembly assembly;
+  ContactSprings springs;
+  std::vector<Support> supports;
+  LoadCase loads;
+  Rotation rotation = Rotation::from_scene;
+};
+Answer solve(const Problem& problem);
+/// Against motions (u_x, u_y[, a theta]) that are known.
+Answer solve(const Problem& problem, const std::vector<double>& exact);
+
+/// Periodic cell, against quadruple precision, or a stiffness that is known.
+Answer homogenize(const Assembly& cell, const ContactSprings& springs, Rotation rotation = Rotation::from_scene);
+Answer homogenize(const Assembly& cell, const ContactSprings& springs, Rotation rotation, const Matrix3& exact);
+
+/// One case of the table: collects what its tests ask of each task, checks it, and writes a row for each task to the file that
+/// EQUIDEM_HARD_CASES names.
+class HardCase {
+ public:
+  struct Words {
+    std::string name;
+    std::string why;  ///< it is hard
+  };
+  explicit HardCase(Words words) : words_(std::move(words)) {}
+  ~HardCase();
+  HardCase(const HardCase&) = delete;
+  HardCase& operator=(const HardCase&) = delete;
+
+  /// The answer is within its own bound of the truth, and the bound is no more than what is promised.
+  void right(const std::string& task, const Answer& answer, double promised);
+  /// The sentence contains these words and says what to do.
+  void refused(const std::string& task, const Answer& answer, const std::vector<std::string>& words);
+  /// Anything else that was promised and checked.
+  void note(const std::string& task, const std::string& promised, const std::string& measured);
+
+ private:
+  struct Accuracy {
+    int runs = 0;
+    double error = 0, bound = 0, condition = 0, promised = 0;  // largest
+  };
+  Words words_;
+  std::map<std::string, Accuracy> accuracies_;  // by task
+  struct Row {
+    std::string task, promised, measured;
+  };
+  std::vector<Row> rows_;
+};
+
+}  // namespace equidem::test
