@@ -94,8 +94,87 @@ accuracy = 0.02
 confidence = 0.9
 )";
 
-/// One of each kind: a test, supports and loads, many samples.
-inline const std::vector<std::string> example_cases = {tension_case, load_case, ensemble_case};
+inline const std::string motion_case = R"(schema = "equidem/1"
+[assembly]
+kind = "hexagonal"
+columns = 4
+rows = 3
+radius = 0.005
+density = 2650.0
+[springs]
+kN = 1.0e9
+kT = 0.5e9
+[run]
+duration = 0.25
+time_step = 2e-6
+step_rule = "bound"
+step_fraction = 0.5
+allow_unstable_step = true
+integrator = "velocity_verlet"
+motion = "finite"
+gravity = [0.0, -9.81]
+[run.damping]
+mass = 3.0
+contact = 0.1
+local = 0.2
+[[schedule]]
+name = "open"
+kind = "ramp"
+start = 0.02
+end = 0.1
+[[schedule]]
+name = "shake"
+kind = "sine"
+value = 0.5
+frequency = 10.0
+[[schedule]]
+name = "pull"
+kind = "table"
+times = [0.0, 0.2]
+values = [0.0, 1.0]
+[[support]]
+group = "left"
+ux = 1e-4
+uy = true
+schedule = "open"
+[[support]]
+group = "bottom_right"
+uy = 1e-5
+[[load]]
+group = "right"
+force = [10.0, 0.0]
+schedule = "pull"
+[[load]]
+group = "top"
+moment = 2.0
+[[wall]]
+name = "left"
+point = [-0.02, 0.0]
+normal = [2.0, 0.0]
+kN = 2.0e9
+displacement = 2e-4
+schedule = "shake"
+[[wall]]
+name = "right"
+point = [0.1, 0.0]
+normal = [-1.0, 0.0]
+kN = 2.0e9
+[[velocity]]
+group = "right"
+velocity = [0.1, 0.2]
+spin = -3.0
+[[probe]]
+name = "tip"
+group = "right"
+quantities = ["velocity", "energy"]
+[output]
+frame_interval = 0.05
+probe_interval = 1e-3
+checkpoint_interval = 30.0
+)";
+
+/// One of each kind: a test, supports and loads, many samples, motion in time.
+inline const std::vector<std::string> example_cases = {tension_case, load_case, ensemble_case, motion_case};
 
 inline Case parsed(const std::string& text, const std::vector<std::string>& overrides = {}) {
   return parse_case(text, "a.toml", ".", overrides);

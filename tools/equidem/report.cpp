@@ -9,14 +9,6 @@
 namespace equidem {
 namespace {
 
-/// "1 293 000" is easier to read than 1293000.
-std::string grouped(std::int64_t value) {
-  std::string digits = format("{}", value);
-  for (auto k = static_cast<std::ptrdiff_t>(digits.size()) - 3; k > (value < 0 ? 1 : 0); k -= 3)
-    digits.insert(static_cast<std::size_t>(k), 1, ' ');
-  return digits;
-}
-
 /// What the inertia of K says about the answer.
 std::string stability(const Problem& problem, const Equilibrium& result) {
   if (result.unstable_modes < 0) {
@@ -85,6 +77,13 @@ void append_tension(std::string& out, const Problem& problem, const SolvedCase& 
 }
 
 }  // namespace
+
+std::string grouped(std::int64_t value) {
+  std::string digits = format("{}", value);
+  for (auto k = static_cast<std::ptrdiff_t>(digits.size()) - 3; k > (value < 0 ? 1 : 0); k -= 3)
+    digits.insert(static_cast<std::size_t>(k), 1, ' ');
+  return digits;
+}
 
 std::string report_line(const std::string& name, const std::string& value) {
   constexpr std::size_t name_width = 16, value_width = 94;

@@ -20,6 +20,9 @@ std::string describe_results(const Problem& problem, std::span<const SolvedCase>
 /// Unknowns, memory and work of a computation that was not done.
 std::string describe_estimate(const SolveEstimate& estimate);
 
+/// "1 293 000" is easier to read than 1293000.
+std::string grouped(std::int64_t value);
+
 /// A line of a report: the name in a column of its own, the value broken into lines beside it.
 std::string report_line(const std::string& name, const std::string& value);
 

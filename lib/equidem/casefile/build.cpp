@@ -78,7 +78,7 @@ void add_groups(Assembly& assembly, const Case& resolved) {
 
 /// Whatever acts on a group needs one that exists and holds discs.
 void check_group_names(const Assembly& assembly, const Case& resolved) {
-  for (const char* table : {"support", "load"}) {
+  for (const char* table : {"support", "load", "velocity", "probe"}) {
     const TomlValue* list = resolved.document.find(table);
     for (std::size_t k = 0; list != nullptr && k < list->items.size(); ++k) {
       const std::string where = resolved.where(format("{}.{}.group", table, k));

@@ -14,18 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A path of the file as the program opens it.
-fs::path opened(const fs::path& written, const fs::path& folder) {
-  return (written.is_absolute() ? written : folder / written).lexically_normal();
-}
-
-std::vector<TomlValue> no_items;
-
-const std::vector<TomlValue>& repeated(const TomlValue& root, const char* name) {
-  const TomlValue* list = root.find(name);
-  return list == nullptr ? no_items : list->items;
-}
-
 AssemblyCase read_assembly_table(TomlValue& table, const fs::path& folder) {
   AssemblyCase result;
   if (const TomlValue* density = table.find("density")) result.density = density->real;
@@ -78,8 +66,6 @@ GroupCase read_group(const TomlValue& table) {
   GroupCase result{.name = text(table, "name"), .discs = {}, .box_low = {}, .box_high = {}};
   const TomlValue* discs = table.find("discs");
   const TomlValue* box = table.find("box");
-  if (result.name.empty())
-    fail_at(table, "group.name", "the name is empty", "[[support]] and [[load]] choose a group by its name", "Name it");
   if ((discs == nullptr) == (box == nullptr)) {
     fail_at(box != nullptr ? *box : table, format("group '{}'", result.name),
             box != nullptr ? "discs and box are both given" : "it has neither discs nor box",
@@ -136,22 +122,12 @@ Load read_load(const TomlValue& table) {
   return result;
 }
 
-/// The name of a load case becomes part of the names of files.
-void check_name_of_case(const TomlValue& value) {
-  const auto plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  };
-  if (std::all_of(value.text.begin(), value.text.end(), plain)) return;
-  fail_at(value, "load.case", format("{} cannot name a load case", value.shown()),
-          "it becomes part of the names of files", "Use letters, digits, '_' and '-' only");
-}
-
 /// Loads with a name act in the case of that name, loads without in every case.
 std::vector<NamedLoads> read_load_cases(const std::vector<TomlValue>& tables) {
   std::vector<NamedLoads> cases;
   for (const TomlValue& table : tables) {
     const std::string& name = text(table, "case");
-    check_name_of_case(*table.find("case"));
+    check_plain_name(*table.find("case"), "load.case", "a load case", "it becomes part of the names of files");
     const bool known =
         std::any_of(cases.begin(), cases.end(), [&](const NamedLoads& loads) { return loads.name == name; });
     if (!name.empty() && !known) cases.push_back({name, {}});
@@ -229,16 +205,6 @@ void check_contradictions(const TomlValue& root, const AssemblyCase& assembly) {
   }
 }
 
-void check_group_names(const std::vector<TomlValue>& tables) {
-  for (std::size_t k = 0; k < tables.size(); ++k) {
-    for (std::size_t earlier = 0; earlier < k; ++earlier) {
-      if (text(tables[earlier], "name") != text(tables[k], "name")) continue;
-      fail_at(*tables[k].find("name"), "group.name", format("there are two groups '{}'", text(tables[k], "name")),
-              format("the other is at {}", tables[earlier].where()), "Give each its own name");
-    }
-  }
-}
-
 }  // namespace
 
 std::string Case::where(std::string_view key) const {
@@ -265,10 +231,12 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
     result.rotation = rotation->text == "free" ? Rotation::free : Rotation::restrained;
   if (const TomlValue* test = root.find("test"))
     result.test = TensionTest{.stress = number(*test, "stress"), .gauge = gauge_placement_from(text(*test, "gauge"))};
-  check_group_names(repeated(root, "group"));
+  for (const char* list : {"group", "schedule", "wall", "probe"}) check_names(root, list);
   for (const TomlValue& table : repeated(root, "group")) result.groups.push_back(read_group(table));
   for (const TomlValue& table : repeated(root, "support")) result.supports.push_back(read_support(table));
   result.load_cases = read_load_cases(repeated(root, "load"));
+  result.schedules = read_schedules(root, folder);
+  result.run = read_run(root, result.schedules, result.supports, result.load_cases.front().loads);
   result.homogenize = read_homogenize(*root.find("homogenize"));
   if (const TomlValue* ensemble = root.find("ensemble")) result.ensemble = read_ensemble(*ensemble);
   const TomlValue& solver = *root.find("solver");
@@ -276,7 +244,12 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
                    .max_refinements = whole(solver, "max_refinements"),
                    .memory_limit = *bytes_of(*solver.find("memory_limit"))};
   const TomlValue& output = *root.find("output");
-  result.output = {.csv = flag(output, "csv"), .vtk = flag(output, "vtk"), .picture = flag(output, "picture")};
+  result.output = {.csv = flag(output, "csv"),
+                   .vtk = flag(output, "vtk"),
+                   .picture = flag(output, "picture"),
+                   .frame_interval = optional_number(output, "frame_interval"),
+                   .probe_interval = optional_number(output, "probe_interval"),
+                   .checkpoint_interval = number(output, "checkpoint_interval")};
   result.document = std::move(root);
   return result;
 }

@@ -14,6 +14,8 @@
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/casefile/material_case.hpp"
+#include "equidem/casefile/run_case.hpp"
+#include "equidem/casefile/schedule_case.hpp"
 #include "equidem/casefile/toml.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
@@ -55,6 +57,9 @@ struct OutputCase {
   bool csv = true;
   bool vtk = true;
   bool picture = true;
+  std::optional<double> frame_interval;  ///< s, of a run
+  std::optional<double> probe_interval;  ///< s, of the histories of a run
+  double checkpoint_interval = 60;       ///< s of the clock on the wall
 };
 
 /// Which bounds are printed beside the effective stiffness.
@@ -93,6 +98,8 @@ struct Case {
   std::vector<GroupCase> groups;
   HomogenizeCase homogenize;
   std::optional<EnsembleCase> ensemble;
+  std::vector<NamedSchedule> schedules;  ///< for a run; statics takes the factor 1
+  std::optional<RunCase> run;
   SolverOptions solver;
   OutputCase output;
 

@@ -53,6 +53,8 @@ std::string example(const KeySpec& key) {
       return "10";
     case KeyType::number:
       return key.range.contains(1.0) ? "1.0" : "0.1";
+    case KeyType::number_or_auto:
+      return "\"auto\"";
     case KeyType::vector:
       return "[1.0, 0.0]";
     case KeyType::box:
@@ -61,6 +63,10 @@ std::string example(const KeySpec& key) {
       return "[0, 1, 2]";
     case KeyType::sizes:
       return "[100, 400, 1600]";
+    case KeyType::numbers:
+      return "[0.0, 0.5, 1.0]";
+    case KeyType::words:
+      return format("[\"{}\"]", key.choices.front());
     case KeyType::held:
       return "0.001";
     case KeyType::bytes:
@@ -71,7 +77,8 @@ std::string example(const KeySpec& key) {
 
 [[noreturn]] void fail_type(const TomlValue& value, const KeySpec& key) {
   std::string remedy = format("Write it like {} = {}", key.name, example(key));
-  if (value.type == Type::text && (key.type == KeyType::number || key.type == KeyType::whole) &&
+  if (value.type == Type::text &&
+      (key.type == KeyType::number || key.type == KeyType::number_or_auto || key.type == KeyType::whole) &&
       reads_as_number(value.text))
     remedy = format("Leave out the quotes: {} = {}", key.name, value.text);
   if (value.type == Type::real && key.type == KeyType::whole && value.real == std::floor(value.real) &&
@@ -107,10 +114,15 @@ void check_discs(const TomlValue& value, const KeySpec& key) {
   }
 }
 
-void check_sizes(const TomlValue& value, const KeySpec& key) {
+/// A list that is not empty.
+void check_list(const TomlValue& value, const KeySpec& key) {
   if (!value.is_array()) fail_type(value, key);
   if (value.items.empty())
     fail(value, key, "the list is empty", format("Write it like {} = {}", key.name, example(key)));
+}
+
+void check_sizes(const TomlValue& value, const KeySpec& key) {
+  check_list(value, key);
   for (std::size_t k = 0; k < value.items.size(); ++k) {
     const TomlValue& item = value.items[k];
     if (item.type != Type::integer) fail_type(item, key);
@@ -130,8 +142,19 @@ void check_choice(const TomlValue& value, const KeySpec& key) {
          "Choose another, or make the assembly elsewhere and read it with kind = \"file\"");
   }
   const auto meant = nearest(value.text, key.choices);
-  fail(value, key, format("{} is no known {}", value.shown(), key.name),
+  fail(value, key,
+       format("{} is {} {}", value.shown(), key.type == KeyType::words ? "none of the" : "no known", key.name),
        meant ? format("Did you mean \"{}\"?", *meant) : "Choose one of these");
+}
+
+void check_words(const TomlValue& value, const KeySpec& key) {
+  check_list(value, key);
+  for (std::size_t k = 0; k < value.items.size(); ++k) {
+    check_choice(value.items[k], key);
+    for (std::size_t earlier = 0; earlier < k; ++earlier)
+      if (value.items[earlier].text == value.items[k].text)
+        fail(value.items[k], key, format("{} is there twice", value.items[k].shown()), "Write each word once");
+  }
 }
 
 }  // namespace
@@ -152,6 +175,8 @@ std::string expected(const KeySpec& key) {
       return "a whole number" + range;
     case KeyType::number:
       return "a number" + unit + range;
+    case KeyType::number_or_auto:
+      return "\"auto\", or a number" + unit + range;
     case KeyType::vector:
       return "two numbers [x, y]" + unit;
     case KeyType::box:
@@ -160,6 +185,10 @@ std::string expected(const KeySpec& key) {
       return "a list of disc numbers, such as [0, 1, 2]";
     case KeyType::sizes:
       return "a list of ascending whole numbers" + range;
+    case KeyType::numbers:
+      return "a list of numbers" + unit + range;
+    case KeyType::words:
+      return "a list of words out of " + quoted_list(key.choices);
     case KeyType::held:
       return "a number" + unit + ", or true for 0";
     case KeyType::bytes:
@@ -209,6 +238,9 @@ void check_value(const TomlValue& value, const KeySpec& key) {
       return check_number(value, key);
     case KeyType::number:
       return check_number(value, key);
+    case KeyType::number_or_auto:
+      if (value.type == Type::text && value.text == "auto") return;
+      return check_number(value, key);
     case KeyType::vector:
       return check_numbers(value, key, 2);
     case KeyType::box:
@@ -217,6 +249,11 @@ void check_value(const TomlValue& value, const KeySpec& key) {
       return check_discs(value, key);
     case KeyType::sizes:
       return check_sizes(value, key);
+    case KeyType::numbers:
+      check_list(value, key);
+      return check_numbers(value, key, value.items.size());
+    case KeyType::words:
+      return check_words(value, key);
     case KeyType::held:
       if (value.type == Type::boolean) {
         if (value.boolean) return;

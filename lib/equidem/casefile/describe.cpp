@@ -7,6 +7,7 @@ namespace equidem {
 namespace {
 
 constexpr std::size_t text_width = 100;
+constexpr std::size_t name_width = 20;
 
 /// Append words, broken into lines of text_width that begin with `indent` spaces.
 void append_wrapped(std::string& out, const std::string& words, std::size_t indent) {
@@ -40,16 +41,17 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 void append_key(std::string& out, const KeySpec& key) {
-  out += format("  {:<16} {}", key.name, expected(key));
-  if (key.is_required()) {
-    out += "; required";
-  } else {
-    out += key.has_default() ? format("; default {}", key.fallback) : "; optional";
-  }
-  out += "\n";
+  constexpr std::size_t indent = 2 + name_width + 1;
+  const std::string name = key.name;
+  const std::size_t begin = out.size();
+  const std::string need = key.is_required()   ? "required"
+                           : key.has_default() ? format("default {}", key.fallback)
+                                               : "optional";
+  append_wrapped(out, format("{}; {}", expected(key), need), indent);
+  out.replace(begin + 2, name.size(), name);
   std::string help = key.help;
   if (*key.when_key != '\0') help = format("({} = {}) {}", key.when_key, joined(key.when), help);
-  if (!help.empty()) append_wrapped(out, help, 19);
+  if (!help.empty()) append_wrapped(out, help, indent);
 }
 
 constexpr const char* example =

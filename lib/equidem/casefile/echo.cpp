@@ -53,13 +53,18 @@ void write_table(std::string& out, const std::string& path, const TomlValue& tab
 
 std::string to_toml(const Case& resolved, const fs::path& folder) {
   TomlValue document = resolved.document;
-  if (TomlValue* path = document.find("assembly")->find("path"); path != nullptr) {
+  const auto make_relative = [&](TomlValue& table) {
+    TomlValue* path = table.find("path");
+    if (path == nullptr) return;
     std::error_code failed;
     const fs::path from = fs::absolute(folder, failed).lexically_normal();
     const fs::path to = fs::absolute(path->text, failed).lexically_normal();
     const fs::path relative = to.lexically_relative(from);
     path->text = relative.empty() ? to.string() : relative.string();
-  }
+  };
+  make_relative(*document.find("assembly"));
+  if (TomlValue* schedules = document.find("schedule"))
+    for (TomlValue& schedule : schedules->items) make_relative(schedule);
   const auto place = [](const auto& entry) { return entry.first == "schema" ? 0 : entry.first == "title" ? 1 : 2; };
   std::stable_sort(document.entries.begin(), document.entries.end(),
                    [&](const auto& a, const auto& b) { return place(a) < place(b); });

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "equidem/casefile/run_keys.hpp"
 #include "equidem/casefile/scene_keys.hpp"
 #include "equidem/casefile/task_keys.hpp"
 #include "equidem/core/text.hpp"
@@ -14,7 +15,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::vector<KeySpec> all_keys() {
   std::vector<KeySpec> keys = scene_keys();
-  for (const KeySpec& key : task_keys()) keys.push_back(key);
+  for (const auto& more : {task_keys(), run_keys()}) keys.insert(keys.end(), more.begin(), more.end());
   return keys;
 }
 
@@ -55,6 +56,15 @@ const FileSpec& case_file_spec() {
                  {.name = "group", .repeated = true, .help = "discs chosen by name"},
                  {.name = "support", .repeated = true, .help = "prescribed motion of a group"},
                  {.name = "load", .repeated = true, .help = "forces and moments on a group"},
+                 {.name = "run", .help = "motion in time, for the verb run"},
+                 {.name = "run.damping",
+                  .help = "what takes energy out of a run; at most one of stiffness and contact"},
+                 {.name = "schedule",
+                  .repeated = true,
+                  .help = "how a motion or load changes in a run; without one it is there from the start"},
+                 {.name = "wall", .repeated = true, .help = "a straight wall without friction, in a run"},
+                 {.name = "velocity", .repeated = true, .help = "of a group at the start of a run"},
+                 {.name = "probe", .repeated = true, .help = "a history of a group in a run"},
                  {.name = "homogenize", .completed = true, .help = "how the effective stiffness is found"},
                  {.name = "ensemble", .help = "many random samples (kind = delaunay): mean, scatter, the size needed"},
                  {.name = "solver", .completed = true, .help = "how the equations are solved"},

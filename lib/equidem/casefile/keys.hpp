@@ -16,17 +16,20 @@ namespace equidem {
 
 enum class KeyType {
   text,
-  choice,  ///< one of the words of KeySpec::choices
-  path,    ///< of a file, relative to the folder of the case file
-  flag,    ///< true | false
-  whole,   ///< whole number
-  number,  ///< finite
-  vector,  ///< [x, y]
-  box,     ///< [x_min, y_min, x_max, y_max]
-  discs,   ///< [0, 1, 2, ...]
-  sizes,   ///< ascending whole numbers, [100, 400, 1600]
-  held,    ///< a number, or true for 0
-  bytes,   ///< a number of bytes, or text such as "4 GB"
+  choice,          ///< one of the words of KeySpec::choices
+  path,            ///< of a file, relative to the folder of the case file
+  flag,            ///< true | false
+  whole,           ///< whole number
+  number,          ///< finite
+  vector,          ///< [x, y]
+  number_or_auto,  ///< a number, or "auto"
+  box,             ///< [x_min, y_min, x_max, y_max]
+  discs,           ///< [0, 1, 2, ...]
+  sizes,           ///< ascending whole numbers, [100, 400, 1600]
+  numbers,         ///< [0.0, 0.5, ...]
+  words,           ///< a list of words of KeySpec::choices
+  held,            ///< a number, or true for 0
+  bytes,           ///< a number of bytes, or text such as "4 GB"
 };
 
 /// Numbers that a key accepts.

@@ -3,11 +3,15 @@
 /// Values of a checked document, by key; for the readers of its tables.
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "equidem/casefile/toml.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/vector.hpp"
 
 namespace equidem {
 
@@ -30,5 +34,28 @@ inline int whole(const TomlValue& table, const char* key) {
 inline bool flag(const TomlValue& table, const char* key) {
   return table.find(key)->boolean;
 }
+inline Vec2 vector(const TomlValue& table, const char* key) {
+  const auto& items = table.find(key)->items;
+  return {items[0].real, items[1].real};
+}
+/// Where the key may be missing.
+inline std::optional<double> optional_number(const TomlValue& table, const char* key) {
+  const TomlValue* value = table.find(key);
+  return value == nullptr ? std::nullopt : std::optional(value->real);
+}
+
+/// The tables of a list such as [[load]]; empty where there are none.
+const std::vector<TomlValue>& repeated(const TomlValue& root, const char* name);
+
+/// A path of the file as the program opens it.
+std::filesystem::path opened(const std::filesystem::path& written, const std::filesystem::path& folder);
+
+/// \throws Error (bad_input) where two tables of a list have one name, or a name is empty
+void check_names(const TomlValue& root, const char* list);
+
+/// \param what "a load case"
+/// \param use "it becomes part of the names of files"
+/// \throws Error (bad_input) where the text holds more than letters, digits, '_' and '-'
+void check_plain_name(const TomlValue& value, const std::string& key, const std::string& what, const std::string& use);
 
 }  // namespace equidem

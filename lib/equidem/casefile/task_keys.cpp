@@ -56,6 +56,11 @@ std::vector<KeySpec> task_keys() {
        .unit = "rad",
        .fallback = KeySpec::none,
        .help = "counter-clockwise"},
+      {.table = "support",
+       .name = "schedule",
+       .type = text,
+       .fallback = KeySpec::none,
+       .help = "in a run: the motion is multiplied by it"},
 
       {.table = "load", .name = "group", .type = text, .help = "as in [[support]]"},
       {.table = "load",
@@ -82,6 +87,11 @@ std::vector<KeySpec> task_keys() {
        .type = text,
        .fallback = "\"\"",
        .help = "loads of one name act together; a load without acts in every load case"},
+      {.table = "load",
+       .name = "schedule",
+       .type = text,
+       .fallback = KeySpec::none,
+       .help = "in a run: force and moment are multiplied by it"},
 
       {.table = "homogenize",
        .name = "boundary",

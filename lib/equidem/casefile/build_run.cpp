@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/casefile/build_run.hpp"
+
+#include <cassert>
+#include <map>
+
+#include "equidem/casefile/build.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/dynamics/walls.hpp"
+#include "equidem/homogenize/tension_test.hpp"
+
+namespace equidem {
+namespace {
+
+[[noreturn]] void fail(const std::string& where, const std::string& problem, const std::string& why,
+                       const std::string& remedy) {
+  throw Error(ErrorKind::bad_input, problem, why, remedy, where);
+}
+
+/// No two supports prescribe a component of a disc differently; the same motion twice is one.
+void check_supports(const Case& resolved, const Assembly& assembly, const std::vector<TimedSupport>& supports) {
+  struct Component {
+    const char* name;
+    std::optional<Schedule> TimedSupport::*motion;
+  };
+  for (const Component& component : {Component{"ux", &TimedSupport::ux}, Component{"uy", &TimedSupport::uy},
+                                     Component{"rotation", &TimedSupport::rotation}}) {
+    std::map<std::int32_t, std::size_t> prescribed;  // disc -> support
+    for (std::size_t k = 0; k < supports.size(); ++k) {
+      const auto& motion = supports[k].*component.motion;
+      if (!motion) continue;
+      for (const std::int32_t disc : group(assembly, supports[k].group).discs) {
+        const auto [earlier, is_new] = prescribed.emplace(disc, k);
+        if (is_new || supports[earlier->second].*component.motion == motion) continue;
+        fail(resolved.where(format("support.{}.{}", k, component.name)),
+             format("the support of '{}' prescribes {} of disc {} a second time", supports[k].group, component.name,
+                    disc),
+             format("that of '{}' gives it another motion", supports[earlier->second].group),
+             "Prescribe each component of a disc once");
+      }
+    }
+  }
+}
+
+void check_velocities(const Case& resolved, const Assembly& assembly) {
+  std::map<std::int32_t, std::size_t> given;  // disc -> table
+  const auto& velocities = resolved.run->velocities;
+  for (std::size_t k = 0; k < velocities.size(); ++k) {
+    for (const std::int32_t disc : group(assembly, velocities[k].group).discs) {
+      const auto [earlier, is_new] = given.emplace(disc, k);
+      if (is_new) continue;
+      fail(resolved.where(format("velocity.{}.group", k)), format("disc {} has two velocities at the start", disc),
+           format("it is in '{}' and in '{}'", velocities[earlier->second].group, velocities[k].group),
+           "Choose groups that share no disc");
+    }
+  }
+}
+
+void check_walls_of(const Case& resolved, const Assembly& assembly) {
+  for (std::size_t k = 0; k < resolved.run->walls.size(); ++k) {
+    try {
+      check_wall(resolved.run->walls, k, assembly);
+    } catch (const Error& error) {
+      throw error.at(resolved.where(format("wall.{}", k)));
+    }
+  }
+}
+
+void add_test(const Case& resolved, const Assembly& assembly, Scene& scene) {
+  const auto constant = [](const std::optional<double>& value) -> std::optional<Schedule> {
+    if (!value) return {};
+    return Schedule{.value = *value};
+  };
+  try {
+    const TensionSetup test = tension_setup(assembly, *resolved.test);
+    for (const Support& support : test.supports)
+      scene.supports.push_back({support.group, constant(support.ux), constant(support.uy), constant(support.rotation)});
+    for (const Load& load : test.loads) scene.loads.push_back({.load = load, .factor = {.value = 1}});
+  } catch (const Error& error) {
+    throw error.at(resolved.where("test"));
+  }
+}
+
+}  // namespace
+
+Scene build_scene(const Case& resolved, const Assembly& assembly, const ContactSprings& springs) {
+  if (!resolved.run) {
+    fail(format("{}: run", resolved.document.where()), "missing table", "it says how long the run is",
+         "Add [run] with duration = ... in s, or until_rest = 1e-10");
+  }
+  const std::optional<double> density = disc_density(resolved, assembly);
+  if (!density) {
+    fail(resolved.where("assembly"), "the density is missing", "motion needs the mass of the discs",
+         "Add density = ... in kg/m³ to [assembly], or that of the continuum to [material]");
+  }
+  const RunCase& run = *resolved.run;
+  Scene scene{.assembly = assembly,
+              .springs = springs,
+              .inertia = inertia_of(assembly.radii, *density, resolved.assembly.body),
+              .supports = run.supports,
+              .loads = run.loads,
+              .walls = run.walls,
+              .velocities = run.velocities};
+  if (resolved.test) add_test(resolved, assembly, scene);
+  check_supports(resolved, assembly, scene.supports);
+  check_velocities(resolved, assembly);
+  check_walls_of(resolved, assembly);
+  return scene;
+}
+
+SimulationOptions simulation_options(const Case& resolved, double time_step) {
+  assert(resolved.run && time_step > 0);
+  const RunCase& run = *resolved.run;
+  return {.motion = run.motion,
+          .integrator = run.integrator,
+          .rotation = resolved.rotation,
+          .damping = run.damping,
+          .gravity = run.gravity,
+          .time_step = time_step};
+}
+
+}  // namespace equidem

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// From the case file to what is simulated.
+#pragma once
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/casefile/case.hpp"
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/dynamics/simulation.hpp"
+
+namespace equidem {
+
+/// Discs with their inertia and everything that acts on them; the supports and loads of [test] act from the start.
+/// \param assembly, springs built from the case; they must outlive the scene
+/// \throws Error (bad_input), with the line of the case file: no [run], no density, an assembly that is too small for
+///         [test], a component of a disc that two supports prescribe differently, a disc with two velocities, walls as
+///         check_wall refuses them
+Scene build_scene(const Case& resolved, const Assembly& assembly, const ContactSprings& springs);
+
+/// The settings of a run.
+/// \param resolved with [run]
+/// \param time_step s, > 0: that of [run], or the one its rule gave
+SimulationOptions simulation_options(const Case& resolved, double time_step);
+
+}  // namespace equidem

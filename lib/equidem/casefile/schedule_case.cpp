@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/casefile/schedule_case.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "equidem/casefile/read_value.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/nearest.hpp"
+
+namespace equidem {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string_view trimmed(std::string_view text) {
+  constexpr const char* space = " \t\r";
+  text.remove_prefix(std::min(text.find_first_not_of(space), text.size()));
+  return text.substr(0, text.find_last_not_of(space) + 1);
+}
+
+bool read_number(std::string_view text, double& value) {
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return problem == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+}
+
+/// Rows "time,value"; a first row of words names the columns, '#' begins a comment.
+void read_points(const fs::path& path, Schedule& table) {
+  const std::string content = read_file(path);
+  std::string_view rest = content;
+  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+  if (rest.starts_with(byte_order_mark)) rest.remove_prefix(byte_order_mark.size());
+  bool first = true;
+  for (int line = 1; !rest.empty(); ++line) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    const std::string_view row = trimmed(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (row.empty() || row.front() == '#') continue;
+    const std::size_t comma = std::min(row.find(','), row.size());
+    const std::string_view left = trimmed(row.substr(0, comma));
+    const std::string_view right = trimmed(row.substr(std::min(comma + 1, row.size())));
+    const bool heading = first && left == "time" && right == "value";
+    first = false;
+    if (heading) continue;
+    double time = 0, value = 0;
+    if (!read_number(left, time) || !read_number(right, value)) {
+      throw Error(ErrorKind::bad_input, "this row is not a time and a value", "two numbers with a comma are needed",
+                  "Write it like 0.5,1.0", format("{}:{}", path.string(), line));
+    }
+    if (!table.times.empty() && time <= table.times.back()) {
+      throw Error(ErrorKind::bad_input, format("the time {} s comes after {} s", time, table.times.back()),
+                  "times ascend, and a value cannot jump", "Order the rows and leave out repeated times",
+                  format("{}:{}", path.string(), line));
+    }
+    table.times.push_back(time);
+    table.values.push_back(value);
+  }
+  if (table.times.empty())
+    bad_input(format("'{}' has no points", path.string()), "a table needs at least one", "Add rows like 0.5,1.0");
+}
+
+void read_table(TomlValue& table, const fs::path& folder, Schedule& result) {
+  TomlValue* path = table.find("path");
+  const TomlValue* times = table.find("times");
+  const TomlValue* values = table.find("values");
+  const bool lists = times != nullptr && values != nullptr;
+  if (lists == (path != nullptr) || (times != nullptr) != (values != nullptr)) {
+    fail_at(table, "schedule", format("the points of '{}' are not given once", text(table, "name")),
+            "a table is times and values, or a file", "Give times = [...] and values = [...], or path = \"FILE\"");
+  }
+  if (path != nullptr) {
+    const fs::path file = opened(path->text, folder);
+    try {
+      read_points(file, result);
+    } catch (const Error& error) {
+      throw error.at(format("{}: schedule.path", path->where()));
+    }
+    path->text = file.string();
+    return;
+  }
+  for (const TomlValue& time : times->items) result.times.push_back(time.real);
+  for (const TomlValue& value : values->items) result.values.push_back(value.real);
+}
+
+Schedule read_schedule(TomlValue& table, const fs::path& folder) {
+  Schedule result;
+  const std::string& kind = text(table, "kind");
+  const char* culprit = "times";
+  if (kind == "table") {
+    result.kind = Schedule::Kind::table;
+    read_table(table, folder, result);
+  } else {
+    result.kind = kind == "ramp" ? Schedule::Kind::ramp : Schedule::Kind::sine;
+    result.value = number(table, "value");
+    result.start = number(table, "start");
+    culprit = result.kind == Schedule::Kind::ramp ? "end" : "frequency";
+    (result.kind == Schedule::Kind::ramp ? result.end : result.frequency) = number(table, culprit);
+  }
+  try {
+    check(result);
+  } catch (const Error& error) {
+    throw error.at(format("{}: schedule.{}", table.find(culprit)->where(), culprit));
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<NamedSchedule> read_schedules(TomlValue& root, const fs::path& folder) {
+  std::vector<NamedSchedule> schedules;
+  if (TomlValue* list = root.find("schedule"))
+    for (TomlValue& table : list->items) schedules.push_back({text(table, "name"), read_schedule(table, folder)});
+  return schedules;
+}
+
+Schedule scheduled(const TomlValue& table, const std::string& key, double value,
+                   std::span<const NamedSchedule> schedules) {
+  const TomlValue* wanted = table.find("schedule");
+  if (wanted == nullptr) return Schedule{.value = value};
+  std::vector<std::string> names;
+  for (const NamedSchedule& known : schedules) {
+    if (known.name == wanted->text) return value == 0 ? Schedule{} : scaled(known.schedule, value);
+    names.push_back(known.name);
+  }
+  const auto meant = nearest(wanted->text, names);
+  fail_at(*wanted, key + ".schedule", format("there is no schedule {}", wanted->shown()),
+          schedules.empty() ? "the case has no [[schedule]]"
+                            : format("the case has {}", counted(static_cast<long long>(names.size()), "other")),
+          meant ? format("Did you mean \"{}\"?", *meant) : "Add a [[schedule]] of that name, or correct it");
+}
+
+}  // namespace equidem

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// [[schedule]]: values that change with time, by name.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "equidem/casefile/toml.hpp"
+#include "equidem/dynamics/schedule.hpp"
+
+namespace equidem {
+
+struct NamedSchedule {
+  std::string name;
+  Schedule schedule;
+};
+
+/// All of a document that check_and_complete has seen; paths become those that the program opens.
+/// \param folder to which paths are relative
+/// \throws Error (bad_input) with line and key: an end before the start, points that are missing or do not ascend, a file
+///         that is not a table of two columns
+std::vector<NamedSchedule> read_schedules(TomlValue& root, const std::filesystem::path& folder);
+
+/// `value` times the schedule that the table names; constant where it names none.
+/// \param key of the table, for errors: "load"
+/// \throws Error (bad_input) where there is no schedule of that name
+Schedule scheduled(const TomlValue& table, const std::string& key, double value,
+                   std::span<const NamedSchedule> schedules);
+
+}  // namespace equidem

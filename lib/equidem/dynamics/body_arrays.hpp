@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Motions and velocities of discs as the loop keeps them.
+#pragma once
+
+#include <vector>
+
+#include "equidem/contact/frame.hpp"
+#include "equidem/dynamics/layout.hpp"
+#include "equidem/dynamics/step_kernel.hpp"
+
+namespace equidem {
+
+/// Arrays by place, and the way to them from discs.
+class BodyArrays {
+ public:
+  /// All at rest in the reference position.
+  BodyArrays(DiscLayout layout, const LoopKind& kind);
+
+  std::vector<double> motion[2];       ///< places x width
+  std::vector<double> velocity;        ///< groups x unknowns x lanes
+  std::vector<double> velocity_at[2];  ///< dashpots only: places x width
+  std::vector<double> dashpot;         ///< dashpots only: groups x unknowns x lanes
+
+  [[nodiscard]] const DiscLayout& layout() const { return layout_; }
+  [[nodiscard]] std::vector<DiscMotion> discs_of(const std::vector<double>& motions) const;
+  void put(const std::vector<DiscMotion>& discs, std::vector<double>& motions) const;
+  [[nodiscard]] std::vector<DiscMotion> disc_velocities(const std::vector<double>& velocities) const;
+  /// Into `velocity` and, where there are dashpots, into both `velocity_at`.
+  void put_velocities(const std::vector<DiscMotion>& discs);
+  /// Let a loop work on these arrays.
+  void connect(LoopData& data);
+
+ private:
+  DiscLayout layout_;
+  int unknowns_, width_;
+};
+
+}  // namespace equidem

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The few discs that supports, loads and walls act on: stepped with all others, then corrected.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "equidem/dynamics/layout.hpp"
+#include "equidem/dynamics/simulation.hpp"
+
+namespace equidem {
+
+/// Work done on the discs since the start, N.
+struct DrivingWork {
+  double loads = 0, supports = 0, walls = 0;
+};
+
+/// Everything that acts on single discs, kept by strip. A disc that nothing drives costs nothing.
+class DrivenDiscs {
+ public:
+  /// \throws Error (bad_input) on a group that does not exist or is empty, a motion prescribed twice, a load that is not finite
+  DrivenDiscs(const Scene& scene, const DiscLayout& layout, const LoopKind& kind);
+
+  /// Keep the velocities that the loop will overwrite.
+  void before(std::int32_t strip, const LoopData& data);
+  /// Add forces, prescribe motions, sum up work, and correct what the loop counted as dissipated on these discs. `time` is that of the motions read, `time_after` that of those written.
+  void after(std::int32_t strip, const LoopData& data, const Stage& stage, int parity, double time, double time_after,
+             Dissipation& dissipation);
+
+  [[nodiscard]] bool any() const { return !discs_.empty(); }
+  /// Prescribed components at the start.
+  void prescribe(double* motion, double time) const;
+  [[nodiscard]] DrivingWork work() const;
+  /// The sums of work of every strip, for a later run that goes on.
+  [[nodiscard]] const std::vector<DrivingWork>& sums() const { return work_; }
+  void set_sums(std::vector<DrivingWork> sums) { work_ = std::move(sums); }
+  /// Elastic energy of discs inside walls, N.
+  [[nodiscard]] double wall_energy(const double* motion, double time) const;
+
+ private:
+  struct Disc {
+    std::int32_t place = 0;
+    double inverse_inertia[3] = {0, 0, 0};
+    Vec2 centre;
+    double radius = 0;
+    std::int32_t held[3] = {-1, -1, -1};  // schedule of each component
+    std::int32_t first_load = 0, loads = 0;
+    bool near_walls = false;
+    double before[3] = {0, 0, 0};  // velocities
+  };
+  struct DiscLoad {
+    double force[3] = {0, 0, 0};  // N/m, N/m, N
+    std::int32_t schedule = -1;
+  };
+  void hold(Disc& disc, int component, const Schedule& schedule, const std::string& group);
+  void add_loads(const Scene& scene, std::vector<std::vector<DiscLoad>>& loads) const;
+  [[nodiscard]] double with_damping(double free, double v, double share) const;
+  [[nodiscard]] double undamped(double a, double v, double share) const;
+  /// Force of all walls on a disc displaced by u; their stored energy and the work that their motion does until `time_after`.
+  struct Push {
+    Vec2 force;
+    double energy = 0, work = 0;
+  };
+  [[nodiscard]] Push push_of_walls(const Disc& disc, Vec2 u, double time, double time_after) const;
+
+  int unknowns_ = 2, width_ = 2;
+  bool local_ = false;
+  std::vector<Disc> discs_;  // by strip
+  std::vector<std::int32_t> strip_first_;
+  std::vector<DiscLoad> loads_;
+  std::vector<Schedule> schedules_;
+  std::vector<Wall> walls_;
+  std::vector<DrivingWork> work_;  // per strip
+  DrivingWork earlier_;            // before this object was made
+};
+
+}  // namespace equidem

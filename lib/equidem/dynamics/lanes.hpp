@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Four numbers computed on at once. Plain C++ with the vector types of GCC and Clang: the compiler picks the instructions.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+namespace equidem::lanes {
+
+using Lanes = double __attribute__((vector_size(32)));
+using Choice = long long __attribute__((vector_size(32)));
+using Pair = double __attribute__((vector_size(16)));
+
+#define EQUIDEM_INLINE inline __attribute__((always_inline))
+
+EQUIDEM_INLINE void load(const double* from, Lanes& to) {
+  std::memcpy(&to, from, sizeof to);
+}
+EQUIDEM_INLINE void store(const Lanes& from, double* to) {
+  std::memcpy(to, &from, sizeof from);
+}
+
+/// The motions of four places as x, y(, theta) of four lanes.
+template <int Width>
+EQUIDEM_INLINE void gather(const double* motion, const std::int32_t* place, Lanes& x, Lanes& y, Lanes& theta) {
+  if constexpr (Width == 4) {
+    Lanes a, b, c, d;
+    load(motion + 4 * static_cast<std::ptrdiff_t>(place[0]), a);
+    load(motion + 4 * static_cast<std::ptrdiff_t>(place[1]), b);
+    load(motion + 4 * static_cast<std::ptrdiff_t>(place[2]), c);
+    load(motion + 4 * static_cast<std::ptrdiff_t>(place[3]), d);
+    const Lanes xt_ab = __builtin_shuffle(a, b, Choice{0, 4, 2, 6}), y_ab = __builtin_shuffle(a, b, Choice{1, 5, 3, 7});
+    const Lanes xt_cd = __builtin_shuffle(c, d, Choice{0, 4, 2, 6}), y_cd = __builtin_shuffle(c, d, Choice{1, 5, 3, 7});
+    x = __builtin_shuffle(xt_ab, xt_cd, Choice{0, 1, 4, 5});
+    y = __builtin_shuffle(y_ab, y_cd, Choice{0, 1, 4, 5});
+    theta = __builtin_shuffle(xt_ab, xt_cd, Choice{2, 3, 6, 7});
+  } else {
+    for (int lane = 0; lane < 4; ++lane) {
+      const double* at = motion + 2 * static_cast<std::ptrdiff_t>(place[lane]);
+      x[lane] = at[0];
+      y[lane] = at[1];
+    }
+    theta = Lanes{};
+  }
+}
+
+/// The motions of a group, whose places follow one another.
+template <int Width>
+EQUIDEM_INLINE void load_group(const double* motion, Lanes& x, Lanes& y, Lanes& theta) {
+  constexpr std::int32_t place[] = {0, 1, 2, 3};
+  gather<Width>(motion, place, x, y, theta);
+}
+
+template <int Width>
+EQUIDEM_INLINE void store_group(const Lanes& x, const Lanes& y, const Lanes& theta, double* motion) {
+  const Lanes even = __builtin_shuffle(x, y, Choice{0, 4, 2, 6}), odd = __builtin_shuffle(x, y, Choice{1, 5, 3, 7});
+  if constexpr (Width == 4) {
+    const Lanes zero{};
+    const Lanes theta_even = __builtin_shuffle(theta, zero, Choice{0, 4, 2, 6});
+    const Lanes theta_odd = __builtin_shuffle(theta, zero, Choice{1, 5, 3, 7});
+    store(__builtin_shuffle(even, theta_even, Choice{0, 1, 4, 5}), motion);
+    store(__builtin_shuffle(odd, theta_odd, Choice{0, 1, 4, 5}), motion + 4);
+    store(__builtin_shuffle(even, theta_even, Choice{2, 3, 6, 7}), motion + 8);
+    store(__builtin_shuffle(odd, theta_odd, Choice{2, 3, 6, 7}), motion + 12);
+  } else {
+    store(__builtin_shuffle(even, odd, Choice{0, 1, 4, 5}), motion);
+    store(__builtin_shuffle(even, odd, Choice{2, 3, 6, 7}), motion + 4);
+  }
+}
+
+}  // namespace equidem::lanes

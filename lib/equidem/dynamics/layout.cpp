@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/dynamics/layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "equidem/statics/contact_graph.hpp"
+
+namespace equidem {
+namespace {
+
+/// Thickness of strips: no contact reaches past the next one.
+double strip_height(const Assembly& assembly) {
+  double longest = 0;
+  for (const Contact& contact : assembly.contacts) longest = std::max(longest, std::abs(assembly.branch(contact).y));
+  return longest > 0 ? longest * (1 + 1e-9) : 2 * assembly.mean_radius();
+}
+
+/// Strips across y. Where the assembly repeats along y they form a ring, which is laid flat: the lowest strip and the highest
+/// are one, so are the next of either side, and so on.
+std::vector<std::int32_t> strips_of(const Assembly& assembly) {
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  for (const Vec2 x : assembly.centres) lowest = std::min(lowest, x.y), highest = std::max(highest, x.y);
+  // Not many more strips than rows of a dense assembly, however short the longest contact is.
+  const double least = (highest - lowest) / std::max(1.0, std::sqrt(static_cast<double>(assembly.size())) * 4);
+  const double height = std::max(strip_height(assembly), least);
+  std::vector<std::int32_t> strip(assembly.size());
+  for (std::size_t d = 0; d < strip.size(); ++d) {
+    strip[d] = height > 0 ? static_cast<std::int32_t>((assembly.centres[d].y - lowest) / height) : 0;
+  }
+  const bool ring = std::any_of(assembly.contacts.begin(), assembly.contacts.end(),
+                                [](const Contact& contact) { return contact.shift_y != 0; });
+  if (ring) {
+    const std::int32_t last = *std::max_element(strip.begin(), strip.end());
+    for (std::int32_t& own : strip) own = std::min(own, last - own);
+  }
+  return strip;
+}
+
+/// Within short windows discs with equally many contacts stand together: groups then have few empty slots.
+void sort_windows(const std::vector<std::int32_t>& degree, std::vector<std::int32_t>& discs, std::size_t begin) {
+  constexpr std::size_t window = 32;
+  const auto contacts = [&](std::int32_t d) { return d < 0 ? 0 : degree[d]; };
+  for (std::size_t at = begin; at < discs.size(); at += window) {
+    const std::size_t end = std::min(at + window, discs.size());
+    std::stable_sort(discs.begin() + static_cast<std::ptrdiff_t>(at), discs.begin() + static_cast<std::ptrdiff_t>(end),
+                     [&](std::int32_t a, std::int32_t b) { return contacts(a) > contacts(b); });
+  }
+}
+
+}  // namespace
+
+DiscLayout lay_out(const Assembly& assembly) {
+  const std::vector<std::int32_t> strip = strips_of(assembly);
+  std::vector<std::int32_t> order(assembly.size()), degree(assembly.size(), 0);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    if (strip[a] != strip[b]) return strip[a] < strip[b];
+    const double xa = assembly.centres[a].x, xb = assembly.centres[b].x;
+    return xa != xb ? xa < xb : a < b;
+  });
+  DiscLayout layout;
+  for (const Contact& contact : assembly.contacts) {
+    ++degree[contact.i];
+    ++degree[contact.j];
+  }
+  layout.strip_first.push_back(0);
+  for (std::size_t k = 0; k < order.size();) {
+    const std::int32_t here = strip[order[k]];
+    const std::size_t begin = layout.disc_at.size();
+    for (; k < order.size() && strip[order[k]] == here; ++k) layout.disc_at.push_back(order[k]);
+    while (layout.disc_at.size() % DiscLayout::lanes != 0) layout.disc_at.push_back(-1);
+    sort_windows(degree, layout.disc_at, begin);
+    // Strips without discs join nothing: the next one may follow directly, contacts do not reach across.
+    layout.strip_first.push_back(layout.groups());
+  }
+  layout.place_of.assign(assembly.size(), -1);
+  for (std::size_t place = 0; place < layout.disc_at.size(); ++place) {
+    if (layout.disc_at[place] >= 0) layout.place_of[layout.disc_at[place]] = static_cast<std::int32_t>(place);
+  }
+  return layout;
+}
+
+ContactSlots list_slots(const Assembly& assembly, const DiscLayout& layout) {
+  const ContactGraph graph(assembly);
+  ContactSlots slots;
+  slots.first.push_back(0);
+  std::vector<std::int32_t> ends[DiscLayout::lanes], contacts[DiscLayout::lanes];
+  for (std::int32_t group = 0; group < layout.groups(); ++group) {
+    std::size_t most = 0;
+    for (int lane = 0; lane < DiscLayout::lanes; ++lane) {
+      ends[lane].clear();
+      contacts[lane].clear();
+      const std::int32_t disc = layout.disc_at[static_cast<std::size_t>(group) * DiscLayout::lanes + lane];
+      if (disc < 0) continue;
+      for (const auto& edge : graph.of(disc)) {
+        const Contact& contact = assembly.contacts[edge.contact];
+        const auto add = [&](std::int32_t signed_contact) {
+          ends[lane].push_back(layout.place_of[edge.other]);
+          contacts[lane].push_back(signed_contact);
+        };
+        if (contact.i == disc) add(edge.contact + 1);
+        if (contact.j == disc) add(-(edge.contact + 1));
+      }
+      most = std::max(most, ends[lane].size());
+    }
+    for (std::size_t k = 0; k < most; ++k) {
+      for (int lane = 0; lane < DiscLayout::lanes; ++lane) {
+        const bool filled = k < ends[lane].size();
+        slots.neighbour.push_back(filled ? ends[lane][k] : group * DiscLayout::lanes + lane);
+        slots.contact.push_back(filled ? contacts[lane][k] : 0);
+      }
+    }
+    slots.first.push_back(slots.first.back() + static_cast<std::int32_t>(most));
+  }
+  return slots;
+}
+
+}  // namespace equidem

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/dynamics/loop_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+void check_inertia(const Scene& scene) {
+  for (std::size_t d = 0; d < scene.inertia.size(); ++d) {
+    const Inertia& inertia = scene.inertia[d];
+    if (inertia.mass > 0 && inertia.moment > 0 && std::isfinite(inertia.mass + inertia.moment)) continue;
+    bad_input(format("disc {} has the mass {} and the moment of inertia {}", d, inertia.mass, inertia.moment),
+              "a force would move it without limit", "Give a density > 0");
+  }
+}
+
+void check_damping(const SimulationOptions& options) {
+  const Damping& damping = options.damping;
+  const std::pair<const char*, double> values[] = {
+      {"mass", damping.mass}, {"stiffness", damping.stiffness}, {"contact", damping.contact}, {"local", damping.local}};
+  for (const auto& [name, value] : values) {
+    if (value >= 0 && std::isfinite(value)) continue;
+    bad_input(format("{} damping is {}", name, value), "negative damping would feed the motion", "Give 0 or more");
+  }
+  if (damping.local >= 1) {
+    bad_input(format("local damping is {}", damping.local), "at 1 and more nothing would start to move",
+              "Give a share below 1, such as 0.7");
+  }
+  const bool dashpots = damping.stiffness > 0 || damping.contact > 0;
+  if ((damping.stiffness > 0 && damping.contact > 0) || (dashpots && damping.local > 0)) {
+    bad_input("several kinds of damping at contacts are asked for",
+              "stiffness, contact and local damping are three ways to the same end", "Keep one of them");
+  }
+  if (options.integrator == Integrator::fourth_order && (dashpots || damping.local > 0)) {
+    bad_input("the fourth-order integrator is asked for with dashpots or local damping",
+              "it is of fourth order only where forces depend on positions, or for mass-proportional damping",
+              "Use leapfrog, or damp by mass");
+  }
+}
+
+bool in_the_middle(const Assembly& assembly, const Contact& contact) {
+  const double half = 0.5 * norm(assembly.branch(contact));
+  return std::abs(contact.lever_i - half) <= 1e-12 * half && std::abs(contact.lever_j - half) <= 1e-12 * half;
+}
+
+}  // namespace
+
+void check(const Scene& scene, const SimulationOptions& options) {
+  if (!(options.time_step > 0) || !std::isfinite(options.time_step)) {
+    bad_input(format("the time step is {} s", options.time_step), "time could not go on", "Give a step > 0");
+  }
+  if (scene.inertia.size() != scene.assembly.size()) {
+    bad_input(format("{} have a mass", counted(static_cast<std::int64_t>(scene.inertia.size()), "disc")),
+              format("the assembly has {}", scene.assembly.size()), "Give the inertia of every disc");
+  }
+  check_inertia(scene);
+  check_damping(options);
+}
+
+Effects effects_of(const Scene& scene, const SimulationOptions& options) {
+  Effects effects = derive_effects(scene.springs, options.rotation);
+  const auto add = [&](const char* name, bool active, const char* why) {
+    effects.entries.push_back({name, active, active ? "" : why});
+  };
+  const LoopKind kind = loop_for(scene, options, effects);
+  const Damping& damping = options.damping;
+  add("mass-proportional damping", damping.mass > 0, "none is asked for");
+  add("dashpots at contacts", damping.stiffness > 0 || damping.contact > 0, "no damping at contacts is asked for");
+  add("local damping", damping.local > 0, "none is asked for");
+  add("gravity", options.gravity.x != 0 || options.gravity.y != 0, "it is zero");
+  add("loads", !scene.loads.empty(), "no load acts");
+  add("supports", !scene.supports.empty(), "no disc is held");
+  add("walls", !scene.walls.empty(), "there are none");
+  add("finite motions", kind.motion == LoopKind::Motion::finite,
+      "motions are taken as small: normals and contact points stay");
+  add("springs and levers of each contact", !kind.equal_contacts,
+      "all contacts have the same springs and lie in the middle: three numbers each");
+  add("inertia of each disc", !kind.equal_discs, "all discs have the same");
+  return effects;
+}
+
+LoopKind loop_for(const Scene& scene, const SimulationOptions& options, const Effects& effects) {
+  LoopKind kind;
+  kind.motion = options.motion;
+  kind.springs = effects.rotation             ? LoopKind::Springs::rotation
+                 : effects.tangential_springs ? LoopKind::Springs::tangential
+                                              : LoopKind::Springs::normal;
+  kind.equal_contacts =
+      scene.springs.uniform() && std::all_of(scene.assembly.contacts.begin(), scene.assembly.contacts.end(),
+                                             [&](const Contact& c) { return in_the_middle(scene.assembly, c); });
+  const Damping& damping = options.damping;
+  kind.resistance = damping.stiffness > 0 || damping.contact > 0 ? LoopKind::Resistance::dashpot
+                    : damping.local > 0                          ? LoopKind::Resistance::local
+                    : damping.mass > 0 || options.gravity.x != 0 || options.gravity.y != 0 ? LoopKind::Resistance::body
+                                                                                           : LoopKind::Resistance::none;
+  const auto same = [&](const Inertia& a) {
+    return a.mass == scene.inertia[0].mass && a.moment == scene.inertia[0].moment;
+  };
+  kind.equal_discs =
+      kind.resistance == LoopKind::Resistance::none && std::all_of(scene.inertia.begin(), scene.inertia.end(), same);
+  // Dashpots of a given damping ratio follow the masses at each contact.
+  if (damping.contact > 0 && !std::all_of(scene.inertia.begin(), scene.inertia.end(), same))
+    kind.equal_contacts = false;
+  return kind;
+}
+
+SpringConstants dashpots_of(const Damping& damping, const SpringConstants& k, double mass_i, double mass_j) {
+  if (damping.stiffness > 0) return {damping.stiffness * k.kN, damping.stiffness * k.kT};
+  const double reduced = mass_i * mass_j / (mass_i + mass_j);
+  return {2 * damping.contact * std::sqrt(reduced * k.kN), 2 * damping.contact * std::sqrt(reduced * std::abs(k.kT))};
+}
+
+}  // namespace equidem

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/dynamics/relaxation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "equidem/contact/finite_bond.hpp"
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/dynamics/still_unknowns.hpp"
+#include "equidem/statics/contact_graph.hpp"
+#include "equidem/statics/stiffness_matrix.hpp"
+
+namespace equidem {
+namespace {
+
+using Vector = std::vector<double>;  // per component: u_x, u_y[, a theta] or the forces that work on them
+
+constexpr int steps_between_looks = 25;  // at the true residual, which recursion follows to round-off only
+constexpr double furthest = 0.2;         // mean radii that a disc moves in a step of finite motion
+
+double product(const Vector& x, const Vector& y) {
+  double sum = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) sum += x[k] * y[k];
+  return sum;
+}
+
+/// x + c y.
+void add(Vector& x, double c, const Vector& y) {
+  for (std::size_t k = 0; k < x.size(); ++k) x[k] += c * y[k];
+}
+
+/// A scene that stands still, and its forces as functions of the motion.
+class StillScene {
+ public:
+  StillScene(const Scene& scene, const RelaxationOptions& options)
+      : scene_(scene),
+        motion_(options.motion),
+        effects_(derive_effects(scene.springs, options.rotation)),
+        unknowns_(unknowns_at(scene, effects_, options.time)),
+        contacts_(Scene{.assembly = scene.assembly,
+                        .springs = scene.springs,
+                        .inertia = unit_inertia(scene),
+                        .walls = walls_at(scene, options.time)},
+                  {.motion = options.motion, .rotation = options.rotation, .time_step = 1}) {
+    find_loads(options);
+    find_masses();
+  }
+
+  [[nodiscard]] bool linear() const { return motion_ == LoopKind::Motion::small && scene_.walls.empty(); }
+  [[nodiscard]] bool any_negative() const { return scene_.springs.any_negative(); }
+  [[nodiscard]] double radius() const { return unknowns_.rotation_scale; }
+  [[nodiscard]] const Vector& masses() const { return masses_; }
+  [[nodiscard]] std::vector<DiscMotion> motions(const Vector& u) const { return disc_motions(unknowns_, u); }
+
+  [[nodiscard]] Vector start(const std::vector<DiscMotion>& given) const {
+    Vector u = unknowns_.prescribed;
+    const auto b = static_cast<std::size_t>(unknowns_.per_disc);
+    for (std::size_t k = 0; k < u.size() && !given.empty(); ++k) {
+      const DiscMotion& disc = given[k / b];
+      if (unknowns_.held[k] != DegreesOfFreedom::free) continue;
+      u[k] = k % b == 0 ? disc.u.x : k % b == 1 ? disc.u.y : disc.theta * radius();
+    }
+    return u;
+  }
+
+  /// What contacts and walls exert, 0 on components that are not free.
+  [[nodiscard]] Vector internal(const Vector& u) const { return components(contacts_.unbalanced_forces(motions(u))); }
+  [[nodiscard]] Vector unbalanced(const Vector& u) const {
+    Vector f = internal(u);
+    add(f, 1, loads_);
+    return f;
+  }
+  [[nodiscard]] double relative(const Vector& u, const Vector& f) const {
+    const auto b = static_cast<std::size_t>(unknowns_.per_disc);
+    std::vector<DiscForce> forces(scene_.assembly.size());
+    for (std::size_t d = 0; d < forces.size(); ++d) {
+      forces[d] = {{f[d * b], f[d * b + 1]}, b == 3 ? f[d * b + 2] * radius() : 0.0};
+    }
+    return relative_unbalanced_force(scene_, motion_, forces, motions(u));
+  }
+
+ private:
+  static std::vector<Inertia> unit_inertia(const Scene& scene) {
+    return std::vector<Inertia>(scene.assembly.size(), {1, 1});
+  }
+
+  static std::vector<Wall> walls_at(const Scene& scene, double time) {
+    std::vector<Wall> walls = scene.walls;
+    for (Wall& wall : walls) wall.displacement = {.value = wall.displacement.at(time)};
+    return walls;
+  }
+
+  [[nodiscard]] Vector components(const std::vector<DiscForce>& forces) const {
+    const auto b = static_cast<std::size_t>(unknowns_.per_disc);
+    Vector f(unknowns_.held.size());
+    for (std::size_t k = 0; k < f.size(); ++k) {
+      const DiscForce& disc = forces[k / b];
+      if (unknowns_.held[k] != DegreesOfFreedom::free) continue;
+      f[k] = k % b == 0 ? disc.force.x : k % b == 1 ? disc.force.y : disc.moment / radius();
+    }
+    return f;
+  }
+
+  void find_loads(const RelaxationOptions& options) {
+    std::vector<TimedLoad> loads = scene_.loads;
+    for (TimedLoad& load : loads) load.factor = {.value = load.factor.at(options.time)};
+    const Simulation loaded(
+        Scene{.assembly = scene_.assembly, .springs = scene_.springs, .inertia = unit_inertia(scene_), .loads = loads},
+        {.rotation = options.rotation, .time_step = 1});
+    std::vector<DiscForce> forces = loaded.unbalanced_forces(std::vector<DiscMotion>(scene_.assembly.size()));
+    const bool weighs = options.gravity.x != 0 || options.gravity.y != 0;
+    for (std::size_t d = 0; weighs && d < forces.size(); ++d)
+      forces[d].force += scene_.inertia[d].mass * options.gravity;
+    loads_ = components(forces);
+  }
+
+  void find_masses() {
+    const ContactGraph graph(scene_.assembly);
+    const StiffnessMatrix k = assemble_stiffness(scene_.assembly, graph, scene_.springs, unknowns_);
+    const auto b = static_cast<std::size_t>(k.block);
+    masses_.assign(unknowns_.held.size(), 0.0);
+    for (std::size_t r = 0; r < b; ++r) {
+      for (std::size_t s = 0; s < b; ++s) {
+        for (std::size_t d = 0; d < scene_.assembly.size(); ++d) {
+          masses_[d * b + r] += std::abs(k.diagonal_block(d)[r * b + s]);
+        }
+        for (std::size_t c = 0; c < scene_.assembly.contacts.size(); ++c) {
+          const double entry = std::abs(k.coupling_block(c)[r * b + s]);
+          masses_[scene_.assembly.contacts[c].i * b + r] += entry;
+          masses_[scene_.assembly.contacts[c].j * b + s] += entry;
+        }
+      }
+    }
+    double walls = 0;
+    for (const Wall& wall : scene_.walls) walls += wall.kN;
+    for (double& mass : masses_) mass = mass > 0 ? mass + walls : scene_.springs.largest();
+  }
+
+  const Scene& scene_;
+  LoopKind::Motion motion_;
+  Effects effects_;
+  DegreesOfFreedom unknowns_;
+  Simulation contacts_;  // without loads, all discs free
+  Vector loads_, masses_;
+};
+
+[[noreturn]] void no_minimum(bool negative) {
+  computation_failed(
+      "the discs do not come to rest",
+      negative ? "a motion lowers the energy without end: some kT is negative"
+               : "a motion that the load drives costs no energy: the discs move as a whole or as a mechanism",
+      negative ? "Solve the stiffness matrix instead, which also finds states of rest that are no minimum"
+               : "Add supports or springs that resist it");
+}
+
+/// Descent from u until the unbalanced force is small.
+class Descent {
+ public:
+  Descent(const StillScene& scene, const RelaxationOptions& options, Relaxation& result)
+      : scene_(scene),
+        options_(options),
+        result_(result),
+        u_(scene.start(options.start)),
+        f_(unbalanced(u_)),
+        p_(f_.size()) {}
+
+  void run() {
+    Progress progress("relaxing");
+    Vector z = over_masses(f_);
+    double fz = product(f_, z);
+    p_ = z;
+    double length = 1;  // K <= M: no step that is too long
+    look();
+    while (!(result_.relative_unbalanced <= options_.tolerance)) {
+      if (result_.steps >= options_.max_steps) not_at_rest("");
+      // Without rounding conjugate gradients end after as many steps as there are components.
+      if (result_.relative_unbalanced < 0.5 * best_) best_ = result_.relative_unbalanced, best_step_ = result_.steps;
+      if (result_.steps - best_step_ > static_cast<std::int64_t>(f_.size()) + 1000) {
+        not_at_rest("; rounding of the displacements seems to allow no less");
+      }
+      const Vector before = f_;
+      if (scene_.linear()) {
+        go_straight(fz);
+      } else {
+        length = go_by_secant(length);
+      }
+      ++result_.steps;
+      if (scene_.linear() && result_.steps % steps_between_looks == 0) f_ = unbalanced(u_);
+      z = over_masses(f_);
+      if (!std::isfinite(product(f_, z))) not_at_rest("; forces are no finite numbers any more");
+      const double next = product(f_, z), share = std::max(0.0, (next - product(before, z)) / fz);
+      for (std::size_t k = 0; k < p_.size(); ++k) p_[k] = z[k] + share * p_[k];
+      if (product(p_, f_) <= 0) p_ = z;
+      fz = next;
+      if (fz == 0 || result_.steps % steps_between_looks == 0) {
+        look();
+        progress.update(
+            std::clamp(std::log(result_.relative_unbalanced) / std::log(std::min(0.1, options_.tolerance)), 0.0, 1.0));
+      }
+    }
+    result_.motions = scene_.motions(u_);
+  }
+
+ private:
+  [[nodiscard]] Vector unbalanced(const Vector& u) {
+    ++result_.evaluations;
+    return scene_.unbalanced(u);
+  }
+  [[nodiscard]] Vector over_masses(const Vector& f) const {
+    Vector z(f.size());
+    for (std::size_t k = 0; k < z.size(); ++k) z[k] = f[k] / scene_.masses()[k];
+    return z;
+  }
+
+  void look() { result_.relative_unbalanced = scene_.relative(u_, f_); }
+
+  /// Forces are linear in the motion: the one evaluation is K p.
+  void go_straight(double fz) {
+    const Vector q = scene_.internal(p_);
+    ++result_.evaluations;
+    const double stiffness = -product(p_, q);
+    if (!(stiffness > 0)) no_minimum(scene_.any_negative());
+    const double length = fz / stiffness;
+    add(u_, length, p_);
+    add(f_, length, q);
+  }
+
+  /// Returns the length of the step.
+  double go_by_secant(double length) {
+    double largest = 0;
+    for (const double x : p_) largest = std::max(largest, std::abs(x));
+    const double limit = furthest * scene_.radius() / largest, trial = std::min(length, limit);
+    Vector u = u_;
+    add(u, trial, p_);
+    const double force = product(p_, f_), force_there = product(p_, unbalanced(u));
+    const double wanted = force > force_there ? trial * force / (force - force_there) : 4 * trial;
+    const double step = std::min({wanted, 4 * trial, limit});
+    add(u_, step, p_);
+    f_ = unbalanced(u_);
+    return step;
+  }
+
+  [[noreturn]] void not_at_rest(const char* cause) const {
+    computation_failed(format("the discs are not at rest after {} steps", result_.steps),
+                       format("relative unbalanced force {:.2g}, wanted {:.2g}{}", result_.relative_unbalanced,
+                              options_.tolerance, cause),
+                       "Allow more steps or a larger unbalanced force; where loads are held by no support, add one");
+  }
+
+  const StillScene& scene_;
+  const RelaxationOptions& options_;
+  Relaxation& result_;
+  Vector u_, f_, p_;
+  double best_ = std::numeric_limits<double>::infinity();  // relative unbalanced force
+  std::int64_t best_step_ = 0;
+};
+
+}  // namespace
+
+double relative_unbalanced_force(const Scene& scene, LoopKind::Motion motion, const std::vector<DiscForce>& unbalanced,
+                                 const std::vector<DiscMotion>& motions) {
+  const double a = scene.assembly.mean_radius();
+  double left = 0, carried = 0;
+  for (const DiscForce& f : unbalanced) left += dot(f.force, f.force) + f.moment * f.moment / (a * a);
+  for (std::size_t c = 0; c < scene.assembly.contacts.size(); ++c) {
+    const Contact& contact = scene.assembly.contacts[c];
+    const DiscMotion &i = motions[contact.i], &j = motions[contact.j];
+    const ContactDeformation d =
+        motion == LoopKind::Motion::finite
+            ? bond_deformation(bond_of(scene.assembly, contact, scene.springs[c]), bond_motion(i, j))
+            : deformation(frame_of(scene.assembly, contact), i, j);
+    const ContactForce f = linear_spring_force(scene.springs[c], d);
+    carried += f.normal * f.normal + f.tangential * f.tangential;
+  }
+  return left == 0 ? 0 : std::sqrt(left / carried);
+}
+
+Relaxation relax(const Scene& scene, const RelaxationOptions& options) {
+  if (!(options.tolerance > 0)) {
+    bad_input(format("the relative unbalanced force wanted is {}", options.tolerance), "rounding leaves some",
+              "Give a number > 0, such as 1e-10");
+  }
+  if (options.max_steps <= 0)
+    bad_input(format("at most {} steps are allowed", options.max_steps), "rest takes some", "Give a number > 0");
+  if (!options.start.empty() && options.start.size() != scene.assembly.size()) {
+    bad_input(format("the start has {}", counted(static_cast<long long>(options.start.size()), "disc")),
+              format("the assembly has {}", scene.assembly.size()), "Start from a state of the same assembly");
+  }
+  if ((options.gravity.x != 0 || options.gravity.y != 0) && scene.inertia.size() != scene.assembly.size()) {
+    bad_input(format("{} have a mass", counted(static_cast<long long>(scene.inertia.size()), "disc")),
+              format("gravity acts on all {}", scene.assembly.size()), "Give the inertia of every disc");
+  }
+  const Stopwatch watch;
+  Relaxation result;
+  const StillScene still(scene, options);
+  Descent(still, options, result).run();
+  result.seconds = watch.seconds();
+  return result;
+}
+
+std::string Relaxation::report() const {
+  return format("at rest: relative unbalanced force {:.2g} after {} steps, {} evaluations of forces, {:.2g} s",
+                relative_unbalanced, steps, evaluations, seconds);
+}
+
+}  // namespace equidem

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/dynamics/schedule.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+/// sin(2 pi x) to 1e-15: its Taylor series on a quarter of a turn. Mathematical libraries differ in the last bits.
+double sine_of_turns(double x) {
+  x -= std::round(x);
+  if (std::abs(x) > 0.25) x = std::copysign(0.5, x) - x;
+  const double y = 2 * std::numbers::pi * x;
+  double sum = 1;
+  for (int k = 22; k >= 2; k -= 2) sum = 1 - y * y / (k * (k + 1)) * sum;
+  return y * sum;
+}
+
+double on_ramp(const Schedule& ramp, double time) {
+  if (time <= ramp.start) return 0;
+  if (time >= ramp.end) return ramp.value;
+  // (1 - cos(pi s))/2 = sin²(pi s/2)
+  const double root = sine_of_turns(0.25 * (time - ramp.start) / (ramp.end - ramp.start));
+  return ramp.value * (root * root);
+}
+
+double in_table(const Schedule& table, double time) {
+  const auto next = std::upper_bound(table.times.begin(), table.times.end(), time);
+  if (next == table.times.begin()) return table.values.front();
+  if (next == table.times.end()) return table.values.back();
+  const auto k = static_cast<std::size_t>(next - table.times.begin());
+  const double share = (time - table.times[k - 1]) / (table.times[k] - table.times[k - 1]);
+  return table.values[k - 1] + share * (table.values[k] - table.values[k - 1]);
+}
+
+void check_finite(double value, const char* name) {
+  if (!std::isfinite(value))
+    bad_input(format("a schedule has {} = {}", name, value), "only finite numbers have a meaning", "Give a number");
+}
+
+void check_table(const Schedule& table) {
+  if (table.times.empty() || table.times.size() != table.values.size()) {
+    bad_input(format("a table has {} and {}", counted(static_cast<long long>(table.times.size()), "time"),
+                     counted(static_cast<long long>(table.values.size()), "value")),
+              "each time needs its value", "Give as many of one as of the other, at least one");
+  }
+  for (std::size_t k = 0; k < table.times.size(); ++k) {
+    check_finite(table.times[k], "time");
+    check_finite(table.values[k], "value");
+    if (k > 0 && !(table.times[k] > table.times[k - 1])) {
+      bad_input(format("the time {} s comes after {} s", table.times[k], table.times[k - 1]),
+                "times ascend, and a value cannot jump", "Order the points and leave out repeated times");
+    }
+  }
+}
+
+}  // namespace
+
+double Schedule::at(double time) const {
+  switch (kind) {
+    case Kind::constant:
+      return value;
+    case Kind::ramp:
+      return on_ramp(*this, time);
+    case Kind::sine:
+      return time <= start ? 0 : value * sine_of_turns(frequency * (time - start));
+    case Kind::table:
+      return in_table(*this, time);
+  }
+  return 0;
+}
+
+void check(const Schedule& schedule) {
+  if (schedule.kind == Schedule::Kind::table) return check_table(schedule);
+  check_finite(schedule.value, "value");
+  if (!schedule.changes()) return;
+  check_finite(schedule.start, "start");
+  if (schedule.kind == Schedule::Kind::sine) {
+    check_finite(schedule.frequency, "frequency");
+    if (!(schedule.frequency > 0))
+      bad_input(format("a sine has the frequency {} Hz", schedule.frequency), "it must be > 0", "Give a positive one");
+    return;
+  }
+  check_finite(schedule.end, "end");
+  if (!(schedule.end > schedule.start)) {
+    bad_input(format("the ramp ends at {} s and starts at {} s", schedule.end, schedule.start),
+              "it rises from start to end", "Put the end after the start");
+  }
+}
+
+Schedule scaled(Schedule schedule, double factor) {
+  schedule.value *= factor;
+  for (double& value : schedule.values) value *= factor;
+  return schedule;
+}
+
+}  // namespace equidem

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/dynamics/stepper.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <thread>
+#include <vector>
+
+#include "equidem/core/threads.hpp"
+
+namespace equidem {
+namespace {
+
+/// Threads wait for one another between waves of a few microseconds: they spin, and let others run when it takes longer.
+class SpinBarrier {
+ public:
+  explicit SpinBarrier(int threads) : threads_(threads) {}
+
+  void wait() {
+    const std::uint64_t round = round_.load(std::memory_order_acquire);
+    if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == threads_) {
+      arrived_.store(0, std::memory_order_relaxed);
+      round_.store(round + 1, std::memory_order_release);
+      return;
+    }
+    for (int spins = 0; round_.load(std::memory_order_acquire) == round; ++spins) {
+      if (spins > 2000) std::this_thread::yield();
+    }
+  }
+
+ private:
+  const int threads_;
+  alignas(64) std::atomic<int> arrived_{0};
+  alignas(64) std::atomic<std::uint64_t> round_{0};
+};
+
+/// Run body(thread) on `threads` threads at the same time.
+void run_together(int threads, const std::function<void(int)>& body) {
+  std::vector<std::thread> others;
+  for (int k = 1; k < threads; ++k) others.emplace_back([&body, k] { body(k); });
+  body(0);
+  for (std::thread& other : others) other.join();
+}
+
+}  // namespace
+
+void step_strips(std::int32_t strips, std::int64_t stages, int depth, bool ring, const StripWork& work) {
+  if (strips == 0 || stages == 0) return;
+  const int threads = std::max(1, thread_count());
+  SpinBarrier barrier(threads);
+  if (ring || stages < threads) {
+    run_together(threads, [&](int thread) {
+      const auto begin = static_cast<std::int32_t>(static_cast<std::int64_t>(strips) * thread / threads);
+      const auto end = static_cast<std::int32_t>(static_cast<std::int64_t>(strips) * (thread + 1) / threads);
+      for (std::int64_t stage = 0; stage < stages; ++stage) {
+        for (std::int32_t strip = begin; strip < end; ++strip) work(strip, stage);
+        if (threads > 1) barrier.wait();
+      }
+    });
+    return;
+  }
+  // Stage s visits strip l in wave start(s) + l; a new block of `depth` stages follows when the first stage of the last one
+  // is through, so that no thread runs dry between blocks. Each thread has stages of a block that follow one another: strips
+  // pass through its own cache before the next thread has them.
+  depth = (std::max(depth, 1) + threads - 1) / threads * threads;
+  const std::int64_t block = std::max<std::int64_t>(strips, 2L * depth);
+  const auto start = [&](std::int64_t stage) { return stage / depth * block + 2 * (stage % depth); };
+  const std::int64_t waves = start(stages - 1) + strips;
+  run_together(threads, [&](int thread) {
+    std::int64_t first = 0;  // of the stages that are under way
+    for (std::int64_t wave = 0; wave < waves; ++wave) {
+      while (first < stages && wave - start(first) >= strips) ++first;
+      for (std::int64_t stage = first; stage < stages && start(stage) <= wave; ++stage) {
+        const std::int64_t strip = wave - start(stage);
+        if (strip < strips && stage % depth * threads / depth == thread) work(static_cast<std::int32_t>(strip), stage);
+      }
+      if (threads > 1) barrier.wait();
+    }
+  });
+}
+
+}  // namespace equidem

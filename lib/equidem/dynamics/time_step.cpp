@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/dynamics/time_step.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "equidem/contact/effects.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/dynamics/loop_choice.hpp"
+#include "equidem/dynamics/still_unknowns.hpp"
+#include "equidem/waves/vibration.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr std::array all = {TimeStepRule::lanczos, TimeStepRule::bound, TimeStepRule::thesis};
+constexpr double infinite = std::numeric_limits<double>::infinity();
+/// Lanczos takes some hundred products with K, each the work of a few steps; the bound costs a quarter of the steps.
+constexpr double steps_worth_lanczos = 2000;
+
+/// Largest omega² of M^-1 K for given springs.
+using SquaredFrequency = std::function<double(const ContactSprings&)>;
+
+/// What of a scene bears on stability.
+struct Vibration {
+  const Scene& scene;
+  const SimulationOptions& options;
+  Effects effects;
+  DegreesOfFreedom unknowns;
+  double walls = 0;  ///< the most that walls can add to any omega², whichever a disc touches
+
+  Vibration(const Scene& scene_in, const SimulationOptions& options_in)
+      : scene(scene_in),
+        options(options_in),
+        effects(derive_effects(scene.springs, options.rotation)),
+        unknowns(unknowns_at(scene, effects, 0)) {
+    double xx = 0, xy = 0, yy = 0, lightest = infinite;
+    for (const Wall& wall : scene.walls) {
+      xx += wall.kN * wall.normal.x * wall.normal.x;
+      xy += wall.kN * wall.normal.x * wall.normal.y;
+      yy += wall.kN * wall.normal.y * wall.normal.y;
+    }
+    for (const Inertia& body : scene.inertia) lightest = std::min(lightest, body.mass);
+    walls = (0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy)) / lightest;
+  }
+
+  [[nodiscard]] bool dashpots() const { return options.damping.stiffness > 0 || options.damping.contact > 0; }
+  [[nodiscard]] SpringConstants dashpots(std::size_t c) const {
+    const Contact& contact = scene.assembly.contacts[c];
+    return dashpots_of(options.damping, scene.springs[c], scene.inertia[contact.i].mass, scene.inertia[contact.j].mass);
+  }
+  /// The springs k + weight c.
+  [[nodiscard]] ContactSprings with_dashpots(double springs, double weight) const {
+    std::vector<SpringConstants> sum(scene.assembly.contacts.size());
+    for (std::size_t c = 0; c < sum.size(); ++c) {
+      const SpringConstants k = scene.springs[c], d = dashpots(c);
+      sum[c] = {springs * k.kN + weight * d.kN, springs * k.kT + weight * d.kT};
+    }
+    return ContactSprings(std::move(sum));
+  }
+
+  [[nodiscard]] double exact(const ContactSprings& springs) const {
+    if (unknowns.unknowns == 0 || scene.assembly.contacts.empty()) return walls;
+    const ExtremeEigenvalue highest =
+        extreme_squared_frequency(scene.assembly, springs, unknowns, scene.inertia, SpectrumEnd::largest);
+    return std::max(0.0, highest.value + highest.residual) + walls;
+  }
+  [[nodiscard]] double bound(const ContactSprings& springs) const {
+    return element_bound(scene.assembly, springs, scene.inertia, effects.rotation) + walls;
+  }
+};
+
+/// 4 M - 2 h C - h² K = 4 M - h² K(k + 2 c/h): h = 2/omega(h), solved by secants on a logarithmic scale, where the slope of
+/// the difference lies between -1 and -1/2. Local damping, which excludes dashpots, makes forces against the velocity larger by its
+/// share, and at the limit every force is one.
+double critical_of_leapfrog(const Vibration& vibration, const SquaredFrequency& squared, double omega) {
+  const double h = 2 / (omega * std::sqrt(1 + vibration.options.damping.local));
+  if (!vibration.dashpots() || omega == 0) return h;
+  const auto excess = [&](double step) {
+    return std::log(2 / (std::sqrt(squared(vibration.with_dashpots(1, 2 / step))) * step));
+  };
+  double x = std::log(h), f = excess(h), slope = -1;
+  for (int round = 0; round < 20 && std::abs(f) > 1e-11; ++round) {
+    const double moved = -f / slope, next = excess(std::exp(x + moved));
+    slope = std::clamp((next - f) / moved, -1.0, -0.5);
+    x += moved;
+    f = next;
+  }
+  return std::exp(x - std::abs(f));
+}
+
+/// v' = v - h M^-1 (C v + K u), u' = u + h (v + v')/2 wants h K < 2 C and h C < 2 M. The first holds where it does at every contact,
+/// mass-proportional damping alpha M >= alpha/omega² K helping.
+double critical_of_thesis(const Vibration& vibration, const SquaredFrequency& squared, double omega) {
+  const double alpha = vibration.options.damping.mass;
+  double slowest = vibration.scene.assembly.contacts.empty() ? 0 : infinite, fastest = 0;  // c/k, lambda of M^-1 C
+  if (vibration.dashpots()) {
+    for (std::size_t c = 0; c < vibration.scene.assembly.contacts.size(); ++c) {
+      const SpringConstants k = vibration.scene.springs[c], d = vibration.dashpots(c);
+      slowest = std::min(slowest, d.kN / k.kN);
+      if (k.kT > 0 && vibration.effects.tangential_springs) slowest = std::min(slowest, d.kT / k.kT);
+    }
+    fastest = squared(vibration.with_dashpots(0, 1));
+  } else {
+    slowest = 0;
+  }
+  if (vibration.walls > 0) slowest = 0;
+  return std::min(2 * slowest + 2 * alpha / (omega * omega), 2 / (alpha + fastest));
+}
+
+double critical_step(const Vibration& vibration, const SquaredFrequency& squared, double omega) {
+  switch (vibration.options.integrator) {
+    case Integrator::leapfrog:
+    case Integrator::velocity_verlet:
+      return critical_of_leapfrog(vibration, squared, omega);
+    case Integrator::thesis:
+      return critical_of_thesis(vibration, squared, omega);
+    case Integrator::fourth_order:
+      return stability_limit(Integrator::fourth_order, 0) / omega;
+  }
+  return 0;
+}
+
+/// Motions that grow as exp(rate t), against mass-proportional damping: rate² + alpha rate + omega² = 0, omega² < 0.
+double growth_rate(const Vibration& vibration, double omega) {
+  if (!vibration.scene.springs.any_negative() || vibration.unknowns.unknowns == 0) return 0;
+  const double lowest = extreme_squared_frequency(vibration.scene.assembly, vibration.scene.springs, vibration.unknowns,
+                                                  vibration.scene.inertia, SpectrumEnd::smallest)
+                            .value;
+  if (lowest > -1e-9 * omega * omega) return 0;
+  const double half = 0.5 * vibration.options.damping.mass;
+  return std::sqrt(half * half - lowest) - half;
+}
+
+void check(const TimeStepOptions& wanted) {
+  if (!(wanted.fraction > 0) || wanted.fraction > 1) {
+    bad_input(format("the fraction of the critical step is {}", wanted.fraction),
+              "a run takes a part of it, and past it motions grow", "Give a fraction in (0, 1], such as 0.8");
+  }
+  if (wanted.step && (!(*wanted.step > 0) || !std::isfinite(*wanted.step))) {
+    bad_input(format("the time step is {} s", *wanted.step), "time could not go on", "Give a step > 0, or \"auto\"");
+  }
+}
+
+void refuse_unstable(const TimeStep& result, const SimulationOptions& options) {
+  if (result.growth_rate > 0) {
+    bad_input(format("motions grow at the rate {:.6g} 1/s, whatever the step", result.growth_rate),
+              "some kT is negative, which is stable in statics only",
+              "Solve the stiffness matrix for the state of rest, or allow an unstable run");
+  }
+  if (result.critical == 0) {
+    bad_input(format("no time step is stable for the integrator \"{}\"", to_string(options.integrator)),
+              "without damping of every contact its motions grow", "Use leapfrog, or damp by stiffness or mass");
+  }
+  if (result.step > result.critical * (1 + 1e-12)) {
+    bad_input(
+        format("the time step {:.6g} s ({}) is past the limit of {:.6g} s", result.step, result.rule, result.critical),
+        format("{} would grow without end at {:.4g} times the critical step", to_string(options.integrator),
+               result.ratio()),
+        "Give a smaller step or take \"auto\" with step_rule = \"lanczos\", or allow an unstable run");
+  }
+}
+
+}  // namespace
+
+TimeStepRule time_step_rule_from(const std::string& name) {
+  std::string known;
+  for (const TimeStepRule rule : all) {
+    if (name == to_string(rule)) return rule;
+    known += (known.empty() ? "" : ", ") + to_string(rule);
+  }
+  bad_input(format("'{}' is no rule for the time step", name), "", format("Choose one of {}", known));
+}
+
+std::string to_string(TimeStepRule rule) {
+  switch (rule) {
+    case TimeStepRule::lanczos:
+      return "lanczos";
+    case TimeStepRule::bound:
+      return "bound";
+    case TimeStepRule::thesis:
+      return "thesis";
+  }
+  return "";
+}
+
+TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, const TimeStepOptions& wanted) {
+  check(wanted);
+  const Vibration vibration(scene, options);
+  const auto bound = [&](const ContactSprings& springs) { return vibration.bound(springs); };
+  const auto exact = [&](const ContactSprings& springs) { return vibration.exact(springs); };
+  TimeStep result;
+  result.rule = wanted.step ? "given" : to_string(wanted.rule);
+
+  const double bound_omega = std::sqrt(vibration.bound(scene.springs));
+  const double guaranteed = critical_step(vibration, bound, bound_omega);
+  const double first_step = wanted.step ? *wanted.step : wanted.fraction * guaranteed;
+  bool use_bound = wanted.rule == TimeStepRule::bound && !wanted.step;
+  if (!use_bound && first_step <= guaranteed && wanted.duration > 0 &&
+      wanted.duration / first_step < steps_worth_lanczos) {
+    use_bound = true;
+    if (!wanted.step && wanted.rule == TimeStepRule::lanczos) result.rule = "bound";
+    result.notes.push_back(
+        format("The guaranteed bound serves for the critical step: the run takes about {:.0f} steps, fewer than "
+               "finding the exact one is worth.",
+               std::ceil(wanted.duration / first_step)));
+  }
+  result.omega_max = use_bound ? bound_omega : std::sqrt(vibration.exact(scene.springs));
+  result.critical = use_bound              ? guaranteed
+                    : result.omega_max > 0 ? critical_step(vibration, exact, result.omega_max)
+                                           : infinite;
+  result.exact =
+      !use_bound && scene.walls.empty() && !(options.integrator == Integrator::thesis && options.damping.contact > 0);
+  result.growth_rate = growth_rate(vibration, result.omega_max);
+
+  if (wanted.step) {
+    result.step = *wanted.step;
+  } else if (std::isinf(result.critical)) {
+    bad_input("the time step is left to the highest frequency, but nothing vibrates",
+              "no contact joins discs that are free", "Give a step in seconds");
+  } else if (wanted.rule == TimeStepRule::thesis) {
+    result.step =
+        time_step_rules(scene.assembly, scene.springs, scene.inertia, vibration.effects.rotation).eighth_of_period;
+    result.notes.emplace_back(
+        "The step is an eighth of the period 2 pi sqrt(m/kN) of one disc on one normal spring, the shortest of "
+        "all (Sukegawa 2010): no guarantee of stability.");
+  } else {
+    result.step = wanted.fraction * result.critical;
+  }
+  if (options.motion == LoopKind::Motion::finite) {
+    result.notes.emplace_back(
+        "The critical step is that of the reference state; contacts that turn and stretch change it.");
+  }
+  if (!scene.walls.empty()) {
+    result.notes.emplace_back("Walls are counted as if every disc touched all of them.");
+  }
+  if (wanted.allow_unstable) {
+    if (result.growth_rate > 0) {
+      result.notes.push_back(format("Motions grow at the rate {:.6g} 1/s, whatever the step.", result.growth_rate));
+    } else if (result.step > result.critical) {
+      result.notes.emplace_back("The step is past the critical one: motions will grow.");
+    }
+  } else {
+    refuse_unstable(result, options);
+  }
+  return result;
+}
+
+std::string TimeStep::report() const {
+  std::string text = format("time step {:.6g} s ({}), {} {:.6g} s, ratio {:.4g}", step, rule,
+                            exact ? "critical step" : "guaranteed step", critical, ratio());
+  for (const std::string& note : notes) text += "\n  " + note;
+  return text;
+}
+
+}  // namespace equidem

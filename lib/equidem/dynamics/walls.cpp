@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/dynamics/walls.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+void check_alone(const Wall& wall, const Assembly& assembly) {
+  if (assembly.periodic()) {
+    bad_input(format("wall '{}' stands in a periodic assembly", wall.name),
+              "every disc has images on both sides of any wall", "Remove the wall, or set periodic = false");
+  }
+  if (!std::isfinite(wall.point.x + wall.point.y) || !std::isfinite(wall.normal.x + wall.normal.y)) {
+    bad_input(format("wall '{}' has a point or a normal that is not finite", wall.name), "it stands nowhere",
+              "Give finite numbers");
+  }
+  if (std::abs(dot(wall.normal, wall.normal) - 1) > 1e-12) {
+    bad_input(format("the normal ({}, {}) of wall '{}' is no unit vector", wall.normal.x, wall.normal.y, wall.name),
+              "distances are measured with it", "Divide it by its length");
+  }
+  if (!(wall.kN > 0) || !std::isfinite(wall.kN)) {
+    bad_input(format("wall '{}' has kN = {} Pa", wall.name, wall.kN), "its spring must be > 0 and finite",
+              "Give a positive one");
+  }
+  check(wall.displacement);
+}
+
+/// Times at which a displacement turns or ends.
+std::vector<double> turning_points(const Schedule& displacement) {
+  switch (displacement.kind) {
+    case Schedule::Kind::constant:
+      return {};
+    case Schedule::Kind::ramp:
+      return {displacement.end};
+    case Schedule::Kind::sine:
+      return {displacement.start + 0.25 / displacement.frequency, displacement.start + 0.75 / displacement.frequency};
+    case Schedule::Kind::table:
+      return displacement.times;
+  }
+  return {};
+}
+
+/// Lines that are parallel to a millionth meet far outside.
+bool face_each_other(const Wall& a, const Wall& b) {
+  return dot(a.normal, b.normal) < 0 && std::abs(cross(a.normal, b.normal)) < 1e-6;
+}
+
+void check_room(const Wall& a, const Wall& b) {
+  std::vector<double> times{0};
+  for (const Wall* wall : {&a, &b})
+    for (const double time : turning_points(wall->displacement)) times.push_back(std::max(time, 0.0));
+  for (const double time : times) {
+    const double room = dot(a.normal, b.point - a.point) - a.displacement.at(time) - b.displacement.at(time);
+    if (room > 0) continue;
+    bad_input(format("walls '{}' and '{}' cross{}", a.name, b.name, time > 0 ? format(" at {:.6g} s", time) : ""),
+              format("they face each other with {:.6g} m between them", room),
+              time > 0 ? "Move them less or further apart" : "Move them apart, or turn their normals to the discs");
+  }
+}
+
+void check_discs(const Wall& wall, const Assembly& assembly) {
+  const double start = wall.displacement.at(0);
+  for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
+    const double height = dot(wall.normal, assembly.centres[disc] - wall.point) - start;
+    if (height > 0) continue;
+    bad_input(format("the centre of disc {} lies {:.6g} m behind wall '{}'", disc, -height, wall.name),
+              "all discs are in front of a wall, where its normal points", "Turn the normal, or move the wall");
+  }
+}
+
+}  // namespace
+
+void check_wall(std::span<const Wall> walls, std::size_t k, const Assembly& assembly) {
+  check_alone(walls[k], assembly);
+  for (const Wall& other : walls)
+    if (face_each_other(walls[k], other)) check_room(walls[k], other);
+  check_discs(walls[k], assembly);
+}
+
+void check_walls(std::span<const Wall> walls, const Assembly& assembly) {
+  for (std::size_t k = 0; k < walls.size(); ++k) check_wall(walls, k, assembly);
+}
+
+}  // namespace equidem

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/output/xdmf.hpp"
+
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+std::string escape_xml(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    escaped += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
+  }
+  return escaped;
+}
+
+/// \param shape "10 2"
+std::string array(const XdmfSource& source, const std::string& name, const std::string& shape,
+                  const std::string& number = "Float\" Precision=\"8") {
+  return format(R"(<DataItem Format="HDF" NumberType="{}" Dimensions="{}">{}:/{}</DataItem>)", number, shape,
+                escape_xml(source.file), name);
+}
+
+/// The slab of one frame: start, stride and count along each axis.
+std::string slab(const XdmfSource& source, const std::string& name, std::uint64_t frame, int components) {
+  const std::uint64_t n = source.discs;
+  if (components == 1) {
+    return format(
+        "<DataItem ItemType=\"HyperSlab\" Dimensions=\"{0}\"><DataItem Format=\"XML\" NumberType=\"Int\" "
+        "Dimensions=\"3 2\">{1} 0 1 1 1 {0}</DataItem>{2}</DataItem>",
+        n, frame, array(source, name, format("{} {}", source.room, n)));
+  }
+  return format(
+      "<DataItem ItemType=\"HyperSlab\" Dimensions=\"{0} 3\"><DataItem Format=\"XML\" NumberType=\"Int\" "
+      "Dimensions=\"3 3\">{1} 0 0 1 1 1 1 {0} 3</DataItem>{2}</DataItem>",
+      n, frame, array(source, name, format("{} {} 3", source.room, n)));
+}
+
+std::string attribute(const std::string& name, const char* type, const std::string& data) {
+  return format("<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n", name, type, data);
+}
+
+}  // namespace
+
+std::string xdmf_frame(const XdmfSource& source, std::uint64_t frame, double time) {
+  const std::uint64_t n = source.discs;
+  std::string text = format("<Grid Name=\"discs\" GridType=\"Uniform\"><Time Value=\"{}\"/>\n", time);
+  text += format("<Topology TopologyType=\"Polyvertex\" NodesPerElement=\"1\" NumberOfElements=\"{}\">{}</Topology>\n",
+                 n, array(source, "discs/number", format("{} 1", n), "Int\" Precision=\"4"));
+  text += format("<Geometry GeometryType=\"XY\">{}</Geometry>\n", array(source, "discs/centre", format("{} 2", n)));
+  text += attribute("radius", "Scalar", array(source, "discs/radius", format("{}", n)));
+  for (const char* name : {"displacement", "velocity"}) text += attribute(name, "Vector", slab(source, name, frame, 3));
+  for (const char* name : {"rotation", "spin"}) text += attribute(name, "Scalar", slab(source, name, frame, 1));
+  return text + "</Grid>\n";
+}
+
+std::string xdmf_text(const std::string& frames) {
+  return "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\"><Domain>\n"
+         "<Grid Name=\"frames\" GridType=\"Collection\" CollectionType=\"Temporal\">\n" +
+         frames + "</Grid>\n</Domain></Xdmf>\n";
+}
+
+}  // namespace equidem

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/casefile/build_run.hpp"
+
+#include <filesystem>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "equidem/casefile/build.hpp"
+
+#include "example.hpp"
+#include "support/catch.hpp"
+#include "wrong.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The sentence with which the scene of a valid case is refused; empty where it stands.
+std::string scene_error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  const Case c = parsed(text, overrides);
+  const Assembly assembly = build_assembly(c);
+  const BuiltSprings springs = build_springs(c, assembly);
+  try {
+    static_cast<void>(build_scene(c, assembly, springs.springs));
+  } catch (const Error& error) {
+    return error.kind() == ErrorKind::bad_input ? error.what() : "wrong kind";
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("a_scene_is_what_its_case_says") {
+  const Case c = parsed(motion_case);
+  const Assembly assembly = build_assembly(c);
+  const BuiltSprings springs = build_springs(c, assembly);
+  const Scene scene = build_scene(c, assembly, springs.springs);
+  REQUIRE(scene.inertia.size() == assembly.size());
+  const double a = assembly.radii[0], m = 2650 * std::numbers::pi * a * a;
+  CHECK(scene.inertia[0].mass == Approx(m).epsilon(1e-14));
+  CHECK(scene.inertia[0].moment == Approx(m * a * a / 2).epsilon(1e-14));
+  CHECK(scene.supports.size() == 2);
+  CHECK(scene.loads.size() == 2);
+  CHECK(scene.walls.size() == 2);
+  CHECK(scene.velocities.size() == 1);
+  const SimulationOptions options = simulation_options(c, 1e-6);
+  CHECK(options.time_step == 1e-6);
+  CHECK(options.motion == LoopKind::Motion::finite);
+  CHECK(options.integrator == Integrator::velocity_verlet);
+  CHECK(options.gravity.y == -9.81);
+  CHECK(options.damping.local == 0.2);
+}
+
+TEST_CASE("a_tension_test_acts_from_the_start_of_a_run") {
+  const Case c = parsed(tension_case, {"run.duration=1", "assembly.density=1"});
+  const Assembly assembly = build_assembly(c);
+  const BuiltSprings springs = build_springs(c, assembly);
+  const Scene scene = build_scene(c, assembly, springs.springs);
+  const TensionSetup test = tension_setup(assembly, *c.test);
+  REQUIRE(scene.supports.size() == test.supports.size());
+  REQUIRE(scene.loads.size() == test.loads.size());
+  for (std::size_t k = 0; k < test.loads.size(); ++k) {
+    CHECK(scene.loads[k].load.force == test.loads[k].force);
+    CHECK(scene.loads[k].factor.at(0) == 1);
+  }
+}
+
+TEST_CASE("scenes_that_cannot_be_built_say_where") {
+  REQUIRE(scene_error_of(motion_case).empty());
+  const std::vector<Wrong> wrongs = {
+      {"density = 2650.0\n", "", "[assembly]", "assembly", {"density is missing", "[material]"}},
+      {"\"bottom_right\"", "\"bottom_left\"", "uy = 1e-5", "support.1.uy", {"uy of disc", "a second time", "'left'"}},
+      {"group = \"right\"\nvelocity = [0.1, 0.2]",
+       "group = \"right\"\n[[velocity]]\ngroup = \"top\"",
+       "group = \"top\"\nspin",
+       "velocity.1.group",
+       {"two velocities", "'right' and in 'top'"}},
+      {"normal = [2.0, 0.0]", "normal = [-2.0, 0.0]", "[[wall]]", "wall.0", {"behind wall 'left'"}},
+      {"point = [0.1, 0.0]", "point = [-0.03, 0.0]", "[[wall]]", "wall.0", {"'left' and 'right' cross"}},
+  };
+  for (const Wrong& wrong : wrongs) {
+    const std::string text = changed(motion_case, wrong.what, wrong.by);
+    check_sentence(text, scene_error_of(text), wrong);
+  }
+  const std::string no_run = scene_error_of(tension_case);
+  CAPTURE(no_run);
+  CHECK(no_run.starts_with("a.toml:1: run: missing table"));
+}
+
+TEST_CASE("the_same_motion_twice_is_one_motion") {
+  // The corner disc belongs to both sides.
+  CHECK(scene_error_of(changed(motion_case, "\"bottom_right\"\nuy = 1e-5", "\"bottom_left\"\nuy = true")).empty());
+}
+
+TEST_CASE("velocities_and_probes_need_a_group_that_exists") {
+  for (const std::string table : {"velocity", "probe"}) {
+    const Case c = parsed(motion_case, {table + ".0.group=nowhere"});
+    std::string sentence;
+    try {
+      static_cast<void>(build_assembly(c));
+    } catch (const Error& error) {
+      sentence = error.what();
+    }
+    CAPTURE(table, sentence);
+    CHECK(sentence.find(table + ".0.group: the assembly has no group 'nowhere'") != std::string::npos);
+  }
+}
+
+TEST_CASE("every_case_of_the_data_folder_with_a_run_makes_a_scene") {
+  int runs = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(EQUIDEM_SOURCE_DIR) / "data/cases")) {
+    if (entry.path().extension() != ".toml") continue;
+    const Case c = read_case(entry.path());
+    if (!c.run) continue;
+    CAPTURE(entry.path());
+    const Assembly assembly = build_assembly(c);
+    const BuiltSprings springs = build_springs(c, assembly);
+    CHECK(build_scene(c, assembly, springs.springs).inertia.size() == assembly.size());
+    ++runs;
+  }
+  CHECK(runs >= 4);
+}

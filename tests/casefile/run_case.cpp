@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/casefile/run_case.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "equidem/casefile/keys.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/text.hpp"
+
+#include "example.hpp"
+#include "support/catch.hpp"
+#include "wrong.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace fs = std::filesystem;
+
+TEST_CASE("a_run_says_what_its_file_says") {
+  const Case c = parsed(motion_case);
+  REQUIRE(c.run);
+  const RunCase& run = *c.run;
+
+  CHECK(run.duration == 0.25);
+  CHECK_FALSE(run.until_rest);
+  CHECK(run.time_step.step == 2e-6);
+  CHECK(run.time_step.rule == TimeStepRule::bound);
+  CHECK(run.time_step.fraction == 0.5);
+  CHECK(run.time_step.duration == 0.25);
+  CHECK(run.time_step.allow_unstable);
+  CHECK(run.integrator == Integrator::velocity_verlet);
+  CHECK(run.motion == LoopKind::Motion::finite);
+  CHECK(run.gravity == Vec2{0, -9.81});
+  CHECK(run.damping.mass == 3);
+  CHECK(run.damping.stiffness == 0);
+  CHECK(run.damping.contact == 0.1);
+  CHECK(run.damping.local == 0.2);
+  REQUIRE(run.walls.size() == 2);
+  CHECK(run.walls[0].name == "left");
+  CHECK(run.walls[0].point == Vec2{-0.02, 0});
+  CHECK(run.walls[0].kN == 2e9);
+  CHECK(run.walls[1].displacement == Schedule{});
+  REQUIRE(run.velocities.size() == 1);
+  CHECK(run.velocities[0].group == "right");
+  CHECK(run.velocities[0].velocity == Vec2{0.1, 0.2});
+  CHECK(run.velocities[0].spin == -3);
+  REQUIRE(run.probes.size() == 1);
+  CHECK(run.probes[0].group == "right");
+  CHECK(run.probes[0].quantities == std::vector<std::string>{"velocity", "energy"});
+  CHECK(c.output.frame_interval == 0.05);
+  CHECK(c.output.probe_interval == 0.001);
+  CHECK(c.output.checkpoint_interval == 30);
+}
+
+TEST_CASE("a_run_has_defaults_and_is_there_only_where_it_is_asked_for") {
+  CHECK_FALSE(parsed(tension_case).run);
+  CHECK_FALSE(parsed(tension_case).output.frame_interval);
+  const Case c = parsed(tension_case, {"run.until_rest=1e-10"});
+  REQUIRE(c.run);
+  CHECK(c.run->until_rest == 1e-10);
+  CHECK_FALSE(c.run->duration);
+  CHECK_FALSE(c.run->time_step.step);
+  CHECK(c.run->time_step.rule == TimeStepRule::lanczos);
+  CHECK(c.run->time_step.fraction == 0.8);
+  CHECK(c.run->time_step.duration == 0);
+  CHECK_FALSE(c.run->time_step.allow_unstable);
+  CHECK(c.run->integrator == Integrator::leapfrog);
+  CHECK(c.run->motion == LoopKind::Motion::small);
+  CHECK(c.run->gravity == Vec2{});
+  CHECK(c.run->damping.mass + c.run->damping.stiffness + c.run->damping.contact + c.run->damping.local == 0);
+  CHECK(c.output.checkpoint_interval == 60);
+}
+
+TEST_CASE("motions_and_loads_are_what_they_are_in_statics_times_their_schedule") {
+  const Case c = parsed(motion_case);
+  const RunCase& run = *c.run;
+  REQUIRE(c.schedules.size() == 3);
+  REQUIRE(run.supports.size() == c.supports.size());
+  REQUIRE(run.loads.size() == c.load_cases.front().loads.size());
+  const Schedule &ramp = c.schedules[0].schedule, &sine = c.schedules[1].schedule, &table = c.schedules[2].schedule;
+  CHECK_FALSE(run.supports[0].rotation);
+  for (double t = 0; t < 0.3; t += 0.01) {
+    CAPTURE(t);
+    CHECK(run.supports[0].ux->at(t) == *c.supports[0].ux * ramp.at(t));
+    CHECK(run.supports[0].uy->at(t) == 0);
+    CHECK(run.supports[1].uy->at(t) == *c.supports[1].uy);
+    CHECK(run.loads[0].factor.at(t) == table.at(t));
+    CHECK(run.loads[1].factor.at(t) == 1);
+    CHECK(run.walls[0].displacement.at(t) == Approx(2e-4 * sine.at(t)).epsilon(1e-14));
+  }
+  CHECK(run.loads[0].load.force == Vec2{10, 0});
+  CHECK(run.loads[1].load.moment == 2);
+  CHECK(ramp.at(1) == 1);
+  CHECK(table.at(0.1) == 0.5);
+}
+
+TEST_CASE("a_wall_keeps_its_direction_whatever_the_length_of_its_normal") {
+  for (const char* normal : {"[0.6, -0.8]", "[6e-9, -8e-9]", "[6e9, -8e9]", "[3, -4]"}) {
+    CAPTURE(normal);
+    const Case c = parsed(motion_case, {format("wall.1.normal={}", normal)});
+    CHECK(c.run->walls[1].normal.x == Approx(0.6).epsilon(1e-15));
+    CHECK(c.run->walls[1].normal.y == Approx(-0.8).epsilon(1e-15));
+  }
+}
+
+TEST_CASE("a_run_reads_back_from_its_echo_bit_by_bit") {
+  const Case first = parsed(motion_case, {"run.damping.mass=0.1", "schedule.0.end=0.30000000000000004"});
+  const Case second = parsed(to_toml(first, "."));
+  REQUIRE(second.run);
+  CHECK(second.run->damping.mass == first.run->damping.mass);
+  CHECK(second.run->walls[1].normal == first.run->walls[1].normal);
+  REQUIRE(second.schedules.size() == first.schedules.size());
+  for (std::size_t k = 0; k < first.schedules.size(); ++k) {
+    CAPTURE(first.schedules[k].name);
+    CHECK(second.schedules[k].name == first.schedules[k].name);
+    CHECK(second.schedules[k].schedule == first.schedules[k].schedule);
+  }
+}
+
+TEST_CASE("a_table_may_lie_in_a_file_beside_the_case") {
+  const fs::path folder = fs::temp_directory_path() / "equidem_test_schedule_file";
+  const std::string text =
+      changed(motion_case, "times = [0.0, 0.2]\nvalues = [0.0, 1.0]\n", "path = \"own/shaking.csv\"\n");
+  const auto table_of = [&](const std::string& content) {
+    write_file(folder / "own/shaking.csv", content, true);
+    return parse_case(text, "a.toml", folder, {}).schedules[2].schedule;
+  };
+  const auto sentence_of = [&](const std::string& content) -> std::string {
+    try {
+      static_cast<void>(table_of(content));
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  const Schedule expected = parsed(motion_case).schedules[2].schedule;
+
+  CHECK(table_of("0,0\n0.2,1\n") == expected);
+  CHECK(table_of("time,value\n0.0, 0.0\n2e-1 ,1.0") == expected);
+  CHECK(table_of("\xef\xbb\xbf# measured\r\ntime, value\r\n\r\n0,0\r\n0.2,1\r\n") == expected);
+
+  const Case c = parse_case(text, "a.toml", folder, {});
+  const std::string echoed = to_toml(c, folder / "results");
+  CHECK(echoed.find("path = \"../own/shaking.csv\"") != std::string::npos);
+  CHECK(parse_case(echoed, "b.toml", folder / "results", {}).schedules[2].schedule == expected);
+
+  struct Bad {
+    std::string content, line, word;
+  };
+  for (const Bad& bad : {
+           Bad{"", "a.toml:", "has no points"},
+           Bad{"time,value\n", "a.toml:", "has no points"},
+           Bad{"t,v\n0,0\n", "shaking.csv:1: ", "not a time and a value"},
+           Bad{"0,0\ntime,value\n", "shaking.csv:2: ", "not a time and a value"},
+           Bad{"0,0\n0.2\n", "shaking.csv:2: ", "not a time and a value"},
+           Bad{"0,0\n0.2,1,2\n", "shaking.csv:2: ", "not a time and a value"},
+           Bad{"0,0\n0.2,nan\n", "shaking.csv:2: ", "not a time and a value"},
+           Bad{"0,0\n\n0.2;1\n", "shaking.csv:3: ", "not a time and a value"},
+           Bad{"0,0\n0.2,1\n0.2,2\n", "shaking.csv:3: ", "0.2 s comes after 0.2 s"},
+       }) {
+    const std::string sentence = sentence_of(bad.content);
+    CAPTURE(bad.content, sentence);
+    CHECK(sentence.find(bad.line) != std::string::npos);
+    CHECK(sentence.find(bad.word) != std::string::npos);
+  }
+  fs::remove_all(folder);
+  const std::string missing = error_of(text);
+  CAPTURE(missing);
+  CHECK(missing.starts_with(place_of(text, "path = \"own") + ": schedule.path: cannot read"));
+}
+
+TEST_CASE("runs_that_cannot_be_meant_are_refused_with_line_and_key") {
+  const std::vector<Wrong> wrongs = {
+      // how long, in which steps
+      {"duration = 0.25", "duration = 0.0", "duration = 0.0", "run.duration", {"0.0 is out of range", "> 0"}},
+      {"duration = 0.25", "duration = -1", "duration = -1", "run.duration", {"-1 is out of range"}},
+      {"duration = 0.25", "duration = inf", "duration = inf", "run.duration", {"not a finite number"}},
+      {"duration = 0.25\n", "", "[run]", "run", {"neither duration nor until_rest"}},
+      {"duration = 0.25", "duration = 0.25\nuntil_rest = 1e-10", "until_rest", "run", {"both given"}},
+      {"duration = 0.25", "until_rest = 1.0", "until_rest", "run.until_rest", {"between 0 and 1"}},
+      {"time_step = 2e-6", "time_step = 0", "time_step", "run.time_step", {"0 is out of range", "\"auto\""}},
+      {"time_step = 2e-6", "time_step = -2e-6", "time_step", "run.time_step", {"out of range"}},
+      {"time_step = 2e-6", "time_step = \"automatic\"", "time_step", "run.time_step", {"\"automatic\" is text"}},
+      {"time_step = 2e-6", "time_step = 1", "time_step", "run.time_step", {"longer than the run of 0.25 s"}},
+      {"step_fraction = 0.5", "step_fraction = 1.5", "step_fraction", "run.step_fraction", {"1.5 is out of range"}},
+      {"step_fraction = 0.5", "step_fraction = 0", "step_fraction", "run.step_fraction", {"0 is out of range"}},
+      // how
+      {"\"velocity_verlet\"", "\"verlet\"", "integrator", "run.integrator", {"no known integrator", "\"leapfrog\""}},
+      {"\"velocity_verlet\"", "\"leap_frog\"", "integrator", "run.integrator", {"Did you mean \"leapfrog\"?"}},
+      {"\"bound\"", "\"bounds\"", "step_rule", "run.step_rule", {"Did you mean \"bound\"?"}},
+      {"motion = \"finite\"", "motion = \"large\"", "motion", "run.motion", {"\"small\", \"finite\""}},
+      {"[0.0, -9.81]", "-9.81", "gravity", "run.gravity", {"two numbers [x, y]"}},
+      {"mass = 3.0", "masses = 3.0", "masses", "run.damping.masses", {"unknown key", "'mass'"}},
+      {"mass = 3.0", "viscous = 3.0", "viscous", "run.damping.viscous", {"unknown key", "Known here: mass"}},
+      {"mass = 3.0", "mass = -3.0", "mass = -3.0", "run.damping.mass", {"-3.0 is out of range"}},
+      {"mass = 3.0", "stiffness = 3.0", "contact = 0.1", "run.damping.contact", {"stiffness and contact are both"}},
+      {"local = 0.2", "local = 1.0", "local", "run.damping.local", {"< 1"}},
+      {"[run.damping]", "[run.dampling]", "[run.dampling]", "run.dampling", {"unknown table", "'damping'"}},
+      // schedules
+      {"end = 0.1", "end = 0.01", "end = 0.01", "schedule.end", {"ends at 0.01 s and starts at 0.02 s"}},
+      {"end = 0.1\n", "", "[[schedule]]", "schedule.end", {"missing key"}},
+      {"end = 0.1",
+       "end = 0.1\nfrequency = 1.0",
+       "frequency",
+       "schedule.frequency",
+       {"does not apply to kind = \"ramp\""}},
+      {"frequency = 10.0", "frequency = 0.0", "frequency", "schedule.frequency", {"out of range"}},
+      {"kind = \"ramp\"", "kind = \"step\"", "kind = \"step\"", "schedule.kind", {"no known kind", "\"ramp\""}},
+      {"times = [0.0, 0.2]", "times = [0.2, 0.0]", "times", "schedule.times", {"0 s comes after 0.2 s"}},
+      {"times = [0.0, 0.2]", "times = [0.0]", "times", "schedule.times", {"1 time and 2 values"}},
+      {"times = [0.0, 0.2]", "times = []", "times", "schedule.times", {"empty"}},
+      {"times = [0.0, 0.2]", "times = [0.0, inf]", "times", "schedule.times", {"not a finite number"}},
+      {"times = [0.0, 0.2]\n", "", "[[schedule]]\nname = \"pull\"", "schedule", {"not given once", "path"}},
+      {"times = [0.0, 0.2]\n",
+       "times = [0.0, 0.2]\npath = \"a.csv\"\n",
+       "[[schedule]]\nname = \"pull\"",
+       "schedule",
+       {"not given once"}},
+      {"name = \"shake\"",
+       "name = \"open\"",
+       "name = \"open\"\nkind = \"sine\"",
+       "schedule.name",
+       {"two schedules 'open'"}},
+      {"name = \"shake\"", "name = \"\"", "name = \"\"", "schedule.name", {"empty"}},
+      {"schedule = \"open\"",
+       "schedule = \"opne\"",
+       "schedule = \"opne\"",
+       "support.schedule",
+       {"Did you mean \"open\"?"}},
+      {"schedule = \"pull\"",
+       "schedule = \"push\"",
+       "schedule = \"push\"",
+       "load.schedule",
+       {"there is no schedule \"push\""}},
+      {"schedule = \"shake\"", "schedule = \"x\"", "schedule = \"x\"", "wall.schedule", {"there is no schedule \"x\""}},
+      // walls, velocities, probes
+      {"normal = [2.0, 0.0]", "normal = [0.0, 0.0]", "normal", "wall.normal", {"is zero"}},
+      {"kN = 2.0e9", "kN = 0.0", "kN = 0.0", "wall.kN", {"out of range", "> 0"}},
+      {"displacement = 2e-4\n", "", "schedule = \"shake\"", "wall.schedule", {"no displacement"}},
+      {"name = \"right\"", "name = \"left\"", "name = \"left\"\npoint = [0.1", "wall.name", {"two walls 'left'"}},
+      {"\"energy\"]",
+       "\"energie\"]",
+       "quantities",
+       "probe.quantities",
+       {"none of the quantities", "Did you mean \"energy\"?"}},
+      {"\"energy\"]", "\"velocity\"]", "quantities", "probe.quantities", {"\"velocity\" is there twice"}},
+      {"[\"velocity\", \"energy\"]", "[]", "quantities", "probe.quantities", {"empty"}},
+      {"[\"velocity\", \"energy\"]", "\"energy\"", "quantities", "probe.quantities", {"\"energy\" is text"}},
+      {"name = \"tip\"", "name = \"../tip\"", "name = \"../tip\"", "probe.name", {"cannot name a probe"}},
+      {"frame_interval = 0.05", "frame_interval = 0.0", "frame_interval", "output.frame_interval", {"out of range"}},
+      // contradictions
+      {"moment = 2.0",
+       "moment = 2.0\ncase = \"a\"\n[[load]]\ngroup = \"top\"\nmoment = 1.0\ncase = \"b\"",
+       "case = \"b\"",
+       "load.case",
+       {"'a' and 'b'", "one motion"}},
+  };
+  REQUIRE(error_of(motion_case).empty());
+  for (const Wrong& wrong : wrongs) {
+    const std::string text = changed(motion_case, wrong.what, wrong.by);
+    check_sentence(text, error_of(text), wrong);
+  }
+}
+
+TEST_CASE("what_acts_in_a_run_alone_is_not_passed_over_without_one") {
+  const auto begin = motion_case.find("[run]"), end = motion_case.find("[[schedule]]");
+  const std::string without = std::string(motion_case).erase(begin, end - begin);
+  check_sentence(without, error_of(without), {"", "", "[[wall]]", "wall", {"[run] is not", "Add [run]"}});
+  const std::string bare = without.substr(0, without.find("[[wall]]"));
+  CHECK(error_of(bare).empty());
+  CHECK(parsed(bare).schedules.size() == 3);
+}
+
+TEST_CASE("the_description_fits_a_hundred_columns") {
+  std::istringstream lines(describe_case_file());
+  for (std::string line; std::getline(lines, line);) {
+    CAPTURE(line);
+    // Bytes that continue a character take no column.
+    CHECK(std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xc0) != 0x80; }) <= 100);
+  }
+}

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The bond for finite motions: an energy, its derivatives, and what leaves it alone.
+#include "equidem/contact/finite_bond.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "equidem/core/random.hpp"
+
+#include "support/catch.hpp"
+#include "support/fields.hpp"
+
+using namespace equidem;
+using std::numbers::pi;
+
+namespace {
+
+using Real = long double;
+using Motion = BondMotion<Real>;
+
+/// Levers that add up to the branch, that do not, and that vanish.
+struct Levers {
+  std::string name;
+  double share_i = 0, share_j = 0;  ///< of the branch
+  [[nodiscard]] bool add_up() const { return share_i + share_j == 1; }
+};
+const std::array<Levers, 5> all_levers{
+    {{"equal", 0.5, 0.5}, {"unequal", 0.25, 0.75}, {"one", 1, 0}, {"too short", 0.25, 0.5}, {"none", 0, 0}}};
+
+FiniteBond bond_with(const Levers& levers, Random& random) {
+  const double angle = random.uniform(-pi, pi), length = random.uniform(0.5, 2);
+  return {{length * std::cos(angle), length * std::sin(angle)},
+          levers.share_i * length,
+          levers.share_j * length,
+          {random.uniform(1, 3), random.uniform(-1, 3)}};
+}
+
+Motion random_motion(double size, Random& random) {
+  const auto draw = [&] { return static_cast<Real>(size * random.uniform(-1, 1)); };
+  return {draw(), draw(), draw(), draw()};
+}
+
+/// The branch turned by an angle, both bodies with it.
+Motion turned(const FiniteBond& bond, Real angle) {
+  const Real x = bond.branch.x, y = bond.branch.y, c = std::cos(angle) - 1, s = std::sin(angle);
+  return {c * x - s * y, s * x + c * y, angle, angle};
+}
+
+Motion plus(const Motion& a, const Motion& b, Real factor = 1) {
+  return {a.x + factor * b.x, a.y + factor * b.y, a.theta_i + factor * b.theta_i, a.theta_j + factor * b.theta_j};
+}
+
+Real largest_difference(const BondForces<Real>& a, const BondForces<Real>& b) {
+  return std::max(
+      {std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.moment_i - b.moment_i), std::abs(a.moment_j - b.moment_j)});
+}
+
+}  // namespace
+
+TEST_CASE("bond_forces_are_the_derivatives_of_the_energy") {
+  Random random(1);
+  for (const Levers& levers : all_levers) {
+    for (const double turns : {0.0, 0.3, 0.5, -17.8}) {
+      for (int k = 0; k < 50; ++k) {
+        const FiniteBond bond = bond_with(levers, random);
+        const Motion motion = plus(turned(bond, 2 * pi * turns), random_motion(0.3, random));
+        const auto derivative = [&](const Motion& direction) {
+          const Real h = 1e-6L;
+          return (bond_energy(bond, plus(motion, direction, h)) - bond_energy(bond, plus(motion, direction, -h))) /
+                 (2 * h);
+        };
+        // Motion is that of j relative to i: the force on i is +dW/d(u_j - u_i), moments are -dW/dtheta.
+        const BondForces<Real> differences{derivative({1, 0, 0, 0}), derivative({0, 1, 0, 0}),
+                                           -derivative({0, 0, 1, 0}), -derivative({0, 0, 0, 1})};
+        CAPTURE(levers.name, turns, k);
+        CHECK(static_cast<double>(largest_difference(bond_forces(bond, motion), differences)) < 1e-9);
+      }
+    }
+  }
+}
+
+TEST_CASE("rates_of_stretch_and_slip_are_their_derivatives_in_time") {
+  Random random(2);
+  for (const Levers& levers : all_levers) {
+    for (int k = 0; k < 50; ++k) {
+      const FiniteBond bond = bond_with(levers, random);
+      const Motion motion = plus(turned(bond, random.uniform(-9, 9)), random_motion(0.3, random));
+      const Motion velocity = random_motion(2, random);
+      const Real h = 1e-6L;
+      const DeformationOf<Real> after = bond_deformation(bond, plus(motion, velocity, h)),
+                                before = bond_deformation(bond, plus(motion, velocity, -h)),
+                                rate = bond_deformation_rate(bond, motion, velocity);
+      CAPTURE(levers.name, k);
+      CHECK(static_cast<double>(std::abs((after.normal - before.normal) / (2 * h) - rate.normal)) < 1e-9);
+      CHECK(static_cast<double>(std::abs((after.tangential - before.tangential) / (2 * h) - rate.tangential)) < 1e-9);
+    }
+  }
+}
+
+TEST_CASE("a_common_rigid_motion_costs_nothing_however_many_turns") {
+  Random random(3);
+  for (const Levers& levers : all_levers) {
+    for (const double angle : {0.0, 1.0, pi, -3.0, 2 * pi, 100.0, -12345.6}) {
+      const FiniteBond bond = bond_with(levers, random);
+      const Motion motion = turned(bond, angle);
+      const BondForces<Real> forces = bond_forces(bond, motion);
+      CAPTURE(levers.name, angle);
+      // 1e-19 of a long double, times the turns that are taken away.
+      CHECK(static_cast<double>(bond_energy(bond, motion)) < 1e-28);
+      CHECK(static_cast<double>(largest_difference(forces, {})) < 1e-14);
+    }
+  }
+}
+
+TEST_CASE("discs_that_roll_on_one_another_cost_nothing") {
+  const FiniteBond bond{{2, 0}, 0.5, 1.5, {1, 1}};
+  for (const double angle : {0.1, 1.0, 3.0, 3.3, 10.0, 1000.0}) {
+    const Motion rolled{0, 0, Real(angle) / 0.5L, -Real(angle) / 1.5L};
+    CAPTURE(angle);
+    CHECK(static_cast<double>(bond_energy(bond, rolled)) < 1e-28);
+  }
+}
+
+TEST_CASE("forces_and_moments_on_two_bodies_balance") {
+  Random random(4);
+  for (const Levers& levers : all_levers) {
+    for (int k = 0; k < 20; ++k) {
+      const FiniteBond bond = bond_with(levers, random);
+      const Motion motion = plus(turned(bond, random.uniform(-9, 9)), random_motion(0.5, random));
+      const BondForces<Real> f = bond_forces(bond, motion);
+      const Real lx = bond.branch.x + motion.x, ly = bond.branch.y + motion.y;
+      CAPTURE(levers.name, k);
+      // About the centre of i: j, at l, feels the negative of the force.
+      CHECK(static_cast<double>(std::abs(f.moment_i + f.moment_j - (lx * f.y - ly * f.x))) < 1e-17);
+    }
+  }
+}
+
+TEST_CASE("small_motions_follow_the_linear_law_to_first_order") {
+  Random random(5);
+  for (const Levers& levers : all_levers) {
+    if (!levers.add_up()) continue;
+    for (int k = 0; k < 20; ++k) {
+      const FiniteBond bond = bond_with(levers, random);
+      const Motion direction = random_motion(1, random);
+      const double length = norm(bond.branch);
+      const ContactFrame frame{bond.branch / length, bond.lever_i, bond.lever_j};
+      const auto difference = [&](Real size) {
+        const Motion motion = plus({}, direction, size);
+        const auto d =
+            deformation(frame, motion.x, motion.y, frame.lever_i * motion.theta_i + frame.lever_j * motion.theta_j);
+        const ForceOf<Real> f = linear_spring_force(bond.springs, d);
+        const Vec2 n = frame.normal, s = frame.tangent();
+        const BondForces<Real> linear{f.normal * n.x + f.tangential * s.x, f.normal * n.y + f.tangential * s.y,
+                                      frame.lever_i * f.tangential, frame.lever_j * f.tangential};
+        return largest_difference(bond_forces(bond, motion), linear);
+      };
+      const double order = static_cast<double>(std::log2(difference(1e-4L) / difference(0.5e-4L)));
+      CAPTURE(levers.name, k, static_cast<double>(difference(1e-4L)));
+      CHECK(order == Approx(2).margin(0.01));
+    }
+  }
+}

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The ledger of energies: its balance, and how it stands after a million steps.
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/dynamics/time_step.hpp"
+
+#include "dynamics/moving_scenes.hpp"
+#include "support/catch.hpp"
+#include "support/fields.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+Schedule ramp(double value, double end) {
+  Schedule schedule;
+  schedule.kind = Schedule::Kind::ramp;
+  schedule.value = value;
+  schedule.end = end;
+  return schedule;
+}
+
+Schedule sine(double value, double frequency) {
+  Schedule schedule;
+  schedule.kind = Schedule::Kind::sine;
+  schedule.value = value;
+  schedule.frequency = frequency;
+  return schedule;
+}
+
+/// Energy of the linear springs and of the synchronous velocities.
+double energy_now(const Scene& scene, const Simulation& run) {
+  const std::vector<DiscMotion> u = run.motions(), v = run.velocities();
+  double energy = 0;
+  for (std::size_t d = 0; d < v.size(); ++d) {
+    energy += 0.5 * (scene.inertia[d].mass * dot(v[d].u, v[d].u) + scene.inertia[d].moment * v[d].theta * v[d].theta);
+  }
+  for (std::size_t c = 0; c < scene.assembly.contacts.size(); ++c) {
+    const Contact& contact = scene.assembly.contacts[c];
+    const ContactDeformation d = deformation(frame_of(scene.assembly, contact), u[contact.i], u[contact.j]);
+    const SpringConstants k = scene.springs[c];
+    energy += 0.5 * (k.kN * d.normal * d.normal + k.kT * d.tangential * d.tangential);
+  }
+  return energy;
+}
+
+}  // namespace
+
+TEST_CASE("the_balance_of_leapfrog_closes_to_rounding") {
+  struct Given {
+    std::string name;
+    Damping damping;
+  };
+  const Given given = GENERATE(Given{"none", {}}, Given{"mass", {.mass = 0.2}}, Given{"local", {.local = 0.5}},
+                               Given{"stiffness", {.stiffness = 0.1}}, Given{"contact", {.contact = 0.2}},
+                               Given{"mass and contact", {.mass = 0.1, .contact = 0.2}});
+  const bool hexagonal = GENERATE(true, false);
+  const Rotation rotation = GENERATE(Rotation::from_scene, Rotation::restrained);
+  const Assembly assembly = hexagonal ? hexagonal_block(7) : delaunay_block(60, 9);
+  const ContactSprings springs(SpringConstants{1, 0.4});
+  Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  scene.velocities = start_with(random_motions(assembly.size(), 5, 0.1, 0.1));
+  TimedSupport bottom;
+  bottom.group = "bottom";
+  bottom.uy = sine(0.05, 0.1);
+  scene.supports = {bottom};
+  scene.loads = {{{"top", LoadKind::per_disc, {0.03, -0.02}, 0}, ramp(1, 20)},
+                 {{"right", LoadKind::traction, {0.05, 0}, 0}, sine(1, 0.02)}};
+  SimulationOptions options{.rotation = rotation, .damping = given.damping, .gravity = {0.001, -0.01}};
+  options.time_step = choose_time_step(scene, options, {.fraction = 0.7}).step;
+  const ThreadsFor one(1);
+  Simulation run(scene, options);
+  double most = 0;
+  for (int k = 0; k < 50; ++k) {
+    run.advance(40);
+    const EnergyLedger e = run.energy();
+    most = std::max({most, e.kinetic, std::abs(e.elastic), std::abs(e.input()), e.dissipated()});
+    CAPTURE(given.name, hexagonal, k, e.kinetic, e.elastic, e.potential, e.dissipated(), e.input(), e.initial,
+            e.error() / most);
+    REQUIRE(std::abs(e.error()) < 2e-13 * most);
+  }
+  const EnergyLedger e = run.energy();
+  CHECK(e.kinetic > 0);
+  CHECK(e.work_of_loads != 0);
+  CHECK(e.work_of_supports != 0);
+  CHECK((e.damped_mass > 0) == (given.damping.mass > 0));
+  CHECK((e.damped_local > 0) == (given.damping.local > 0));
+  CHECK((e.damped_contact > 0) == (given.damping.stiffness + given.damping.contact > 0));
+}
+
+// A symplectic scheme: the energy sways by (omega h)² and does not drift; what rounding adds is a random walk.
+TEST_CASE("a_million_steps_of_leapfrog_at_half_the_critical_step_do_not_drift") {
+  const Assembly assembly = hexagonal_block(4);
+  const ContactSprings springs(SpringConstants{1, 0.4});
+  const Scene scene{.assembly = assembly,
+                    .springs = springs,
+                    .inertia = inertia_of(assembly.radii, 1, Body::disc),
+                    .supports = held_still(assembly, std::vector<Support>{{"bottom", 0.0, 0.0, {}}}),
+                    .velocities = start_with(random_motions(assembly.size(), 8, 0.1, 0.1))};
+  const ThreadsFor one(1);
+  SimulationOptions options;
+  options.time_step = choose_time_step(scene, options, {.fraction = 0.5}).step;
+  Simulation run(scene, options);
+  constexpr int looks = 1000;
+  constexpr std::int64_t steps = 1000;
+  const double first = energy_now(scene, run);
+  std::vector<double> error;
+  double ledger = 0;
+  for (int k = 0; k < looks; ++k) {
+    run.advance(steps);
+    error.push_back(energy_now(scene, run) / first - 1);
+    ledger = std::max(ledger, std::abs(run.energy().error()) / first);
+  }
+  double mean = 0, sxx = 0, sxy = 0, left = 0, largest_error = 0;
+  for (const double e : error) mean += e / looks, largest_error = std::max(largest_error, std::abs(e));
+  const auto x = [&](int k) { return (k - 0.5 * (looks - 1)) / looks; };  // share of the run
+  for (int k = 0; k < looks; ++k) sxx += x(k) * x(k), sxy += x(k) * (error[k] - mean);
+  const double slope = sxy / sxx;
+  for (int k = 0; k < looks; ++k) left += std::pow(error[k] - mean - slope * x(k), 2);
+  const double uncertainty = std::sqrt(left / (looks - 2) / sxx);
+  INFO("relative drift over 1e6 steps " << slope << " +- " << uncertainty << ", largest error " << largest_error
+                                        << ", balance of the ledger " << ledger);
+  CHECK(std::abs(slope) < 4 * uncertainty);
+  CHECK(uncertainty < 0.01);
+  CHECK(largest_error < 0.25);
+  CHECK(ledger < 1e-11);
+}

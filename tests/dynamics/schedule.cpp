@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/dynamics/schedule.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/random.hpp"
+
+#include "support/catch.hpp"
+
+using namespace equidem;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Schedule ramp(double value, double start, double end) {
+  return {.kind = Schedule::Kind::ramp, .value = value, .start = start, .end = end};
+}
+Schedule sine(double value, double start, double frequency) {
+  return {.kind = Schedule::Kind::sine, .value = value, .start = start, .frequency = frequency};
+}
+Schedule table(std::vector<double> times, std::vector<double> values) {
+  return {.kind = Schedule::Kind::table, .times = std::move(times), .values = std::move(values)};
+}
+
+std::vector<Schedule> one_of_each() {
+  return {Schedule{.value = 3}, ramp(-2, 0.5, 2.5), sine(0.7, 0.25, 3), table({0.5, 1, 3}, {1, -1, 4})};
+}
+
+std::string refusal(const Schedule& schedule) {
+  try {
+    check(schedule);
+  } catch (const Error& error) {
+    return error.kind() == ErrorKind::bad_input ? error.what() : "wrong kind";
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("a_ramp_is_half_a_cosine_between_rest_and_rest") {
+  const Schedule r = ramp(-2, 0.5, 2.5);
+  double before = 0;
+  for (double t = 0; t <= 3; t += 1.0 / 128) {
+    CAPTURE(t);
+    const double s = std::clamp((t - 0.5) / 2, 0.0, 1.0);
+    CHECK(r.at(t) == Approx(-(1 - std::cos(pi * s))).epsilon(0).margin(2e-15));
+    CHECK(r.at(t) <= before);
+    before = r.at(t);
+  }
+  CHECK(r.at(2.5) == -2);
+  // No jump in velocity: close to either end the motion left is that of a parabola.
+  const double h = 1e-4;
+  for (const double at : {0.5, 2.5}) {
+    const double speed = (r.at(at + h) - r.at(at - h)) / (2 * h);
+    CAPTURE(at, speed);
+    CHECK(std::abs(speed) < pi * pi / 4 * h);
+  }
+}
+
+TEST_CASE("a_sine_agrees_with_the_library_and_repeats_without_drift") {
+  const Schedule s = sine(0.7, 0.25, 4);
+  Random random(1);
+  double worst = 0;
+  for (int k = 0; k < 10000; ++k) {
+    const double t = 0.25 + 2 * random.uniform();
+    worst = std::max(worst, std::abs(s.at(t) - 0.7 * std::sin(2 * pi * 4 * (t - 0.25))));
+  }
+  CAPTURE(worst);
+  CHECK(worst < 0.7 * 1e-14);
+  CHECK(s.at(0) == 0);
+  for (const double periods : {1.0, 1000.0, 1e9}) {
+    CAPTURE(periods);
+    CHECK(s.at(0.25 + periods / 4) == 0);
+    CHECK(s.at(0.25 + (periods + 0.25) / 4) == Approx(0.7).epsilon(1e-15));
+    CHECK(s.at(0.25 + (periods + 0.75) / 4) == Approx(-0.7).epsilon(1e-15));
+    CHECK(s.at(0.25 + (periods + 1.0 / 12) / 4) == Approx(0.35).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("a_table_is_straight_between_its_points_and_constant_outside") {
+  const Schedule t = table({0.5, 1, 3}, {1, -1, 4});
+  CHECK(t.at(-1) == 1);
+  CHECK(t.at(0.5) == 1);
+  CHECK(t.at(0.75) == 0);
+  CHECK(t.at(1) == -1);
+  CHECK(t.at(2) == 1.5);
+  CHECK(t.at(3) == 4);
+  CHECK(t.at(1e9) == 4);
+  CHECK(table({2}, {5}).at(0) == 5);
+  CHECK(table({2}, {5}).at(3) == 5);
+}
+
+TEST_CASE("a_scaled_schedule_is_the_factor_times_it_at_every_time") {
+  for (const Schedule& schedule : one_of_each()) {
+    CHECK(refusal(schedule).empty());
+    const Schedule twice = scaled(schedule, -4);
+    CHECK(scaled(schedule, 1) == schedule);
+    CHECK_FALSE(twice == schedule);
+    for (double time = -0.5; time < 4; time += 0.03125) {
+      CAPTURE(static_cast<int>(schedule.kind), time);
+      CHECK(twice.at(time) == -4 * schedule.at(time));
+    }
+  }
+}
+
+TEST_CASE("schedules_without_a_meaning_are_refused_with_the_number_at_fault") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  struct Bad {
+    Schedule schedule;
+    const char* word;
+  };
+  for (const Bad& bad : {
+           Bad{Schedule{.value = nan}, "value = nan"},
+           Bad{ramp(inf, 0, 1), "value = inf"},
+           Bad{ramp(1, nan, 1), "start = nan"},
+           Bad{ramp(1, 0, inf), "end = inf"},
+           Bad{ramp(1, 2, 1), "ends at 1 s and starts at 2 s"},
+           Bad{ramp(1, 2, 2), "ends at 2 s and starts at 2 s"},
+           Bad{sine(1, 0, 0), "frequency 0 Hz"},
+           Bad{sine(1, 0, -3), "frequency -3 Hz"},
+           Bad{sine(1, 0, inf), "frequency = inf"},
+           Bad{table({}, {}), "0 times"},
+           Bad{table({1, 2}, {1}), "2 times and 1 value"},
+           Bad{table({1, 1}, {0, 1}), "the time 1 s comes after 1 s"},
+           Bad{table({2, 1}, {0, 1}), "the time 1 s comes after 2 s"},
+           Bad{table({1, nan}, {0, 1}), "time = nan"},
+           Bad{table({1, 2}, {0, inf}), "value = inf"},
+       }) {
+    const std::string sentence = refusal(bad.schedule);
+    CAPTURE(bad.word, sentence);
+    CHECK(sentence.find(bad.word) != std::string::npos);
+  }
+}

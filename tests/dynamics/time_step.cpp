@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The critical step against experiment and closed forms, and what is refused.
+#include "equidem/dynamics/time_step.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "dynamics/moving_scenes.hpp"
+#include "support/catch.hpp"
+#include "support/fields.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+/// Whether a small random motion grows without end in so many steps of that length.
+bool grows(const Scene& scene, SimulationOptions options, double step) {
+  const ThreadsFor one(1);
+  options.time_step = step;
+  Scene moving = scene;
+  moving.velocities = start_with(random_motions(scene.assembly.size(), 3, 1e-3, 1e-3));
+  Simulation run(moving, options);
+  const auto size = [&] {
+    double sum = 0;
+    for (const DiscMotion& v : run.velocities()) sum += dot(v.u, v.u) + v.theta * v.theta;
+    return sum;
+  };
+  const double first = size();
+  // The thesis's scheme grows slowly past its lower limit.
+  const int chunk = options.integrator == Integrator::thesis ? 2000 : 200;
+  for (int k = 0; k < 20; ++k) {
+    run.advance(chunk);
+    if (!(size() < 1e4 * first)) return true;
+  }
+  return false;
+}
+
+/// The step at which growth begins, by halving, to 0.2 %.
+double measured_limit(const Scene& scene, const SimulationOptions& options, double guess) {
+  double stable = 0.5 * guess, unstable = 1.5 * guess;
+  while (unstable - stable > 2e-3 * guess) {
+    const double middle = 0.5 * (stable + unstable);
+    (grows(scene, options, middle) ? unstable : stable) = middle;
+  }
+  return 0.5 * (stable + unstable);
+}
+
+}  // namespace
+
+TEST_CASE("instability_begins_at_the_predicted_critical_step") {
+  struct Given {
+    Integrator integrator;
+    Damping damping;
+  };
+  const Given given = GENERATE(
+      Given{Integrator::leapfrog, {}}, Given{Integrator::velocity_verlet, {}}, Given{Integrator::fourth_order, {}},
+      Given{Integrator::leapfrog, {.mass = 0.3}}, Given{Integrator::leapfrog, {.stiffness = 0.2}},
+      Given{Integrator::leapfrog, {.contact = 0.3}}, Given{Integrator::leapfrog, {.local = 0.3}},
+      Given{Integrator::leapfrog, {.local = 0.8}}, Given{Integrator::leapfrog, {.mass = 0.2, .contact = 0.1}},
+      Given{Integrator::thesis, {.stiffness = 0.05}}, Given{Integrator::thesis, {.stiffness = 1.5}});
+  const bool hexagonal = GENERATE(true, false);
+  const Assembly assembly = hexagonal ? hexagonal_block(5) : delaunay_block(30, 2);
+  const ContactSprings springs(SpringConstants{1, 0.4});
+  const Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  const SimulationOptions options{.integrator = given.integrator, .damping = given.damping};
+  const TimeStep chosen = choose_time_step(scene, options, {.fraction = 1});
+  const double measured = measured_limit(scene, options, chosen.critical);
+  CAPTURE(to_string(given.integrator), given.damping.mass, given.damping.stiffness, given.damping.contact,
+          given.damping.local, hexagonal, chosen.critical, measured, chosen.report());
+  CHECK(chosen.exact);
+  CHECK(measured == Approx(chosen.critical).epsilon(0.01));
+  CHECK(choose_time_step(scene, options, {.rule = TimeStepRule::bound, .fraction = 1}).critical <=
+        chosen.critical * (1 + 1e-9));
+}
+
+TEST_CASE("stiffness_damping_has_the_closed_limit_of_the_highest_mode") {
+  const Assembly assembly = delaunay_block(60, 4);
+  const ContactSprings springs(SpringConstants{3, 1});
+  const Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 2, Body::disc)};
+  const double beta = GENERATE(0.01, 0.3, 5.0);
+  const TimeStep chosen = choose_time_step(scene, {.damping = {.stiffness = beta}});
+  const double zeta = 0.5 * beta * chosen.omega_max;
+  CAPTURE(beta, zeta, chosen.critical);
+  CHECK(chosen.critical * chosen.omega_max == Approx(stability_limit(Integrator::leapfrog, zeta)).epsilon(1e-9));
+  CHECK(chosen.ratio() == Approx(0.8).epsilon(1e-14));
+}
+
+TEST_CASE("held_discs_and_walls_change_the_critical_step") {
+  const Assembly assembly = hexagonal_lattice({.columns = 2, .rows = 2, .radius = 0.5});
+  const ContactSprings springs(SpringConstants{1, 0});
+  Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  const double free = choose_time_step(scene, {}).critical;
+  scene.supports = held_still(assembly, std::vector<Support>{{"bottom", 0.0, 0.0, {}}});
+  const double held = choose_time_step(scene, {}).critical;
+  CHECK(held > free);
+  // One disc on two springs 60 degrees apart: omega² = 3 kN/(2 m).
+  CHECK(held == Approx(2 / std::sqrt(1.5 / scene.inertia[0].mass)).epsilon(1e-12));
+  scene.walls = {{"floor", {0, -0.5}, {0, 1}, 2, always(0)}};
+  const TimeStep walled = choose_time_step(scene, {});
+  CHECK(walled.critical == Approx(2 / std::sqrt((1.5 + 2) / scene.inertia[0].mass)).epsilon(1e-12));
+  CHECK(!walled.exact);
+}
+
+TEST_CASE("the_rules_of_the_time_step") {
+  const Assembly assembly = hexagonal_block(6);
+  const ContactSprings springs(SpringConstants{1, 0.05});
+  const Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  const TimeStep exact = choose_time_step(scene, {}),
+                 bound = choose_time_step(scene, {}, {.rule = TimeStepRule::bound}),
+                 thesis = choose_time_step(scene, {}, {.rule = TimeStepRule::thesis, .allow_unstable = true});
+  CAPTURE(exact.report(), bound.report(), thesis.report());
+  CHECK(exact.exact);
+  CHECK(!bound.exact);
+  CHECK(bound.step < exact.step);
+  CHECK(thesis.step == Approx(std::numbers::pi / 4 * std::sqrt(scene.inertia[0].mass)).epsilon(1e-14));
+  CHECK(thesis.critical == exact.critical);
+  // A short run is over before the exact step is found.
+  const TimeStep brief = choose_time_step(scene, {}, {.duration = 10 * exact.step});
+  CHECK(brief.rule == "bound");
+  CHECK(brief.step == bound.step);
+  CHECK(choose_time_step(scene, {}, {.duration = 1e6 * exact.step}).step == exact.step);
+  CHECK(choose_time_step(scene, {.motion = LoopKind::Motion::finite}).report().find("reference state") !=
+        std::string::npos);
+}
+
+TEST_CASE("steps_that_cannot_work_are_refused_with_the_limit") {
+  const Assembly assembly = hexagonal_block(4);
+  const ContactSprings springs(SpringConstants{1, 1}), pushing(SpringConstants{1, -0.1});
+  const Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  const double critical = choose_time_step(scene, {}).critical;
+  const auto refused = [&](const TimeStepOptions& wanted, const SimulationOptions& options = {}) {
+    return refusal_of([&] { (void)choose_time_step(scene, options, wanted); });
+  };
+  CHECK(refused({.step = 1.001 * critical}).says("past the limit"));
+  CHECK(refused({.step = 1.001 * critical}).says("1.001 times the critical step"));
+  CHECK(refused({.step = 0.999 * critical}).message.empty());
+  CHECK(refused({.step = 3 * critical, .allow_unstable = true}).message.empty());
+  CHECK(refused({.rule = TimeStepRule::thesis}).says("(thesis) is past the limit"));
+  CHECK(refused({.fraction = 1.5}).says("1.5"));
+  CHECK(refused({.fraction = 0}).says("(0, 1]"));
+  CHECK(refused({.step = -1.0}).says("-1"));
+  CHECK(refused({}, {.integrator = Integrator::thesis}).says("no time step is stable"));
+  CHECK(refusal_of([] { (void)time_step_rule_from("guess"); }).says("lanczos, bound, thesis"));
+  const Scene growing{.assembly = assembly, .springs = pushing, .inertia = scene.inertia};
+  CHECK(refusal_of([&] { (void)choose_time_step(growing, {}); }).says("whatever the step"));
+  const TimeStep allowed = choose_time_step(growing, {}, {.allow_unstable = true});
+  CAPTURE(allowed.report());
+  CHECK(allowed.growth_rate > 0.9 * std::sqrt(2.4 / scene.inertia[0].mass));
+  CHECK(allowed.growth_rate < std::sqrt(2.4 / scene.inertia[0].mass));
+  Assembly dust = assembly;
+  dust.contacts.clear();
+  const Scene loose{.assembly = dust, .springs = springs, .inertia = scene.inertia};
+  CHECK(refusal_of([&] { (void)choose_time_step(loose, {}); }).says("nothing vibrates"));
+  CHECK(choose_time_step(loose, {}, {.step = 1.0}).ratio() == 0);
+}

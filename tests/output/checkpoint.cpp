@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/output/checkpoint.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <span>
+#include <string>
+
+#include "equidem/core/file.hpp"
+#include "equidem/core/random.hpp"
+#include "equidem/output/energy_terms.hpp"
+#include "equidem/output/open_file.hpp"
+
+#include "output/runs.hpp"
+#include "output/states.hpp"
+#include "support/catch.hpp"
+#include "support/fields.hpp"
+
+using namespace equidem;
+using equidem::test::refusal_of;
+
+namespace {
+
+const std::string case_text = "title = \"tension\"\n[springs]\nkN = 1e9\nkT = 5e8\n[run]\nduration = 0.1\n";
+
+bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+bool same_bits(const std::vector<DiscMotion>& a, const std::vector<DiscMotion>& b) {
+  return std::ranges::equal(a, b, [](const DiscMotion& p, const DiscMotion& q) {
+    return same_bits(p.u.x, q.u.x) && same_bits(p.u.y, q.u.y) && same_bits(p.theta, q.theta);
+  });
+}
+
+bool same_bits(const SimulationState& a, const SimulationState& b) {
+  return a.step == b.step && same_bits(a.motions, b.motions) && same_bits(a.previous, b.previous) &&
+         same_bits(a.velocities, b.velocities) &&
+         std::ranges::equal(a.sums, b.sums, [](double p, double q) { return same_bits(p, q); }) &&
+         std::ranges::all_of(energy_terms,
+                             [&](const EnergyTerm& t) { return same_bits(a.ledger.*t.value, b.ledger.*t.value); });
+}
+
+}  // namespace
+
+TEST_CASE("a_checkpoint_reads_back_to_the_same_bits") {
+  const TemporaryFolder folder;
+  const std::size_t discs = GENERATE(0, 1, 1000);
+  SimulationState state = state_at(123456789012345, discs);
+  if (discs > 1) {
+    state.motions[1] = {{-0.0, 5e-324}, std::bit_cast<double>(0x7ff8000000000123ULL)};
+    state.previous.clear();  // an integrator may not need it
+  }
+  const CheckpointWriter writer(folder / "deep/run.checkpoint.h5", case_text, false);
+  writer.write(state);
+  CHECK(same_bits(read_checkpoint(folder / "deep/run.checkpoint.h5", case_text), state));
+  writer.write(state_at(7, discs));
+  CHECK(same_bits(read_checkpoint(folder / "deep/run.checkpoint.h5", case_text), state_at(7, discs)));
+  CHECK(folder.files() == 2);  // the folder, and nothing besides the checkpoint
+}
+
+TEST_CASE("the_same_state_makes_the_same_checkpoint") {
+  const TemporaryFolder folder;
+  CheckpointWriter(folder / "a.h5", case_text, false).write(state_at(5, 20));
+  CheckpointWriter(folder / "b.h5", case_text, false).write(state_at(5, 20));
+  CHECK(read_file(folder / "a.h5") == read_file(folder / "b.h5"));
+}
+
+TEST_CASE("an_empty_case_has_a_checkpoint_too") {
+  const TemporaryFolder folder;
+  CheckpointWriter(folder / "a.h5", "", false).write(state_at(5, 20));
+  CHECK(same_bits(read_checkpoint(folder / "a.h5", ""), state_at(5, 20)));
+  CHECK(refusal_of([&] { read_checkpoint(folder / "a.h5", case_text); }).says("line 1: nothing there"));
+}
+
+TEST_CASE("killed_at_any_moment_the_last_checkpoint_is_good") {
+  const std::size_t discs = 300;
+  const TemporaryFolder folder;
+  const auto path = folder / "run.checkpoint.h5";
+  const CheckpointWriter writer(path, case_text, false);
+  writer.write(state_at(0, discs));
+  Random random(3);
+  std::int64_t last = 0;
+  int left_behind = 0;
+  std::uint64_t longest = 15000;  // microseconds; more where nothing gets done in that time
+  for (int round = 0; round < 80; ++round) {
+    kill_during(
+        [&] {
+          for (std::int64_t step = last + 1;; ++step) writer.write(state_at(step, discs));
+        },
+        static_cast<unsigned>(random.below(longest)));
+    left_behind += std::filesystem::exists(path.string() + ".part") ? 1 : 0;
+    const SimulationState state = read_checkpoint(path, case_text);
+    CAPTURE(round, last, state.step);
+    REQUIRE(state.step >= last);
+    REQUIRE(same_bits(state, state_at(state.step, discs)));
+    if (state.step == last) longest = std::min<std::uint64_t>(longest + longest / 4, 300000);
+    last = state.step;
+  }
+  INFO(last << " checkpoints, " << left_behind << " killed while they were written");
+  CHECK(last > 0);
+  CHECK(left_behind > 0);  // else no kill came at a bad moment
+}
+
+TEST_CASE("an_altered_checkpoint_is_refused_whatever_byte_it_is") {
+  const TemporaryFolder folder;
+  const auto path = folder / "run.checkpoint.h5";
+  CheckpointWriter(path, case_text, false).write(state_at(5, 12));
+  const std::string good = read_file(path);
+  OpenFile file(path, OpenFile::Mode::update);
+  Random random(9);
+  for (std::size_t round = 0; round < 2000; ++round) {
+    const std::size_t at = round < 600 ? round : random.below(good.size());
+    const std::string bad(1, static_cast<char>(good[at] ^ static_cast<char>(1U << random.below(8))));
+    file.write_at(at, std::as_bytes(std::span(bad)));
+    const auto refusal = refusal_of([&] { read_checkpoint(path, case_text); });
+    CAPTURE(at, refusal.message);
+    REQUIRE(refusal.says("cannot go on from '"));
+    file.write_at(at, std::as_bytes(std::span(good).subspan(at, 1)));
+  }
+  CHECK(same_bits(read_checkpoint(path, case_text), state_at(5, 12)));
+  write_file(path, good + "x", true);
+  CHECK(refusal_of([&] { read_checkpoint(path, case_text); }).says("altered"));
+}
+
+TEST_CASE("a_truncated_checkpoint_is_refused") {
+  const TemporaryFolder folder;
+  const auto path = folder / "run.checkpoint.h5";
+  CheckpointWriter(path, case_text, false).write(state_at(5, 12));
+  OpenFile file(path, OpenFile::Mode::update);
+  const std::uint64_t whole = file.size();
+  for (std::uint64_t size = whole; size-- > 0;) {
+    file.truncate(size);
+    const auto refusal = refusal_of([&] { read_checkpoint(path, case_text); });
+    CAPTURE(size, refusal.message);
+    REQUIRE(refusal.kind == ErrorKind::bad_input);
+    if (size >= 512) {
+      REQUIRE(refusal.says(format("it is truncated: {} bytes are left of {}", size, whole)));
+    } else {
+      REQUIRE(refusal.says("cannot go on from '"));
+    }
+  }
+}
+
+TEST_CASE("a_checkpoint_of_another_case_is_refused_with_what_differs") {
+  const TemporaryFolder folder;
+  const auto path = folder / "run.checkpoint.h5";
+  CheckpointWriter(path, case_text, false).write(state_at(5, 12));
+  const auto message_for = [&](const std::string& other) {
+    return refusal_of([&] { read_checkpoint(path, other); }).message;
+  };
+  std::string other = case_text;
+  other.replace(other.find("kT = 5e8"), 8, "kT = 3e8");
+  CHECK_THAT(message_for(other),
+             Catch::Contains("it belongs to another case: line 4: 'kT = 5e8' there, 'kT = 3e8' here"));
+  CHECK_THAT(message_for(case_text + "step = 1\n"), Catch::Contains("line 7: nothing there, 'step = 1' here"));
+  CHECK_THAT(message_for("a\nb\nc\nd\ne\nf\n"), Catch::Contains("line 3: 'kN = 1e9' there, 'c' here"));
+  CHECK_THAT(message_for("a\nb\nc\nd\ne\nf\n"), !Catch::Contains("line 4"));
+}
+
+TEST_CASE("a_checkpoint_of_another_version_is_refused") {
+  const TemporaryFolder folder;
+  const auto path = folder / "run.checkpoint.h5";
+  CheckpointWriter(path, case_text, false).write(state_at(5, 12));
+  std::string text = read_file(path);
+  text.replace(text.find("/1\n"), 3, "/2\n");
+  write_file(path, text, true);
+  const auto refusal = refusal_of([&] { read_checkpoint(path, case_text); });
+  INFO(refusal.message);
+  CHECK(refusal.says("its format has version '2', and this library reads version 1"));
+}
+
+TEST_CASE("what_is_no_checkpoint_is_refused") {
+  const TemporaryFolder folder;
+  const auto message_of = [&](const char* name) {
+    return refusal_of([&] { read_checkpoint(folder / name, case_text); }).message;
+  };
+  write_file(folder / "empty", "", false);
+  write_file(folder / "text", std::string(1000, 'x'), false);
+  std::filesystem::create_directory(folder / "folder");
+  CHECK_THAT(message_of("empty"), Catch::Contains("it is no checkpoint of equidem"));
+  CHECK_THAT(message_of("text"), Catch::Contains("it is no checkpoint of equidem"));
+  CHECK_THAT(message_of("folder"), Catch::Contains("it is no file"));
+  CHECK_THAT(message_of("absent"), Catch::Contains("there is no such file"));
+}
+
+TEST_CASE("a_full_disk_leaves_the_last_checkpoint") {
+  const TemporaryFolder folder;
+  const auto path = folder / "run.checkpoint.h5";
+  const CheckpointWriter writer(path, case_text, false);
+  writer.write(state_at(5, 1000));
+  const std::uint64_t limit = GENERATE(100, 3000, 20000, 70000);
+  const std::string message = error_on_full_disk([&] { writer.write(state_at(6, 1000)); }, limit);
+  CAPTURE(limit, message);
+  CHECK(message.find("cannot write '") == 0);
+  CHECK(read_checkpoint(path, case_text).step == 5);
+  CHECK(folder.files() == 1);
+}
+
+TEST_CASE("a_checkpoint_is_not_overwritten_unasked") {
+  const TemporaryFolder folder;
+  write_file(folder / "run.checkpoint.h5", "mine", false);
+  CHECK(refusal_of([&] { CheckpointWriter(folder / "run.checkpoint.h5", case_text, false); }).says("exists already"));
+  CHECK(read_file(folder / "run.checkpoint.h5") == "mine");
+}

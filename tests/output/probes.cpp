@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/output/probes.hpp"
+
+#include <charconv>
+#include <sstream>
+#include <string>
+
+#include "equidem/core/file.hpp"
+#include "equidem/core/random.hpp"
+#include "equidem/output/energy_terms.hpp"
+
+#include "output/runs.hpp"
+#include "output/states.hpp"
+#include "support/catch.hpp"
+#include "support/fields.hpp"
+
+using namespace equidem;
+using equidem::test::refusal_of;
+
+namespace {
+
+constexpr std::size_t discs = 30;
+const std::vector<Probe> probes = {
+    {"top", {3, 4, 29}, {ProbeQuantity::displacement, ProbeQuantity::velocity}},
+    {"one, quoted", {7}, {ProbeQuantity::rotation, ProbeQuantity::spin}},
+};
+
+void record(ProbeWriter& writer, std::int64_t step) {
+  writer.record(step, time_at(step), motions_at(step, discs), velocities_at(step, discs), state_at(step, 0).ledger);
+}
+
+/// Steps of the rows of a file, all of which must be whole.
+std::vector<std::int64_t> steps_in(const std::filesystem::path& path) {
+  const std::string text = read_file(path);
+  REQUIRE(text.ends_with('\n'));
+  std::istringstream lines(text);
+  std::string line;
+  std::getline(lines, line);
+  std::vector<std::int64_t> steps;
+  while (std::getline(lines, line)) steps.push_back(std::stoll(line));
+  return steps;
+}
+
+}  // namespace
+
+TEST_CASE("probes_record_means_and_energies") {
+  const TemporaryFolder folder;
+  {
+    ProbeWriter writer(folder / "run_probes.csv", probes, discs, {});
+    for (std::int64_t step = 0; step <= 20; step += 10) record(writer, step);
+  }
+  std::istringstream lines(read_file(folder / "run_probes.csv"));
+  std::string line;
+  std::getline(lines, line);
+  CHECK(line ==
+        "step,time_s,top_ux_m,top_uy_m,top_vx_m_per_s,top_vy_m_per_s,\"one, quoted_rotation_rad\","
+        "\"one, quoted_spin_rad_per_s\",kinetic_J_per_m,elastic_J_per_m,potential_J_per_m,damped_mass_J_per_m,"
+        "damped_contact_J_per_m,damped_local_J_per_m,work_of_loads_J_per_m,work_of_supports_J_per_m,"
+        "work_of_walls_J_per_m,initial_J_per_m,error_J_per_m");
+  for (std::int64_t step = 0; step <= 20; step += 10) {
+    REQUIRE(std::getline(lines, line));
+    CAPTURE(line);
+    std::vector<double> found;
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) {
+      double value = 0;
+      std::from_chars(cell.data(), cell.data() + cell.size(), value);
+      found.push_back(value);
+    }
+    const auto u = motions_at(step, discs), v = velocities_at(step, discs);
+    const EnergyLedger ledger = state_at(step, 0).ledger;
+    std::vector<double> wanted{static_cast<double>(step), time_at(step)};
+    for (const auto& values : {u, v}) {
+      wanted.push_back((values[3].u.x + values[4].u.x + values[29].u.x) / 3);
+      wanted.push_back((values[3].u.y + values[4].u.y + values[29].u.y) / 3);
+    }
+    wanted.insert(wanted.end(), {u[7].theta, v[7].theta, ledger.kinetic, ledger.elastic, ledger.potential,
+                                 ledger.damped_mass, ledger.damped_contact, ledger.damped_local, ledger.work_of_loads,
+                                 ledger.work_of_supports, ledger.work_of_walls, ledger.initial, ledger.error()});
+    CHECK(found == wanted);
+  }
+}
+
+TEST_CASE("rows_are_written_many_at_a_time_and_all_before_a_checkpoint") {
+  const TemporaryFolder folder;
+  const auto path = folder / "probes.csv";
+  ProbeWriter writer(path, probes, discs, {.interval = 1e9});
+  record(writer, 0);
+  CHECK(steps_in(path).empty());
+  writer.sync();
+  CHECK(steps_in(path).size() == 1);
+  std::size_t writes = 0, size = 0;
+  for (std::int64_t step = 1; step <= 3000; ++step) {
+    record(writer, step);
+    const std::size_t now = std::filesystem::file_size(path);
+    writes += now != size ? 1 : 0;
+    size = now;
+  }
+  CAPTURE(writes, size);
+  CHECK(writes <= 1 + size / 60000);
+  CHECK(steps_in(path).size() > 2500);
+  writer.flush();
+  CHECK(steps_in(path).size() == 3001);
+}
+
+TEST_CASE("rows_are_written_after_an_interval") {
+  const TemporaryFolder folder;
+  ProbeWriter writer(folder / "probes.csv", probes, discs, {.interval = 0});
+  for (std::int64_t step = 0; step < 5; ++step) {
+    record(writer, step);
+    CHECK(writer.last_step() == step);
+    CHECK(steps_in(folder / "probes.csv").size() == static_cast<std::size_t>(step) + 1);
+  }
+}
+
+TEST_CASE("histories_of_a_resumed_run_are_those_of_an_uninterrupted_one") {
+  const TemporaryFolder folder;
+  const auto uninterrupted = folder / "whole.csv", path = folder / "probes.csv";
+  {
+    ProbeWriter writer(uninterrupted, probes, discs, {});
+    for (std::int64_t step = 0; step <= 500; ++step) record(writer, step);
+  }
+  const std::int64_t checkpoint = 123;
+  Random random(5);
+  for (int round = 0; round < 30; ++round) {
+    CAPTURE(round);
+    {
+      ProbeWriter writer(path, probes, discs, {.overwrite = true});
+      for (std::int64_t step = 0; step <= 300; ++step) {
+        record(writer, step);
+        if (step == checkpoint) writer.sync();
+      }
+    }
+    if (round > 0) {  // killed while it wrote: cut anywhere behind the checkpoint
+      const std::string text = read_file(path);
+      const std::size_t safe = text.find(format("\n{},", checkpoint + 1)) + 1;
+      std::filesystem::resize_file(path, safe + random.below(text.size() - safe));
+    }
+    ProbeWriter writer(path, probes, discs, {.continue_after = checkpoint});
+    CHECK(writer.last_step() == checkpoint);
+    for (std::int64_t step = checkpoint + 1; step <= 500; ++step) record(writer, step);
+    writer.flush();
+    CHECK(read_file(path) == read_file(uninterrupted));
+  }
+}
+
+TEST_CASE("killed_at_any_moment_histories_can_go_on") {
+  const TemporaryFolder folder;
+  const auto path = folder / "probes.csv";
+  Random random(6);
+  for (int round = 0; round < 20; ++round) {
+    { ProbeWriter writer(path, probes, discs, {.overwrite = true}); }
+    kill_during(
+        [&] {
+          ProbeWriter writer(path, probes, discs, {.interval = 0, .continue_after = 0});
+          for (std::int64_t step = 0;; ++step) record(writer, step);
+        },
+        static_cast<unsigned>(random.below(10000)));
+    ProbeWriter writer(path, probes, discs, {.continue_after = INT64_MAX});
+    const auto steps = steps_in(path);
+    CAPTURE(round, steps.size());
+    for (std::size_t k = 0; k < steps.size(); ++k) REQUIRE(steps[k] == static_cast<std::int64_t>(k));
+  }
+}
+
+TEST_CASE("histories_with_other_columns_are_refused") {
+  const TemporaryFolder folder;
+  const auto path = folder / "probes.csv";
+  { ProbeWriter writer(path, probes, discs, {}); }
+  const auto go_on = [&](const std::vector<Probe>& with) {
+    return refusal_of([&] { ProbeWriter(path, with, discs, {.continue_after = 0}); });
+  };
+  CHECK(go_on({probes[0]}).says("its columns are 'step,time_s,top_ux_m"));
+  CHECK(go_on(probes).message.empty());
+  write_file(path, read_file(path) + "0,1\nzero,1\n", true);
+  CHECK(go_on(probes).says("'zero,1' is no row of it"));
+}
+
+TEST_CASE("probes_that_cannot_measure_are_refused") {
+  const TemporaryFolder folder;
+  const auto start = [&](const std::vector<Probe>& with) {
+    return refusal_of([&] { ProbeWriter(folder / "probes.csv", with, discs, {}); });
+  };
+  CHECK(start({{"a", {}}}).says("the probe 'a' holds no disc"));
+  CHECK(start({{"a", {30}}}).says("the probe 'a' names disc 30 (the discs are 0 to 29)"));
+  CHECK(start({{"a", {-1}}}).says("the probe 'a' names disc -1"));
+  CHECK(start({{"a", {1}}, {"a", {2}}}).says("two probes are called 'a'"));
+  CHECK(start({{"", {1}}}).says("a probe has no name"));
+  CHECK(folder.files() == 0);
+  write_file(folder / "probes.csv", "mine", false);
+  CHECK(start(probes).says("exists already"));
+  CHECK(read_file(folder / "probes.csv") == "mine");
+  CHECK(refusal_of([] { probe_quantity_from("speed"); }).says("'speed' is nothing that a probe measures"));
+  CHECK(probe_quantity_from("spin") == ProbeQuantity::spin);
+}
+
+TEST_CASE("a_full_disk_is_told") {
+  const TemporaryFolder folder;
+  const std::string message = error_on_full_disk(
+      [&] {
+        ProbeWriter writer(folder / "probes.csv", probes, discs, {.interval = 0});
+        for (std::int64_t step = 0;; ++step) record(writer, step);
+      },
+      5000);
+  INFO(message);
+  CHECK(message.find("cannot write '") == 0);
+  CHECK(message.find("Make room on its disk") != std::string::npos);
+}

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A made-up run whose every state follows from its step, and processes that die in the middle of their work.
+#pragma once
+
+#include <cmath>
+#include <csignal>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/dynamics/simulation.hpp"
+
+namespace equidem {
+
+inline std::vector<DiscMotion> motions_at(std::int64_t step, std::size_t discs) {
+  std::vector<DiscMotion> motions;
+  for (std::size_t d = 0; d < discs; ++d) {
+    const double k = static_cast<double>(step) + 0.01 * static_cast<double>(d);
+    motions.push_back({{1e-3 * std::sin(k), -1e-3 * std::cos(k)}, 1e-2 * std::sin(2 * k)});
+  }
+  return motions;
+}
+inline std::vector<DiscMotion> velocities_at(std::int64_t step, std::size_t discs) {
+  return motions_at(1000 + step, discs);
+}
+inline double time_at(std::int64_t step) {
+  return 1e-5 * static_cast<double>(step);
+}
+
+inline SimulationState state_at(std::int64_t step, std::size_t discs) {
+  SimulationState state;
+  state.step = step;
+  state.motions = motions_at(step, discs);
+  state.previous = motions_at(step - 1, discs);
+  state.velocities = velocities_at(step, discs);
+  const double s = static_cast<double>(step);
+  state.ledger = {.kinetic = std::sin(s),
+                  .elastic = std::cos(s),
+                  .potential = -s,
+                  .damped_mass = 0.1 * s,
+                  .damped_contact = 1 / (s + 3),
+                  .damped_local = 1e-300 * s,
+                  .work_of_loads = std::sqrt(s),
+                  .work_of_supports = s / 7,
+                  .work_of_walls = -0.0,
+                  .initial = 42};
+  state.sums = {s, s / 3, -s};
+  return state;
+}
+
+/// Run `work` in a process of its own and kill it `microseconds` later.
+inline void kill_during(const std::function<void()>& work, unsigned microseconds) {
+  const pid_t child = fork();
+  if (child == 0) {
+    try {
+      work();
+    } catch (...) {
+      _exit(1);
+    }
+    _exit(0);
+  }
+  usleep(microseconds);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+}
+
+/// The message of the Error that `work` ends with in a process of its own whose files may not grow past `bytes`; empty: none.
+inline std::string error_on_full_disk(const std::function<void()>& work, std::uint64_t bytes) {
+  int ends[2];
+  if (pipe(ends) != 0) return "no pipe";
+  const pid_t child = fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{bytes, bytes};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    std::string message;
+    try {
+      work();
+    } catch (const Error& error) {
+      message = error.what();
+    } catch (...) {
+      message = "another exception";
+    }
+    const bool told = write(ends[1], message.data(), message.size()) == static_cast<ssize_t>(message.size());
+    _exit(told ? 0 : 1);
+  }
+  close(ends[1]);
+  std::string message;
+  char part[256];
+  for (ssize_t got; (got = read(ends[0], part, sizeof part)) > 0;) message.append(part, static_cast<std::size_t>(got));
+  close(ends[0]);
+  waitpid(child, nullptr, 0);
+  return message;
+}
+
+}  // namespace equidem

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/dynamics/relaxation.hpp"
+#include "equidem/homogenize/stress.hpp"
+#include "equidem/output/csv.hpp"
+#include "equidem/output/picture.hpp"
+#include "equidem/output/vtk.hpp"
+
+#include "command.hpp"
+#include "run_loop.hpp"
+#include "run_report.hpp"
+#include "run_setup.hpp"
+#include "verbs.hpp"
+
+namespace equidem {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  bool resume = false;
+};
+
+void check_outputs(const Options& options, const Case& resolved) {
+  const CommonOptions& common = options.common;
+  if (options.resume && !common.out) {
+    throw Error(ErrorKind::bad_input, "--resume without --out", "the checkpoint lies in that folder",
+                "Name the folder of the run that is to go on");
+  }
+  const OutputPlan plan(common);
+  plan.expect_json();
+  if (options.resume) return;
+  plan.expect("result.json");
+  plan.expect("case.toml");
+  if (resolved.output.csv) plan.expect("discs.csv");
+  if (resolved.output.picture) plan.expect("picture.svg");
+}
+
+/// Contact forces of small motions, for pictures; of finite ones nothing is drawn but the motion.
+std::vector<ContactForce> forces_of(const Problem& problem, const std::vector<DiscMotion>& motions) {
+  std::vector<ContactForce> forces(problem.assembly.contacts.size());
+  for (std::size_t c = 0; c < forces.size(); ++c) {
+    const Contact& contact = problem.assembly.contacts[c];
+    forces[c] = linear_spring_force(problem.springs.springs[c], deformation(frame_of(problem.assembly, contact),
+                                                                            motions[contact.i], motions[contact.j]));
+  }
+  return forces;
+}
+
+void write_state(const CommonOptions& common, const RunSetup& setup, const std::vector<DiscMotion>& motions,
+                 bool overwrite) {
+  const Assembly& assembly = setup.problem.assembly;
+  const OutputCase& wanted = setup.problem.resolved.output;
+  std::vector<ContactForce> forces;
+  if (setup.run().motion == LoopKind::Motion::small) forces = forces_of(setup.problem, motions);
+  const AssemblyState state{.assembly = assembly, .motions = motions, .contact_forces = forces, .stresses = {}};
+  if (wanted.csv) write_disc_csv(*common.out / "discs.csv", state, overwrite);
+  if (wanted.vtk) write_vtk(*common.out, "state", state, overwrite);
+  if (wanted.picture) {
+    write_picture(*common.out, "picture", state, {.title = setup.problem.resolved.title}, overwrite);
+  }
+}
+
+int dry_run(const CommonOptions& common, const RunSetup& setup) {
+  const Simulation simulation(setup.scene, setup.options);
+  const std::string report = describe_run_setup(setup, simulation);
+  JsonObject object;
+  add_common(object, "dry_run", report, setup.problem.times, simulation.effects());
+  object.set("steps", setup.steps());
+  add_time_step(object, setup.step);
+  object.set("bytes_per_disc", simulation.bytes_per_disc());
+  CommonOptions without_folder = common;
+  without_folder.out.reset();
+  deliver(without_folder, report, object);
+  return 0;
+}
+
+int relax_to_rest(const Options& options, const RunSetup& setup) {
+  const CommonOptions& common = options.common;
+  if (options.resume) {
+    throw Error(ErrorKind::bad_input, "--resume of a run to rest", "it keeps no checkpoints: it ends where it ends",
+                "Run it anew");
+  }
+  Simulation simulation(setup.scene, setup.options);
+  StageTimes times = setup.problem.times;
+  Stopwatch watch;
+  const Relaxation rest = relax(setup.scene, relaxation_options(setup));
+  times.add("relaxation", watch.lap());
+  if (common.out) write_state(common, setup, rest.motions, common.overwrite);
+  const std::string report = describe_run_setup(setup, simulation) + describe_rest(setup, rest, times);
+  JsonObject object;
+  add_common(object, "at_rest", report, times, simulation.effects());
+  object.set("steps", rest.steps).set("relative_unbalanced_force", rest.relative_unbalanced);
+  if (common.out) write_file(*common.out / "case.toml", to_toml(setup.problem.resolved, *common.out), common.overwrite);
+  deliver(common, report, object);
+  return 0;
+}
+
+int run(const Options& options) {
+  const CommonOptions& common = options.common;
+  Case resolved = read_case(common);
+  check_outputs(options, resolved);
+  const RunSetup setup(std::move(resolved));
+  if (common.dry_run) return dry_run(common, setup);
+  if (setup.run().until_rest) return relax_to_rest(options, setup);
+
+  Simulation simulation(setup.scene, setup.options);
+  const RunResult result =
+      run_through(setup, simulation, {.folder = common.out, .overwrite = common.overwrite, .resume = options.resume});
+  StageTimes times = setup.problem.times;
+  times.add("steps", result.seconds);
+  if (common.out) {
+    Stopwatch watch;
+    const bool overwrite = common.overwrite || options.resume;
+    write_state(common, setup, simulation.motions(), overwrite);
+    write_file(*common.out / "case.toml", to_toml(setup.problem.resolved, *common.out), overwrite);
+    write_energy_plot(*common.out, setup, result, overwrite);
+    times.add("files", watch.lap());
+  }
+  const std::string report = describe_run_setup(setup, simulation) + describe_run(setup, simulation, result, times);
+  JsonObject object;
+  add_common(object, "done", report, times, simulation.effects());
+  add_run(object, setup, simulation, result);
+  CommonOptions delivered = common;
+  delivered.overwrite = common.overwrite || options.resume;
+  deliver(delivered, report, object);
+  if (common.out) say(common, format("written to {}", common.out->string()));
+  return 0;
+}
+
+}  // namespace
+
+Run declare_run(CLI::App& command) {
+  const auto options = std::make_shared<Options>();
+  add_common_options(command, options->common);
+  command.add_flag("--resume", options->resume, "go on from the checkpoint in --out");
+  command.footer(
+      "Examples:\n"
+      "  equidem run data/cases/run_block.toml\n"
+      "  equidem run data/cases/run_block.toml --out result         frames for ParaView, histories, checkpoint\n"
+      "  equidem run data/cases/run_block.toml --out result --resume --set run.duration=2e-3");
+  return [options] { return run(*options); };
+}
+
+}  // namespace equidem

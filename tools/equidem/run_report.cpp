@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/core/text.hpp"
+#include "equidem/output/energy_terms.hpp"
+#include "equidem/output/plot.hpp"
+
+#include "report.hpp"
+
+namespace equidem {
+namespace {
+
+double disc_steps_per_second(const RunSetup& setup, const RunResult& result) {
+  if (!(result.seconds > 0)) return 0;
+  return static_cast<double>(result.steps_done) * static_cast<double>(setup.problem.assembly.size()) / result.seconds;
+}
+
+/// What the balance is held against: the most energy that there was.
+double largest_energy(const EnergyLedger& ledger) {
+  return std::max({std::abs(ledger.kinetic), std::abs(ledger.elastic), std::abs(ledger.potential),
+                   std::abs(ledger.dissipated()), std::abs(ledger.input()), std::abs(ledger.initial)});
+}
+
+double relative_error(const EnergyLedger& ledger) {
+  const double size = largest_energy(ledger);
+  return size > 0 ? ledger.error() / size : 0.0;
+}
+
+std::string stages_of(const StageTimes& times) {
+  std::string stages;
+  for (const auto& [stage, seconds] : times.stages()) {
+    if (seconds >= 0.02 * times.total()) stages += format(", {} {:.2g} s", stage, seconds);
+  }
+  return report_line("times", format("{:.2g} s in all{}", times.total(), stages));
+}
+
+}  // namespace
+
+RelaxationOptions relaxation_options(const RunSetup& setup) {
+  return {.motion = setup.run().motion,
+          .rotation = setup.problem.resolved.rotation,
+          .gravity = setup.run().gravity,
+          .tolerance = *setup.run().until_rest};
+}
+
+std::string describe_run_setup(const RunSetup& setup, const Simulation& simulation) {
+  std::string out = describe_problem(setup.problem, simulation.effects());
+  const RunCase& run = setup.run();
+  out += report_line("motions", run.motion == LoopKind::Motion::small
+                                    ? "small: normals and contact points fixed, the forces are those of the matrix K"
+                                    : "finite: normals and contact points follow the bodies");
+  if (run.until_rest) return out;
+  const IntegratorFacts facts = facts_of(run.integrator);
+  out += report_line("integrator", format("{}, order {}, {} a step", to_string(run.integrator), facts.order,
+                                          counted(facts.force_evaluations, "force evaluation")));
+  const TimeStep& step = setup.step;
+  out += report_line("time step", format("{:.6g} s, {:.4g} of the {} step {:.6g} s (rule: {})", step.step, step.ratio(),
+                                         step.exact ? "critical" : "guaranteed", step.critical, step.rule));
+  for (const std::string& note : step.notes) out += report_line("", note);
+  out += report_line("memory", format("{:.0f} bytes a disc in the loop", simulation.bytes_per_disc()));
+  return out;
+}
+
+std::string describe_run(const RunSetup& setup, const Simulation& simulation, const RunResult& result,
+                         const StageTimes& times) {
+  std::string out =
+      report_line("steps", format("{}, to t = {:.6g} s; {:.3g} disc-steps per second", grouped(simulation.step()),
+                                  simulation.time(), disc_steps_per_second(setup, result)));
+  const EnergyLedger ledger = simulation.energy();
+  out += report_line("energy", format("kinetic {:.6g}, elastic {:.6g}, potential {:.6g} N (J per m of depth, per m)",
+                                      ledger.kinetic, ledger.elastic, ledger.potential));
+  out += report_line("", format("at the start {:.6g}; put in by loads {:.6g}, supports {:.6g}, walls {:.6g}",
+                                ledger.initial, ledger.work_of_loads, ledger.work_of_supports, ledger.work_of_walls));
+  out += report_line("", format("dissipated by mass damping {:.6g}, contacts {:.6g}, local damping {:.6g}",
+                                ledger.damped_mass, ledger.damped_contact, ledger.damped_local));
+  out += report_line("balance", format("lacks {:.1e} of the largest term", relative_error(ledger)));
+  return out + stages_of(times);
+}
+
+std::string describe_rest(const RunSetup&, const Relaxation& rest, const StageTimes& times) {
+  return report_line("rest", rest.report()) + stages_of(times);
+}
+
+void add_time_step(JsonObject& object, const TimeStep& step) {
+  object.set("time_step", step.step)
+      .set("critical_time_step", step.critical)
+      .set("time_step_ratio", step.ratio())
+      .set("time_step_rule", step.rule)
+      .set("critical_time_step_exact", step.exact)
+      .set("omega_max", step.omega_max);
+}
+
+void add_run(JsonObject& object, const RunSetup& setup, const Simulation& simulation, const RunResult& result) {
+  object.set("title", setup.problem.resolved.title);
+  object.set("discs", setup.problem.assembly.size()).set("contacts", setup.problem.assembly.contacts.size());
+  object.set("steps", simulation.step()).set("time", simulation.time());
+  add_time_step(object, setup.step);
+  const EnergyLedger ledger = simulation.energy();
+  JsonObject energy;
+  for (const EnergyTerm& term : energy_terms) energy.set(term.name, ledger.*term.value);
+  energy.set("dissipated", ledger.dissipated())
+      .set("input", ledger.input())
+      .set("error", ledger.error())
+      .set("relative_error", relative_error(ledger));
+  object.set("energy", energy);
+  object.set("integrator", to_string(setup.run().integrator));
+  object.set("motion", setup.run().motion == LoopKind::Motion::small ? "small" : "finite");
+  object.set("particle_steps_per_second", disc_steps_per_second(setup, result));
+  object.set("bytes_per_disc", simulation.bytes_per_disc());
+}
+
+void write_energy_plot(const std::filesystem::path& folder, const RunSetup& setup, const RunResult& result,
+                       bool overwrite) {
+  Plot plot;
+  plot.title = setup.problem.resolved.title;
+  plot.x.label = "time, s";
+  plot.y.label = "energy, J per m of depth";
+  struct Curve {
+    const char* label;
+    PlotColour colour;
+    double (*value)(const EnergyLedger&);
+  };
+  constexpr Curve curves[] = {
+      {"kinetic", PlotColour::blue, [](const EnergyLedger& l) { return l.kinetic; }},
+      {"elastic", PlotColour::vermilion, [](const EnergyLedger& l) { return l.elastic; }},
+      {"potential", PlotColour::green, [](const EnergyLedger& l) { return l.potential; }},
+      {"dissipated", PlotColour::orange, [](const EnergyLedger& l) { return l.dissipated(); }},
+      {"put in", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.input(); }},
+      {"what the balance lacks", PlotColour::black, [](const EnergyLedger& l) { return l.error(); }},
+  };
+  for (const Curve& curve : curves) {
+    Series series{.label = curve.label, .colour = curve.colour};
+    bool any = false;
+    for (const EnergySample& sample : result.energies) {
+      series.x.push_back(sample.time);
+      series.y.push_back(curve.value(sample.ledger));
+      any = any || series.y.back() != 0;
+    }
+    if (any) plot.series.push_back(std::move(series));
+  }
+  if (!plot.series.empty()) write_plot(folder, "energy", plot, overwrite);
+}
+
+}  // namespace equidem
