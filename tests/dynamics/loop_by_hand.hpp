@@ -59,6 +59,8 @@ class LoopByHand {
     data_.neighbour = slots_.neighbour.data();
     data_.geometry = geometry_.data();
     data_.inverse_inertia = inverse_inertia_.data();
+    dashpot_.assign(velocity_.size(), 0.0);
+    data_.dashpot = dashpot_.data();
     data_.velocity = velocity_.data();
     data_.inverse_mass = 1 / inertia.mass;
     data_.inverse_moment = 1 / inertia.moment;
@@ -130,7 +132,7 @@ class LoopByHand {
   DiscLayout layout_;
   ContactSlots slots_;
   StepFunction step_;
-  std::vector<double> geometry_, inverse_inertia_, motion_[2], velocity_at_[2], velocity_;
+  std::vector<double> geometry_, inverse_inertia_, motion_[2], velocity_at_[2], velocity_, dashpot_;
   LoopData data_;
   int parity_ = 0;
 };

@@ -38,6 +38,7 @@ class Moving {
         options_(given.options) {
     scene_.velocities = start_with(random_motions(assembly_.size(), 5, 0.01, 0.01));
     options_.time_step = 0.2;
+    options_.discs_per_thread = 1;
     if (assembly_.periodic()) return;
     TimedSupport bottom;
     bottom.group = "bottom";

@@ -59,7 +59,8 @@ TEST_CASE("instability_begins_at_the_predicted_critical_step") {
       Given{Integrator::leapfrog, {.mass = 0.3}}, Given{Integrator::leapfrog, {.stiffness = 0.2}},
       Given{Integrator::leapfrog, {.contact = 0.3}}, Given{Integrator::leapfrog, {.local = 0.3}},
       Given{Integrator::leapfrog, {.local = 0.8}}, Given{Integrator::leapfrog, {.mass = 0.2, .contact = 0.1}},
-      Given{Integrator::thesis, {.stiffness = 0.05}}, Given{Integrator::thesis, {.stiffness = 1.5}});
+      Given{Integrator::thesis, {.stiffness = 0.05}}, Given{Integrator::thesis, {.stiffness = 1.5}},
+      Given{Integrator::thesis, {.mass = 3}}, Given{Integrator::thesis, {.mass = 20}});
   const bool hexagonal = GENERATE(true, false);
   const Assembly assembly = hexagonal ? hexagonal_block(5) : delaunay_block(30, 2);
   const ContactSprings springs(SpringConstants{1, 0.4});
@@ -101,6 +102,8 @@ TEST_CASE("held_discs_and_walls_change_the_critical_step") {
   const TimeStep walled = choose_time_step(scene, {});
   CHECK(walled.critical == Approx(2 / std::sqrt((1.5 + 2) / scene.inertia[0].mass)).epsilon(1e-12));
   CHECK(!walled.exact);
+  CHECK(choose_time_step(scene, {}, {.rule = TimeStepRule::bound}).critical <
+        2 / std::sqrt(2 / scene.inertia[0].mass) * std::sqrt(2 / 3.5));
 }
 
 TEST_CASE("the_rules_of_the_time_step") {

@@ -16,8 +16,8 @@ struct RelaxationOptions {
   Rotation rotation = Rotation::from_scene;
   Vec2 gravity = {};  ///< m/s²
   double time = 0;    ///< s, at which supports, loads and walls stand still
-  double tolerance =
-      1e-10;  ///< of the relative unbalanced force, > 0; rounding allows about 1e-13 of a block, 1e-11 of a slender strip
+  /// Of the relative unbalanced force, > 0. Rounding allows about 1e-13 of a block, 1e-11 of a slender strip.
+  double tolerance = 1e-10;
   std::int64_t max_steps = 1000000;    ///< > 0
   std::vector<DiscMotion> start = {};  ///< where to begin, one per disc; empty: the reference state
 };

@@ -62,8 +62,9 @@ struct SimulationOptions {
   Integrator integrator = Integrator::leapfrog;
   Rotation rotation = Rotation::from_scene;
   Damping damping = {};
-  Vec2 gravity = {};     ///< m/s²
-  double time_step = 0;  ///< s, > 0
+  Vec2 gravity = {};                    ///< m/s²
+  double time_step = 0;                 ///< s, > 0
+  std::size_t discs_per_thread = 4000;  ///< with fewer, threads wait longer for one another than they work
 };
 
 /// What is simulated; the assembly and the springs must outlive the simulation.

@@ -45,9 +45,9 @@ void run_together(int threads, const std::function<void(int)>& body) {
 
 }  // namespace
 
-void step_strips(std::int32_t strips, std::int64_t stages, int depth, bool ring, const StripWork& work) {
+void step_strips(std::int32_t strips, std::int64_t stages, int depth, int threads, bool ring, const StripWork& work) {
   if (strips == 0 || stages == 0) return;
-  const int threads = std::max(1, thread_count());
+  threads = std::clamp(threads, 1, thread_count());
   SpinBarrier barrier(threads);
   if (ring || stages < threads) {
     run_together(threads, [&](int thread) {
