@@ -131,6 +131,12 @@ std::string describe_problem(const Problem& problem, const Effects& effects) {
 std::string describe_results(const Problem& problem, std::span<const SolvedCase> results, const StageTimes& times) {
   std::string out;
   const Equilibrium& first = results.front().equilibrium;
+  const Case& resolved = problem.resolved;
+  if (resolved.run || !resolved.schedules.empty()) {
+    out += report_line("not used",
+                       "what belongs to a run: schedules (loads and supports act in full), gravity, walls, "
+                       "velocities, damping");
+  }
   out += report_line("unknowns", grouped(first.unknowns));
   out += report_line("solver", format("{}, {:.3g} entries in the factor ({})", first.solver, first.factor_nonzeros,
                                       readable_bytes(first.factor_bytes)));
