@@ -318,5 +318,5 @@ TEST_CASE("a_block_that_spins_freely_keeps_its_energy_without_drift") {
   CHECK(most_elastic > 1e-3 * mean);
   CHECK(*most - *least < 0.03 * most_elastic);
   CHECK(std::abs(slope) < 0.05 * (*most - *least));
-  CHECK(std::abs(momentum / momentum_before - 1) < 2e-16 * samples * every);
+  CHECK(std::abs(momentum / momentum_before - 1) < 1e-15 * samples * every);  // a few roundings a step
 }

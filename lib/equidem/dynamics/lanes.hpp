@@ -36,11 +36,15 @@ EQUIDEM_INLINE void gather(const double* motion, const std::int32_t* place, Lane
     y = __builtin_shuffle(y_ab, y_cd, Choice{0, 1, 4, 5});
     theta = __builtin_shuffle(xt_ab, xt_cd, Choice{2, 3, 6, 7});
   } else {
-    for (int lane = 0; lane < 4; ++lane) {
-      const double* at = motion + 2 * static_cast<std::ptrdiff_t>(place[lane]);
-      x[lane] = at[0];
-      y[lane] = at[1];
-    }
+    const auto two = [&](int first, int second) {
+      Pair low, high;
+      std::memcpy(&low, motion + 2 * static_cast<std::ptrdiff_t>(place[first]), sizeof low);
+      std::memcpy(&high, motion + 2 * static_cast<std::ptrdiff_t>(place[second]), sizeof high);
+      return __builtin_shufflevector(low, high, 0, 1, 2, 3);
+    };
+    const Lanes ac = two(0, 2), bd = two(1, 3);
+    x = __builtin_shuffle(ac, bd, Choice{0, 4, 2, 6});
+    y = __builtin_shuffle(ac, bd, Choice{1, 5, 3, 7});
     theta = Lanes{};
   }
 }

@@ -21,7 +21,6 @@ struct DiscLayout {
   std::vector<std::int32_t> disc_at;      ///< place -> disc, -1: none; places x lanes
   std::vector<std::int32_t> place_of;     ///< disc -> place
   std::vector<std::int32_t> strip_first;  ///< strips + 1, in groups
-  bool ring = false;
 
   [[nodiscard]] std::int32_t groups() const { return static_cast<std::int32_t>(disc_at.size() / lanes); }
   [[nodiscard]] std::int32_t strips() const { return static_cast<std::int32_t>(strip_first.size()) - 1; }

@@ -15,7 +15,7 @@ namespace equidem {
 namespace {
 
 constexpr int lane_count = DiscLayout::lanes;
-constexpr int stages_in_flight = 8;  // strips of that many steps lie in the cache at a time
+constexpr int stages_in_flight = 12;  // strips of that many steps lie in the cache at a time
 
 }  // namespace
 
@@ -149,7 +149,7 @@ void Simulation::Implementation::advance(std::int64_t count) {
   for (std::size_t k = 0; k < stages.size(); ++k) times[k + 1] = times[k] + stages[k].drift + stages[k].drift_before;
   const auto threads = static_cast<int>(
       std::min<std::size_t>(scene.assembly.size() / std::max<std::size_t>(1, options.discs_per_thread), 1024));
-  step_strips(bodies.layout().strips(), count * per_step, stages_in_flight, threads, bodies.layout().ring,
+  step_strips(bodies.layout().strips(), count * per_step, stages_in_flight, threads,
               [&](std::int32_t strip, std::int64_t stage) {
                 const std::int64_t step = steps + stage / per_step;
                 const auto k = static_cast<std::size_t>(stage % per_step);

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "equidem/dynamics/lanes.hpp"
+#include "equidem/dynamics/lanes_math.hpp"
 #include "equidem/dynamics/slot_geometry.hpp"
 #include "equidem/dynamics/step_kernel.hpp"
 
@@ -96,14 +97,10 @@ EQUIDEM_INLINE Resultant resultant_of(const ContactSums& sum, double kN, double 
   }
 }
 
-EQUIDEM_INLINE Lanes magnitude(const Lanes& x) {
-  return x < 0 ? -x : x;
-}
-
 /// Cundall's non-viscous damping: a share of the resultant acts against the velocity.
 EQUIDEM_INLINE void damp_locally(double alpha, const Lanes& velocity, Lanes& force) {
-  const Lanes share = alpha * magnitude(force);
-  force -= velocity > 0 ? share : velocity < 0 ? -share : Lanes{};
+  const Lanes along = change_sign(alpha * change_sign(force, sign_of(force)), sign_of(velocity));
+  force -= velocity != 0 ? along : Lanes{};
 }
 
 /// Energies that dampers took from the discs of a group, lanes apart.
@@ -144,9 +141,13 @@ EQUIDEM_INLINE void advance(const LoopData& data, const Stage& stage, int parity
     force.y += dashpots.y;
     if constexpr (rotation) force.moment += dashpots.moment;
   }
-  Lanes ax = inverse_mass * force.x, ay = inverse_mass * force.y, spin = inverse_moment * force.moment;
-  [[maybe_unused]] Lanes ax_free{}, ay_free{}, spin_free{};
-  if constexpr (kind.resistance != Resistance::none) {
+  [[maybe_unused]] Lanes ax{}, ay{}, spin{}, ax_free{}, ay_free{}, spin_free{};
+  if constexpr (kind.resistance == Resistance::none) {
+    vx += stage.kick * inverse_mass * force.x;
+    vy += stage.kick * inverse_mass * force.y;
+    if constexpr (rotation) omega += stage.kick * inverse_moment * force.moment;
+  } else {
+    ax = inverse_mass * force.x, ay = inverse_mass * force.y, spin = inverse_moment * force.moment;
     ax += data.gravity_x;
     ay += data.gravity_y;
     ax_free = ax, ay_free = ay, spin_free = spin;
@@ -155,18 +156,13 @@ EQUIDEM_INLINE void advance(const LoopData& data, const Stage& stage, int parity
       damp_locally(data.local_damping, vy, ay);
       if constexpr (rotation) damp_locally(data.local_damping, omega, spin);
     }
-    vx = stage.keep * vx;
-    vy = stage.keep * vy;
-    if constexpr (rotation) omega = stage.keep * omega;
+    vx = stage.keep * vx + stage.kick * ax;
+    vy = stage.keep * vy + stage.kick * ay;
+    if constexpr (rotation) omega = stage.keep * omega + stage.kick * spin;
   }
-  vx += stage.kick * ax;
-  vy += stage.kick * ay;
   x += stage.drift * vx;
   y += stage.drift * vy;
-  if constexpr (rotation) {
-    omega += stage.kick * spin;
-    theta += stage.drift * omega;
-  }
+  if constexpr (rotation) theta += stage.drift * omega;
   if (stage.drift_before != 0) {
     x += stage.drift_before * vx_before;
     y += stage.drift_before * vy_before;
@@ -174,9 +170,12 @@ EQUIDEM_INLINE void advance(const LoopData& data, const Stage& stage, int parity
   }
   if constexpr (kind.resistance != Resistance::none) {
     const Lanes mx = 0.5 * (vx_before + vx), my = 0.5 * (vy_before + vy), spun = 0.5 * (omega_before + omega);
-    const Lanes mass = inverse_mass > 0 ? 1 / inverse_mass : Lanes{};
-    const Lanes moment = inverse_moment > 0 ? 1 / inverse_moment : Lanes{};
-    dissipation.mass += data.mass_damping * stage.duration * (mass * (mx * mx + my * my) + moment * spun * spun);
+    Lanes mass{}, moment{};
+    if (kind.resistance == Resistance::local || data.mass_damping != 0) {
+      mass = inverse_mass > 0 ? 1 / inverse_mass : Lanes{};
+      moment = inverse_moment > 0 ? 1 / inverse_moment : Lanes{};
+      dissipation.mass += data.mass_damping * stage.duration * (mass * (mx * mx + my * my) + moment * spun * spun);
+    }
     if constexpr (kind.resistance == Resistance::local) {
       dissipation.local +=
           stage.duration * (mass * ((ax_free - ax) * mx + (ay_free - ay) * my) + moment * (spin_free - spin) * spun);
@@ -207,8 +206,11 @@ EQUIDEM_INLINE void add_dissipation(const DissipationLanes& lanes, Dissipation& 
 }
 
 template <LoopKind kind>
-EQUIDEM_INLINE void small_motion_step(const LoopData& data, const Stage& stage, int parity, std::int32_t begin,
+EQUIDEM_INLINE void small_motion_step(const LoopData& data_in, const Stage& stage_in, int parity, std::int32_t begin,
                                       std::int32_t end, Dissipation& sum) {
+  // Copies: for all the compiler knows, a store to a velocity may change what it has not seen declared here.
+  const LoopData data = data_in;
+  const Stage stage = stage_in;
   constexpr bool dashpot = kind.resistance == LoopKind::Resistance::dashpot;
   constexpr int width = kind.springs == LoopKind::Springs::rotation ? 4 : 2, slot = slot_doubles(kind) * 4;
   const double* motion = data.motion[parity];

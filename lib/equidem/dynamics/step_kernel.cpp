@@ -42,7 +42,7 @@ void step_plain(const LoopData& data, const Stage& stage, int parity, std::int32
 
 #if defined(__x86_64__)
 template <std::size_t Index>
-__attribute__((target("avx2"))) void step_wide(const LoopData& data, const Stage& stage, int parity, std::int32_t begin,
+__attribute__((target("avx2,fma"))) void step_wide(const LoopData& data, const Stage& stage, int parity, std::int32_t begin,
                                                std::int32_t end, Dissipation& dissipation) {
   step<kind_of(Index)>(data, stage, parity, begin, end, dissipation);
 }
@@ -68,7 +68,7 @@ StepFunction step_function(const LoopKind& kind) {
   constexpr auto all = std::make_index_sequence<kinds>{};
 #if defined(__x86_64__)
   static constexpr auto wide = wide_steps(all);
-  if (__builtin_cpu_supports("avx2")) return wide[index];
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return wide[index];
 #endif
   static constexpr auto plain = plain_steps(all);
   return plain[index];

@@ -45,11 +45,11 @@ void run_together(int threads, const std::function<void(int)>& body) {
 
 }  // namespace
 
-void step_strips(std::int32_t strips, std::int64_t stages, int depth, int threads, bool ring, const StripWork& work) {
+void step_strips(std::int32_t strips, std::int64_t stages, int depth, int threads, const StripWork& work) {
   if (strips == 0 || stages == 0) return;
   threads = std::clamp(threads, 1, thread_count());
   SpinBarrier barrier(threads);
-  if (ring || stages < threads) {
+  if (stages < threads) {
     run_together(threads, [&](int thread) {
       const auto begin = static_cast<std::int32_t>(static_cast<std::int64_t>(strips) * thread / threads);
       const auto end = static_cast<std::int32_t>(static_cast<std::int64_t>(strips) * (thread + 1) / threads);
