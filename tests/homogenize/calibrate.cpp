@@ -26,9 +26,9 @@ Assembly random_cell(PointProcess points, std::int64_t discs, bool periodic = tr
 }
 
 /// A Delaunay assembly with contacts taken out at random: four to six contacts per disc, stiff or soft against slip.
-Assembly diluted_cell(double kept) {
-  Assembly cell = random_cell(PointProcess::poisson_disc, 600);
-  Random random(7);
+Assembly diluted_cell(double kept, std::int64_t discs = 600, std::uint64_t seed = 7) {
+  Assembly cell = random_cell(PointProcess::poisson_disc, discs);
+  Random random(seed);
   std::vector<Contact> contacts;
   for (const Contact& contact : cell.contacts)
     if (random.uniform(0, 1) < kept) contacts.push_back(contact);
@@ -195,6 +195,64 @@ TEST_CASE("what_is_out_of_range_is_refused_with_a_value_that_is_feasible") {
   }
 }
 
+// Sparse networks have nu rise and fall with kT/kN, and some are mechanisms at kT = 0.
+TEST_CASE("what_a_sparse_network_shows_at_some_springs_is_reached_and_nothing_beyond_is_claimed") {
+  int turning = 0;
+  for (const double kept : {0.62, 0.7}) {
+    for (const std::uint64_t seed : {1, 2}) {
+      const Kind kind{"", diluted_cell(kept, 64, seed), {}};
+      std::vector<double> shown;
+      for (double exponent = -5; exponent <= 4; exponent += 1.5)
+        shown.push_back(effective_moduli(stiffness_of(kind, {1, std::pow(10, exponent)}).stiffness).poisson_strain);
+      CAPTURE(kept, seed);
+      for (std::size_t k = 0; k < shown.size(); ++k) {
+        if (shown[k] <= -1) continue;
+        const Calibration found = calibrate(kind.assembly, {1e9, shown[k], Plane::strain});
+        CAPTURE(k, shown[k], found.springs.ratio(), found.factorizations);
+        CHECK(effective_moduli(stiffness_of(kind, found.springs).stiffness).poisson_strain ==
+              Approx(shown[k]).margin(1e-9));
+        const double lowest = found.lowest_poisson_ratio(Plane::strain);
+        const double highest = found.highest_poisson_ratio(Plane::strain);
+        CHECK(lowest <= shown[k]);
+        CHECK(shown[k] <= highest);
+        if (!found.scanned) continue;
+        turning += found.rising ? 0 : 1;
+        CHECK(lowest <= std::max(-1.0, *std::min_element(shown.begin(), shown.end())) + 1e-9);
+        CHECK(highest >= *std::max_element(shown.begin(), shown.end()) - 1e-9);
+      }
+      for (const double nu : {0.499, -0.9999}) {
+        const auto ask = [&](double wanted) { return calibrate(kind.assembly, {1e9, wanted, Plane::strain}); };
+        const std::string message = message_of([&] { ask(nu); });
+        if (message.empty()) continue;
+        CAPTURE(message);
+        CHECK(ask(advised(message)).relative_error <= 1e-10);
+      }
+    }
+  }
+  CHECK(turning > 5);
+}
+
+TEST_CASE("the_static_limit_advised_is_reached") {
+  for (const std::uint64_t seed : {1, 2}) {
+    const Assembly cell = delaunay_assembly({.discs = 100, .seed = seed, .periodic = true});
+    const auto ask = [&](double nu) { return calibrate(cell, {1e9, nu, Plane::strain}, {.static_only = true}); };
+    std::string first;
+    for (const double nu : {0.49, 0.38}) {
+      const std::string message = message_of([&] { ask(nu); });
+      const double nearest = advised(message);
+      CAPTURE(seed, nu, message);
+      const Calibration found = ask(nearest);
+      CHECK(found.springs.kT < 0);
+      CHECK(found.achieved.unstable_modes == 0);
+      CHECK(found.relative_error <= 1e-10);
+      // One limit, whatever was asked.
+      const std::string advice = message.substr(message.find("the highest"));
+      if (first.empty()) first = advice;
+      CHECK(advice == first);
+    }
+  }
+}
+
 TEST_CASE("kT_is_0_at_the_end_of_the_range") {
   const Assembly cell = random_cell(PointProcess::poisson_disc, 300);
   const double highest = calibrate(cell, {1e9, 0.1, Plane::strain}).highest_poisson_ratio(Plane::strain);
@@ -217,7 +275,10 @@ TEST_CASE("negative_tangential_springs_are_for_statics_and_stop_at_the_static_li
     CAPTURE(message);
     CHECK(samples::contains(message, "static limit"));
     options.static_only = false;
-    CHECK(samples::contains(message_of([&] { calibrate(lattice, {1e9, 0.33, Plane::strain}, options); }), "at most"));
+    const std::string unasked = message_of([&] { calibrate(lattice, {1e9, 0.33, Plane::strain}, options); });
+    CAPTURE(unasked);
+    CHECK(samples::contains(unasked, "at most"));
+    CHECK(samples::contains(unasked, "static_only = true"));
   }
 }
 
@@ -239,9 +300,12 @@ TEST_CASE("plane_stress_asks_for_the_same_springs_as_the_same_body_in_plane_stra
 TEST_CASE("stiffer_moduli_take_springs_stiffer_by_the_same_factor") {
   const Assembly cell = random_cell(PointProcess::poisson_disc, 300);
   const Calibration soft = calibrate(cell, {1.0, 0.1, Plane::strain});
-  const Calibration stiff = calibrate(cell, {1e12, 0.1, Plane::strain});
-  CHECK(stiff.springs.kN == Approx(1e12 * soft.springs.kN).epsilon(1e-12));
-  CHECK(stiff.springs.kT == Approx(1e12 * soft.springs.kT).epsilon(1e-10));
+  for (const double factor : {1e12, 1e-100, 1e100}) {
+    const Calibration scaled = calibrate(cell, {factor, 0.1, Plane::strain});
+    CAPTURE(factor);
+    CHECK(scaled.springs.kN / factor == Approx(soft.springs.kN).epsilon(1e-12));
+    CHECK(scaled.springs.kT / factor == Approx(soft.springs.kT).epsilon(1e-10));
+  }
 }
 
 // With kT = kN and rotation restrained each contact resists the relative motion alike in all directions, so that u_x

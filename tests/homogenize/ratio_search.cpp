@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/homogenize/ratio_search.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/catch.hpp"
@@ -125,6 +127,82 @@ TEST_CASE("a_curve_that_does_not_rise_throughout_is_followed_and_said_so") {
     seen_falling = seen_falling || !found.rising;
   }
   CHECK(seen_falling);
+}
+
+/// A sum of r/(r + t) with positive weights, as K and G of a network.
+struct PositiveSum {
+  double at_zero;
+  std::vector<std::pair<double, double>> terms;  ///< weight, t
+
+  double value(double r) const {
+    double sum = at_zero;
+    for (const auto& [weight, t] : terms) sum += weight * r / (r + t);
+    return sum;
+  }
+  double slope(double r) const {
+    double sum = 0;
+    for (const auto& [weight, t] : terms) sum += weight * t / ((r + t) * (r + t));
+    return sum;
+  }
+};
+
+struct Network {
+  std::string name;
+  PositiveSum G, K;
+  double lost_below = 0;  ///< r at which it gives way
+
+  double q(double r) const { return G.value(r) / K.value(r); }
+  RatioSample at(double r) const {
+    const double g = G.value(r), k = K.value(r);
+    return {.ratio = r,
+            .shear_to_bulk = g / k,
+            .slope = (G.slope(r) * k - g * K.slope(r)) / (k * k),
+            .bulk_growth = r * K.slope(r) / k,
+            .stable = r >= lost_below};
+  }
+};
+
+std::vector<Network> networks() {
+  return {
+      {"q falls, then rises", {0.1, {{0.2, 0.1}, {0.5, 3}}}, {0.09, {{0.35, 0.02}, {0.1, 1}}}},
+      {"q falls from end to end", {0.3, {{0.2, 1}}}, {0.2, {{0.5, 0.5}}}},
+      {"rises, falls, rises", {0.1, {{0.2, 1e-5}, {1, 5}}}, {0.2, {{0.5, 1e-3}}}},
+      {"a mechanism at r = 0", {0, {{0.1, 1e-3}, {0.4, 3}}}, {0, {{0.3, 0.02}, {0.2, 1}}}},
+      {"a mechanism lost in rounding", {0, {{0.1, 1e-3}, {0.4, 3}}}, {0, {{0.3, 0.02}, {0.2, 1}}}, 1e-5},
+  };
+}
+
+TEST_CASE("a_scan_finds_the_extremes_and_what_lies_between_them") {
+  for (const Network& network : networks()) {
+    const RatioSampler sample = [&](double r) { return network.at(r); };
+    RatioRange range = sample_range(sample);
+    CAPTURE(network.name, range.smallest.ratio, range.closed);
+    REQUIRE(range.smallest.stable);
+    CHECK(range.smallest.ratio >= network.lost_below);
+    find_by_scan(sample, range, -1, tolerance);
+    double least = infinity, greatest = 0;
+    for (double x = std::log(range.smallest.ratio); x < std::log(1e6); x += 1e-3) {
+      least = std::min(least, network.q(std::exp(x)));
+      greatest = std::max(greatest, network.q(std::exp(x)));
+    }
+    CHECK(range.least == Approx(least).epsilon(1e-6));
+    CHECK(range.greatest == Approx(greatest).epsilon(1e-6));
+    for (const double part : {1e-6, 0.01, 0.3, 0.7, 0.99, 1 - 1e-6}) {
+      const double wanted = least + part * (greatest - least);
+      const FoundRatio found = find_by_scan(sample, range, wanted, tolerance);
+      CAPTURE(part, wanted, found.at.ratio, found.steps);
+      CHECK(found.reached);
+      CHECK(network.q(found.at.ratio) == Approx(wanted).epsilon(2 * tolerance));
+      CHECK(found.steps < 50);
+    }
+    CHECK_FALSE(find_by_scan(sample, range, 1.001 * greatest, tolerance).reached);
+    CHECK_FALSE(find_by_scan(sample, range, 0.999 * least, tolerance).reached);
+  }
+}
+
+TEST_CASE("a_network_that_always_gives_way_has_no_range") {
+  const RatioRange range = sample_range([](double r) { return RatioSample{.ratio = r, .stable = false}; });
+  CHECK_FALSE(range.smallest.stable);
 }
 
 TEST_CASE("a_jump_is_not_taken_for_an_answer") {

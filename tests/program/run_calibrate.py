@@ -128,8 +128,57 @@ class Calibrate(program.ProgramTest):
                         'shear_modulus = 1e9\npoisson_ratio = 0.1\nplane = "strain"\n')
         self.check_error(equidem("calibrate", case), 2, "springs of its own", "Remove")
 
+    def test_no_solid_in_plane_strain_is_said_to_be_one(self):
+        # K < G/3.
+        case = self.folder / "sheet.toml"
+        case.write_text('schema = "equidem/1"\n[assembly]\nkind = "delaunay"\ndiscs = 300\nradius = 0.01\n'
+                        'periodic = true\n[material]\nshear_modulus = 1e9\nbulk_modulus_2d = 0.1e9\n'
+                        'plane = "stress"\n')
+        result = self.calibrated(case)
+        self.check_close(result["achieved"]["poisson_ratio"]["plane_stress"], -0.9 / 1.1, 1e-10)
+        self.assertIsNone(result["achieved"]["poisson_ratio"]["plane_strain"])
+        self.assertIsNone(result["achieved"]["young_modulus"]["plane_strain"])
+        self.assertEqual(result["report"].count("no isotropic solid"), 2)
+        self.assertNotIn("-4.5", result["report"])
+
+    def test_outputs_are_checked_before_anything_is_written(self):
+        same = self.folder / "same.json"
+        self.check_error(equidem("calibrate", LATTICE, "--json", same, "--springs", same), 2, "both", str(same))
+        self.assertFalse(same.exists())
+        out = self.folder / "out"
+        out.mkdir()
+        self.check_error(equidem("calibrate", LATTICE, "--out", out, "--springs", out / ".." / "out" / "case.toml"), 2,
+                         "both")
+        self.assertEqual(list(out.iterdir()), [])
+        missing = self.folder / "missing" / "springs.toml"
+        self.check_error(equidem("calibrate", LATTICE, "--springs", missing), 2, "no folder", "missing")
+        self.assertFalse(missing.parent.exists())
+
+    def test_the_springs_file_says_of_what_its_moduli_are(self):
+        for periodic in ("true", "false"):
+            file = self.folder / f"{periodic}.toml"
+            self.check_done(equidem("calibrate", LATTICE, "--set", f"assembly.periodic={periodic}", "--springs", file))
+            text = file.read_text()
+            self.assertEqual("infinite lattice" in text, periodic == "false")
+            self.assertEqual("relative error" in text, periodic == "true")
+        file = self.folder / "block.toml"
+        self.check_done(equidem("calibrate", RANDOM, "--set", "assembly.periodic=false", "--set", "assembly.discs=300",
+                                "--springs", file))
+        self.assertIn("boundaries of kind displacement", file.read_text())
+
+    def test_agreement_to_rounding_is_no_percentage(self):
+        report = self.calibrated(RANDOM, "--set", "material.weighting=voronoi")["report"]
+        self.assertIn("as wanted", report)
+        self.assertIsNone(re.search(r"e-1\d %", report))
+
+    def test_kT_below_0_names_the_key_that_allows_it(self):
+        self.check_error(equidem("calibrate", LATTICE, "--set", "material.poisson_ratio=0.33333333334"), 2,
+                         "static_only = true")
+
     def test_dry_run_and_quiet(self):
         size = self.calibrated(RANDOM, "--dry-run")
+        names = re.findall(r"^(\S.{14})", size["report"], re.MULTILINE)
+        self.assertEqual(len(names), len(set(names)), names)
         self.assertEqual(size["status"], "dry_run")
         self.assertGreater(size["unknowns"], 5000)
         done = self.check_done(equidem("calibrate", LATTICE, "--quiet"))

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """equidem stability, as a user runs it: run_stability.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import csv
+import json
 import math
 import unittest
 
@@ -111,6 +112,48 @@ class OtherCases(StabilityTest):
         for result in (small, large):
             self.assertTrue(-1 < result["critical_ratio"] < 0)
             self.assertLess(result["element_bound_time_step"], result["critical_time_step"])
+
+    def test_a_cell_of_one_disc_has_only_the_waves_of_the_infinite_lattice(self):
+        one = ("--set", "assembly.columns=1", "--set", "assembly.rows=1")
+        for ratio in (0, -0.1):
+            result = self.lattice("square", ratio, *one)
+            self.assertEqual(result["omega_max"], 0)
+            self.assertIsNone(result["critical_time_step"])
+            self.check_relative(result["zone_omega_max"], math.sqrt(4 * KN / MASS), 1e-10)
+            self.assertEqual(result["status"], "mechanism")
+            self.assertGreater(result["mechanisms"]["free_waves"], 0)
+            self.assertIn("that repeats with the cell", " ".join(result["report"].split()))
+        self.check_relative(result["growth_rate"], math.sqrt(8 * 0.1 / 0.5 * KN / MASS), 1e-10)
+
+    def test_magnitudes_beyond_numbers_are_refused(self):
+        for key, value in (("density", "1e-300"), ("density", "1e300"), ("radius", "1e-100"), ("radius", "1e100")):
+            self.check_error(equidem("stability", CASES / "random_cell.toml", "--set", "assembly.discs=30",
+                                     "--set", f"assembly.{key}={value}"), 2, "1e")
+
+    def test_what_is_said_about_negative_springs(self):
+        grows = " ".join(self.lattice("hexagonal", -0.1)["report"].split())
+        self.assertIn("with kT < 0 no time step is stable", grows)
+        self.assertNotIn("stable below", grows)
+        self.assertNotIn("guaranteed", grows)
+        discs = [[x + y % 2, y * math.sqrt(3), 1] for y in range(2) for x in (0, 2)]
+        contacts, springs = [], []
+        for d, (x, y, _) in enumerate(discs):
+            right, up = d ^ 1, (d + 2) % 4
+            contacts += [[d, right, int(x > 1), 0], [d, up, 0, int(d > 1)]]
+            # the other neighbour above: a column to the left from even rows, to the right from odd ones
+            contacts += [[d, up ^ 1, (-1 if x < 1 else 0) if y == 0 else (1 if x > 2 else 0), int(d > 1)]]
+            springs += [[1.0, 0.5], [1.0, 0.5], [1.0, -0.01 if d == 0 else 0.5]]
+        (self.folder / "cell.json").write_text(json.dumps({
+            "schema": "equidem-assembly/1", "cell": [4, 2 * math.sqrt(3)], "discs": discs, "contacts": contacts,
+            "springs": springs}))
+        case = self.folder / "cell.toml"
+        case.write_text('schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "cell.json"\n')
+        report = " ".join(self.stability(case)["report"].split())
+        self.assertIn("growth none: some kT are negative, but no motion has negative energy", report)
+
+    def test_an_ensemble_is_not_judged_and_that_is_said(self):
+        result = self.stability(CASES / "ensemble.toml", "--set", "assembly.discs=12")
+        self.assertIn("not used [ensemble]", " ".join(result["report"].split()))
 
     def test_files(self):
         folder = self.folder / "waves"

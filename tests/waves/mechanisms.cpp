@@ -40,6 +40,19 @@ TEST_CASE("rows_and_columns_of_a_square_cell_slide_without_tangential_springs") 
   CHECK(report.sentences.size() == 1);
 }
 
+TEST_CASE("chains_that_span_one_direction_slide_past_their_images") {
+  const auto [columns, rows] = GENERATE(std::pair{1, 1}, std::pair{3, 1}, std::pair{4, 3});
+  const bool across = GENERATE(false, true);
+  Assembly chains = periodic_square(columns, rows);
+  std::erase_if(chains.contacts, [across = across](const Contact& c) { return (across ? c.shift_x : c.shift_y) != 0; });
+  chains.facet_lengths.clear();
+  const MechanismReport report = mechanisms_of(chains, {1, 0.5});
+  CAPTURE(columns, rows, across, report.sentences);
+  CHECK(report.unjoined == 1);
+  CHECK(report.count() > 0);
+  CHECK(mechanisms_of(periodic_square(columns, rows), {1, 0.5}).unjoined == 0);
+}
+
 TEST_CASE("a_triangulated_body_has_no_mechanism_but_three_rigid_motions") {
   const Assembly block = hexagonal_lattice({.columns = 5, .rows = 5});
   for (const double kT : {0.0, 0.5, -0.2}) {

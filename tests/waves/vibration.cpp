@@ -149,3 +149,50 @@ TEST_CASE("with_negative_kT_the_finite_assembly_grows_no_faster_than_the_lattice
   CHECK(found.value < -0.9 * 24 * std::abs(kT));
   CHECK(found.value > -24 * std::abs(kT));
 }
+
+TEST_CASE("frequencies_scale_with_units_however_extreme") {
+  const double scale = GENERATE(1e-200, 1e-60, 1e60, 1e200);
+  const Assembly small = periodic_hexagonal(2, 2), large = random_cell(40, 5);  // dense, Lanczos
+  for (const Assembly* assembly : {&small, &large}) {
+    const auto squared = [&](double by) {
+      std::vector<Inertia> inertia = unit_masses(*assembly);
+      for (Inertia& body : inertia) body.mass *= by, body.moment *= by;
+      return highest(*assembly, ContactSprings(SpringConstants{1, 0.4}), inertia);
+    };
+    const ExtremeEigenvalue one = squared(1), scaled = squared(scale);
+    CAPTURE(scale, assembly->size(), one.value, scaled.value, scaled.residual);
+    CHECK(scaled.converged);
+    CHECK(scaled.value * scale == Approx(one.value).epsilon(1e-12));
+    CHECK(scaled.residual * scale < 1e-10);
+  }
+}
+
+TEST_CASE("magnitudes_whose_squares_are_no_numbers_are_refused") {
+  const Assembly assembly = periodic_hexagonal(2, 2);
+  const auto refused = [&](double mass, double kN) {
+    std::vector<Inertia> inertia = unit_masses(assembly);
+    for (Inertia& body : inertia) body.mass *= mass, body.moment *= mass;
+    try {
+      check_magnitudes(assembly, ContactSprings(SpringConstants{kN, kN}), inertia);
+    } catch (const Error& error) {
+      return error.kind() == ErrorKind::bad_input;
+    }
+    return false;
+  };
+  CHECK(refused(1e-300, 1));
+  CHECK(refused(1e300, 1));
+  CHECK(refused(1e-100, 1e100));
+  CHECK(refused(1e100, 1e-100));
+  CHECK(!refused(1e-100, 1));
+  CHECK(!refused(1e100, 1e100));
+}
+
+// Discs that touch only their own images: K is zero, or negative where rotations have kT < 0.
+TEST_CASE("a_cell_in_which_nothing_vibrates_has_the_frequency_zero") {
+  const double kT = GENERATE(0.0, -0.1);
+  const Assembly cell = periodic_square(1, 1);
+  const ExtremeEigenvalue found = highest(cell, ContactSprings(SpringConstants{1, kT}), unit_masses(cell));
+  CAPTURE(kT, found.value, found.residual);
+  CHECK(found.converged);
+  CHECK(std::abs(found.value) < 1e-14);
+}

@@ -122,6 +122,63 @@ TEST_CASE("restrained_rotation_is_lost_at_the_same_ratio_on_the_whole_line_to_m"
   CHECK(hexagonal.critical().value == Approx(-1.0 / 3).epsilon(1e-9));
 }
 
+// The limit q -> 0 by extrapolation of finite wave vectors, whose error is of the order q^4, direction by direction.
+TEST_CASE("long_waves_are_lost_where_the_limit_of_finite_ones_over_all_directions_is") {
+  const bool rotation = GENERATE(true, false), diluted = GENERATE(false, true);
+  const std::uint64_t seed = GENERATE(1, 2, 3);
+  Assembly cell = random_cell(8, seed);
+  if (diluted)
+    cell.contacts.erase(cell.contacts.begin() + 3), cell.contacts.erase(cell.contacts.begin() + 11),
+        cell.facet_lengths.clear();
+  const Case given(cell, 0.5, rotation);
+  const LongWaveLoss loss = given.waves.long_wave_loss();
+  const double length = 2e-3 * norm(given.zone.reciprocal[0]);
+  const auto limit = [&](double angle) {
+    const Vec2 q = length * Vec2{std::cos(angle), std::sin(angle)};
+    return (4 * given.waves.critical_ratio(0.5 * q) - given.waves.critical_ratio(q)) / 3;
+  };
+  CAPTURE(rotation, diluted, seed, loss.ratio, loss.angle, given.waves.critical_ratio({}));
+  double largest = -1;
+  for (int k = 0; k < 90; ++k) largest = std::max(largest, limit(k * std::numbers::pi / 90));
+  if (std::isfinite(loss.ratio)) {
+    CHECK(std::abs(limit(loss.angle) - loss.ratio) < 1e-9);
+    CHECK(largest < loss.ratio + 1e-9);
+    CHECK(largest > loss.ratio - 1e-3);  // and the grid of directions is not far
+  } else {
+    CHECK(largest < given.waves.critical_ratio({}) + 1e-9);
+  }
+}
+
+TEST_CASE("long_waves_of_lattices_are_lost_where_closed_forms_say") {
+  // Square: C66 = kT/2. Hexagonal: G = sqrt3/4 (kN + kT), with rotation restrained (53) sqrt3/4 (kN + 3 kT).
+  CHECK(std::abs(Case(periodic_square(2, 2), 0.5).waves.long_wave_loss().ratio) < 1e-13);
+  CHECK(Case(periodic_hexagonal(2, 2), 0.5, false).waves.long_wave_loss().ratio == Approx(-1.0 / 3).epsilon(1e-13));
+  CHECK(!std::isfinite(Case(periodic_hexagonal(2, 2), 0.5).waves.long_wave_loss().ratio));
+}
+
+// Discs of a honeycomb turn like gears in a wave of any length at next to no cost: the gear follows the long wave.
+TEST_CASE("gears_follow_long_waves") {
+  Assembly honeycomb;
+  honeycomb.kind = "file";
+  const double h = std::sqrt(3.0);
+  honeycomb.period = {2 * h, 6};
+  honeycomb.centres = {{0, 0}, {0, 2}, {h, 3}, {h, 5}};
+  honeycomb.radii.assign(4, 1);
+  honeycomb.contacts = {{0, 1, 0, 0, 1, 1}, {1, 2, 0, 0, 1, 1}, {1, 2, -1, 0, 1, 1},
+                        {2, 3, 0, 0, 1, 1}, {3, 0, 0, 1, 1, 1}, {3, 0, 1, 1, 1, 1}};
+  const Case given(honeycomb, 0.5);
+  const LongWaveLoss loss = given.waves.long_wave_loss();
+  double largest = -1;
+  for (int k = 0; k < 180; ++k) {
+    const double angle = k * std::numbers::pi / 180;
+    const Vec2 q = 2e-3 * norm(given.zone.reciprocal[0]) * Vec2{std::cos(angle), std::sin(angle)};
+    largest = std::max(largest, (4 * given.waves.critical_ratio(0.5 * q) - given.waves.critical_ratio(q)) / 3);
+  }
+  CAPTURE(given.waves.cell().size(), loss.ratio, loss.angle, largest);
+  CHECK(given.waves.cell().size() == 2);
+  CHECK(std::abs(loss.ratio - largest) < 1e-7);
+}
+
 // Below its critical ratio the wave costs negative energy: K has a negative eigenvalue beyond one for each rotation.
 TEST_CASE("k_of_q_changes_its_inertia_at_the_critical_ratio") {
   const Assembly cell = random_cell(6, GENERATE(1, 2));

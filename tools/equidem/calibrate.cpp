@@ -3,6 +3,9 @@
 /// equidem calibrate: wanted moduli -> springs.
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -30,12 +33,27 @@ struct Options {
   }
 };
 
+/// Before the computation: all files can be written, each to a place of its own.
 void check_outputs(const Options& options) {
-  const OutputPlan plan(options.common);
+  const CommonOptions& common = options.common;
+  const OutputPlan plan(common);
   plan.expect_json();
   plan.expect("result.json");
   plan.expect("case.toml");
-  if (const auto path = options.springs_path()) check_writable(*path, options.common.overwrite);
+  const auto path = options.springs_path();
+  if (!path) return;
+  options.springs ? plan.expect_file(*path) : check_writable(*path, common.overwrite);
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  std::vector<fs::path> others;
+  if (common.json && *common.json != "-") others.emplace_back(*common.json);
+  if (common.out) others.insert(others.end(), {*common.out / "result.json", *common.out / "case.toml"});
+  const auto place = [&](const fs::path& file) { return fs::weakly_canonical(fs::absolute(file), ignored); };
+  for (const fs::path& other : others) {
+    if (place(other) != place(*path)) continue;
+    bad_input(format("the springs and another result would both be written to '{}'", path->string()),
+              "one would replace the other", "Give --springs a file of its own");
+  }
 }
 
 CalibrateOptions calibrate_options(const Case& resolved) {
@@ -76,29 +94,44 @@ std::optional<MeanFieldGuess> mean_field_guess(const Case& resolved, const Assem
   return guess;
 }
 
-/// The text of the springs file, with the moduli that it was made for.
+/// The text of the springs file, with the moduli that it was made for and what shows them.
 std::string text_of_springs(const Case& resolved, const Assembly& assembly, const Calibration& found) {
   const ElasticModuli& m = resolved.material->moduli;
-  const std::string comment = format(
-      "Springs that give G = {:.9g} Pa and nu = {:.9g} in plane {}, to a relative error of {:.1e},\n"
-      "on {} discs of kind {} with {} contacts. By equidem calibrate, {}.",
-      m.shear_modulus, m.poisson_ratio, to_string(m.plane), found.relative_error, assembly.size(), assembly.kind,
-      assembly.contacts.size(), found.method);
-  return springs_file(found.springs, resolved.weighting, resolved.title, comment);
+  const std::string moduli =
+      format("G = {:.9g} Pa and nu = {:.9g} in plane {}", m.shear_modulus, m.poisson_ratio, to_string(m.plane));
+  const std::string discs =
+      format("{} discs of kind {} with {} contacts", assembly.size(), assembly.kind, assembly.contacts.size());
+  std::string comment;
+  if (!found.verified) {
+    comment =
+        format("Springs that give the infinite lattice {}.\nThe {} they were made for have free edges, and are softer.",
+               moduli, discs);
+  } else {
+    comment =
+        format("Springs that give {}, to a relative error of {:.1e},\non {}", moduli, found.relative_error, discs);
+    comment += found.achieved.boundary == Boundary::periodic
+                   ? "."
+                   : format(" between boundaries of kind {}.", to_string(found.achieved.boundary));
+  }
+  return springs_file(found.springs, resolved.weighting, resolved.title,
+                      comment + format("\nBy equidem calibrate, {}.", found.method));
 }
 
-JsonObject both_readings(double strain, double stress) {
+/// Of a sheet that is no solid in plane strain only the reading in plane stress.
+JsonObject both_readings(bool solid, double strain, double stress) {
   JsonObject object;
-  object.set("plane_strain", strain).set("plane_stress", stress);
+  solid ? object.set("plane_strain", strain) : object.set_null("plane_strain");
+  object.set("plane_stress", stress);
   return object;
 }
 
 JsonObject moduli_object(const EffectiveModuli& m) {
+  const bool solid = m.poisson_strain > -1;
   JsonObject object;
   object.set("shear_modulus", m.shear_modulus)
       .set("bulk_modulus_2d", m.bulk_modulus_2d)
-      .set("poisson_ratio", both_readings(m.poisson_strain, m.poisson_stress))
-      .set("young_modulus", both_readings(m.young_strain, m.young_stress))
+      .set("poisson_ratio", both_readings(solid, m.poisson_strain, m.poisson_stress))
+      .set("young_modulus", both_readings(solid, m.young_strain, m.young_stress))
       .set("anisotropy", m.anisotropy);
   return object;
 }
@@ -134,6 +167,7 @@ void add_calibrated(JsonObject& object, const Calibrated& c) {
       .set("factorizations", found.factorizations)
       .set("feasible_poisson_ratio", range_of(found, m.plane))
       .set("feasible_poisson_ratios", feasible)
+      .set("scanned", found.scanned)
       .set("monotonic", found.rising);
   if (found.verified) object.set("boundary", to_string(found.achieved.boundary));
   if (!c.mean_field) return;
@@ -151,9 +185,9 @@ int dry_run(const CommonOptions& options, const Problem& problem) {
   const Effects effects = derive_effects(problem.springs.springs, problem.resolved.rotation);
   const SolveEstimate size = estimate_solve(problem.assembly, problem.springs.springs, {}, problem.options());
   const std::string report = describe_problem(problem, effects) +
-                             report_line("work",
-                                         "at most about six factorizations of this size, and one more to "
-                                         "judge the mean field") +
+                             report_line("factorizations",
+                                         "six or fewer of this size, some thirty where nu does not fall throughout "
+                                         "with kT/kN, and one more to judge the mean field") +
                              describe_estimate(size);
   JsonObject object;
   add_common(object, "dry_run", report, problem.times, effects);

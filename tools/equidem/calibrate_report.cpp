@@ -10,8 +10,13 @@ namespace equidem {
 namespace {
 
 std::string percent_beside(double value, double wanted) {
-  return format("{:+.3g} %", 100 * (value / wanted - 1));
+  constexpr double rounding = 1e-12;
+  const double off = value / wanted - 1;
+  return std::abs(off) < rounding ? "as wanted" : format("{:+.3g} %", 100 * off);
 }
+
+/// G >= 3K, nu <= -1 in plane strain.
+constexpr const char* no_solid = "no isotropic solid has these moduli: K <= G/3";
 
 std::string shown_springs(const SpringConstants& k) {
   return format("kN = {:.9g} Pa, kT = {:.9g} Pa (kT/kN = {:.6g})", k.kN, k.kT, k.ratio());
@@ -21,15 +26,16 @@ void append_wanted(std::string& out, const ElasticModuli& m) {
   const Plane other = m.plane == Plane::strain ? Plane::stress : Plane::strain;
   out += report_line("wanted", format("G = {:.9g} Pa, K = {:.9g} Pa, nu = {:.9g} in plane {}", m.shear_modulus,
                                       m.bulk_modulus_2d(), m.poisson_ratio, to_string(m.plane)));
-  out += report_line(
-      "", format("the same body in plane {}: nu = {:.9g}", to_string(other), m.read_as(other).poisson_ratio));
+  const double nu = m.read_as(other).poisson_ratio;
+  out += report_line("", nu > -1 ? format("the same body in plane {}: nu = {:.9g}", to_string(other), nu)
+                                 : format("in plane {} {}", to_string(other), no_solid));
 }
 
 void append_method(std::string& out, const Calibration& found) {
   if (found.iterations > 0) {
-    out += report_line("method",
-                       format("{}: {}, {} in all with the two ends of the range", found.method,
-                              counted(found.iterations, "step"), counted(found.factorizations, "factorization")));
+    out += report_line("method", format("{}: {}, {} in all with {}", found.method, counted(found.iterations, "step"),
+                                        counted(found.factorizations, "factorization"),
+                                        found.scanned ? "a scan of the range" : "the two ends of the range"));
   } else {
     out += report_line(
         "method", format("{}{}", found.method, found.verified ? "; checked by one factorization of this cell" : ""));
@@ -56,7 +62,9 @@ void append_reached(std::string& out, const Calibration& found) {
   const std::string moduli = format("G = {:.9g} Pa, K = {:.9g} Pa", m.shear_modulus, m.bulk_modulus_2d);
   out += found.verified ? report_line("reached", format("{}, relative error {:.1e}", moduli, found.relative_error))
                         : report_line("lattice", moduli + ", where it has no edges");
-  out += report_line("  plane strain", format("nu = {:.9g}, E = {:.9g} Pa", m.poisson_strain, m.young_strain));
+  out += report_line("  plane strain", m.poisson_strain > -1
+                                           ? format("nu = {:.9g}, E = {:.9g} Pa", m.poisson_strain, m.young_strain)
+                                           : no_solid);
   out += report_line("  plane stress", format("nu = {:.9g}, E = {:.9g} Pa", m.poisson_stress, m.young_stress));
   out += report_line("anisotropy", m.anisotropy < 1e-9 ? std::string("none, to round-off")
                                                        : format("{:.3g} %; the moduli are the mean over all directions",
@@ -71,14 +79,20 @@ void append_range(std::string& out, const Calibration& found) {
     return format("{:.6g} to {:.6g} in plane {}", found.lowest_poisson_ratio(plane), found.highest_poisson_ratio(plane),
                   to_string(plane));
   };
-  out += report_line("feasible nu",
-                     format("{}, {}, without negative springs", range(Plane::strain), range(Plane::stress)));
+  const std::string ranges = range(Plane::strain) + ", " + range(Plane::stress) + ", without negative springs";
+  out += report_line("feasible nu", found.scanned ? ranges : "at least " + ranges);
   if (found.iterations == 0) return;
-  const std::string ends = "The ends are those of tangential springs much stiffer than the normal ones, and of none; ";
-  out +=
-      report_line("", ends + (found.rising ? "nu fell with kT/kN wherever it was tried"
-                                           : "between them nu does not always fall with kT/kN here, so other springs "
-                                             "may give the same moduli"));
+  if (found.scanned) {
+    out += report_line("", "These are the extremes over all kT/kN up to 1e6" +
+                               std::string(found.rising ? ""
+                                                        : "; nu does not fall throughout with kT/kN here, so that "
+                                                          "other springs may give the same moduli"));
+    return;
+  }
+  out += report_line("", "The ends are those of tangential springs much stiffer than the normal ones, and of none; " +
+                             std::string(found.rising ? "nu fell with kT/kN wherever it was tried"
+                                                      : "between them nu does not always fall with kT/kN here, so "
+                                                        "other springs may give the same moduli"));
 }
 
 void append_mean_field(std::string& out, const Calibrated& c) {

@@ -36,6 +36,7 @@ int dry_run(const CommonOptions& options, const Problem& problem) {
                      : format("none: the smallest cell has {} discs, more than {}", cell.size(), most_discs_of_survey);
   }
   const auto inertia = inertia_of(assembly.radii, density_of(problem.resolved), problem.resolved.assembly.body);
+  check_magnitudes(assembly, springs, inertia);
   const double step = 2 / std::sqrt(element_bound(assembly, springs, inertia, effects.rotation));
   times.add("analysis", watch.lap());
   const std::string report =

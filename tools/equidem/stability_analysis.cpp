@@ -33,8 +33,8 @@ CriticalMotion critical_of_survey(const WaveSurvey& survey) {
                           .motion = {},
                           .searched = {}};
   critical.searched = format(
-      "all waves of the infinite assembly: {} wave vectors, all points of symmetry, long waves along 12 directions, "
-      "and a climb from the best",
+      "all waves of the infinite assembly: {} wave vectors, all points of symmetry, long waves (q -> 0) along all "
+      "directions, and a climb from the best",
       survey.critical.on_grid.size());
   if (critical.ratio <= -1) critical = {-std::numeric_limits<double>::infinity(), {}, {}, {}, critical.searched};
   return critical;
@@ -115,7 +115,7 @@ double density_of(const Case& resolved) {
 }
 
 std::string Stability::status() const {
-  if (mechanisms.count() > 0) return "mechanism";
+  if (mechanisms.count() > 0 || (survey && !survey->free_waves.empty())) return "mechanism";
   const bool below = ratio && *ratio < 0 && *ratio <= critical.ratio;
   return inertia.unstable_modes != 0 || below ? "unstable" : "stable";
 }
@@ -123,8 +123,8 @@ std::string Stability::status() const {
 double Stability::growth_rate() const {
   double squared = lowest ? std::max(0.0, -lowest->value) : 0;
   if (lowest && survey) squared = std::max(squared, survey->growing.value);
-  constexpr double round_off = 1e-12;  // of omega_max², in what costs nothing
-  return squared > round_off * highest.value ? std::sqrt(squared) : 0;
+  constexpr double round_off = 1e-12;  // of the bound on omega², in what costs nothing
+  return squared > round_off * element_bound ? std::sqrt(squared) : 0;
 }
 
 Problem stability_problem(Case resolved) {
@@ -151,6 +151,7 @@ Stability analyze_stability(const Problem& problem) {
   s.density_assumed = !problem.resolved.assembly.density.has_value();
   s.ratio = common_ratio(problem);
   const std::vector<Inertia> inertia = inertia_of(assembly.radii, s.density, problem.resolved.assembly.body);
+  check_magnitudes(assembly, springs, inertia);
 
   Stopwatch watch;
   s.mechanisms = find_mechanisms(assembly, springs, rotation, problem.supports);
@@ -160,15 +161,18 @@ Stability analyze_stability(const Problem& problem) {
   const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, s.effects, problem.supports);
   if (unknowns.unknowns == 0)
     bad_input("the supports hold every disc", "nothing can move, so that nothing can be lost", "Hold fewer discs");
+  s.element_bound = element_bound(assembly, springs, inertia, s.effects.rotation);
   s.highest = extreme_squared_frequency(assembly, springs, unknowns, inertia, SpectrumEnd::largest);
-  if (!(s.highest.value > 0)) {
+  constexpr double round_off = 1e-14;  // of the bound, in what costs nothing
+  if (s.highest.converged && s.highest.value <= round_off * s.element_bound) {
+    s.highest.value = s.highest.residual = 0;  // a cell of discs that touch only their own images
+  } else if (!(s.highest.value > 0)) {
     computation_failed("the highest frequency was not found",
                        format("{} products with the matrix did not separate it from the next", s.highest.products),
                        "Take a smaller assembly; --dry-run tells the time step that is guaranteed");
   }
   if (springs.any_negative())
     s.lowest = extreme_squared_frequency(assembly, springs, unknowns, inertia, SpectrumEnd::smallest);
-  s.element_bound = element_bound(assembly, springs, inertia, s.effects.rotation);
   s.rules = time_step_rules(assembly, springs, inertia, s.effects.rotation);
   s.times.add("highest frequency", watch.lap());
 

@@ -42,7 +42,7 @@ struct Stability {
   InertiaReport inertia;
   CriticalMotion critical;
 
-  ExtremeEigenvalue highest;                ///< omega², (rad/s)², of the assembly as it is given
+  ExtremeEigenvalue highest;  ///< omega², (rad/s)², of the assembly as it is given; 0: nothing in it vibrates
   std::optional<ExtremeEigenvalue> lowest;  ///< likewise, where some kT < 0
   double element_bound = 0;                 ///< (rad/s)²
   TimeStepRules rules;
@@ -63,7 +63,7 @@ struct Stability {
 /// The case with its supports, those of [test] among them; nothing needs to act.
 Problem stability_problem(Case resolved);
 
-/// \throws Error (bad_input) where no contact joins any disc
+/// \throws Error (bad_input) where no contact joins any disc, and as check_magnitudes
 Stability analyze_stability(const Problem& problem);
 
 /// kg/m³ of the case, or 1.

@@ -226,6 +226,7 @@ JsonObject stability_json(const Stability& s, const std::string& report) {
   JsonObject mechanisms;
   mechanisms.set("count", s.mechanisms.count());
   mechanisms.set("description", s.mechanisms.sentences);
+  if (s.survey) mechanisms.set("free_waves", s.survey->free_waves.size());
   mechanisms.set("rigid_motions_of_the_whole", s.mechanisms.rigid_motions);
   object.set("mechanisms", mechanisms);
   object.set("negative_pivots", s.inertia.negative_pivots);

@@ -37,19 +37,30 @@ std::string frequency(double squared) {
 }
 
 void append_mechanisms(std::string& out, const Stability& s) {
-  if (s.mechanisms.count() == 0) {
+  const std::vector<Vec2> waves = s.survey ? s.survey->free_waves : std::vector<Vec2>{};
+  const bool none = s.mechanisms.count() == 0;
+  std::string line;
+  if (none) {
     const std::string of_the_whole = s.mechanisms.rigid_motions == 0 ? ""
                                      : s.problem.assembly.periodic()
                                          ? " (the two translations of a periodic cell do not count)"
                                          : format(" (the {} of a body that nothing holds do not count)",
                                                   counted(s.mechanisms.rigid_motions, "rigid motion"));
-    out += report_line("mechanisms", "none: every motion stretches or slips some contact" + of_the_whole);
-    return;
+    line = format("none{}: every motion stretches or slips some contact{}",
+                  waves.empty() ? "" : " that repeats with the cell", of_the_whole);
+  } else {
+    line = s.mechanisms.sentences.size() > 1 ? format("{} without energy: ", counted(s.mechanisms.count(), "motion"))
+                                             : std::string();
+    for (std::size_t k = 0; k < s.mechanisms.sentences.size(); ++k)
+      line += (k > 0 ? "; " : "") + s.mechanisms.sentences[k];
   }
-  std::string line = format("{} without energy: ", counted(s.mechanisms.count(), "motion"));
-  for (std::size_t k = 0; k < s.mechanisms.sentences.size(); ++k)
-    line += (k > 0 ? "; " : "") + s.mechanisms.sentences[k];
   out += report_line("mechanisms", line);
+  if (waves.empty()) return;
+  const std::string name = s.survey->zone.name_of(waves.front());
+  out += report_line(
+      "", format("of the infinite assembly: waves that stretch and slip no contact, at {} searched, such as {}",
+                 counted(static_cast<std::int64_t>(waves.size()), "of the wave vectors", "of the wave vectors"),
+                 name_of({name, waves.front()}, {})));
 }
 
 void append_inertia(std::string& out, const Stability& s) {
@@ -96,7 +107,9 @@ void append_growth(std::string& out, const Stability& s) {
   if (!s.lowest) return;
   const double rate = s.growth_rate();
   if (rate == 0) {
-    out += report_line("growth", "none: kT < 0, but no motion of restrained or supported discs has negative energy");
+    const bool all_waves = !s.problem.assembly.periodic() || s.survey;
+    out += report_line("growth", format("none: some kT are negative, but no motion{} has negative energy",
+                                        all_waves ? "" : " that repeats with the cell"));
     return;
   }
   std::string which;
@@ -115,20 +128,31 @@ void append_growth(std::string& out, const Stability& s) {
 }
 
 void append_time_step(std::string& out, const Stability& s) {
-  const double omega = std::sqrt(s.highest.value);
-  out += report_line("omega_max", format("{:.12g} rad/s, Lanczos, residual {:.1e} of omega²{}", omega,
-                                         s.highest.residual / s.highest.value,
-                                         s.highest.converged ? "" : " (NOT CONVERGED: a lower bound)"));
-  if (s.survey)
-    out += report_line(
-        "", format("{:.12g} rad/s over all waves of the infinite assembly, at {}", std::sqrt(s.survey->highest.value),
-                   name_of(s.survey->highest.at, s.survey->highest.points)));
+  const bool vibrates = s.highest.value > 0, grows = s.growth_rate() > 0;
+  double omega = std::sqrt(s.highest.value);
+  out += report_line("omega_max", vibrates ? format("{:.12g} rad/s, Lanczos, residual {:.1e} of omega²{}", omega,
+                                                    s.highest.residual / s.highest.value,
+                                                    s.highest.converged ? "" : " (NOT CONVERGED: a lower bound)")
+                                           : "none: no motion that repeats with the given cell vibrates");
+  if (s.survey && s.survey->highest.value > 0) {
+    const ZoneMaximum& highest = s.survey->highest;
+    if (!vibrates) omega = std::sqrt(highest.value);
+    out += report_line("", format("{:.12g} rad/s over all waves of the infinite assembly, at {}",
+                                  std::sqrt(highest.value), name_of(highest.at, highest.points)));
+  }
   const auto line = [&](const std::string& name, double step, const std::string& what) {
     out += report_line(name, format("{:<14.9g} s  {:.3f}  {}", step, step * omega / 2, what));
   };
   out += report_line("time step", "of explicit integration (central differences), and over the first of them");
-  line("  2/omega_max", 2 / omega, "critical: stable below, for this assembly");
-  line("  elements", 2 / std::sqrt(s.element_bound), "guaranteed: each contact with its share of the masses");
+  if (omega > 0) {
+    line("  2/omega_max", 2 / omega,
+         grows      ? "critical for what vibrates; with kT < 0 no time step is stable (see growth)"
+         : vibrates ? "critical: stable below, for this assembly"
+                    : "critical: stable below, for the waves of the infinite assembly");
+  }
+  line("  elements", 2 / std::sqrt(s.element_bound),
+       grows ? "never above the critical one: each contact with its share of the masses"
+             : "guaranteed: each contact with its share of the masses");
   line("  diagonal", s.rules.diagonal,
        s.rules.diagonal * omega > 2 * (1 + 1e-9) ? "no guarantee, and TOO LARGE here: sqrt2 min sqrt(m/K_ii)"
                                                  : "no guarantee: sqrt2 min sqrt(m/K_ii)");
@@ -136,7 +160,6 @@ void append_time_step(std::string& out, const Stability& s) {
        s.rules.eighth_of_period * omega > 2 * (1 + 1e-9)
            ? "no guarantee, and TOO LARGE here: an eighth of 2 pi sqrt(m/kN)"
            : "no guarantee: an eighth of 2 pi sqrt(m/kN)");
-  if (s.growth_rate() > 0) out += report_line("", "with kT < 0 no time step is stable (see growth)");
   if (s.density_assumed)
     out +=
         report_line("",
@@ -188,6 +211,8 @@ void append_waves(std::string& out, const Stability& s) {
 
 std::string describe_stability(const Stability& s) {
   std::string out = describe_problem(s.problem, s.effects);
+  if (s.problem.resolved.ensemble)
+    out += report_line("not used", "[ensemble]: the one assembly of [assembly] is judged, with its seed");
   append_waves(out, s);
   append_mechanisms(out, s);
   append_inertia(out, s);

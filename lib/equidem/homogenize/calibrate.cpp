@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "equidem/core/error.hpp"
@@ -53,24 +54,26 @@ void check(const Assembly& assembly, const CalibrateOptions& options) {
   }
 }
 
-/// Homogenizes one assembly at many spring ratios and keeps the last result.
+/// Homogenizes one assembly with kN = 1 Pa at many spring ratios and keeps the last result.
 class Homogenizer {
  public:
-  Homogenizer(const Assembly& assembly, const CalibrateOptions& options, double kN)
-      : assembly_(assembly), weighting_(options.weighting), options_(options.homogenize), kN_(kN) {
+  Homogenizer(const Assembly& assembly, const CalibrateOptions& options)
+      : assembly_(assembly), weighting_(options.weighting), options_(options.homogenize) {
     if (options_.boundary == Boundary::periodic && !assembly.periodic()) options_.boundary = Boundary::displacement;
   }
 
+  /// Not stable where the network cannot be homogenized at this ratio: a mechanism, or too near a loss of stability.
   RatioSample sample(double ratio) {
     stop_if_interrupted();
     ++factorizations_;
-    springs_ = {kN_, ratio * kN_};
+    ratio_ = ratio;
     try {
-      last_ = effective_stiffness(assembly_, contact_springs(assembly_, springs_, weighting_), options_);
+      last_ =
+          effective_stiffness(assembly_, contact_springs(assembly_, SpringConstants{1, ratio}, weighting_), options_);
     } catch (const Error& error) {
-      // Near a loss of stability, which only kT < 0 meets, K is singular.
-      if (ratio < 0 && error.kind() == ErrorKind::computation_failed) return {.ratio = ratio, .stable = false};
-      throw;
+      if (error.kind() == ErrorKind::interrupted) throw;
+      failure_ = error;
+      return {.ratio = ratio, .stable = false};
     }
     for (const auto& [stage, seconds] : last_.times.stages()) times_.add(stage, seconds);
     const double K = bulk_part(last_.stiffness), G = shear_part(last_.stiffness);
@@ -78,28 +81,35 @@ class Homogenizer {
     return {.ratio = ratio,
             .shear_to_bulk = G / K,
             .slope = (G_T * K - G * K_T) / (ratio * K * K),
-            .stable = K > 0 && G > 0 && last_.unstable_modes == 0};
+            .bulk_growth = K_T / K,
+            .stable = last_.unstable_modes == 0 && eigenstrains(last_.stiffness).values[0] > 0};
   }
 
-  /// The last sample, with its springs scaled to the wanted G.
-  void deliver(double shear_modulus, Calibration& result) {
-    const double factor = shear_modulus / shear_part(last_.stiffness);
-    scale_springs(last_, factor);
-    result.springs = {factor * springs_.kN, factor * springs_.kT};
+  /// The last sample, with springs `kN` times as stiff.
+  void deliver(double kN, Calibration& result) {
+    scale_springs(last_, kN);
+    result.springs = {kN, ratio_ * kN};
     result.achieved = std::move(last_);
     result.times = times_;
     result.factorizations = factorizations_;
   }
 
   [[nodiscard]] const EffectiveStiffness& last() const { return last_; }
+  /// Why the last sample that could not be homogenized could not.
+  [[noreturn]] void fail() const {
+    if (failure_) throw *failure_;
+    computation_failed("the stiffness of the assembly is not positive at any spring ratio tried", "",
+                       "Ask equidem homogenize about it");
+  }
+  [[nodiscard]] bool failed() const { return failure_.has_value(); }
 
  private:
   const Assembly& assembly_;
   SpringWeighting weighting_;
   HomogenizeOptions options_;
-  double kN_;
-  SpringConstants springs_;
+  double ratio_ = 0;
   EffectiveStiffness last_;
+  std::optional<Error> failure_;
   StageTimes times_;
   int factorizations_ = 0;
 };
@@ -119,54 +129,86 @@ double above(double limit) {
   return -below(-limit);
 }
 
-[[noreturn]] void refuse_outside(const ElasticModuli& target, const Calibration& range, bool static_only) {
+/// \param negative kT < 0 would have been tried with static_only
+[[noreturn]] void refuse_outside(const ElasticModuli& target, const RatioRange& range, bool negative) {
+  const std::string plane = to_string(target.plane);
   const double nu = target.poisson_ratio;
-  const double lowest = range.lowest_poisson_ratio(target.plane), highest = range.highest_poisson_ratio(target.plane);
-  const bool too_high = nu > highest;
-  const std::string remedy = too_high ? format("Ask for a Poisson's ratio of at most {:.6f}{}", below(highest),
-                                               static_only ? "" : ", or allow kT < 0 with static_only = true")
-                                      : format("Ask for a Poisson's ratio of at least {:.6f}", above(lowest));
-  bad_input(format("Poisson's ratio {:.6g} in plane {} is out of the range of this assembly, {:.6g} to {:.6g}", nu,
-                   to_string(target.plane), lowest, highest),
-            "its ends are those of kT = 0 and of tangential springs much stiffer than the normal ones", remedy);
+  const double lowest = poisson_ratio_of(range.greatest, target.plane);
+  const double highest = poisson_ratio_of(range.least, target.plane);
+  const std::string why = format("found for kT/kN from {} to {:.4g}",
+                                 range.closed ? "0" : format("{:.4g}", range.smallest.ratio), range.largest.ratio);
+  if (highest <= -1) {
+    bad_input(format("this assembly shows no Poisson's ratio in plane {}", plane),
+              "its G is at least three times its K, " + why + ", and no isotropic solid has that",
+              "Ask in plane stress, or for another assembly");
+  }
+  const std::string remedy = nu > highest ? format("Ask for a Poisson's ratio of at most {:.6f}{}", below(highest),
+                                                   negative ? ", or allow kT < 0 with static_only = true" : "")
+                                          : format("Ask for a Poisson's ratio of at least {:.6f}", above(lowest));
+  bad_input(format("Poisson's ratio {:.9g} in plane {} is out of the range of this assembly, {:.6g} to {:.6g}", nu,
+                   plane, lowest, highest),
+            why, remedy);
 }
 
-/// \param limit the stable sample with the highest nu
-[[noreturn]] void refuse_unstable(const ElasticModuli& target, const RatioSample& limit) {
-  const double highest = poisson_ratio_of(limit.shear_to_bulk, target.plane);
-  bad_input(format("Poisson's ratio {:.6g} in plane {} is beyond the static limit of this assembly",
+/// \param found where find_negative_ratio ended
+[[noreturn]] void refuse_unstable(const ElasticModuli& target, const FoundRatio& found) {
+  const double highest = poisson_ratio_of(found.at.shear_to_bulk, target.plane);
+  bad_input(format("Poisson's ratio {:.9g} in plane {} is beyond the static limit of this assembly",
                    target.poisson_ratio, to_string(target.plane)),
-            limit.ratio > 0 ? "the assembly gives way however little kT lies below 0"
-                            : format("it is {:.6g} at kT/kN = {:.4g}, and a little below the assembly gives way",
-                                     highest, limit.ratio),
+            format("short of it the highest is {:.6g}, at kT/kN = {:.4g}; it lies at {:.3g}", highest, found.at.ratio,
+                   found.limit),
             format("Ask for a Poisson's ratio of at most {:.6f}", below(highest)));
 }
 
 Calibration search(const Assembly& assembly, const ElasticModuli& target, const CalibrateOptions& options) {
   const double wanted = target.shear_modulus / target.bulk_modulus_2d();
-  Homogenizer homogenizer(assembly, options, target.bulk_modulus_2d());
+  Homogenizer homogenizer(assembly, options);
   const RatioSampler sample = [&](double ratio) { return homogenizer.sample(ratio); };
 
+  RatioRange range = sample_range(sample);
+  if (!range.smallest.stable || !range.largest.stable) homogenizer.fail();
+  const bool between = wanted >= range.least * (1 - options.tolerance) && wanted <= range.greatest;
+  const bool below_zero = range.closed && range.smallest.slope > 0 && wanted < range.at_zero;
   Calibration result;
-  const RatioRange range = sample_range(sample);
-  result.smallest_shear_to_bulk = range.at_zero;
-  result.largest_shear_to_bulk = range.at_infinity;
+  FoundRatio found, negative;
+  const auto try_negative = [&] {
+    if (below_zero && options.static_only)
+      found = negative = find_negative_ratio(sample, range, wanted, options.tolerance);
+  };
+  if (range.rising && between) {
+    found = find_ratio(sample, range, wanted, options.tolerance);
+  } else if (range.rising) {
+    try_negative();
+  }
+  if (!found.reached) {
+    found = find_by_scan(sample, range, wanted, options.tolerance);
+    result.scanned = true;
+  }
+  if (!found.reached && !range.rising) try_negative();
+  if (!found.reached) {
+    if (negative.at.ratio < 0 && negative.at.shear_to_bulk < range.least) refuse_unstable(target, negative);
+    refuse_outside(target, range, below_zero && !options.static_only);
+  }
+  homogenizer.deliver(target.shear_modulus / shear_part(homogenizer.last().stiffness), result);
+  result.smallest_shear_to_bulk = range.least;
+  result.largest_shear_to_bulk = range.greatest;
   result.method = "Newton on kT/kN";
-  const bool negative = wanted < range.at_zero * (1 - options.tolerance);
-  if ((negative && !options.static_only) || wanted >= range.at_infinity) refuse_outside(target, result, false);
-
-  const FoundRatio found = negative ? find_negative_ratio(sample, range, wanted, options.tolerance)
-                                    : find_ratio(sample, range, wanted, options.tolerance);
-  if (!found.reached) refuse_unstable(target, found.at);
-  homogenizer.deliver(target.shear_modulus, result);
   result.iterations = found.steps;
   result.rising = found.rising;
   judge(target, result);
   return result;
 }
 
+[[noreturn]] void refuse_negative_lattice(const ElasticModuli& target, double ratio) {
+  bad_input(format("Poisson's ratio {:.12g} in plane {} needs kT < 0 on the hexagonal lattice", target.poisson_ratio,
+                   to_string(target.plane)),
+            format("kT/kN = {:.4g} by Abe 1996, eq. 34, and no motion of the discs is stable then", ratio),
+            format("Ask for a Poisson's ratio of at most {}, or allow kT < 0 with static_only = true",
+                   target.plane == Plane::strain ? "1/4" : "1/3"));
+}
+
 [[noreturn]] void refuse_unstable_lattice(const ElasticModuli& target, double ratio) {
-  bad_input(format("Poisson's ratio {:.6g} in plane {} is beyond the static limit of the hexagonal lattice",
+  bad_input(format("Poisson's ratio {:.9g} in plane {} is beyond the static limit of the hexagonal lattice",
                    target.poisson_ratio, to_string(target.plane)),
             format("it needs kT/kN = {:.6g}, and the infinite lattice gives way at -1/3", ratio),
             format("Ask for a Poisson's ratio below {}", target.plane == Plane::strain ? "1/3" : "1/2"));
@@ -179,23 +221,28 @@ Calibration solve_lattice(const Assembly& assembly, const ElasticModuli& target,
               "its relations to moduli (Abe 1996, eqs. 31 and 34) are for equal springs",
               "Use weighting = \"uniform\"");
   }
-  Calibration result;
-  result.springs = springs_for(target, packing, {},
-                               options.static_only ? NegativeTangential::static_only : NegativeTangential::refuse);
-  const double ratio = result.springs.ratio();
+  const SpringConstants springs = springs_for(target, packing, {}, NegativeTangential::static_only);
+  const double ratio = springs.ratio();
+  if (ratio < 0 && !options.static_only) refuse_negative_lattice(target, ratio);
   if (packing == Packing::hexagonal && ratio <= -1.0 / 3) refuse_unstable_lattice(target, ratio);
+  Calibration result;
   result.smallest_shear_to_bulk = packing == Packing::square ? 1 : 0.5;  // hexagonal: q = (1 + r)/2
   if (packing == Packing::square) result.largest_shear_to_bulk = 1;
+  result.scanned = true;
   result.method = format("closed form, Abe 1996, eq. ({})", packing == Packing::square ? 31 : 34);
   result.verified = assembly.periodic();
   if (result.verified) {
-    Homogenizer homogenizer(assembly, options, result.springs.kN);
-    if (!homogenizer.sample(ratio).stable) refuse_unstable_lattice(target, ratio);
-    // Not scaled: the closed form is tried as it is.
-    homogenizer.deliver(shear_part(homogenizer.last().stiffness), result);
+    Homogenizer homogenizer(assembly, options);
+    if (!homogenizer.sample(ratio).stable) {
+      if (homogenizer.failed()) homogenizer.fail();
+      refuse_unstable_lattice(target, ratio);
+    }
+    // Not scaled to the wanted moduli: the closed form is tried as it is.
+    homogenizer.deliver(springs.kN, result);
   } else {
     result.achieved.stiffness = isotropic_stiffness(target.bulk_modulus_2d(), target.shear_modulus);
   }
+  result.springs = springs;
   judge(target, result);
   return result;
 }

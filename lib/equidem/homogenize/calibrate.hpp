@@ -38,13 +38,14 @@ struct Calibration {
   bool verified = true;         ///< homogenized with these springs; false: closed form, on a block with free edges
   int factorizations = 0;       ///< all of them, those for the range included
   int iterations = 0;           ///< steps on kT/kN
-  /// G/K that this assembly shows without negative springs: at kT = 0 and as kT/kN -> infinity, where it is infinite
-  /// if slip resists shear.
+  /// All G/K in between are shown by this assembly without negative springs, kT/kN <= 1e6; infinite where slip resists
+  /// shear. `scanned`: and no others, else the values at the ends.
   double smallest_shear_to_bulk = 0;
   double largest_shear_to_bulk = std::numeric_limits<double>::infinity();
-  bool rising = true;  ///< G/K rose with kT/kN at every ratio tried, as FoundRatio
-  std::string method;  ///< "closed form, Abe 1996, eq. (34)", "Newton on kT/kN"
-  StageTimes times;    ///< of all factorizations
+  bool scanned = false;  ///< all ratios were looked at, for the extremes of G/K, as find_by_scan
+  bool rising = true;    ///< G/K rose with kT/kN at every ratio tried, as FoundRatio
+  std::string method;    ///< "closed form, Abe 1996, eq. (34)", "Newton on kT/kN"
+  StageTimes times;      ///< of all factorizations
 
   /// Poisson's ratios without negative springs: (K - G)/(2K) or (K - G)/(K + G) at the ends, and at least -1, which
   /// no solid reaches.
@@ -54,8 +55,9 @@ struct Calibration {
 
 /// The stiffness is C = kN c(r), r = kT/kN: Poisson's ratio, that is q = G/K, fixes r, then G fixes kN. Newton on r
 /// with the exact derivative dC/dr = C_T/r from the tangential strain energies C_T of EffectiveStiffness; two
-/// factorizations at the ends of the range of r, then few more (ratio_search.hpp). G and K are those of the nearest
-/// isotropic tensor.
+/// factorizations at the ends of the range of r, then few more (ratio_search.hpp). Where q(r) does not rise at both
+/// ends, and before nu is refused, the whole range is scanned, some twenty factorizations. G and K are those of the
+/// nearest isotropic tensor.
 ///
 /// On a lattice the springs are (34) or (31) of Abe 1996. (34) also holds with rotation restrained: moduli are read
 /// from the symmetric part of stress by strain, which does not know the mean rotation; (53), the relation by wave

@@ -12,31 +12,37 @@ struct RatioSample {
   double ratio = 0;          ///< r = kT/kN
   double shear_to_bulk = 0;  ///< q = G/K
   double slope = 0;          ///< dq/dr
-  bool stable = true;        ///< false: the assembly gives way, q and slope mean nothing
+  double bulk_growth = 0;    ///< d ln K / d ln r, in [0, 1]: 1 where K is that of the tangential springs alone
+  bool stable = true;        ///< false: the assembly gives way, the other numbers mean nothing
 };
 
 /// Homogenizes once: one factorization.
 using RatioSampler = std::function<RatioSample(double ratio)>;
 
-/// What an assembly can show without negative springs.
+/// What an assembly can show without negative springs, r <= 1e6.
 struct RatioRange {
-  RatioSample smallest;  ///< at r = 1e-8: what is a mechanism at r = 0 stands there
-  RatioSample largest;   ///< at r = 1e6
+  RatioSample smallest;  ///< at r = 1e-8, or where that is lost in rounding at the next that is not
+  RatioSample largest;   ///< at r = 1e6, or likewise
   /// q as r -> 0+ and r -> infinity, extrapolated with the slopes: q = q_0 + q'r, and 1/q = 1/q_inf + c/r. The latter
   /// is infinite where shear is resisted by slip, as in every triangulation: G grows with kT, K stays finite.
   double at_zero = 0, at_infinity = 0;
+  bool closed = true;              ///< r = 0 can be had; false: G or K is lost there
+  double least = 0, greatest = 0;  ///< q of both ends; after find_by_scan its extremes in between, too
+  /// q rises at both ends, and from one to the other. No theorem says that it must: sparse networks have K grow faster
+  /// than G in some decades.
+  bool rising = true;
 };
 
+/// Two samples, more only where those at the ends are lost in rounding. Neither is stable where none could be had.
 RatioRange sample_range(const RatioSampler& sample);
 
 /// Where a search ended.
 struct FoundRatio {
-  RatioSample at;        ///< the last sample: the answer where `reached`, else the stable one with the smallest q
+  RatioSample at;        ///< the last sample, where `reached`
   bool reached = false;  ///< q is the wanted one, to the tolerance
   int steps = 0;         ///< samples taken, those of the range not counted
-  /// q rose with r at every sample: more slip resists shear more than dilation. No theorem says that it must, and
-  /// where it does not, more than one ratio may give the same q.
-  bool rising = true;
+  bool rising = true;    ///< q rose with r at every sample; else more than one ratio may give the same q
+  double limit = 0;      ///< of find_negative_ratio, where known: within a thousandth of the limit of stability
 };
 
 /// q(r) = wanted for r >= 0, by Newton's method with memory: inverse Hermite interpolation of the samples nearest to
@@ -46,13 +52,25 @@ struct FoundRatio {
 ///
 /// Near both ends y - x is constant, on the hexagonal lattice and for the uniform-stress estimate q = 2r/(1 + r) it is
 /// constant throughout, so that the range gives a first guess that is good to a few per cent. A bracket guards it.
-/// \param wanted within the range
+/// \param range rising
+/// \param wanted from range.at_zero to range.greatest
 /// \param tolerance of q, relative
+/// \return not reached where `wanted` is that of r = 0 and the assembly gives way there
 /// \throws Error (computation_failed) where q(r) cannot be followed: it jumps
 FoundRatio find_ratio(const RatioSampler& sample, const RatioRange& range, double wanted, double tolerance);
 
+/// The same for any range: one sample per decade, closed in on every extremum (to 1e-9 of q), then the piece with
+/// `wanted` that is nearest to r = 1. C is the least of energies linear in r, so that K and G are sums of r/(r + t)
+/// with positive weights: they, and q, bend over no less than a decade.
+/// \param range its extremes are set
+/// \return not reached where `wanted` lies outside of them
+FoundRatio find_by_scan(const RatioSampler& sample, RatioRange& range, double wanted, double tolerance);
+
 /// The same for r < 0, wanted < at_zero: Newton's method with memory on r(q), which starts at r = 0 and turns back
-/// where the assembly is not stable. Not reached: at a thousandth of its ratio from the limit of stability.
+/// where the assembly is not stable; then, as find_by_scan, from r = 0 to the limit of stability. Not reached: `at` is
+/// the sample with the smallest q of all between the limit and r = 0, the same for every `wanted`; at.ratio > 0 where
+/// nothing negative is stable.
+/// \param range closed
 FoundRatio find_negative_ratio(const RatioSampler& sample, const RatioRange& range, double wanted, double tolerance);
 
 }  // namespace equidem

@@ -74,7 +74,7 @@ void refuse_negative_tangential(const ElasticModuli& moduli, Packing packing) {
   bad_input(format("Poisson's ratio is {:.6g} in plane {}", moduli.poisson_ratio, to_string(moduli.plane)),
             format("above {} it needs kT < 0, and no motion of the discs is stable then; {}", strain ? "1/4" : "1/3",
                    static_limit(packing)),
-            format("Choose a Poisson's ratio of at most {}, or ask for the static-only continuation",
+            format("Choose a Poisson's ratio of at most {}, or allow kT < 0 with static_only = true",
                    strain ? "1/4" : "1/3"));
 }
 

@@ -8,6 +8,7 @@
 
 #include "equidem/core/text.hpp"
 #include "equidem/statics/hold_free_motions.hpp"
+#include "equidem/statics/load_bearing.hpp"
 #include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/multifrontal_ldlt.hpp"
 #include "equidem/statics/solver_choice.hpp"
@@ -82,6 +83,18 @@ MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& 
     report.sentences.push_back(
         format("{} in which no contact stretches or slips{}", counted(report.others, "motion"),
                motion.empty() ? "" : ", such as " + describe_motion(assembly, motions_of(system.unknowns, motion))));
+  }
+  if (assembly.periodic() && supports.empty()) {
+    const ContactSprings equal(SpringConstants{1, 1});  // what carries no load for want of slip joins all the same
+    report.unjoined = 2 - load_bearing_network(assembly, equal, derive_effects(equal, Rotation::restrained)).spanned;
+    if (report.unjoined > 0) {
+      report.sentences.push_back(
+          report.unjoined == 1
+              ? "chains that contacts join to their images along one direction only, so that those of the infinite "
+                "assembly slide past each other and part"
+              : "pieces that no contact joins to any of their images, so that those of the infinite assembly move "
+                "freely");
+    }
   }
   return report;
 }

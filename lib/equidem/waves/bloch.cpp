@@ -55,7 +55,7 @@ BlochWaves::BlochWaves(PrimitiveCell cell, const std::vector<Inertia>& inertia, 
   }
 }
 
-ComplexMatrix BlochWaves::assemble(Part part, Vec2 q) const {
+ComplexMatrix BlochWaves::assemble(Springs springs, Order order, Vec2 q) const {
   ComplexMatrix matrix(size());
   const auto add = [&](std::int32_t d, std::int32_t e, const std::array<double, 9>& block, Complex factor,
                        bool turned) {
@@ -70,15 +70,15 @@ ComplexMatrix BlochWaves::assemble(Part part, Vec2 q) const {
   };
   for (const CellContact& contact : cell_.contacts) {
     SpringConstants k = contact.springs;
-    if (part == Part::normal) k.kT = 0;
-    if (part == Part::tangential) k = {0, any_tangential_ && k.kT == 0 ? 0 : k.kN};
+    if (springs == Springs::normal) k.kT = 0;
+    if (springs == Springs::tangential) k = {0, any_tangential_ && k.kT == 0 ? 0 : k.kN};
     const Blocks b = blocks_of(contact, k, cell_.rotation_scale);
     const double phase = dot(q, contact.branch);
     // exp(i s phase) = 1 + i s phase - s² phase²/2 for a wave vector s q
     Complex factor = {std::cos(phase), std::sin(phase)};
-    if (part == Part::first_order) factor = {0, phase};
-    if (part == Part::second_order) factor = {-0.5 * phase * phase, 0};
-    const double own = part == Part::first_order || part == Part::second_order ? 0 : 1;
+    if (order == Order::first) factor = {0, phase};
+    if (order == Order::second) factor = {-0.5 * phase * phase, 0};
+    const double own = order == Order::all ? 1 : 0;
     add(contact.i, contact.i, b.ii, own, false);
     add(contact.j, contact.j, b.jj, own, false);
     add(contact.i, contact.j, b.ij, factor, false);
@@ -93,7 +93,7 @@ void BlochWaves::scale_by_mass(ComplexMatrix& matrix) const {
 }
 
 ComplexMatrix BlochWaves::stiffness(Vec2 q) const {
-  return assemble(Part::stiffness, q);
+  return assemble(Springs::given, Order::all, q);
 }
 
 ComplexMatrix BlochWaves::dynamic_matrix(Vec2 q) const {
@@ -106,11 +106,22 @@ std::vector<double> BlochWaves::squared_frequencies(Vec2 q) const {
   return eigenvalues(dynamic_matrix(q));
 }
 
+double BlochWaves::largest_second_order(double unit) const {
+  double largest = 0;
+  for (const Vec2 q : {Vec2{1 / unit, 0}, Vec2{0, 1 / unit}}) {
+    ComplexMatrix second = assemble(Springs::given, Order::second, q);
+    scale_by_mass(second);
+    for (const Complex& entry : second.entries) largest = std::max(largest, std::abs(entry));
+  }
+  return largest;
+}
+
 BlochWaves::SoundSpeeds BlochWaves::sound_speeds(Vec2 direction) const {
   const Vec2 n = direction / norm(direction);
   // Lengths in units of the cell, so that the three orders are of one size.
   const double unit = std::sqrt(cell_.area());
-  ComplexMatrix first = assemble(Part::first_order, n / unit), second = assemble(Part::second_order, n / unit);
+  ComplexMatrix first = assemble(Springs::given, Order::first, n / unit);
+  ComplexMatrix second = assemble(Springs::given, Order::second, n / unit);
   scale_by_mass(first), scale_by_mass(second);
   const LongWaves waves = long_waves(dynamic_matrix({}), first, second);
   // Share of a uniform motion along e: |sum sqrt(m) v.e|.
@@ -133,9 +144,9 @@ BlochWaves::SoundSpeeds BlochWaves::sound_speeds(Vec2 direction) const {
     return best;
   };
   SoundSpeeds result;
+  const double slowest = 1e-13 * largest_second_order(unit);  // less is round-off
   const std::size_t along = most(n, waves.vectors.size()), across = most(perpendicular(n), along);
   for (std::size_t k = 0; k < waves.vectors.size(); ++k) {
-    const double slowest = 1e-13 * std::abs(waves.squared_speeds[along]);  // less is round-off
     const double squared = std::abs(waves.squared_speeds[k]) > slowest ? waves.squared_speeds[k] * unit * unit : 0;
     if (k == along)
       result.longitudinal_squared = squared;
@@ -163,13 +174,33 @@ std::optional<double> BlochWaves::squared_rotational_gap() const {
   return gap;
 }
 
-double BlochWaves::critical_ratio(Vec2 q) const {
+std::vector<char> BlochWaves::rotations() const {
   std::vector<char> rotation(size());
   for (std::size_t r = 0; r < size(); ++r) rotation[r] = components_[r] % per_disc_ == 2 ? 1 : 0;
-  const double share =
-      largest_share(condense(assemble(Part::normal, q), rotation), condense(assemble(Part::tangential, q), rotation));
+  return rotation;
+}
+
+double BlochWaves::critical_ratio(Vec2 q) const {
+  const std::vector<char> rotation = rotations();
+  const double share = largest_share(condense(assemble(Springs::normal, Order::all, q), rotation),
+                                     condense(assemble(Springs::tangential, Order::all, q), rotation));
   if (share == 0) return -std::numeric_limits<double>::infinity();
   return (share - 1) / share;
+}
+
+StiffnessOrders BlochWaves::orders(Springs springs) const {
+  const double one = 1 / std::sqrt(cell_.area());  // lengths in units of the cell, so that the orders are of one size
+  const auto of = [&](Order order, double x, double y) { return assemble(springs, order, {x * one, y * one}); };
+  StiffnessOrders k{of(Order::all, 0, 0),
+                    {of(Order::first, 1, 0), of(Order::first, 0, 1)},
+                    {of(Order::second, 1, 0), of(Order::second, 1, 1), of(Order::second, 0, 1)}};
+  for (std::size_t e = 0; e < k.second[1].entries.size(); ++e)
+    k.second[1].entries[e] -= k.second[0].entries[e] + k.second[2].entries[e];
+  return k;
+}
+
+LongWaveLoss BlochWaves::long_wave_loss() const {
+  return find_long_wave_loss(orders(Springs::normal), orders(Springs::tangential), rotations());
 }
 
 }  // namespace equidem

@@ -62,9 +62,17 @@ class BlochWaves {
   /// which are zero beside others that are not: those contacts have none for any r.
   [[nodiscard]] double critical_ratio(Vec2 q) const;
 
+  /// The largest limit of critical_ratio(q) as q -> 0, over all directions. The limit is another one along each of them, and none
+  /// is what q = 0 has: there the mean strain is held, in a long wave it follows.
+  [[nodiscard]] LongWaveLoss long_wave_loss() const;
+
  private:
-  enum class Part { stiffness, normal, tangential, first_order, second_order };
-  [[nodiscard]] ComplexMatrix assemble(Part part, Vec2 q) const;
+  enum class Springs { given, normal, tangential };
+  enum class Order { all, first, second };  // in q
+  [[nodiscard]] ComplexMatrix assemble(Springs springs, Order order, Vec2 q) const;
+  [[nodiscard]] StiffnessOrders orders(Springs springs) const;
+  [[nodiscard]] std::vector<char> rotations() const;             // per row, 1: a rotation
+  [[nodiscard]] double largest_second_order(double unit) const;  // of the dynamic matrix, q in 1/unit
   void scale_by_mass(ComplexMatrix& matrix) const;
 
   PrimitiveCell cell_;

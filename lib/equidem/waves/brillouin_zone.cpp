@@ -44,17 +44,19 @@ class Climb {
       const double gx = v[2][1] - v[0][1], gy = v[1][2] - v[1][0];
       const double hxx = 4 * (v[2][1] - 2 * v[1][1] + v[0][1]), hyy = 4 * (v[1][2] - 2 * v[1][1] + v[1][0]);
       const double hxy = v[2][2] - v[2][0] - v[0][2] + v[0][0], det = hxx * hyy - hxy * hxy;
+      double to_top = std::numeric_limits<double>::infinity();  // in steps
       if (hxx < 0 && det > 0) {
         const Vec2 shift = Vec2{hxy * gy - hyy * gx, hxy * gx - hxx * gy} * (2 / det);
+        to_top = norm(shift);
         const Vec2 y = x + step_ * shift;
-        const double there = norm(shift) < 2 ? at(y) : -std::numeric_limits<double>::infinity();
+        const double there = to_top < 2 ? at(y) : -std::numeric_limits<double>::infinity();
         if (there > top) top = there, best = y;
       }
       const bool inside = norm(best - x) < 0.9 * step_;
       const double gain = top - value;
       x = best, value = top;
       if (inside) step_ *= 0.25;
-      if (gain <= 1e-15 * std::abs(value) && step_ < 1e-4) break;
+      if (gain <= 1e-15 * std::abs(value) && (step_ < 1e-4 || to_top < 1e-6)) break;
     }
     return {"", zone_.folded(wave_vector(x))};
   }

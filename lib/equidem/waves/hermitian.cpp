@@ -4,12 +4,19 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
 
 namespace equidem {
 namespace {
 
 using Matrix = Eigen::MatrixXcd;
 using Solver = Eigen::SelfAdjointEigenSolver<Matrix>;
+using RealMatrix = Eigen::MatrixXd;
+using RealVector = Eigen::VectorXd;
+using RealSolver = Eigen::SelfAdjointEigenSolver<RealMatrix>;
 
 /// An eigenvalue below this share of the largest is zero up to round-off.
 constexpr double zero_share = 1e-12;
@@ -37,6 +44,163 @@ Matrix pseudo_solve(const Matrix& d, const Matrix& b) {
   for (double& value : inverse) value = value > smallest ? 1 / value : 0;
   return solver.eigenvectors() * (inverse.asDiagonal() * (solver.eigenvectors().adjoint() * b));
 }
+
+RealMatrix real_part(const ComplexMatrix& m) {
+  return view(m).real();
+}
+RealMatrix imaginary_part(const ComplexMatrix& m) {
+  return view(m).imag();
+}
+
+struct RealSpectrum {
+  RealVector values;  // ascending
+  RealMatrix vectors;
+};
+RealSpectrum spectrum_of(const RealMatrix& symmetric) {
+  if (symmetric.size() == 0) return {RealVector(0), RealMatrix(0, 0)};
+  const RealSolver solver(symmetric);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+/// Eigenvectors of a positive semidefinite matrix, apart.
+struct NullAndRange {
+  RealMatrix null, range;
+  RealVector values;  // of the columns of range, > 0
+
+  explicit NullAndRange(const RealMatrix& matrix) {
+    const auto [all, vectors] = spectrum_of(matrix);
+    const double smallest = all.size() == 0 ? 0 : zero_share * all.cwiseAbs().maxCoeff();
+    const Eigen::Index first = std::upper_bound(all.begin(), all.end(), smallest) - all.begin();
+    null = vectors.leftCols(first);
+    range = vectors.rightCols(all.size() - first);
+    values = all.tail(all.size() - first);
+  }
+};
+
+/// A(n; r) on the coordinates Z, before gears are eliminated: n_x² xx + n_x n_y xy + n_y² yy.
+struct AcousticTensor {
+  RealMatrix xx, xy, yy;
+  [[nodiscard]] RealMatrix along(double angle) const {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return c * c * xx + c * s * xy + s * s * yy;
+  }
+};
+
+class LongWavePencil {
+ public:
+  LongWavePencil(const StiffnessOrders& normal, const StiffnessOrders& tangential, const std::vector<char>& rotation) {
+    std::vector<Eigen::Index> u, turn;
+    for (std::size_t k = 0; k < rotation.size(); ++k)
+      (rotation[k] != 0 ? turn : u).push_back(static_cast<Eigen::Index>(k));
+    const RealMatrix n0 = real_part(normal.zeroth), t0 = real_part(tangential.zeroth);
+    // Rotations follow translations by `follow`; what they do beside that is decoupled, or a gear.
+    const NullAndRange turning(t0(turn, turn));
+    const RealMatrix follow =
+        -turning.range * turning.values.cwiseInverse().asDiagonal() * (turning.range.transpose() * t0(turn, u));
+    const RealMatrix t = t0(u, u) + t0(u, turn) * follow;
+    const NullAndRange moving(n0(u, u) + t);
+    const RealMatrix whitened = moving.range * moving.values.cwiseSqrt().cwiseInverse().asDiagonal();
+    const RealSpectrum shares = spectrum_of(whitened.transpose() * t * whitened);
+    share_ = shares.values;
+    const auto with_rotations = [&](const RealMatrix& translations, const RealMatrix& rotations) {
+      RealMatrix all = RealMatrix::Zero(n0.rows(), translations.cols());
+      all(u, Eigen::all) = translations;
+      all(turn, Eigen::all) = rotations;
+      return all;
+    };
+    const auto still = [&](Eigen::Index columns) {
+      return RealMatrix::Zero(static_cast<Eigen::Index>(u.size()), columns);
+    };
+    const RealMatrix free = with_rotations(moving.null, follow * moving.null);
+    const RealMatrix gears = with_rotations(still(turning.null.cols()), turning.null);
+    const RealMatrix v = whitened * shares.vectors, y = with_rotations(v, follow * v);
+    const RealMatrix y_turning = with_rotations(still(turning.range.cols()), turning.range);
+    RealMatrix z(n0.rows(), free.cols() + gears.cols());
+    z << free, gears;
+    translations_ = free.cols();
+
+    RealMatrix coupling[2];
+    for (int a = 0; a < 2; ++a) {
+      linear_normal_[a] = z.transpose() * imaginary_part(normal.first[a]) * y;
+      linear_tangential_[a] = z.transpose() * imaginary_part(tangential.first[a]) * y;
+      coupling[a] = z.transpose() * imaginary_part(tangential.first[a]) * y_turning;
+    }
+    for (int a = 0; a < 3; ++a) {
+      const RealMatrix &p = coupling[a / 2], &q = coupling[(a + 1) / 2];
+      RealMatrix turned = p * turning.values.cwiseInverse().asDiagonal() * q.transpose();
+      if (a == 1) turned += turned.transpose().eval();
+      normal_[a] = z.transpose() * real_part(normal.second[a]) * z;
+      tangential_[a] = z.transpose() * real_part(tangential.second[a]) * z - turned;
+      if (z.cols() > 0)
+        scale_ = std::max({scale_, normal_[a].cwiseAbs().maxCoeff(), tangential_[a].cwiseAbs().maxCoeff()});
+    }
+  }
+
+  /// The ratio at which the other motions at q = 0 lose their stiffness: above it D is definite.
+  [[nodiscard]] double others_lost() const {
+    const double largest = share_.size() == 0 ? 0 : share_.maxCoeff();
+    return largest > 0 ? std::min((largest - 1) / largest, 0.0) : -std::numeric_limits<double>::infinity();
+  }
+
+  /// The smallest eigenvalue of A(n; r) over all directions, as a share of the stiffness, and the angle.
+  [[nodiscard]] std::pair<double, double> softest(double ratio) const {
+    const AcousticTensor tensor = at(ratio);
+    const auto f = [&](double angle) { return smallest_eigenvalue(tensor.along(angle), ratio); };
+    constexpr int grid = 180;  // A is a quadratic form in n
+    constexpr double step = std::numbers::pi / grid, golden = 0.6180339887498949;
+    int best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < grid; ++k) {
+      const double value = f(k * step);
+      if (value < least) least = value, best = k;
+    }
+    double low = (best - 1) * step, high = (best + 1) * step, angle = best * step;
+    double p = high - golden * (high - low), q = low + golden * (high - low), at_p = f(p), at_q = f(q);
+    while (high - low > 1e-9) {
+      if (at_p < at_q) {
+        high = q, q = p, at_q = at_p, p = high - golden * (high - low), at_p = f(p);
+      } else {
+        low = p, p = q, at_p = at_q, q = low + golden * (high - low), at_q = f(q);
+      }
+    }
+    const double middle = 0.5 * (low + high), there = f(middle);
+    if (there < least) least = there, angle = middle;
+    return {least / scale_, angle};
+  }
+
+  [[nodiscard]] bool empty() const { return translations_ == 0 || scale_ == 0; }
+
+ private:
+  [[nodiscard]] AcousticTensor at(double ratio) const {
+    const RealVector d = 1 - share_.array() + ratio * share_.array();
+    const RealMatrix lx = linear_normal_[0] + ratio * linear_tangential_[0];
+    const RealMatrix ly = linear_normal_[1] + ratio * linear_tangential_[1];
+    const RealMatrix over_x = lx * d.cwiseInverse().asDiagonal(), over_y = ly * d.cwiseInverse().asDiagonal();
+    const RealMatrix cross = over_x * ly.transpose();
+    return {normal_[0] + ratio * tangential_[0] - over_x * lx.transpose(),
+            normal_[1] + ratio * tangential_[1] - cross - cross.transpose(),
+            normal_[2] + ratio * tangential_[2] - over_y * ly.transpose()};
+  }
+
+  /// With gears, whose block is negative semidefinite for r < 0, eliminated.
+  [[nodiscard]] double smallest_eigenvalue(const RealMatrix& a, double ratio) const {
+    const Eigen::Index gears = a.rows() - translations_;
+    if (gears == 0) return RealSolver(a, Eigen::EigenvaluesOnly).eigenvalues()[0];
+    const RealSolver solver(a.bottomRightCorner(gears, gears));
+    const double smallest = zero_share * std::abs(ratio) * scale_;
+    RealVector inverse = solver.eigenvalues();
+    for (double& value : inverse) value = value < -smallest ? 1 / value : 0;
+    const RealMatrix b = a.topRightCorner(translations_, gears) * solver.eigenvectors();
+    const RealMatrix left = a.topLeftCorner(translations_, translations_) - b * inverse.asDiagonal() * b.transpose();
+    return RealSolver(left, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  }
+
+  RealVector share_;                                             // of their energy in T, of the motions Y
+  Eigen::Index translations_ = 0;                                // motions Z that are no gears
+  std::array<RealMatrix, 3> normal_, tangential_;                // Q
+  std::array<RealMatrix, 2> linear_normal_, linear_tangential_;  // L
+  double scale_ = 0;
+};
 
 }  // namespace
 
@@ -103,6 +267,30 @@ LongWaves long_waves(const ComplexMatrix& d0, const ComplexMatrix& d1, const Com
   for (Eigen::Index k = 0; k < turned.cols(); ++k)
     result.vectors.emplace_back(turned.col(k).data(), turned.col(k).data() + turned.rows());
   return result;
+}
+
+LongWaveLoss find_long_wave_loss(const StiffnessOrders& normal, const StiffnessOrders& tangential,
+                                 const std::vector<char>& rotation) {
+  const LongWaveLoss none{-std::numeric_limits<double>::infinity(), 0};
+  const LongWavePencil pencil(normal, tangential, rotation);
+  if (pencil.empty()) return none;
+  constexpr double round_off = 1e-14;  // of the stiffness, in what costs nothing in any direction
+  // A falls with r throughout (others_lost, 0), so that its sign brackets the one ratio where it is singular.
+  const double lowest = std::max(pencil.others_lost(), -1.0);
+  double lost = lowest, kept = 0;
+  LongWaveLoss loss = none;
+  while (kept - lost > 1e-15 * std::abs(lost) + 1e-16) {
+    const double ratio = 0.5 * (kept + lost);
+    if (ratio == lost || ratio == kept) break;
+    const auto [least, angle] = pencil.softest(ratio);
+    if (least < -round_off) {
+      lost = ratio;
+      loss = {ratio, angle < 0 ? angle + std::numbers::pi : angle};
+    } else {
+      kept = ratio;
+    }
+  }
+  return loss;
 }
 
 }  // namespace equidem

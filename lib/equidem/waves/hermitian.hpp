@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Small dense Hermitian matrices and their spectra.
+/// Small dense Hermitian matrices, their spectra, and what is left of them for long waves.
 #pragma once
 
+#include <array>
 #include <complex>
 #include <cstddef>
 #include <vector>
@@ -52,5 +53,32 @@ struct LongWaves {
   std::vector<std::vector<Complex>> vectors;
 };
 LongWaves long_waves(const ComplexMatrix& d0, const ComplexMatrix& d1, const ComplexMatrix& d2);
+
+/// K(q) = zeroth + first[0] q_x + first[1] q_y + second[0] q_x² + second[1] q_x q_y + second[2] q_y² + O(q³) of a network:
+/// zeroth and second are real symmetric, first is i times a real antisymmetric matrix.
+struct StiffnessOrders {
+  ComplexMatrix zeroth;
+  std::array<ComplexMatrix, 2> first;
+  std::array<ComplexMatrix, 3> second;
+};
+
+struct LongWaveLoss {
+  double ratio = 0;  ///< r_c in (-1, 0]; negative infinity: no long wave is lost before other motions, or before r = -1
+  double angle = 0;  ///< rad in [0, pi), direction of the wave vector
+};
+
+/// Where long waves lose their stiffness: the limit q -> 0 of the critical ratio, exact and over all directions at once.
+/// As q -> 0 along n a wave is the motion a/q of the discs together and, of order 1, what they do beside it. The stiffness
+/// (with the orders above) leaves
+///
+///   A(n; r) = Q(n) - L(n) D^-1 L(n)^T,   Q = Z^T K2(n) Z,   L = Z^T K1(n) Y,   D = Y^T K0 Y,   K = N + r T,
+///
+/// Z the motions that cost nothing at q = 0 (translations, gears) and Y the others: the acoustic tensor of the homogenized
+/// assembly, which waves lose where it first has an eigenvalue 0 as r falls from 0.
+///
+/// \param normal, tangential N and T of K = N + r T, both positive semidefinite for every q
+/// \param rotation per row: 1 where the unknown is a rotation, of which N knows nothing
+LongWaveLoss find_long_wave_loss(const StiffnessOrders& normal, const StiffnessOrders& tangential,
+                                 const std::vector<char>& rotation);
 
 }  // namespace equidem

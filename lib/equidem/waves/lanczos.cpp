@@ -81,7 +81,8 @@ ExtremeEigenvalue extreme_eigenvalue(std::size_t size, const Product& multiply, 
   const Eigen::VectorXd start = starting_vector(static_cast<Eigen::Index>(size), options.seed);
   std::vector<double> y(size);
   multiply({start.data(), size}, y);
-  const double scale = Eigen::Map<const Eigen::VectorXd>(y.data(), start.size()).norm() / start.norm();
+  const Eigen::Map<Eigen::VectorXd> product(y.data(), start.size());
+  const double scale = product.stableNorm() / start.norm();
   result.converged = scale == 0;  // nothing resists anything
   if (result.converged) return result;
   Operator a(size, multiply, scale);
@@ -93,15 +94,10 @@ ExtremeEigenvalue extreme_eigenvalue(std::size_t size, const Product& multiply, 
       result.converged = iterate(a, end, options, tolerance, result) && tolerance == options.tolerance;
   }
   if (result.vector.empty()) return result;
+  const Eigen::Map<const Eigen::VectorXd> x(result.vector.data(), start.size());
   multiply(result.vector, y);
-  double quotient = 0, residual = 0;
-  for (std::size_t k = 0; k < size; ++k) quotient += result.vector[k] * y[k];
-  for (std::size_t k = 0; k < size; ++k) {
-    const double r = y[k] - quotient * result.vector[k];
-    residual += r * r;
-  }
-  result.value = quotient;
-  result.residual = std::sqrt(residual);
+  result.value = x.dot(product);
+  result.residual = (product - result.value * x).stableNorm();
   return result;
 }
 

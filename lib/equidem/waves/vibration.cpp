@@ -5,12 +5,35 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 
 #include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
 #include "equidem/statics/contact_graph.hpp"
 #include "equidem/statics/stiffness_matrix.hpp"
 
 namespace equidem {
+
+void check_magnitudes(const Assembly& assembly, const ContactSprings& springs, const std::vector<Inertia>& inertia) {
+  const auto fits = [](double value) { return value >= 1e-150 && value <= 1e150; };
+  const auto refuse = [](const std::string& problem) {
+    bad_input(problem, "beyond 1e-150 to 1e150 squares of frequencies and speeds leave the range of numbers",
+              "Choose radius, density and springs nearer to those of a real assembly");
+  };
+  for (std::size_t d = 0; d < inertia.size(); ++d) {
+    if (fits(inertia[d].mass) && fits(inertia[d].moment)) continue;
+    refuse(format("disc {} has the mass {:.3g} and the moment of inertia {:.3g}, in kg and m", d, inertia[d].mass,
+                  inertia[d].moment));
+  }
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    const Contact& contact = assembly.contacts[c];
+    for (const std::int32_t d : {contact.i, contact.j}) {
+      const double squared = springs[c].kN / inertia[d].mass;
+      if (!fits(squared)) refuse(format("contact {} has kN/m = {:.3g} 1/s² at disc {}", c, squared, d));
+    }
+  }
+}
 
 ExtremeEigenvalue extreme_squared_frequency(const Assembly& assembly, const ContactSprings& springs,
                                             const DegreesOfFreedom& unknowns, const std::vector<Inertia>& inertia,

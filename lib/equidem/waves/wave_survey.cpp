@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 #include "equidem/core/progress.hpp"
 #include "equidem/core/threads.hpp"
@@ -19,7 +21,7 @@ int fineness(const PrimitiveCell& cell, int of_one_disc, int at_least) {
 ZoneSearch search_of(const PrimitiveCell& cell) {
   ZoneSearch search{.grid = fineness(cell, 48, 4)};
   if (cell.size() > 4) search.refine = 2, search.steps = 12;
-  if (cell.size() > 25) search.refine = 1, search.steps = 4;
+  if (cell.size() > 25) search.refine = 1;
   return search;
 }
 
@@ -47,25 +49,52 @@ Vec2 direction(int k) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-/// The limit q -> 0 is another one along every direction, and none of them is what q = 0 has: there the mean strain is held, in a
-/// long wave it follows. One thousandth of the zone is near enough to 0 for six digits, and far enough for the round-off of
-/// motions that cost q².
+/// Of the zone: nearer to q = 0 the round-off of motions that cost q² tells, and the exact limit is asked instead.
+constexpr double nearest_to_gamma = 1e-3;
+
+double critical_ratio_away_from_gamma(const BlochWaves& waves, const BrillouinZone& zone, Vec2 q) {
+  const double distance = norm(zone.folded(q)) / norm(zone.reciprocal[0]);
+  if (distance > 0 && distance < nearest_to_gamma) return std::numeric_limits<double>::quiet_NaN();
+  return waves.critical_ratio(q);
+}
+
+/// Long waves are named where they are lost first, and where the climb came to them with nothing gained on the way.
 void add_long_waves(const BlochWaves& waves, const BrillouinZone& zone, ZoneMaximum& critical) {
-  const double length = 1e-3 * norm(zone.reciprocal[0]);
-  std::vector<double> ratios(directions);
-  parallel_tasks(ratios.size(), [&](std::size_t k, int) {
-    ratios[k] = waves.critical_ratio(length * direction(static_cast<int>(k)));
-  });
-  const auto best = std::max_element(ratios.begin(), ratios.end());
-  const bool climbed_there = critical.at.name.empty() && norm(critical.at.q) < 30 * length;
-  if (*best > critical.value + 1e-9 * std::abs(critical.value) + 1e-12) {
-    critical.value = *best;
-    critical.at.q = length * direction(static_cast<int>(best - ratios.begin()));
-    critical.points.clear();
-  } else if (!climbed_there) {
-    return;
+  const LongWaveLoss loss = waves.long_wave_loss();
+  const double margin = 1e-9 * std::abs(critical.value) + 1e-12;
+  const bool climbed_there =
+      critical.at.name.empty() && norm(zone.folded(critical.at.q)) < 30 * nearest_to_gamma * norm(zone.reciprocal[0]);
+  if (!(loss.ratio > critical.value + (climbed_there ? -margin : margin))) return;
+  critical.value = loss.ratio;
+  critical.points.clear();
+  critical.at = {long_waves_name,
+                 nearest_to_gamma * norm(zone.reciprocal[0]) * Vec2{std::cos(loss.angle), std::sin(loss.angle)}};
+}
+
+/// The cell with springs of one stiffness: what costs nothing does so by its geometry, whatever the springs.
+PrimitiveCell with_unit_springs(PrimitiveCell cell) {
+  for (CellContact& contact : cell.contacts) contact.springs = {1, contact.springs.kT != 0 ? 1.0 : 0.0};
+  return cell;
+}
+
+/// Wave vectors of the grid and the points of symmetry, less q = 0, of waves that stretch and slip nothing.
+std::vector<Vec2> find_free_waves(const BlochWaves& waves, const BrillouinZone& zone, int grid) {
+  std::vector<Vec2> all = zone_grid(zone, grid);
+  for (const ZonePoint& point : zone.points) {
+    if (std::none_of(all.begin(), all.end(), [&](Vec2 q) { return zone.equivalent(q, point.q); }))
+      all.push_back(point.q);
   }
-  critical.at.name = long_waves_name;
+  std::vector<char> free(all.size(), 0);
+  parallel_tasks(all.size(), [&](std::size_t k, int) {
+    stop_if_interrupted();
+    if (zone.equivalent(all[k], {})) return;
+    const std::vector<double> energies = eigenvalues(waves.stiffness(all[k]));
+    free[k] = !energies.empty() && energies.front() < 1e-12 * energies.back() ? 1 : 0;
+  });
+  std::vector<Vec2> found;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (free[k] != 0) found.push_back(zone.folded(all[k]));
+  return found;
 }
 
 }  // namespace
@@ -74,7 +103,7 @@ std::size_t survey_size(const PrimitiveCell& cell) {
   const ZoneSearch search = search_of(cell);
   const BrillouinZone zone = brillouin_zone(cell.period);
   const auto n = static_cast<std::size_t>(search.grid);
-  return 3 * (n * (n / 2 + 1) + zone.points.size() + 10 * search.refine) +
+  return 4 * (n * (n / 2 + 1) + zone.points.size() + 10 * search.refine) +
          2 * (zone.path.size() - 1) * static_cast<std::size_t>(steps_of_segment(cell));
 }
 
@@ -103,10 +132,12 @@ WaveSurvey survey_waves(const PrimitiveCell& cell, const std::vector<Inertia>& i
     progress.update(done);
     return found;
   };
-  survey.critical = over_zone([&](Vec2 q) { return at_rest.critical_ratio(q); }, 0.5);
+  survey.critical = over_zone([&](Vec2 q) { return critical_ratio_away_from_gamma(at_rest, survey.zone, q); }, 0.5);
   add_long_waves(at_rest, survey.zone, survey.critical);
   survey.highest = over_zone([&](Vec2 q) { return in_motion.squared_frequencies(q).back(); }, 0.7);
   if (any_negative) survey.growing = over_zone([&](Vec2 q) { return -in_motion.squared_frequencies(q).front(); }, 0.9);
+  survey.free_waves =
+      find_free_waves({with_unit_springs(cell), inertia, turns && any_tangential}, survey.zone, survey.grid);
 
   survey.path = path_of(survey.zone, steps_of_segment(cell));
   parallel_tasks(survey.path.size(), [&](std::size_t k, int) {

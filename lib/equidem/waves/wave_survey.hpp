@@ -39,6 +39,9 @@ struct WaveSurvey {
   ZoneMaximum critical;      ///< of r_c: the wave that loses its stiffness first as kT/kN falls from 0
   ZoneMaximum highest;       ///< of omega²
   ZoneMaximum growing;       ///< of -omega²: positive where waves grow; not searched where no kT < 0
+  /// Of the grid and the points of symmetry but Gamma: wave vectors of waves that neither stretch nor slip any contact, kT of
+  /// either sign counted by its size. Such waves are mechanisms of the infinite assembly.
+  std::vector<Vec2> free_waves;
   std::vector<PathPoint> path;
   std::vector<SoundAlong> sound;  ///< every 15 degrees from 0 to 165
   std::optional<double> squared_rotational_gap;
