@@ -214,7 +214,8 @@ TEST_CASE("wrong_entries_are_named") {
       {"contacts", "[[0, 1.5, 0, 0]]",
        "a.json: contacts[0]: 1.5 stands where a whole number is expected. Correct the entry."},
       {"contacts", "[[0, 99999999999, 0, 0]]",
-       "a.json: contacts[0]: 99999999999 is beyond all numbers of discs. Correct the entry."},
+       "a.json: contacts[0]: 99999999999 is out of range (discs and shifts are whole numbers of a magnitude up to "
+       "2147483647). Correct the entry."},
       {"contacts", "[[0, 1, 0, 0], [1, 0, 0, 0]]",
        "a.json: contacts[1]: contacts 0 and 1 are the same, of discs 0 and 1 (its springs would count "
        "twice). Remove "
@@ -231,7 +232,7 @@ TEST_CASE("wrong_entries_are_named") {
        "Correct it "
        "or remove the contact."},
       {"springs", "[[1, null]]", "a.json: springs[0]: null stands where a number is expected. Correct the entry."},
-      {"cell", "[1]", "a.json: cell: 1 number stand where 2 are expected (an entry is [Lx, Ly]). Correct the entry."},
+      {"cell", "[1]", "a.json: cell: 1 number stands where 2 are expected (an entry is [Lx, Ly]). Correct the entry."},
       {"cell", "[1, -1]",
        "a.json: the period is (1, -1) m (both lengths of a periodic cell must be positive and finite). "
        "Correct the "

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "equidem/assembly/delaunay.hpp"
+#include "equidem/assembly/lattices.hpp"
 #include "equidem/assembly/power_cells.hpp"
 #include "equidem/assembly/space_filling_curve.hpp"
 #include "equidem/assembly/triangulation.hpp"
@@ -106,7 +107,38 @@ TEST_CASE("points_that_make_no_triangulation_are_named") {
   CHECK_THROWS_WITH(triangulate(a), Catch::Matchers::StartsWith("discs 0 and 1 have the same centre"));
   a.centres = {{0, 0}, {0, 1e-4}};
   a.period = Vec2{1e-9, 1e3};
-  CHECK_THROWS_AS(triangulate(a), Error);
+  try {
+    triangulate(a);
+    FAIL("a cell so narrow was accepted");
+  } catch (const Error& error) {
+    CHECK(error.kind() == ErrorKind::bad_input);
+  }
+}
+
+TEST_CASE("lengths_whose_squares_leave_the_range_of_a_double_are_refused_and_others_scale_all_cells") {
+  const bool periodic = GENERATE(true, false);
+  for (const double radius : {1e-160, 1e-71, 1e71, 1e150}) {
+    CAPTURE(radius);
+    const DelaunayOptions options{
+        .discs = 100, .seed = 1, .radii = {.smallest = radius, .largest = radius}, .periodic = periodic};
+    CHECK_THROWS_WITH(delaunay_assembly(options), Catch::Matchers::Contains("it must lie between 1e-70 and 1e+70 m"));
+    CHECK_THROWS_WITH(hexagonal_lattice({.columns = 4, .rows = 4, .radius = radius, .periodic = periodic}),
+                      Catch::Matchers::Contains("it must lie between 1e-70 and 1e+70 m"));
+  }
+  Assembly tiny = hexagonal_lattice({.columns = 4, .rows = 4, .radius = 1, .periodic = true});
+  tiny.period->x = 1e-300;
+  CHECK_THROWS_WITH(check(tiny), Catch::Matchers::StartsWith("the period is (1e-300, "));
+  const auto areas = [](double radius) {
+    const Assembly a = delaunay_assembly({.discs = 100, .seed = 1, .radii = {radius, radius}, .periodic = true});
+    return std::pair(a.cell_areas, a.contacts.size());
+  };
+  const auto [known, contacts] = areas(1);
+  for (const int power : {-230, -100, 100, 225}) {  // of two, so that nothing is rounded
+    CAPTURE(power);
+    const auto [found, count] = areas(std::ldexp(1, power));
+    REQUIRE(count == contacts);
+    for (std::size_t d = 0; d < known.size(); ++d) CHECK(std::ldexp(found[d], -2 * power) == known[d]);
+  }
 }
 
 TEST_CASE("options_out_of_range_are_refused") {

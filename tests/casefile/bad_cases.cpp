@@ -172,6 +172,7 @@ std::vector<BadCase> bad_cases() {
       // contradictions
       tension("[test]", "[material]\nshear_modulus = 1.0\npoisson_ratio = 0.1\nplane = \"strain\"\n[test]",
               "[material]", "material", {"both given"}),
+      tension("[test]", "[material]\n[test]", "[material]", "material", {"both given"}),
       tension("[test]", "[[support]]\ngroup = \"left\"\nux = true\n[test]", "[[support]]", "support",
               {"[test] and [[support]] are both given"}),
       tension("[test]", "[[load]]\ngroup = \"left\"\nforce = [1.0, 0.0]\n[test]", "[[load]]", "load",

@@ -96,6 +96,7 @@ void homogenize_repeated(HardCase& table, int m) {
   const auto snap = [](double& x) { x = std::round(x * 0x1.0p26) * 0x1.0p-26; };
   for (Vec2& x : cell.centres) snap(x.x), snap(x.y);
   snap(cell.period->x), snap(cell.period->y);
+  for (Contact& c : cell.contacts) c.lever_i = c.lever_j = 0.5 * norm(cell.branch(c));
   const ContactSprings springs(SpringConstants{1e9, 0.3e9});
   const Assembly large = repeated(cell, m);
   table.right(format("homogenize {} discs", large.size()),

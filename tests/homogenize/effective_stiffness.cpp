@@ -203,7 +203,8 @@ TEST_CASE("discs_that_carry_nothing_change_nothing") {
   };
   const std::int32_t rattler = add_disc({0.0101, 0.0203});
   const std::int32_t first = add_disc({0.0301, 0.0203}), second = add_disc({0.0311, 0.0203});
-  cell.contacts.push_back({.i = 0, .j = first, .lever_i = 0.005, .lever_j = 0.001});
+  cell.contacts.push_back({.i = 0, .j = first, .lever_i = 0, .lever_j = 0});
+  cell.contacts.back().lever_i = norm(cell.branch(cell.contacts.back()));
   cell.contacts.push_back({.i = first, .j = second, .lever_i = 0.0005, .lever_j = 0.0005});
   CAPTURE(rattler, first, second);
   const EffectiveStiffness c = effective_stiffness(cell, springs);

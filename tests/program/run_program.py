@@ -198,11 +198,11 @@ class Hostile(ProgramTest):
 
     def test_springs_too_far_apart_are_no_mechanism(self):
         done = equidem("solve", TENSION, "--set", "springs.kT=1e30")
-        self.check_error(done, 1, "springs differ by a factor")
+        self.check_error(done, 2, "springs differ by a factor")
         self.assertNotIn("mechanism", done.stderr)
 
     def test_numbers_that_overflow_are_called_that(self):
-        self.check_error(equidem("solve", TENSION, "--set", "test.stress=1e300"), 1, "overflow")
+        self.check_error(equidem("solve", TENSION, "--set", "test.stress=1e300"), 2, "overflow")
 
     def test_a_state_that_the_solver_cannot_judge_is_not_called_stable(self):
         given = ["--set", "springs.kT=-0.35e9", "--set", 'solver.method="umfpack"']

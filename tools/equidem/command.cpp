@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command.hpp"
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 
 #include <CLI/CLI.hpp>
 
 #include "equidem/casefile/toml.hpp"
+#include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
@@ -49,19 +52,42 @@ void OutputPlan::expect(const std::string& name) const {
   if (options_.out) check_writable(*options_.out / name, options_.overwrite);
 }
 
-void OutputPlan::expect_json() const {
-  if (options_.json && *options_.json != "-") check_writable(*options_.json, options_.overwrite);
+void OutputPlan::expect_file(const std::filesystem::path& path) const {
+  const auto folder = path.parent_path();
+  if (!folder.empty() && !std::filesystem::exists(folder)) {
+    bad_input(format("cannot write '{}'", path.string()), format("there is no folder '{}'", folder.string()),
+              "Make it, or correct the name");
+  }
+  check_writable(path, options_.overwrite);
 }
+
+void OutputPlan::expect_json() const {
+  if (options_.json && *options_.json != "-") expect_file(*options_.json);
+}
+
+namespace {
+
+void print(const std::string& text) {
+  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0)
+    bad_input("cannot write to stdout", std::strerror(errno), "Send the output somewhere that has room for it");
+}
+
+}  // namespace
 
 void deliver(const CommonOptions& options, const std::string& report, const JsonObject& object) {
   const bool to_stdout = options.json && *options.json == "-";
   if (to_stdout) {
-    std::fputs(object.text().c_str(), stdout);
+    print(object.text());
   } else if (!options.quiet) {
-    std::fputs(report.c_str(), stdout);
+    print(report);
   }
   if (options.json && !to_stdout) write_file(*options.json, object.text(), options.overwrite);
   if (options.out) write_file(*options.out / "result.json", object.text(), options.overwrite);
+}
+
+std::string without_full_stop(std::string sentence) {
+  if (sentence.ends_with('.')) sentence.pop_back();
+  return sentence;
 }
 
 void say(const CommonOptions& options, const std::string& line) {

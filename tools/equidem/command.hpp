@@ -47,6 +47,9 @@ class OutputPlan {
   /// A file NAME in --out, if there is one.
   /// \throws Error (bad_input) where it could not be written
   void expect(const std::string& name) const;
+  /// A file that the user names, in a folder that exists: a new one is more likely a slip than a wish.
+  /// \throws Error (bad_input) where it could not be written
+  void expect_file(const std::filesystem::path& path) const;
   /// The file of --json, if there is one.
   /// \throws Error (bad_input)
   void expect_json() const;
@@ -58,7 +61,11 @@ class OutputPlan {
 };
 
 /// Report on stdout (unless quiet, or stdout is taken by the JSON), the object to --json and to OUT/result.json.
+/// \throws Error (bad_input) where they cannot be written
 void deliver(const CommonOptions& options, const std::string& report, const JsonObject& object);
+
+/// A sentence to go into another one.
+std::string without_full_stop(std::string sentence);
 
 /// One line on stderr, unless quiet.
 void say(const CommonOptions& options, const std::string& line);

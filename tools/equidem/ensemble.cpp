@@ -2,6 +2,7 @@
 #include "ensemble.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "equidem/casefile/build.hpp"
@@ -75,6 +76,18 @@ std::vector<EnsembleSample> samples_to_keep(const CommonOptions& options, bool r
   return read_samples_csv(table);
 }
 
+/// The samples done, and those of an earlier run beyond them, by size and seed: what was computed is not lost to a run that asks
+/// for less or is stopped.
+std::vector<EnsembleSample> with_kept(const std::vector<EnsembleSample>& done,
+                                      const std::vector<EnsembleSample>& kept) {
+  std::map<std::pair<std::int64_t, std::uint64_t>, EnsembleSample> all;
+  for (const EnsembleSample& sample : done) all.emplace(std::pair(sample.discs, sample.seed), sample);
+  for (const EnsembleSample& sample : kept) all.emplace(std::pair(sample.discs, sample.seed), sample);
+  std::vector<EnsembleSample> result;
+  for (auto& [key, sample] : all) result.push_back(std::move(sample));
+  return result;
+}
+
 void check_outputs(CommonOptions options, bool resume) {
   OutputPlan(options).expect_json();
   options.overwrite = options.overwrite || resume;
@@ -143,7 +156,7 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
   const auto& folder = options.out;
   if (folder) write_file(*folder / case_name, to_toml(resolved, *folder), true);
   const auto save = [&](const std::vector<EnsembleSample>& done) {
-    if (folder) write_file(*folder / samples_name, samples_csv(done), true);
+    if (folder) write_file(*folder / samples_name, samples_csv(with_kept(done, kept)), true);
   };
   StageTimes times;
   Stopwatch watch;
@@ -183,7 +196,8 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
         folder ? "Run the same command with --resume to do the rest" : "With --out DIR the cells done would be kept");
   }
   if (all_refused)
-    computation_failed("none of the cells has moduli", "the first: " + result.samples.front().refusal, "");
+    computation_failed("none of the cells has moduli",
+                       "the first: " + without_full_stop(result.samples.front().refusal), "");
   return 0;
 }
 

@@ -39,7 +39,16 @@ std::string table_of(const EnsembleStatistics& statistics, std::size_t quantity)
 std::string describe_scatter(const SizeDependence& d, double confidence) {
   if (!d.measured_exponent) return "";
   const double t = student_critical_value(confidence, d.freedom);
-  std::string text = format("  scatter falls as N^-{:.2f} (± {:.2f}): ", *d.measured_exponent, t * d.exponent_error);
+  const double error = t * d.exponent_error;
+  constexpr double too_wide = 0.5;  // an error that does not tell the exponent from 0
+  if (d.exponent == 0.5 && error > too_wide) {
+    return format(
+        "  these samples do not tell how the scatter falls with size (exponent known to ± {:.2g}); N^-1/2 of many "
+        "independent patches is used below\n",
+        error);
+  }
+  const std::string text = format("  scatter {} as N^{:.2f} (± {:.2f}): ", *d.measured_exponent < 0 ? "grows" : "falls",
+                                  -*d.measured_exponent, error);
   if (d.exponent == 0.5) return text + "compatible with N^-1/2 of many independent patches, which is used below\n";
   return text + "not the N^-1/2 of many independent patches; the exponent measured is used below\n";
 }

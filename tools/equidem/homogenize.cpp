@@ -266,11 +266,13 @@ int homogenize(const Options& options) {
   JsonObject object;
   add_common(object, homogenized.status(), report, homogenized.times, homogenized.result.effects);
   add_homogenized(object, homogenized);
+  object.set("strain_of_states", written_strain);
   deliver(common, report, object);
   if (common.out) {
     const bool states = !homogenized.result.fluctuations.empty();
     say(common, format("written to {}{}", common.out->string(),
-                       states ? "" : ", without states: those are of prescribed strains"));
+                       states ? format("; states are those of strains of {}", written_strain)
+                              : ", without states: those are of prescribed strains"));
   }
   return 0;
 }

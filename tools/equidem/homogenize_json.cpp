@@ -51,7 +51,8 @@ void add_rigidity(JsonObject& object, const EffectiveStiffness& r) {
       .set("local_mechanisms", r.local_mechanisms)
       .set("self_stresses", r.self_stresses)
       .set("negative_pivots", r.negative_pivots)
-      .set("unstable_modes", r.unstable_modes);
+      .set("unstable_modes", r.unstable_modes)
+      .set("unstable_strains", r.unstable_strains);
   if (r.self_stresses < 0) object.set_null("self_stresses");
   if (r.negative_pivots < 0) object.set_null("negative_pivots");
   if (r.unstable_modes < 0) object.set_null("unstable_modes");

@@ -73,7 +73,8 @@ void append_rigidity(std::string& out, const EffectiveStiffness& r) {
         counted(motions, "motion"), counted(r.gear_modes, "gear mode"), counted(r.local_mechanisms, "local mechanism"),
         motions > described ? format(", {} of them named above,", described) : "", motions == 1 ? "it" : "them"));
   }
-  if (r.discs_removed == 0 && motions == 0) line("every disc carries load, and every motion costs energy");
+  if (r.discs_removed == 0 && motions == 0)
+    line(r.unstable_modes > 0 ? "every disc carries load" : "every disc carries load, and every motion costs energy");
   if (r.self_stresses >= 0) {
     line(format("{} of self-stress: {}", counted(r.self_stresses, "independent state", "independent states"),
                 r.self_stresses == 0 ? "statically determinate, forces do not depend on the springs"
@@ -82,6 +83,10 @@ void append_rigidity(std::string& out, const EffectiveStiffness& r) {
   if (r.unstable_modes > 0) {
     line(format("UNSTABLE: {} by which the network would give way; this stiffness is no state of rest",
                 counted(r.unstable_modes, "mode")));
+    if (r.unstable_strains > 0) {
+      line(format("{} of the stiffness {} negative: such a mean strain gives energy back",
+                  counted(r.unstable_strains, "eigenvalue"), r.unstable_strains == 1 ? "is" : "are"));
+    }
   } else if (r.unstable_modes < 0) {
     line("stability NOT KNOWN: this solver does not count the negative pivots that would tell; method = \"auto\" does");
   }

@@ -69,12 +69,16 @@ void write_state(const CommonOptions& common, const RunSetup& setup, const std::
 }
 
 int dry_run(const CommonOptions& common, const RunSetup& setup) {
-  const Simulation simulation(setup.scene, setup.options);
-  const std::string report = describe_run_setup(setup, simulation);
+  Simulation simulation(setup.simulation());
+  std::string report = describe_run_setup(setup, simulation);
   JsonObject object;
+  if (!setup.run().until_rest) {
+    const double seconds = estimate_seconds(setup, simulation);
+    report += describe_estimate(setup, seconds);
+    object.set("steps", setup.steps()).set("estimated_seconds", seconds);
+    add_time_step(object, setup.step);
+  }
   add_common(object, "dry_run", report, setup.problem.times, simulation.effects());
-  object.set("steps", setup.steps());
-  add_time_step(object, setup.step);
   object.set("bytes_per_disc", simulation.bytes_per_disc());
   CommonOptions without_folder = common;
   without_folder.out.reset();
@@ -88,7 +92,7 @@ int relax_to_rest(const Options& options, const RunSetup& setup) {
     throw Error(ErrorKind::bad_input, "--resume of a run to rest", "it keeps no checkpoints: it ends where it ends",
                 "Run it anew");
   }
-  Simulation simulation(setup.scene, setup.options);
+  const Simulation simulation(setup.simulation());
   StageTimes times = setup.problem.times;
   Stopwatch watch;
   const Relaxation rest = relax(setup.scene, relaxation_options(setup));
@@ -97,7 +101,7 @@ int relax_to_rest(const Options& options, const RunSetup& setup) {
   const std::string report = describe_run_setup(setup, simulation) + describe_rest(setup, rest, times);
   JsonObject object;
   add_common(object, "at_rest", report, times, simulation.effects());
-  object.set("steps", rest.steps).set("relative_unbalanced_force", rest.relative_unbalanced);
+  add_rest(object, setup, rest);
   if (common.out) write_file(*common.out / "case.toml", to_toml(setup.problem.resolved, *common.out), common.overwrite);
   deliver(common, report, object);
   return 0;
@@ -111,7 +115,7 @@ int run(const Options& options) {
   if (common.dry_run) return dry_run(common, setup);
   if (setup.run().until_rest) return relax_to_rest(options, setup);
 
-  Simulation simulation(setup.scene, setup.options);
+  Simulation simulation(setup.simulation());
   const RunResult result =
       run_through(setup, simulation, {.folder = common.out, .overwrite = common.overwrite, .resume = options.resume});
   StageTimes times = setup.problem.times;
@@ -143,9 +147,9 @@ Run declare_run(CLI::App& command) {
   command.add_flag("--resume", options->resume, "go on from the checkpoint in --out");
   command.footer(
       "Examples:\n"
-      "  equidem run data/cases/run_block.toml\n"
-      "  equidem run data/cases/run_block.toml --out result         frames for ParaView, histories, checkpoint\n"
-      "  equidem run data/cases/run_block.toml --out result --resume --set run.duration=2e-3");
+      "  equidem run data/cases/run_tension.toml                    to rest: the answer of 'equidem solve'\n"
+      "  equidem run data/cases/run_pulse.toml --out result         frames for ParaView, histories, checkpoint\n"
+      "  equidem run data/cases/run_pulse.toml --out result --resume --set run.duration=4e-3");
   return [options] { return run(*options); };
 }
 

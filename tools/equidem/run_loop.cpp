@@ -14,7 +14,8 @@ namespace {
 
 constexpr double look_every = 0.2;  // s of the clock on the wall: progress, interrupts, runaways
 
-/// Steps at which something happens every so many seconds of the run; never where there is no interval.
+/// Steps at which something happens every so many seconds of the run, each the nearest to its time; never where there
+/// is no interval.
 class Recurrence {
  public:
   Recurrence(std::optional<double> interval, double step) : interval_(interval.value_or(0) / step) {}
@@ -22,8 +23,11 @@ class Recurrence {
   [[nodiscard]] std::int64_t after(std::int64_t step) const {
     if (!(interval_ > 0)) return never;
     if (interval_ <= 1) return step + 1;
-    const double turn = std::floor(static_cast<double>(step) / interval_ + 1e-9) + 1;
-    return std::max<std::int64_t>(step + 1, std::llround(turn * interval_));
+    const double turn = std::ceil((static_cast<double>(step) + 0.5) / interval_ - 1e-9);
+    const double next = std::floor(turn * interval_ + 0.5);
+    if (next >= 1e18) return never;
+    if (next > static_cast<double>(step)) return static_cast<std::int64_t>(next);
+    return static_cast<std::int64_t>(std::floor((turn + 1) * interval_ + 0.5));
   }
   [[nodiscard]] bool at(std::int64_t step) const { return step == 0 || (step > 0 && after(step - 1) == step); }
   static constexpr std::int64_t never = INT64_MAX;
@@ -66,7 +70,10 @@ class RunLoop {
         watch_.look(simulation_);
         progress.update(static_cast<double>(simulation_.step()) / static_cast<double>(total_));
       } catch (const Error& error) {
-        if (error.kind() == ErrorKind::interrupted) save();
+        if (error.kind() == ErrorKind::interrupted) {
+          record();
+          save();
+        }
         throw;
       }
       record();
@@ -95,7 +102,8 @@ class RunLoop {
     }
     checkpoint_.emplace(folder / "run.checkpoint.h5", setup_.fingerprint(), files.overwrite || files.resume);
     if (resolved.output.frame_interval) {
-      const double count = static_cast<double>(total_) * setup_.step.step / *resolved.output.frame_interval;
+      const double steps = static_cast<double>(total_);
+      const double count = std::min(steps, steps * setup_.step.step / *resolved.output.frame_interval);
       frames_.emplace(
           folder, "frames", assembly,
           FrameOptions{

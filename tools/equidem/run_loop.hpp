@@ -37,7 +37,8 @@ struct RunResult {
   std::vector<std::filesystem::path> files;
 };
 
-/// Make all steps of a run; frames, histories and checkpoints on their schedules, progress on stderr, a look for runaways between.
+/// Make all steps of a run; frames, histories and checkpoints on their schedules, progress on stderr, a look for
+/// runaways between.
 /// An interrupt leaves a checkpoint.
 /// \throws Error as the writers, the watch and stop_if_interrupted
 RunResult run_through(const RunSetup& setup, Simulation& simulation, const RunFiles& files);

@@ -13,6 +13,8 @@
 namespace equidem {
 namespace {
 
+constexpr double balance_to_doubt = 0.1;  // near the critical step finite motions reach some hundredths
+
 double disc_steps_per_second(const RunSetup& setup, const RunResult& result) {
   if (!(result.seconds > 0)) return 0;
   return static_cast<double>(result.steps_done) * static_cast<double>(setup.problem.assembly.size()) / result.seconds;
@@ -27,6 +29,47 @@ double largest_energy(const EnergyLedger& ledger) {
 double relative_error(const EnergyLedger& ledger) {
   const double size = largest_energy(ledger);
   return size > 0 ? ledger.error() / size : 0.0;
+}
+
+/// What a case asks for that a run to rest does not heed.
+std::string unused_at_rest(const RunSetup& setup) {
+  const RunCase& run = setup.run();
+  const OutputCase& output = setup.problem.resolved.output;
+  std::string out;
+  const auto name = [&](bool asked, const char* what) {
+    if (asked) out += (out.empty() ? "" : ", ") + std::string(what);
+  };
+  name(run.time_step.step.has_value(), "time_step");
+  name(run.integrator != Integrator::leapfrog, "integrator");
+  name(run.damping.mass > 0 || run.damping.stiffness > 0 || run.damping.contact > 0 || run.damping.local > 0,
+       "[run.damping]");
+  name(!run.velocities.empty(), "[[velocity]]");
+  name(output.frame_interval.has_value(), "frame_interval");
+  name(!run.probes.empty() || output.probe_interval, "[[probe]]");
+  return out;
+}
+
+/// What of the output is not what a reader of the case would expect.
+std::string describe_output(const RunSetup& setup) {
+  const OutputCase& output = setup.problem.resolved.output;
+  std::string out;
+  if (!setup.run().probes.empty() && !output.probe_interval) {
+    out += report_line("probes", "not recorded: [output] has no probe_interval");
+  }
+  for (const auto& [name, interval] :
+       {std::pair{"frame", output.frame_interval}, std::pair{"probe", output.probe_interval}}) {
+    if (!interval || *interval >= setup.step.step) continue;
+    out += report_line(format("{}s", name),
+                       format("at every step, which is longer than {}_interval = {} s", name, *interval));
+  }
+  return out;
+}
+
+void add_scene(JsonObject& object, const RunSetup& setup) {
+  object.set("title", setup.problem.resolved.title)
+      .set("discs", setup.problem.assembly.size())
+      .set("contacts", setup.problem.assembly.contacts.size())
+      .set("motion", setup.run().motion == LoopKind::Motion::small ? "small" : "finite");
 }
 
 std::string stages_of(const StageTimes& times) {
@@ -52,16 +95,45 @@ std::string describe_run_setup(const RunSetup& setup, const Simulation& simulati
   out += report_line("motions", run.motion == LoopKind::Motion::small
                                     ? "small: normals and contact points fixed, the forces are those of the matrix K"
                                     : "finite: normals and contact points follow the bodies");
-  if (run.until_rest) return out;
+  if (run.until_rest) {
+    const std::string unused = unused_at_rest(setup);
+    if (!unused.empty()) out += report_line("not used", unused + ": a run to rest has steps of its own and no time");
+    return out;
+  }
   const IntegratorFacts facts = facts_of(run.integrator);
   out += report_line("integrator", format("{}, order {}, {} a step", to_string(run.integrator), facts.order,
                                           counted(facts.force_evaluations, "force evaluation")));
   const TimeStep& step = setup.step;
-  out += report_line("time step", format("{:.6g} s, {:.4g} of the {} step {:.6g} s (rule: {})", step.step, step.ratio(),
-                                         step.exact ? "critical" : "guaranteed", step.critical, step.rule));
-  for (const std::string& note : step.notes) out += report_line("", note);
+  if (std::isinf(step.critical)) {
+    out += report_line("time step", format("{:.6g} s; nothing vibrates, any step is stable", step.step));
+  } else {
+    out +=
+        report_line("time step", format("{:.6g} s, {:.4g} of the {} step {:.6g} s (rule: {})", step.step, step.ratio(),
+                                        step.exact ? "critical" : "guaranteed", step.critical, step.rule));
+    for (const std::string& note : step.notes) out += report_line("", note);
+  }
+  out += describe_output(setup);
   out += report_line("memory", format("{:.0f} bytes a disc in the loop", simulation.bytes_per_disc()));
   return out;
+}
+
+double estimate_seconds(const RunSetup& setup, Simulation& simulation) {
+  constexpr double enough = 0.05;  // s of the clock on the wall
+  const std::int64_t total = setup.steps();
+  std::int64_t steps = 1;
+  for (;;) {
+    steps = std::min(steps, total);
+    const Stopwatch watch;
+    simulation.advance(steps);
+    const double seconds = watch.seconds();
+    if (seconds > enough || steps == total) return seconds / static_cast<double>(steps) * static_cast<double>(total);
+    steps *= 4;
+  }
+}
+
+std::string describe_estimate(const RunSetup& setup, double seconds) {
+  return report_line("steps",
+                     format("{}, about {:.2g} s with these threads, output aside", grouped(setup.steps()), seconds));
 }
 
 std::string describe_run(const RunSetup& setup, const Simulation& simulation, const RunResult& result,
@@ -77,6 +149,9 @@ std::string describe_run(const RunSetup& setup, const Simulation& simulation, co
   out += report_line("", format("dissipated by mass damping {:.6g}, contacts {:.6g}, local damping {:.6g}",
                                 ledger.damped_mass, ledger.damped_contact, ledger.damped_local));
   out += report_line("balance", format("lacks {:.1e} of the largest term", relative_error(ledger)));
+  if (std::abs(relative_error(ledger)) > balance_to_doubt) {
+    out += report_line("", "that is much: compare with a shorter step before trusting the motion");
+  }
   return out + stages_of(times);
 }
 
@@ -93,9 +168,15 @@ void add_time_step(JsonObject& object, const TimeStep& step) {
       .set("omega_max", step.omega_max);
 }
 
+void add_rest(JsonObject& object, const RunSetup& setup, const Relaxation& rest) {
+  add_scene(object, setup);
+  object.set("steps", rest.steps)
+      .set("force_evaluations", rest.evaluations)
+      .set("relative_unbalanced_force", rest.relative_unbalanced);
+}
+
 void add_run(JsonObject& object, const RunSetup& setup, const Simulation& simulation, const RunResult& result) {
-  object.set("title", setup.problem.resolved.title);
-  object.set("discs", setup.problem.assembly.size()).set("contacts", setup.problem.assembly.contacts.size());
+  add_scene(object, setup);
   object.set("steps", simulation.step()).set("time", simulation.time());
   add_time_step(object, setup.step);
   const EnergyLedger ledger = simulation.energy();
@@ -107,7 +188,6 @@ void add_run(JsonObject& object, const RunSetup& setup, const Simulation& simula
       .set("relative_error", relative_error(ledger));
   object.set("energy", energy);
   object.set("integrator", to_string(setup.run().integrator));
-  object.set("motion", setup.run().motion == LoopKind::Motion::small ? "small" : "finite");
   object.set("particle_steps_per_second", disc_steps_per_second(setup, result));
   object.set("bytes_per_disc", simulation.bytes_per_disc());
 }
@@ -116,6 +196,10 @@ void write_energy_plot(const std::filesystem::path& folder, const RunSetup& setu
                        bool overwrite) {
   Plot plot;
   plot.title = setup.problem.resolved.title;
+  if (!result.energies.empty() && result.energies.front().time > 0) {
+    plot.title +=
+        format("{}since the checkpoint at {:.4g} s", plot.title.empty() ? "" : ", ", result.energies.front().time);
+  }
   plot.x.label = "time, s";
   plot.y.label = "energy, J per m of depth";
   struct Curve {

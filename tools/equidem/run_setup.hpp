@@ -25,9 +25,13 @@ struct RunSetup {
   SimulationOptions options;
 
   [[nodiscard]] const RunCase& run() const { return *problem.resolved.run; }
+  /// \throws Error as Simulation does, with its place in the case
+  [[nodiscard]] Simulation simulation() const;
   /// Steps of the whole duration; 0 where the run goes to rest.
+  /// \throws Error (bad_input) where they are too many to be counted
   [[nodiscard]] std::int64_t steps() const;
-  /// The case as a checkpoint knows it: all that changes the motion, without how long it lasts and what is written.
+  /// The case as a checkpoint knows it: all that changes the motion, files that it names too, without how long it lasts
+  /// and what is written.
   [[nodiscard]] std::string fingerprint() const;
 };
 

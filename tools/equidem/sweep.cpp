@@ -331,7 +331,8 @@ int sweep(const SweepOptions& options) {
         folder ? "Run the same command with --resume to do the rest" : "With --out DIR the points done would be kept");
   }
   if (all_failed)
-    computation_failed("none of the points could be computed", "the first: " + points.front().message, "");
+    computation_failed("none of the points could be computed",
+                       "the first: " + without_full_stop(points.front().message), "");
   return 0;
 }
 

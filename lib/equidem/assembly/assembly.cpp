@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/assembly/assembly.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -33,13 +34,21 @@ void check_discs(const Assembly& assembly) {
   if (n == 0) bad_input("the assembly has no discs", "there is nothing to solve for", "Give it discs");
   check_count("radii", assembly.radii.size(), "discs", n);
   for (std::size_t d = 0; d < n; ++d) {
+    const auto [x, y] = assembly.centres[d];
     if (!finite(assembly.centres[d])) {
-      bad_input(format("disc {} has its centre at ({}, {})", d, assembly.centres[d].x, assembly.centres[d].y),
-                "centres must be finite", "Correct its coordinates");
+      bad_input(format("disc {} has its centre at ({}, {})", d, x, y), "centres must be finite",
+                "Correct its coordinates");
+    }
+    if (std::max(std::abs(x), std::abs(y)) > longest_length) {
+      bad_input(format("disc {} has its centre at ({}, {})", d, x, y),
+                format("centres must lie within {} m of the origin", longest_length), "Choose other units");
     }
     if (!(assembly.radii[d] > 0) || !std::isfinite(assembly.radii[d])) {
       bad_input(format("disc {} has the radius {}", d, assembly.radii[d]), "radii must be positive and finite",
                 "Correct it");
+    }
+    if (!measurable(assembly.radii[d])) {
+      bad_input(format("disc {} has the radius {} m", d, assembly.radii[d]), length_limits(), "Choose other units");
     }
   }
   if (assembly.cell_areas.empty()) return;
@@ -75,6 +84,9 @@ void check_contact(const Assembly& assembly, std::size_t index) {
   if (!finite(l) || (l.x == 0 && l.y == 0)) {
     bad_input(format("{}, spans the branch ({}, {})", described(c, index), l.x, l.y),
               "its length must be finite and positive, or it has no direction", "Move one of the discs");
+  }
+  if (!measurable(norm(l))) {
+    bad_input(format("{}, is {} m long", described(c, index), norm(l)), length_limits(), "Choose other units");
   }
   for (const double lever : {c.lever_i, c.lever_j}) {
     if (!(lever >= 0) || !std::isfinite(lever)) {
@@ -160,10 +172,19 @@ double Assembly::mean_radius() const {
   return radii.empty() ? 0 : std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
 }
 
+std::string length_limits() {
+  return format("it must lie between {} and {} m, or squares of areas leave the range of a double", shortest_length,
+                longest_length);
+}
+
 void check(const Assembly& assembly) {
   if (assembly.period && !(finite(*assembly.period) && assembly.period->x > 0 && assembly.period->y > 0)) {
     bad_input(format("the period is ({}, {}) m", assembly.period->x, assembly.period->y),
               "both lengths of a periodic cell must be positive and finite", "Correct the cell");
+  }
+  if (assembly.period && !(measurable(assembly.period->x) && measurable(assembly.period->y))) {
+    bad_input(format("the period is ({}, {}) m", assembly.period->x, assembly.period->y), length_limits(),
+              "Choose other units");
   }
   check_discs(assembly);
   check_contacts(assembly);

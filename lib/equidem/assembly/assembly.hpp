@@ -20,7 +20,9 @@ struct Contact {
   std::int32_t j = 0;
   std::int32_t shift_x = 0;  ///< i touches j at x_j + (shift_x Lx, shift_y Ly); 0 with a free boundary
   std::int32_t shift_y = 0;
-  double lever_i = 0;  ///< m
+  /// m; levers that do not add up to the distance leave a gap or an overlap under a contact that rolls: solve takes them,
+  /// homogenize refuses them, since turning all of such an assembly costs energy.
+  double lever_i = 0;
   double lever_j = 0;  ///< m
 };
 
@@ -62,8 +64,17 @@ struct Assembly {
   [[nodiscard]] double mean_radius() const;
 };
 
-/// Check everything that later parts rely on: sizes agree, radii are positive and finite, contacts join two existing
-/// discs (or a disc and another image of itself) a finite, non-zero distance apart with lever arms that are not
+/// Lengths between which areas, their squares and their inverses stay within a double, m.
+inline constexpr double shortest_length = 1e-70, longest_length = 1e70;
+/// Whether a length lies between them.
+constexpr bool measurable(double length) {
+  return length >= shortest_length && length <= longest_length;
+}
+/// "it must lie between ... m", the reason to give where one does not.
+std::string length_limits();
+
+/// Check everything that later parts rely on: counts agree, radii, periods and distances of discs in contact are
+/// measurable, contacts join two existing discs (or a disc and another image of itself) with lever arms that are not
 /// negative.
 /// \throws Error (bad_input) naming the first disc or contact that breaks this
 void check(const Assembly& assembly);

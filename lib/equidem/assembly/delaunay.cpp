@@ -37,6 +37,10 @@ void check(const DelaunayOptions& options) {
     bad_input(format("the largest radius is {} m", radii.largest),
               format("it must be finite and at least the smallest, {} m", radii.smallest), "Correct it");
   }
+  for (const double radius : {radii.smallest, radii.largest}) {
+    if (!measurable(radius))
+      bad_input(format("the radius of a disc is {} m", radius), length_limits(), "Choose other units");
+  }
   if (!(options.aspect >= 1e-3 && options.aspect <= 1e3)) {
     bad_input(format("aspect = {}", options.aspect), "width over height must lie in [0.001, 1000]", "Correct it");
   }

@@ -72,7 +72,12 @@ std::int32_t integer(const Json& value, const std::string& entry) {
   }
   const bool fits = value.is_number_unsigned() ? value.get<std::uint64_t>() <= std::numeric_limits<std::int32_t>::max()
                                                : value.get<std::int64_t>() >= std::numeric_limits<std::int32_t>::min();
-  if (!fits) refuse(format("{} is beyond all numbers of discs", value.dump()), "", "Correct the entry", entry);
+  if (!fits) {
+    refuse(
+        format("{} is out of range", value.dump()),
+        format("discs and shifts are whole numbers of a magnitude up to {}", std::numeric_limits<std::int32_t>::max()),
+        "Correct the entry", entry);
+  }
   return value.get<std::int32_t>();
 }
 
@@ -85,7 +90,8 @@ const Json& list(const Json& value, const std::string& entry) {
 const Json& row(const Json& value, std::size_t count, const char* names, const std::string& entry) {
   list(value, entry);
   if (value.size() == count) return value;
-  refuse(format("{} stand where {} are expected", counted(static_cast<long long>(value.size()), "number"), count),
+  refuse(format("{} {} where {} are expected", counted(static_cast<long long>(value.size()), "number"),
+                value.size() == 1 ? "stands" : "stand", count),
          format("an entry is [{}]", names), "Correct the entry", entry);
 }
 

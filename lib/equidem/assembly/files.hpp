@@ -10,7 +10,7 @@
 namespace equidem {
 
 /// Read an assembly. `contacts` missing: touching discs (gap at most 1e-9 of the smaller radius). The contact point
-/// is the midpoint of the branch unless "levers" says otherwise; "springs": [[kN, kT], ...] per contact; "groups":
+/// is the midpoint of the branch unless "levers": [[r_i, r_j], ...] says otherwise (see Contact); "springs": [[kN, kT], ...] per contact; "groups":
 /// {"name": [disc, ...]}. Sides (left, right, bottom, top) and corners of a free assembly are added where the file
 /// gives none by that name: the discs whose cells touch the side of the bounding rectangle.
 /// \throws Error (bad_input) with file and, where there is one, the entry: unreadable or truncated file, missing or

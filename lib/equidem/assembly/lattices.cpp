@@ -31,6 +31,7 @@ void check(const LatticeOptions& o, bool staggered) {
   if (!(o.radius > 0) || !std::isfinite(o.radius)) {
     bad_input(format("radius = {} m", o.radius), "a radius must be positive and finite", "Correct it");
   }
+  if (!measurable(o.radius)) bad_input(format("radius = {} m", o.radius), length_limits(), "Choose other units");
   if (staggered && o.periodic && o.rows % 2 != 0) {
     bad_input(format("rows = {} in a periodic hexagonal lattice", o.rows),
               "rows are shifted by turns, so that only an even number of them repeats",

@@ -40,8 +40,8 @@ struct PowerCells {
 ///
 /// A periodic diagram is that of the cell and of as many images around it as it takes to prove that none further away
 /// matters: no power circle of a triangle at the cell reaches beyond the images.
-/// \throws Error (bad_input) naming two discs with the same centre; Error (computation_failed) where the period is so
-///         narrow that too many images would be needed
+/// \throws Error (bad_input) naming two discs with the same centre; where the period is so narrow
+///         that too many images would be needed
 PowerCells power_cells(const Assembly& assembly, const std::optional<Rectangle>& domain = {});
 
 }  // namespace equidem

@@ -61,12 +61,12 @@ void Sites::surround() {
   const auto n = static_cast<double>(discs_);
   const double expected = n * ((period_.x + 2 * margin_) / period_.x * ((period_.y + 2 * margin_) / period_.y) - 1);
   if (expected > most_images_per_disc * n + most_images) {
-    computation_failed(format("the periodic cell of {} m by {} m needs more than {:.3g} images around it to find the "
-                              "neighbours of "
-                              "its {}",
-                              period_.x, period_.y, most_images_per_disc * n + most_images, counted(discs_, "disc")),
-                       "it is too narrow, or its discs leave too wide a gap",
-                       "Repeat the cell along its narrow side, or fill the gap");
+    bad_input(format("the periodic cell of {} m by {} m needs more than {:.3g} images around it to find the "
+                     "neighbours of "
+                     "its {}",
+                     period_.x, period_.y, most_images_per_disc * n + most_images, counted(discs_, "disc")),
+              "it is too narrow, or its discs leave too wide a gap",
+              "Repeat the cell along its narrow side, or fill the gap");
   }
   images_.clear();
   positions_.resize(static_cast<std::size_t>(discs_));

@@ -30,7 +30,7 @@ class Sites {
   explicit Sites(const Assembly& assembly);
 
   /// Double the margin.
-  /// \throws Error (computation_failed) where that would make too many images
+  /// \throws Error (bad_input) where that would make too many images
   void widen();
 
   [[nodiscard]] std::span<const Vec2> positions() const { return positions_; }

@@ -174,13 +174,17 @@ EnsembleCase read_ensemble(const TomlValue& table) {
   return result;
 }
 
+/// Before keys are checked: of two tables that exclude each other neither misses a key.
+void check_one_source_of_springs(const TomlValue& root) {
+  const TomlValue* material = root.find("material");
+  if (root.find("springs") == nullptr || material == nullptr) return;
+  fail_at(*material, "material", "springs and [material] are both given", "[material] says which springs to take",
+          "Remove one of them");
+}
+
 void check_contradictions(const TomlValue& root, const AssemblyCase& assembly) {
   const TomlValue* springs = root.find("springs");
   const TomlValue* material = root.find("material");
-  if (springs != nullptr && material != nullptr) {
-    fail_at(*material, "material", "springs and [material] are both given", "[material] says which springs to take",
-            "Remove one of them");
-  }
   const bool springs_in_file = assembly.kind == AssemblyKind::file;
   if (springs == nullptr && material == nullptr && !springs_in_file) {
     fail_at(root, "springs", "the springs are missing",
@@ -215,6 +219,7 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
                 std::span<const std::string> overrides) {
   TomlValue root = parse_toml(content, name);
   for (const std::string& assignment : overrides) apply_override(root, assignment);
+  check_one_source_of_springs(root);
   check_and_complete(root, case_file_spec());
   resolve_springs_file(root, folder);
 

@@ -129,7 +129,10 @@ TractionSample cut_open(const Assembly& assembly, const ContactSprings& springs)
   }
   satisfy_mean_strain(a, steps, assembly.area());
   for (std::size_t k = 0; k < a.size(); ++k) sample.cuts[k].a = a[k];
-  sample.springs = springs.uniform() ? springs : ContactSprings(std::move(left));
+  // Where every contact is cut, none has springs of its own.
+  sample.springs = left.empty()        ? ContactSprings(springs[0])
+                   : springs.uniform() ? springs
+                                       : ContactSprings(std::move(left));
   return sample;
 }
 

@@ -9,6 +9,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/homogenize/fabric.hpp"
+#include "equidem/statics/spring_sizes.hpp"
 
 namespace equidem {
 namespace {
@@ -90,9 +91,11 @@ Matrix3 voigt_stiffness(const Assembly& assembly, const ContactSprings& springs)
   return stiffness;
 }
 
-Matrix3 uniform_stress_estimate(const Assembly& assembly, const ContactSprings& springs) {
+Matrix3 uniform_stress_estimate(const Assembly& assembly, const ContactSprings& given) {
   const Tensor2 h = spanning_fabric(assembly);
-  refuse_negative_springs(assembly, springs);
+  refuse_negative_springs(assembly, given);
+  const double unit = spring_unit(given);
+  const ContactSprings springs = scaled_springs(assembly, given, 1 / unit);
   const double area = assembly.area();
   const Tensor2 h_inverse = (1 / (h.xx * h.yy - h.xy * h.yx)) * Tensor2{h.yy, -h.xy, -h.yx, h.xx};
 
@@ -120,7 +123,7 @@ Matrix3 uniform_stress_estimate(const Assembly& assembly, const ContactSprings& 
   const std::array<double, 3> p{h.xx - gb.x, h.yy + gb.x, h.xy - gb.y};
   Triangle stiffness{g.xx, -g.xx, g.xy, g.xx, -g.xy, g.yy};
   add_square(first, p, stiffness);
-  return symmetric(stiffness);
+  return unit * symmetric(stiffness);
 }
 
 }  // namespace equidem

@@ -2,36 +2,117 @@
 #include "equidem/homogenize/effective_stiffness.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/homogenize/strain_stiffness.hpp"
 #include "equidem/homogenize/traction_stiffness.hpp"
+#include "equidem/statics/spring_sizes.hpp"
 
 namespace equidem {
 namespace {
 
-/// A mean strain that costs nothing has no modulus.
-void judge(EffectiveStiffness& result) {
-  const StiffnessEigen eigen = eigenstrains(result.stiffness);
-  const double largest = std::max(std::abs(eigen.values[0]), std::abs(eigen.values[2]));
-  constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
-  result.error_bound += rounding * largest;
-  constexpr double nothing = 1e-13;
-  for (int k = 0; k < 3; ++k) {
-    if (std::abs(eigen.values[k]) > nothing * largest + 2 * result.error_bound) continue;
-    const auto& e = eigen.strains[k];
-    bad_input("the network is floppy",
-              format("the mean strain (xx {:.3f}, yy {:.3f}, shear {:.3f}) costs no energy beyond rounding", e[0], e[1],
-                     e[2]),
-              "A modulus would say nothing of it. Add contacts, or give the contacts tangential springs (kT > 0)");
+using WeakStrain = std::array<double, 3>;
+
+/// What levers that leave a gap or an overlap cost: a rigid rotation of all discs would make their contact slip.
+void check_levers(const Assembly& assembly, const ContactSprings& springs, const Effects& effects) {
+  if (!effects.rotation) return;
+  constexpr double close = 1e-9, rounding = 8 * std::numeric_limits<double>::epsilon();  // of lengths, of coordinates
+  for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
+    const Contact& c = assembly.contacts[k];
+    const double length = norm(assembly.branch(c));
+    const Vec2 shift = assembly.period ? Vec2{c.shift_x * assembly.period->x, c.shift_y * assembly.period->y} : Vec2{};
+    const double coordinates = norm(assembly.centres[c.i]) + norm(assembly.centres[c.j]) + norm(shift);
+    const double gap = std::abs(c.lever_i + c.lever_j - length);
+    if (springs[k].kT == 0 || gap <= close * length + rounding * coordinates) continue;
+    bad_input(
+        format("contact {}, of discs {} and {}, has the lever arms {:.9g} and {:.9g} m over a distance of {:.9g} m", k,
+               c.i, c.j, c.lever_i, c.lever_j, length),
+        "they do not add up to it, so that turning the whole assembly would cost energy and no continuum is like it",
+        "Correct the levers, or restrain rotation");
   }
 }
 
+/// Solve with springs of sizes near 1, so that no sum of squares leaves the range of a double.
+EffectiveStiffness solve(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options) {
+  const double unit = spring_unit(springs);
+  const ContactSprings scaled = scaled_springs(assembly, springs, 1 / unit);
+  EffectiveStiffness result;
+  result.boundary = options.boundary;
+  result.effects = derive_effects(springs, options.rotation);
+  result.area = assembly.area();
+  check_levers(assembly, springs, result.effects);
+  if (options.boundary == Boundary::traction) {
+    solve_tractions(assembly, scaled, options, result);
+  } else {
+    solve_strains(assembly, scaled, options, result);
+  }
+  constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
+  result.error_bound += rounding * largest_entry(result.stiffness);
+  result.scale(unit);
+  if (!std::isfinite(largest_entry(result.stiffness))) {
+    bad_input("the stiffness overflows a double", "the largest is 1.8e308", "Check the units of sizes and springs");
+  }
+  return result;
+}
+
+/// A mean strain whose energy is lost in its error; else mean strains that release energy count as unstable modes.
+std::optional<WeakStrain> judge(EffectiveStiffness& result) {
+  const StiffnessEigen eigen = eigenstrains(result.stiffness);
+  const double largest = std::max(std::abs(eigen.values[0]), std::abs(eigen.values[2]));
+  constexpr double nothing = 1e-13;
+  for (int k = 0; k < 3; ++k) {
+    if (!(std::abs(eigen.values[k]) > nothing * largest + 2 * result.error_bound)) return eigen.strains[k];
+  }
+  result.unstable_strains = std::count_if(eigen.values.begin(), eigen.values.end(), [](double v) { return v < 0; });
+  // The inertia of motions and mean strain together is that of K and that of C, its Schur complement (Haynsworth 1968).
+  if (result.unstable_strains > 0) {
+    result.unstable_modes = std::max<std::int64_t>(result.unstable_modes, 0) + result.unstable_strains;
+  }
+  return {};
+}
+
+/// The network resists every mean strain where all springs are alike: what fails with others is for their sizes.
+bool resists_with_equal_springs(const Assembly& assembly, const ContactSprings& springs,
+                                const HomogenizeOptions& options) {
+  try {
+    EffectiveStiffness equal = solve(assembly, equal_springs(assembly, springs), options);
+    return !judge(equal);
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    return false;
+  }
+}
+
+[[noreturn]] void refuse(const WeakStrain& e, const Assembly& assembly, const ContactSprings& springs,
+                         const HomogenizeOptions& options) {
+  const std::string strain = format("the mean strain (xx {:.3f}, yy {:.3f}, shear {:.3f})", e[0], e[1], e[2]);
+  if (!resists_with_equal_springs(assembly, springs, options)) {
+    bad_input("the network is floppy", strain + " costs no energy beyond rounding",
+              "A modulus would say nothing of it. Add contacts, or give the contacts tangential springs (kT > 0)");
+  }
+  if (springs.any_negative()) {
+    computation_failed("at this kT/kN the network is at its limit of stability",
+                       "rounding hides the energy of " + strain,
+                       "Choose another kT/kN; 'equidem stability' finds the limit");
+  }
+  refuse_spread(spring_spread(assembly, springs));
+}
+
 }  // namespace
+
+void EffectiveStiffness::scale(double factor) {
+  stiffness = factor * stiffness;
+  tangential_part = factor * tangential_part;
+  normal_part = factor * normal_part;
+  gradient_stiffness = factor * gradient_stiffness;
+  error_bound *= factor;
+}
 
 EffectiveStiffness effective_stiffness(const Assembly& assembly, const ContactSprings& springs,
                                        const HomogenizeOptions& options) {
@@ -44,16 +125,8 @@ EffectiveStiffness effective_stiffness(const Assembly& assembly, const ContactSp
     bad_input("the boundary is periodic but the assembly is not", "it has no images to be joined to",
               "Use boundary = \"displacement\" or \"traction\", or a periodic assembly");
   }
-  EffectiveStiffness result;
-  result.boundary = options.boundary;
-  result.effects = derive_effects(springs, options.rotation);
-  result.area = assembly.area();
-  if (options.boundary == Boundary::traction) {
-    solve_tractions(assembly, springs, options, result);
-  } else {
-    solve_strains(assembly, springs, options, result);
-  }
-  judge(result);
+  EffectiveStiffness result = solve(assembly, springs, options);
+  if (const auto weak = judge(result)) refuse(*weak, assembly, springs, options);
   return result;
 }
 

@@ -42,8 +42,9 @@ struct EffectiveStiffness {
   double stress_asymmetry = 0;  ///< largest |s_xy - s_yx| of any unit gradient over the largest entry
 
   double relative_residual = 0;  ///< largest of the load cases
-  double condition = 0;          ///< estimate of |K| |K^-1|
-  /// Pa: bound on the error of an entry of `stiffness`, from residual, condition and (but for tractions) rounding of normals.
+  double condition = 0;          ///< estimate of |K| |K^-1|, each component measured by the stiffness of its row
+  /// Pa: bound on the error of an entry of `stiffness`, from residual, condition and (but for tractions) rounding of normals and
+  /// lever arms; centres, period and springs are taken as the exact numbers that they are given as.
   double error_bound = 0;
   double hill_mandel = 0;  ///< largest |macroscopic - microscopic power| over the latter
 
@@ -57,18 +58,24 @@ struct EffectiveStiffness {
   Effects effects;
   std::int64_t unknowns = 0;
   std::int64_t negative_pivots = 0;
-  std::int64_t unstable_modes = 0;  ///< as of Equilibrium; 0: stable in statics within this cell
+  /// As of Equilibrium, and the mean strains that release energy; 0: stable in statics within this cell.
+  std::int64_t unstable_modes = 0;
+  std::int64_t unstable_strains = 0;  ///< negative eigenvalues of `stiffness`
   std::string solver;
   double factor_bytes = 0;
   StageTimes times;
   /// Motion of every disc for unit strain xx, yy, xy beside the uniform strain, m; discs removed stand still. Empty for tractions.
   std::vector<std::vector<DiscMotion>> fluctuations;
+
+  /// All springs `factor` times as stiff: the motions stay.
+  void scale(double factor);
 };
 
 /// Solve for unit strains xx, yy and xy (and the unit rotation where rotation is restrained) on one factorization.
-/// \throws Error (bad_input) where the boundary does not suit the assembly, no piece spans the cell, the network is a
-///         mechanism (named) or some strain costs no energy (named): a floppy network has no modulus;
-///         (computation_failed) as EquilibriumSolver
+/// \throws Error (bad_input) where the boundary does not suit the assembly, levers do not add up to their branch where they
+///         matter, no piece spans the cell, the network is a mechanism (named) or some strain costs no energy (named), since a
+///         floppy network has no modulus; springs too far apart for a double;
+///         (computation_failed) as EquilibriumSolver; at the limit of stability
 EffectiveStiffness effective_stiffness(const Assembly& assembly, const ContactSprings& springs,
                                        const HomogenizeOptions& options = {});
 

@@ -78,7 +78,10 @@ void annihilate(Matrix3& k, Matrix3& vectors, std::size_t p, std::size_t q) {
 }  // namespace
 
 EffectiveModuli effective_moduli(const Matrix3& stiffness) {
-  const Matrix3& c = stiffness;
+  const double unit = std::ldexp(1.0, std::ilogb(largest_entry(stiffness)));  // products stay within a double
+  Matrix3 c = stiffness;
+  for (auto& row : c)
+    for (double& entry : row) entry /= unit;
   const double trace = c[0][0] + c[1][1], coupling = c[0][1] + c[1][0];
   const double K = (trace + coupling) / 4;
   const double G = (trace - coupling + 4 * c[2][2]) / 8;
@@ -86,12 +89,12 @@ EffectiveModuli effective_moduli(const Matrix3& stiffness) {
   const double size = tensor_norm(nearest);
   assert(size > 0);
   const double nu = (K - G) / (2 * K);
-  return {.bulk_modulus_2d = K,
-          .shear_modulus = G,
+  return {.bulk_modulus_2d = unit * K,
+          .shear_modulus = unit * G,
           .poisson_strain = nu,
           .poisson_stress = (K - G) / (K + G),
-          .young_strain = 2 * G * (1 + nu),
-          .young_stress = 4 * K * G / (K + G),
+          .young_strain = unit * (2 * G * (1 + nu)),
+          .young_stress = unit * (4 * K * G / (K + G)),
           .anisotropy = tensor_norm(difference(c, nearest)) / size};
 }
 

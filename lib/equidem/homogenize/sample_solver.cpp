@@ -116,15 +116,14 @@ std::vector<Solution> SampleSolver::solve(std::span<const RightHandSide> cases, 
   // Without negative springs a motion without energy deforms no contact: mean strains do no work on it.
   const bool may_react = options_.boundary == Boundary::traction || springs().any_negative();
   for (std::size_t k = 0; may_react && k < cases.size(); ++k) check_reactions(cases[k], solutions[k]);
-  const double inverse_norm = solver_->softest_motion(solutions[0].motion.high).inverse_norm;
-  result.condition = solver_->norm() * inverse_norm;
+  result.condition = solver_->scaled_inverse_norm(solutions[0].motion.high);
   double residual = 0;
-  for (const Solution& solution : solutions) {
-    result.relative_residual = std::max(result.relative_residual, solution.relative_residual());
-    residual = std::max(residual, solution.residual);
+  for (std::size_t k = 0; k < solutions.size(); ++k) {
+    result.relative_residual = std::max(result.relative_residual, solutions[k].relative_residual());
+    residual = std::max(residual, solver_->scaled_residual(cases[k], solutions[k].motion));
   }
   constexpr double safety = 10;  // the norm of the inverse is estimated from below
-  energy_error_ = safety * residual * residual * inverse_norm;
+  energy_error_ = safety * residual * residual * result.condition;
   result.times.add("error bound", watch.lap());
   return solutions;
 }

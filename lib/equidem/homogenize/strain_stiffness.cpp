@@ -30,19 +30,22 @@ double power_difference(const std::vector<Tensor2>& stresses, const Matrix3& sti
   return largest / largest_entry(stiffness);
 }
 
-/// What rounding of normals changes of an energy of two cases, N, at most: the motion is stationary, so that the change of
+/// What rounding of normals and lever arms changes of an energy of two cases, N, at most: the motion is stationary, so that the change of
 /// sum kN dn_a dn_b + kT ds_a ds_b is that of the deformations of given motions.
 double rounding_of_energies(const SampleSolver& solver, const std::vector<Solution>& solutions,
                             const std::vector<std::vector<ContactDeformation>>& deformations) {
   const Assembly& assembly = solver.assembly();
   const auto b = static_cast<std::size_t>(solver.unknowns().per_disc);
+  const double scale = solver.unknowns().rotation_scale;
   const auto sum = contact_sums<1>(assembly.contacts.size(), [&](std::size_t c, std::array<double, 1>& total) {
     const Contact& contact = assembly.contacts[c];
     double force = 0, distance = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const double *u_i = &solutions[k].motion.high[contact.i * b], *u_j = &solutions[k].motion.high[contact.j * b];
-      distance = std::max(distance,
-                          norm(unit_gradients[k] * assembly.branch(contact) + Vec2{u_j[0] - u_i[0], u_j[1] - u_i[1]}));
+      const double rolled =
+          b == 3 ? (contact.lever_i * std::abs(u_i[2]) + contact.lever_j * std::abs(u_j[2])) / scale : 0;
+      distance = std::max(distance, rolled + norm(unit_gradients[k] * assembly.branch(contact) +
+                                                  Vec2{u_j[0] - u_i[0], u_j[1] - u_i[1]}));
       const auto f = linear_spring_force(solver.springs()[c], deformations[k][c]);
       force = std::max(force, std::abs(f.normal) + std::abs(f.tangential));
     }

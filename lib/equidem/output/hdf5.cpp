@@ -36,6 +36,7 @@ class Handle {
 
 /// Errors are returned, not printed. Files are not locked: others may look at a run that goes on.
 Handle file_access() {
+  H5dont_atexit();  // its clean-up at the end of the process crashes where a file could not be closed: disk full
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   H5Pset_file_locking(access, false, true);

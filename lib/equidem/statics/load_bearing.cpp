@@ -297,7 +297,7 @@ class Pruning {
         if (!group.tributary_lengths.empty()) kept.tributary_lengths.push_back(group.tributary_lengths[k]);
       }
     }
-    if (!springs_.uniform()) {
+    if (!springs_.uniform() && !result.contacts.empty()) {
       std::vector<SpringConstants> springs;
       for (const std::int32_t k : result.contacts) springs.push_back(springs_[k]);
       result.springs = ContactSprings(std::move(springs));

@@ -14,6 +14,7 @@
 #include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/multifrontal_cholesky.hpp"
 #include "equidem/statics/multifrontal_ldlt.hpp"
+#include "equidem/statics/spring_sizes.hpp"
 #include "equidem/statics/umfpack_factorization.hpp"
 
 namespace equidem {
@@ -30,23 +31,15 @@ constexpr MethodName method_names[] = {{SolverMethod::automatic, "auto"},
 
 constexpr double suspicious = 1e-9;  // share of a stiffness left when all others have given way
 
-bool costs_no_energy(const System& system, const std::vector<double>& motion) {
+constexpr double enough_digits = 1e11;  // springs further apart leave too few of the digits of a double
+
+bool costs_no_energy(const System& system, const ContactSprings& springs, const std::vector<double>& motion) {
   constexpr double no_energy = 1e-21;  // over the energy of the same motions without cooperation
-  return std::abs(softness(system.k.assembly, system.springs, disc_motions(system.unknowns, motion))) < no_energy;
+  return std::abs(softness(system.k.assembly, springs, disc_motions(system.unknowns, motion))) < no_energy;
 }
 
-void check_digits(const System& system) {
-  double smallest = system.springs.largest();
-  for (std::size_t c = 0; c < system.k.assembly.contacts.size(); ++c) {
-    const SpringConstants k = system.springs[c];
-    smallest = std::min(smallest, k.kN);
-    if (k.kT != 0) smallest = std::min(smallest, std::abs(k.kT));
-  }
-  constexpr double digits = 1e11;  // springs further apart than this leave too few of the digits of a double
-  if (system.springs.largest() <= digits * smallest) return;
-  computation_failed(format("the springs differ by a factor of {:.1e}", system.springs.largest() / smallest),
-                     "the softest of them is lost in the round-off of the stiffest",
-                     "Choose springs within a factor of 1e10 of each other");
+bool costs_no_energy(const System& system, const std::vector<double>& motion) {
+  return costs_no_energy(system, system.springs, motion);
 }
 
 /// Whether springs that give energy back (kT < 0) leave next to nothing of what the others take.
@@ -67,7 +60,8 @@ bool springs_cancel(const System& system, const std::vector<DiscMotion>& motions
 
 /// A motion that elimination found to resist no more than round-off: a mechanism, or too soft for a double.
 [[noreturn]] void report_singular(const System& system, const std::vector<double>& softest) {
-  check_digits(system);
+  const double spread = spring_spread(system.k.assembly, system.springs);
+  if (spread > enough_digits) refuse_spread(spread);
   const std::vector<DiscMotion> motions = disc_motions(system.unknowns, softest);
   const std::string motion = describe_motion(system.k.assembly, motions);
   if (costs_no_energy(system, softest)) {
@@ -94,12 +88,15 @@ bool is_mechanism(const System& system, const Factorization& factor) {
   return !softest.empty() && costs_no_energy(system, softest);
 }
 
-/// Unknowns may be held only against motions that truly cost nothing.
+/// Unknowns may be held only against motions that truly cost nothing, however soft some springs are beside others.
 void check_null_motions(const System& system, const Factorization& factor) {
   constexpr std::int64_t most = 32;
+  const Assembly& assembly = system.k.assembly;
+  const bool far_apart = factor.report().zero_pivots > 0 && spring_spread(assembly, system.springs) > enough_digits;
+  const ContactSprings judged = far_apart ? equal_springs(assembly, system.springs) : system.springs;
   for (std::int64_t k = 0; k < std::min(most, factor.report().zero_pivots); ++k) {
     const std::vector<double> motion = factor.null_motion(k);
-    if (!costs_no_energy(system, motion)) report_singular(system, motion);
+    if (!costs_no_energy(system, judged, motion)) report_singular(system, motion);
   }
 }
 

@@ -119,8 +119,8 @@ struct StiffnessSolver::Refinement {
     constexpr double worthless = 1e-3;
     const double relative = solution.relative_residual();
     if (!std::isfinite(relative)) {
-      computation_failed("the numbers of this case overflow a double", format("the residual comes out as {}", relative),
-                         "Check the units of sizes, springs and loads");
+      bad_input("the numbers of this case overflow a double", format("the residual comes out as {}", relative),
+                "Check the units of sizes, springs and loads");
     }
     if (!(relative <= worthless)) {
       computation_failed(format("the solution leaves a relative residual of {:.1e}", relative), too_soft, remedy);
@@ -259,6 +259,47 @@ SoftestMotion StiffnessSolver::softest_motion(std::span<const double> start) con
   return result;
 }
 
+double StiffnessSolver::scaled_residual(const RightHandSide& given, const PreciseMotion& motion) const {
+  const std::vector<double> scale = row_sums();
+  std::vector<double> residual(unknowns_.held.size());
+  evaluate_residual(given, motion, residual);
+  for (std::size_t k = 0; k < residual.size(); ++k) {
+    if (unknowns_.held[k] == 0) residual[k] /= std::sqrt(scale[k]);
+  }
+  return norm_of_free(residual);
+}
+
+double StiffnessSolver::scaled_inverse_norm(std::span<const double> start) const {
+  std::vector<double> root = row_sums();
+  for (std::size_t k = 0; k < root.size(); ++k) root[k] = unknowns_.held[k] == 0 ? std::sqrt(root[k]) : 0;
+  std::vector<double> y(root.size());
+  for (std::size_t k = 0; k < y.size(); ++k) y[k] = root[k] * start[k];
+  if (norm_of_free(y) == 0) {
+    Random random(1);
+    for (double& value : y) value = random.uniform() - 0.5;
+  }
+  const auto make_unit = [&] {
+    const double size = norm_of_free(y);
+    if (size > 0) {
+      for (double& value : y) value /= size;
+    }
+    return size;
+  };
+  if (!(make_unit() > 0)) return 0;
+  double largest = 0;
+  for (int pass = 0; pass < 2; ++pass) {
+    for (std::size_t k = 0; k < y.size(); ++k) y[k] *= root[k];
+    factor_->solve(y, 1);
+    for (std::size_t k = 0; k < y.size(); ++k) y[k] *= root[k];
+    largest = std::max(largest, make_unit());
+  }
+  if (springs_.any_negative()) return largest;
+  // Round-off of the factor may make the motion stiffer than it is.
+  for (std::size_t k = 0; k < y.size(); ++k) y[k] = root[k] > 0 ? y[k] / root[k] : 0;
+  const double stiffness = twice_energy(y);
+  return stiffness > 0 ? std::max(largest, 1 / stiffness) : largest;
+}
+
 double normal_rounding(const Assembly& assembly, const Contact& contact) {
   if (!assembly.periodic()) return 2;
   const Vec2 shift{contact.shift_x * assembly.period->x, contact.shift_y * assembly.period->y};
@@ -287,7 +328,7 @@ double StiffnessSolver::rounding_work(const RightHandSide& given, const PreciseM
   return work;
 }
 
-double StiffnessSolver::norm() const {
+std::vector<double> StiffnessSolver::row_sums() const {
   const auto b = static_cast<std::size_t>(matrix_.block);
   std::vector<double> sum(unknowns_.held.size(), 0.0);
   for (std::size_t d = 0; d < assembly_.size(); ++d) {
@@ -301,6 +342,11 @@ double StiffnessSolver::norm() const {
       sum[contact.j * b + e % b] += entry;
     }
   }
+  return sum;
+}
+
+double StiffnessSolver::norm() const {
+  const std::vector<double> sum = row_sums();
   double largest = 0;
   for (std::size_t k = 0; k < sum.size(); ++k) {
     if (unknowns_.held[k] == 0) largest = std::max(largest, sum[k]);

@@ -69,6 +69,13 @@ class StiffnessSolver {
   /// By inverse iteration from `start` (empty: from a fixed rough vector), which finds the softest motion that `start` has a
   /// part in.
   [[nodiscard]] SoftestMotion softest_motion(std::span<const double> start = {}) const;
+  /// The following two measure each component by its row of K, D = diag(sum_j |K_ij|), so that soft rotations beside stiff
+  /// translations (small kT) are no errors: |D^-1/2 K D^-1/2| <= 1, and the energy of what a motion misses is at most
+  /// scaled_residual² scaled_inverse_norm.
+  /// |D^-1/2 (f - f_int)|, square root of N.
+  [[nodiscard]] double scaled_residual(const RightHandSide& given, const PreciseMotion& motion) const;
+  /// |D^1/2 K^-1 D^1/2| as softest_motion finds it: a lower bound, mostly within a factor of 2; 0 where nothing is free.
+  [[nodiscard]] double scaled_inverse_norm(std::span<const double> start) const;
   /// Bound on |v^T dK u|, N, where the normals of contacts are wrong by their rounding (normal_rounding): what rounding of the
   /// geometry does to the motion u along v.
   [[nodiscard]] double rounding_work(const RightHandSide& given, const PreciseMotion& motion,
@@ -85,6 +92,8 @@ class StiffnessSolver {
   struct Refinement;
   void judge_inertia(const System& system);
   void evaluate_residual(const RightHandSide& given, const PreciseMotion& motion, std::span<double> residual) const;
+  /// sum_j |K_ij| of every row, Pa.
+  [[nodiscard]] std::vector<double> row_sums() const;
   [[nodiscard]] double twice_energy(std::span<const double> x) const;
   [[nodiscard]] double norm_of_free(std::span<const double> x) const;
 

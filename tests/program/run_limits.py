@@ -1,0 +1,124 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Results that must not pass for sound ones, and outputs that must not get lost: run_limits.py PROGRAM SOURCE_FOLDER."""
+import csv
+import json
+import pathlib
+import subprocess
+import unittest
+
+from program import CASES, PROGRAM, TENSION, ProgramTest, equidem, parse_json
+
+CELL = CASES / "random_cell.toml"
+ENSEMBLE = CASES / "ensemble.toml"
+
+
+class Stability(ProgramTest):
+    UNSTABLE = ("--set", "springs.kT=-3e8", "--set", "assembly.discs=30", "--seed", "1")
+
+    def test_a_stiffness_that_is_not_positive_definite_is_no_sound_modulus(self):
+        result = parse_json(self.check_done(equidem("homogenize", CELL, *self.UNSTABLE, "--json", "-")).stdout)
+        self.assertLess(result["bulk_modulus_2d"], 0)
+        self.assertEqual(result["status"], "unstable")
+        self.assertGreater(result["unstable_strains"], 0)
+        report = result["report"]
+        self.assertIn("UNSTABLE", report)
+        self.assertNotIn("every motion costs energy", report)
+
+    def test_an_ensemble_takes_no_mean_over_unstable_cells(self):
+        out = self.folder / "out"
+        equidem("homogenize", ENSEMBLE, "--set", "ensemble.discs=[30]", "--set", "springs.kT=-3e8", "--set",
+                "ensemble.samples=6", "--out", out)
+        with open(out / "samples.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 6)
+        refused = [row for row in rows if row["refusal"]]
+        self.assertGreater(len(refused), 0)
+        for row in rows:
+            if not row["refusal"]:
+                self.assertGreater(float(row["bulk_modulus_2d_Pa"]), 0)
+                self.assertGreater(float(row["shear_modulus_Pa"]), 0)
+
+
+class Magnitudes(ProgramTest):
+    def test_sizes_whose_squares_leave_the_range_of_a_double_are_refused(self):
+        for radius in ("1e-160", "1e-153", "1e150"):
+            done = equidem("homogenize", CELL, "--set", "assembly.discs=100", "--set", f"assembly.radius={radius}")
+            self.check_error(done, 2, "radius of a disc", "1e-70")
+
+    def test_springs_of_any_size_have_moduli(self):
+        known = None
+        for size in ("1e-300", "1e-160", "1e0", "1e160", "1e300"):
+            result = parse_json(self.check_done(equidem("homogenize", CELL, "--set", f"springs.kN={size}", "--set",
+                                                        f"springs.kT={size}", "--json", "-")).stdout)
+            shares = [result["shear_modulus"] / float(size), result["bounds"]["traction"][0][0] / float(size),
+                      result["bounds"]["uniform_stress_estimate"][0][0] / float(size),
+                      result["poisson_ratio"]["plane_stress"], result["anisotropy"]]
+            known = known or shares
+            for share, expected in zip(shares, known):
+                self.assertAlmostEqual(share / expected, 1, places=11)
+            self.assertTrue(all(step["margin"] > 0 for step in result["order"]))
+
+
+class Inputs(ProgramTest):
+    def lattice_file(self, **parts):
+        content = {"schema": "equidem-assembly/1", "cell": [1.0, 1.0], "discs": [[0, 0, 0.5]],
+                   "contacts": [[0, 0, 1, 0], [0, 0, 0, 1]], **parts}
+        (self.folder / "cell.json").write_text(json.dumps(content))
+        case = self.folder / "cell.toml"
+        case.write_text('schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "cell.json"\n'
+                        '[springs]\nkN = 1.0\nkT = 0.5\n')
+        return case
+
+    def test_levers_that_do_not_add_up_are_named(self):
+        case = self.lattice_file(levers=[[0.5, 0.5], [0.3, 0.3]])
+        self.check_error(equidem("homogenize", case), 2, "contact 1", "0.3")
+
+    def test_a_shift_out_of_range_is_not_called_a_disc(self):
+        case = self.lattice_file(contacts=[[0, 0, 3000000000, 0]])
+        self.check_error(equidem("homogenize", case), 2, "3000000000 is out of range", "shifts")
+
+    def test_springs_and_material_together_are_named_before_their_keys(self):
+        self.check_error(equidem("solve", CASES / "calibrate_random.toml", "--set", "springs.kN=1e9"), 2, "both given")
+
+
+class Outputs(ProgramTest):
+    @unittest.skipUnless(pathlib.Path("/dev/full").exists(), "no device that is always full")
+    def test_json_that_stdout_cannot_take_is_told(self):
+        for verb, case in (("homogenize", CELL), ("solve", TENSION)):
+            for options in (("--json", "-"), ()):
+                with open("/dev/full", "w", encoding="utf-8") as full:
+                    done = subprocess.run([PROGRAM, verb, str(case), *options], stdout=full, stderr=subprocess.PIPE,
+                                          text=True, timeout=120, check=False)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn("cannot write to stdout", done.stderr)
+
+    def test_a_file_in_a_folder_that_is_not_there_is_told_before_the_computation(self):
+        there = self.folder / "nowhere" / "x.json"
+        self.check_error(equidem("homogenize", CELL, "--json", there), 2, "there is no folder", str(there.parent))
+        self.assertFalse(there.parent.exists())
+
+    def test_resume_with_fewer_samples_keeps_those_computed(self):
+        out = self.folder / "out"
+        command = ["homogenize", ENSEMBLE, "--set", "ensemble.discs=[20]", "--out", out]
+        self.check_done(equidem(*command, "--set", "ensemble.samples=5"))
+        table = (out / "samples.csv").read_text()
+        done = self.check_done(equidem(*command, "--set", "ensemble.samples=2", "--resume", "--json", "-"))
+        self.assertEqual(parse_json(done.stdout)["ensemble"][0]["samples"], 2)
+        self.assertEqual((out / "samples.csv").read_text(), table)
+
+    def test_sentences_read_well(self):
+        done = equidem("sweep", CELL, "--key", "ratio", "--values", "0,1")
+        self.assertTrue(done.stderr.rstrip().endswith("[[load]])."), done.stderr)
+        floppy = self.check_done(equidem("stability", CASES / "hexagonal_cell.toml", "--set", "assembly.kind=square",
+                                         "--set", "springs.kT=0")).stdout
+        self.assertEqual(floppy.count("motions in which no contact"), 1)
+        self.assertNotIn("motions without energy: 6 motions", " ".join(floppy.split()))
+        few = self.check_done(equidem("homogenize", ENSEMBLE, "--set", "ensemble.discs=[20, 21]", "--set",
+                                      "ensemble.samples=3")).stdout
+        self.assertIn("do not tell how the scatter falls", few)
+        self.assertNotIn("--", few)
+
+
+if __name__ == "__main__":
+    unittest.main()

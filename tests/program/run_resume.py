@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""equidem run stopped, damaged and gone on with: run_resume.py PROGRAM SOURCE_FOLDER [unittest options]."""
+import random
+import resource
+import signal
+import subprocess
+import time
+import unittest
+
+from motion import CORNER, RADIUS, REST, SHAKE, RunTest, datasets
+from program import PROGRAM, equidem, parse_json
+
+
+class Resume(RunTest):
+    # Long enough to be caught in the middle; checkpoints as often as a run can be stopped.
+    SETTINGS = {CORNER: ("--set", "run.duration=0.15", "--set", "output.frame_interval=2e-3"),
+                SHAKE: ("--set", "run.duration=0.04", "--set", "output.frame_interval=1e-3")}
+    COMMON = ("--set", "output.checkpoint_interval=0.02", "--set", "output.vtk=false", "--set", "output.picture=false",
+              "--threads", "1")
+
+    def start(self, case, out):
+        resume = ["--resume"] if (out / "run.checkpoint.h5").exists() else ["--overwrite"]
+        return subprocess.Popen([PROGRAM, "run", str(case), "--out", str(out), *self.SETTINGS[case], *self.COMMON,
+                                 *resume], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def uninterrupted(self, case):
+        out = self.folder / "whole"
+        began = time.monotonic()
+        self.check_done(equidem("run", case, "--out", out, "--overwrite", *self.SETTINGS[case], *self.COMMON))
+        return out, time.monotonic() - began
+
+    def check_same(self, a, b):
+        for name in ("discs.csv", "history.csv", "frames.xdmf2", "case.toml"):
+            self.assertEqual((a / name).read_bytes(), (b / name).read_bytes(), name)
+        self.assertEqual(datasets(a / "frames.h5"), datasets(b / "frames.h5"))
+        results = [parse_json((out / "result.json").read_text()) for out in (a, b)]
+        for key in ("energy", "steps", "time", "time_step"):
+            self.assertEqual(results[0][key], results[1][key])
+
+    def test_killed_at_any_moment_it_goes_on_with_the_same_bits(self):
+        chance = random.Random(4)
+        for case in (CORNER, SHAKE):
+            with self.subTest(case=case.name):
+                whole, seconds = self.uninterrupted(case)
+                out = self.folder / f"killed_{case.stem}"
+                killed = 0
+                for _ in range(3):
+                    running = self.start(case, out)
+                    time.sleep(chance.uniform(0.05, 0.9) * seconds)
+                    running.kill()
+                    errors = running.communicate()[1]
+                    self.assertIn(running.returncode, (0, -signal.SIGKILL), errors)
+                    killed += running.returncode != 0
+                self.assertGreater(killed, 0)
+                running = self.start(case, out)
+                errors = running.communicate()[1]
+                self.assertEqual(running.returncode, 0, errors)
+                self.check_same(whole, out)
+
+    def test_interrupted_it_leaves_a_checkpoint_and_goes_on_with_the_same_bits(self):
+        for case in (CORNER, SHAKE):
+            with self.subTest(case=case.name):
+                whole, seconds = self.uninterrupted(case)
+                out = self.folder / f"interrupted_{case.stem}"
+                running = self.start(case, out)
+                while not (out / "history.csv").exists() and running.poll() is None:
+                    time.sleep(0.002)
+                time.sleep(0.3 * seconds)
+                running.send_signal(signal.SIGINT)
+                errors = running.communicate()[1]
+                if running.returncode == 0:
+                    self.skipTest("the run was over before it could be interrupted")
+                self.assertEqual(running.returncode, 130, errors)
+                self.assertTrue((out / "run.checkpoint.h5").exists())
+                self.assertFalse((out / "result.json").exists())
+                running = self.start(case, out)
+                errors = running.communicate()[1]
+                self.assertEqual(running.returncode, 0, errors)
+                self.check_same(whole, out)
+
+    def test_a_finished_run_is_prolonged(self):
+        out, whole = self.folder / "out", self.folder / "whole"
+        self.run_case(SHAKE, "--out", out)
+        longer = self.run_case(SHAKE, "--out", out, "--resume", "--set", "run.duration=3e-2")
+        self.assertEqual(longer["energy"], self.run_case(SHAKE, "--out", whole, "--set", "run.duration=3e-2")["energy"])
+        self.assertEqual((out / "discs.csv").read_bytes(), (whole / "discs.csv").read_bytes())
+
+    def test_a_run_goes_on_with_the_step_that_it_had(self):
+        # So short a run takes its step from the bound, a longer one would take it from the exact limit.
+        out, short = self.folder / "out", ("--set", "run.duration=1e-3")
+        step = self.run_case(SHAKE, "--out", out, *short)["time_step"]
+        self.check_error(equidem("run", SHAKE, "--out", out, "--resume"), 2, "another case", f"step {step!r}")
+        self.run_case(SHAKE, "--out", out, "--resume", "--set", f"run.time_step={step!r}")
+
+    def test_the_answer_does_not_depend_on_the_number_of_threads(self):
+        outs = []
+        for n in (1, 2, 3):
+            outs.append(self.folder / f"threads_{n}")
+            self.check_done(equidem("run", SHAKE, "--threads", n, "--out", outs[-1], "--set", "run.duration=2e-3",
+                                    "--set", "assembly.rows=61", "--set", "output.picture=false"))
+        for out in outs[1:]:
+            self.check_same(outs[0], out)
+
+    def test_a_checkpoint_of_another_case_is_refused_with_what_differs(self):
+        out = self.folder / "out"
+        short = ("--out", out, "--set", "run.duration=1e-3")
+        self.run_case(SHAKE, *short)
+        for option, *words in (("springs.kT=0.4e9", "kT"), ("run.damping.contact=0.03", "contact = 0.0"),
+                               ("run.time_step=1e-6", "step 1e-06 s"), ("schedule.0.frequency=300", "frequency"),
+                               ("assembly.rows=33", "rows")):
+            with self.subTest(option=option):
+                self.check_error(equidem("run", SHAKE, *short, "--resume", "--set", option), 2, "another case", *words)
+        # What is written and printed may change.
+        self.run_case(SHAKE, *short, "--resume", "--set", "title=again", "--set", "output.vtk=false")
+
+    def test_files_that_a_case_names_are_part_of_it(self):
+        text = "[springs]\nkN = 1e9\nkT = 0.0\n[run]\nduration = 1e-4\n"
+        case = self.write_case([(0, 0), (2 * RADIUS, 0)], [[0, 1, 0, 0]], text)
+        out = self.folder / "out"
+        self.run_case(case, "--out", out)
+        self.write_case([(0, 0), (2.1 * RADIUS, 0)], [[0, 1, 0, 0]], text)
+        self.check_error(equidem("run", case, "--out", out, "--resume"), 2, "another case", "discs and contacts")
+
+    def test_a_damaged_checkpoint_is_refused(self):
+        out = self.folder / "out"
+        short = ("--out", out, "--set", "run.duration=1e-3")
+        self.run_case(SHAKE, *short)
+        good = (out / "run.checkpoint.h5").read_bytes()
+        altered = bytearray(good)
+        altered[len(good) // 2] ^= 1
+        for name, bad in (("truncated", good[:-100]), ("half", good[:len(good) // 2]), ("empty", b""),
+                          ("altered", bytes(altered)), ("text", b"a checkpoint\n" * 100)):
+            with self.subTest(damage=name):
+                (out / "run.checkpoint.h5").write_bytes(bad)
+                before = {path.name: path.read_bytes() for path in out.iterdir()}
+                self.check_error(equidem("run", SHAKE, *short, "--resume"), 2, "run.checkpoint.h5")
+                self.assertEqual({path.name: path.read_bytes() for path in out.iterdir()}, before)
+        (out / "run.checkpoint.h5").unlink()
+        self.check_error(equidem("run", SHAKE, *short, "--resume"), 2, "run.checkpoint.h5", "no such file")
+        self.check_error(equidem("run", SHAKE, "--resume"), 2, "--resume", "--out")
+        self.check_error(equidem("run", REST, "--resume", "--out", out), 2, "--resume", "rest")
+
+    def test_a_full_disk_stops_the_run_with_the_file_named(self):
+        for limit, interval, name in ((1000, "5e-4", "frames.h5"), (200000, "5e-4", "frames.h5"),
+                                      (60000, "1.0", "frames.h5"), (200000, "1.0", "history.csv")):
+            with self.subTest(bytes=limit, interval=interval):
+                out = self.folder / "full"
+                # Without SIGXFSZ a file past the limit is an error of the write, as on a full disk.
+                done = subprocess.run([PROGRAM, "run", str(SHAKE), "--out", str(out), "--overwrite", "--threads", "1",
+                                       "--set", f"output.frame_interval={interval}"], capture_output=True, text=True,
+                                      restore_signals=False, timeout=120,
+                                      preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+                self.check_error(done, 1, str(out / name))
+
+
+if __name__ == "__main__":
+    unittest.main()
