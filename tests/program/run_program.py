@@ -100,7 +100,7 @@ class Solve(ProgramTest):
             self.assertEqual(answer["energy"], answers[0]["energy"])
 
     def test_every_case_of_the_data_folder_in_which_something_acts_is_solved(self):
-        acts = [case for case in sorted(CASES.glob("*.toml"))
+        acts = [case for case in sorted(CASES.glob("*.toml")) if not case.name.startswith("run_")
                 if any(table in case.read_text() for table in ("\n[test]", "\n[[load]]", "\n[[support]]"))]
         self.assertGreaterEqual(len(acts), 5)
         for case in acts:

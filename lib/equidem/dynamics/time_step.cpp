@@ -21,6 +21,8 @@ constexpr std::array all = {TimeStepRule::lanczos, TimeStepRule::bound, TimeStep
 constexpr double infinite = std::numeric_limits<double>::infinity();
 /// Lanczos takes some hundred products with K, each the work of a few steps; the bound costs a quarter of the steps.
 constexpr double steps_worth_lanczos = 2000;
+/// Beyond, the highest modes lie so close together that Lanczos takes minutes.
+constexpr std::size_t most_discs_of_lanczos = 100000;
 
 /// Largest omega² of M^-1 K for given springs.
 using SquaredFrequency = std::function<double(const ContactSprings&)>;
@@ -208,6 +210,14 @@ TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, 
         format("The guaranteed bound serves for the critical step: the run takes about {:.0f} steps, fewer than "
                "finding the exact one is worth.",
                std::ceil(wanted.duration / first_step)));
+  }
+  if (!use_bound && first_step <= guaranteed && scene.assembly.size() > most_discs_of_lanczos) {
+    use_bound = true;
+    if (!wanted.step && wanted.rule == TimeStepRule::lanczos) result.rule = "bound";
+    result.notes.push_back(
+        format("The guaranteed bound serves for the critical step: with more than {} discs the exact one is not "
+               "sought.",
+               most_discs_of_lanczos));
   }
   result.omega_max = use_bound ? bound_omega : std::sqrt(vibration.exact(scene.springs));
   result.critical = use_bound              ? guaranteed

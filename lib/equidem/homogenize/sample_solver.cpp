@@ -120,7 +120,7 @@ std::vector<Solution> SampleSolver::solve(std::span<const RightHandSide> cases, 
   double residual = 0;
   for (std::size_t k = 0; k < solutions.size(); ++k) {
     result.relative_residual = std::max(result.relative_residual, solutions[k].relative_residual());
-    residual = std::max(residual, solver_->scaled_residual(cases[k], solutions[k].motion));
+    residual = std::max(residual, solver_->scaled_residual_bound(cases[k], solutions[k]));
   }
   constexpr double safety = 10;  // the norm of the inverse is estimated from below
   energy_error_ = safety * residual * residual * result.condition;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "equidem/contact/linear_spring.hpp"
@@ -267,6 +268,19 @@ double StiffnessSolver::scaled_residual(const RightHandSide& given, const Precis
     if (unknowns_.held[k] == 0) residual[k] /= std::sqrt(scale[k]);
   }
   return norm_of_free(residual);
+}
+
+double StiffnessSolver::scaled_residual_bound(const RightHandSide& given, const Solution& solution) const {
+  const std::vector<double> rows = row_sums();
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (unknowns_.held[k] != 0) continue;
+    least = std::min(least, rows[k]);
+    most = std::max(most, rows[k]);
+  }
+  constexpr double alike = 100;
+  if (!(least > 0) || most > alike * least) return scaled_residual(given, solution.motion);
+  return solution.residual / std::sqrt(least);
 }
 
 double StiffnessSolver::scaled_inverse_norm(std::span<const double> start) const {

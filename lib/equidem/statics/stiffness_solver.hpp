@@ -74,6 +74,9 @@ class StiffnessSolver {
   /// scaled_residual² scaled_inverse_norm.
   /// |D^-1/2 (f - f_int)|, square root of N.
   [[nodiscard]] double scaled_residual(const RightHandSide& given, const PreciseMotion& motion) const;
+  /// The same, or where rows are alike (within a factor of 100) a bound on it that costs nothing: the residual over the root of
+  /// the smallest row.
+  [[nodiscard]] double scaled_residual_bound(const RightHandSide& given, const Solution& solution) const;
   /// |D^1/2 K^-1 D^1/2| as softest_motion finds it: a lower bound, mostly within a factor of 2; 0 where nothing is free.
   [[nodiscard]] double scaled_inverse_norm(std::span<const double> start) const;
   /// Bound on |v^T dK u|, N, where the normals of contacts are wrong by their rounding (normal_rounding): what rounding of the
