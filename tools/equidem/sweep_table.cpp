@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+
+#include "csv_cells.hpp"
 
 namespace equidem {
 namespace {
@@ -36,45 +37,6 @@ std::vector<std::string> column_names(const std::string& key) {
   return names;
 }
 
-/// Cells of a CSV text (RFC 4180), row by row.
-std::vector<std::vector<std::string>> cells_of(const std::string& text) {
-  std::vector<std::vector<std::string>> rows;
-  std::vector<std::string> row(1);
-  bool quoted = false;
-  for (std::size_t k = 0; k < text.size(); ++k) {
-    const char c = text[k];
-    if (quoted) {
-      if (c == '"' && k + 1 < text.size() && text[k + 1] == '"') {
-        row.back() += '"';
-        ++k;
-      } else if (c == '"') {
-        quoted = false;
-      } else {
-        row.back() += c;
-      }
-    } else if (c == '"') {
-      quoted = true;
-    } else if (c == ',') {
-      row.emplace_back();
-    } else if (c == '\n') {
-      rows.push_back(std::move(row));
-      row.assign(1, {});
-    } else if (c != '\r') {
-      row.back() += c;
-    }
-  }
-  if (row.size() > 1 || !row.front().empty()) rows.push_back(std::move(row));
-  return rows;
-}
-
-std::optional<double> number_from(const std::string& cell) {
-  if (cell.empty()) return SweepPoint::unknown;
-  double value = 0;
-  const auto [end, problem] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (problem != std::errc() || end != cell.data() + cell.size()) return {};
-  return value;
-}
-
 std::string shown(double value) {
   return std::isnan(value) ? "-" : format("{:.8g}", value);
 }
@@ -99,7 +61,7 @@ std::string sweep_csv(const std::string& key, const std::vector<SweepPoint>& poi
 }
 
 std::vector<SweepPoint> read_sweep_csv(const std::filesystem::path& path, const std::string& key) {
-  const auto rows = cells_of(read_file(path));
+  const auto rows = csv_cells(read_file(path));
   const auto names = column_names(key);
   if (rows.empty() || rows.front() != names) {
     throw Error(ErrorKind::bad_input, "this is not the table of the sweep to continue",
@@ -115,12 +77,12 @@ std::vector<SweepPoint> read_sweep_csv(const std::filesystem::path& path, const 
     };
     if (rows[k].size() != names.size()) fail();
     SweepPoint point;
-    const auto value = number_from(rows[k][0]);
+    const auto value = csv_number(rows[k][0]);
     if (!value || std::isnan(*value)) fail();
     point.value = *value;
     point.status = rows[k][1];
     for (std::size_t c = 0; c < number_columns.size(); ++c) {
-      const auto number = number_from(rows[k][c + 2]);
+      const auto number = csv_number(rows[k][c + 2]);
       if (!number) fail();
       point.*number_columns[c].member = *number;
     }
