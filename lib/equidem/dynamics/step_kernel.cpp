@@ -42,8 +42,8 @@ void step_plain(const LoopData& data, const Stage& stage, int parity, std::int32
 
 #if defined(__x86_64__)
 template <std::size_t Index>
-__attribute__((target("avx2,fma"))) void step_wide(const LoopData& data, const Stage& stage, int parity, std::int32_t begin,
-                                               std::int32_t end, Dissipation& dissipation) {
+__attribute__((target("avx2,fma"))) void step_wide(const LoopData& data, const Stage& stage, int parity,
+                                                   std::int32_t begin, std::int32_t end, Dissipation& dissipation) {
   step<kind_of(Index)>(data, stage, parity, begin, end, dissipation);
 }
 #endif
