@@ -3,7 +3,6 @@
 
 #include <array>
 
-#include "equidem/contact/linear_spring.hpp"
 #include "equidem/homogenize/contact_sums.hpp"
 
 namespace equidem {
@@ -28,17 +27,6 @@ PairEnergies pair_energies(const ContactSprings& springs, const std::vector<std:
     }
   }
   return result;
-}
-
-Tensor2 mean_stress(const Assembly& assembly, const ContactSprings& springs,
-                    const std::vector<ContactDeformation>& deformations, double area) {
-  const auto s = contact_sums<4>(assembly.contacts.size(), [&](std::size_t c, std::array<double, 4>& total) {
-    const Contact& contact = assembly.contacts[c];
-    const Vec2 force = force_on_i(frame_of(assembly, contact), linear_spring_force(springs[c], deformations[c]));
-    const Tensor2 part = outer(force, assembly.branch(contact));
-    total[0] += part.xx, total[1] += part.xy, total[2] += part.yx, total[3] += part.yy;
-  });
-  return (1 / area) * Tensor2{s[0], s[1], s[2], s[3]};
 }
 
 }  // namespace equidem

@@ -12,6 +12,7 @@
 #include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/homogenize/pair_energies.hpp"
 #include "equidem/homogenize/sample_solver.hpp"
+#include "equidem/homogenize/stress.hpp"
 
 namespace equidem {
 namespace {
@@ -68,6 +69,15 @@ void keep_gradient_stiffness(const std::vector<Tensor2>& stresses, EffectiveStif
   result.stress_asymmetry = asymmetric / largest_entry(result.gradient_stiffness);
 }
 
+/// Of the part that carries load, over the area of the whole.
+Tensor2 mean_stress(const SampleSolver& solver, const std::vector<ContactDeformation>& deformations, double area) {
+  std::vector<ContactForce> forces(deformations.size());
+  for (std::size_t c = 0; c < forces.size(); ++c) {
+    forces[c] = linear_spring_force(solver.springs()[c], deformations[c]);
+  }
+  return (solver.assembly().area() / area) * macroscopic_stress(solver.assembly(), forces);
+}
+
 }  // namespace
 
 void solve_strains(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options,
@@ -87,7 +97,7 @@ void solve_strains(const Assembly& assembly, const ContactSprings& springs, cons
   std::vector<Tensor2> stresses;
   for (std::size_t k = 0; k < cases.size(); ++k) {
     deformations.push_back(solver.solver().deformations(cases[k], solutions[k].motion));
-    stresses.push_back(mean_stress(solver.assembly(), solver.springs(), deformations[k], result.area));
+    stresses.push_back(mean_stress(solver, deformations[k], result.area));
   }
   const PairEnergies energies = pair_energies(solver.springs(), deformations);
   result.normal_part = (1 / result.area) * energies.normal;
