@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The spring of a collision from what a user knows of it.
+///
+/// All functions throw Error (bad_input) on numbers that are not positive and finite (damping ratio: negative; Poisson ratio: outside
+/// (-1, 0.5]).
+#pragma once
+
+#include "equidem/contact/restitution.hpp"
+
+namespace equidem {
+
+/// k = a m/dt², N/m.
+double stiffness_from_dimensionless(double a, double reduced_mass, double step);
+/// k of a linear spring whose contact lasts so long: m (phase/duration)², phase = contact_phase_of(damping_ratio, end).
+/// \throws Error (bad_input) also where a contact that ends at zero overlap never ends: damping_ratio >= 1
+double stiffness_from_duration(double duration, double reduced_mass, double damping_ratio,
+                               ContactEnd end = ContactEnd::at_zero_overlap);
+/// The smallest k of a linear spring whose overlap u stays below the given one at the given closing speed v, however the contact ends:
+/// e m v²/u², e = restitution_of(damping_ratio, at_zero_force), for u = v/w exp(-zeta acos(zeta)/sqrt(1 - zeta²)).
+double stiffness_from_overlap(double largest_overlap, double closing_speed, double reduced_mass, double damping_ratio);
+/// k of F = k overlap^(3/2), (4/3) E* sqrt(R*), 1/E* = sum (1 - nu²)/E, 1/R* = sum 1/R; N/m^(3/2) (Hertz).
+double hertz_stiffness(double young_i, double poisson_i, double radius_i, double young_j, double poisson_j,
+                       double radius_j);
+/// The same against a rigid flat wall: R* = radius, 1/E* = (1 - nu²)/E.
+double hertz_stiffness_on_rigid_wall(double young, double poisson, double radius);
+
+/// Elastic impact of Hertz springs.
+struct HertzImpact {
+  double overlap = 0;   ///< largest, m: (5 m v²/(4 k))^(2/5)
+  double force = 0;     ///< largest, N
+  double duration = 0;  ///< s: (4/5) sqrt(pi) Gamma(2/5)/Gamma(9/10) overlap/v = 2.9433 overlap/v
+};
+/// \param stiffness k of F = k overlap^(3/2), N/m^(3/2)
+/// \param speed closing, m/s
+HertzImpact hertz_impact(double stiffness, double reduced_mass, double speed);
+
+}  // namespace equidem

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/contact/exact_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+
+#include "equidem/contact/oscillator.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+constexpr int most_events = 1000;
+
+/// Where the two bodies are, and what drives them from then on.
+struct Motion {
+  double u, v, h0, h1;
+};
+
+double applied(const double (&row)[4], const Motion& m) {
+  return row[0] * m.u + row[1] * m.v + row[2] * m.h0 + row[3] * m.h1;
+}
+
+double applied(const double (&form)[6], double v, double b, double h1) {
+  return std::max(
+      0.0, (form[0] * v + form[3] * b + form[4] * h1) * v + (form[1] * b + form[5] * h1) * b + form[2] * h1 * h1);
+}
+
+/// Without a dashpot both ends are one.
+bool ends_at_zero_force(const ExactPair& p) {
+  return p.end == ContactEnd::at_zero_force && p.damping_ratio > 0;
+}
+
+/// f, what stays positive while the contact lasts, with derivatives and bounds of |f''| and |f'''| over some time to
+/// come.
+struct Course {
+  double f, slope, bend, most_bend, most_jolt;
+};
+
+/// The deviation of the contact from the linear course that it tends to, and all derivatives of it, are free
+/// oscillations; their energies never grow: not f''² + w² (f' - its limit)², nor f'''² + w² f''².
+Course course(const ExactPair& p, const Motion& m, double horizon) {
+  const double w = p.frequency, c = 2 * p.damping_ratio * w, cu = p.hold[0], cv = p.hold[1];
+  const double a = m.h0 - c * m.v - w * w * m.u;
+  const double jerk = m.h1 - c * a - w * w * m.v;
+  const double slope = cu * m.v + cv * a;
+  const double bend = cu * a + cv * jerk;
+  const double jolt = cu * jerk - cv * (c * jerk + w * w * a);
+  const double swing = w * slope - cu * m.h1 / w;
+  const double most_jolt = std::abs(jolt) + w * std::abs(bend);
+  const double most_bend = std::min(std::sqrt(bend * bend + swing * swing), std::abs(bend) + horizon * most_jolt);
+  return {cu * m.u + cv * m.v, slope, bend, most_bend, most_jolt};
+}
+
+/// In contact, at time t.
+Motion in_contact(const ExactPair& p, const Response& r, double t, const Motion& m) {
+  const double w = p.frequency, kept = r.slope + 2 * p.damping_ratio * r.g[0];
+  return {m.u * kept + (m.v * r.g[0] + (m.h0 * r.g[1] + m.h1 / w * r.g[2]) / w) / w,
+          m.v * r.slope - m.u * w * r.g[0] + (m.h0 * r.g[0] + m.h1 / w * r.g[1]) / w, m.h0 + m.h1 * t, m.h1};
+}
+
+/// Apart, at time t.
+Motion in_flight(double t, const Motion& m) {
+  return {m.u + t * (m.v + t * (m.h0 / 2 + t * m.h1 / 6)), m.v + t * (m.h0 + t * m.h1 / 2), m.h0 + m.h1 * t, m.h1};
+}
+
+/// Impulse and moment over the reduced mass as rows for [u, v, h0, h1]: sums of positive terms, no differences.
+void impulse_rows(double w, double zeta, const Response& r, double (&impulse)[4], double (&moment)[4]) {
+  const double z = 2 * zeta;
+  const double* g = r.g;
+  impulse[0] = w * g[0];
+  impulse[1] = z * g[0] + g[1];
+  impulse[2] = (z * g[1] + g[2]) / w;
+  impulse[3] = (z * g[2] + g[3]) / (w * w);
+  moment[0] = g[1];
+  moment[1] = (z * g[1] + g[2]) / w;
+  moment[2] = (z * g[2] + g[3]) / (w * w);
+  moment[3] = (z * g[3] + g[4]) / (w * w * w);
+}
+
+/// c v² dt with v(t) = v g' + b/w g + h1/w² g[1].
+void loss_form(double w, double zeta, double x, double (&form)[6]) {
+  const ResponseProducts sum = products_of_response(zeta, x);
+  const double scale[6] = {1, 1 / (w * w), 1 / (w * w * w * w), 1 / w, 1 / (w * w), 1 / (w * w * w)};
+  for (int k = 0; k < 6; ++k) form[k] = 2 * zeta * scale[k] * sum.of[k];
+}
+
+struct ValueAndSlope {
+  double value, slope;
+};
+
+/// The zero between f(low) >= 0 and f(high) < 0, not the one at which f begins to rise. \param f gives value and slope.
+template <class Function>
+double zero_between(double low, double high, Function f) {
+  double x = low;
+  for (int i = 0; i < 200; ++i) {
+    const auto [value, slope] = f(x);
+    if (value == 0 && slope < 0) return x;
+    (value >= 0 ? low : high) = x;
+    double next = x - value / slope;
+    if (!(next > low && next < high)) next = low + (high - low) / 2;
+    if (next == x || next == low || next == high) break;
+    if (std::abs(next - x) <= 1e-16 * std::abs(x)) return next;
+    x = next;
+  }
+  return x;
+}
+
+/// The first time in [0, within] at which the cubic c0 + c1 t + c2 t²/2 + c3 t³/6 comes up to zero, from at or below;
+/// or never. It is looked for between the extremes.
+double first_rise(double c0, double c1, double c2, double c3, double within) {
+  const auto cubic = [&](double t) {
+    return ValueAndSlope{c0 + t * (c1 + t * (c2 / 2 + t * c3 / 6)), c1 + t * (c2 + t * c3 / 2)};
+  };
+  const double q = -(c2 + std::copysign(std::sqrt(std::max(0.0, c2 * c2 - 2 * c3 * c1)), c2));
+  double extremes[2] = {q / c3, 2 * c1 / q};
+  if (!(extremes[0] <= extremes[1])) std::swap(extremes[0], extremes[1]);
+  double before = 0, value_before = c0;
+  for (const double t : {extremes[0], extremes[1], within}) {
+    if (!(t > before && t <= within)) continue;
+    const double value = cubic(t).value;
+    if (value_before <= 0 && value > 0) {
+      if (value_before == 0) return before;
+      return zero_between(before, t, [&](double s) {
+        const ValueAndSlope at = cubic(s);
+        return ValueAndSlope{-at.value, -at.slope};
+      });
+    }
+    before = t;
+    value_before = value;
+  }
+  return never;
+}
+
+/// The first time in [0, within] at which a contact ends, or never. Goes on by steps that hold no end for certain, as
+/// the curvature is bounded (the third derivative, where f begins without slope); close to the end they are Newton's.
+/// They are no shorter than 1e-3 of the contact's own time: a shorter dip of f below zero, by less than 1e-6 of its
+/// swing, is no end.
+double contact_end(const ExactPair& p, const Motion& start, double within) {
+  const double least = std::min(1e-4 * within, 1e-3 / (p.frequency * (1 + 2 * p.damping_ratio)));
+  const auto at = [&](double t) {
+    return course(p, in_contact(p, response(p.damping_ratio, p.frequency * t), t, start), within - t);
+  };
+  Course now = course(p, start, within);
+  for (double t = 0; t < within;) {
+    const double f = std::max(0.0, now.f);
+    const double root = std::sqrt(now.slope * now.slope + 2 * now.most_bend * f);
+    // 0/0: at rest for ever
+    double sure = now.slope < 0 ? 2 * f / (root - now.slope) : (now.slope + root) / now.most_bend;
+    if (now.slope >= 0 && now.bend > 0) sure = std::max(sure, 3 * now.bend / now.most_jolt);
+    if (!(sure < within - t)) return never;
+    const double next = std::min(within, t + (f > 0 || sure == 0 ? std::max(sure, least) : sure));
+    const Course then = at(next);
+    if (then.f < 0) {
+      return zero_between(t, next, [&](double s) {
+        const Course there = at(s);
+        return ValueAndSlope{there.f, there.slope};
+      });
+    }
+    t = next;
+    now = then;
+  }
+  return never;
+}
+
+/// A step with beginnings and ends in it.
+class EventfulStep {
+ public:
+  EventfulStep(const ExactPair& pair, const Motion& start, bool touching)
+      : p_(pair), m_(start), left_(pair.step), contact_(touching) {}
+
+  ExactStep make() {
+    decide_state();
+    for (int event = 0; left_ > 0; ++event) {
+      if (event == most_events) {
+        rest();
+      } else if (contact_) {
+        touch();
+      } else {
+        fly();
+      }
+    }
+    const double m = p_.reduced_mass;
+    return {m * impulse_, m * moment_, m * loss_, m * released_, contact_, beginnings_};
+  }
+
+ private:
+  [[nodiscard]] double spring_energy() const { return p_.frequency * p_.frequency * m_.u * m_.u / 2; }
+
+  /// What round-off leaves open is decided by whether the bodies touched: within 1e-9 of the step of an end, and 1e-6
+  /// of it before a beginning, the contact is as it was.
+  void decide_state() {
+    const bool touched = contact_;
+    if (touched && m_.u < 0 && m_.v > 0 && -m_.u < 1e-6 * m_.v * p_.step) m_.u = 0;
+    const Course now = course(p_, m_, 0);
+    contact_ = m_.u > 0 ? now.f >= 0 : touched && m_.u == 0 && m_.v >= 0;
+    if (contact_ && !touched) {
+      if (now.slope < 0 && now.f < -1e-9 * p_.step * now.slope) {
+        contact_ = false;
+        if (!ends_at_zero_force(p_)) m_.u = 0;
+      } else {
+        begin();
+      }
+    } else if (touched && !contact_ && m_.u > 0) {
+      released_ += spring_energy();
+    }
+  }
+
+  void begin() {
+    contact_ = true;
+    ++beginnings_;
+    released_ -= spring_energy();
+  }
+
+  void touch() {
+    const double end = contact_end(p_, m_, left_);
+    const double t = std::min(end, left_);
+    const double x = p_.frequency * t;
+    const Response r = response(p_.damping_ratio, x);
+    double impulse[4], moment[4], form[6];
+    impulse_rows(p_.frequency, p_.damping_ratio, r, impulse, moment);
+    if (p_.damping_ratio > 0) {
+      loss_form(p_.frequency, p_.damping_ratio, x, form);
+      loss_ += applied(form, m_.v, m_.h0 - p_.frequency * p_.frequency * m_.u, m_.h1);
+    }
+    left_ -= t;
+    impulse_ += applied(impulse, m_);
+    moment_ += applied(moment, m_) + applied(impulse, m_) * left_;
+    m_ = in_contact(p_, r, t, m_);
+    if (end == never) return;
+    contact_ = false;
+    if (ends_at_zero_force(p_)) {
+      released_ += spring_energy();
+    } else {
+      m_.u = 0;
+    }
+  }
+
+  void fly() {
+    const bool overlapping = m_.u > 0;
+    const double cu = p_.hold[0], cv = p_.hold[1];
+    const double rise = overlapping ? first_rise(cu * m_.u + cv * m_.v, cu * m_.v + cv * m_.h0, cu * m_.h0 + cv * m_.h1,
+                                                 cu * m_.h1, left_)
+                                    : first_rise(m_.u, m_.v, m_.h0, m_.h1, left_);
+    const double parting = overlapping ? first_rise(-m_.u, -m_.v, -m_.h0, -m_.h1, left_) : never;
+    const double t = std::min({rise, parting, left_});
+    left_ -= t;
+    m_ = in_flight(t, m_);
+    if (rise <= parting && rise != never) {
+      if (!overlapping) m_.u = 0;
+      begin();
+    } else if (parting != never) {
+      m_.u = 0;
+    }
+  }
+
+  /// All closing stops, the outside force is balanced; parting goes on freely.
+  void rest() {
+    const Motion free = in_flight(left_, m_);
+    const double before = m_.v * m_.v / 2 + (contact_ ? spring_energy() : 0);
+    const double mean = (m_.h0 + free.h0) / 2, held = std::max(0.0, free.v), back = std::max(0.0, free.u),
+                 v = free.v - held;
+    impulse_ += held;
+    moment_ += back;
+    loss_ += std::max(0.0, before - v * v / 2 + mean * (free.u - back - m_.u));
+    contact_ = held > 0;
+    left_ = 0;
+  }
+
+  const ExactPair& p_;
+  Motion m_;
+  double left_;
+  bool contact_;
+  double impulse_ = 0, moment_ = 0, loss_ = 0, released_ = 0;  // over the reduced mass
+  int beginnings_ = 0;
+};
+
+void check(double value, bool right, const char* name, const char* bound) {
+  if (right && std::isfinite(value)) return;
+  bad_input(format("the {} of an exact contact is {:.6g}", name, value), format("it must be finite and {}", bound),
+            format("Give a {} that is {}", name, bound));
+}
+
+}  // namespace
+
+ExactPair exact_pair(double reduced_mass, double stiffness, double damping_ratio, ContactEnd end, double step) {
+  check(reduced_mass, reduced_mass > 0, "reduced mass", "positive");
+  check(stiffness, stiffness > 0, "stiffness", "positive");
+  check(damping_ratio, damping_ratio >= 0, "damping ratio", "not negative");
+  check(step, step > 0, "time step", "positive");
+  ExactPair p{reduced_mass, stiffness, damping_ratio, end, step, std::sqrt(stiffness / reduced_mass)};
+  const double w = p.frequency, x = w * step;
+  const Response r = response(damping_ratio, x);
+  impulse_rows(w, damping_ratio, r, p.impulse, p.moment);
+  loss_form(w, damping_ratio, x, p.loss);
+  p.hold[0] = ends_at_zero_force(p) ? w * w : 1;
+  p.hold[1] = ends_at_zero_force(p) ? 2 * damping_ratio * w : 0;
+  for (int k = 0; k < 4; ++k) {
+    const Motion one = in_contact(p, r, step, {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0, k == 3 ? 1.0 : 0});
+    p.hold_after[k] = p.hold[0] * one.u + p.hold[1] * one.v;
+  }
+  return p;
+}
+
+ExactStep exact_step(const ExactPair& p, double overlap, double closing, bool touching, double h0, double h1) {
+  const Motion start{overlap, closing, h0, h1};
+  const double dt = p.step;
+  if (overlap < 0 && !touching) {
+    const double speed = std::max(0.0, closing), push = std::max({0.0, h0, h0 + h1 * dt});
+    if (overlap + dt * (speed + dt * push / 2) < 0) return {};
+  } else if (touching && overlap > 0) {
+    // f lies above its chord less most_bend t (dt - t)/2: positive throughout where sqrt f(0) + sqrt f(dt) > dt
+    // sqrt(most_bend/2)
+    const Course now = course(p, start, dt);
+    const double last = applied(p.hold_after, start);
+    if (now.f > 0 && last > 0 && now.f + last + 2 * std::sqrt(now.f * last) > now.most_bend * dt * dt / 2) {
+      const double m = p.reduced_mass;
+      return {m * applied(p.impulse, start),
+              m * applied(p.moment, start),
+              m * applied(p.loss, closing, h0 - p.frequency * p.frequency * overlap, h1),
+              0,
+              true,
+              0};
+    }
+  }
+  return EventfulStep(p, start, touching).make();
+}
+
+}  // namespace equidem

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/contact/restitution.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+using std::numbers::pi;
+
+/// -ln e, +0 at e = 1.
+double logarithmic_loss(double restitution) {
+  if (!(restitution >= 0 && restitution <= 1)) {
+    bad_input(format("the coefficient of restitution is {:.6g}", restitution),
+              "it is the ratio of two speeds, at most 1 where no energy is added", "Give a number from 0 to 1");
+  }
+  return 0 - std::log(restitution);
+}
+
+/// zeta of exp(-pi zeta/sqrt(1 - zeta²)) = exp(-loss); written so that loss = infinity gives 1.
+double damping_at_zero_overlap(double loss) {
+  return loss < pi ? loss / std::hypot(pi, loss) : 1 / std::hypot(1, pi / loss);
+}
+
+/// zeta of zeta phase(zeta) = loss where the contact ends at zero force. Left of the root, Newton's method climbs to it and never
+/// passes it: zeta phase is concave and rises, from pi zeta to 2 ln(2 zeta).
+double damping_at_zero_force(double loss) {
+  double zeta = loss < 2 ? loss / pi : 0.35 * std::exp(loss / 2);
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    const double phase = contact_phase_of(zeta, ContactEnd::at_zero_force);
+    const double distance = 1 - zeta;
+    // (phase - 2 zeta)/(1 - zeta²), and its limit where both vanish
+    const double slope = std::abs(distance) < 1e-4 ? 4.0 / 3 : (phase / zeta - 2) / ((1 / zeta + 1) * distance);
+    const double change = (loss - zeta * phase) / slope;
+    zeta += change;
+    if (!(std::abs(change) > 1e-16 * zeta)) break;
+  }
+  return zeta;
+}
+
+}  // namespace
+
+ContactEnd contact_end_from(const std::string& name) {
+  if (name == "zero_overlap") return ContactEnd::at_zero_overlap;
+  if (name == "zero_force") return ContactEnd::at_zero_force;
+  bad_input(format("\"{}\" is not an end of a contact", name), "a contact ends at zero overlap or at zero force",
+            "Choose zero_overlap or zero_force");
+}
+
+std::string to_string(ContactEnd end) {
+  return end == ContactEnd::at_zero_overlap ? "zero_overlap" : "zero_force";
+}
+
+double contact_phase_of(double damping_ratio, ContactEnd end) {
+  const double zeta = damping_ratio;
+  assert(zeta >= 0);
+  if (end == ContactEnd::at_zero_overlap) {
+    return zeta < 1 ? pi / std::sqrt((1 - zeta) * (1 + zeta)) : std::numeric_limits<double>::infinity();
+  }
+  if (zeta < 1) {
+    const double w = std::sqrt((1 - zeta) * (1 + zeta));
+    return 2 * std::atan2(w, zeta) / w;
+  }
+  if (zeta == 1) return 2;
+  return 2 * std::acosh(zeta) / zeta / std::sqrt((zeta - 1) / zeta * ((zeta + 1) / zeta));
+}
+
+double restitution_of(double damping_ratio, ContactEnd end) {
+  return std::exp(-damping_ratio * contact_phase_of(damping_ratio, end));
+}
+
+double damping_ratio_of(double restitution, ContactEnd end) {
+  const double loss = logarithmic_loss(restitution);
+  if (end == ContactEnd::at_zero_overlap) return damping_at_zero_overlap(loss);
+  if (restitution == 0) {
+    bad_input("the coefficient of restitution is 0 for a contact that ends at zero force",
+              "it would need an infinite dashpot", "Give a number above 0, or end contacts at zero overlap");
+  }
+  return loss > 0 ? damping_at_zero_force(loss) : 0;
+}
+
+double hertz_damping_of(double restitution, ContactEnd end) {
+  return std::sqrt(5.0) * damping_ratio_of(restitution, end);
+}
+
+}  // namespace equidem

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The laws of normal contact, one body on a wall without gravity: against traces of an independent implementation, against their own
+/// formulas in quadruple precision, and against what they promise of the energy.
+#include "equidem/contact/collision_laws.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "equidem/contact/restitution.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/random.hpp"
+
+#include "support/catch.hpp"
+
+using namespace equidem;
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+#ifdef __SIZEOF_FLOAT128__
+__extension__ using Quad = __float128;
+#else
+using Quad = long double;
+#endif
+
+Quad root(Quad x) {
+  if (x <= 0) return 0;
+  Quad r = std::sqrt(static_cast<long double>(x));
+  for (int i = 0; i < 3; ++i) r = (r + x / r) / 2;
+  return r;
+}
+
+double magnitude(double relative_size, Random& random) {
+  return std::pow(10.0, random.uniform(-relative_size, relative_size));
+}
+
+double energy(double depth, double closing, double a) {
+  return (closing * closing + a * depth * depth) / 2;
+}
+
+ContactStep map_step(NormalLaw law, double depth, double closing, double a, double e, bool first) {
+  return law == NormalLaw::energy_map ? energy_map_step(depth, closing, a, e, first)
+                                      : five_case_map_step(depth, closing, a, e, first);
+}
+
+/// One impact by a map, from the first step of contact to the step that parts.
+struct Impact {
+  double loss = 0, closing = 0,
+         largest_drift = 0;  ///< drift: of the energy in later steps, relative to that of the impact
+  int steps = 0, last_mode = 0;
+};
+Impact impact(NormalLaw law, double slope, double closing, double a, double e) {
+  Impact result;
+  double depth = closing / slope;
+  const double whole = closing * closing / 2;
+  do {
+    const ContactStep step = map_step(law, depth, closing, a, e, result.steps == 0);
+    const double before = energy(depth, closing, a);
+    closing += step.change;
+    depth += step.shift + closing;
+    if (result.steps > 0) {
+      const double after = depth > 0 ? energy(depth, closing, a) : closing * closing / 2;
+      result.largest_drift = std::max(result.largest_drift, std::abs(after - before) / whole);
+    }
+    result.loss += step.loss;
+    result.last_mode = step.mode;
+    ++result.steps;
+  } while (depth > 0 && result.steps < 100000);
+  result.closing = closing;
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("each_law_follows_the_traces_of_the_independent_implementation") {
+  nlohmann::json reference;
+  std::ifstream(EQUIDEM_SOURCE_DIR "/data/reference/impact_traces.json") >> reference;
+  REQUIRE(reference["traces"].size() >= 20);
+  for (const auto& trace : reference["traces"]) {
+    const std::string model = trace["model"];  // Pfix: P that leaves mode 2 by (23); P: the paper's letter, by (21)
+    const double a = trace["a"], e = trace["e"];
+    double depth = trace["path"][0]["d"], closing = trace["sigma0"];
+    for (std::size_t i = 0; i < trace["path"].size(); ++i) {
+      const auto& expected = trace["path"][i];
+      CAPTURE(model, a, e, trace["s"].get<double>(), i, depth, closing);
+      CHECK(std::abs(depth - expected["d"].get<double>()) < 1e-13);
+      CHECK(std::abs(closing - expected["sigma"].get<double>()) < 1e-13);
+      const ContactStep step =
+          model == "C" ? linear_dashpot_step(depth, closing, a, damping_ratio_of(e, ContactEnd::at_zero_overlap), true)
+          : model == "T" ? hertz_dashpot_step(depth, closing, a, hertz_damping_of(e), true)
+          : model == "F" ? five_case_map_step(depth, closing, a, e)
+                         : energy_map_step(depth, closing, a, e);
+      const double corrected = depth + step.shift, after = closing + step.change;
+      const double d_hat = expected["d_hat"], sigma_new = expected["sigma_new"];
+      CAPTURE(step.mode, corrected, d_hat, after, sigma_new);
+      CHECK(step.mode == (expected["mode"].is_null() ? 0 : expected["mode"].get<int>()));
+      CHECK(std::abs(corrected - d_hat) < 1e-13);
+      const bool leaves_by_21 = model == "P" && expected["mode"] == 2 && d_hat + sigma_new <= 0;
+      const double wanted = leaves_by_21 ? -std::sqrt(closing * closing + a * depth * depth) : sigma_new;
+      CHECK(std::abs(after - wanted) < 1e-13);
+      closing = after;
+      depth = corrected + after;
+    }
+    CHECK(depth <= 0);
+  }
+}
+
+TEST_CASE("maps_lose_what_restitution_says_for_any_phase_of_contact") {
+  const NormalLaw law = GENERATE(NormalLaw::energy_map, NormalLaw::five_case_map);
+  Random random(1);
+  int stiff = 0;
+  std::array<int, 12> parted{};
+  for (int trial = 0; trial < 20000; ++trial) {
+    const double a = std::pow(10.0, random.uniform(-6, 3));
+    const double least = law == NormalLaw::energy_map ? 0 : std::sqrt(a / (1 + a));
+    const double e = trial % 10 == 0 ? 1 : trial % 10 == 1 ? least : random.uniform(least, 1);
+    const double s = trial % 10 == 2 ? 1 : trial % 2 ? 1 / (1 - random.uniform()) : 1 + magnitude(8, random);
+    const double sigma = magnitude(6, random);
+    const Impact hit = impact(law, s, sigma, a, e);
+    CAPTURE(to_string(law), a, e, s, sigma, hit.steps, hit.last_mode, hit.closing / sigma);
+    // The shift is as good as the depth: relative to the depth that remains its rounding grows with sqrt(a).
+    const double round_off = std::max(1e-14, 4 * epsilon * std::sqrt(1 + a));
+    CHECK(std::abs(1 - hit.closing * hit.closing / (sigma * sigma) - (1 - e * e)) < round_off);
+    CHECK(hit.closing <= 0);
+    CHECK(std::abs(2 * hit.loss / (sigma * sigma) - (1 - e * e)) <= 4 * epsilon);
+    CHECK(hit.largest_drift <= 8 * epsilon);
+    ++parted[static_cast<std::size_t>(hit.last_mode)];
+    stiff += a >= 1;
+  }
+  CAPTURE(stiff, parted[2], parted[4], parted[10]);
+  CHECK(stiff > 5000);
+  CHECK(parted[law == NormalLaw::energy_map ? 2 : 10] > 1000);
+  CHECK(parted[4] > 1000);
+}
+
+TEST_CASE("a_contact_without_restitution_stops_where_it_began") {
+  for (const double a : {1e-12, 0.1, 1.0, 1e12}) {
+    for (const double s : {1.0, 1.7, 1e9}) {
+      const double sigma = 0.3, depth = sigma / s;
+      const ContactStep step = energy_map_step(depth, sigma, a, 0);
+      CAPTURE(a, s, step.change, step.shift, step.loss);
+      CHECK(sigma + step.change == 0);
+      CHECK(depth + step.shift == 0);
+      CHECK(step.loss == sigma * sigma / 2);
+    }
+  }
+}
+
+TEST_CASE("roots_of_the_maps_lose_no_digits") {
+  Random random(2);
+  std::array<int, 12> seen{};
+  std::array<double, 12> worst{};
+  for (int trial = 0; trial < 20000; ++trial) {
+    const double a = magnitude(12, random);
+    const double e = trial % 4 == 0 ? 1 - magnitude(15, random) * 1e-16 : random.uniform();
+    const double depth = magnitude(6, random);
+    const bool first = trial % 2 == 0;
+    const double sign = !first && random.uniform() < 0.5 ? -1 : 1;
+    const double slope = first       ? 1 + magnitude(12, random)
+                         : trial % 3 ? sign * random.uniform()
+                                     : sign * magnitude(12, random);
+    const double closing = slope * depth;
+    if (e < 0 || e > 1) continue;
+    const Quad A = a, E = e, d = depth, sigma = closing, s = sigma / d;
+    // The formulas as printed keep 32 digits of closing and depth in quadruple precision.
+    const double floor = 1e-32 * (std::abs(closing) + depth);
+    const auto compare = [&](int mode, double value, Quad exact, Quad condition) {
+      const double error = std::abs(static_cast<double>(Quad(value) - exact));
+      const double size = std::abs(value) * static_cast<double>(condition);
+      const auto m = static_cast<std::size_t>(mode);
+      ++seen[m];
+      if (floor < 1e-3 * epsilon * size) worst[m] = std::max(worst[m], error / size);
+      CAPTURE(a, e, depth, closing, first, mode, value, static_cast<double>(exact), error);
+      if (!(error <= 8 * epsilon * size + floor)) CHECK(error == 0);
+    };
+    const ContactStep P = energy_map_step(depth, closing, a, e, first);
+    if (first) {
+      const Quad f_hat = (s * E / root(s * s + A) - 1) * sigma, sigma_hat = sigma + f_hat, d_hat = sigma_hat / s;
+      const Quad f20 = -d_hat / (1 + A) * ((1 + A) * s + A - root(A * A + (1 + A) * s * s));
+      compare(P.mode, P.change, f_hat + f20, 1);
+      compare(0, P.shift, d_hat - d, 1);
+      const ContactStep F = five_case_map_step(depth, closing, a, e, first);
+      const Quad square = A * A * d * d - (1 + A) * (A * d * d - E * E * sigma * sigma);
+      if (E * sigma >= d) {
+        compare(F.mode, F.change, -(1 + E) * sigma, 1);
+      } else if (square > 0) {
+        compare(F.mode, F.change, (-A * d - root(square)) / (1 + A) - sigma,
+                1 + (A * d * d + E * E * sigma * sigma) / square);
+      }
+    } else {
+      const Quad f21 = -d / (1 + A) * ((1 + A) * s + A + root(A * A + (1 + A) * s * s));
+      const Quad f23 = -d * (s + root(s * s + A));
+      const bool stays = s * s < 1 - A;
+      compare(P.mode, P.change, stays ? f21 : f23, 1);
+      CHECK(P.mode == (s > 0 ? 2 : stays ? 3 : 4));
+      CHECK((depth + closing + P.change > 0) == (stays || std::abs(static_cast<double>(f21 / d + s + 1)) < epsilon));
+    }
+  }
+  for (const std::size_t mode : {0, 1, 2, 3, 4, 10, 11}) {  // 0: the shift
+    CAPTURE(mode, seen[mode], worst[mode]);
+    CHECK(seen[mode] > 100);
+    CHECK(worst[mode] > 0);
+  }
+}
+
+TEST_CASE("maps_are_continuous_where_their_modes_meet") {
+  const double a = GENERATE(1e-9, 0.01, 0.1, 0.5, 0.99);
+  const double near = 1e-12;
+  const auto after = [&](double closing) { return closing + energy_map_step(1, closing, a, 0.7, false).change; };
+  for (const double s : {0.0, std::sqrt(1 - a), -std::sqrt(1 - a)}) {
+    CAPTURE(a, s, after(s - near), after(s + near));
+    CHECK(std::abs(after(s + near) - after(s - near)) < 1e-11);
+  }
+  for (const double e : {0.75, 0.9, 0.99}) {
+    if (e * e < a / (1 + a)) continue;
+    const double depth = 1;
+    const auto parting = [&](double closing) {
+      return closing + five_case_map_step(depth, closing, a, e, true).change;
+    };
+    CAPTURE(a, e);
+    CHECK(five_case_map_step(depth, (1 + near) / e, a, e).mode == 10);
+    CHECK(five_case_map_step(depth, (1 - near) / e, a, e).mode == 11);
+    CHECK(std::abs(parting((1 + near) / e) - parting((1 - near) / e)) < 1e-11);
+  }
+}
+
+TEST_CASE("nothing_overflows_or_divides_by_zero_at_the_edges") {
+  const double a = GENERATE(1e-12, 0.5, 1.0, 1e12);
+  for (const double depth : {5e-324, 1e-200, 1.0}) {
+    for (const double closing : {-1.0, -1e-200, -5e-324, 0.0, 5e-324, 1e-200, 1.0}) {
+      for (const bool first : {false, true}) {
+        for (const double e : {0.0, 0.5, 1.0}) {
+          const ContactStep step = energy_map_step(depth, closing, a, e, first);
+          CAPTURE(a, depth, closing, first, e, step.mode, step.change, step.shift);
+          CHECK(std::isfinite(step.change));
+          CHECK(std::isfinite(step.shift));
+          CHECK(step.change <= 0);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("the_five_cases_are_refused_where_they_have_no_answer") {
+  for (const double a : {0.05, 0.1, 0.2, 0.5, 3.0}) {
+    const double least = std::sqrt(a / (1 + a));
+    CHECK_NOTHROW(check_five_case_range(a, least * (1 + 1e-12)));
+    CHECK_NOTHROW(check_five_case_range(a, 1));
+    CHECK_THROWS_WITH(check_five_case_range(a, 0.99 * least),
+                      Catch::Contains("a/(1 + a)") && Catch::Contains("energy_map"));
+    CHECK_THROWS_AS(check_five_case_range(a, 0), Error);
+  }
+  nlohmann::json reference;
+  std::ifstream(EQUIDEM_SOURCE_DIR "/data/reference/impact_traces.json") >> reference;
+  for (const auto& [a, least] : reference["F_min_e"].items()) {
+    CHECK_NOTHROW(check_five_case_range(std::stod(a), least.get<double>() + 1e-15));
+    CHECK_THROWS_AS(check_five_case_range(std::stod(a), least.get<double>() - 1e-12), Error);
+  }
+}
+
+TEST_CASE("forces_of_contact_push_only_where_they_are_cut_at_zero") {
+  Random random(3);
+  int cut = 0;
+  for (int trial = 0; trial < 10000; ++trial) {
+    const double depth = random.uniform(), closing = random.uniform(-1, 1), a = magnitude(2, random);
+    const double strength = random.uniform(0, 2);
+    const bool hertz = trial % 2;
+    const auto step_with = [&](bool attraction) {
+      return hertz ? hertz_dashpot_step(depth, closing, a, strength, attraction)
+                   : linear_dashpot_step(depth, closing, a, strength, attraction);
+    };
+    const ContactStep whole = step_with(true), pushing = step_with(false);
+    CAPTURE(hertz, depth, closing, a, strength, whole.change, pushing.change);
+    CHECK(pushing.change == std::min(whole.change, 0.0));
+    CHECK(whole.loss >= 0);
+    CHECK(pushing.loss >= 0);
+    cut += whole.change > 0;
+  }
+  CHECK(cut > 500);
+}
+
+TEST_CASE("a_dashpot_loses_the_energy_that_its_ledger_says_in_the_limit_of_small_steps") {
+  const bool hertz = GENERATE(false, true), attraction = GENERATE(false, true);
+  const double e = 0.6;
+  const ContactEnd end = attraction ? ContactEnd::at_zero_overlap : ContactEnd::at_zero_force;
+  std::array<double, 2> error{}, miss{};
+  for (std::size_t level = 0; level < 2; ++level) {
+    const double dt = level == 0 ? 1e-3 : 1e-4;  // time in sqrt(m/k), lengths in d_c: a = dt²
+    const double a = dt * dt, strength = hertz ? hertz_damping_of(e, end) : damping_ratio_of(e, end);
+    double depth = 1e-12, closing = dt, loss = 0;
+    while (depth > 0) {
+      const ContactStep step = hertz ? hertz_dashpot_step(depth, closing, a, strength, attraction)
+                                     : linear_dashpot_step(depth, closing, a, strength, attraction);
+      loss += step.loss;
+      closing += step.change;
+      depth += closing;
+    }
+    const double kinetic = (closing / dt) * (closing / dt);
+    error[level] = std::abs(1 - kinetic - 2 * loss / a);
+    miss[level] = std::abs(std::sqrt(kinetic) - e);
+  }
+  CAPTURE(hertz, attraction, error[0], error[1], miss[0], miss[1]);
+  CHECK(error[1] < error[0] / 5);
+  CHECK(error[1] < 1e-3);
+  CHECK(miss[1] < 1e-3);
+}
+
+TEST_CASE("every_normal_law_has_a_name_and_a_letter") {
+  std::string letters;
+  for (const NormalLaw law : {NormalLaw::linear_dashpot, NormalLaw::hertz_dashpot, NormalLaw::five_case_map,
+                              NormalLaw::energy_map, NormalLaw::exact_flow}) {
+    CHECK(normal_law_from(to_string(law)) == law);
+    letters += letter_of(law);
+  }
+  CHECK(letters == "CTFPX");
+  CHECK_THROWS_WITH(normal_law_from("hooke"), Catch::Contains("linear_dashpot") && Catch::Contains("energy_map"));
+}

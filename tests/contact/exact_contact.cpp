@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A contact solved exactly over a step, whatever happens within it.
+#include "equidem/contact/exact_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/random.hpp"
+
+#include "support/catch.hpp"
+
+using namespace equidem;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// A pair that is stepped, with its energy and what went out of it.
+struct Pair {
+  ExactPair law;
+  double u = 0, v = 0;
+  bool touching = false;
+  double lost = 0;  ///< in dashpot and released
+  int beginnings = 0;
+
+  ExactStep step(double h0, double h1) {
+    const ExactStep s = exact_step(law, u, v, touching, h0, h1);
+    const double m = law.reduced_mass, dt = law.step;
+    u += v * dt - s.moment / m + h0 * dt * dt / 2 + h1 * dt * dt * dt / 6;
+    v += h0 * dt + h1 * dt * dt / 2 - s.impulse / m;
+    touching = s.touching_at_end;
+    lost += s.loss + s.released;
+    beginnings += s.beginnings;
+    return s;
+  }
+  [[nodiscard]] double energy() const {
+    return law.reduced_mass * v * v / 2 + (touching ? law.stiffness * u * u / 2 : 0);
+  }
+};
+
+/// Runge and Kutta's rule of fourth order in small steps, ends and beginnings found by bisection: the truth, slowly.
+struct Oracle {
+  using Real = long double;
+  struct State {
+    Real u = 0, v = 0, impulse = 0, moment = 0, loss = 0;
+  };
+  Real w = 0, zeta = 0, h0 = 0, h1 = 0;
+  bool at_zero_force = false;
+
+  [[nodiscard]] State rate(const State& s, Real t, bool contact) const {
+    const Real force = contact ? w * w * s.u + 2 * zeta * w * s.v : 0;
+    return {s.v, h0 + h1 * t - force, force, s.impulse, contact ? 2 * zeta * w * s.v * s.v : 0};
+  }
+  static State along(const State& s, Real t, const State& r) {
+    return {s.u + t * r.u, s.v + t * r.v, s.impulse + t * r.impulse, s.moment + t * r.moment, s.loss + t * r.loss};
+  }
+  [[nodiscard]] State small_step(const State& s, Real t, Real dt, bool contact) const {
+    const State a = rate(s, t, contact), b = rate(along(s, dt / 2, a), t + dt / 2, contact);
+    const State c = rate(along(s, dt / 2, b), t + dt / 2, contact), d = rate(along(s, dt, c), t + dt, contact);
+    State mean = along(along(along(a, 2, b), 2, c), 1, d);
+    return along(s, dt / 6, mean);
+  }
+  /// Whether a state belongs to the mode: contact with f >= 0, or flight without.
+  [[nodiscard]] bool belongs(const State& s, bool contact) const {
+    const bool holds = s.u > 0 && (!at_zero_force || w * s.u + 2 * zeta * s.v > 0);
+    return holds == contact;
+  }
+  State run(State s, Real dt, int count) const {
+    Real t = 0;
+    bool contact = belongs(s, true);
+    while (t < dt) {
+      const Real step = std::min(dt / count, dt - t);
+      State next = small_step(s, t, step, contact);
+      if (belongs(next, contact)) {
+        t = dt - t <= step ? dt : t + step;
+      } else {
+        Real low = 0, high = step;
+        for (int i = 0; i < 64; ++i)
+          (belongs(small_step(s, t, (low + high) / 2, contact), contact) ? low : high) = (low + high) / 2;
+        next = small_step(s, t, high, contact);
+        t += high;
+        contact = !contact;
+      }
+      s = next;
+    }
+    return s;
+  }
+};
+
+double log_uniform(Random& random, double low, double high) {
+  return low * std::pow(high / low, random.uniform());
+}
+
+/// The contact between two meetings of the lone pair: steps until it has parted.
+double rebound(Pair pair, double speed, double gap) {
+  pair.u = -gap;
+  pair.v = speed;
+  for (int n = 0; n < 100000 && (n == 0 || pair.touching || pair.v > 0); ++n) pair.step(0, 0);
+  CHECK(pair.beginnings == 1);
+  CHECK(!pair.touching);
+  CHECK(pair.lost + pair.energy() == Approx(pair.law.reduced_mass * speed * speed / 2).epsilon(1e-12));
+  return -pair.v / speed;
+}
+
+const ContactEnd ends[] = {ContactEnd::at_zero_force, ContactEnd::at_zero_overlap};
+
+}  // namespace
+
+TEST_CASE("a_step_with_beginnings_and_ends_is_that_of_a_fine_integration") {
+  Random random(41);
+  int eventful = 0, twice = 0, resumed = 0;
+  for (int trial = 0; trial < 1500; ++trial) {
+    const ContactEnd end = ends[trial % 2];
+    const double size = log_uniform(random, 0.01, 20);
+    const double zeta = trial % 5 == 0 ? 0 : trial % 5 == 1 ? 1 : log_uniform(random, 1e-3, 5);
+    const ExactPair law = exact_pair(1, size * size, zeta, end, 1);
+    const double speed = std::min(1.0, size), push = log_uniform(random, 0.01, 100);
+    double u = random.uniform(-0.5, 0.5), v = random.uniform(-1, 1) * (1 + push) * speed;
+    const double h0 = push * random.uniform(-1, 1), h1 = 2 * push * random.uniform(-1, 1);
+    if (trial % 7 == 0) u = -std::abs(u) / 10, v = std::abs(v);
+    const Oracle oracle{law.frequency, zeta, h0, h1, end == ContactEnd::at_zero_force};
+    const bool touching = oracle.belongs({u, v}, true);
+    const ExactStep s = exact_step(law, u, v, touching, h0, h1);
+    const Oracle::State truth = oracle.run({u, v}, 1, static_cast<int>(200 + 300 * size * (1 + 2 * zeta)));
+    const double scale = std::abs(v) + std::abs(h0) + std::abs(h1) + size * std::abs(u);
+    CAPTURE(trial, size, zeta, u, v, h0, h1, s.impulse, s.moment, s.loss, s.beginnings, s.released);
+    CAPTURE(static_cast<double>(truth.impulse), static_cast<double>(truth.moment), static_cast<double>(truth.loss));
+    CHECK(std::abs(s.impulse - static_cast<double>(truth.impulse)) < 1e-8 * scale);
+    CHECK(std::abs(s.moment - static_cast<double>(truth.moment)) < 1e-8 * scale);
+    CHECK(std::abs(s.loss - static_cast<double>(truth.loss)) < 1e-8 * scale * scale);
+    eventful += s.beginnings > 0 || s.touching_at_end != touching;
+    twice += s.beginnings > 1;
+    resumed += s.beginnings > 0 && s.released < 0;
+  }
+  INFO("with events " << eventful << ", begun twice " << twice << ", resumed " << resumed);
+  CHECK(eventful > 300);
+  CHECK(twice > 5);
+  CHECK(resumed > 5);
+}
+
+TEST_CASE("the_restitution_of_a_lone_impact_is_that_of_its_damping_whatever_the_step") {
+  const ContactEnd end = GENERATE(ContactEnd::at_zero_force, ContactEnd::at_zero_overlap);
+  Random random(3);
+  double worst = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    const double zeta = trial % 8 == 0 ? 0 : log_uniform(random, 1e-3, end == ContactEnd::at_zero_force ? 30 : 0.9);
+    const double steps = log_uniform(random, 0.01, 100);  // in half a period
+    const double mass = log_uniform(random, 1e-6, 1e6), w = log_uniform(random, 1e-3, 1e6),
+                 speed = log_uniform(random, 1e-3, 1e3);
+    const double dt = pi / w / steps;
+    const Pair pair{exact_pair(mass, mass * w * w, zeta, end, dt)};
+    const double e = rebound(pair, speed, random.uniform() * speed * dt);
+    CAPTURE(zeta, steps, e, restitution_of(zeta, end));
+    worst = std::max(worst, std::abs(e - restitution_of(zeta, end)));
+    // 100 steps round the velocity as often
+    REQUIRE(std::abs(e - restitution_of(zeta, end)) < 1e-13);
+  }
+}
+
+TEST_CASE("one_step_is_two_of_half_the_time") {
+  Random random(17);
+  for (int trial = 0; trial < 20000; ++trial) {
+    const ContactEnd end = ends[trial % 2];
+    const double size = log_uniform(random, 1e-3, 10), zeta = trial % 4 == 0 ? 0 : log_uniform(random, 1e-3, 10);
+    const double h = 3 * random.uniform(-1, 1), h1 = trial % 3 == 0 ? 0 : random.uniform(-1, 1);
+    Pair whole{exact_pair(1, size * size, zeta, end, 1), random.uniform(-1, 1), 3 * random.uniform(-1, 1)};
+    whole.touching =
+        whole.u > 0 && (end == ContactEnd::at_zero_overlap || zeta == 0 || size * whole.u + 2 * zeta * whole.v > 0);
+    Pair parts = whole;
+    parts.law = exact_pair(1, size * size, zeta, end, 0.5);
+    const double before = whole.energy(), u = whole.u, v = whole.v;
+    whole.step(h, h1);
+    parts.step(h, h1);
+    parts.step(h + h1 / 2, h1);
+    CAPTURE(trial, size, zeta, h, h1, u, v, whole.u, parts.u, whole.v, parts.v, whole.lost, parts.lost, whole.touching);
+    const double scale = 1 + size;
+    REQUIRE(std::abs(whole.u - parts.u) < 1e-12 * scale);
+    REQUIRE(std::abs(whole.v - parts.v) < 1e-12 * scale * scale);
+    REQUIRE(std::abs(whole.lost - parts.lost) < 1e-11 * scale * scale * scale);
+    REQUIRE(whole.beginnings == parts.beginnings);
+    if (h1 != 0) continue;
+    INFO("balance of energy");
+    REQUIRE(std::abs(whole.energy() + whole.lost - before - h * (whole.u - u)) < 1e-12 * (1 + before) * scale);
+  }
+}
+
+TEST_CASE("a_contact_at_rest_stays_at_rest") {
+  const double zeta = GENERATE(0.0, 0.1, 3.0);
+  const double size = GENERATE(1e-3, 0.2, 2.0, 50.0);
+  const double h = 9.8;
+  Pair pair{exact_pair(0.3, 0.3 * size * size, zeta, ContactEnd::at_zero_force, 1), h / (size * size)};
+  pair.touching = true;
+  const double rest = pair.u;
+  double farthest = 0;
+  for (int n = 0; n < 1000000; ++n) {
+    pair.step(h, 0);
+    farthest = std::max(farthest, std::abs(pair.u - rest));
+  }
+  CAPTURE(zeta, size, farthest / rest, pair.lost / pair.energy());
+  CHECK(farthest < 1e-12 * rest * (1 + 1 / size));
+  CHECK(pair.lost < 1e-20 * pair.energy() * (1 + 1 / size));
+  CHECK(pair.touching);
+}
+
+TEST_CASE("a_dropped_ball_keeps_its_apex_heights") {
+  // steps that hold a whole contact and more, up to several bounces
+  const double step = GENERATE(0.003, 0.07, 0.41, 3.1);
+  const ContactEnd end = GENERATE(ContactEnd::at_zero_force, ContactEnd::at_zero_overlap);
+  const double e = GENERATE(0.7, 1.0);
+  const double h = 9.8, w = 1e7, height = 1, m = 2;
+  Pair pair{exact_pair(m, m * w * w, damping_ratio_of(e, end), end, step), -height};
+  double wanted = height;
+  int seen = 0;
+  for (int n = 0; n < (step < 0.01 ? 1000 : 20) && seen < 8; ++n) {
+    const ExactStep s = pair.step(h, 0);
+    for (int k = 0; k < s.beginnings; ++k) wanted *= e * e;
+    seen += s.beginnings;
+    if (pair.touching) break;
+    // a contact lasts about pi/w, in which gravity changes the speed by h pi/w
+    const double by_gravity = 4 * h * pi / (w * std::sqrt(2 * h * wanted));
+    const double apex = pair.v * pair.v / (2 * h) - pair.u;
+    CAPTURE(step, e, n, seen, apex, wanted);
+    CHECK(apex == Approx(wanted).epsilon(e == 1 ? 1e-12 * (1 + seen) : by_gravity));
+    CHECK(pair.energy() - m * h * pair.u + pair.lost == Approx(m * h * height).epsilon(1e-12 * (1 + seen)));
+  }
+  CHECK(seen >= 2);
+}
+
+TEST_CASE("a_ball_that_bounces_comes_to_rest") {
+  const double size = GENERATE(0.3, 5.0, 300.0);
+  const ContactEnd end = GENERATE(ContactEnd::at_zero_force, ContactEnd::at_zero_overlap);
+  Pair pair{exact_pair(1, size * size, 0.2, end, 1), -100, 0};
+  double last = pair.energy() - pair.u;
+  for (int n = 0; n < 4000; ++n) {
+    pair.step(1, 0);
+    const double now = pair.energy() - pair.u;
+    CAPTURE(n, now, last);
+    REQUIRE(now <= last + 1e-12);
+    last = now;
+  }
+  CAPTURE(size, pair.beginnings, pair.v);
+  CHECK(pair.touching);
+  CHECK(pair.u == Approx(1 / (size * size)).epsilon(1e-9));
+}
+
+TEST_CASE("a_step_of_more_events_than_are_followed_wins_no_energy") {
+  Pair pair{exact_pair(1, 1e16, 0, ContactEnd::at_zero_overlap, 1), -1e-8, 0};
+  const ExactStep s = pair.step(9.8, 0);
+  CHECK(s.beginnings == 500);
+  CHECK(pair.energy() - 9.8 * pair.u <= 9.8e-8 * (1 + 1e-9));
+  CHECK(std::abs(pair.u) < 1e-7);
+  CHECK(s.loss >= 0);
+}
+
+TEST_CASE("bodies_that_meet_without_speed_are_one_contact") {
+  Random random(23);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const double size = log_uniform(random, 1e-6, 100), zeta = trial % 2 == 0 ? 0 : log_uniform(random, 1e-3, 10);
+    const ExactPair law = exact_pair(1, size * size, zeta, ends[trial / 2 % 2], 1);
+    const double push = log_uniform(random, 1e-9, 1);
+    CAPTURE(size, zeta, push);
+    const ExactStep driven = exact_step(law, 0, 0, false, 0, push);
+    CHECK(driven.beginnings == 1);
+    CHECK(driven.touching_at_end);
+    const ExactStep pulled_off = exact_step(law, 0, 0, false, push, -10);
+    CHECK(pulled_off.beginnings == 1);
+    CHECK(!pulled_off.touching_at_end);
+    const ExactStep left_alone = exact_step(law, 0, 0, false, -push, 0);
+    CHECK(left_alone.beginnings == 0);
+    CHECK(left_alone.impulse == 0);
+  }
+}
+
+TEST_CASE("a_contact_that_ended_resumes_only_with_what_it_has_left") {
+  // parting under a strong push: the force ends, the bodies turn round while they overlap, the contact is taken up
+  // again
+  Pair pair{exact_pair(1, 1, 0.8, ContactEnd::at_zero_force, 0.01), 1, -0.7};
+  pair.touching = false;
+  const double before = pair.energy();
+  double u = pair.u, work = 0;
+  bool ended = false;
+  for (int n = 0; n < 100; ++n) {
+    pair.step(2, 0);
+    work += 2 * (pair.u - u);
+    u = pair.u;
+    ended = ended || !pair.touching;
+    CAPTURE(n, pair.u, pair.v, pair.touching);
+    REQUIRE(pair.touching == (pair.u + 1.6 * pair.v >= 0));
+    CHECK(pair.energy() + pair.lost == Approx(before + work).epsilon(1e-12));
+  }
+  CHECK(ended);
+  CHECK(pair.touching);
+  CHECK(pair.beginnings == 1);
+}
+
+TEST_CASE("contacts_coupled_by_impulse_and_moment_are_symplectic_and_of_fourth_order") {
+  // all contacts alike: h0, h1 such that their impulse and moment over the step are -rho of the contact's own
+  const double rho = GENERATE(0.25, 1.0, 2.0, 10.0);
+  struct Map {
+    double trace, determinant;
+  };
+  const auto map = [&](double size) {
+    const ExactPair p = exact_pair(1, size * size, 0, ContactEnd::at_zero_overlap, 1);
+    // [h0 + h1/2, h0/2 + h1/6] = -rho [J, M] = -rho (A [u, v] + B [h0, h1])
+    const double a = 1 + rho * p.impulse[2], b = 0.5 + rho * p.impulse[3];
+    const double c = 0.5 + rho * p.moment[2], d = 1.0 / 6 + rho * p.moment[3];
+    double column[2][2];
+    for (int k = 0; k < 2; ++k) {
+      const double x = -rho * p.impulse[k], y = -rho * p.moment[k], det = a * d - b * c;
+      const double h0 = (d * x - b * y) / det, h1 = (a * y - c * x) / det;
+      const double u = k == 0, v = k == 1;
+      column[k][0] =
+          u + v - (p.moment[0] * u + p.moment[1] * v + p.moment[2] * h0 + p.moment[3] * h1) + h0 / 2 + h1 / 6;
+      column[k][1] = v - (p.impulse[0] * u + p.impulse[1] * v + p.impulse[2] * h0 + p.impulse[3] * h1) + h0 + h1 / 2;
+    }
+    return Map{column[0][0] + column[1][1], column[0][0] * column[1][1] - column[0][1] * column[1][0]};
+  };
+  const auto frequency_error = [&](double size) {
+    const double exact = size * std::sqrt(1 + rho);
+    return 2 * std::asin(std::sqrt((2 - map(size).trace) / 4)) / exact - 1;
+  };
+
+  for (double size = 0.01; size < 3; size *= 1.1) CHECK(map(size).determinant == Approx(1).epsilon(1e-12));
+  const double size = 0.1;
+  CAPTURE(rho, frequency_error(size));
+  CHECK(frequency_error(size) == Approx(-rho * (1 + rho) * std::pow(size, 4) / 1440).epsilon(0.01));
+
+  const double half_period = pi / std::sqrt(1 + rho);
+  double limit = 0.1;
+  while (std::abs(map(limit).trace) <= 2) limit += 1e-4;
+  CAPTURE(limit, half_period);
+  CHECK(limit > half_period);
+  CHECK(limit < 1.01 * half_period);
+}
+
+TEST_CASE("numbers_that_make_no_contact_are_refused") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto end = ContactEnd::at_zero_force;
+  CHECK_THROWS_WITH(exact_pair(0, 1, 0, end, 1),
+                    Catch::Contains("reduced mass of an exact contact is 0 (") && Catch::Contains("positive"));
+  CHECK_THROWS_AS(exact_pair(1, -1, 0, end, 1), Error);
+  CHECK_THROWS_AS(exact_pair(1, 1, -0.1, end, 1), Error);
+  CHECK_THROWS_AS(exact_pair(1, 1, nan, end, 1), Error);
+  CHECK_THROWS_AS(exact_pair(1, 1, 0, end, nan), Error);
+  CHECK_NOTHROW(exact_pair(1, 1, 0, end, 1));
+}

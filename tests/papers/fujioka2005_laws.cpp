@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Fujioka & Ushijima (2005), section 5, by a plain loop over the laws of contact: Table 2, the impact of Figs. 6 and 7, and the loss that
+/// the printed mode 2 has.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "equidem/contact/collision_laws.hpp"
+#include "equidem/contact/restitution.hpp"
+
+#include "support/catch.hpp"
+
+using namespace equidem;
+
+namespace {
+
+/// A law with its constants, e = 0.7; contact ends at zero overlap.
+struct Law {
+  NormalLaw law;
+  double a = 0, restitution = 0.7;
+
+  [[nodiscard]] ContactStep step(double depth, double closing) const {
+    switch (law) {
+      case NormalLaw::linear_dashpot:
+        return linear_dashpot_step(depth, closing, a, damping_ratio_of(restitution, ContactEnd::at_zero_overlap), true);
+      case NormalLaw::hertz_dashpot:
+        return hertz_dashpot_step(depth, closing, a, hertz_damping_of(restitution), true);
+      case NormalLaw::five_case_map:
+        return five_case_map_step(depth, closing, a, restitution);
+      default:
+        return energy_map_step(depth, closing, a, restitution);
+    }
+  }
+};
+
+constexpr double of_springs = 0.10, of_hertz = 4.62;  // dimensionless stiffness, not printed: Table 2 gives it away
+
+Law paper_law(NormalLaw law) {
+  return {law, law == NormalLaw::hertz_dashpot ? of_hertz : of_springs};
+}
+
+/// Lengths in diameters, velocities in diameters per step; one body on a wall.
+struct Ball {
+  double depth = 0, closing = 0, largest_depth = 0;
+  int steps = 0, last_mode = 0;
+
+  /// Until the first contact is over; gravity acts after the contact force.
+  void fall_and_rebound(const Law& law, double gravity) {
+    while (steps == 0 || depth > 0) {
+      if (depth > 0) {
+        const ContactStep step = law.step(depth, closing);
+        closing += step.change;
+        depth += step.shift;
+        last_mode = step.mode;
+        ++steps;
+      }
+      closing += gravity;
+      depth += closing;
+      largest_depth = std::max(largest_depth, depth);
+    }
+  }
+};
+
+nlohmann::json reference() {
+  nlohmann::json numbers;
+  std::ifstream(EQUIDEM_SOURCE_DIR "/data/reference/impact_traces.json") >> numbers;
+  return numbers;
+}
+
+}  // namespace
+
+TEST_CASE("fujioka_2005_table_2_steps_in_contact") {
+  struct Row {
+    NormalLaw law;
+    std::array<int, 3> printed;  // time steps 1e-3, 1e-4, 1e-5 s
+  };
+  const std::array<Row, 4> rows{{{NormalLaw::linear_dashpot, {9, 10, 10}},
+                                 {NormalLaw::hertz_dashpot, {14, 23, 37}},
+                                 {NormalLaw::five_case_map, {2, 1, 1}},
+                                 {NormalLaw::energy_map, {3, 3, 3}}}};
+  constexpr double diameter = 225, height = 0.01, g = 9.8;  // m, diameters, m/s²
+  for (const Row& row : rows) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double dt = std::pow(10.0, -3.0 - static_cast<double>(i));
+      Ball ball{.depth = -height};
+      ball.fall_and_rebound(paper_law(row.law), g * dt * dt / diameter);
+      CAPTURE(letter_of(row.law), dt);
+      CHECK(ball.steps == row.printed[i]);
+    }
+  }
+}
+
+TEST_CASE(
+    "fujioka_2005_fast_impact_keeps_the_ratio_in_the_maps_and_passes_the_ball_through_itself_in_C") {  // section 5.4
+  constexpr double closing = 0.444;  // diameters in the first step
+  for (const NormalLaw law : {NormalLaw::five_case_map, NormalLaw::energy_map}) {
+    for (double phase = 0.005; phase < 1; phase += 0.01) {
+      Ball ball{.depth = (phase - 1) * closing, .closing = closing};
+      double before = closing * closing;
+      for (int hit = 0; hit < 20; ++hit) {
+        ball.steps = 0;
+        ball.fall_and_rebound(paper_law(law), 0);
+        const double after = ball.closing * ball.closing;
+        CAPTURE(letter_of(law), phase, hit, after / before);
+        CHECK(std::abs(after / before - 0.49) < 1e-14);
+        before = after;
+        ball.closing = -ball.closing;  // thrown back from where it is
+      }
+    }
+  }
+  Ball ball{.depth = -closing / 2, .closing = closing};
+  ball.fall_and_rebound(paper_law(NormalLaw::linear_dashpot), 0);
+  CAPTURE(ball.largest_depth);
+  CHECK(ball.largest_depth > 1);
+}
+
+TEST_CASE("fujioka_2005_mode_2_as_printed_would_lose_energy_beyond_a_slope") {
+  for (const auto& row : reference()["mode2_literal_loss"]) {
+    const double a = row["a"], slope = row["s_star"], e = 0.7;
+    const auto last_mode = [&](double s) {
+      Ball ball{.depth = 1 / s, .closing = 1};
+      ball.fall_and_rebound({NormalLaw::energy_map, a, e}, 0);
+      return ball.last_mode;
+    };
+    CAPTURE(a, slope);
+    CHECK(last_mode(slope * (1 + 1e-9)) == 2);  // leaves by (23) in place of (21)
+    CHECK(last_mode(slope * (1 - 1e-9)) == 4);
+    CHECK(1 / slope == Approx(row["fraction_of_contacts"].get<double>()).epsilon(1e-12));
+
+    double worst = 0;
+    for (int i = 0; i < 2000; ++i) {
+      double depth = (i + 0.5) / 2000 / slope, closing = 1;
+      for (int n = 0;; ++n) {
+        const ContactStep step = energy_map_step(depth, closing, a, e);
+        if (step.mode == 2 && depth + closing + step.change <= 0) {
+          const double printed =
+              -(a * depth + std::sqrt(a * a * depth * depth + (1 + a) * closing * closing)) / (1 + a);
+          worst = std::max(worst, 1 - printed * printed / (e * e));
+          break;
+        }
+        closing += step.change;
+        depth += step.shift + closing;
+        REQUIRE(depth > 0);
+      }
+    }
+    CHECK(worst == Approx(row["worst_relative_energy_loss"].get<double>()).epsilon(0.01));
+  }
+}
+
+TEST_CASE("fujioka_2005_statistics_over_the_phase_of_contact") {  // the reference: 4000 phases at random
+  const nlohmann::json numbers = reference();
+  for (const NormalLaw law : {NormalLaw::linear_dashpot, NormalLaw::five_case_map, NormalLaw::energy_map}) {
+    const auto& expected = numbers["phase_" + letter_of(law)];
+    double steps = 0, ratio = 0, smallest = 10, largest = 0;
+    constexpr int phases = 4000;
+    for (int i = 0; i < phases; ++i) {
+      Ball ball{.depth = (i + 0.5) / phases, .closing = 1};
+      ball.fall_and_rebound(paper_law(law), 0);
+      const double r = ball.closing * ball.closing;
+      steps += ball.steps;
+      ratio += r;
+      smallest = std::min(smallest, r);
+      largest = std::max(largest, r);
+    }
+    CAPTURE(letter_of(law), steps / phases, ratio / phases, smallest, largest, expected.dump());
+    const double four_deviations = 4 / std::sqrt(phases);
+    CHECK(std::abs(steps / phases - expected["steps_mean"].get<double>()) < 0.5 * four_deviations);
+    if (law == NormalLaw::linear_dashpot) {
+      CHECK(std::abs(ratio / phases - expected["e2_mean"].get<double>()) <
+            expected["e2_sd"].get<double>() * four_deviations);
+      CHECK(std::abs(smallest - expected["e2_min"].get<double>()) < 1e-3);
+      CHECK(std::abs(largest - expected["e2_max"].get<double>()) < 1e-3);
+    } else {
+      CHECK(largest - smallest < 1e-14);
+      CHECK(std::abs(ratio / phases - 0.49) < 1e-14);
+    }
+  }
+}
