@@ -39,6 +39,42 @@ TEST_CASE("weight_on_a_floor_relaxes_to_the_weight_over_the_spring") {
   CHECK(rest.motions[2].u.y == Approx(-6.0 / 50 - 5.0 / 100 - 3.0 / 100).epsilon(1e-11));
 }
 
+TEST_CASE("one_disc_above_a_floor_falls_to_its_rest_on_it") {
+  Assembly alone;
+  alone.kind = "file";
+  alone.centres = {{0, 2}};
+  alone.radii = {0.5};
+  const ContactSprings springs(SpringConstants{1, 0.5});
+  equidem::Scene scene{
+      .assembly = alone, .springs = springs, .inertia = {{1, 1}}, .walls = {{"floor", {0, 0}, {0, 1}, 50, always(0)}}};
+  const auto motion = GENERATE(LoopKind::Motion::small, LoopKind::Motion::finite);
+  CHECK(relax(scene, {.motion = motion}).relative_unbalanced == 0);
+  CHECK(relax(scene, {.motion = motion}).report().find("no force is left unbalanced") != std::string::npos);
+  if (motion == LoopKind::Motion::finite) {
+    const Relaxation rest = relax(scene, {.motion = motion, .gravity = {0, -1}, .tolerance = 1e-12});
+    CAPTURE(rest.report());
+    CHECK(rest.motions[0].u.y == Approx(-1.5 - 1.0 / 50).epsilon(1e-11));
+    CHECK(rest.relative_unbalanced <= 1e-12);
+  }
+  // Nothing hinders it sideways, and nothing carries what acts there.
+  const Refusal falls = refusal_of([&] { (void)relax(scene, {.motion = motion, .gravity = {1, 0}, .max_steps = 50}); });
+  CAPTURE(falls.message);
+  CHECK(falls.says("no contact and no wall carries"));
+}
+
+TEST_CASE("the_unbalanced_force_is_relative_to_all_forces") {
+  const Assembly pair = chain_of_discs(2, 0.5);
+  const ContactSprings springs(SpringConstants{3, 0});
+  const equidem::Scene scene{.assembly = pair, .springs = springs, .inertia = {{1, 1}, {1, 1}}};
+  const auto relative = [&](double stretch, double left) {
+    return relative_unbalanced_force(scene, LoopKind::Motion::small, {{{left, 0}, 0}, {}}, {{}, {{stretch, 0}, 0}});
+  };
+  CHECK(relative(0, 0) == 0);
+  CHECK(relative(0, 2) == 1);
+  CHECK(relative(1, 0) == 0);
+  CHECK(relative(1, 4) == Approx(0.8).epsilon(1e-14));  // 3, 4, 5
+}
+
 TEST_CASE("what_finds_no_rest_says_so") {
   const Assembly assembly = hexagonal_block(4);
   const ContactSprings springs(SpringConstants{1, 0.5}), pushing(SpringConstants{1, -0.2});

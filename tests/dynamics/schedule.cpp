@@ -138,3 +138,24 @@ TEST_CASE("schedules_without_a_meaning_are_refused_with_the_number_at_fault") {
     CHECK(sentence.find(bad.word) != std::string::npos);
   }
 }
+
+TEST_CASE("an_event_that_returns_within_a_step_is_missed_and_a_jump_is_not") {
+  const double h = 1e-3;
+  const auto missed = [&](const Schedule& schedule) { return missed_event(schedule, h, 1); };
+  CHECK(missed(table({0.01, 0.0102, 0.0104}, {0, 1, 0})).share == Approx(1).epsilon(1e-12));
+  CHECK(missed(table({0.01, 0.0102, 0.0104}, {0, -2, 0})).time == 0.0102);
+  CHECK(missed(table({0.0104, 0.0105}, {0, 1})).share == 0);
+  CHECK(missed(ramp(1, 0.0104, 0.0105)).share == 0);
+  CHECK(missed(Schedule{.value = 3}).share == 0);
+  CHECK(missed(table({2, 2.0002, 2.0004}, {0, 1, 0})).share == 0);  // after the end
+  CHECK(missed(sine(1, 2, 900)).share == 0);
+  // A triangle of half width w whose peak is in the middle of a step loses h/2 of w.
+  for (const double width : {2 * h, 5 * h, 50 * h}) {
+    CAPTURE(width);
+    CHECK(missed(table({0.1005 - width, 0.1005, 0.1005 + width}, {0, 1, 0})).share ==
+          Approx(h / 2 / width).epsilon(1e-9));
+  }
+  CHECK(missed(sine(1, 0, 1000)).share == 1);
+  CHECK(missed(sine(1, 0, 500)).share == 1);
+  CHECK(missed(sine(1, 0, 100)).share == Approx(1 - std::cos(0.1 * pi)).epsilon(1e-12));
+}

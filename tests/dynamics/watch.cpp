@@ -55,3 +55,35 @@ TEST_CASE("a_sound_run_is_let_be") {
   }
   CHECK(run.energy().kinetic > 0);
 }
+
+TEST_CASE("bonded_discs_that_pass_through_each_other_stop_a_finite_motion") {
+  const Assembly assembly = hexagonal_block(3);
+  const ContactSprings springs(SpringConstants{1, 0.5});
+  const auto watched = [&](double speed, LoopKind::Motion motion) {
+    equidem::Scene scene{
+        .assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+    scene.velocities = {{"0", {speed, 0}, 0}};
+    SimulationOptions options{.motion = motion};
+    options.time_step = choose_time_step(scene, options, {.fraction = 0.1}).step;
+    Simulation run(scene, options);
+    RunawayWatch watch(scene, options);
+    return refusal_of([&] {
+      watch.look(run);
+      for (int k = 0; k < 600; ++k) {
+        run.advance(1);
+        watch.look(run);
+      }
+    });
+  };
+  const Refusal sound = watched(0.05, LoopKind::Motion::finite);
+  CAPTURE(sound.message);
+  CHECK(sound.message.empty());
+  CHECK(watched(1e3, LoopKind::Motion::small).message.empty());  // a linear problem of any size
+  const Refusal fast = watched(1e3, LoopKind::Motion::finite), through = watched(2, LoopKind::Motion::finite);
+  CAPTURE(fast.message, through.message);
+  CHECK(fast.kind == ErrorKind::computation_failed);
+  CHECK(fast.says("the bonded discs 0 and 1 move past each other"));
+  CHECK(fast.says("at the start"));
+  CHECK(through.says("pass through each other"));
+  CHECK(through.says("step "));
+}

@@ -53,9 +53,9 @@ TEST_CASE("a_checkpoint_reads_back_to_the_same_bits") {
   }
   const CheckpointWriter writer(folder / "deep/run.checkpoint.h5", case_text, false);
   writer.write(state);
-  CHECK(same_bits(read_checkpoint(folder / "deep/run.checkpoint.h5", case_text), state));
+  CHECK(same_bits(read_checkpoint(folder / "deep/run.checkpoint.h5", case_text).state, state));
   writer.write(state_at(7, discs));
-  CHECK(same_bits(read_checkpoint(folder / "deep/run.checkpoint.h5", case_text), state_at(7, discs)));
+  CHECK(same_bits(read_checkpoint(folder / "deep/run.checkpoint.h5", case_text).state, state_at(7, discs)));
   CHECK(folder.files() == 2);  // the folder, and nothing besides the checkpoint
 }
 
@@ -69,7 +69,7 @@ TEST_CASE("the_same_state_makes_the_same_checkpoint") {
 TEST_CASE("an_empty_case_has_a_checkpoint_too") {
   const TemporaryFolder folder;
   CheckpointWriter(folder / "a.h5", "", false).write(state_at(5, 20));
-  CHECK(same_bits(read_checkpoint(folder / "a.h5", ""), state_at(5, 20)));
+  CHECK(same_bits(read_checkpoint(folder / "a.h5", "").state, state_at(5, 20)));
   CHECK(refusal_of([&] { read_checkpoint(folder / "a.h5", case_text); }).says("line 1: nothing there"));
 }
 
@@ -90,7 +90,7 @@ TEST_CASE("killed_at_any_moment_the_last_checkpoint_is_good") {
         },
         static_cast<unsigned>(random.below(longest)));
     left_behind += std::filesystem::exists(path.string() + ".part") ? 1 : 0;
-    const SimulationState state = read_checkpoint(path, case_text);
+    const SimulationState state = read_checkpoint(path, case_text).state;
     CAPTURE(round, last, state.step);
     REQUIRE(state.step >= last);
     REQUIRE(same_bits(state, state_at(state.step, discs)));
@@ -118,7 +118,7 @@ TEST_CASE("an_altered_checkpoint_is_refused_whatever_byte_it_is") {
     REQUIRE(refusal.says("cannot go on from '"));
     file.write_at(at, std::as_bytes(std::span(good).subspan(at, 1)));
   }
-  CHECK(same_bits(read_checkpoint(path, case_text), state_at(5, 12)));
+  CHECK(same_bits(read_checkpoint(path, case_text).state, state_at(5, 12)));
   write_file(path, good + "x", true);
   CHECK(refusal_of([&] { read_checkpoint(path, case_text); }).says("altered"));
 }
@@ -163,11 +163,11 @@ TEST_CASE("a_checkpoint_of_another_version_is_refused") {
   const auto path = folder / "run.checkpoint.h5";
   CheckpointWriter(path, case_text, false).write(state_at(5, 12));
   std::string text = read_file(path);
-  text.replace(text.find("/1\n"), 3, "/2\n");
+  text.replace(text.find("/2\n"), 3, "/3\n");
   write_file(path, text, true);
   const auto refusal = refusal_of([&] { read_checkpoint(path, case_text); });
   INFO(refusal.message);
-  CHECK(refusal.says("its format has version '2', and this library reads version 1"));
+  CHECK(refusal.says("its format has version '3', and this library reads version 2"));
 }
 
 TEST_CASE("what_is_no_checkpoint_is_refused") {
@@ -184,6 +184,31 @@ TEST_CASE("what_is_no_checkpoint_is_refused") {
   CHECK_THAT(message_of("absent"), Catch::Contains("there is no such file"));
 }
 
+TEST_CASE("a_checkpoint_knows_its_case_and_the_energies_so_far") {
+  const TemporaryFolder folder;
+  const auto path = folder / "run.checkpoint.h5";
+  const CheckpointWriter writer(path, case_text, false);
+  std::vector<EnergySample> energies;
+  for (const std::int64_t count : {0, 1, 5}) {
+    CAPTURE(count);
+    energies.clear();
+    for (std::int64_t k = 0; k < count; ++k)
+      energies.push_back({8 * k, 0.1 * static_cast<double>(k), state_at(k, 0).ledger});
+    writer.write(state_at(5, 12), energies);
+    CHECK(case_of_checkpoint(path) == case_text);
+    const Checkpoint read = read_checkpoint(path, case_text);
+    CHECK(same_bits(read.state, state_at(5, 12)));
+    REQUIRE(read.energies.size() == energies.size());
+    for (std::size_t k = 0; k < energies.size(); ++k) {
+      CHECK(read.energies[k].step == energies[k].step);
+      CHECK(same_bits(read.energies[k].time, energies[k].time));
+      for (const EnergyTerm& term : energy_terms) {
+        CHECK(same_bits(read.energies[k].ledger.*term.value, energies[k].ledger.*term.value));
+      }
+    }
+  }
+}
+
 TEST_CASE("a_full_disk_leaves_the_last_checkpoint") {
   const TemporaryFolder folder;
   const auto path = folder / "run.checkpoint.h5";
@@ -193,7 +218,7 @@ TEST_CASE("a_full_disk_leaves_the_last_checkpoint") {
   const std::string message = error_on_full_disk([&] { writer.write(state_at(6, 1000)); }, limit);
   CAPTURE(limit, message);
   CHECK(message.find("cannot write '") == 0);
-  CHECK(read_checkpoint(path, case_text).step == 5);
+  CHECK(read_checkpoint(path, case_text).state.step == 5);
   CHECK(folder.files() == 1);
 }
 

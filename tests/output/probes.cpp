@@ -54,7 +54,8 @@ TEST_CASE("probes_record_means_and_energies") {
   std::getline(lines, line);
   CHECK(line ==
         "step,time_s,top_ux_m,top_uy_m,top_vx_m_per_s,top_vy_m_per_s,\"one, quoted_rotation_rad\","
-        "\"one, quoted_spin_rad_per_s\",kinetic_J_per_m,elastic_J_per_m,potential_J_per_m,damped_mass_J_per_m,"
+        "\"one, "
+        "quoted_spin_rad_per_s\",kinetic_J_per_m,elastic_J_per_m,potential_J_per_m,sway_J_per_m,damped_mass_J_per_m,"
         "damped_contact_J_per_m,damped_local_J_per_m,work_of_loads_J_per_m,work_of_supports_J_per_m,"
         "work_of_walls_J_per_m,initial_J_per_m,error_J_per_m");
   for (std::int64_t step = 0; step <= 20; step += 10) {
@@ -74,7 +75,7 @@ TEST_CASE("probes_record_means_and_energies") {
       wanted.push_back((values[3].u.x + values[4].u.x + values[29].u.x) / 3);
       wanted.push_back((values[3].u.y + values[4].u.y + values[29].u.y) / 3);
     }
-    wanted.insert(wanted.end(), {u[7].theta, v[7].theta, ledger.kinetic, ledger.elastic, ledger.potential,
+    wanted.insert(wanted.end(), {u[7].theta, v[7].theta, ledger.kinetic, ledger.elastic, ledger.potential, ledger.sway,
                                  ledger.damped_mass, ledger.damped_contact, ledger.damped_local, ledger.work_of_loads,
                                  ledger.work_of_supports, ledger.work_of_walls, ledger.initial, ledger.error()});
     CHECK(found == wanted);

@@ -46,6 +46,7 @@ inline SimulationState state_at(std::int64_t step, std::size_t discs) {
   state.ledger = {.kinetic = std::sin(s),
                   .elastic = std::cos(s),
                   .potential = -s,
+                  .sway = 1e-3 * s,
                   .damped_mass = 0.1 * s,
                   .damped_contact = 1 / (s + 3),
                   .damped_local = 1e-300 * s,

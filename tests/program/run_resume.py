@@ -31,7 +31,7 @@ class Resume(RunTest):
         return out, time.monotonic() - began
 
     def check_same(self, a, b):
-        for name in ("discs.csv", "history.csv", "frames.xdmf2", "case.toml"):
+        for name in ("discs.csv", "history.csv", "frames.xdmf2", "case.toml", "energy.csv", "energy.gp"):
             self.assertEqual((a / name).read_bytes(), (b / name).read_bytes(), name)
         self.assertEqual(datasets(a / "frames.h5"), datasets(b / "frames.h5"))
         results = [parse_json((out / "result.json").read_text()) for out in (a, b)]
@@ -79,19 +79,39 @@ class Resume(RunTest):
                 self.assertEqual(running.returncode, 0, errors)
                 self.check_same(whole, out)
 
-    def test_a_finished_run_is_prolonged(self):
-        out, whole = self.folder / "out", self.folder / "whole"
-        self.run_case(SHAKE, "--out", out)
-        longer = self.run_case(SHAKE, "--out", out, "--resume", "--set", "run.duration=3e-2")
-        self.assertEqual(longer["energy"], self.run_case(SHAKE, "--out", whole, "--set", "run.duration=3e-2")["energy"])
-        self.assertEqual((out / "discs.csv").read_bytes(), (whole / "discs.csv").read_bytes())
+    def test_a_finished_run_is_prolonged_to_the_files_of_one_that_was_never_finished(self):
+        for case, option, ends in ((SHAKE, (), ("3.3e-3", "7.12e-3", "1.5e-2")),
+                                   (CORNER, ("--set", "run.step_rule=bound"), ("1.01e-3", "4.4e-3"))):
+            with self.subTest(case=case.name):
+                out, whole = self.folder / "out", self.folder / "whole"
+                resume, last = ("--overwrite",), ("--set", f"run.duration={ends[-1]}")
+                step = self.run_case(case, "--dry-run", *option, *last)["time_step"]
+                for end in ends:
+                    self.run_case(case, "--out", out, *option, *resume, "--set", f"run.duration={end}",
+                                  "--set", f"run.time_step={step!r}")
+                    resume = ("--resume",)
+                self.run_case(case, "--out", whole, "--overwrite", *option, *last, "--set", f"run.time_step={step!r}")
+                self.check_same(out, whole)
 
     def test_a_run_goes_on_with_the_step_that_it_had(self):
         # So short a run takes its step from the bound, a longer one would take it from the exact limit.
-        out, short = self.folder / "out", ("--set", "run.duration=1e-3")
-        step = self.run_case(SHAKE, "--out", out, *short)["time_step"]
-        self.check_error(equidem("run", SHAKE, "--out", out, "--resume"), 2, "another case", f"step {step!r}")
-        self.run_case(SHAKE, "--out", out, "--resume", "--set", f"run.time_step={step!r}")
+        out, whole = self.folder / "out", self.folder / "whole"
+        short = self.run_case(SHAKE, "--out", out, "--set", "run.duration=1e-3")
+        self.assertEqual(short["time_step_rule"], "bound")
+        longer = self.run_case(SHAKE, "--out", out, "--resume")
+        self.assertEqual((longer["time_step"], longer["time_step_rule"]), (short["time_step"], "bound"))
+        self.assertIn("that of the checkpoint", longer["report"])
+        self.assertNotEqual(self.run_case(SHAKE, "--dry-run")["time_step"], short["time_step"])
+        self.run_case(SHAKE, "--out", whole, "--set", f"run.time_step={short['time_step']!r}")
+        for name in ("discs.csv", "history.csv", "energy.csv"):
+            self.assertEqual((out / name).read_bytes(), (whole / name).read_bytes(), name)
+        for same in (f"run.time_step={short['time_step']!r}", "run.step_fraction=0.8", "run.integrator=leapfrog"):
+            self.run_case(SHAKE, "--out", out, "--resume", "--set", same)
+        self.run_case(out / "case.toml", "--out", out, "--resume")
+        self.check_error(equidem("run", SHAKE, "--out", out, "--resume", "--set", "run.duration=1e-3"), 2,
+                         "its checkpoint lies at", "does not go back")
+        self.check_error(equidem("run", SHAKE, "--out", out, "--resume", "--set", "run.step_fraction=0.5"), 2,
+                         "another case", "'step_fraction = 0.8' there")
 
     def test_the_answer_does_not_depend_on_the_number_of_threads(self):
         outs = []

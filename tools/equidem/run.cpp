@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 
+#include "equidem/casefile/grain_case.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
@@ -15,6 +17,7 @@
 #include "equidem/output/vtk.hpp"
 
 #include "command.hpp"
+#include "run_grains.hpp"
 #include "run_loop.hpp"
 #include "run_report.hpp"
 #include "run_setup.hpp"
@@ -64,7 +67,8 @@ void write_state(const CommonOptions& common, const RunSetup& setup, const std::
   if (wanted.csv) write_disc_csv(*common.out / "discs.csv", state, overwrite);
   if (wanted.vtk) write_vtk(*common.out, "state", state, overwrite);
   if (wanted.picture) {
-    write_picture(*common.out, "picture", state, {.title = setup.problem.resolved.title}, overwrite);
+    const bool far = setup.run().motion == LoopKind::Motion::finite;  // then where it began is worth seeing
+    write_picture(*common.out, "picture", state, {.title = setup.problem.resolved.title, .undeformed = far}, overwrite);
   }
 }
 
@@ -109,9 +113,12 @@ int relax_to_rest(const Options& options, const RunSetup& setup) {
 
 int run(const Options& options) {
   const CommonOptions& common = options.common;
+  if (describes_grains(common.case_file, common.set)) return run_grains(common, options.resume);
   Case resolved = read_case(common);
   check_outputs(options, resolved);
-  const RunSetup setup(std::move(resolved));
+  const bool goes_on = options.resume && resolved.run && resolved.run->duration;
+  const RunSetup setup(std::move(resolved),
+                       goes_on ? std::optional(kept_step(*common.out / "run.checkpoint.h5")) : std::nullopt);
   if (common.dry_run) return dry_run(common, setup);
   if (setup.run().until_rest) return relax_to_rest(options, setup);
 
@@ -149,7 +156,8 @@ Run declare_run(CLI::App& command) {
       "Examples:\n"
       "  equidem run data/cases/run_tension.toml                    to rest: the answer of 'equidem solve'\n"
       "  equidem run data/cases/run_pulse.toml --out result         frames for ParaView, histories, checkpoint\n"
-      "  equidem run data/cases/run_pulse.toml --out result --resume --set run.duration=4e-3");
+      "  equidem run data/cases/run_pulse.toml --out result --resume --set run.duration=4e-3\n"
+      "  equidem run data/cases/grains_cradle.toml --out cradle     bodies that collide");
   return [options] { return run(*options); };
 }
 

@@ -2,39 +2,22 @@
 #include "run_loop.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 
+#include "recurrence.hpp"
+
 namespace equidem {
 namespace {
 
 constexpr double look_every = 0.2;  // s of the clock on the wall: progress, interrupts, runaways
-
-/// Steps at which something happens every so many seconds of the run, each the nearest to its time; never where there
-/// is no interval.
-class Recurrence {
- public:
-  Recurrence(std::optional<double> interval, double step) : interval_(interval.value_or(0) / step) {}
-  /// The first such step after `step`.
-  [[nodiscard]] std::int64_t after(std::int64_t step) const {
-    if (!(interval_ > 0)) return never;
-    if (interval_ <= 1) return step + 1;
-    const double turn = std::ceil((static_cast<double>(step) + 0.5) / interval_ - 1e-9);
-    const double next = std::floor(turn * interval_ + 0.5);
-    if (next >= 1e18) return never;
-    if (next > static_cast<double>(step)) return static_cast<std::int64_t>(next);
-    return static_cast<std::int64_t>(std::floor((turn + 1) * interval_ + 0.5));
-  }
-  [[nodiscard]] bool at(std::int64_t step) const { return step == 0 || (step > 0 && after(step - 1) == step); }
-  static constexpr std::int64_t never = INT64_MAX;
-
- private:
-  double interval_;
-};
 
 class RunLoop {
  public:
@@ -42,6 +25,8 @@ class RunLoop {
       : setup_(setup),
         simulation_(simulation),
         total_(setup.steps()),
+        stride_(static_cast<std::int64_t>(
+            std::bit_floor(static_cast<std::uint64_t>(std::max<std::int64_t>(1, total_ / 200))))),
         frame_times_(setup.problem.resolved.output.frame_interval, setup.step.step),
         probe_times_(setup.problem.resolved.output.probe_interval, setup.step.step),
         watch_(setup.scene, setup.options,
@@ -50,7 +35,7 @@ class RunLoop {
   }
 
   RunResult go() {
-    if (simulation_.step() == 0) record();
+    look_and_record();
     Progress progress("stepping");
     Stopwatch since_checkpoint;
     const std::int64_t first = simulation_.step();
@@ -58,25 +43,20 @@ class RunLoop {
     while (simulation_.step() < total_) {
       const std::int64_t now = simulation_.step();
       const std::int64_t next = std::min(
-          {total_, frame_times_.after(now), probe_times_.after(now),
-           now + std::max<std::int64_t>(1, total_ / 200 - now % std::max<std::int64_t>(1, total_ / 200)), now + chunk});
+          {total_, frame_times_.after(now), probe_times_.after(now), now + stride_ - now % stride_, now + chunk});
       const Stopwatch steps;
       simulation_.advance(next - now);
       const double taken = steps.seconds();
       result_.seconds += taken;
       if (taken < 0.5 * look_every && next - now == chunk) chunk *= 2;
       if (taken > look_every && chunk > 1) chunk /= 2;
+      look_and_record();
       try {
-        watch_.look(simulation_);
         progress.update(static_cast<double>(simulation_.step()) / static_cast<double>(total_));
       } catch (const Error& error) {
-        if (error.kind() == ErrorKind::interrupted) {
-          record();
-          save();
-        }
+        if (error.kind() == ErrorKind::interrupted) save();
         throw;
       }
-      record();
       if (checkpoint_ && since_checkpoint.seconds() > setup_.problem.resolved.output.checkpoint_interval) {
         save();
         since_checkpoint.lap();
@@ -94,26 +74,43 @@ class RunLoop {
     const std::filesystem::path& folder = *files.folder;
     const Case& resolved = setup_.problem.resolved;
     const Assembly& assembly = setup_.problem.assembly;
-    std::optional<std::int64_t> after;
-    if (files.resume) {
-      const SimulationState state = read_checkpoint(folder / "run.checkpoint.h5", setup_.fingerprint());
-      simulation_.restore(state);
-      after = state.step;
-    }
+    if (files.resume) go_on(read_checkpoint(folder / "run.checkpoint.h5", setup_.fingerprint()));
     checkpoint_.emplace(folder / "run.checkpoint.h5", setup_.fingerprint(), files.overwrite || files.resume);
     if (resolved.output.frame_interval) {
       const double steps = static_cast<double>(total_);
       const double count = std::min(steps, steps * setup_.step.step / *resolved.output.frame_interval);
       frames_.emplace(
           folder, "frames", assembly,
-          FrameOptions{
-              .expected = static_cast<std::int64_t>(count) + 2, .overwrite = files.overwrite, .continue_after = after});
+          FrameOptions{.expected = static_cast<std::int64_t>(count) + 2,
+                       .overwrite = files.overwrite,
+                       .continue_after = files.resume ? std::optional(last_entry(frame_times_)) : std::nullopt});
     }
     if (resolved.output.probe_interval) {
       probes_ = std::make_unique<ProbeWriter>(
           folder / "history.csv", probes_of(), assembly.size(),
-          ProbeOptions{.energy = true, .interval = 5, .overwrite = files.overwrite, .continue_after = after});
+          ProbeOptions{.energy = true,
+                       .interval = 5,
+                       .overwrite = files.overwrite,
+                       .continue_after = files.resume ? std::optional(last_entry(probe_times_)) : std::nullopt});
     }
+  }
+
+  /// Samples of a shorter run are more, and at every power of two steps: those of this run are among them, but for the one
+  /// at its end.
+  void go_on(Checkpoint checkpoint) {
+    simulation_.restore(checkpoint.state);
+    if (simulation_.step() > total_) {
+      bad_input(format("the run is to end at {:.6g} s, and its checkpoint lies at {:.6g} s",
+                       static_cast<double>(total_) * setup_.step.step, simulation_.time()),
+                "a run does not go back", "Give a longer duration, or start the run afresh");
+    }
+    result_.energies = std::move(checkpoint.energies);
+    std::erase_if(result_.energies, [&](const EnergySample& sample) { return sample.step % stride_ != 0; });
+  }
+
+  /// Where the run goes on: an entry that was made there only because the run ended is dropped.
+  [[nodiscard]] std::int64_t last_entry(const Recurrence& times) const {
+    return times.at(simulation_.step()) ? simulation_.step() : simulation_.step() - 1;
   }
 
   [[nodiscard]] std::vector<Probe> probes_of() const {
@@ -129,14 +126,19 @@ class RunLoop {
     return probes;
   }
 
-  void record() {
+  void look_and_record() {
+    const EnergyLedger ledger = simulation_.energy();
+    watch_.look(simulation_, ledger);
+    record(ledger);
+  }
+
+  void record(const EnergyLedger& ledger) {
     const std::int64_t step = simulation_.step();
-    const bool sample = step == 0 || step == total_ || step % std::max<std::int64_t>(1, total_ / 200) == 0;
+    const bool fresh = result_.energies.empty() || result_.energies.back().step < step;
+    const bool sample = fresh && (step == total_ || step % stride_ == 0);
     const bool frame = frames_ && frames_->last_step() < step && (frame_times_.at(step) || step == total_);
     const bool probe = probes_ && probes_->last_step() < step && (probe_times_.at(step) || step == total_);
-    if (!sample && !frame && !probe) return;
-    const EnergyLedger ledger = simulation_.energy();
-    if (sample) result_.energies.push_back({simulation_.time(), ledger});
+    if (sample) result_.energies.push_back({step, simulation_.time(), ledger});
     if (!frame && !probe) return;
     const std::vector<DiscMotion> motions = simulation_.motions(), velocities = simulation_.velocities();
     if (frame) frames_->append(step, simulation_.time(), motions, velocities);
@@ -148,12 +150,13 @@ class RunLoop {
     if (!checkpoint_) return;
     if (probes_) probes_->sync();
     if (frames_) frames_->sync();
-    checkpoint_->write(simulation_.save());
+    checkpoint_->write(simulation_.save(), result_.energies);
   }
 
   const RunSetup& setup_;
   Simulation& simulation_;
   std::int64_t total_;
+  std::int64_t stride_;  // from one sample of the energies to the next
   Recurrence frame_times_, probe_times_;
   RunawayWatch watch_;
   std::optional<CheckpointWriter> checkpoint_;

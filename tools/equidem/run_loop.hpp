@@ -11,6 +11,7 @@
 #include "equidem/dynamics/simulation.hpp"
 #include "equidem/dynamics/watch.hpp"
 #include "equidem/output/checkpoint.hpp"
+#include "equidem/output/energy_terms.hpp"
 #include "equidem/output/frames.hpp"
 #include "equidem/output/probes.hpp"
 
@@ -24,23 +25,17 @@ struct RunFiles {
   bool resume = false;
 };
 
-/// Energies at a moment, for the plot of the balance.
-struct EnergySample {
-  double time = 0;  ///< s
-  EnergyLedger ledger;
-};
-
 struct RunResult {
   double seconds = 0;                  ///< that steps took
   std::int64_t steps_done = 0;         ///< in this call, without those before a checkpoint
-  std::vector<EnergySample> energies;  ///< about two hundred
+  std::vector<EnergySample> energies;  ///< 200 to 400, from the start of the run
   std::vector<std::filesystem::path> files;
 };
 
 /// Make all steps of a run; frames, histories and checkpoints on their schedules, progress on stderr, a look for
 /// runaways between.
 /// An interrupt leaves a checkpoint.
-/// \throws Error as the writers, the watch and stop_if_interrupted
+/// \throws Error as the writers, the watch and stop_if_interrupted; (bad_input) where a checkpoint lies past the end
 RunResult run_through(const RunSetup& setup, Simulation& simulation, const RunFiles& files);
 
 }  // namespace equidem

@@ -13,7 +13,8 @@
 namespace equidem {
 namespace {
 
-constexpr double balance_to_doubt = 0.1;  // near the critical step finite motions reach some hundredths
+constexpr double balance_to_doubt = 0.1;  // of the largest energy
+constexpr double balance_to_mention = 1e-3;
 
 double disc_steps_per_second(const RunSetup& setup, const RunResult& result) {
   if (!(result.seconds > 0)) return 0;
@@ -146,10 +147,29 @@ std::string describe_run(const RunSetup& setup, const Simulation& simulation, co
                                       ledger.kinetic, ledger.elastic, ledger.potential));
   out += report_line("", format("at the start {:.6g}; put in by loads {:.6g}, supports {:.6g}, walls {:.6g}",
                                 ledger.initial, ledger.work_of_loads, ledger.work_of_supports, ledger.work_of_walls));
+  if (std::abs(ledger.sway) > balance_to_mention * largest_energy(ledger)) {
+    out += report_line(
+        "", format("leapfrog lets kinetic + elastic energy sway with the motion, now by {:.3g}", ledger.sway));
+  }
   out += report_line("", format("dissipated by mass damping {:.6g}, contacts {:.6g}, local damping {:.6g}",
                                 ledger.damped_mass, ledger.damped_contact, ledger.damped_local));
-  out += report_line("balance", format("lacks {:.1e} of the largest term", relative_error(ledger)));
-  if (std::abs(relative_error(ledger)) > balance_to_doubt) {
+  double most = std::abs(ledger.error()), size = largest_energy(ledger);
+  for (const EnergySample& sample : result.energies) {
+    most = std::max(most, std::abs(sample.ledger.error()));
+    size = std::max(size, largest_energy(sample.ledger));
+  }
+  const double lacks = size > 0 ? most / size : 0.0;
+  out += report_line("balance", format("lacks {:.1e} of the largest term, and at most {:.1e} on the way",
+                                       relative_error(ledger), lacks));
+  if (lacks > balance_to_mention) {
+    const Scene& scene = setup.scene;  // the work of what drives a run is counted to the second order
+    const bool driven = !scene.loads.empty() || !scene.supports.empty() || !scene.walls.empty();
+    const int order = std::min(facts_of(setup.run().integrator).order, driven ? 2 : 4);
+    out += report_line("",
+                       format("it falls as the step to the power {}: about {:g} with run.time_step={:.2g}", order,
+                              balance_to_mention, setup.step.step * std::pow(balance_to_mention / lacks, 1.0 / order)));
+  }
+  if (lacks > balance_to_doubt) {
     out += report_line("", "that is much: compare with a shorter step before trusting the motion");
   }
   return out + stages_of(times);
@@ -196,10 +216,6 @@ void write_energy_plot(const std::filesystem::path& folder, const RunSetup& setu
                        bool overwrite) {
   Plot plot;
   plot.title = setup.problem.resolved.title;
-  if (!result.energies.empty() && result.energies.front().time > 0) {
-    plot.title +=
-        format("{}since the checkpoint at {:.4g} s", plot.title.empty() ? "" : ", ", result.energies.front().time);
-  }
   plot.x.label = "time, s";
   plot.y.label = "energy, J per m of depth";
   struct Curve {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
@@ -12,9 +13,13 @@
 #include "equidem/casefile/build_run.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/output/checkpoint.hpp"
 
 namespace equidem {
 namespace {
+
+/// Of the fingerprint: "# step 1e-06 s, rule lanczos".
+constexpr std::string_view step_line = "\n# step ", step_rule = " s, rule ";
 
 Case with_run(Case resolved) {
   if (!resolved.run) {
@@ -41,25 +46,57 @@ Problem problem_of(Case resolved) {
           .times = std::move(times)};
 }
 
-TimeStep step_of(Problem& problem, const Scene& scene) {
+TimeStep step_of(Problem& problem, const Scene& scene, const std::optional<KeptStep>& kept) {
   const RunCase& run = *problem.resolved.run;
   Stopwatch watch;
-  // A run to rest takes inertia and steps of its own.
   TimeStepOptions wanted = run.time_step;
   wanted.duration = run.duration.value_or(0);
   TimeStep step;
-  if (run.until_rest) {
+  if (run.until_rest) {  // inertia and steps of its own
     step.step = 1;
     return step;
   }
+  if (kept && !wanted.step) wanted.step = kept->step;
   try {
     step = choose_time_step(scene, simulation_options(problem.resolved, 1), wanted);
   } catch (const Error& error) {
-    throw error.at(problem.resolved.where(wanted.step ? "run.time_step" : "run"));
+    throw error.at(problem.resolved.where(run.time_step.step ? "run.time_step" : "run"));
   }
   problem.times.add("time step", watch.lap());
   if (!wanted.step) step.step = std::min(step.step, wanted.duration);
+  if (kept && step.step == kept->step) {
+    step.rule = kept->rule;
+    step.notes.emplace_back("The step is that of the checkpoint.");
+  }
   return step;
+}
+
+/// What changes faster than steps can follow.
+void check_events(const Case& resolved, TimeStep& step) {
+  constexpr double most = 0.5, worth_telling = 0.05;
+  const double end = resolved.run->duration.value_or(0);
+  const auto check = [&](const Schedule& schedule, const char* table, std::size_t k) {
+    const MissedEvent missed = missed_event(schedule, step.step, end);
+    const std::string place = format("{}.{}", table, k);
+    if (missed.share > most) {
+      throw Error(ErrorKind::bad_input,
+                  format("its schedule has an event at {:.6g} s that steps of {:.6g} s miss", missed.time, step.step),
+                  format("between two steps lie {:.0f} % of the range of its values", 100 * missed.share),
+                  "Give a time_step well below its length, or let it last longer", resolved.where(place + ".schedule"));
+    }
+    if (missed.share > worth_telling) {
+      step.notes.push_back(format("Of the schedule of {} {} steps miss up to {:.0f} % of its range, at {:.6g} s.",
+                                  table, k, 100 * missed.share, missed.time));
+    }
+  };
+  const RunCase& run = *resolved.run;
+  for (std::size_t k = 0; k < run.supports.size(); ++k) {
+    const TimedSupport& support = run.supports[k];
+    for (const auto* motion : {&support.ux, &support.uy, &support.rotation})
+      if (*motion) check(**motion, "support", k);
+  }
+  for (std::size_t k = 0; k < run.loads.size(); ++k) check(run.loads[k].factor, "load", k);
+  for (std::size_t k = 0; k < run.walls.size(); ++k) check(run.walls[k].displacement, "wall", k);
 }
 
 /// Tells whether files that a case names are still what they were: FNV-1a, 64 bits at a time, the upper ones folded
@@ -114,13 +151,39 @@ void erase(TomlValue& table, std::initializer_list<std::string_view> names) {
                 [&](const auto& entry) { return std::find(names.begin(), names.end(), entry.first) != names.end(); });
 }
 
+/// In what order keys stand does not matter.
+void sort_keys(TomlValue& value) {
+  std::ranges::stable_sort(value.entries, {}, [](const auto& entry) -> const std::string& { return entry.first; });
+  for (auto& [name, entry] : value.entries) sort_keys(entry);
+  for (TomlValue& item : value.items) sort_keys(item);
+}
+
 }  // namespace
 
-RunSetup::RunSetup(Case resolved)
+KeptStep kept_step(const std::filesystem::path& checkpoint) {
+  const std::string text = case_of_checkpoint(checkpoint);
+  KeptStep kept;
+  const std::size_t at = text.rfind(step_line);
+  if (at != std::string::npos) {
+    const char* begin = text.data() + at + step_line.size();
+    const auto [end, failed] = std::from_chars(begin, text.data() + text.size(), kept.step);
+    const std::string_view rest(end, text.data() + text.size());
+    if (failed == std::errc() && rest.starts_with(step_rule)) {
+      kept.rule = rest.substr(step_rule.size(), rest.find('\n') - step_rule.size());
+      return kept;
+    }
+  }
+  bad_input(format("cannot go on from '{}'", checkpoint.string()), "its case does not name the time step",
+            "Start the run afresh");
+}
+
+RunSetup::RunSetup(Case resolved, const std::optional<KeptStep>& kept)
     : problem(problem_of(with_run(std::move(resolved)))),
       scene(build_scene(problem.resolved, problem.assembly, problem.springs.springs)),
-      step(step_of(problem, scene)),
-      options(simulation_options(problem.resolved, step.step)) {}
+      step(step_of(problem, scene, kept)),
+      options(simulation_options(problem.resolved, step.step)) {
+  if (!run().until_rest) check_events(problem.resolved, step);
+}
 
 Simulation RunSetup::simulation() const {
   try {
@@ -142,12 +205,13 @@ std::int64_t RunSetup::steps() const {
 std::string RunSetup::fingerprint() const {
   Case known = problem.resolved;
   if (TomlValue* table = known.document.find("run")) {
-    erase(*table, {"duration", "time_step", "step_rule", "step_fraction", "allow_unstable_step"});  // the step is below
+    erase(*table, {"duration", "time_step", "allow_unstable_step"});  // the step is below
   }
   erase(known.document, {"title", "output", "probe", "homogenize", "ensemble", "solver"});
+  sort_keys(known.document);
   return to_toml(known, {}) +
-         format("\n# step {} s\n# checksums: discs and contacts {}\n# springs {}\n# schedules {}\n",
-                toml_number(step.step), checksum_of(problem.assembly),
+         format("{}{}{}{}\n# checksums: discs and contacts {}\n# springs {}\n# schedules {}\n", step_line,
+                toml_number(step.step), step_rule, step.rule, checksum_of(problem.assembly),
                 checksum_of(problem.assembly, problem.springs.springs), checksum_of_schedules(scene));
 }
 

@@ -3,6 +3,8 @@
 /// A run made ready: what moves, what acts on it, and the step.
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 
 #include "equidem/casefile/case.hpp"
@@ -13,9 +15,20 @@
 
 namespace equidem {
 
+/// The step of a run that goes on.
+struct KeptStep {
+  double step = 0;   ///< s
+  std::string rule;  ///< by which it was chosen
+};
+
+/// The step that a checkpoint was made with.
+/// \throws Error (bad_input) where there is no such file, or it is damaged
+KeptStep kept_step(const std::filesystem::path& checkpoint);
+
 /// Stays where it is: the scene refers to the problem.
 struct RunSetup {
-  explicit RunSetup(Case resolved);
+  /// \param kept takes the place of an automatic step
+  explicit RunSetup(Case resolved, const std::optional<KeptStep>& kept = {});
   RunSetup(const RunSetup&) = delete;
   RunSetup& operator=(const RunSetup&) = delete;
 

@@ -3,6 +3,7 @@
 
 #include <cassert>
 #include <map>
+#include <set>
 
 #include "equidem/casefile/build.hpp"
 #include "equidem/core/error.hpp"
@@ -57,6 +58,45 @@ void check_velocities(const Case& resolved, const Assembly& assembly) {
   }
 }
 
+/// No velocity is given where a support says how a disc moves, no spin where nothing turns with it.
+void check_velocities_count(const Case& resolved, const Scene& scene) {
+  struct Component {
+    const char *name, *key;
+    std::optional<Schedule> TimedSupport::*motion;
+    double (*given)(const InitialVelocity&);
+  };
+  constexpr Component components[] = {
+      {"ux", "velocity", &TimedSupport::ux, [](const InitialVelocity& v) { return v.velocity.x; }},
+      {"uy", "velocity", &TimedSupport::uy, [](const InitialVelocity& v) { return v.velocity.y; }},
+      {"rotation", "spin", &TimedSupport::rotation, [](const InitialVelocity& v) { return v.spin; }}};
+  const auto& velocities = resolved.run->velocities;
+  const bool turns = derive_effects(scene.springs, resolved.rotation).rotation;
+  for (std::size_t k = 0; k < velocities.size(); ++k) {
+    if (velocities[k].spin != 0 && !turns) {
+      fail(resolved.where(format("velocity.{}.spin", k)),
+           format("'{}' has a spin at the start, and rotations are no unknowns of this scene", velocities[k].group),
+           scene.springs.any_tangential() ? "they are restrained" : "kT = 0 everywhere: the spin would change nothing",
+           "Remove the spin");
+    }
+    const std::vector<std::int32_t>& moving = group(scene.assembly, velocities[k].group).discs;
+    const std::set<std::int32_t> discs(moving.begin(), moving.end());
+    for (const Component& component : components) {
+      if (component.given(velocities[k]) == 0) continue;
+      for (const TimedSupport& support : scene.supports) {
+        if (!(support.*component.motion)) continue;
+        for (const std::int32_t disc : group(scene.assembly, support.group).discs) {
+          if (!discs.contains(disc)) continue;
+          fail(resolved.where(format("velocity.{}.{}", k, component.key)),
+               format("disc {} of '{}' has a velocity at the start, and its {} is prescribed", disc,
+                      velocities[k].group, component.name),
+               format("the support of '{}' says how it moves", support.group),
+               "Choose a group without held discs, or release them");
+        }
+      }
+    }
+  }
+}
+
 void check_walls_of(const Case& resolved, const Assembly& assembly) {
   for (std::size_t k = 0; k < resolved.run->walls.size(); ++k) {
     try {
@@ -105,6 +145,7 @@ Scene build_scene(const Case& resolved, const Assembly& assembly, const ContactS
   if (resolved.test) add_test(resolved, assembly, scene);
   check_supports(resolved, assembly, scene.supports);
   check_velocities(resolved, assembly);
+  check_velocities_count(resolved, scene);
   check_walls_of(resolved, assembly);
   return scene;
 }

@@ -64,6 +64,19 @@ TomlValue value_from(const std::string& text, const std::string& source) {
   return parsed.entries.front().second;
 }
 
+/// Take the key, or one of several tables, out of the case.
+void remove(TomlValue& parent, const std::string& segment, const std::string& source) {
+  const auto index = parent.is_array() ? index_of(segment) : std::nullopt;
+  if (index && *index < parent.items.size()) {
+    parent.items.erase(parent.items.begin() + static_cast<std::ptrdiff_t>(*index));
+    return;
+  }
+  const std::size_t removed = std::erase_if(parent.entries, [&](const auto& entry) { return entry.first == segment; });
+  if (removed > 0) return;
+  throw Error(ErrorKind::bad_input, format("there is no '{}' to take out", segment),
+              "'none' takes out a key of the case file", "Check its name", source);
+}
+
 }  // namespace
 
 void apply_override(TomlValue& root, const std::string& assignment, const std::string& option) {
@@ -80,13 +93,15 @@ void apply_override(TomlValue& root, const std::string& assignment, const std::s
     text.erase(text.find_last_not_of(" \t") + 1);
     return text;
   };
-  TomlValue value = value_from(trimmed(assignment.substr(equals + 1)), *source);
+  const std::string given = trimmed(assignment.substr(equals + 1));
+  TomlValue value = value_from(given, *source);
   put_source(value, source);
 
   const auto segments = segments_of(trimmed(assignment.substr(0, equals)));
   TomlValue* at = &root;
   for (std::size_t k = 0; k < segments.size(); ++k) {
     const std::string& segment = segments[k];
+    if (given == "none" && k + 1 == segments.size()) return remove(*at, segment, *source);
     TomlValue* next = nullptr;
     if (at->is_array()) {
       const auto index = index_of(segment);

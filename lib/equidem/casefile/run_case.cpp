@@ -127,7 +127,9 @@ std::optional<RunCase> read_run(const TomlValue& root, std::span<const NamedSche
   if (result.duration.has_value() == result.until_rest.has_value()) {
     fail_at(result.duration ? *run->find("until_rest") : *run, "run",
             result.duration ? "duration and until_rest are both given" : "it has neither duration nor until_rest",
-            "a run ends after a time, or at rest", "Give one of the two");
+            "a run ends after a time, or at rest",
+            result.duration ? "Give one of the two; --set run.duration=none takes it out, or until_rest=none"
+                            : "Give one of the two");
   }
   result.time_step = read_time_step(*run, result.duration);
   result.integrator = integrator_from(text(*run, "integrator"));

@@ -70,8 +70,14 @@ Effects effects_of(const Scene& scene, const SimulationOptions& options) {
   };
   const LoopKind kind = loop_for(scene, options, effects);
   const Damping& damping = options.damping;
+  const bool contacts = !scene.assembly.contacts.empty();
+  constexpr const char* no_contacts = "there are no contacts";
+  for (Effects::Entry& entry : effects.entries) {
+    if (!contacts && entry.active && entry.name != "rotation") entry = {entry.name, false, no_contacts};
+  }
   add("mass-proportional damping", damping.mass > 0, "none is asked for");
-  add("dashpots at contacts", damping.stiffness > 0 || damping.contact > 0, "no damping at contacts is asked for");
+  add("dashpots at contacts", contacts && (damping.stiffness > 0 || damping.contact > 0),
+      contacts ? "no damping at contacts is asked for" : no_contacts);
   add("local damping", damping.local > 0, "none is asked for");
   add("gravity", options.gravity.x != 0 || options.gravity.y != 0, "it is zero");
   add("loads", !scene.loads.empty(), "no load acts");
@@ -80,7 +86,7 @@ Effects effects_of(const Scene& scene, const SimulationOptions& options) {
   add("finite motions", kind.motion == LoopKind::Motion::finite,
       "motions are taken as small: normals and contact points stay");
   add("springs and levers of each contact", !kind.equal_contacts,
-      "all contacts have the same springs and lie in the middle: three numbers each");
+      contacts ? "all contacts have the same springs and lie in the middle: three numbers each" : no_contacts);
   add("inertia of each disc", !kind.equal_discs, "all discs have the same");
   return effects;
 }

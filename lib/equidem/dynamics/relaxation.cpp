@@ -13,6 +13,7 @@
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/dynamics/still_unknowns.hpp"
+#include "equidem/dynamics/walls.hpp"
 #include "equidem/statics/contact_graph.hpp"
 #include "equidem/statics/stiffness_matrix.hpp"
 
@@ -23,6 +24,9 @@ using Vector = std::vector<double>;  // per component: u_x, u_y[, a theta] or th
 
 constexpr int steps_between_looks = 25;  // at the true residual, which recursion follows to round-off only
 constexpr double furthest = 0.2;         // mean radii that a disc moves in a step of finite motion
+
+constexpr int most_halves = 60;
+constexpr std::int64_t longest_fall = 20000;  // steps in which nothing carries a force
 
 double product(const Vector& x, const Vector& y) {
   double sum = 0;
@@ -41,6 +45,7 @@ class StillScene {
   StillScene(const Scene& scene, const RelaxationOptions& options)
       : scene_(scene),
         motion_(options.motion),
+        time_(options.time),
         effects_(derive_effects(scene.springs, options.rotation)),
         unknowns_(unknowns_at(scene, effects_, options.time)),
         contacts_(Scene{.assembly = scene.assembly,
@@ -82,7 +87,7 @@ class StillScene {
     for (std::size_t d = 0; d < forces.size(); ++d) {
       forces[d] = {{f[d * b], f[d * b + 1]}, b == 3 ? f[d * b + 2] * radius() : 0.0};
     }
-    return relative_unbalanced_force(scene_, motion_, forces, motions(u));
+    return relative_unbalanced_force(scene_, motion_, forces, motions(u), time_);
   }
 
  private:
@@ -144,6 +149,7 @@ class StillScene {
 
   const Scene& scene_;
   LoopKind::Motion motion_;
+  double time_;
   Effects effects_;
   DegreesOfFreedom unknowns_;
   Simulation contacts_;  // without loads, all discs free
@@ -181,7 +187,9 @@ class Descent {
       if (result_.steps >= options_.max_steps) not_at_rest("");
       // Without rounding conjugate gradients end after as many steps as there are components.
       if (result_.relative_unbalanced < 0.5 * best_) best_ = result_.relative_unbalanced, best_step_ = result_.steps;
-      if (result_.steps - best_step_ > static_cast<std::int64_t>(f_.size()) + 1000) {
+      const bool falls = result_.relative_unbalanced == 1;
+      if (falls && result_.steps >= longest_fall) not_at_rest("");
+      if (!falls && result_.steps - best_step_ > static_cast<std::int64_t>(f_.size()) + 1000) {
         not_at_rest("; rounding of the displacements seems to allow no less");
       }
       const Vector before = f_;
@@ -231,25 +239,44 @@ class Descent {
     add(f_, length, q);
   }
 
-  /// Returns the length of the step.
+  /// Returns the length of the step. Where discs meet walls or part from them the secant may be far off: then halves,
+  /// until the force along the way is less than half of what it was.
   double go_by_secant(double length) {
     double largest = 0;
     for (const double x : p_) largest = std::max(largest, std::abs(x));
     const double limit = furthest * scene_.radius() / largest, trial = std::min(length, limit);
-    Vector u = u_;
-    add(u, trial, p_);
-    const double force = product(p_, f_), force_there = product(p_, unbalanced(u));
+    const Vector u = u_;
+    const auto force_at = [&](double step) {
+      u_ = u;
+      add(u_, step, p_);
+      f_ = unbalanced(u_);
+      return product(p_, f_);
+    };
+    const double force = product(p_, f_), force_there = force_at(trial);
     const double wanted = force > force_there ? trial * force / (force - force_there) : 4 * trial;
-    const double step = std::min({wanted, 4 * trial, limit});
-    add(u_, step, p_);
-    f_ = unbalanced(u_);
+    double step = std::min({wanted, 4 * trial, limit});
+    double low = force_there > 0 ? std::min(trial, step) : 0;
+    double high = force_there > 0 ? std::numeric_limits<double>::infinity() : trial;
+    for (int halved = 0; halved < most_halves; ++halved) {
+      const double left = force_at(step);
+      if (left > 0.5 * force && std::isfinite(high)) {
+        low = step;
+      } else if (left < -0.5 * force) {
+        high = step;
+      } else {
+        break;
+      }
+      step = 0.5 * (low + high);
+    }
     return step;
   }
 
   [[noreturn]] void not_at_rest(const char* cause) const {
-    computation_failed(format("the discs are not at rest after {} steps", result_.steps),
-                       format("relative unbalanced force {:.2g}, wanted {:.2g}{}", result_.relative_unbalanced,
-                              options_.tolerance, cause),
+    const std::string left = result_.relative_unbalanced < 1
+                                 ? format("relative unbalanced force {:.2g}", result_.relative_unbalanced)
+                                 : std::string("no contact and no wall carries any of the force that acts");
+    computation_failed(format("the discs are not at rest after {}", counted(result_.steps, "step")),
+                       format("{}, wanted {:.2g}{}", left, options_.tolerance, cause),
                        "Allow more steps or a larger unbalanced force; where loads are held by no support, add one");
   }
 
@@ -264,7 +291,7 @@ class Descent {
 }  // namespace
 
 double relative_unbalanced_force(const Scene& scene, LoopKind::Motion motion, const std::vector<DiscForce>& unbalanced,
-                                 const std::vector<DiscMotion>& motions) {
+                                 const std::vector<DiscMotion>& motions, double time) {
   const double a = scene.assembly.mean_radius();
   double left = 0, carried = 0;
   for (const DiscForce& f : unbalanced) left += dot(f.force, f.force) + f.moment * f.moment / (a * a);
@@ -278,7 +305,8 @@ double relative_unbalanced_force(const Scene& scene, LoopKind::Motion motion, co
     const ContactForce f = linear_spring_force(scene.springs[c], d);
     carried += f.normal * f.normal + f.tangential * f.tangential;
   }
-  return left == 0 ? 0 : std::sqrt(left / carried);
+  for (const Vec2 force : wall_pushes(scene, motions, time).forces) carried += dot(force, force);
+  return left == 0 ? 0 : std::sqrt(left / (left + carried));
 }
 
 Relaxation relax(const Scene& scene, const RelaxationOptions& options) {
@@ -305,8 +333,10 @@ Relaxation relax(const Scene& scene, const RelaxationOptions& options) {
 }
 
 std::string Relaxation::report() const {
-  return format("at rest: relative unbalanced force {:.2g} after {} steps, {} evaluations of forces, {:.2g} s",
-                relative_unbalanced, steps, evaluations, seconds);
+  const std::string work =
+      format("{}, {} of the forces, {:.2g} s", counted(steps, "step"), counted(evaluations, "evaluation"), seconds);
+  if (relative_unbalanced == 0) return format("at rest: no force is left unbalanced, after {}", work);
+  return format("at rest: relative unbalanced force {:.2g} after {}", relative_unbalanced, work);
 }
 
 }  // namespace equidem

@@ -48,8 +48,10 @@ struct Relaxation {
 ///         the state is no minimum of the energy (kT < 0 with free rotation)
 Relaxation relax(const Scene& scene, const RelaxationOptions& options = {});
 
-/// 2-norm of the unbalanced forces, moments over the mean radius, over that of the contact forces; 0 where nothing acts.
+/// 2-norm of the unbalanced forces, moments over the mean radius, over that of them and the forces of contacts and walls
+/// together: 0 where nothing is unbalanced, 1 where nothing carries a force.
+/// \param time s, at which walls stand where they do
 double relative_unbalanced_force(const Scene& scene, LoopKind::Motion motion, const std::vector<DiscForce>& unbalanced,
-                                 const std::vector<DiscMotion>& motions);
+                                 const std::vector<DiscMotion>& motions, double time = 0);
 
 }  // namespace equidem

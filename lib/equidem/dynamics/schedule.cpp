@@ -93,6 +93,25 @@ void check(const Schedule& schedule) {
   }
 }
 
+MissedEvent missed_event(const Schedule& schedule, double step, double end) {
+  MissedEvent most;
+  if (schedule.kind == Schedule::Kind::sine && schedule.value != 0 && schedule.start < end) {
+    const double turns = schedule.frequency * step;  // a peak may lie in the middle of a step
+    most = {turns < 0.5 ? 1 - std::cos(std::numbers::pi * turns) : 1.0, schedule.start + 0.25 / schedule.frequency};
+  }
+  if (schedule.kind != Schedule::Kind::table) return most;
+  const auto [low, high] = std::minmax_element(schedule.values.begin(), schedule.values.end());
+  for (std::size_t k = 0; k < schedule.times.size() && *low < *high; ++k) {
+    const double time = schedule.times[k], value = schedule.values[k];
+    if (time <= 0 || time >= end) continue;
+    const double before = step * std::floor(time / step);
+    const double a = schedule.at(before), b = schedule.at(before + step);
+    const double share = std::max({0.0, value - std::max(a, b), std::min(a, b) - value}) / (*high - *low);
+    if (share > most.share) most = {share, time};
+  }
+  return most;
+}
+
 Schedule scaled(Schedule schedule, double factor) {
   schedule.value *= factor;
   for (double& value : schedule.values) value *= factor;

@@ -31,6 +31,18 @@ struct Schedule {
 ///         times that do not ascend
 void check(const Schedule& schedule);
 
+/// What of a schedule lies between the moments at which it is looked at.
+struct MissedEvent {
+  double share = 0;  ///< of the range of its values, in [0, 1]
+  double time = 0;   ///< s
+};
+
+/// The most that steps of a given length miss of a schedule within a run, its values at two successive steps taken to
+/// span all between them: a point of a table that stands out; the peaks of a sine, all of them below two steps a
+/// period. A jump is not missed.
+/// \param step, end s
+MissedEvent missed_event(const Schedule& schedule, double step, double end);
+
 /// The schedule times a factor, at every time.
 Schedule scaled(Schedule schedule, double factor);
 

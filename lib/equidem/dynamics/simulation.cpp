@@ -130,9 +130,7 @@ void Simulation::Implementation::start() {
   }
   std::fill(dissipation.begin(), dissipation.end(), Dissipation{});
   driven.set_sums(std::vector<DrivingWork>(static_cast<std::size_t>(bodies.layout().strips())));
-  const EnergyLedger now = ledger();
-  initial_potential = now.potential;
-  initial_energy = now.kinetic + now.elastic;
+  at_start = raw_ledger();
 }
 
 void Simulation::Implementation::do_strip(std::int32_t strip, const Stage& stage, int from, double time,

@@ -20,14 +20,14 @@ struct Simulation::Implementation {
   StepFunction step_function = nullptr;
   std::vector<Stage> stages;
   BodyArrays bodies;
-  std::vector<std::int32_t> first, neighbour;
-  std::vector<double> geometry, inverse_inertia;
+  LaneVector<std::int32_t> first, neighbour;
+  LaneVector<double> geometry, inverse_inertia;
   LoopData data;
   DrivenDiscs driven;
   std::vector<Dissipation> dissipation;  // per strip
   std::int64_t steps = 0;
   int parity = 0;
-  double initial_energy = 0, initial_potential = 0;
+  EnergyLedger at_start;  // sums that begin half a step before the start included
 
   Implementation(const Scene& scene_in, const SimulationOptions& options_in);
 
@@ -41,11 +41,25 @@ struct Simulation::Implementation {
   void start();
   void advance(std::int64_t count);
   void do_strip(std::int32_t strip, const Stage& stage, int from, double time, double time_after);
-  [[nodiscard]] std::vector<DiscMotion> velocities_after(const Stage& stage, std::vector<double> motion,
-                                                         std::vector<double> velocity,
-                                                         std::vector<double> relative) const;
+  /// What a stage would make of velocities, and what it would add to the ledger.
+  struct Trial {
+    std::vector<DiscMotion> velocities;
+    Dissipation dissipation;
+    DrivingWork work;
+  };
+  /// \param relative velocities that dashpots read; empty without dashpots
+  /// \param driven_too with supports, loads and walls
+  [[nodiscard]] Trial try_stage(const Stage& stage, LaneVector<double> motion, LaneVector<double> velocity,
+                                LaneVector<double> relative, bool driven_too = true) const;
+  /// Half the kick of leapfrog, from the velocities half a step behind to those of now.
+  [[nodiscard]] Trial half_kick() const;
+  /// Forces on the discs displaced by `motions`, dampers aside; of springs and gravity alone, or of all that acts.
+  [[nodiscard]] std::vector<DiscForce> forces_at(const std::vector<DiscMotion>& motions, bool driven_too) const;
   [[nodiscard]] std::vector<DiscMotion> synchronous_velocities() const;
   [[nodiscard]] std::vector<DiscMotion> motions() const;
+  [[nodiscard]] double elastic_energy(const std::vector<DiscMotion>& now) const;
+  void add_half_kick(const std::vector<DiscMotion>& now, EnergyLedger& ledger) const;
+  [[nodiscard]] EnergyLedger raw_ledger() const;
   [[nodiscard]] EnergyLedger ledger() const;
 };
 

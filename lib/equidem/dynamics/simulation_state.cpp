@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
+#include <iterator>
+#include <span>
 #include <utility>
 
 #include "equidem/contact/finite_bond.hpp"
@@ -8,14 +10,25 @@
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/dynamics/simulation_implementation.hpp"
+#include "equidem/dynamics/walls.hpp"
 
 namespace equidem {
+namespace {
 
-/// The velocities that a stage would make of `velocity` at `motion`.
-std::vector<DiscMotion> Simulation::Implementation::velocities_after(const Stage& stage, std::vector<double> motion,
-                                                                     std::vector<double> velocity,
-                                                                     std::vector<double> relative) const {
-  std::vector<double> moved(motion.size()), relative_after(relative.size());
+/// What a saved state keeps of the ledger at the start; all but the first two are counted from there.
+constexpr double EnergyLedger::*terms_at_start[] = {&EnergyLedger::kinetic,          &EnergyLedger::elastic,
+                                                    &EnergyLedger::potential,        &EnergyLedger::sway,
+                                                    &EnergyLedger::damped_mass,      &EnergyLedger::damped_contact,
+                                                    &EnergyLedger::damped_local,     &EnergyLedger::work_of_loads,
+                                                    &EnergyLedger::work_of_supports, &EnergyLedger::work_of_walls};
+
+}  // namespace
+
+Simulation::Implementation::Trial Simulation::Implementation::try_stage(const Stage& stage, LaneVector<double> motion,
+                                                                        LaneVector<double> velocity,
+                                                                        LaneVector<double> relative,
+                                                                        bool driven_too) const {
+  LaneVector<double> moved(motion.size()), relative_after(relative.size());
   LoopData copy = data;
   copy.velocity = velocity.data();
   copy.motion[0] = motion.data();
@@ -24,27 +37,42 @@ std::vector<DiscMotion> Simulation::Implementation::velocities_after(const Stage
     copy.velocity_at[0] = relative.data();
     copy.velocity_at[1] = relative_after.data();
   }
+  const auto strips = static_cast<std::size_t>(bodies.layout().strips());
   DrivenDiscs acting = driven;
-  parallel_tasks(static_cast<std::size_t>(bodies.layout().strips()), [&](std::size_t task, int) {
+  acting.set_sums(std::vector<DrivingWork>(strips));
+  std::vector<Dissipation> taken(strips);
+  parallel_tasks(strips, [&](std::size_t task, int) {
     const auto strip = static_cast<std::int32_t>(task);
-    Dissipation ignored;
-    acting.before(strip, copy);
-    step_function(copy, stage, 0, bodies.layout().strip_first[strip], bodies.layout().strip_first[strip + 1], ignored);
-    acting.after(strip, copy, stage, 0, time_at(steps), time_at(steps) + stage.drift, ignored);
+    if (driven_too) acting.before(strip, copy);
+    step_function(copy, stage, 0, bodies.layout().strip_first[strip], bodies.layout().strip_first[strip + 1],
+                  taken[task]);
+    if (!driven_too) return;
+    acting.after(strip, copy, stage, 0, time_at(steps), time_at(steps) + (stage.drift + stage.drift_before),
+                 taken[task]);
   });
-  return bodies.disc_velocities(velocity);
+  Trial trial{.velocities = bodies.disc_velocities(velocity), .dissipation = {}, .work = acting.work()};
+  for (const Dissipation& of_strip : taken) {
+    trial.dissipation.mass += of_strip.mass;
+    trial.dissipation.contact += of_strip.contact;
+    trial.dissipation.local += of_strip.local;
+  }
+  return trial;
 }
 
-/// Leapfrog: the mean of the velocities half a step before and after.
+// v_n is the mean of the velocities v-, v+ half a step before and after, and v- + 2 (v_n - v-) = v+ reaches the same
+// positions as the whole step.
+Simulation::Implementation::Trial Simulation::Implementation::half_kick() const {
+  const Stage& whole = stages[0];
+  const Stage half{.keep = 0.5 * (1 + whole.keep),
+                   .kick = 0.5 * whole.kick,
+                   .drift = 2 * whole.drift,
+                   .drift_before = -whole.drift,
+                   .duration = 0.5 * whole.duration};
+  return try_stage(half, bodies.motion[parity], bodies.velocity, bodies.velocity_at[parity]);
+}
+
 std::vector<DiscMotion> Simulation::Implementation::synchronous_velocities() const {
-  std::vector<DiscMotion> v = bodies.disc_velocities(bodies.velocity);
-  if (!staggered()) return v;
-  const std::vector<DiscMotion> next =
-      velocities_after(stages[0], bodies.motion[parity], bodies.velocity, bodies.velocity_at[parity]);
-  for (std::size_t d = 0; d < v.size(); ++d) {
-    v[d] = {0.5 * (v[d].u + next[d].u), 0.5 * (v[d].theta + next[d].theta)};
-  }
-  return v;
+  return staggered() ? half_kick().velocities : bodies.disc_velocities(bodies.velocity);
 }
 
 std::vector<DiscMotion> Simulation::Implementation::motions() const {
@@ -58,59 +86,99 @@ std::vector<DiscMotion> Simulation::Implementation::motions() const {
   return result;
 }
 
-EnergyLedger Simulation::Implementation::ledger() const {
-  EnergyLedger result;
-  const std::vector<DiscMotion> now = motions(), v = bodies.disc_velocities(bodies.velocity);
-  const std::vector<DiscMotion> before = staggered() ? bodies.discs_of(bodies.motion[1 - parity]) : now;
-  for (std::size_t d = 0; d < now.size(); ++d) {
-    const Inertia& inertia = scene.inertia[d];
-    result.kinetic += 0.5 * (inertia.mass * dot(v[d].u, v[d].u) + inertia.moment * v[d].theta * v[d].theta);
-    result.potential -= 0.5 * inertia.mass * dot(options.gravity, now[d].u + before[d].u);
-  }
+double Simulation::Implementation::elastic_energy(const std::vector<DiscMotion>& now) const {
+  double energy = 0;
   for (std::size_t c = 0; c < scene.assembly.contacts.size(); ++c) {
     const Contact& contact = scene.assembly.contacts[c];
-    const SpringConstants k = scene.springs[c];
+    const DiscMotion &i = now[contact.i], &j = now[contact.j];
     if (kind.motion == LoopKind::Motion::finite) {
-      const FiniteBond bond = bond_of(scene.assembly, contact, k);
-      result.elastic += 0.5 * (bond_energy(bond, now[contact.i], now[contact.j]) +
-                               bond_energy(bond, before[contact.i], before[contact.j]));
-      continue;
+      energy += bond_energy(bond_of(scene.assembly, contact, scene.springs[c]), i, j);
+    } else {
+      const ContactDeformation d = deformation(frame_of(scene.assembly, contact), i, j);
+      energy += 0.5 * (scene.springs[c].kN * d.normal * d.normal + scene.springs[c].kT * d.tangential * d.tangential);
     }
-    const ContactFrame frame = frame_of(scene.assembly, contact);
-    const ContactDeformation d = deformation(frame, now[contact.i], now[contact.j]);
-    const ContactDeformation e = deformation(frame, before[contact.i], before[contact.j]);
-    result.elastic += 0.5 * (k.kN * d.normal * e.normal + k.kT * d.tangential * e.tangential);
   }
-  result.elastic += 0.5 * (driven.wall_energy(bodies.motion[parity].data(), time_at(steps)) +
-                           driven.wall_energy(bodies.motion[staggered() ? 1 - parity : parity].data(),
-                                              time_at(staggered() ? steps - 1 : steps)));
+  return energy + wall_pushes(scene, now, time_at(steps)).energy;
+}
+
+// From the state that leapfrog keeps to the present, with v-, v the velocities half a step before and now, f the forces of
+// springs, walls and gravity, g all others: m (v - v-) = h/2 (f + g), so that g works h/2 g.(v + v-)/2, and the energies
+// then differ from those that leapfrog conserves, half a step behind, by h/4 f.(v - v-).
+void Simulation::Implementation::add_half_kick(const std::vector<DiscMotion>& now, EnergyLedger& ledger) const {
+  const double h = options.time_step;
+  const std::vector<DiscMotion> before = bodies.disc_velocities(bodies.velocity);
+  const Trial half = half_kick();
+  std::vector<DiscForce> forces = forces_at(now, false);
+  const WallPushes pushes = wall_pushes(scene, now, time_at(steps));
+  for (std::size_t d = 0; d < now.size(); ++d) {
+    const Inertia& inertia = scene.inertia[d];
+    const DiscMotion &v = half.velocities[d], &u = before[d];
+    if (!pushes.forces.empty()) forces[d].force += pushes.forces[d];
+    ledger.kinetic += 0.5 * (inertia.mass * dot(v.u, v.u) + inertia.moment * v.theta * v.theta);
+    ledger.sway += h / 4 * (dot(forces[d].force, v.u - u.u) + forces[d].moment * (v.theta - u.theta));
+    ledger.damped_mass += options.damping.mass * h / 4 *
+                          (inertia.mass * dot(v.u, u.u + v.u) + inertia.moment * v.theta * (u.theta + v.theta));
+  }
+  ledger.damped_contact += half.dissipation.contact;
+  ledger.damped_local += half.dissipation.local;
+  ledger.work_of_loads += half.work.loads;
+  ledger.work_of_supports += half.work.supports;
+  ledger.work_of_walls += 0.5 * half.work.walls;  // of a whole step, which the motion of walls is given for
+}
+
+EnergyLedger Simulation::Implementation::raw_ledger() const {
+  EnergyLedger result;
+  const std::vector<DiscMotion> now = motions();
+  const DrivingWork work = driven.work();
+  result.work_of_loads = work.loads;
+  result.work_of_supports = work.supports;
+  result.work_of_walls = work.walls;
   for (const Dissipation& of_strip : dissipation) {
     result.damped_mass += of_strip.mass;
     result.damped_contact += of_strip.contact;
     result.damped_local += of_strip.local;
   }
-  const DrivingWork work = driven.work();
-  result.work_of_loads = work.loads;
-  result.work_of_supports = work.supports;
-  result.work_of_walls = work.walls;
-  result.potential -= initial_potential;
-  result.initial = initial_energy;
+  result.elastic = elastic_energy(now);
+  for (std::size_t d = 0; d < now.size(); ++d) {
+    result.potential -= scene.inertia[d].mass * dot(options.gravity, now[d].u);
+  }
+  if (staggered()) {
+    add_half_kick(now, result);
+    return result;
+  }
+  const std::vector<DiscMotion> v = bodies.disc_velocities(bodies.velocity);
+  for (std::size_t d = 0; d < v.size(); ++d) {
+    const Inertia& inertia = scene.inertia[d];
+    result.kinetic += 0.5 * (inertia.mass * dot(v[d].u, v[d].u) + inertia.moment * v[d].theta * v[d].theta);
+  }
+  return result;
+}
+
+EnergyLedger Simulation::Implementation::ledger() const {
+  EnergyLedger result = raw_ledger();
+  for (double EnergyLedger::*since : std::span(terms_at_start).subspan(2)) result.*since -= at_start.*since;
+  result.initial = at_start.kinetic + at_start.elastic;
   return result;
 }
 
 // From rest no damper acts, and a kick of one second makes the acceleration of the velocity.
-std::vector<DiscForce> Simulation::unbalanced_forces(const std::vector<DiscMotion>& motions) const {
-  const Implementation& s = *implementation_;
-  std::vector<double> motion(s.bodies.motion[0].size());
-  s.bodies.put(motions, motion);
+std::vector<DiscForce> Simulation::Implementation::forces_at(const std::vector<DiscMotion>& motions,
+                                                             bool driven_too) const {
+  LaneVector<double> motion(bodies.motion[0].size());
+  bodies.put(motions, motion);
   const std::vector<DiscMotion> a =
-      s.velocities_after({.kick = 1}, std::move(motion), std::vector<double>(s.bodies.velocity.size()),
-                         std::vector<double>(s.bodies.velocity_at[0].size()));
+      try_stage({.kick = 1}, std::move(motion), LaneVector<double>(bodies.velocity.size()),
+                LaneVector<double>(bodies.velocity_at[0].size()), driven_too)
+          .velocities;
   std::vector<DiscForce> forces(a.size());
   for (std::size_t d = 0; d < a.size(); ++d) {
-    forces[d] = {s.scene.inertia[d].mass * a[d].u, s.scene.inertia[d].moment * a[d].theta};
+    forces[d] = {scene.inertia[d].mass * a[d].u, scene.inertia[d].moment * a[d].theta};
   }
   return forces;
+}
+
+std::vector<DiscForce> Simulation::unbalanced_forces(const std::vector<DiscMotion>& motions) const {
+  return implementation_->forces_at(motions, true);
 }
 
 std::vector<DiscMotion> Simulation::velocities() const {
@@ -140,7 +208,8 @@ SimulationState Simulation::save() const {
                         .previous = s.bodies.discs_of(s.bodies.motion[1 - s.parity]),
                         .velocities = s.bodies.disc_velocities(s.bodies.velocity),
                         .ledger = s.ledger(),
-                        .sums = {s.initial_energy, s.initial_potential}};
+                        .sums = {}};
+  for (double EnergyLedger::*term : terms_at_start) state.sums.push_back(s.at_start.*term);
   for (const Dissipation& d : s.dissipation) state.sums.insert(state.sums.end(), {d.mass, d.contact, d.local});
   for (const DrivingWork& w : s.driven.sums()) state.sums.insert(state.sums.end(), {w.loads, w.supports, w.walls});
   return state;
@@ -150,7 +219,7 @@ void Simulation::restore(const SimulationState& state) {
   Implementation& s = *implementation_;
   const std::size_t discs = s.scene.assembly.size(), strips = s.dissipation.size();
   if (state.motions.size() != discs || state.previous.size() != discs || state.velocities.size() != discs ||
-      state.sums.size() != 2 + 6 * strips) {
+      state.sums.size() != std::size(terms_at_start) + 6 * strips) {
     bad_input(format("the saved state has {}", counted(static_cast<std::int64_t>(state.motions.size()), "disc")),
               format("this assembly has {}", discs), "Go on with the case that the state was saved from");
   }
@@ -159,9 +228,8 @@ void Simulation::restore(const SimulationState& state) {
   s.bodies.put(state.motions, s.bodies.motion[0]);
   s.bodies.put(state.previous, s.bodies.motion[1]);
   s.bodies.put_velocities(state.velocities);
-  s.initial_energy = state.sums[0];
-  s.initial_potential = state.sums[1];
-  const double* sum = state.sums.data() + 2;
+  const double* sum = state.sums.data();
+  for (double EnergyLedger::*term : terms_at_start) s.at_start.*term = *sum++;
   for (Dissipation& d : s.dissipation) d = {sum[0], sum[1], sum[2]}, sum += 3;
   std::vector<DrivingWork> work(strips);
   for (DrivingWork& w : work) w = {sum[0], sum[1], sum[2]}, sum += 3;

@@ -246,7 +246,8 @@ TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, 
         "The critical step is that of the reference state; contacts that turn and stretch change it.");
   }
   if (!scene.walls.empty()) {
-    result.notes.emplace_back("Walls are counted as if every disc touched all of them.");
+    result.notes.emplace_back(
+        "Walls are counted as if every disc touched all of them: the critical step is no shorter than this bound.");
   }
   if (wanted.allow_unstable) {
     if (result.growth_rate > 0) {

@@ -76,6 +76,22 @@ void check_discs(const Wall& wall, const Assembly& assembly) {
 
 }  // namespace
 
+WallPushes wall_pushes(const Scene& scene, const std::vector<DiscMotion>& motions, double time) {
+  WallPushes result;
+  if (!scene.walls.empty()) result.forces.resize(motions.size());
+  for (const Wall& wall : scene.walls) {
+    const double moved = wall.displacement.at(time);
+    for (std::size_t d = 0; d < motions.size(); ++d) {
+      const Vec2 centre = scene.assembly.centres[d] + motions[d].u;
+      const double gap = dot(wall.normal, centre - wall.point) - moved - scene.assembly.radii[d];
+      if (gap >= 0) continue;
+      result.forces[d] -= wall.kN * gap * wall.normal;
+      result.energy += 0.5 * wall.kN * gap * gap;
+    }
+  }
+  return result;
+}
+
 void check_wall(std::span<const Wall> walls, std::size_t k, const Assembly& assembly) {
   check_alone(walls[k], assembly);
   for (const Wall& other : walls)

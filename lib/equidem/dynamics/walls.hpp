@@ -1,15 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Whether walls leave room for the discs.
+/// What walls do, and whether they leave room for the discs.
 #pragma once
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/dynamics/simulation.hpp"
 
 namespace equidem {
+
+/// What walls exert on discs and store.
+struct WallPushes {
+  std::vector<Vec2> forces;  ///< N/m, per disc; empty where there is no wall
+  double energy = 0;         ///< N
+};
+
+/// Of all walls on all discs displaced by `motions`: -kN gap n where the gap is negative.
+WallPushes wall_pushes(const Scene& scene, const std::vector<DiscMotion>& motions, double time);
 
 /// Check wall k by itself, against the other walls, and against the discs where they start.
 ///

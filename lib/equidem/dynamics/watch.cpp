@@ -11,6 +11,9 @@
 namespace equidem {
 namespace {
 
+constexpr double most_of_a_bond = 0.5;   // by which its discs move past each other in a step
+constexpr double least_of_a_bond = 0.1;  // of its length at rest that is left
+
 /// The disc with the most kinetic energy.
 std::int64_t fastest_disc(const Scene& scene, const std::vector<DiscMotion>& velocities) {
   std::int64_t fastest = 0;
@@ -28,11 +31,10 @@ std::int64_t fastest_disc(const Scene& scene, const std::vector<DiscMotion>& vel
 RunawayWatch::RunawayWatch(const Scene& scene, const SimulationOptions& options, const RunawayLimits& limits)
     : scene_(scene), options_(options), limits_(limits) {}
 
-void RunawayWatch::look(const Simulation& run) {
+void RunawayWatch::look(const Simulation& run, const EnergyLedger& energy) {
   if (const std::int64_t disc = run.first_runaway(); disc >= 0) {
     stop(run, disc, format("the motion of disc {} is no finite number any more", disc));
   }
-  const EnergyLedger energy = run.energy();
   // Loads and gravity first take energy and then give it back: what counts is the most that was there.
   given_ = std::max({given_, energy.initial + std::abs(energy.work_of_loads) + std::abs(energy.work_of_supports) +
                                  std::abs(energy.work_of_walls) + std::abs(energy.potential)});
@@ -43,32 +45,59 @@ void RunawayWatch::look(const Simulation& run) {
          format("energy ran away: {:.3g} N, when {:.3g} N was all that the run was given; disc {} is the fastest", held,
                 given_, disc));
   }
+  if (options_.motion == LoopKind::Motion::finite) check_bonds(run);
   last_good_step_ = run.step();
 }
 
-void RunawayWatch::stop(const Simulation& run, std::int64_t disc, const std::string& problem) const {
+void RunawayWatch::check_bonds(const Simulation& run) const {
+  const std::vector<DiscMotion> motions = run.motions(), velocities = run.velocities();
+  for (const Contact& contact : scene_.assembly.contacts) {
+    const Vec2 branch = scene_.assembly.branch(contact), now = branch + motions[contact.j].u - motions[contact.i].u;
+    const double length = norm(branch);
+    const double moved = options_.time_step * norm(velocities[contact.j].u - velocities[contact.i].u) / length;
+    const double left = norm(now) / length;
+    if (moved <= most_of_a_bond && left >= least_of_a_bond) continue;
+    computation_failed(
+        moved > most_of_a_bond
+            ? format("the bonded discs {} and {} move past each other by {:.3g} of their distance in a step", contact.i,
+                     contact.j, moved)
+            : format("the bonded discs {} and {} pass through each other: {:.3g} of their distance is left", contact.i,
+                     contact.j, left),
+        where(run, contact.i),
+        "Lower velocities, loads or prescribed motions, or stiffen the springs; a shorter step helps where it is close "
+        "to "
+        "the critical one");
+  }
+}
+
+std::string RunawayWatch::where(const Simulation& run, std::int64_t disc) const {
   const Vec2 centre = scene_.assembly.centres[disc];
-  const std::string where =
-      format("step {}, t = {:.6g} s, all was well at step {}; the disc lies at ({:.6g}, {:.6g}) m", run.step(),
-             run.time(), last_good_step_, centre.x, centre.y);
+  const std::string when = run.step() == 0 ? std::string("at the start")
+                                           : format("step {}, t = {:.6g} s, all was well at step {}", run.step(),
+                                                    run.time(), last_good_step_);
+  return format("{}; disc {} lay at ({:.6g}, {:.6g}) m at first", when, disc, centre.x, centre.y);
+}
+
+void RunawayWatch::stop(const Simulation& run, std::int64_t disc, const std::string& problem) const {
+  const std::string place = where(run, disc);
   const double ratio = limits_.critical_step > 0 ? options_.time_step / limits_.critical_step : 0;
   if (limits_.growth_rate > 0) {
     computation_failed(
-        problem, format("{}; some kT is negative and motions grow at the rate {:.4g} 1/s", where, limits_.growth_rate),
+        problem, format("{}; some kT is negative and motions grow at the rate {:.4g} 1/s", place, limits_.growth_rate),
         "Solve the stiffness matrix instead: kT < 0 is stable in statics only");
   }
   if (ratio > 1) {
-    computation_failed(problem, format("{}; the time step is {:.4g} times the critical one", where, ratio),
+    computation_failed(problem, format("{}; the time step is {:.4g} times the critical one", place, ratio),
                        format("Take a step below {:.4g} s", limits_.critical_step));
   }
   const std::string known =
       ratio > 0 ? format("; the time step is {:.4g} of the critical one of the reference state", ratio) : std::string();
   if (options_.motion == LoopKind::Motion::finite) {
-    computation_failed(problem, where + known,
+    computation_failed(problem, place + known,
                        "Contacts that are pulled or turned far are stiffer than at the start: halve the step, or apply "
                        "loads and prescribed motions more slowly");
   }
-  computation_failed(problem, where + known,
+  computation_failed(problem, place + known,
                      "Check the time step against the critical one, and loads and prescribed motions for jumps");
 }
 

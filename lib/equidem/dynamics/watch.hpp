@@ -19,18 +19,22 @@ struct RunawayLimits {
   double growth_rate = 0;    ///< 1/s, of motions that grow whatever the step
 };
 
-/// Looks at a run from time to time and stops it where motions are no numbers or energy comes from nowhere.
+/// Looks at a run from time to time and stops it where motions are no numbers, energy comes from nowhere, or bonded discs of a
+/// finite motion pass through each other: the law of a bond does not hinder them.
 class RunawayWatch {
  public:
   /// The scene must outlive the watch.
   explicit RunawayWatch(const Scene& scene, const SimulationOptions& options, const RunawayLimits& limits = {});
 
-  /// To be called after every chunk of steps.
+  /// To be called at the start and after every chunk of steps.
   /// \throws Error (computation_failed) naming the step, the disc that is furthest off and the likely cause
-  void look(const Simulation& run);
+  void look(const Simulation& run, const EnergyLedger& energy);
+  void look(const Simulation& run) { look(run, run.energy()); }
 
  private:
   [[noreturn]] void stop(const Simulation& run, std::int64_t disc, const std::string& problem) const;
+  void check_bonds(const Simulation& run) const;
+  [[nodiscard]] std::string where(const Simulation& run, std::int64_t disc) const;
 
   const Scene& scene_;
   SimulationOptions options_;

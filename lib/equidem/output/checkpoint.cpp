@@ -27,7 +27,7 @@ static_assert(sizeof(SimulationState) ==
 static_assert(sizeof(DiscMotion) == 3 * sizeof(double));
 
 constexpr std::string_view magic = "equidem-checkpoint/";
-constexpr int format_version = 1;
+constexpr int format_version = 2;
 constexpr std::size_t header_size = 512;
 
 struct Field {
@@ -159,12 +159,35 @@ std::string first_differences(std::string_view there, std::string_view here) {
   return shown > 0 ? text : "the ends of their lines";
 }
 
-Hdf5Layout layout_of(const SimulationState& state, const std::string& case_text) {
+constexpr std::size_t sample_size = 2 + std::size(energy_terms);
+
+std::vector<double> packed(std::span<const EnergySample> energies) {
+  std::vector<double> numbers;
+  for (const EnergySample& sample : energies) {
+    numbers.insert(numbers.end(), {static_cast<double>(sample.step), sample.time});
+    for (const EnergyTerm& term : energy_terms) numbers.push_back(sample.ledger.*term.value);
+  }
+  return numbers;
+}
+
+std::vector<EnergySample> unpacked(const std::vector<double>& numbers) {
+  std::vector<EnergySample> energies(numbers.size() / sample_size);
+  const double* next = numbers.data();
+  for (EnergySample& sample : energies) {
+    sample.step = static_cast<std::int64_t>(*next++);
+    sample.time = *next++;
+    for (const EnergyTerm& term : energy_terms) sample.ledger.*term.value = *next++;
+  }
+  return energies;
+}
+
+Hdf5Layout layout_of(const SimulationState& state, const std::string& case_text, std::size_t samples) {
   Hdf5Layout layout;
   layout.user_block = header_size;
   layout.arrays = {{"case", Hdf5Number::text, {case_text.size()}},
                    {"step", Hdf5Number::int64, {1}},
-                   {"sums", Hdf5Number::float64, {state.sums.size()}}};
+                   {"sums", Hdf5Number::float64, {state.sums.size()}},
+                   {"energies", Hdf5Number::float64, {samples, sample_size}}};
   for (const Field& field : fields) {
     layout.arrays.push_back({field.name, Hdf5Number::float64, {(state.*field.values).size(), 3}});
   }
@@ -184,6 +207,28 @@ void get(const OpenFile& file, const Hdf5Array& array, std::span<Entry> entries)
   file.read_at(array.offset, std::as_writable_bytes(entries));
 }
 
+OpenFile open_whole(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) refuse(path, "there is no such file");
+  if (!std::filesystem::is_regular_file(path, ignored)) refuse(path, "it is no file");
+  OpenFile file(path, OpenFile::Mode::read);
+  check_whole(path, file);
+  return file;
+}
+
+Hdf5Layout find_arrays(const std::filesystem::path& path) {
+  std::vector<std::string> names;
+  for (const Hdf5Array& array : layout_of({}, {}, 0).arrays) names.push_back(array.name);
+  return read_hdf5_layout(path, names);
+}
+
+std::string read_case(const OpenFile& file, const Hdf5Layout& layout) {
+  std::string text(layout["case"].bytes(), '\0');
+  get(file, layout["case"], std::span<char>(text));
+  if (text.back() == '\0') text.pop_back();  // of an empty text HDF5 keeps one byte
+  return text;
+}
+
 }  // namespace
 
 CheckpointWriter::CheckpointWriter(std::filesystem::path path, std::string case_text, bool overwrite)
@@ -191,15 +236,17 @@ CheckpointWriter::CheckpointWriter(std::filesystem::path path, std::string case_
   check_writable(path_, overwrite);
 }
 
-void CheckpointWriter::write(const SimulationState& state) const {
+void CheckpointWriter::write(const SimulationState& state, std::span<const EnergySample> energies) const {
   std::error_code ignored;
   if (path_.has_parent_path()) std::filesystem::create_directories(path_.parent_path(), ignored);
   Replacement replacement(path_);
-  const Hdf5Layout layout = write_hdf5_layout(replacement.path(), layout_of(state, case_text_));
+  const Hdf5Layout layout = write_hdf5_layout(replacement.path(), layout_of(state, case_text_, energies.size()));
   OpenFile file(replacement.path(), OpenFile::Mode::update);
   put(file, layout["case"], std::span<const char>(case_text_));
   put(file, layout["step"], std::span(&state.step, 1));
   put(file, layout["sums"], std::span<const double>(state.sums));
+  const std::vector<double> samples = packed(energies);
+  put(file, layout["energies"], std::span<const double>(samples));
   for (const Field& field : fields) {
     put(file, layout[field.name], std::span<const DiscMotion>(state.*field.values));
   }
@@ -215,24 +262,15 @@ void CheckpointWriter::write(const SimulationState& state) const {
   sync_folder_of(path_);
 }
 
-SimulationState read_checkpoint(const std::filesystem::path& path, const std::string& case_text) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) refuse(path, "there is no such file");
-  if (!std::filesystem::is_regular_file(path, ignored)) refuse(path, "it is no file");
-  const OpenFile file(path, OpenFile::Mode::read);
-  check_whole(path, file);
-  std::vector<std::string> names;
-  for (const Hdf5Array& array : layout_of({}, {}).arrays) names.push_back(array.name);
-  const Hdf5Layout layout = read_hdf5_layout(path, names);
-
-  std::string there(layout["case"].bytes(), '\0');
-  get(file, layout["case"], std::span<char>(there));
-  if (there.back() == '\0') there.pop_back();  // of an empty text HDF5 keeps one byte
-  if (there != case_text) {
+Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string& case_text) {
+  const OpenFile file = open_whole(path);
+  const Hdf5Layout layout = find_arrays(path);
+  if (const std::string there = read_case(file, layout); there != case_text) {
     refuse(path, format("it belongs to another case: {}", first_differences(there, case_text)),
            "Go on with the case it was made by, or start the run afresh");
   }
-  SimulationState state;
+  Checkpoint result;
+  SimulationState& state = result.state;
   get(file, layout["step"], std::span(&state.step, 1));
   state.sums.resize(layout["sums"].shape[0]);
   get(file, layout["sums"], std::span(state.sums));
@@ -243,7 +281,15 @@ SimulationState read_checkpoint(const std::filesystem::path& path, const std::st
   for (const EnergyTerm& term : energy_terms) {
     get(file, layout[ledger_name(term)], std::span(&(state.ledger.*term.value), 1));
   }
-  return state;
+  std::vector<double> samples(layout["energies"].size());
+  get(file, layout["energies"], std::span(samples));
+  result.energies = unpacked(samples);
+  return result;
+}
+
+std::string case_of_checkpoint(const std::filesystem::path& path) {
+  const OpenFile file = open_whole(path);
+  return read_case(file, find_arrays(path));
 }
 
 }  // namespace equidem

@@ -20,10 +20,19 @@ namespace {
 
 constexpr const char* schema = "equidem-frames/1";
 
-/// Arrays of what moves; one entry per frame, as `time` and `step` have too.
-constexpr std::array moving = {"displacement", "rotation", "velocity", "spin"};
+constexpr const char* translation_of(bool travelling) {
+  return travelling ? "position" : "displacement";
+}
+constexpr const char* rotation_of(bool travelling) {
+  return travelling ? "angle" : "rotation";
+}
 
-Hdf5Layout layout_of(const Assembly& assembly, std::int64_t room) {
+/// Arrays of what moves; one entry per frame, as `time` and `step` have too.
+constexpr std::array<const char*, 4> moving(bool travelling) {
+  return {translation_of(travelling), rotation_of(travelling), "velocity", "spin"};
+}
+
+Hdf5Layout layout_of(const Assembly& assembly, std::int64_t room, bool travelling) {
   using enum Hdf5Number;
   const std::uint64_t n = assembly.size(), m = assembly.contacts.size(), k = static_cast<std::uint64_t>(room);
   Hdf5Layout layout;
@@ -37,8 +46,8 @@ Hdf5Layout layout_of(const Assembly& assembly, std::int64_t room) {
                    {"frames", int64, {1}},
                    {"time", float64, {k}, "s"},
                    {"step", int64, {k}},
-                   {"displacement", float64, {k, n, 3}, "m"},
-                   {"rotation", float64, {k, n}, "rad"},
+                   {translation_of(travelling), float64, {k, n, 3}, "m"},
+                   {rotation_of(travelling), float64, {k, n}, "rad"},
                    {"velocity", float64, {k, n, 3}, "m/s"},
                    {"spin", float64, {k, n}, "rad/s"}};
   if (assembly.period) layout.arrays.push_back({"period", float64, {2}, "m"});
@@ -106,7 +115,10 @@ bool holds(const OpenFile& file, const Hdf5Array& array, const std::vector<Entry
 
 FrameWriter::FrameWriter(const std::filesystem::path& folder, const std::string& name, const Assembly& assembly,
                          const FrameOptions& options)
-    : path_(folder / (name + ".h5")), index_path_(folder / (name + ".xdmf2")), assembly_(assembly) {
+    : path_(folder / (name + ".h5")),
+      index_path_(folder / (name + ".xdmf2")),
+      assembly_(assembly),
+      travelling_(options.travelling) {
   assert(options.expected >= 1);
   const bool replace = options.overwrite || options.continue_after;
   check_writable(path_, replace);
@@ -127,7 +139,7 @@ void FrameWriter::append(std::int64_t step, double time, std::span<const DiscMot
   assert(motions.size() == assembly_.size() && velocities.size() == assembly_.size());
   const std::size_t frame = times_.size();
   if (frame == layout_["time"].shape[0]) resize(2 * frames());
-  write_field("displacement", "rotation", motions);
+  write_field(translation_of(travelling_), rotation_of(travelling_), motions);
   write_field("velocity", "spin", velocities);
   write_numbers(*file_, frame_offset(layout_["time"], frame), std::vector{time});
   write_numbers(*file_, frame_offset(layout_["step"], frame), std::vector{step});
@@ -179,11 +191,11 @@ void FrameWriter::write_static(OpenFile& file, const Hdf5Layout& layout) const {
 /// A new file takes the place of the old one, if any, with the frames of that.
 void FrameWriter::resize(std::int64_t room) {
   Replacement replacement(path_);
-  const Hdf5Layout layout = write_hdf5_layout(replacement.path(), layout_of(assembly_, room));
+  const Hdf5Layout layout = write_hdf5_layout(replacement.path(), layout_of(assembly_, room, travelling_));
   OpenFile file(replacement.path(), OpenFile::Mode::update);
   write_static(file, layout);
   std::vector<std::byte> bytes;
-  for (const char* name : moving) {
+  for (const char* name : moving(travelling_)) {
     for (std::size_t frame = 0; frame < times_.size(); ++frame) {
       bytes.resize(frame_bytes(layout[name]));
       file_->read_at(frame_offset(layout_[name], frame), bytes);
@@ -205,14 +217,14 @@ void FrameWriter::go_on(std::int64_t after) {
   std::error_code ignored;
   if (!std::filesystem::exists(path_, ignored)) cannot_continue(path_, "there is no such file");
   std::vector<std::string> names;
-  for (const Hdf5Array& array : layout_of(assembly_, 1).arrays) names.push_back(array.name);
+  for (const Hdf5Array& array : layout_of(assembly_, 1, travelling_).arrays) names.push_back(array.name);
   layout_ = read_hdf5_layout(path_, names);
   if (layout_.attributes["schema"] != schema) {
     cannot_continue(path_, format("its schema is '{}', not '{}'", layout_.attributes["schema"], schema));
   }
   const std::vector<std::uint64_t> time_shape = layout_["time"].shape;
   const std::uint64_t room = time_shape.size() == 1 ? time_shape[0] : 0;
-  for (const Hdf5Array& wanted : layout_of(assembly_, static_cast<std::int64_t>(room)).arrays) {
+  for (const Hdf5Array& wanted : layout_of(assembly_, static_cast<std::int64_t>(room), travelling_).arrays) {
     const Hdf5Array& found = layout_[wanted.name];
     if (found.number != wanted.number || found.shape != wanted.shape || room == 0) {
       cannot_continue(path_, format("its array '{}' is not that of an assembly of {} and {}", wanted.name,
@@ -239,7 +251,8 @@ void FrameWriter::go_on(std::int64_t after) {
 }
 
 void FrameWriter::list_frame(std::size_t frame) {
-  index_ += xdmf_frame({path_.filename().string(), assembly_.size(), layout_["time"].shape[0]}, frame, times_[frame]);
+  index_ += xdmf_frame({path_.filename().string(), assembly_.size(), layout_["time"].shape[0], travelling_}, frame,
+                       times_[frame]);
 }
 
 void FrameWriter::write_index() const {

@@ -21,6 +21,9 @@ struct FrameOptions {
   /// Frames to leave room for, >= 1. Where more come the file is copied into one of twice the room.
   std::int64_t expected = 100;
   bool overwrite = false;  ///< files of that name
+  /// Of bodies that travel: positions and angles, as `position` and `angle`, in place of displacements and rotations; ParaView shows
+  /// the points where they are.
+  bool travelling = false;
   /// Go on with the files of an earlier run: frames later than this step are dropped.
   std::optional<std::int64_t> continue_after = {};
 };
@@ -67,6 +70,7 @@ class FrameWriter {
 
   std::filesystem::path path_, index_path_;
   const Assembly& assembly_;
+  bool travelling_;
   Hdf5Layout layout_;
   std::optional<OpenFile> file_;
   std::vector<double> times_;

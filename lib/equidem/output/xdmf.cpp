@@ -2,17 +2,10 @@
 #include "equidem/output/xdmf.hpp"
 
 #include "equidem/core/text.hpp"
+#include "equidem/output/xml.hpp"
 
 namespace equidem {
 namespace {
-
-std::string escape_xml(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    escaped += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
-  }
-  return escaped;
-}
 
 /// \param shape "10 2"
 std::string array(const XdmfSource& source, const std::string& name, const std::string& shape,
@@ -47,10 +40,15 @@ std::string xdmf_frame(const XdmfSource& source, std::uint64_t frame, double tim
   std::string text = format("<Grid Name=\"discs\" GridType=\"Uniform\"><Time Value=\"{}\"/>\n", time);
   text += format("<Topology TopologyType=\"Polyvertex\" NodesPerElement=\"1\" NumberOfElements=\"{}\">{}</Topology>\n",
                  n, array(source, "discs/number", format("{} 1", n), "Int\" Precision=\"4"));
-  text += format("<Geometry GeometryType=\"XY\">{}</Geometry>\n", array(source, "discs/centre", format("{} 2", n)));
+  text +=
+      source.travelling
+          ? format("<Geometry GeometryType=\"XYZ\">{}</Geometry>\n", slab(source, "position", frame, 3))
+          : format("<Geometry GeometryType=\"XY\">{}</Geometry>\n", array(source, "discs/centre", format("{} 2", n)));
   text += attribute("radius", "Scalar", array(source, "discs/radius", format("{}", n)));
-  for (const char* name : {"displacement", "velocity"}) text += attribute(name, "Vector", slab(source, name, frame, 3));
-  for (const char* name : {"rotation", "spin"}) text += attribute(name, "Scalar", slab(source, name, frame, 1));
+  for (const char* name : {source.travelling ? "position" : "displacement", "velocity"})
+    text += attribute(name, "Vector", slab(source, name, frame, 3));
+  for (const char* name : {source.travelling ? "angle" : "rotation", "spin"})
+    text += attribute(name, "Scalar", slab(source, name, frame, 1));
   return text + "</Grid>\n";
 }
 

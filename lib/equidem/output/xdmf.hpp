@@ -13,7 +13,8 @@ namespace equidem {
 struct XdmfSource {
   std::string file;  ///< name, in the folder of the index
   std::uint64_t discs = 0;
-  std::uint64_t room = 0;  ///< frames that it has room for
+  std::uint64_t room = 0;   ///< frames that it has room for
+  bool travelling = false;  ///< points at `position`, which replaces displacement, as angle does rotation
 };
 
 /// One point in time: discs as points; radius, displacement, rotation, velocity, spin.
