@@ -261,6 +261,16 @@ TEST_CASE("an_override_is_one_value") {
   CHECK(sentence.find('\n') == std::string::npos);
 }
 
+TEST_CASE("an_override_of_none_takes_a_key_out") {
+  CHECK(parsed(tension_case, {"solver.method=cholmod", "solver.method=none"}).solver.method == SolverMethod::automatic);
+  CHECK(parsed(load_case, {"load.0=none"}).load_cases.size() + 1 == parsed(load_case).load_cases.size());
+  CHECK(parsed(motion_case, {"run.duration=none", "run.until_rest=1e-9"}).run->until_rest == 1e-9);
+  const std::string missing = error_of(tension_case, {"springs.kV=none"});
+  CAPTURE(missing);
+  CHECK(missing.find("there is no 'kV' to take out") != std::string::npos);
+  CHECK(error_of(tension_case, {"springs.kN=none"}).find("kN") != std::string::npos);
+}
+
 TEST_CASE("edit_distance_counts_single_changes") {
   CHECK(edit_distance("kT", "kT") == 0);
   CHECK(edit_distance("kt", "kT") == 0);

@@ -161,7 +161,7 @@ normal = [-1.0, 0.0]
 kN = 2.0e9
 [[velocity]]
 group = "right"
-velocity = [0.1, 0.2]
+velocity = [0.1, 0.0]
 spin = -3.0
 [[probe]]
 name = "tip"

@@ -46,7 +46,7 @@ TEST_CASE("a_run_says_what_its_file_says") {
   CHECK(run.walls[1].displacement == Schedule{});
   REQUIRE(run.velocities.size() == 1);
   CHECK(run.velocities[0].group == "right");
-  CHECK(run.velocities[0].velocity == Vec2{0.1, 0.2});
+  CHECK(run.velocities[0].velocity == Vec2{0.1, 0.0});
   CHECK(run.velocities[0].spin == -3);
   REQUIRE(run.probes.size() == 1);
   CHECK(run.probes[0].group == "right");

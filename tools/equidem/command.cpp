@@ -32,7 +32,9 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_option("CASE", options.case_file, "the case file (TOML); 'equidem help case' lists its keys")
       ->required()
       ->type_name("FILE");
-  command.add_option("--set", options.set, "set a key of the case file, such as springs.kT=0.3e9; repeatable")
+  command
+      .add_option("--set", options.set,
+                  "set a key of the case file, such as springs.kT=0.3e9, or take it out: KEY=none; repeatable")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
   command.add_option("--seed", options.seed, "short for --set assembly.seed=S")->type_name("S");

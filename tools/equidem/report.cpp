@@ -112,9 +112,10 @@ std::string describe_problem(const Problem& problem, const Effects& effects) {
   const Assembly& a = problem.assembly;
   std::string out;
   if (!problem.resolved.title.empty()) out += problem.resolved.title + "\n\n";
-  out += report_line(
-      "assembly", format("{}, {} discs, {} contacts, z = {:.4g}", a.kind, grouped(static_cast<std::int64_t>(a.size())),
-                         grouped(static_cast<std::int64_t>(a.contacts.size())), a.coordination_number()));
+  out += report_line("assembly", format("{}, {} disc{}, {} contact{}, z = {:.4g}", a.kind,
+                                        grouped(static_cast<std::int64_t>(a.size())), a.size() == 1 ? "" : "s",
+                                        grouped(static_cast<std::int64_t>(a.contacts.size())),
+                                        a.contacts.size() == 1 ? "" : "s", a.coordination_number()));
   if (a.periodic() || !a.cell_areas.empty())
     out += report_line("", format("area {:.6g} m², solid fraction {:.6g}{}", a.area(), a.solid_fraction(),
                                   a.periodic() ? ", periodic" : ""));

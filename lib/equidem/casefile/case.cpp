@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "equidem/casefile/grain_keys.hpp"
 #include "equidem/casefile/keys.hpp"
 #include "equidem/casefile/read_value.hpp"
 #include "equidem/core/error.hpp"
@@ -219,6 +220,11 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
                 std::span<const std::string> overrides) {
   TomlValue root = parse_toml(content, name);
   for (const std::string& assignment : overrides) apply_override(root, assignment);
+  if (describes_grains(root)) {
+    throw Error(ErrorKind::bad_input, "the case describes grains that collide, and this verb needs an [assembly]",
+                "its contacts are there from the start and stay", "Use 'equidem run', or give an [assembly]",
+                root.where());
+  }
   check_one_source_of_springs(root);
   check_and_complete(root, case_file_spec());
   resolve_springs_file(root, folder);

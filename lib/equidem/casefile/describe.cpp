@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/check_value.hpp"
+#include "equidem/casefile/grain_keys.hpp"
 #include "equidem/casefile/keys.hpp"
 #include "equidem/core/text.hpp"
 
@@ -48,10 +49,21 @@ void append_key(std::string& out, const KeySpec& key) {
                            : key.has_default() ? format("default {}", key.fallback)
                                                : "optional";
   append_wrapped(out, format("{}; {}", expected(key), need), indent);
-  out.replace(begin + 2, name.size(), name);
+  if (name.size() > name_width) {
+    out.insert(begin, "  " + name + "\n");
+  } else {
+    out.replace(begin + 2, name.size(), name);
+  }
   std::string help = key.help;
   if (*key.when_key != '\0') help = format("({} = {}) {}", key.when_key, joined(key.when), help);
   if (!help.empty()) append_wrapped(out, help, indent);
+}
+
+void append_table(std::string& out, const FileSpec& spec, const TableSpec& table) {
+  const std::string heading = table.repeated ? format("[[{}]]", table.name) : format("[{}]", table.name);
+  out += format("\n{}  {}{}\n", heading, table.help, table.required ? "; required" : "");
+  for (const KeySpec& key : spec.keys)
+    if (std::string_view(key.table) == table.name) append_key(out, key);
 }
 
 constexpr const char* example =
@@ -78,6 +90,31 @@ Any key can be set on the command line: --set springs.kT=0.3e9 --set assembly.ro
 
 )";
 
+constexpr const char* grain_example =
+    R"(
+Bodies that meet, rebound and part, for 'equidem run': a case with [grains] or [[grain]] in place of
+[assembly]. The top of the file, [[schedule]] and [output] are as above, without output.vtk; the
+rest is below. An example:
+
+  schema = "equidem/1"
+  [grains]
+  body    = "sphere"
+  density = 2500.0
+  [[grain]]
+  position = [0.0, 1.0]
+  radius   = 0.02
+  [collisions]
+  restitution      = 0.8
+  contact_duration = 1.0e-3
+  [[wall]]
+  name   = "floor"
+  point  = [0.0, 0.0]
+  normal = [0.0, 1.0]
+  [run]
+  duration = 2.0
+  gravity  = [0.0, -9.81]
+)";
+
 }  // namespace
 
 std::string describe_case_file() {
@@ -86,12 +123,12 @@ std::string describe_case_file() {
   out += "At the top of the file\n";
   for (const KeySpec& key : spec.keys)
     if (*key.table == '\0') append_key(out, key);
-  for (const TableSpec& table : spec.tables) {
-    const std::string heading = table.repeated ? format("[[{}]]", table.name) : format("[{}]", table.name);
-    out += format("\n{}  {}{}\n", heading, table.help, table.required ? "; required" : "");
-    for (const KeySpec& key : spec.keys)
-      if (std::string_view(key.table) == table.name) append_key(out, key);
-  }
+  for (const TableSpec& table : spec.tables) append_table(out, spec, table);
+  out += grain_example;
+  const FileSpec& grains = grain_file_spec();
+  for (const TableSpec& table : grains.tables)
+    if (std::string_view(table.name) != "schedule" && std::string_view(table.name) != "output")
+      append_table(out, grains, table);
   return out;
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/casefile/echo.hpp"
+
 #include <algorithm>
-#include <filesystem>
+#include <utility>
 
 #include "equidem/casefile/case.hpp"
-#include "equidem/casefile/keys.hpp"
 
 namespace equidem {
 namespace {
@@ -52,7 +53,10 @@ void write_table(std::string& out, const std::string& path, const TomlValue& tab
 }  // namespace
 
 std::string to_toml(const Case& resolved, const fs::path& folder) {
-  TomlValue document = resolved.document;
+  return to_toml(resolved.document, folder);
+}
+
+std::string to_toml(TomlValue document, const fs::path& folder) {
   const auto make_relative = [&](TomlValue& table) {
     TomlValue* path = table.find("path");
     if (path == nullptr) return;
@@ -62,7 +66,8 @@ std::string to_toml(const Case& resolved, const fs::path& folder) {
     const fs::path relative = to.lexically_relative(from);
     path->text = relative.empty() ? to.string() : relative.string();
   };
-  make_relative(*document.find("assembly"));
+  for (const char* name : {"assembly", "grains"})
+    if (TomlValue* table = document.find(name)) make_relative(*table);
   if (TomlValue* schedules = document.find("schedule"))
     for (TomlValue& schedule : schedules->items) make_relative(schedule);
   const auto place = [](const auto& entry) { return entry.first == "schema" ? 0 : entry.first == "title" ? 1 : 2; };

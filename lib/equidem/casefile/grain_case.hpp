@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A case of bodies that collide, as typed values.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/toml.hpp"
+#include "equidem/grains/grain_scene.hpp"
+
+namespace equidem {
+
+/// How bodies of two kinds meet, as the case says it.
+struct PairCase {
+  /// Without stiffness and dimensionless where these follow from `duration`.
+  PairProperties properties;
+  /// s, of a contact; 0: not given. Then omega = sqrt(k/m) is the same for all masses, and a = (omega dt)².
+  double duration = 0;
+  double closing_speed = 0;  ///< m/s; 0: not given
+};
+
+/// [[probe]]: a history of grains.
+struct GrainProbe {
+  std::string name;
+  std::vector<std::int32_t> grains;     ///< at least one
+  std::vector<std::string> quantities;  ///< words of the key probe.quantities
+};
+
+/// A checked case: complete, in range and without contradiction; what only all bodies together can tell is checked where the
+/// simulation begins.
+struct GrainCase {
+  std::string title;
+  Body body = Body::disc;
+  std::vector<Grain> grains;      ///< those of the file, then those of the case
+  std::vector<double> densities;  ///< kg/m³, of each
+  std::vector<GrainWall> walls;
+  /// Of the scene, by name: groups of grains, "walls", walls with a pair of their own; with young_modulus a group counts once for
+  /// each radius.
+  std::vector<std::string> kinds;
+  std::vector<PairCase> pairs;  ///< of the kinds of the scene, row by row, symmetric
+  NormalLaw law = NormalLaw::exact_flow;
+  double reference_length = 0;      ///< m; 0: twice the largest radius
+  double duration = 0;              ///< s
+  std::optional<double> time_step;  ///< s; none: by steps_per_contact
+  double steps_per_contact = 0;
+  GrainOptions::Scheme scheme = GrainOptions::Scheme::semi_implicit_euler;
+  Vec2 gravity;  ///< m/s²
+  std::vector<GrainProbe> probes;
+  OutputCase output;
+
+  /// The document behind it, defaults filled in.
+  TomlValue document;
+
+  /// "cases/a.toml:7: wall.0": where the user wrote it, for errors.
+  [[nodiscard]] std::string where(std::string_view key) const;
+  [[nodiscard]] int kind_count() const { return static_cast<int>(kinds.size()); }
+  [[nodiscard]] const PairCase& between(int a, int b) const {
+    return pairs[static_cast<std::size_t>(a * kind_count() + b)];
+  }
+};
+
+/// Whether a case file describes bodies that collide.
+/// \throws Error (bad_input) where it cannot be read, is no TOML, or has an [assembly] too
+bool describes_grains(const std::filesystem::path& path, std::span<const std::string> overrides = {});
+
+/// Read and check a case file.
+/// \param overrides "collisions.friction=0.3", in order
+/// \throws Error (bad_input) with file, line and key
+GrainCase read_grain_case(const std::filesystem::path& path, std::span<const std::string> overrides = {});
+
+/// The same from text.
+/// \param name of the file, for messages
+/// \param folder to which paths in the text are relative
+GrainCase parse_grain_case(std::string_view text, const std::string& name, const std::filesystem::path& folder,
+                           std::span<const std::string> overrides = {});
+
+}  // namespace equidem

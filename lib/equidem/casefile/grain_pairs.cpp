@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/casefile/grain_pairs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "equidem/casefile/read_value.hpp"
+#include "equidem/contact/collision_stiffness.hpp"
+#include "equidem/core/nearest.hpp"
+
+namespace equidem {
+namespace {
+
+/// With so many radii a table of all pairs of them is no longer small.
+constexpr std::size_t most_kinds = 256;
+
+/// What a table says that later ones may say otherwise; values that are not given are nullptr.
+struct Terms {
+  std::string key;  ///< of the table, for errors
+  const TomlValue* restitution = nullptr;
+  const TomlValue* end = nullptr;
+  const TomlValue* stiffness = nullptr;  ///< by the key `by`
+  const char* by = "";
+  const TomlValue* closing_speed = nullptr;
+  const TomlValue* friction = nullptr;
+  const TomlValue* tangential_ratio = nullptr;
+  const TomlValue* tangential_damping = nullptr;
+  const TomlValue* cap = nullptr;
+};
+
+constexpr std::array ways_to_stiffness = {"stiffness", "dimensionless_stiffness", "contact_duration", "largest_overlap",
+                                          "young_modulus"};
+
+bool has_end(NormalLaw law) {
+  return !is_map(law);
+}
+
+/// `terms` with what a table says instead.
+Terms with(Terms terms, const TomlValue& table, const std::string& key, NormalLaw law) {
+  terms.key = key;
+  const auto take = [&](const TomlValue*& value, const char* name) {
+    if (const TomlValue* found = table.find(name)) value = found;
+  };
+  take(terms.restitution, "restitution");
+  take(terms.end, "contact_end");
+  take(terms.closing_speed, "closing_speed");
+  take(terms.friction, "friction");
+  take(terms.tangential_ratio, "tangential_ratio");
+  take(terms.tangential_damping, "tangential_damping");
+  take(terms.cap, "friction_cap");
+  const TomlValue* earlier = nullptr;
+  for (const char* way : ways_to_stiffness) {
+    const TomlValue* found = table.find(way);
+    if (found == nullptr) continue;
+    if (earlier != nullptr)
+      fail_at(*found, format("{}.{}", key, way), format("{} and {} are both given", terms.by, way),
+              "each says how stiff a contact is", "Remove one of them");
+    earlier = terms.stiffness = found;
+    terms.by = way;
+  }
+  if (const TomlValue* end = table.find("contact_end"); end != nullptr && !has_end(law))
+    fail_at(*end, key + ".contact_end", format("{} has no use for contact_end", to_string(law)), "it has no dashpot",
+            "Remove it");
+  if (const TomlValue* duration = table.find("contact_duration");
+      duration != nullptr && law == NormalLaw::hertz_dashpot)
+    fail_at(*duration, key + ".contact_duration", "a Hertz contact lasts the shorter the faster it is",
+            "a duration says nothing of its stiffness",
+            "Give stiffness, young_modulus, or largest_overlap with closing_speed");
+  return terms;
+}
+
+void check_base(const TomlValue& table, const Terms& base, const GrainCase& result) {
+  const TomlValue* young = table.find("young_modulus");
+  const TomlValue* poisson = table.find("poisson_ratio");
+  if (base.stiffness == nullptr) {
+    if (poisson != nullptr)
+      fail_at(*poisson, "collisions.poisson_ratio", "poisson_ratio is given without young_modulus",
+              "both make the stiffness of a Hertz contact", "Add young_modulus = ... in Pa");
+    const bool hertz = result.law == NormalLaw::hertz_dashpot;
+    fail_at(table, "collisions.stiffness", "it is not said how stiff contacts are", "there is no default for it",
+            hertz ? "Add stiffness, or young_modulus with poisson_ratio, or largest_overlap with closing_speed"
+                  : "Add contact_duration = ... in s, or stiffness, or largest_overlap with closing_speed");
+  }
+  if (young == nullptr) return;
+  if (poisson == nullptr)
+    fail_at(*young, "collisions.young_modulus", "young_modulus is given without poisson_ratio",
+            "both make the stiffness of a Hertz contact", "Add poisson_ratio = ...");
+  if (result.body == Body::disc)
+    fail_at(*young, "collisions.young_modulus", "the bodies are discs", "the stiffness by Hertz is that of spheres",
+            "Write body = \"sphere\" in [grains], or give stiffness");
+}
+
+/// The dashpot that gives the restitution exists.
+void check_restitution(const Terms& terms, NormalLaw law, const PairProperties& pair) {
+  try {
+    damping_ratio(law, pair);
+  } catch (const Error& error) {
+    throw error.at(format("{}: {}.restitution", terms.restitution->where(), terms.key));
+  }
+}
+
+void set_stiffness(const Terms& terms, const GrainCase& result, const std::optional<ReducedMasses>& masses,
+                   const std::function<double()>& by_hertz, PairCase& pair) {
+  PairProperties& properties = pair.properties;
+  const std::string by = terms.by;
+  const double value = terms.stiffness->real;
+  if (by == "stiffness") {
+    properties.stiffness = value;
+  } else if (by == "dimensionless_stiffness") {
+    properties.dimensionless = value;
+  } else if (by == "contact_duration") {
+    pair.duration = value;
+    const double zeta = damping_ratio(result.law, properties);
+    if (zeta >= 1)
+      fail_at(*terms.stiffness, terms.key + ".contact_duration",
+              format("with restitution {} the contact never comes back to zero overlap", properties.restitution),
+              format("its damping ratio is {:.4g}, 1 or more", zeta), "Give stiffness instead");
+  } else if (by == "largest_overlap") {
+    if (terms.closing_speed == nullptr)
+      fail_at(*terms.stiffness, terms.key + ".largest_overlap", "largest_overlap is given without closing_speed",
+              "the overlap depends on the speed", "Add closing_speed = ... in m/s");
+    const double speed = terms.closing_speed->real;
+    const double mass = masses ? masses->largest : 1;
+    properties.stiffness = result.law == NormalLaw::hertz_dashpot
+                               ? 1.25 * mass * speed * speed / std::pow(value, 2.5)  // (5 m v²/(4 k))^(2/5), undamped
+                               : stiffness_from_overlap(value, speed, mass, damping_ratio(result.law, properties));
+  } else {
+    properties.stiffness = by_hertz();
+  }
+}
+
+PairCase pair_of(const Terms& terms, const GrainCase& result, const std::optional<ReducedMasses>& masses,
+                 const std::function<double()>& by_hertz) {
+  PairCase pair;
+  PairProperties& properties = pair.properties;
+  properties.restitution = terms.restitution->real;
+  // That of hertz_dashpot is exact for this end.
+  properties.end = result.law == NormalLaw::hertz_dashpot ? ContactEnd::at_zero_overlap : ContactEnd::at_zero_force;
+  if (terms.end != nullptr) properties.end = contact_end_from(terms.end->text);
+  properties.friction = terms.friction->real;
+  properties.tangential_ratio = properties.friction > 0 ? terms.tangential_ratio->real : 0;
+  properties.tangential_damping = properties.friction > 0 ? terms.tangential_damping->real : 0;
+  properties.cap = terms.cap->text == "whole_force" ? FrictionCap::whole_force : FrictionCap::spring_alone;
+  if (terms.closing_speed != nullptr) pair.closing_speed = terms.closing_speed->real;
+  check_restitution(terms, result.law, properties);
+  set_stiffness(terms, result, masses, by_hertz, pair);
+  return pair;
+}
+
+struct Override {
+  std::string first, second;
+  const TomlValue* table;
+};
+
+/// The overrides of [[collisions.pair]]; `walls` collects the walls that have some.
+std::vector<Override> read_overrides(const TomlValue& collisions, const std::vector<std::string>& groups,
+                                     const GrainCase& result, std::vector<std::string>& walls) {
+  std::vector<Override> overrides;
+  std::vector<std::string> names = groups, wall_names;
+  for (const GrainWall& wall : result.walls) wall_names.push_back(wall.name);
+  const auto is_in = [](const std::vector<std::string>& list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  for (const TomlValue& table : repeated(collisions, "pair")) {
+    const auto known = [&](const char* key, bool walls_too) {
+      const TomlValue& value = *table.find(key);
+      std::vector<std::string> choices = groups;
+      if (walls_too) choices.insert(choices.end(), wall_names.begin(), wall_names.end());
+      if (is_in(choices, value.text)) return value.text;
+      const auto meant = nearest(value.text, choices);
+      std::string list;
+      for (const std::string& choice : choices) list += format("{}'{}'", list.empty() ? "" : ", ", choice);
+      fail_at(value, format("collisions.pair.{}", key),
+              format("{} is no group of grains{}", value.shown(), walls_too ? " and no wall" : ""),
+              format("there are {}", list), meant ? format("Did you mean \"{}\"?", *meant) : "Name one of them");
+    };
+    const std::string first = known("group", false), second = known("with", true);
+    if (is_in(wall_names, second) && !is_in(walls, second)) walls.push_back(second);
+    for (const Override& earlier : overrides) {
+      if (std::minmax(earlier.first, earlier.second) != std::minmax(first, second)) continue;
+      fail_at(table, "collisions.pair", format("'{}' and '{}' are a pair twice", first, second),
+              format("the other is at {}", earlier.table->where()), "Keep one of them");
+    }
+    overrides.push_back({first, second, &table});
+  }
+  return overrides;
+}
+
+}  // namespace
+
+void read_collisions(const TomlValue& root, const std::vector<std::string>& groups, GrainCase& result) {
+  const TomlValue& table = *root.find("collisions");
+  const bool by_radius = table.find("young_modulus") != nullptr;
+  std::map<std::pair<std::string, double>, int> kind_of;
+  std::vector<std::string> group_names;
+  std::vector<double> radii;  // of the kinds of grains, where contacts depend on it
+  for (std::size_t g = 0; g < result.grains.size(); ++g) {
+    const double radius = by_radius ? result.grains[g].radius : 0;
+    const auto [at, is_new] = kind_of.try_emplace({groups[g], radius}, static_cast<int>(result.kinds.size()));
+    if (is_new) {
+      if (std::find(group_names.begin(), group_names.end(), groups[g]) == group_names.end())
+        group_names.push_back(groups[g]);
+      result.kinds.push_back(groups[g]);
+      radii.push_back(radius);
+      if (result.kinds.size() > most_kinds) {
+        fail_at(table, by_radius ? "collisions.young_modulus" : "grain.group",
+                format("there are more than {} {}", most_kinds, by_radius ? "different radii" : "groups"),
+                "a table of all pairs of them would grow large",
+                by_radius ? "Give stiffness instead, or fewer radii" : "Put grains that meet alike into one group");
+      }
+    }
+    result.grains[g].kind = at->second;
+  }
+  const std::size_t grain_kinds = result.kinds.size();
+
+  std::vector<std::string> walls_apart;
+  const auto overrides = read_overrides(table, group_names, result, walls_apart);
+  if (walls_apart.size() < result.walls.size()) result.kinds.emplace_back("walls");
+  result.kinds.insert(result.kinds.end(), walls_apart.begin(), walls_apart.end());
+  for (GrainWall& wall : result.walls) {
+    const auto at =
+        std::find(result.kinds.begin() + static_cast<std::ptrdiff_t>(grain_kinds), result.kinds.end(), wall.name);
+    wall.kind = static_cast<int>(
+        (at != result.kinds.end() ? at - result.kinds.begin() : static_cast<std::ptrdiff_t>(grain_kinds)));
+  }
+
+  const Terms base = with({}, table, "collisions", result.law);
+  check_base(table, base, result);
+  Terms walls = base;
+  if (const TomlValue* differs = table.find("walls")) walls = with(base, *differs, "collisions.walls", result.law);
+  const auto masses = masses_of_kinds(result);
+  const int count = result.kind_count();
+  result.pairs.resize(static_cast<std::size_t>(count) * static_cast<std::size_t>(count));
+  for (int a = 0; a < count; ++a) {
+    for (int b = a; b < count; ++b) {
+      const auto first = static_cast<std::size_t>(a), second = static_cast<std::size_t>(b);
+      const bool on_wall = second >= grain_kinds;
+      Terms terms = on_wall ? walls : base;
+      for (const Override& differs : overrides) {
+        if (std::minmax(differs.first, differs.second) == std::minmax(result.kinds[first], result.kinds[second]))
+          terms = with(terms, *differs.table, "collisions.pair", result.law);
+      }
+      const auto by_hertz = [&] {
+        if (first >= grain_kinds) return 1.0;  // two walls never meet
+        const double young = number(table, "young_modulus"), poisson = number(table, "poisson_ratio");
+        return on_wall ? hertz_stiffness_on_rigid_wall(young, poisson, radii[first])
+                       : hertz_stiffness(young, poisson, radii[first], young, poisson, radii[second]);
+      };
+      const PairCase pair = pair_of(terms, result, reduced_masses(masses, a, b), by_hertz);
+      result.pairs[static_cast<std::size_t>(a * count + b)] = pair;
+      result.pairs[static_cast<std::size_t>(b * count + a)] = pair;
+    }
+  }
+}
+
+std::vector<KindMasses> masses_of_kinds(const GrainCase& resolved) {
+  std::vector<KindMasses> kinds(resolved.kinds.size());
+  for (const Grain& grain : resolved.grains) {
+    KindMasses& kind = kinds[static_cast<std::size_t>(grain.kind)];
+    const double mass = grain.inertia.mass;
+    if (kind.grains++ == 0) {
+      kind.smallest = kind.largest = mass;
+    } else if (kind.grains == 2) {
+      kind.second_smallest = kind.largest = std::max(kind.smallest, mass);
+      kind.second_largest = kind.smallest = std::min(kind.smallest, mass);
+    } else {
+      kind.second_smallest = std::min(kind.second_smallest, std::max(kind.smallest, mass));
+      kind.smallest = std::min(kind.smallest, mass);
+      kind.second_largest = std::max(kind.second_largest, std::min(kind.largest, mass));
+      kind.largest = std::max(kind.largest, mass);
+    }
+  }
+  return kinds;
+}
+
+std::optional<ReducedMasses> reduced_masses(const std::vector<KindMasses>& kinds, int a, int b) {
+  const KindMasses& first = kinds[static_cast<std::size_t>(a)];
+  const KindMasses& second = kinds[static_cast<std::size_t>(b)];
+  const auto reduced = [](double m, double n) { return m * n / (m + n); };
+  if (first.grains == 0 && second.grains == 0) return {};
+  if (first.grains == 0) return ReducedMasses{second.smallest, second.largest};
+  if (second.grains == 0) return ReducedMasses{first.smallest, first.largest};
+  if (a != b) return ReducedMasses{reduced(first.smallest, second.smallest), reduced(first.largest, second.largest)};
+  if (first.grains < 2) return {};
+  return ReducedMasses{reduced(first.smallest, first.second_smallest), reduced(first.largest, first.second_largest)};
+}
+
+double damping_ratio(NormalLaw law, const PairProperties& pair) {
+  if (is_map(law)) return 0;
+  if (law == NormalLaw::hertz_dashpot) return hertz_damping_of(pair.restitution) / std::sqrt(5.0);
+  return damping_ratio_of(pair.restitution, pair.end);
+}
+
+}  // namespace equidem

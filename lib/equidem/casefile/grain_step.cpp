@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/casefile/grain_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "equidem/casefile/grain_pairs.hpp"
+#include "equidem/contact/collision_stiffness.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+using std::numbers::pi;
+
+/// The contact of the lightest bodies of two kinds.
+struct Shortest {
+  double duration = std::numeric_limits<double>::infinity();  ///< s
+  double omega = 0;                                           ///< 1/s, 0 for hertz_dashpot
+  double zeta = 0;
+  int a = 0, b = 0;
+  bool any = false;  ///< two bodies can meet
+};
+
+/// \param step s, of a stiffness that is held in steps; 0: not known
+/// \throws Error where the contact of some pair has no known duration
+Shortest shortest_contact(const GrainCase& resolved, double step) {
+  Shortest shortest;
+  const auto masses = masses_of_kinds(resolved);
+  for (int a = 0; a < resolved.kind_count(); ++a) {
+    for (int b = a; b < resolved.kind_count(); ++b) {
+      const auto reduced = reduced_masses(masses, a, b);
+      if (!reduced) continue;
+      shortest.any = true;
+      const PairCase& pair = resolved.between(a, b);
+      const PairProperties& properties = pair.properties;
+      const double zeta = damping_ratio(resolved.law, properties);
+      const double swing = zeta < 1 ? std::sqrt(1 - zeta * zeta) : 1;
+      double duration = 0, omega = 0;
+      if (properties.dimensionless > 0 && step == 0) {
+        bad_input("time_step = \"auto\" with dimensionless_stiffness", "the step is what makes the stiffness",
+                  "Give time_step = ... in s, or another stiffness");
+      }
+      if (resolved.law == NormalLaw::hertz_dashpot) {
+        if (pair.closing_speed == 0) {
+          if (step > 0) return Shortest{.duration = 0, .any = true};
+          bad_input("time_step = \"auto\" of hertz_dashpot without closing_speed",
+                    "a Hertz contact lasts the shorter the faster it is",
+                    "Add closing_speed = ... in m/s to [collisions], or give time_step = ... in s");
+        }
+        double length = resolved.reference_length;
+        if (length == 0)
+          for (const Grain& grain : resolved.grains) length = std::max(length, 2 * grain.radius);
+        const double k = properties.stiffness > 0
+                             ? properties.stiffness
+                             : properties.dimensionless * reduced->smallest / (step * step * std::sqrt(length));
+        duration = hertz_impact(k, reduced->smallest, pair.closing_speed).duration;
+      } else {
+        omega = pair.duration > 0          ? pi / (pair.duration * swing)
+                : properties.stiffness > 0 ? std::sqrt(properties.stiffness / reduced->smallest)
+                                           : std::sqrt(properties.dimensionless) / step;
+        duration = pi / (omega * swing);
+      }
+      if (duration < shortest.duration) {
+        shortest = {.duration = duration, .omega = omega, .zeta = zeta, .a = a, .b = b, .any = true};
+      }
+    }
+  }
+  return shortest;
+}
+
+}  // namespace
+
+GrainStep choose_grain_step(const GrainCase& resolved) {
+  Shortest shortest;
+  GrainStep result{.step = resolved.time_step.value_or(0), .between = {}, .automatic = !resolved.time_step};
+  try {
+    shortest = shortest_contact(resolved, result.step);
+    if (result.automatic && !shortest.any)
+      bad_input("time_step = \"auto\" where no two bodies can meet", "there is one grain and no wall",
+                "Give time_step = ... in s, or add a [[wall]]");
+  } catch (const Error& error) {
+    throw error.at(resolved.where("run.time_step"));
+  }
+  if (!shortest.any) return result;
+  if (result.automatic) {
+    // exact_flow: omega dt = 1 by default, whatever the damping
+    const double duration = resolved.law == NormalLaw::exact_flow ? pi / shortest.omega : shortest.duration;
+    result.step = std::min(duration / resolved.steps_per_contact, resolved.duration);
+  }
+  result.contact = shortest.duration;
+  result.between = format("{} and {}", resolved.kinds[static_cast<std::size_t>(shortest.a)],
+                          resolved.kinds[static_cast<std::size_t>(shortest.b)]);
+  result.omega_step = shortest.omega * result.step;
+  const double zeta = shortest.zeta;
+  if (resolved.law == NormalLaw::linear_dashpot) result.limit = 2 * (std::sqrt(1 + zeta * zeta) - zeta);
+  if (is_map(resolved.law)) result.limit = 1;
+  if (resolved.law == NormalLaw::linear_dashpot && result.omega_step > result.limit) {
+    throw Error(ErrorKind::bad_input,
+                format("the step of {:.6g} s is {:.4g} times the limit of stability of a contact of {}", result.step,
+                       result.omega_step / result.limit, result.between),
+                "contacts would gain energy without end",
+                format("Stay below {:.6g} s, or take softer contacts or the law exact_flow",
+                       result.step * result.limit / result.omega_step),
+                resolved.where("run.time_step"));
+  }
+  return result;
+}
+
+std::int64_t count_steps(const GrainCase& resolved, double step) {
+  constexpr double most = 1e15;  // years of stepping, and every number below is exact in a double
+  const double steps = std::ceil(resolved.duration / step * (1 - 1e-12));
+  if (steps <= most) return std::llround(steps);
+  throw Error(ErrorKind::bad_input,
+              format("{:.3g} s in steps of {:.3g} s are {:.3g} steps", resolved.duration, step, steps),
+              format("no run makes more than {:.0e}", most), "Shorten the duration, or take a longer step",
+              resolved.where("run.duration"));
+}
+
+GrainScene build_grain_scene(const GrainCase& resolved, double step) {
+  GrainScene scene{.grains = resolved.grains,
+                   .walls = resolved.walls,
+                   .gravity = resolved.gravity,
+                   .kinds = resolved.kind_count(),
+                   .pairs = {}};
+  for (const PairCase& pair : resolved.pairs) {
+    PairProperties properties = pair.properties;
+    if (pair.duration > 0) {
+      const double zeta = damping_ratio(resolved.law, properties);
+      const double turn = pi * step / pair.duration;
+      properties.dimensionless = turn * turn / (1 - zeta * zeta);
+    }
+    scene.pairs.push_back(properties);
+  }
+  return scene;
+}
+
+GrainOptions grain_options(const GrainCase& resolved, double step) {
+  GrainOptions options;
+  options.law = resolved.law;
+  options.scheme = resolved.scheme;
+  options.time_step = step;
+  options.reference_length = resolved.reference_length;
+  return options;
+}
+
+}  // namespace equidem

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "equidem/contact/collision_stiffness.hpp"
+#include "equidem/grains/grain_system.hpp"
+#include "equidem/grains/meeting.hpp"
+
+namespace equidem {
+namespace {
+
+/// Fill in what the law needs of a pair.
+void set_constants(const GrainSystem& system, Candidate& candidate) {
+  const GrainBody& bi = system.bodies[static_cast<std::size_t>(candidate.i)];
+  double inverse_mass = bi.inverse_mass;
+  if (candidate.j >= 0) inverse_mass += system.bodies[static_cast<std::size_t>(candidate.j)].inverse_mass;
+  const PairProperties& properties = system.properties(candidate);
+  const double dt = system.dt();
+  const double m = candidate.reduced_mass = 1 / inverse_mass;
+  const bool hertz = system.options.law == NormalLaw::hertz_dashpot;
+  const double root_length = hertz ? std::sqrt(system.length) : 1;
+  candidate.stiffness = properties.stiffness > 0
+                            ? properties.stiffness
+                            : stiffness_from_dimensionless(properties.dimensionless, m, dt) / root_length;
+  candidate.a = properties.stiffness > 0 ? properties.stiffness * root_length * dt * dt / m : properties.dimensionless;
+  candidate.attraction = properties.end == ContactEnd::at_zero_overlap;
+  if (is_map(system.options.law)) {
+    candidate.strength = properties.restitution;
+  } else if (hertz) {
+    candidate.strength = hertz_damping_of(properties.restitution, properties.end);
+  } else {
+    candidate.strength = damping_ratio_of(properties.restitution, properties.end);
+  }
+  if (system.friction && properties.friction > 0) {
+    candidate.sliding.coefficient = properties.friction;
+    candidate.sliding.stiffness = properties.tangential_ratio * candidate.stiffness;
+    candidate.sliding.cap = properties.cap;
+    // of bodies that just touch: it must not depend on where they were when they were found
+    const Meeting meeting{
+        0, {}, bi.radius, candidate.j >= 0 ? system.bodies[static_cast<std::size_t>(candidate.j)].radius : 0};
+    candidate.sliding.dashpot = 2 * properties.tangential_damping *
+                                std::sqrt(tangential_mass(system, candidate, meeting) * candidate.sliding.stiffness);
+  }
+}
+
+ExactPair exact_pair_of(const GrainSystem& system, const Candidate& candidate) {
+  return exact_pair(candidate.reduced_mass, candidate.stiffness, candidate.strength, system.properties(candidate).end,
+                    system.dt());
+}
+
+/// Order of partners of one body: grains ascending, then walls ascending.
+std::uint32_t rank(std::int32_t j) {
+  return j >= 0 ? static_cast<std::uint32_t>(j) : 0x80000000U + static_cast<std::uint32_t>(~j);
+}
+
+}  // namespace
+
+void find_candidates(GrainSystem& system) {
+  std::vector<Circle>& circles = system.circles;
+  circles.clear();
+  for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+    circles.push_back({system.motions[i].position, system.bodies[i].radius});
+  }
+  const NeighbourList& list = system.finder.within(circles, system.margin);
+  std::vector<Candidate> before;
+  std::vector<ExactPair> pairs_before;
+  before.swap(system.candidates);
+  pairs_before.swap(system.exact_pairs);
+  const bool exact = system.options.law == NormalLaw::exact_flow;
+  std::size_t k = 0;
+  const auto add = [&](std::int32_t i, std::int32_t j) {
+    while (k < before.size() && (before[k].i < i || (before[k].i == i && rank(before[k].j) < rank(j)))) ++k;
+    if (k < before.size() && before[k].i == i && before[k].j == j) {
+      system.candidates.push_back(before[k]);
+      if (exact) system.exact_pairs.push_back(pairs_before[k]);
+      return;
+    }
+    Candidate candidate;
+    candidate.i = i;
+    candidate.j = j;
+    set_constants(system, candidate);
+    system.candidates.push_back(candidate);
+    if (exact) system.exact_pairs.push_back(exact_pair_of(system, candidate));
+  };
+  for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+    for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
+      add(static_cast<std::int32_t>(i), list.partner[static_cast<std::size_t>(p)]);
+    }
+    for (std::size_t w = 0; w < system.scene.walls.size(); ++w) {
+      const WallContact contact = nearest(system.scene.walls[w], system.walls[w].displacement, circles[i].centre);
+      if (contact.distance <= circles[i].radius + system.margin) {
+        add(static_cast<std::int32_t>(i), ~static_cast<std::int32_t>(w));
+      }
+    }
+  }
+  system.moved = 0;
+  ++system.counters.rebuilds;
+}
+
+bool refresh_candidates(GrainSystem& system, double reach) {
+  if (2 * (system.moved + reach) <= system.margin) {
+    system.moved += reach;
+    return false;
+  }
+  system.margin = std::max(system.base_margin, 8 * reach);
+  find_candidates(system);
+  system.moved = reach;
+  return true;
+}
+
+double reach_of(const GrainSystem& system) {
+  double longest = 0;
+  for (std::size_t i = 0; i < system.motions.size(); ++i) {
+    const Vec2 way = system.next[i].position - system.motions[i].position;
+    const double square = dot(way, way);
+    if (square > longest || std::isnan(square)) longest = square;  // what is no number stays none: nothing is larger
+  }
+  for (const WallPlace& wall : system.walls) {
+    const Vec2 way = system.dt() * wall.velocity;
+    if (dot(way, way) > longest) longest = dot(way, way);
+  }
+  return std::sqrt(longest);
+}
+
+void restore_contacts(GrainSystem& system) {
+  auto before = system.contacts_before.begin();
+  for (Candidate& candidate : system.candidates) {
+    ContactMemory& memory = candidate;
+    memory = {};
+    if (before == system.contacts_before.end() || before->i != candidate.i || before->j != candidate.j) continue;
+    memory = before->memory;
+    ++before;
+  }
+  assert(before == system.contacts_before.end());
+}
+
+void let_go(GrainSystem& system, Candidate& candidate) {
+  system.lost.lost_release += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
+  candidate.stretch = 0;
+  candidate.touching = candidate.parted = false;
+  candidate.steps = 0;
+  candidate.mode = 0;
+  candidate.impulse = candidate.moment = candidate.tangential_impulse = 0;
+}
+
+void place_walls(GrainSystem& system) {
+  const double now = system.time();
+  const double next = static_cast<double>(system.step + 1) * system.dt();
+  for (std::size_t w = 0; w < system.walls.size(); ++w) {
+    const GrainWall& wall = system.scene.walls[w];
+    if (!wall.moves() && system.step > 0) continue;  // where it always was
+    const Vec2 here = {wall.move_x.at(now), wall.move_y.at(now)};
+    const Vec2 there = {wall.move_x.at(next), wall.move_y.at(next)};
+    system.walls[w] = {here, (there - here) / system.dt()};
+  }
+}
+
+}  // namespace equidem

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/crossing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+/// Of the smallest radius: no body crosses another in so short a way.
+constexpr double slow_way = 0.1;
+
+[[noreturn]] void refuse(const GrainSystem& system, const Candidate& candidate, Vec2 way, double room,
+                         const char* happening) {
+  const auto i = static_cast<std::size_t>(candidate.i);
+  std::string other;
+  if (candidate.j >= 0) {
+    other = format("grain {}", system.grain_of[static_cast<std::size_t>(candidate.j)]);
+  } else {
+    const GrainWall& wall = system.scene.walls[static_cast<std::size_t>(~candidate.j)];
+    other = wall.name.empty() ? format("wall {}", system.wall_of[static_cast<std::size_t>(~candidate.j)])
+                              : format("wall \"{}\"", wall.name);
+  }
+  const double speed = norm(way) / system.dt();
+  computation_failed(
+      format("step {}: grain {} would {} {}", system.step, system.grain_of[i], happening, other),
+      format("they move {:.4g} m against each other in a step of {:.4g} s, {:.4g} times the radius of the grain",
+             norm(way), system.dt(), norm(way) / system.bodies[i].radius),
+      speed > 0 ? format("Use a step below {:.3g} s, or stiffer contacts if they are pressed through", room / speed)
+                : "Use stiffer contacts");
+}
+
+void check_grains(const GrainSystem& system, const Candidate& candidate) {
+  const auto i = static_cast<std::size_t>(candidate.i);
+  const auto j = static_cast<std::size_t>(candidate.j);
+  const Vec2 before = system.motions[j].position - system.motions[i].position;
+  const Vec2 after = system.next[j].position - system.next[i].position;
+  const Vec2 way = after - before;
+  const double small = std::min(system.bodies[i].radius, system.bodies[j].radius);
+  const double sum = system.bodies[i].radius + system.bodies[j].radius;
+  const double length2 = dot(way, way);
+  if (!(length2 > 0)) return;
+  const double along = std::clamp(-dot(before, way) / length2, 0.0, 1.0);
+  const double nearest = norm(before + along * way);
+  // centres that come this near and change sides were pressed through each other
+  if (nearest < 0.5 * sum && dot(before, after) < 0) {
+    refuse(system, candidate, way, 0.5 * small, "pass through");
+  }
+  const bool seen = norm(before) < sum || norm(after) < sum;
+  if (!seen && nearest < sum - 0.5 * small) refuse(system, candidate, way, 0.5 * small, "pass through");
+}
+
+void check_wall(const GrainSystem& system, const Candidate& candidate) {
+  const auto i = static_cast<std::size_t>(candidate.i);
+  const auto w = static_cast<std::size_t>(~candidate.j);
+  const WallPlace& place = system.walls[w];
+  const Vec2 before = system.motions[i].position - place.displacement;
+  const Vec2 after = system.next[i].position - place.displacement - system.dt() * place.velocity;
+  if (passes_through(system.scene.walls[w], before, after)) {
+    refuse(system, candidate, after - before, 0.5 * system.bodies[i].radius, "pass through");
+  }
+}
+
+}  // namespace
+
+void refuse_runaway(const GrainSystem& system, double reach) {
+  if (std::isfinite(reach)) return;
+  computation_failed(format("step {}: a motion is not a number any more", system.step),
+                     "forces or speeds have grown beyond all bounds", "Use a smaller step or softer contacts");
+}
+
+void refuse_crossings(const GrainSystem& system, double reach) {
+  if (reach <= slow_way * system.smallest_radius && system.deepest < system.smallest_radius) return;
+  for (const Candidate& candidate : system.candidates) {
+    if (candidate.j >= 0) {
+      check_grains(system, candidate);
+    } else {
+      check_wall(system, candidate);
+    }
+  }
+}
+
+}  // namespace equidem

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Steps that would let bodies pass through one another.
+#pragma once
+
+#include "equidem/grains/grain_system.hpp"
+
+namespace equidem {
+
+/// \param reach the longest way of the step
+/// \throws Error (computation_failed) where that is no number
+void refuse_runaway(const GrainSystem& system, double reach);
+
+/// Compare system.motions with system.next.
+/// \throws Error (computation_failed) where centres of two grains pass each other, a centre passes a wall, or a meeting deeper than half
+///         the smaller radius would lie between the two instants unseen
+void refuse_crossings(const GrainSystem& system, double reach);
+
+}  // namespace equidem

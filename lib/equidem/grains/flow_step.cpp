@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/flow_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/grains/crossing.hpp"
+#include "equidem/grains/meeting.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr int most_sweeps = 400;
+/// Of the impulse of a contact: what still changes when sweeps end.
+constexpr double settled = 1e-14;
+/// Below it, changes that do not shrink any more are rounding.
+constexpr double rounding = 1e-12;
+
+/// A candidate while its step is being solved.
+struct Trial {
+  std::size_t candidate = 0;
+  double overlap = 0;  // at the start
+  Vec2 branch;         // at the start: from i to j, or to the nearest point of the wall
+  Vec2 normal;         // what the impulses below act along
+  double lever_i = 0, lever_j = 0;
+  double impulse = 0, moment = 0, tangential = 0;
+  double closing = 0;  // at the start, along the normal
+  ExactStep normal_step;
+  SlidingStep sliding_step;
+  double drag = 0;  // impulse in the step that the outside gives, for the scale of changes
+};
+
+/// All that pushes a body over the step but gravity, as it stands in the sweeps.
+void give(GrainSystem& system, const Candidate& candidate, const Trial& trial, double sign) {
+  const Vec2 tangent = perpendicular(trial.normal);
+  const Vec2 impulse = sign * (trial.impulse * trial.normal + trial.tangential * tangent);
+  const Vec2 moment = sign * (trial.moment * trial.normal + (0.5 * system.dt() * trial.tangential) * tangent);
+  const auto i = static_cast<std::size_t>(candidate.i);
+  system.pushes[i].impulse -= impulse;
+  system.pushes[i].moment -= moment;
+  system.pushes[i].torque -= sign * trial.lever_i * trial.tangential;
+  if (candidate.j < 0) return;
+  const auto j = static_cast<std::size_t>(candidate.j);
+  system.pushes[j].impulse += impulse;
+  system.pushes[j].moment += moment;
+  system.pushes[j].torque -= sign * trial.lever_j * trial.tangential;
+}
+
+/// What a body's velocity and position gain in the step by pushes and gravity.
+struct Gain {
+  Vec2 velocity, way;
+};
+
+Gain gain_of(const GrainSystem& system, std::size_t body) {
+  const double dt = system.dt();
+  const double inverse = system.bodies[body].inverse_mass;
+  return {inverse * system.pushes[body].impulse + dt * system.scene.gravity,
+          inverse * system.pushes[body].moment + (0.5 * dt * dt) * system.scene.gravity};
+}
+
+/// Gain of j, or of the wall, over that of i.
+Gain relative_gain(const GrainSystem& system, const Candidate& candidate) {
+  const Gain of_i = gain_of(system, static_cast<std::size_t>(candidate.i));
+  if (candidate.j < 0) return {-of_i.velocity, -of_i.way};
+  const Gain of_j = gain_of(system, static_cast<std::size_t>(candidate.j));
+  return {of_j.velocity - of_i.velocity, of_j.way - of_i.way};
+}
+
+/// The direction along which a contact acts over a step, and how the distance of the bodies follows it.
+struct Line {
+  Vec2 normal;       // unit
+  double slope = 1;  // change of the distance over the way along the normal
+};
+
+/// From the way that the bodies go as the sweeps stand: the mean normal n = (r + r')/|r + r'|. The distance changes by
+/// |r'| - |r| = slope n . (r' - r), slope = |r + r'|/(|r| + |r'|), the cosine of half the angle by which the branch turns. Without it each
+/// contact that begins in a step would lose energy, by the square of that angle.
+Line line_of(const GrainSystem& system, const Candidate& candidate, const Trial& trial, Vec2 way) {
+  if (candidate.j >= 0) {
+    const Vec2 end = trial.branch + way;
+    const Vec2 sum = trial.branch + end;
+    const double length = norm(sum);
+    if (!(length > 0)) return {trial.normal, 1};
+    return {sum / length, std::max(0.5, length / (norm(trial.branch) + norm(end)))};
+  }
+  const auto w = static_cast<std::size_t>(~candidate.j);
+  const GrainWall& wall = system.scene.walls[w];
+  if (wall.shape == GrainWall::Shape::line) return {-wall.normal, 1};
+  const Vec2 centre = system.motions[static_cast<std::size_t>(candidate.i)].position;
+  const auto normal_at = [&](double share) {
+    return -nearest(wall, system.walls[w].displacement, centre - share * way).normal;
+  };
+  return {normal_at(0.5), std::max(0.5, 0.5 * norm(normal_at(0) + normal_at(1)))};
+}
+
+/// Solve one contact with all others as they stand.
+/// \return change of its impulses, relative
+double solve(GrainSystem& system, Trial& trial) {
+  const Candidate& candidate = system.candidates[trial.candidate];
+  const double dt = system.dt();
+  const Vec2 relative = relative_velocity(system, candidate);
+  const bool acted = trial.impulse != 0 || trial.tangential != 0 || trial.moment != 0;
+  if (!candidate.touching && !acted) {
+    // neither by its own way nor by what others do can it come to touch
+    const Gain gain = relative_gain(system, candidate);
+    const double most = norm(relative) * dt + norm(gain.velocity) * dt + 4 * norm(gain.way);
+    if (trial.overlap + most <= 0) return 0;
+  }
+  const Vec2 way = dt * relative + relative_gain(system, candidate).way;
+  Trial before = trial;
+  if (acted) give(system, candidate, trial, -1);
+  const auto [normal, slope] = line_of(system, candidate, trial, way);
+  trial.normal = normal;
+  const Gain outside = relative_gain(system, candidate);
+  const double closing = -slope * dot(relative, normal);
+  const double a = -slope * dot(outside.velocity, normal) / dt;
+  const double b = -2 * slope * dot(outside.way, normal) / (dt * dt);
+  trial.normal_step = exact_step(system.exact_pairs[trial.candidate], trial.overlap, closing, candidate.touching,
+                                 3 * b - 2 * a, 6 * (a - b) / dt);
+  trial.impulse = trial.normal_step.impulse / slope;
+  trial.moment = trial.normal_step.moment / slope;
+  trial.closing = closing;
+  trial.tangential = 0;
+  if (candidate.sliding.coefficient > 0 && trial.impulse != 0) {
+    Meeting meeting{trial.overlap, trial.normal, trial.lever_i, trial.lever_j};
+    const double mass = tangential_mass(system, candidate, meeting);
+    double gained = dot(outside.velocity, perpendicular(trial.normal));
+    const auto i = static_cast<std::size_t>(candidate.i);
+    gained -= trial.lever_i * system.bodies[i].inverse_moment * system.pushes[i].torque;
+    if (candidate.j >= 0) {
+      const auto j = static_cast<std::size_t>(candidate.j);
+      gained -= trial.lever_j * system.bodies[j].inverse_moment * system.pushes[j].torque;
+    }
+    const double velocity = slip_velocity(system, candidate, meeting, relative) + 0.5 * gained;
+    trial.sliding_step = sliding_step_midpoint(candidate.sliding, candidate.stretch, velocity, mass,
+                                               std::max(trial.impulse, 0.0) / dt, dt);
+    trial.tangential = trial.sliding_step.force * dt;
+  }
+  give(system, candidate, trial, 1);
+  if (trial.impulse != 0) ++system.counters.evaluations;
+  const double change = std::abs(trial.impulse - before.impulse) + std::abs(trial.tangential - before.tangential) +
+                        std::abs(trial.moment - before.moment) / dt;
+  const double scale = std::abs(trial.impulse) + std::abs(trial.tangential) +
+                       candidate.reduced_mass * (std::abs(closing) + dt * (std::abs(a) + std::abs(b)));
+  return scale > 0 ? change / scale : 0;
+}
+
+std::vector<Trial> trials_of(GrainSystem& system) {
+  std::vector<Trial> trials;
+  trials.reserve(system.candidates.size());
+  for (std::size_t c = 0; c < system.candidates.size(); ++c) {
+    const Candidate& candidate = system.candidates[c];
+    const Meeting meeting = meeting_of(system, candidate);
+    Trial trial;
+    trial.candidate = c;
+    trial.overlap = meeting.overlap;
+    system.deepest = std::max(system.deepest, meeting.overlap);
+    trial.lever_i = meeting.lever_i;
+    trial.lever_j = meeting.lever_j;
+    trial.normal = meeting.normal;
+    if (candidate.j >= 0) trial.branch = (meeting.lever_i + meeting.lever_j) * meeting.normal;
+    if (candidate.touching) {
+      // what the last step gave is near to what this one will give
+      trial.impulse = candidate.impulse;
+      trial.moment = candidate.moment;
+      trial.tangential = candidate.tangential_impulse;
+    }
+    trials.push_back(trial);
+  }
+  return trials;
+}
+
+/// Pushes from the contacts in their order: no trace of the way in which sweeps came to them.
+void sum_pushes(GrainSystem& system, const std::vector<Trial>& trials) {
+  std::fill(system.pushes.begin(), system.pushes.end(), Push{});
+  for (const Trial& trial : trials) {
+    if (trial.impulse == 0 && trial.tangential == 0 && trial.moment == 0) continue;
+    give(system, system.candidates[trial.candidate], trial, 1);
+  }
+}
+
+void sweep_until_settled(GrainSystem& system, std::vector<Trial>& trials) {
+  double change = 0;
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    const double before = change;
+    change = 0;
+    for (Trial& trial : trials) change = std::max(change, solve(system, trial));
+    ++system.counters.sweeps;
+    if (change <= settled) return;
+    if (change <= rounding && sweep > 8 && change > 0.5 * before) return;
+  }
+  // what oscillates in the last digits is settled as far as numbers go
+  if (change <= 1e-9) return;
+  computation_failed(format("step {}: the contacts find no common solution", system.step),
+                     format("after {} sweeps the impulses still change by {:.2g} of themselves", most_sweeps, change),
+                     "Use a smaller step: w dt below 1 for every pair, w² the stiffness over the reduced mass");
+}
+
+void move(GrainSystem& system) {
+  const double dt = system.dt();
+  for (std::size_t i = 0; i < system.motions.size(); ++i) {
+    GrainMotion motion = system.motions[i];
+    const Gain gain = gain_of(system, i);
+    motion.position += dt * motion.velocity + gain.way;
+    motion.velocity += gain.velocity;
+    const double turn = system.bodies[i].inverse_moment * system.pushes[i].torque;
+    motion.angle += dt * (motion.spin + 0.5 * turn);
+    motion.spin += turn;
+    system.next[i] = motion;
+  }
+}
+
+/// What the contacts remember, and what was lost in them.
+void remember(GrainSystem& system, const std::vector<Trial>& trials) {
+  for (const Trial& trial : trials) {
+    Candidate& candidate = system.candidates[trial.candidate];
+    const ExactStep& normal = trial.normal_step;
+    const bool touched = trial.impulse != 0 || normal.touching_at_end;
+    system.counters.contacts += normal.beginnings;
+    system.lost.lost_dashpot += normal.loss;
+    system.lost.lost_release += normal.released;
+    if (!touched) {
+      if (candidate.touching) let_go(system, candidate);
+      continue;
+    }
+    candidate.overlap = trial.overlap;
+    candidate.closing = trial.closing;
+    candidate.normal = trial.normal;
+    candidate.impulse = trial.impulse;
+    candidate.moment = trial.moment;
+    candidate.tangential_impulse = trial.tangential;
+    if (candidate.sliding.coefficient > 0 && trial.impulse != 0) {
+      candidate.stretch = trial.sliding_step.stretch;
+      system.lost.lost_slip += trial.sliding_step.slip_loss;
+      system.lost.lost_tangential_dashpot += trial.sliding_step.dashpot_loss;
+    }
+    if (candidate.j < 0) {
+      const Vec2 impulse = trial.impulse * trial.normal + trial.tangential * perpendicular(trial.normal);
+      system.lost.work_of_walls -= dot(impulse, system.walls[static_cast<std::size_t>(~candidate.j)].velocity);
+    }
+    ++candidate.steps;
+    candidate.touching = true;
+    if (!normal.touching_at_end) let_go(system, candidate);
+  }
+}
+
+}  // namespace
+
+void flow(GrainSystem& system) {
+  std::vector<Trial> trials;
+  double reach = 0;
+  // once more where the bodies move further than the candidates allow for
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    trials = trials_of(system);
+    sum_pushes(system, trials);
+    sweep_until_settled(system, trials);
+    sum_pushes(system, trials);
+    move(system);
+    reach = reach_of(system);
+    refuse_runaway(system, reach);
+    if (!refresh_candidates(system, reach)) break;
+  }
+  if (system.options.refuse_crossing) refuse_crossings(system, reach);
+  remember(system, trials);
+}
+
+}  // namespace equidem

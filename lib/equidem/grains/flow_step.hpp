@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A step of exact_flow: all contacts together.
+///
+/// Each contact is solved exactly over the step (exact_contact.hpp) under an outside force that is linear in time and has the
+/// impulse and the first moment of all other forces on its two bodies; sweeps over the contacts repeat that until nothing changes.
+/// The normal is the mean one of the step, (r + r')/|r + r'|: along it the way of the bodies is the change of their distance.
+#pragma once
+
+#include "equidem/grains/grain_system.hpp"
+
+namespace equidem {
+
+/// system.next, and what the contacts remember.
+/// \throws Error (computation_failed) where sweeps do not settle or bodies would pass through one another; the contacts remember
+///         what they did
+void flow(GrainSystem& system);
+
+}  // namespace equidem

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/force_step.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "equidem/grains/meeting.hpp"
+
+namespace equidem {
+namespace {
+
+template <NormalLaw law>
+ContactStep normal_step(const Candidate& candidate, double depth, double closing) {
+  const bool first = !candidate.touching;
+  if constexpr (law == NormalLaw::linear_dashpot) {
+    return linear_dashpot_step(depth, closing, candidate.a, candidate.strength, candidate.attraction);
+  } else if constexpr (law == NormalLaw::hertz_dashpot) {
+    return hertz_dashpot_step(depth, closing, candidate.a, candidate.strength, candidate.attraction);
+  } else if constexpr (law == NormalLaw::five_case_map) {
+    return five_case_map_step(depth, closing, candidate.a, candidate.strength, first);
+  } else {
+    return energy_map_step(depth, closing, candidate.a, candidate.strength, first);
+  }
+}
+
+/// Give an impulse to j, its opposite to i; walls take it and do not move.
+void push(GrainSystem& system, const Candidate& candidate, const Meeting& meeting, Vec2 impulse, double tangential) {
+  Push& on_i = system.pushes[static_cast<std::size_t>(candidate.i)];
+  on_i.impulse -= impulse;
+  on_i.torque -= meeting.lever_i * tangential;
+  if (candidate.j >= 0) {
+    Push& on_j = system.pushes[static_cast<std::size_t>(candidate.j)];
+    on_j.impulse += impulse;
+    on_j.torque -= meeting.lever_j * tangential;
+  } else {
+    system.lost.work_of_walls -= dot(impulse, system.walls[static_cast<std::size_t>(~candidate.j)].velocity);
+  }
+}
+
+void shift(GrainSystem& system, const Candidate& candidate, Vec2 moment) {
+  system.pushes[static_cast<std::size_t>(candidate.i)].moment += moment;
+  if (candidate.j >= 0) system.pushes[static_cast<std::size_t>(candidate.j)].moment -= moment;
+}
+
+/// Tangential impulse on j over the step.
+double slide(GrainSystem& system, Candidate& candidate, const Meeting& meeting, Vec2 relative, double normal_force) {
+  const double velocity = slip_velocity(system, candidate, meeting, relative);
+  const double dt = system.dt();
+  const bool explicitly = system.options.scheme == GrainOptions::Scheme::velocity_verlet;
+  const SlidingStep step = explicitly
+                               ? sliding_step(candidate.sliding, candidate.stretch, velocity, normal_force, dt)
+                               : sliding_step_midpoint(candidate.sliding, candidate.stretch, velocity,
+                                                       tangential_mass(system, candidate, meeting), normal_force, dt);
+  candidate.stretch = step.stretch;
+  system.lost.lost_slip += step.slip_loss;
+  system.lost.lost_tangential_dashpot += step.dashpot_loss;
+  return step.force * dt;
+}
+
+template <NormalLaw law, bool friction>
+void collide_by(GrainSystem& system) {
+  std::fill(system.pushes.begin(), system.pushes.end(), Push{});
+  system.contacts_before.clear();
+  const double dt = system.dt();
+  const double length = system.length;
+  for (Candidate& candidate : system.candidates) {
+    const Meeting meeting = meeting_of(system, candidate);
+    if (candidate.touching) system.contacts_before.push_back({candidate.i, candidate.j, candidate});
+    if (!(meeting.overlap > 0)) {
+      if (candidate.touching) let_go(system, candidate);
+      continue;
+    }
+    if constexpr (is_map(law)) {
+      if (candidate.parted) let_go(system, candidate);
+    }
+    if (!candidate.touching) ++system.counters.contacts;
+    ++system.counters.evaluations;
+    const Vec2 relative = relative_velocity(system, candidate);
+    const double closing = -dot(relative, meeting.normal);
+    const double depth = meeting.overlap / length;
+    const double sigma = closing * dt / length;
+    const ContactStep step = normal_step<law>(candidate, depth, sigma);
+    candidate.touching = true;
+    ++candidate.steps;
+    candidate.mode = step.mode;
+    candidate.overlap = meeting.overlap;
+    system.deepest = std::max(system.deepest, meeting.overlap);
+    candidate.closing = closing;
+    candidate.normal = meeting.normal;
+    const double unit = candidate.reduced_mass * length / dt;
+    candidate.impulse = -step.change * unit;
+    Vec2 impulse = candidate.impulse * meeting.normal;
+    if constexpr (is_map(law)) {
+      candidate.parted = depth + step.shift + sigma + step.change <= 0;
+      system.lost.lost_restitution += step.loss * unit * length / dt;
+      if (step.shift != 0) shift(system, candidate, (step.shift * length * candidate.reduced_mass) * meeting.normal);
+    } else {
+      system.lost.lost_dashpot += step.loss * unit * length / dt;
+    }
+    if constexpr (friction) {
+      if (candidate.sliding.coefficient > 0) {
+        candidate.tangential_impulse =
+            slide(system, candidate, meeting, relative, std::max(candidate.impulse, 0.0) / dt);
+        impulse += candidate.tangential_impulse * perpendicular(meeting.normal);
+      }
+    }
+    push(system, candidate, meeting, impulse, candidate.tangential_impulse);
+  }
+}
+
+template <NormalLaw law>
+CollideFunction choose(bool friction) {
+  return friction ? collide_by<law, true> : collide_by<law, false>;
+}
+
+}  // namespace
+
+CollideFunction collide_function(NormalLaw law, bool friction) {
+  switch (law) {
+    case NormalLaw::linear_dashpot:
+      return choose<NormalLaw::linear_dashpot>(friction);
+    case NormalLaw::hertz_dashpot:
+      return choose<NormalLaw::hertz_dashpot>(friction);
+    case NormalLaw::five_case_map:
+      return choose<NormalLaw::five_case_map>(friction);
+    default:
+      return choose<NormalLaw::energy_map>(friction);
+  }
+}
+
+void move_by_euler(GrainSystem& system) {
+  const double dt = system.dt();
+  const Vec2 fall = dt * system.scene.gravity;
+  for (std::size_t i = 0; i < system.motions.size(); ++i) {
+    const GrainBody& body = system.bodies[i];
+    const Push& push = system.pushes[i];
+    GrainMotion motion = system.motions[i];
+    motion.velocity += body.inverse_mass * push.impulse + fall;
+    motion.spin += body.inverse_moment * push.torque;
+    motion.position += dt * motion.velocity + body.inverse_mass * push.moment;
+    motion.angle += dt * motion.spin;
+    system.next[i] = motion;
+  }
+}
+
+void drift_of_verlet(GrainSystem& system) {
+  const double dt = system.dt();
+  for (std::size_t i = 0; i < system.motions.size(); ++i) {
+    const GrainBody& body = system.bodies[i];
+    GrainMotion motion = system.motions[i];
+    motion.velocity += 0.5 * (body.inverse_mass * system.pushes[i].impulse + dt * system.scene.gravity);
+    motion.spin += 0.5 * body.inverse_moment * system.pushes[i].torque;
+    motion.position += dt * motion.velocity;
+    motion.angle += dt * motion.spin;
+    system.next[i] = motion;
+  }
+}
+
+void kick_of_verlet(GrainSystem& system) {
+  for (std::size_t i = 0; i < system.motions.size(); ++i) {
+    const GrainBody& body = system.bodies[i];
+    system.motions[i].velocity +=
+        0.5 * (body.inverse_mass * system.pushes[i].impulse + system.dt() * system.scene.gravity);
+    system.motions[i].spin += 0.5 * body.inverse_moment * system.pushes[i].torque;
+  }
+}
+
+}  // namespace equidem

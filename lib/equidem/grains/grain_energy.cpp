@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <tuple>
+
+#include "equidem/grains/grain_simulation_implementation.hpp"
+#include "equidem/grains/meeting.hpp"
+
+namespace equidem {
+
+double GrainSimulation::Implementation::potential() const {
+  const bool behind = collide && system.options.scheme == GrainOptions::Scheme::semi_implicit_euler;
+  double sum = 0;
+  for (std::size_t i = 0; i < system.motions.size(); ++i) {
+    Vec2 position = system.motions[i].position;
+    if (behind) position -= (0.5 * system.dt()) * system.motions[i].velocity;
+    sum -= dot(system.scene.gravity, position) / system.bodies[i].inverse_mass;
+  }
+  return sum;
+}
+
+double GrainSimulation::Implementation::kinetic() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < system.motions.size(); ++i) {
+    const GrainMotion& motion = system.motions[i];
+    sum += 0.5 * dot(motion.velocity, motion.velocity) / system.bodies[i].inverse_mass;
+    sum += 0.5 * motion.spin * motion.spin / system.bodies[i].inverse_moment;
+  }
+  return sum;
+}
+
+std::pair<double, double> GrainSimulation::Implementation::elastic() const {
+  // a map or exact_flow counts the spring from its first step on; a force is there wherever bodies overlap
+  const bool holds_from_first_step = !collide || is_map(system.options.law);
+  double normal = 0;
+  double tangential = 0;
+  for (const Candidate& candidate : system.candidates) {
+    tangential += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
+    if (holds_from_first_step && (!candidate.touching || candidate.parted)) continue;
+    const double overlap = meeting_of(system, candidate).overlap;
+    if (!(overlap > 0)) continue;
+    if (system.options.law == NormalLaw::hertz_dashpot) {
+      normal += 0.4 * candidate.stiffness * overlap * overlap * std::sqrt(overlap);
+    } else {
+      normal += 0.5 * candidate.stiffness * overlap * overlap;
+    }
+  }
+  return {normal, tangential};
+}
+
+GrainLedger GrainSimulation::Implementation::energy() const {
+  GrainLedger ledger = system.lost;
+  ledger.kinetic = kinetic();
+  std::tie(ledger.elastic_normal, ledger.elastic_tangential) = elastic();
+  ledger.potential = potential() - potential_at_start;
+  ledger.initial = energy_at_start;
+  return ledger;
+}
+
+}  // namespace equidem

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/grain_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/grains/neighbours.hpp"
+
+namespace equidem {
+namespace {
+
+bool positive(double value) {
+  return value > 0 && std::isfinite(value);
+}
+
+bool not_negative(double value) {
+  return value >= 0 && std::isfinite(value);
+}
+
+void check_grain(const GrainScene& scene, std::size_t i) {
+  const Grain& grain = scene.grains[i];
+  if (!positive(grain.radius)) {
+    bad_input(format("grain {} has the radius {} m", i, grain.radius), "it would touch nothing", "Give a radius > 0");
+  }
+  if (!positive(grain.inertia.mass) || !positive(grain.inertia.moment)) {
+    bad_input(
+        format("grain {} has the mass {} and the moment of inertia {}", i, grain.inertia.mass, grain.inertia.moment),
+        "a force would move it without limit", "Give a density > 0");
+  }
+  const double motion =
+      grain.position.x + grain.position.y + grain.velocity.x + grain.velocity.y + grain.spin + grain.angle;
+  if (!std::isfinite(motion)) {
+    bad_input(format("grain {} has a position, a velocity or a spin that is not a number", i),
+              "nothing can start from there", "Give finite numbers");
+  }
+  if (grain.kind < 0 || grain.kind >= scene.kinds) {
+    bad_input(format("grain {} is of the kind {}", i, grain.kind), format("the table of pairs has {}", scene.kinds),
+              "Use kinds from 0 to one less than that");
+  }
+}
+
+void check_pair(const PairProperties& pair, const GrainOptions& options) {
+  if ((pair.stiffness != 0) == (pair.dimensionless != 0)) {
+    bad_input(
+        pair.stiffness != 0 ? "a contact has a stiffness and a dimensionless stiffness" : "a contact has no stiffness",
+        "one number says how hard a contact is", "Give one of the two");
+  }
+  const double hardness = pair.stiffness != 0 ? pair.stiffness : pair.dimensionless;
+  if (!positive(hardness)) {
+    bad_input(format("a contact has the stiffness {}", hardness), "bodies would not rebound", "Give a stiffness > 0");
+  }
+  if (is_map(options.law)) {
+    if (!(pair.restitution >= 0 && pair.restitution <= 1)) {
+      bad_input(format("the restitution is {}", pair.restitution), "an impact cannot gain energy or pass through",
+                "Give a number from 0 to 1");
+    }
+  } else if (options.law == NormalLaw::hertz_dashpot) {
+    hertz_damping_of(pair.restitution, pair.end);
+  } else {
+    damping_ratio_of(pair.restitution, pair.end);
+  }
+  if (!not_negative(pair.friction) || !not_negative(pair.tangential_ratio) || !not_negative(pair.tangential_damping)) {
+    bad_input(format("friction {}, tangential_ratio {}, tangential_damping {}", pair.friction, pair.tangential_ratio,
+                     pair.tangential_damping),
+              "negative ones would feed the motion", "Give 0 or more");
+  }
+  if (pair.tangential_damping > 0 && !(pair.tangential_ratio > 0)) {
+    bad_input("tangential damping is given without a tangential spring", "it is measured by that spring",
+              "Give tangential_ratio > 0");
+  }
+}
+
+/// a = k dt²/m of the pair for the largest reduced stiffness over mass: five_case_map is limited by it.
+void check_five_case(const GrainScene& scene, const GrainOptions& options, const PairProperties& pair) {
+  double lightest = scene.grains.front().inertia.mass;
+  for (const Grain& grain : scene.grains) lightest = std::min(lightest, grain.inertia.mass);
+  const double a = pair.stiffness > 0 ? pair.stiffness * options.time_step * options.time_step / (0.5 * lightest)
+                                      : pair.dimensionless;
+  check_five_case_range(a, pair.restitution);
+}
+
+void check_table(const GrainScene& scene, const GrainOptions& options) {
+  if (scene.kinds < 1 ||
+      scene.pairs.size() != static_cast<std::size_t>(scene.kinds) * static_cast<std::size_t>(scene.kinds)) {
+    bad_input(format("{} pairs are given for {} kinds", scene.pairs.size(), scene.kinds),
+              "the table has kinds times kinds", "Give every pair");
+  }
+  for (int a = 0; a < scene.kinds; ++a) {
+    for (int b = 0; b < scene.kinds; ++b) {
+      check_pair(scene.between(a, b), options);
+      if (!(scene.between(a, b) == scene.between(b, a))) {
+        bad_input(format("kinds {} and {} meet by other rules than {} and {}", a, b, b, a), "action is reaction",
+                  "Make the table symmetric");
+      }
+      if (options.law == NormalLaw::five_case_map) check_five_case(scene, options, scene.between(a, b));
+    }
+  }
+}
+
+/// Nothing may start inside something else.
+void check_places(const GrainScene& scene) {
+  std::vector<Circle> circles;
+  for (const Grain& grain : scene.grains) circles.push_back({grain.position, grain.radius});
+  const NeighbourList near = neighbours_within(circles, 0);
+  for (std::size_t i = 0; i < circles.size(); ++i) {
+    for (std::int64_t p = near.begin[i]; p < near.begin[i + 1]; ++p) {
+      const auto j = static_cast<std::size_t>(near.partner[static_cast<std::size_t>(p)]);
+      const double distance = norm(circles[j].centre - circles[i].centre);
+      if (distance >= std::max(circles[i].radius, circles[j].radius)) continue;
+      bad_input(format("grains {} and {} start inside one another", i, j),
+                format("their centres are {:.4g} m apart, their radii {:.4g} m and {:.4g} m", distance,
+                       circles[i].radius, circles[j].radius),
+                "Move them apart");
+    }
+  }
+  for (std::size_t i = 0; i < circles.size(); ++i) {
+    for (const GrainWall& wall : scene.walls) {
+      const Vec2 start = {wall.move_x.at(0), wall.move_y.at(0)};
+      const double distance = nearest(wall, start, circles[i].centre).distance;
+      if (distance > 0 && std::isfinite(distance)) continue;
+      bad_input(format("grain {} starts behind wall \"{}\" or on it", i, wall.name),
+                "a contact could not tell which way is out", "Move it, or turn the normal of the wall round");
+    }
+  }
+}
+
+}  // namespace
+
+void check(const GrainScene& scene, const GrainOptions& options) {
+  if (scene.grains.empty()) bad_input("the scene has no grains", "there is nothing to move", "Add a grain");
+  if (!positive(options.time_step)) {
+    bad_input(format("the time step is {} s", options.time_step), "time could not go on", "Give a step > 0");
+  }
+  if (!not_negative(options.reference_length) || !not_negative(options.margin)) {
+    bad_input(format("the reference length is {} m, the margin {} m", options.reference_length, options.margin),
+              "lengths are not negative", "Give 0 to have them chosen");
+  }
+  const bool own_step = is_map(options.law) || options.law == NormalLaw::exact_flow;
+  if (own_step && options.scheme == GrainOptions::Scheme::velocity_verlet) {
+    bad_input(format("velocity_verlet is asked for with the law \"{}\"", to_string(options.law)),
+              "that law says itself how a step is made",
+              "Leave the scheme out, or use linear_dashpot or hertz_dashpot");
+  }
+  if (!std::isfinite(scene.gravity.x + scene.gravity.y)) {
+    bad_input("gravity is not a number", "nothing could fall by it", "Give finite numbers");
+  }
+  for (std::size_t i = 0; i < scene.grains.size(); ++i) check_grain(scene, i);
+  for (const GrainWall& wall : scene.walls) {
+    check(wall);
+    if (wall.kind < 0 || wall.kind >= scene.kinds) {
+      bad_input(format("wall \"{}\" is of the kind {}", wall.name, wall.kind),
+                format("the table of pairs has {}", scene.kinds), "Use kinds from 0 to one less than that");
+    }
+  }
+  check_table(scene, options);
+  check_places(scene);
+}
+
+}  // namespace equidem

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/grain_simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/grains/crossing.hpp"
+#include "equidem/grains/flow_step.hpp"
+#include "equidem/grains/grain_simulation_implementation.hpp"
+#include "equidem/grains/meeting.hpp"
+
+namespace equidem {
+GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& options)
+    : implementation_(std::make_unique<Implementation>()) {
+  check(scene, options);
+  Implementation& self = *implementation_;
+  GrainSystem& system = self.system;
+  system.options = options;
+  order_by_place(system, scene);
+  system.friction =
+      std::any_of(scene.pairs.begin(), scene.pairs.end(), [](const PairProperties& pair) { return pair.friction > 0; });
+  double largest = 0;
+  system.smallest_radius = std::numeric_limits<double>::infinity();
+  double fastest = 0;
+  for (const Grain& grain : scene.grains) {
+    largest = std::max(largest, grain.radius);
+    system.smallest_radius = std::min(system.smallest_radius, grain.radius);
+    fastest = std::max(fastest, norm(grain.velocity));
+  }
+  system.length = options.reference_length > 0 ? options.reference_length : 2 * largest;
+  system.base_margin = options.margin > 0 ? options.margin : 0.2 * system.smallest_radius;
+  system.next = system.motions;
+  if (options.law != NormalLaw::exact_flow) self.collide = collide_function(options.law, system.friction);
+  place_walls(system);
+  system.margin = std::max(system.base_margin, 8 * fastest * options.time_step);
+  find_candidates(system);
+  for (std::size_t c = 0; c < system.candidates.size(); ++c) {
+    // bodies that overlap at the start touch
+    Candidate& candidate = system.candidates[c];
+    candidate.touching = meeting_of(system, candidate).overlap > 0;
+    if (candidate.touching) ++system.counters.contacts;
+  }
+  if (self.verlet()) self.collide(system);
+  self.effects = effects_of(scene, options);
+  self.potential_at_start = self.potential();
+  const auto [normal, tangential] = self.elastic();
+  self.energy_at_start = self.kinetic() + normal + tangential;
+}
+
+GrainSimulation::~GrainSimulation() = default;
+GrainSimulation::GrainSimulation(GrainSimulation&&) noexcept = default;
+GrainSimulation& GrainSimulation::operator=(GrainSimulation&&) noexcept = default;
+
+void GrainSimulation::Implementation::make_step() {
+  system.deepest = 0;
+  if (!collide) {
+    flow(system);
+  } else {
+    if (verlet()) {
+      drift_of_verlet(system);
+    } else {
+      collide(system);
+      move_by_euler(system);
+    }
+    const double reach = reach_of(system);
+    refuse_runaway(system, reach);
+    refresh_candidates(system, reach);
+    if (system.options.refuse_crossing) refuse_crossings(system, reach);
+  }
+  system.motions.swap(system.next);
+  ++system.step;
+  place_walls(system);
+  if (collide && verlet()) {
+    collide(system);
+    kick_of_verlet(system);
+  }
+}
+
+void GrainSimulation::advance(std::int64_t steps) {
+  Implementation& self = *implementation_;
+  for (std::int64_t k = 0; k < steps; ++k) {
+    const GrainLedger lost = self.system.lost;
+    const GrainCounters counters = self.system.counters;
+    try {
+      self.make_step();
+    } catch (...) {
+      self.system.lost = lost;
+      self.system.counters = counters;
+      if (self.collide && !self.verlet()) restore_contacts(self.system);
+      throw;
+    }
+  }
+}
+
+std::int64_t GrainSimulation::step() const {
+  return implementation_->system.step;
+}
+
+double GrainSimulation::time() const {
+  return implementation_->system.time();
+}
+
+std::vector<Grain> GrainSimulation::grains() const {
+  const GrainSystem& system = implementation_->system;
+  std::vector<Grain> grains(system.motions.size());
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    Grain grain = system.scene.grains[k];
+    const GrainMotion& motion = system.motions[k];
+    grain.position = motion.position;
+    grain.velocity = motion.velocity;
+    grain.spin = motion.spin;
+    grain.angle = motion.angle;
+    grains[system.grain_of[k]] = grain;
+  }
+  return grains;
+}
+
+std::vector<GrainContact> GrainSimulation::contacts() const {
+  const GrainSystem& system = implementation_->system;
+  std::vector<GrainContact> contacts;
+  for (const Candidate& candidate : system.candidates) {
+    if (!candidate.touching || candidate.steps == 0) continue;
+    GrainContact contact;
+    contact.i = static_cast<std::int32_t>(system.grain_of[static_cast<std::size_t>(candidate.i)]);
+    contact.overlap = candidate.overlap;
+    contact.closing = candidate.closing;
+    contact.normal = candidate.normal;
+    contact.normal_force = candidate.impulse / system.dt();
+    contact.tangential_force = candidate.tangential_impulse / system.dt();
+    contact.mode = candidate.mode;
+    contact.steps = candidate.steps;
+    if (candidate.j < 0) {
+      contact.j = ~static_cast<std::int32_t>(system.wall_of[static_cast<std::size_t>(~candidate.j)]);
+    } else {
+      contact.j = static_cast<std::int32_t>(system.grain_of[static_cast<std::size_t>(candidate.j)]);
+      if (contact.j < contact.i) {
+        std::swap(contact.i, contact.j);
+        contact.normal = -contact.normal;
+      }
+    }
+    contacts.push_back(contact);
+  }
+  std::sort(contacts.begin(), contacts.end(),
+            [](const GrainContact& a, const GrainContact& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
+  return contacts;
+}
+
+GrainLedger GrainSimulation::energy() const {
+  return implementation_->energy();
+}
+
+const GrainCounters& GrainSimulation::counters() const {
+  return implementation_->system.counters;
+}
+
+const Effects& GrainSimulation::effects() const {
+  return implementation_->effects;
+}
+
+double GrainSimulation::bytes_per_grain() const {
+  const GrainSystem& system = implementation_->system;
+  const double bytes = static_cast<double>(
+      system.bodies.capacity() * sizeof(GrainBody) + 2 * system.motions.capacity() * sizeof(GrainMotion) +
+      system.pushes.capacity() * sizeof(Push) + system.candidates.capacity() * sizeof(Candidate) +
+      system.exact_pairs.capacity() * sizeof(ExactPair) + system.scene.grains.capacity() * sizeof(Grain));
+  return bytes / static_cast<double>(system.bodies.size());
+}
+
+}  // namespace equidem

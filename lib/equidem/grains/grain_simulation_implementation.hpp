@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The parts of a GrainSimulation.
+#pragma once
+
+#include "equidem/grains/force_step.hpp"
+#include "equidem/grains/grain_simulation.hpp"
+#include "equidem/grains/grain_system.hpp"
+
+namespace equidem {
+
+struct GrainSimulation::Implementation {
+  GrainSystem system;
+  Effects effects;
+  CollideFunction collide = nullptr;  ///< none: exact_flow
+  double potential_at_start = 0, energy_at_start = 0;
+
+  void make_step();
+  [[nodiscard]] bool verlet() const { return system.options.scheme == GrainOptions::Scheme::velocity_verlet; }
+  /// Of gravity, where the velocities are.
+  [[nodiscard]] double potential() const;
+  [[nodiscard]] double kinetic() const;
+  /// Normal and tangential springs as they stand.
+  [[nodiscard]] std::pair<double, double> elastic() const;
+  [[nodiscard]] GrainLedger energy() const;
+};
+
+/// Which effects a scene of colliding bodies has, and why not the others.
+Effects effects_of(const GrainScene& scene, const GrainOptions& options);
+
+}  // namespace equidem

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/grains/grain_simulation_implementation.hpp"
+
+namespace equidem {
+namespace {
+
+/// What a contact remembers, in numbers: i, j, steps, mode, then the rest.
+constexpr std::size_t numbers_per_contact = 13;
+constexpr std::size_t numbers_per_push = 5;
+
+void append(std::vector<double>& numbers, const Candidate& candidate) {
+  for (const double number :
+       {static_cast<double>(candidate.i), static_cast<double>(candidate.j), static_cast<double>(candidate.steps),
+        static_cast<double>(candidate.mode), candidate.stretch, candidate.overlap, candidate.closing,
+        candidate.normal.x, candidate.normal.y, candidate.impulse, candidate.moment, candidate.tangential_impulse,
+        candidate.parted ? 1.0 : 0.0}) {
+    numbers.push_back(number);
+  }
+}
+
+void take(const double* numbers, Candidate& candidate) {
+  candidate.steps = static_cast<std::int64_t>(numbers[2]);
+  candidate.mode = static_cast<int>(numbers[3]);
+  candidate.stretch = numbers[4];
+  candidate.overlap = numbers[5];
+  candidate.closing = numbers[6];
+  candidate.normal = {numbers[7], numbers[8]};
+  candidate.impulse = numbers[9];
+  candidate.moment = numbers[10];
+  candidate.tangential_impulse = numbers[11];
+  candidate.parted = numbers[12] != 0;
+  candidate.touching = true;
+}
+
+}  // namespace
+
+GrainState GrainSimulation::save() const {
+  const GrainSystem& system = implementation_->system;
+  GrainState state;
+  state.step = system.step;
+  state.grains = grains();
+  state.ledger = system.lost;
+  state.counters = system.counters;
+  for (const Candidate& candidate : system.candidates) {
+    if (candidate.touching) append(state.contacts, candidate);
+  }
+  if (!implementation_->verlet()) return state;  // the others find all pushes of a step in that step
+  for (const Push& push : system.pushes) {
+    for (const double number : {push.impulse.x, push.impulse.y, push.torque, push.moment.x, push.moment.y}) {
+      state.sums.push_back(number);
+    }
+  }
+  return state;
+}
+
+void GrainSimulation::restore(const GrainState& state) {
+  GrainSystem& system = implementation_->system;
+  if (state.grains.size() != system.motions.size() || state.contacts.size() % numbers_per_contact != 0 ||
+      state.sums.size() != (implementation_->verlet() ? numbers_per_push * system.motions.size() : 0)) {
+    bad_input(format("the state is of {}", counted(static_cast<long long>(state.grains.size()), "grain")),
+              format("the scene has {}", system.motions.size()), "Resume with the scene that the state was saved from");
+  }
+  system.step = state.step;
+  system.lost = state.ledger;
+  for (std::size_t k = 0; k < system.motions.size(); ++k) {
+    const Grain& grain = state.grains[system.grain_of[k]];
+    system.motions[k] = {grain.position, grain.velocity, grain.spin, grain.angle};
+    if (state.sums.empty()) continue;
+    const double* numbers = state.sums.data() + numbers_per_push * k;
+    system.pushes[k] = {{numbers[0], numbers[1]}, numbers[2], {numbers[3], numbers[4]}};
+  }
+  place_walls(system);
+  system.candidates.clear();
+  system.exact_pairs.clear();
+  find_candidates(system);
+  std::size_t c = 0;
+  for (std::size_t at = 0; at < state.contacts.size(); at += numbers_per_contact) {
+    const auto i = static_cast<std::int32_t>(state.contacts[at]);
+    const auto j = static_cast<std::int32_t>(state.contacts[at + 1]);
+    while (c < system.candidates.size() && !(system.candidates[c].i == i && system.candidates[c].j == j)) ++c;
+    if (c == system.candidates.size()) {
+      bad_input("the state has a contact of bodies that are apart", "it is of another scene, or damaged",
+                "Resume with the scene that the state was saved from");
+    }
+    take(state.contacts.data() + at, system.candidates[c]);
+  }
+  system.counters = state.counters;
+}
+
+}  // namespace equidem

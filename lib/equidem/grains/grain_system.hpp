@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What the steps of colliding bodies work on: bodies and walls in the order of their places, candidates for contact.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "equidem/contact/exact_contact.hpp"
+#include "equidem/grains/grain_scene.hpp"
+#include "equidem/grains/grain_simulation.hpp"
+#include "equidem/grains/neighbours.hpp"
+
+namespace equidem {
+
+struct GrainMotion {
+  Vec2 position, velocity;
+  double spin = 0, angle = 0;
+};
+
+/// What does not change; walls have the inverse mass 0.
+struct GrainBody {
+  double radius = 0, inverse_mass = 0, inverse_moment = 0;
+  std::int32_t kind = 0;
+};
+
+/// What contacts give a body in one step.
+struct Push {
+  Vec2 impulse;       ///< N s
+  double torque = 0;  ///< impulse of the moment, N m s
+  Vec2 moment;  ///< maps: mass times shift of the position, kg m; exact_flow: integral of (dt - t) force dt, N s²
+};
+
+/// What a contact remembers from step to step.
+struct ContactMemory {
+  bool touching = false;
+  bool parted = false;  // a map ended it with the step: what overlaps then is a new contact
+  int mode = 0;
+  std::int64_t steps = 0;
+  double stretch = 0;  // of the tangential spring, m
+  // of the last step
+  double overlap = 0, closing = 0;
+  Vec2 normal;
+  double impulse = 0, moment = 0, tangential_impulse = 0;
+};
+
+/// Two bodies near enough to touch soon, or a body and a wall.
+struct Candidate : ContactMemory {
+  std::int32_t i = 0;
+  std::int32_t j = 0;  ///< ~j: a wall, where negative
+  // what does not change
+  double reduced_mass = 0;
+  double stiffness = 0;  // N/m, hertz: N/m^(3/2)
+  double a = 0;          // dimensionless stiffness
+  double strength = 0;   // zeta, alpha or the restitution, by the law
+  bool attraction = false;
+  Sliding sliding;
+};
+
+/// A contact as it was before the step being made.
+struct ContactBefore {
+  std::int32_t i = 0, j = 0;
+  ContactMemory memory;
+};
+
+/// A wall where it is now and how it moves in this step.
+struct WallPlace {
+  Vec2 displacement;
+  Vec2 velocity;  ///< mean over the step
+};
+
+struct GrainSystem {
+  GrainScene scene;  ///< walls and grains in the order of their places
+  GrainOptions options;
+  double length = 0;  ///< d_c
+  bool friction = false;
+  std::vector<std::size_t> grain_of, wall_of;  ///< caller's number of the k-th
+  std::vector<std::int32_t> place_of_grain, place_of_wall;
+
+  std::int64_t step = 0;
+  std::vector<GrainBody> bodies;
+  std::vector<GrainMotion> motions;
+  std::vector<Push> pushes;
+  std::vector<WallPlace> walls;
+  std::vector<Candidate> candidates;  ///< ordered by i, then j, walls last
+  NeighbourFinder finder;
+  std::vector<Circle> circles;         ///< bodies, for the finder
+  std::vector<ExactPair> exact_pairs;  ///< exact_flow: one for each candidate
+  double margin = 0, moved = 0;        ///< of the candidates; how far bodies may have moved since they were found, m
+  double base_margin = 0;              ///< while bodies are slow, m
+  std::vector<GrainMotion> next;       ///< after the step being made
+
+  std::vector<ContactBefore>
+      contacts_before;  ///< of laws that change contacts before it is known whether the step can be made
+
+  double smallest_radius = 0;
+  double deepest = 0;  ///< overlap of the step, m
+  GrainLedger lost;    ///< losses and work since the start
+  GrainCounters counters;
+
+  [[nodiscard]] double dt() const { return options.time_step; }
+  [[nodiscard]] double time() const { return static_cast<double>(step) * options.time_step; }
+  [[nodiscard]] const PairProperties& properties(const Candidate& candidate) const {
+    const int other = candidate.j >= 0 ? bodies[static_cast<std::size_t>(candidate.j)].kind
+                                       : scene.walls[static_cast<std::size_t>(~candidate.j)].kind;
+    return scene.between(bodies[static_cast<std::size_t>(candidate.i)].kind, other);
+  }
+};
+
+/// Put grains and walls in the order of their places, so that the caller's order changes no bit.
+void order_by_place(GrainSystem& system, const GrainScene& scene);
+
+/// Find all candidates within the margin anew; contacts keep what they remember.
+void find_candidates(GrainSystem& system);
+
+/// See to it that the candidates hold all that may touch while no body moves further than `reach` from where it is, and count
+/// that way as gone.
+/// \return whether they were found anew
+bool refresh_candidates(GrainSystem& system, double reach);
+
+/// The longest way that a body goes in this step, walls included.
+double reach_of(const GrainSystem& system);
+
+/// Make the contacts again what contacts_before has.
+void restore_contacts(GrainSystem& system);
+
+/// Forget a contact that has ended.
+void let_go(GrainSystem& system, Candidate& candidate);
+
+/// Where walls are at the start of the step, and their mean velocity over it.
+void place_walls(GrainSystem& system);
+
+}  // namespace equidem

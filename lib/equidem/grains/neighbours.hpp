@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Which bodies may touch: lists with a margin that last for many steps.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "equidem/core/vector.hpp"
+
+namespace equidem {
+
+/// Bounding circle of a body.
+struct Circle {
+  Vec2 centre;
+  double radius = 0;
+};
+
+/// Pairs i < j whose circles come nearer than the margin, |x_i - x_j| < r_i + r_j + margin, ordered by i, then j.
+struct NeighbourList {
+  std::vector<std::int64_t> begin;    ///< size bodies + 1: partners of i are partner[begin[i]] .. partner[begin[i+1]]
+  std::vector<std::int32_t> partner;  ///< ascending within i
+};
+
+/// Finds neighbours again and again in the same memory.
+///
+/// Bodies are divided into size classes, a factor of four wide, and each class into rows as high as its bodies reach,
+/// sorted by x; a row then meets the rows within reach of it, of its own class and of the larger ones, in one sweep of
+/// both. Radii in ratio 100:1 and more cost little more than equal ones. Only rows where bodies lie are kept, so bodies
+/// may be scattered anywhere; time and memory are linear in bodies, pairs and size classes. Fastest where bodies close
+/// in space are close in `circles`.
+class NeighbourFinder {
+ public:
+  NeighbourFinder();
+  ~NeighbourFinder();
+  NeighbourFinder(NeighbourFinder&&) noexcept;
+  NeighbourFinder& operator=(NeighbourFinder&&) noexcept;
+
+  /// \param circles lengths whose squares are numbers: 0 or from 1e-150 to 1e150 m; radii >= 0; fewer than 2^31
+  /// \param margin >= 0, m
+  /// \return valid until the next call; the same list for every number of threads and every grid
+  /// \throws Error (computation_failed) on a centre or radius that is no finite number
+  const NeighbourList& within(std::span<const Circle> circles, double margin);
+
+ private:
+  struct Memory;
+  std::unique_ptr<Memory> memory_;
+};
+
+/// The same, once.
+NeighbourList neighbours_within(std::span<const Circle> circles, double margin);
+
+/// The same by comparing all pairs.
+NeighbourList neighbours_by_brute_force(std::span<const Circle> circles, double margin);
+
+}  // namespace equidem

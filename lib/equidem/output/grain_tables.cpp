@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/output/grain_tables.hpp"
+
+#include <cassert>
+#include <cstdint>
+
+#include "equidem/core/file.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/output/csv.hpp"
+
+namespace equidem {
+
+void write_grain_csv(const std::filesystem::path& path, std::span<const Grain> grains,
+                     const std::vector<std::string>& groups, std::span<const double> densities, bool overwrite) {
+  assert(groups.size() == grains.size() && densities.size() == grains.size());
+  CsvText text({"grain", "group", "x_m", "y_m", "radius_m", "vx_m_per_s", "vy_m_per_s", "spin_rad_per_s", "angle_rad",
+                "density_kg_per_m3"},
+               grains.size());
+  for (std::size_t g = 0; g < grains.size(); ++g) {
+    const Grain& grain = grains[g];
+    text.cell(static_cast<std::int64_t>(g));
+    text.cell(std::string_view(groups[g]));
+    for (const double value : {grain.position.x, grain.position.y, grain.radius, grain.velocity.x, grain.velocity.y,
+                               grain.spin, grain.angle, densities[g]})
+      text.cell(value);
+    text.end_row();
+  }
+  write_file(path, text.text(), overwrite);
+}
+
+void write_grain_contact_csv(const std::filesystem::path& path, std::span<const GrainContact> contacts,
+                             std::span<const GrainWall> walls, Body body, bool overwrite) {
+  const std::string depth = per_depth(body);
+  CsvText text({"i", "j", "wall", "overlap_m", "closing_m_per_s", "normal_x", "normal_y", "normal_force_N" + depth,
+                "tangential_force_N" + depth, "mode", "steps"},
+               contacts.size());
+  for (const GrainContact& contact : contacts) {
+    text.cell(std::int64_t{contact.i});
+    if (contact.j >= 0) {
+      text.cell(std::int64_t{contact.j});
+      text.empty_cell();
+    } else {
+      text.empty_cell();
+      text.cell(std::string_view(walls[static_cast<std::size_t>(~contact.j)].name));
+    }
+    for (const double value : {contact.overlap, contact.closing, contact.normal.x, contact.normal.y,
+                               contact.normal_force, contact.tangential_force})
+      text.cell(value);
+    text.cell(std::int64_t{contact.mode});
+    text.cell(contact.steps);
+    text.end_row();
+  }
+  write_file(path, text.text(), overwrite);
+}
+
+void write_grain_energy_csv(const std::filesystem::path& path, std::span<const GrainEnergySample> energies, Body body,
+                            bool overwrite) {
+  std::vector<std::string> columns{"step", "time_s"};
+  for (const std::string& name : grain_energy_columns(body)) columns.push_back(name);
+  CsvText text(columns, energies.size());
+  for (const GrainEnergySample& sample : energies) {
+    text.cell(sample.step);
+    text.cell(sample.time);
+    for (const double value : grain_energy_cells(sample.ledger)) text.cell(value);
+    text.end_row();
+  }
+  write_file(path, text.text(), overwrite);
+}
+
+}  // namespace equidem

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Colliding bodies, their contacts and energies as CSV.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "equidem/grains/grain_simulation.hpp"
+#include "equidem/material/inertia.hpp"
+#include "equidem/output/grain_energy.hpp"
+
+namespace equidem {
+
+/// One row per grain: grain, group, x_m, y_m, radius_m, vx_m_per_s, vy_m_per_s, spin_rad_per_s, angle_rad, density_kg_per_m3. A case
+/// file reads it back with [grains] path.
+/// \param groups, densities of each grain
+/// \throws Error (bad_input) as write_file does
+void write_grain_csv(const std::filesystem::path& path, std::span<const Grain> grains,
+                     const std::vector<std::string>& groups, std::span<const double> densities, bool overwrite);
+
+/// One row per contact of the last step: i, j (empty where it is a wall), wall (its name), overlap_m, closing_m_per_s, normal_x,
+/// normal_y (from i), normal_force_N, tangential_force_N (of discs _N_per_m, compression positive), mode, steps.
+/// \throws Error (bad_input) as write_file does
+void write_grain_contact_csv(const std::filesystem::path& path, std::span<const GrainContact> contacts,
+                             std::span<const GrainWall> walls, Body body, bool overwrite);
+
+/// One row per moment: step, time_s, every term of the ledger as TERM_J (of discs TERM_J_per_m), error_J, what its balance lacks.
+/// \throws Error (bad_input) as write_file does
+void write_grain_energy_csv(const std::filesystem::path& path, std::span<const GrainEnergySample> energies, Body body,
+                            bool overwrite);
+
+}  // namespace equidem

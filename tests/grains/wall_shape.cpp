@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/wall_shape.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/random.hpp"
+
+#include "support/catch.hpp"
+
+using namespace equidem;
+
+namespace {
+
+using Shape = GrainWall::Shape;
+constexpr double pi = std::numbers::pi;
+
+GrainWall line(Vec2 point, double angle) {
+  return {.shape = Shape::line, .name = "w", .point = point, .normal = {std::cos(angle), std::sin(angle)}};
+}
+GrainWall segment(Vec2 point, Vec2 end) {
+  return {.shape = Shape::segment, .name = "w", .point = point, .end = end};
+}
+GrainWall arc(Vec2 centre, double radius, double from, double to) {
+  return {.shape = Shape::arc, .name = "w", .point = centre, .radius = radius, .from = from, .to = to};
+}
+
+Vec2 at_random(Random& random, double size) {
+  return {random.uniform(-size, size), random.uniform(-size, size)};
+}
+
+GrainWall thin_wall(Random& random) {
+  if (random.below(2) == 0) return segment(at_random(random, 1), at_random(random, 1));
+  const double from = random.uniform(-10, 10);
+  const double angle = random.below(4) == 0 ? 2 * pi : random.uniform(0.1, 2 * pi);
+  return arc(at_random(random, 1), random.uniform(0.2, 1.5), from, from + angle);
+}
+
+/// Points of a thin wall from end to end, evenly spaced.
+std::vector<Vec2> sampled(const GrainWall& wall, int pieces) {
+  std::vector<Vec2> points;
+  for (int k = 0; k <= pieces; ++k) {
+    const double share = static_cast<double>(k) / pieces;
+    const double angle = wall.from + share * (wall.to - wall.from);
+    points.push_back(wall.shape == Shape::segment ? wall.point + share * (wall.end - wall.point)
+                                                  : wall.point + wall.radius * Vec2{std::cos(angle), std::sin(angle)});
+  }
+  return points;
+}
+
+double least_distance(const std::vector<Vec2>& points, Vec2 from) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Vec2 p : points) least = std::min(least, norm(from - p));
+  return least;
+}
+
+/// Whether two ways cross, from the solution of the two linear equations for where.
+bool ways_cross(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
+  const Vec2 u = b - a;
+  const Vec2 v = d - c;
+  const double s = cross(c - a, v) / cross(u, v);
+  const double t = cross(c - a, u) / cross(u, v);
+  return s >= 0 && s <= 1 && t >= 0 && t <= 1;
+}
+
+bool crosses_samples(const std::vector<Vec2>& points, Vec2 before, Vec2 after) {
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    if (ways_cross(points[k - 1], points[k], before, after)) return true;
+  }
+  return false;
+}
+
+/// The wall a little longer or shorter, larger or smaller.
+GrainWall changed(GrainWall wall, double share) {
+  const Vec2 along = share * (wall.end - wall.point);
+  if (wall.shape == Shape::segment) {
+    wall.point -= along;
+    wall.end += along;
+  }
+  wall.radius *= 1 + share;
+  if (wall.to - wall.from < 2 * pi - 1e-3) {
+    wall.from -= share;
+    wall.to += share;
+  }
+  return wall;
+}
+
+std::string refusal(const GrainWall& wall) {
+  try {
+    check(wall);
+  } catch (const Error& error) {
+    return error.kind() == ErrorKind::bad_input ? error.what() : "wrong kind";
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("no_point_of_a_thin_wall_is_nearer_than_the_nearest") {
+  Random random(1);
+  for (int k = 0; k < 300; ++k) {
+    const GrainWall wall = thin_wall(random);
+    const std::vector<Vec2> points = sampled(wall, 2000);
+    const double spacing = norm(points[1] - points[0]);
+    for (int probe = 0; probe < 5; ++probe) {
+      const Vec2 displacement = at_random(random, 5);
+      const Vec2 centre = at_random(random, 3);
+      const WallContact found = nearest(wall, displacement, centre + displacement);
+      const double sampled_distance = least_distance(points, centre);
+      const Vec2 foot = centre - found.distance * found.normal;
+      CAPTURE(static_cast<int>(wall.shape), k, probe, found.distance, sampled_distance, spacing);
+      CHECK(norm(found.normal) == Approx(1).epsilon(1e-14));
+      CHECK(found.distance <= sampled_distance + 1e-12);
+      CHECK(least_distance(points, foot) <= 0.5 * spacing + 1e-12);
+    }
+  }
+}
+
+TEST_CASE("the_distance_from_a_line_has_a_sign_and_its_normal_never_turns") {
+  Random random(2);
+  for (int k = 0; k < 200; ++k) {
+    const GrainWall wall = line(at_random(random, 2), random.uniform(0, 2 * pi));
+    const Vec2 displacement = at_random(random, 2);
+    const double height = random.uniform(-3, 3);
+    const Vec2 foot = wall.point + displacement + random.uniform(-9, 9) * perpendicular(wall.normal);
+    const WallContact found = nearest(wall, displacement, foot + height * wall.normal);
+    CAPTURE(k, height, found.distance);
+    CHECK(std::abs(found.distance - height) < 1e-14 * 20);
+    CHECK(found.normal == wall.normal);
+    const auto passes = [&](double before, double after) {
+      return passes_through(wall, foot - displacement + before * wall.normal,
+                            foot - displacement + after * wall.normal);
+    };
+    CHECK(passes(1, -1));
+    CHECK(passes(-1, 1));
+    CHECK_FALSE(passes(1, 0.1));
+    CHECK_FALSE(passes(-1, -0.1));
+  }
+}
+
+TEST_CASE("next_to_a_thin_wall_the_normal_is_its_own") {
+  Random random(3);
+  for (int k = 0; k < 500; ++k) {
+    const GrainWall wall = thin_wall(random);
+    const double share = random.uniform(0.01, 0.99);
+    const double angle = wall.from + share * (wall.to - wall.from);
+    const Vec2 outwards{std::cos(angle), std::sin(angle)};
+    const bool straight = wall.shape == Shape::segment;
+    const Vec2 along = (wall.end - wall.point) / norm(wall.end - wall.point);
+    const Vec2 own = straight ? perpendicular(along) : outwards;
+    const Vec2 on = wall.point + (straight ? share * (wall.end - wall.point) : wall.radius * outwards);
+    for (const double height : {1e-3, 1e-9, 1e-14, 0.0, -1e-14, -1e-9, -1e-3}) {
+      const WallContact found = nearest(wall, {}, on + height * own);
+      CAPTURE(static_cast<int>(wall.shape), k, height, found.distance, found.normal.x, found.normal.y, own.x, own.y);
+      CHECK(std::abs(found.distance - std::abs(height)) < 1e-14);
+      CHECK(std::abs(cross(found.normal, own)) < 1e-14 + 1e-15 / wall.radius);
+      if (std::abs(height) > 1e-13) CHECK(dot(found.normal, height * own) > 0);
+    }
+  }
+}
+
+TEST_CASE("a_way_passes_through_where_it_crosses_the_samples_of_the_wall") {
+  Random random(4);
+  int passed = 0;
+  int not_passed = 0;
+  int near_an_end = 0;
+  for (int k = 0; k < 3000; ++k) {
+    const GrainWall wall = thin_wall(random);
+    const Vec2 before = at_random(random, 1.5);
+    const Vec2 after = at_random(random, 1.5);
+    // Arcs are samples joined by chords, off by less than what the wall is changed by.
+    const bool smaller = crosses_samples(sampled(changed(wall, -1e-4), 500), before, after);
+    const bool larger = crosses_samples(sampled(changed(wall, 1e-4), 500), before, after);
+    if (smaller != larger) {
+      ++near_an_end;
+      continue;
+    }
+    ++(larger ? passed : not_passed);
+    CAPTURE(static_cast<int>(wall.shape), k, before.x, before.y, after.x, after.y);
+    CHECK(passes_through(wall, before, after) == larger);
+    CHECK(passes_through(wall, after, before) == larger);
+  }
+  CAPTURE(passed, not_passed, near_an_end);
+  CHECK(passed > 500);
+  CHECK(not_passed > 500);
+  CHECK(near_an_end < 20);
+}
+
+TEST_CASE("nothing_leaves_a_closed_wall_unseen") {
+  Random random(5);
+  std::vector<Vec2> corners;
+  for (int k = 0; k < 7; ++k) {
+    const double radius = random.uniform(0.5, 2);
+    corners.push_back({radius * std::cos(0.9 * k), radius * std::sin(0.9 * k)});
+  }
+  std::vector<GrainWall> polygon;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    polygon.push_back(segment(corners[k], corners[(k + 1) % corners.size()]));
+  }
+  std::vector<GrainWall> ring;
+  for (int k = 0; k < 5; ++k) ring.push_back(arc({}, 1.3, 0.2 + 0.4 * pi * k, 0.2 + 0.4 * pi * (k + 1)));
+  const std::vector<GrainWall> circle = {arc({}, 1, 0.7, 0.7 + 2 * pi)};
+  for (const auto& closed : {polygon, ring, circle}) {
+    for (int k = 0; k < 3000; ++k) {
+      const Vec2 inside = at_random(random, 0.1);
+      Vec2 outside = at_random(random, 1);
+      outside *= 5 / norm(outside);
+      if (k % 3 == 0) {
+        // Through a corner, or between two arcs.
+        const GrainWall& wall = closed[random.below(closed.size())];
+        const Vec2 corner = wall.shape == Shape::segment
+                                ? wall.point
+                                : wall.point + wall.radius * Vec2{std::cos(wall.from), std::sin(wall.from)};
+        outside = inside + 7 * (corner - inside) / norm(corner - inside);
+      }
+      const auto seen = [&](Vec2 before, Vec2 after) {
+        return std::any_of(closed.begin(), closed.end(),
+                           [&](const GrainWall& wall) { return passes_through(wall, before, after); });
+      };
+      CAPTURE(closed.size(), k, inside.x, inside.y, outside.x, outside.y);
+      CHECK(seen(inside, outside));
+      CHECK(seen(outside, inside));
+    }
+  }
+}
+
+TEST_CASE("of_two_ways_that_meet_on_the_wall_one_passes") {
+  std::vector<GrainWall> walls = {line({0, 2}, pi), segment({0, -1}, {0, 3}), segment({0, 3}, {0, -1}),
+                                  arc({-2, 0}, 2, -1, 1)};
+  walls[0].normal = {-1, 0};
+  for (const GrainWall& wall : walls) {
+    const Vec2 own = nearest(wall, {}, {0, 0}).normal;
+    CAPTURE(own.x, own.y);
+    CHECK_FALSE(passes_through(wall, {0, 0}, 0.5 * own));
+    CHECK(passes_through(wall, {0, 0}, -0.5 * own));
+    for (const auto& [before, after] : {std::array<Vec2, 2>{{{-1, 0}, {1, 0}}}, {{{1, 0}, {-1, 0}}}}) {
+      CAPTURE(static_cast<int>(wall.shape), before.x);
+      CHECK(passes_through(wall, before, after));
+      CHECK(passes_through(wall, before, {0, 0}) != passes_through(wall, {0, 0}, after));
+      CHECK_FALSE(passes_through(wall, {0, 0}, {0, 0}));
+      // There and back again: both or none.
+      CHECK(passes_through(wall, before, {0, 0}) == passes_through(wall, {0, 0}, before));
+    }
+  }
+}
+
+TEST_CASE("a_chord_passes_an_arc_twice_and_a_tangent_never") {
+  const GrainWall upper = arc({0, 0}, 1, 0, pi);
+  CHECK(passes_through(upper, {-2, 0.5}, {2, 0.5}));
+  CHECK(passes_through(upper, {2, 0.999}, {-2, 0.999}));
+  CHECK_FALSE(passes_through(upper, {-2, 1}, {2, 1}));
+  CHECK_FALSE(passes_through(upper, {-2, 1.001}, {2, 1.001}));
+  CHECK_FALSE(passes_through(upper, {-2, -0.5}, {2, -0.5}));
+  CHECK_FALSE(passes_through(upper, {-0.9, 0.1}, {0.9, 0.1}));
+  CHECK_FALSE(passes_through(upper, {0, 0.5}, {0, -3}));
+  CHECK(passes_through(upper, {0, -3}, {0, 3}));
+}
+
+TEST_CASE("no_place_of_the_centre_makes_a_contact_that_is_no_number") {
+  const double tiny = 5e-324;
+  const std::vector<GrainWall> walls = {
+      line({0, 0}, 1),      segment({0, 0}, {1, 0}),   segment({0, 0}, {0, 1e-100}), arc({0, 0}, 1, 0, 2 * pi),
+      arc({0, 0}, 1, 3, 4), arc({0, 0}, 1e-100, 0, 1), arc({0, 0}, 1e100, 0, 1)};
+  for (const GrainWall& wall : walls) {
+    REQUIRE(refusal(wall).empty());
+    const std::vector<Vec2> points = sampled(wall, 8);
+    for (const double x : {0.0, tiny, -1e-200, 1e-160, 1e-30, 1.0, -1e100}) {
+      for (const double y : {0.0, -tiny, 1e-200, -1e-160, 1e-30, 1.0, 1e100}) {
+        for (Vec2 centre :
+             {Vec2{x, y}, points.front() + Vec2{x, y}, points.back() + Vec2{x, y}, points[4] + Vec2{x, y}}) {
+          const WallContact found = nearest(wall, {}, centre);
+          CAPTURE(static_cast<int>(wall.shape), wall.radius, centre.x, centre.y, found.distance);
+          CHECK(std::isfinite(found.distance));
+          CHECK(std::abs(norm(found.normal) - 1) < 1e-14);
+          CHECK_FALSE(passes_through(wall, centre, centre));
+        }
+      }
+    }
+  }
+  const WallContact middle = nearest(arc({2, 3}, 1, 0, pi), {}, {2, 3});
+  CHECK(middle.distance == 1);
+  CHECK(std::abs(middle.normal.x) < 1e-15);
+  CHECK(middle.normal.y == Approx(-1));
+}
+
+TEST_CASE("walls_that_stand_nowhere_are_refused") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinite = std::numeric_limits<double>::infinity();
+  CHECK(refusal(line({0, 0}, 1)).empty());
+  CHECK(refusal(segment({0, 0}, {0, 1e-9})).empty());
+  for (const double from : {0.0, -1.0, 0.1, 5.0, 100.0}) CHECK(refusal(arc({0, 0}, 1, from, from + 2 * pi)).empty());
+
+  GrainWall slanted = line({0, 0}, 1);
+  slanted.normal = {1, 1};
+  CHECK_THAT(refusal(slanted), Catch::Contains("(1, 1), which is no unit vector"));
+  slanted.normal = {nan, 1};
+  CHECK_THAT(refusal(slanted), Catch::Contains("no unit vector"));
+  for (const auto& wall : {line({nan, 0}, 1), segment({0, infinite}, {1, 0}), arc({nan, 0}, 1, 0, 1)}) {
+    CHECK_THAT(refusal(wall), Catch::Contains("wall 'w' stands at"));
+  }
+  CHECK_THAT(refusal(segment({0, 0}, {nan, 0})), Catch::Contains("ends at (nan, 0)"));
+  CHECK_THAT(refusal(segment({1, 2}, {1, 2})), Catch::Contains("begins and ends at (1, 2)"));
+  for (const double radius : {0.0, -1.0, nan, infinite}) {
+    CHECK_THAT(refusal(arc({0, 0}, radius, 0, 1)), Catch::Contains("has radius = "));
+  }
+  CHECK_THAT(refusal(arc({0, 0}, 1, 1, 0.5)), Catch::Contains("goes from 1 to 0.5 rad"));
+  CHECK_THAT(refusal(arc({0, 0}, 1, 1, 1)), Catch::Contains("counter-clockwise"));
+  CHECK_THAT(refusal(arc({0, 0}, 1, nan, 1)), Catch::Contains("goes from nan"));
+  CHECK_THAT(refusal(arc({0, 0}, 1, 0, 6.2832)), Catch::Contains("at most 2 pi long"));
+  GrainWall moving = line({0, 0}, 1);
+  moving.move_y.value = nan;
+  CHECK_FALSE(refusal(moving).empty());
+}

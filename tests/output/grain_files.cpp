@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "equidem/core/file.hpp"
+#include "equidem/output/frames.hpp"
+#include "equidem/output/grain_checkpoint.hpp"
+#include "equidem/output/grain_picture.hpp"
+#include "equidem/output/grain_tables.hpp"
+#include "equidem/output/growing_csv.hpp"
+#include "equidem/output/hdf5.hpp"
+
+#include "output/runs.hpp"
+#include "output/states.hpp"
+#include "support/catch.hpp"
+#include "support/fields.hpp"
+
+using namespace equidem;
+using equidem::test::refusal_of;
+
+namespace {
+
+std::vector<Grain> grains_at(std::int64_t step, std::size_t count) {
+  std::vector<Grain> grains;
+  const auto motions = motions_at(step, count), velocities = velocities_at(step, count);
+  for (std::size_t g = 0; g < count; ++g) {
+    grains.push_back({.position = motions[g].u + Vec2{static_cast<double>(g), 0},
+                      .radius = 0.1 + 0.01 * static_cast<double>(g),
+                      .inertia = {2, 3},
+                      .velocity = velocities[g].u,
+                      .spin = velocities[g].theta,
+                      .angle = motions[g].theta,
+                      .kind = static_cast<int>(g % 2)});
+  }
+  return grains;
+}
+
+GrainState grain_state(std::int64_t step, std::size_t count) {
+  GrainState state;
+  state.step = step;
+  state.grains = grains_at(step, count);
+  state.contacts = {0, 1, -0.0, 1e-300, 1.0 / 3};
+  state.sums.assign(4 * count, 0.1 * static_cast<double>(step));
+  double next = 1;
+  for (const GrainEnergyTerm& term : grain_energy_terms) state.ledger.*term.value = 1 / (next += 1.5);
+  state.counters = {.evaluations = 9007199254740991, .contacts = 7, .rebuilds = 3, .sweeps = 0};
+  return state;
+}
+
+}  // namespace
+
+TEST_CASE("a_checkpoint_of_grains_gives_back_every_bit") {
+  const TemporaryFolder folder;
+  const std::size_t count = GENERATE(1, 5);
+  const GrainState state = grain_state(77, count);
+  GrainRecord record;
+  for (std::int64_t step = 0; step < 3; ++step) {
+    record.energies.push_back({step, 0.1 * static_cast<double>(step), state.ledger});
+    record.paths.emplace_back(count, Vec2{static_cast<double>(step), 1.0 / 7});
+  }
+  const auto path = folder / "run.checkpoint.h5";
+  write_grain_checkpoint(CheckpointWriter(path, "the case", false), state, record);
+  const GrainCheckpoint found = read_grain_checkpoint(path, "the case", grains_at(0, count));
+  CHECK(found.state.step == state.step);
+  REQUIRE(found.state.grains.size() == count);
+  for (std::size_t g = 0; g < count; ++g) {
+    const Grain &a = found.state.grains[g], &b = state.grains[g];
+    CHECK(a.position == b.position);
+    CHECK(a.velocity == b.velocity);
+    CHECK(a.angle == b.angle);
+    CHECK(a.spin == b.spin);
+    CHECK(a.radius == b.radius);
+    CHECK(a.kind == b.kind);
+  }
+  CHECK(found.state.contacts == state.contacts);
+  CHECK(std::signbit(found.state.contacts[2]));
+  CHECK(found.state.sums == state.sums);
+  for (const GrainEnergyTerm& term : grain_energy_terms) {
+    CAPTURE(term.name);
+    CHECK(found.state.ledger.*term.value == state.ledger.*term.value);
+    CHECK(found.record.energies.back().ledger.*term.value == state.ledger.*term.value);
+  }
+  CHECK(found.state.counters.evaluations == 9007199254740991);
+  CHECK(found.state.counters.contacts == 7);
+  CHECK(found.state.counters.rebuilds == 3);
+  CHECK(found.record.energies[2].step == 2);
+  CHECK(found.record.energies[2].time == 0.2);
+  CHECK(found.record.paths == record.paths);
+  CHECK(refusal_of([&] { read_grain_checkpoint(path, "another", grains_at(0, count)); }).says("another case"));
+}
+
+TEST_CASE("frames_of_travelling_bodies_hold_their_places") {
+  const TemporaryFolder folder;
+  Assembly assembly;
+  for (const Grain& grain : grains_at(0, 3)) {
+    assembly.centres.push_back(grain.position);
+    assembly.radii.push_back(grain.radius);
+  }
+  {
+    FrameWriter writer(folder.path(), "frames", assembly, {.expected = 1, .travelling = true});
+    for (std::int64_t step : {0, 4, 9}) writer.append(step, time_at(step), motions_at(step, 3), velocities_at(step, 3));
+    writer.finish();
+  }
+  FrameWriter again(folder.path(), "frames", assembly, {.expected = 1, .travelling = true, .continue_after = 4});
+  CHECK(again.frames() == 2);
+  const Hdf5Layout layout = read_hdf5_layout(folder / "frames.h5", {"position", "angle", "velocity", "spin"});
+  CHECK(layout["position"].shape == std::vector<std::uint64_t>{3, 3, 3});
+  const OpenFile file(folder / "frames.h5", OpenFile::Mode::read);
+  std::vector<double> numbers(layout["position"].size());
+  file.read_at(layout["position"].offset, std::as_writable_bytes(std::span(numbers)));
+  const auto motions = motions_at(4, 3);
+  for (std::size_t g = 0; g < 3; ++g) {
+    CHECK(numbers[9 + 3 * g] == motions[g].u.x);
+    CHECK(numbers[9 + 3 * g + 1] == motions[g].u.y);
+  }
+  const std::string index = read_file(folder / "frames.xdmf2");
+  CHECK(index.find("GeometryType=\"XYZ\"") != std::string::npos);
+  CHECK(index.find("Name=\"angle\"") != std::string::npos);
+  CHECK(index.find("displacement") == std::string::npos);
+}
+
+TEST_CASE("a_growing_table_goes_on_where_the_run_is") {
+  const TemporaryFolder folder;
+  const auto path = folder / "history.csv";
+  const std::vector<std::string> columns{"step", "time_s", "x_m"};
+  {
+    GrowingCsv table(path, columns, {});
+    for (std::int64_t step : {0, 3, 6}) table.add(step, {time_at(step), 0.5});
+  }
+  const std::string whole = read_file(path);
+  CHECK(whole == "step,time_s,x_m\n0,0,0.5\n3,3.0000000000000004e-05,0.5\n6,6.000000000000001e-05,0.5\n");
+  write_file(path, whole + "9,1", true);  // cut short
+  {
+    GrowingCsv table(path, columns, {.continue_after = 3});
+    CHECK(table.last_step() == 3);
+    table.add(6, {time_at(6), 0.5});
+  }
+  CHECK(read_file(path) == whole);
+  CHECK(refusal_of([&] { GrowingCsv(path, columns, {}); }).says("history.csv"));
+  CHECK(refusal_of([&] { GrowingCsv(path, {"step", "y_m"}, {.continue_after = 3}); }).says("its columns are"));
+}
+
+TEST_CASE("tables_of_grains_and_contacts_have_a_row_for_each") {
+  const TemporaryFolder folder;
+  const auto grains = grains_at(1, 2);
+  const std::vector<double> densities{2500, 7800};
+  write_grain_csv(folder / "grains.csv", grains, {"sand", "steel"}, densities, false);
+  const std::string table = read_file(folder / "grains.csv");
+  CHECK(table.starts_with("grain,group,x_m,y_m,radius_m,vx_m_per_s,vy_m_per_s,spin_rad_per_s,angle_rad,"));
+  CHECK(table.find("\n1,steel,") != std::string::npos);
+  CHECK(table.ends_with(",7800\n"));
+  GrainWall floor;
+  floor.name = "floor";
+  const std::vector<GrainWall> walls{floor};
+  std::vector<GrainContact> contacts(2);
+  contacts[0].j = 1;
+  contacts[0].normal_force = 3.5;
+  contacts[1].j = ~0;
+  contacts[1].steps = 12;
+  for (const Body body : {Body::disc, Body::sphere}) {
+    write_grain_contact_csv(folder / "contacts.csv", contacts, walls, body, true);
+    const std::string rows = read_file(folder / "contacts.csv");
+    CAPTURE(rows);
+    CHECK((rows.find("normal_force_N_per_m,") != std::string::npos) == (body == Body::disc));
+    CHECK(rows.find("\n0,1,,0,0,0,0,3.5,") != std::string::npos);
+    CHECK(rows.find("\n0,,floor,0,") != std::string::npos);
+    CHECK(rows.ends_with(",12\n"));
+  }
+}
+
+TEST_CASE("a_table_of_energies_holds_every_term_and_what_the_balance_lacks") {
+  const TemporaryFolder folder;
+  const GrainLedger ledger = grain_state(1, 1).ledger;
+  const std::vector<GrainEnergySample> samples{{0, 0.0, {}}, {8, 0.5, ledger}};
+  write_grain_energy_csv(folder / "energy.csv", samples, Body::sphere, false);
+  const std::string rows = read_file(folder / "energy.csv");
+  CAPTURE(rows);
+  CHECK(rows.starts_with("step,time_s,kinetic_J,"));
+  CHECK(rows.find(",lost_slip_J,") != std::string::npos);
+  CHECK(rows.find("\n8,0.5,") != std::string::npos);
+  CHECK(std::stod(rows.substr(rows.rfind(',') + 1)) == ledger.error());
+}
+
+TEST_CASE("a_picture_of_grains_shows_walls_paths_and_title") {
+  const TemporaryFolder folder;
+  const auto grains = grains_at(1, 3);
+  std::vector<GrainWall> walls(3);
+  walls[0].point = {0, -0.2};
+  walls[1].shape = GrainWall::Shape::segment;
+  walls[1].point = {3, 0};
+  walls[1].end = {3, 2};
+  walls[2].shape = GrainWall::Shape::arc;
+  walls[2].radius = 4;
+  walls[2].to = 1.5;
+  std::vector<std::vector<Vec2>> paths;
+  for (int k = 0; k < 20; ++k) paths.emplace_back(3, Vec2{0.1 * k, 0.01 * k * k});
+  const std::vector<int> groups{0, 1, 17};
+  GrainPicture picture{.title = "Walls & paths", .time = 0.5, .grains = grains};
+  const auto size_of = [&](const char* name) {
+    CHECK(write_grain_picture(folder.path(), name, picture, false).size() == 2);
+    CHECK(read_file(folder.path() / (std::string(name) + ".png")).starts_with("\x89PNG"));
+    return read_file(folder.path() / (std::string(name) + ".svg")).size();
+  };
+  const std::size_t bare = size_of("bare");
+  picture.groups = groups;
+  picture.walls = walls;
+  const std::size_t with_walls = size_of("walls");
+  picture.paths = paths;
+  CHECK(with_walls > bare);
+  CHECK(size_of("paths") > with_walls);
+  CHECK(refusal_of([&] { write_grain_picture(folder.path(), "none", {}, false); }).says("no grains"));
+  auto lost = grains;
+  lost[1].position.x = NAN;
+  picture = {.grains = lost};
+  CHECK(refusal_of([&] { write_grain_picture(folder.path(), "lost", picture, false); }).says("grain 1"));
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What happens at intervals while a run goes on.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+namespace equidem {
+
+/// Steps at which something happens every so many seconds of the run, each the nearest to its time; never where there
+/// is no interval.
+class Recurrence {
+ public:
+  Recurrence(std::optional<double> interval, double step) : interval_(interval.value_or(0) / step) {}
+  /// The first such step after `step`.
+  [[nodiscard]] std::int64_t after(std::int64_t step) const {
+    if (!(interval_ > 0)) return never;
+    if (interval_ <= 1) return step + 1;
+    const double turn = std::ceil((static_cast<double>(step) + 0.5) / interval_ - 1e-9);
+    const double next = std::floor(turn * interval_ + 0.5);
+    if (next >= 1e18) return never;
+    if (next > static_cast<double>(step)) return static_cast<std::int64_t>(next);
+    return static_cast<std::int64_t>(std::floor((turn + 1) * interval_ + 0.5));
+  }
+  [[nodiscard]] bool at(std::int64_t step) const { return step == 0 || (step > 0 && after(step - 1) == step); }
+  static constexpr std::int64_t never = INT64_MAX;
+
+ private:
+  double interval_;
+};
+
+}  // namespace equidem

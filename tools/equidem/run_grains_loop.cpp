@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run_grains_loop.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <initializer_list>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include "equidem/casefile/echo.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/output/frames.hpp"
+#include "equidem/output/grain_energy.hpp"
+#include "equidem/output/grain_picture.hpp"
+#include "equidem/output/growing_csv.hpp"
+
+#include "recurrence.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr double look_every = 0.2;                            // s of the clock on the wall: progress, interrupts
+constexpr std::int64_t moments = 200, moments_of_few = 1000;  // of the record, the latter where paths are drawn
+
+/// Tells whether files that a case names are still what they were: FNV-1a, 64 bits at a time, the upper ones folded down.
+class Checksum {
+ public:
+  void add(double value) {
+    sum_ = (sum_ ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001b3U;
+    sum_ ^= sum_ >> 32U;
+  }
+  [[nodiscard]] std::string text() const { return format("{:016x}", sum_); }
+
+ private:
+  std::uint64_t sum_ = 0xcbf29ce484222325U;
+};
+
+std::string checksum_of(const GrainCase& resolved) {
+  Checksum sum;
+  for (std::size_t g = 0; g < resolved.grains.size(); ++g) {
+    const Grain& grain = resolved.grains[g];
+    for (const double value : {grain.position.x, grain.position.y, grain.radius, grain.velocity.x, grain.velocity.y,
+                               grain.spin, grain.angle, resolved.densities[g], static_cast<double>(grain.kind)})
+      sum.add(value);
+  }
+  for (const GrainWall& wall : resolved.walls)
+    for (const Schedule* schedule : {&wall.move_x, &wall.move_y})
+      for (const auto* values : {&schedule->times, &schedule->values})
+        for (const double value : *values) sum.add(value);
+  return sum.text();
+}
+
+void erase(TomlValue& table, std::initializer_list<std::string_view> names) {
+  std::erase_if(table.entries,
+                [&](const auto& entry) { return std::find(names.begin(), names.end(), entry.first) != names.end(); });
+}
+
+/// Grains as frames know them: places and radii at the start.
+Assembly assembly_of(const std::vector<Grain>& grains) {
+  Assembly assembly;
+  for (const Grain& grain : grains) {
+    assembly.centres.push_back(grain.position);
+    assembly.radii.push_back(grain.radius);
+  }
+  return assembly;
+}
+
+std::vector<std::string> history_columns(const GrainCase& resolved) {
+  std::vector<std::string> columns{"step", "time_s"};
+  for (const GrainProbe& probe : resolved.probes) {
+    for (const std::string& quantity : probe.quantities) {
+      if (quantity == "position") {
+        columns.insert(columns.end(), {probe.name + "_x_m", probe.name + "_y_m"});
+      } else if (quantity == "velocity") {
+        columns.insert(columns.end(), {probe.name + "_vx_m_per_s", probe.name + "_vy_m_per_s"});
+      } else {
+        columns.push_back(probe.name + (quantity == "angle" ? "_angle_rad" : "_spin_rad_per_s"));
+      }
+    }
+  }
+  for (const std::string& name : grain_energy_columns(resolved.body)) columns.push_back(name);
+  return columns;
+}
+
+std::vector<double> history_row(const GrainCase& resolved, double time, const std::vector<Grain>& grains,
+                                const GrainLedger& ledger) {
+  std::vector<double> row{time};
+  for (const GrainProbe& probe : resolved.probes) {
+    Grain mean;
+    for (const std::int32_t number : probe.grains) {
+      const Grain& grain = grains[static_cast<std::size_t>(number)];
+      mean.position += grain.position;
+      mean.velocity += grain.velocity;
+      mean.angle += grain.angle;
+      mean.spin += grain.spin;
+    }
+    const auto count = static_cast<double>(probe.grains.size());
+    for (const std::string& quantity : probe.quantities) {
+      if (quantity == "angle" || quantity == "spin") {
+        row.push_back((quantity == "angle" ? mean.angle : mean.spin) / count);
+      } else {
+        const Vec2 value = (quantity == "position" ? mean.position : mean.velocity) / count;
+        row.insert(row.end(), {value.x, value.y});
+      }
+    }
+  }
+  for (const double cell : grain_energy_cells(ledger)) row.push_back(cell);
+  return row;
+}
+
+class GrainLoop {
+ public:
+  GrainLoop(const GrainSetup& setup, GrainSimulation& simulation, const GrainFiles& files)
+      : setup_(setup),
+        simulation_(simulation),
+        draws_paths_(setup.resolved.grains.size() <= most_drawn_paths),
+        stride_(static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(
+            std::max<std::int64_t>(1, setup.steps / (draws_paths_ ? moments_of_few : moments)))))),
+        frame_times_(setup.resolved.output.frame_interval, setup.step.step),
+        probe_times_(setup.resolved.output.probe_interval, setup.step.step) {
+    if (files.folder) open(files);
+  }
+
+  GrainRun go() {
+    if (simulation_.step() == 0) write_due();
+    Progress progress("stepping");
+    Stopwatch since_checkpoint;
+    const std::int64_t first = simulation_.step();
+    std::int64_t chunk = 64;
+    while (simulation_.step() < setup_.steps) {
+      const std::int64_t now = simulation_.step();
+      const std::int64_t next = std::min(
+          {setup_.steps, frame_times_.after(now), probe_times_.after(now), now + stride_ - now % stride_, now + chunk});
+      const Stopwatch steps;
+      advance(next - now);
+      const double taken = steps.seconds();
+      result_.seconds += taken;
+      if (taken < 0.5 * look_every && next - now == chunk) chunk *= 2;
+      if (taken > look_every && chunk > 1) chunk /= 2;
+      write_due();
+      try {
+        progress.update(static_cast<double>(simulation_.step()) / static_cast<double>(setup_.steps));
+      } catch (const Error&) {
+        save();
+        throw;
+      }
+      if (checkpoint_ && since_checkpoint.seconds() > setup_.resolved.output.checkpoint_interval) {
+        save();
+        since_checkpoint.lap();
+      }
+    }
+    save();
+    close();
+    result_.steps_done = simulation_.step() - first;
+    return std::move(result_);
+  }
+
+ private:
+  /// \throws Error; what was reached is kept
+  void advance(std::int64_t steps) {
+    try {
+      simulation_.advance(steps);
+    } catch (const Error& error) {
+      save();
+      close();
+      throw error.at(setup_.resolved.where("run.time_step"));
+    }
+  }
+
+  void open(const GrainFiles& files) {
+    const std::filesystem::path& folder = *files.folder;
+    const GrainCase& resolved = setup_.resolved;
+    const std::filesystem::path path = folder / "run.checkpoint.h5";
+    std::optional<std::int64_t> after;
+    if (files.resume) {
+      GrainCheckpoint checkpoint = read_grain_checkpoint(path, setup_.fingerprint(), resolved.grains);
+      after = checkpoint.state.step;
+      if (*after > setup_.steps) {
+        bad_input(format("the checkpoint '{}' lies past the end of the run", path.string()),
+                  format("it is at step {}, the run has {}", *after, setup_.steps),
+                  "Give a longer duration, or start the run afresh");
+      }
+      simulation_.restore(checkpoint.state);
+      result_.record = std::move(checkpoint.record);
+    }
+    checkpoint_.emplace(path, setup_.fingerprint(), files.overwrite || files.resume);
+    if (resolved.output.frame_interval) {
+      start_ = assembly_of(resolved.grains);
+      const double steps = static_cast<double>(setup_.steps);
+      const double count = std::min(steps, steps * setup_.step.step / *resolved.output.frame_interval);
+      frames_.emplace(folder, "frames", start_,
+                      FrameOptions{.expected = static_cast<std::int64_t>(count) + 2,
+                                   .overwrite = files.overwrite,
+                                   .travelling = true,
+                                   .continue_after = after});
+    }
+    if (resolved.output.probe_interval) {
+      history_ = std::make_unique<GrowingCsv>(folder / "history.csv", history_columns(resolved),
+                                              GrowingCsvOptions{.overwrite = files.overwrite, .continue_after = after});
+    }
+  }
+
+  void write_due() {
+    const std::int64_t step = simulation_.step();
+    const bool last = step == setup_.steps;
+    auto& energies = result_.record.energies;
+    const bool sample = (energies.empty() || energies.back().step < step) && (last || step % stride_ == 0);
+    const bool frame = frames_ && frames_->last_step() < step && (frame_times_.at(step) || last);
+    const bool row = history_ && history_->last_step() < step && (probe_times_.at(step) || last);
+    if (!sample && !frame && !row) return;
+    const GrainLedger ledger = simulation_.energy();
+    const double time = simulation_.time();
+    const bool path = sample && draws_paths_;
+    if (sample) energies.push_back({step, time, ledger});
+    if (!path && !frame && !row) return;
+    const std::vector<Grain> grains = simulation_.grains();
+    if (path) {
+      auto& places = result_.record.paths.emplace_back();
+      for (const Grain& grain : grains) places.push_back(grain.position);
+    }
+    if (frame) {
+      std::vector<DiscMotion> motions, velocities;
+      for (const Grain& grain : grains) {
+        motions.push_back({grain.position, grain.angle});
+        velocities.push_back({grain.velocity, grain.spin});
+      }
+      frames_->append(step, time, motions, velocities);
+    }
+    if (row) history_->add(step, history_row(setup_.resolved, time, grains, ledger));
+  }
+
+  /// Everything that the checkpoint counts on is on the disk before it is.
+  void save() {
+    if (!checkpoint_) return;
+    if (history_) history_->sync();
+    if (frames_) frames_->sync();
+    write_grain_checkpoint(*checkpoint_, simulation_.save(), result_.record);
+  }
+
+  void close() {
+    if (frames_) frames_->finish();
+    if (history_) history_->flush();
+  }
+
+  const GrainSetup& setup_;
+  GrainSimulation& simulation_;
+  bool draws_paths_;
+  std::int64_t stride_;  ///< steps from one moment of the record to the next
+  Recurrence frame_times_, probe_times_;
+  std::optional<CheckpointWriter> checkpoint_;
+  Assembly start_;
+  std::optional<FrameWriter> frames_;
+  std::unique_ptr<GrowingCsv> history_;
+  GrainRun result_;
+};
+
+/// What moves faster than steps can follow.
+void check_events(const GrainCase& resolved, const GrainStep& step) {
+  constexpr double most = 0.5;
+  for (std::size_t k = 0; k < resolved.walls.size(); ++k) {
+    for (const Schedule* schedule : {&resolved.walls[k].move_x, &resolved.walls[k].move_y}) {
+      const MissedEvent missed = missed_event(*schedule, step.step, resolved.duration);
+      if (missed.share <= most) continue;
+      throw Error(ErrorKind::bad_input,
+                  format("its schedule has an event at {:.6g} s that steps of {:.6g} s miss", missed.time, step.step),
+                  format("between two steps lie {:.0f} % of the range of its values", 100 * missed.share),
+                  "Give a time_step well below its length, or let it last longer",
+                  resolved.where(format("wall.{}.schedule", k)));
+    }
+  }
+}
+
+}  // namespace
+
+GrainSetup::GrainSetup(GrainCase given)
+    : resolved(std::move(given)), step(choose_grain_step(resolved)), steps(count_steps(resolved, step.step)) {
+  check_events(resolved, step);
+}
+
+GrainSimulation GrainSetup::simulation() const {
+  try {
+    return {build_grain_scene(resolved, step.step), grain_options(resolved, step.step)};
+  } catch (const Error& error) {
+    throw error.at(resolved.document.where());
+  }
+}
+
+std::string GrainSetup::fingerprint() const {
+  TomlValue known = resolved.document;
+  erase(*known.find("run"), {"duration", "time_step", "steps_per_contact"});  // the step is below
+  erase(known, {"title", "output", "probe"});
+  return to_toml(std::move(known), {}) + format("\n# step {} s\n# checksum of grains and schedules {}\n",
+                                                toml_number(step.step), checksum_of(resolved));
+}
+
+GrainRun run_through(const GrainSetup& setup, GrainSimulation& simulation, const GrainFiles& files) {
+  return GrainLoop(setup, simulation, files).go();
+}
+
+}  // namespace equidem
