@@ -29,7 +29,7 @@ void BodyArrays::connect(LoopData& data) {
   data.dashpot = dashpot.empty() ? nullptr : dashpot.data();
 }
 
-std::vector<DiscMotion> BodyArrays::discs_of(const std::vector<double>& motions) const {
+std::vector<DiscMotion> BodyArrays::discs_of(const LaneVector<double>& motions) const {
   std::vector<DiscMotion> result(layout_.place_of.size());
   for (std::size_t d = 0; d < result.size(); ++d) {
     const double* at = motions.data() + static_cast<std::size_t>(layout_.place_of[d]) * width_;
@@ -38,7 +38,7 @@ std::vector<DiscMotion> BodyArrays::discs_of(const std::vector<double>& motions)
   return result;
 }
 
-void BodyArrays::put(const std::vector<DiscMotion>& discs, std::vector<double>& motions) const {
+void BodyArrays::put(const std::vector<DiscMotion>& discs, LaneVector<double>& motions) const {
   for (std::size_t d = 0; d < discs.size(); ++d) {
     double* at = motions.data() + static_cast<std::size_t>(layout_.place_of[d]) * width_;
     at[0] = discs[d].u.x;
@@ -47,7 +47,7 @@ void BodyArrays::put(const std::vector<DiscMotion>& discs, std::vector<double>& 
   }
 }
 
-std::vector<DiscMotion> BodyArrays::disc_velocities(const std::vector<double>& velocities) const {
+std::vector<DiscMotion> BodyArrays::disc_velocities(const LaneVector<double>& velocities) const {
   std::vector<DiscMotion> result(layout_.place_of.size());
   for (std::size_t d = 0; d < result.size(); ++d) {
     const auto place = static_cast<std::size_t>(layout_.place_of[d]);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "equidem/contact/frame.hpp"
+#include "equidem/dynamics/lane_vector.hpp"
 #include "equidem/dynamics/layout.hpp"
 #include "equidem/dynamics/step_kernel.hpp"
 
@@ -17,15 +18,15 @@ class BodyArrays {
   /// All at rest in the reference position.
   BodyArrays(DiscLayout layout, const LoopKind& kind);
 
-  std::vector<double> motion[2];       ///< places x width
-  std::vector<double> velocity;        ///< groups x unknowns x lanes
-  std::vector<double> velocity_at[2];  ///< dashpots only: places x width
-  std::vector<double> dashpot;         ///< dashpots only: groups x unknowns x lanes
+  LaneVector<double> motion[2];       ///< places x width
+  LaneVector<double> velocity;        ///< groups x unknowns x lanes
+  LaneVector<double> velocity_at[2];  ///< dashpots only: places x width
+  LaneVector<double> dashpot;         ///< dashpots only: groups x unknowns x lanes
 
   [[nodiscard]] const DiscLayout& layout() const { return layout_; }
-  [[nodiscard]] std::vector<DiscMotion> discs_of(const std::vector<double>& motions) const;
-  void put(const std::vector<DiscMotion>& discs, std::vector<double>& motions) const;
-  [[nodiscard]] std::vector<DiscMotion> disc_velocities(const std::vector<double>& velocities) const;
+  [[nodiscard]] std::vector<DiscMotion> discs_of(const LaneVector<double>& motions) const;
+  void put(const std::vector<DiscMotion>& discs, LaneVector<double>& motions) const;
+  [[nodiscard]] std::vector<DiscMotion> disc_velocities(const LaneVector<double>& velocities) const;
   /// Into `velocity` and, where there are dashpots, into both `velocity_at`.
   void put_velocities(const std::vector<DiscMotion>& discs);
   /// Let a loop work on these arrays.

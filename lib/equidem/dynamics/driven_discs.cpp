@@ -30,6 +30,22 @@ bool may_touch_wall(const Scene& scene, std::size_t disc) {
   });
 }
 
+/// The values of schedules at one time. The last one asked for is kept: discs that follow one another often share theirs.
+class ValuesAt {
+ public:
+  ValuesAt(const std::vector<Schedule>& schedules, double time) : schedules_(schedules), time_(time) {}
+  double of(std::int32_t schedule) {
+    if (schedule != last_) value_ = schedules_[schedule].at(time_);
+    last_ = schedule;
+    return value_;
+  }
+
+ private:
+  const std::vector<Schedule>& schedules_;
+  double time_, value_ = 0;
+  std::int32_t last_ = -1;
+};
+
 }  // namespace
 
 DrivenDiscs::DrivenDiscs(const Scene& scene, const DiscLayout& layout, const LoopKind& kind)
@@ -44,8 +60,9 @@ DrivenDiscs::DrivenDiscs(const Scene& scene, const DiscLayout& layout, const Loo
     driven.centre = scene.assembly.centres[disc];
     driven.radius = scene.assembly.radii[disc];
     const Inertia& inertia = scene.inertia[disc];
-    driven.inverse_inertia[0] = driven.inverse_inertia[1] = 1 / inertia.mass;
-    driven.inverse_inertia[2] = 1 / inertia.moment;
+    driven.inertia[0] = driven.inertia[1] = inertia.mass;
+    driven.inertia[2] = inertia.moment;
+    for (int c = 0; c < 3; ++c) driven.inverse_inertia[c] = 1 / driven.inertia[c];
     return driven;
   };
   std::vector<std::vector<DiscLoad>> loads(scene.assembly.size());
@@ -59,11 +76,10 @@ DrivenDiscs::DrivenDiscs(const Scene& scene, const DiscLayout& layout, const Loo
     loads_.insert(loads_.end(), loads[disc].begin(), loads[disc].end());
   }
   for (const TimedSupport& support : scene.supports) {
+    const std::int32_t motions[] = {add(support.ux), add(support.uy), add(support.rotation)};
     for (const std::int32_t disc : group_with_discs(scene.assembly, support.group, "support").discs) {
       Disc& driven = disc_of(disc);
-      if (support.ux) hold(driven, 0, *support.ux, support.group);
-      if (support.uy) hold(driven, 1, *support.uy, support.group);
-      if (support.rotation && unknowns_ == 3) hold(driven, 2, *support.rotation, support.group);
+      for (int c = 0; c < unknowns_; ++c) hold(driven, c, motions[c], support.group);
     }
   }
   for (std::size_t disc = 0; !walls_.empty() && disc < scene.assembly.size(); ++disc) {
@@ -85,16 +101,22 @@ DrivenDiscs::DrivenDiscs(const Scene& scene, const DiscLayout& layout, const Loo
   while (strip < strips) strip_first_[++strip] = static_cast<std::int32_t>(discs_.size());
 }
 
-void DrivenDiscs::hold(Disc& disc, int component, const Schedule& schedule, const std::string& group) {
-  check(schedule);
+/// The place of a schedule among all, -1 for none.
+std::int32_t DrivenDiscs::add(const std::optional<Schedule>& schedule) {
+  if (!schedule) return -1;
+  check(*schedule);
+  schedules_.push_back(*schedule);
+  return static_cast<std::int32_t>(schedules_.size()) - 1;
+}
+
+void DrivenDiscs::hold(Disc& disc, int component, std::int32_t schedule, const std::string& group) const {
+  if (schedule < 0) return;
   std::int32_t& held = disc.held[component];
-  if (held >= 0 && schedules_[held] == schedule) return;
-  if (held >= 0) {
+  if (held >= 0 && !(schedules_[held] == schedules_[schedule])) {
     bad_input(format("the support of '{}' prescribes {} of a disc a second time", group, component_names[component]),
               "another support gives it a different motion", "Prescribe each component of a disc once");
   }
-  held = static_cast<std::int32_t>(schedules_.size());
-  schedules_.push_back(schedule);
+  held = schedule;
 }
 
 void DrivenDiscs::add_loads(const Scene& scene, std::vector<std::vector<DiscLoad>>& loads) const {
@@ -131,7 +153,9 @@ DrivenDiscs::Push DrivenDiscs::push_of_walls(const Disc& disc, Vec2 u, double ti
     if (gap >= 0) continue;
     push.force -= wall.kN * gap * wall.normal;
     push.energy += 0.5 * wall.kN * gap * gap;
-    push.work -= wall.kN * gap * (wall.displacement.at(time_after) - moved);
+    // over the way that velocities before and after the kick go, as that of loads
+    const double way = 0.5 * (wall.displacement.at(time_after) - wall.displacement.at(2 * time - time_after));
+    push.work -= wall.kN * gap * way;
   }
   return push;
 }
@@ -145,56 +169,69 @@ void DrivenDiscs::before(std::int32_t strip, const LoopData& data) {
   }
 }
 
-// The loop has made v' = keep v + kick a with the acceleration a of contacts and dampers: take a back out, add what acts on
-// this disc, and make the stage anew. A prescribed motion asks for the velocity that reaches it; the force that this takes
-// is the support's.
+// The loop has made v' = keep v + kick a with the acceleration a of contacts and dampers: add what acts on this disc beyond
+// that, and make the stage anew. A prescribed motion asks for the velocity that reaches it; the force that this takes is the
+// support's.
 void DrivenDiscs::after(std::int32_t strip, const LoopData& data, const Stage& stage, int parity, double time,
                         double time_after, Dissipation& dissipation) {
+  const std::int32_t first = strip_first_[strip], last = strip_first_[strip + 1];
+  if (first == last) return;
   DrivingWork& work = work_[strip];
-  for (std::int32_t k = strip_first_[strip]; k < strip_first_[strip + 1]; ++k) {
+  const double over_kick = stage.kick != 0 ? 1 / stage.kick : 0.0,
+               over_drift = stage.drift != 0 ? 1 / stage.drift : 0.0;
+  const bool damped = local_ || data.mass_damping != 0 || data.dashpot != nullptr;
+  ValuesAt factors(schedules_, time);
+  ValuesAt held[] = {{schedules_, time_after}, {schedules_, time_after}, {schedules_, time_after}};
+  for (std::int32_t k = first; k < last; ++k) {
     const Disc& disc = discs_[k];
     const double* u = data.motion[parity] + static_cast<std::ptrdiff_t>(disc.place) * width_;
     double* u_after = data.motion[1 - parity] + static_cast<std::ptrdiff_t>(disc.place) * width_;
     double* velocity = data.velocity + static_cast<std::ptrdiff_t>(disc.place / 4) * 4 * unknowns_ + disc.place % 4;
-    const Push push = disc.near_walls ? push_of_walls(disc, {u[0], u[1]}, time, time_after) : Push{};
-    const bool held = disc.held[0] >= 0 || disc.held[1] >= 0 || disc.held[2] >= 0;
-    if (!held && disc.loads == 0 && push.energy == 0) continue;
-    work.walls += push.work;
+    double load[] = {0, 0, 0}, wall[] = {0, 0, 0};
+    for (std::int32_t l = disc.first_load; l < disc.first_load + disc.loads; ++l) {
+      const double factor = factors.of(loads_[l].schedule);
+      for (int c = 0; c < 3; ++c) load[c] += loads_[l].force[c] * factor;
+    }
+    if (disc.near_walls) {
+      const Push push = push_of_walls(disc, {u[0], u[1]}, time, time_after);
+      wall[0] = push.force.x;
+      wall[1] = push.force.y;
+      work.walls += push.work;
+      if (push.energy == 0 && disc.loads == 0 && !disc.any_held()) continue;
+    }
     for (int c = 0; c < unknowns_; ++c) {
-      double load = 0;
-      for (std::int32_t l = disc.first_load; l < disc.first_load + disc.loads; ++l) {
-        load += loads_[l].force[c] * schedules_[loads_[l].schedule].at(time);
+      const double v = disc.before[c], with_loop = velocity[4 * c], force = load[c] + wall[c];
+      double v_after = with_loop + stage.kick * force * disc.inverse_inertia[c];
+      double undamped_loop = 0, undamped = 0, accelerated = 0, accelerated_loop = 0;
+      if (local_) {
+        accelerated_loop = (with_loop - stage.keep * v) * over_kick;
+        undamped_loop = without_damping(accelerated_loop, v, data.local_damping);
+        undamped = undamped_loop + force * disc.inverse_inertia[c];
+        accelerated = with_damping(undamped, v, data.local_damping);
+        v_after = stage.keep * v + stage.kick * accelerated;
       }
-      const double wall = c == 0 ? push.force.x : c == 1 ? push.force.y : 0.0;
-      const double v = disc.before[c];
-      double& v_after = velocity[4 * c];
-      const double mean_before = 0.5 * (v + v_after);  // with which the loop counted what dampers take
-      const double damped = stage.kick != 0 ? (v_after - stage.keep * v) / stage.kick : 0.0;
-      const double free_before = undamped(damped, v, data.local_damping);
-      const double free = free_before + (load + wall) * disc.inverse_inertia[c];
-      const double a = with_damping(free, v, data.local_damping);
-      const double v_free = stage.keep * v + stage.kick * a;
-      v_after = v_free;
       if (disc.held[c] >= 0) {
-        u_after[c] = schedules_[disc.held[c]].at(time_after);
-        v_after = stage.drift != 0 ? (u_after[c] - u[c] - stage.drift_before * v) / stage.drift : v;
-        const double reaction = stage.kick != 0 ? (v_after - v_free) / (stage.kick * disc.inverse_inertia[c]) : 0.0;
-        work.supports += stage.duration * reaction * 0.5 * (v + v_after);
+        u_after[c] = held[c].of(disc.held[c]);
+        const double v_free = v_after;
+        v_after = stage.drift != 0 ? (u_after[c] - u[c] - stage.drift_before * v) * over_drift : v;
+        work.supports += stage.duration * over_kick * (v_after - v_free) * disc.inertia[c] * 0.5 * (v + v_after);
       } else {
         u_after[c] = u[c] + stage.drift * v_after + stage.drift_before * v;
       }
-      const double mean = 0.5 * (v + v_after), mass = 1 / disc.inverse_inertia[c];
-      work.loads += stage.duration * load * mean;
-      dissipation.mass += data.mass_damping * stage.duration * mass * (mean * mean - mean_before * mean_before);
-      if (data.dashpot != nullptr) {
-        const double force =
-            data.dashpot[static_cast<std::ptrdiff_t>(disc.place / 4) * 4 * unknowns_ + 4 * c + disc.place % 4];
-        dissipation.contact -= stage.duration * force * (mean - mean_before);
-      }
+      velocity[4 * c] = v_after;
+      const double mean = 0.5 * (v + v_after);
+      work.loads += stage.duration * load[c] * mean;
+      if (!damped) continue;
+      const double mean_loop = 0.5 * (v + with_loop), mass = disc.inertia[c];  // with which the loop counted
+      dissipation.mass += data.mass_damping * stage.duration * mass * (mean * mean - mean_loop * mean_loop);
       if (local_) {
-        dissipation.local += stage.duration * mass * ((free - a) * mean - (free_before - damped) * mean_before);
+        dissipation.local +=
+            stage.duration * mass * ((undamped - accelerated) * mean - (undamped_loop - accelerated_loop) * mean_loop);
       }
-      if (data.velocity_at[0] != nullptr) {
+      if (data.dashpot != nullptr) {
+        const double drag =
+            data.dashpot[static_cast<std::ptrdiff_t>(disc.place / 4) * 4 * unknowns_ + 4 * c + disc.place % 4];
+        dissipation.contact -= stage.duration * drag * (mean - mean_loop);
         data.velocity_at[1 - parity][static_cast<std::ptrdiff_t>(disc.place) * width_ + c] = v_after;
       }
     }
@@ -208,7 +245,7 @@ double DrivenDiscs::with_damping(double free, double v, double share) const {
   return free - (v > 0 ? taken : v < 0 ? -taken : 0.0);
 }
 
-double DrivenDiscs::undamped(double a, double v, double share) const {
+double DrivenDiscs::without_damping(double a, double v, double share) const {
   if (!local_ || v == 0) return a;
   return a / (1 - ((a > 0) == (v > 0) ? share : -share));
 }
@@ -231,16 +268,6 @@ DrivingWork DrivenDiscs::work() const {
     sum.walls += of_strip.walls;
   }
   return sum;
-}
-
-double DrivenDiscs::wall_energy(const double* motion, double time) const {
-  double energy = 0;
-  for (const Disc& disc : discs_) {
-    if (!disc.near_walls) continue;
-    const double* u = motion + static_cast<std::ptrdiff_t>(disc.place) * width_;
-    energy += push_of_walls(disc, {u[0], u[1]}, time, time).energy;
-  }
-  return energy;
 }
 
 }  // namespace equidem

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,28 +38,28 @@ class DrivenDiscs {
   /// The sums of work of every strip, for a later run that goes on.
   [[nodiscard]] const std::vector<DrivingWork>& sums() const { return work_; }
   void set_sums(std::vector<DrivingWork> sums) { work_ = std::move(sums); }
-  /// Elastic energy of discs inside walls, N.
-  [[nodiscard]] double wall_energy(const double* motion, double time) const;
 
  private:
   struct Disc {
     std::int32_t place = 0;
-    double inverse_inertia[3] = {0, 0, 0};
+    double inertia[3] = {0, 0, 0}, inverse_inertia[3] = {0, 0, 0};
     Vec2 centre;
     double radius = 0;
     std::int32_t held[3] = {-1, -1, -1};  // schedule of each component
     std::int32_t first_load = 0, loads = 0;
     bool near_walls = false;
     double before[3] = {0, 0, 0};  // velocities
+    [[nodiscard]] bool any_held() const { return held[0] >= 0 || held[1] >= 0 || held[2] >= 0; }
   };
   struct DiscLoad {
     double force[3] = {0, 0, 0};  // N/m, N/m, N
     std::int32_t schedule = -1;
   };
-  void hold(Disc& disc, int component, const Schedule& schedule, const std::string& group);
+  std::int32_t add(const std::optional<Schedule>& schedule);
+  void hold(Disc& disc, int component, std::int32_t schedule, const std::string& group) const;
   void add_loads(const Scene& scene, std::vector<std::vector<DiscLoad>>& loads) const;
   [[nodiscard]] double with_damping(double free, double v, double share) const;
-  [[nodiscard]] double undamped(double a, double v, double share) const;
+  [[nodiscard]] double without_damping(double a, double v, double share) const;
   /// Force of all walls on a disc displaced by u; their stored energy and the work that their motion does until `time_after`.
   struct Push {
     Vec2 force;
@@ -74,7 +75,6 @@ class DrivenDiscs {
   std::vector<Schedule> schedules_;
   std::vector<Wall> walls_;
   std::vector<DrivingWork> work_;  // per strip
-  DrivingWork earlier_;            // before this object was made
 };
 
 }  // namespace equidem

@@ -93,19 +93,14 @@ EQUIDEM_INLINE SineVersine sine_versine(const Lanes& angle) {
   return {2 * sine_2 * (1 - versine_2), 2 * sine_2 * sine_2};
 }
 
-/// asin of |s| <= 1/64: s + s z P(z), z = s², P the best polynomial of degree 2 (relative error 2^-60 before rounding).
-EQUIDEM_INLINE Lanes small_arcsine(const Lanes& s) {
-  const Lanes z = s * s;
-  return s + s * z * ((0x1.55555555560c1p-3 + z * 0x1.333332a8963cfp-4) + z * z * 0x1.6dd4bead53d6dp-5);
+/// atan of |t| <= 1/64 with z = t²: t + t z P(z), P the best polynomial of degree 2 (relative error 2^-56 before rounding).
+EQUIDEM_INLINE Lanes small_arctangent(const Lanes& t, const Lanes& z) {
+  return t + t * z * ((-0x1.55555555551c7p-2 + z * 0x1.99999919a2fd7p-3) - z * z * 0x1.247cf5080565fp-3);
 }
 
-/// 1 - 1/sqrt(1 + e) for |e| <= 2/64 + 1/64², to 4 ulp: e times the best polynomial of degree 8 (relative error 2^-54).
-EQUIDEM_INLINE Lanes small_shortening(const Lanes& e) {
-  const Lanes e2 = e * e, e4 = e2 * e2;
-  const Lanes low = (0.5 - e * 0x1.7ffffffffff97p-2) + e2 * (0x1.4000000000158p-2 - e * 0x1.180000015a9e9p-2);
-  const Lanes high =
-      (0x1.f7fffffd47134p-3 - e * 0x1.cdffd94de52b2p-3) + e2 * (0x1.ad00032a8cc00p-3 - e * 0x1.92fcc25551fc0p-3);
-  return e * (low + e4 * (high + e4 * 0x1.7c3f2a0c47cb7p-3));
+/// (1 - 1/sqrt(1 + z))/z for 0 <= z <= 1/64²: the best polynomial of degree 3 (relative error 2^-55).
+EQUIDEM_INLINE Lanes small_shortening(const Lanes& z) {
+  return (0.5 - z * 0x1.7ffffffffc107p-2) + z * z * (0x1.3ffffec520523p-2 - z * 0x1.17e082791cc03p-2);
 }
 
 }  // namespace equidem::lanes

@@ -76,6 +76,7 @@ DiscLayout lay_out(const Assembly& assembly) {
     // Strips without discs join nothing: the next one may follow directly, contacts do not reach across.
     layout.strip_first.push_back(layout.groups());
   }
+  layout.disc_at.shrink_to_fit();
   layout.place_of.assign(assembly.size(), -1);
   for (std::size_t place = 0; place < layout.disc_at.size(); ++place) {
     if (layout.disc_at[place] >= 0) layout.place_of[layout.disc_at[place]] = static_cast<std::int32_t>(place);
@@ -115,6 +116,9 @@ ContactSlots list_slots(const Assembly& assembly, const DiscLayout& layout) {
     }
     slots.first.push_back(slots.first.back() + static_cast<std::int32_t>(most));
   }
+  // These are kept for a whole run.
+  slots.first.shrink_to_fit();
+  slots.neighbour.shrink_to_fit();
   return slots;
 }
 

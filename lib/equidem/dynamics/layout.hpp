@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/dynamics/lane_vector.hpp"
 
 namespace equidem {
 
@@ -31,8 +32,8 @@ DiscLayout lay_out(const Assembly& assembly);
 /// The contacts of every group: slot k of a group holds the k-th contact of each of its four discs, a disc that has
 /// fewer being paired with itself at no stiffness.
 struct ContactSlots {
-  std::vector<std::int32_t> first;      ///< groups + 1
-  std::vector<std::int32_t> neighbour;  ///< slots x lanes: place of the other disc
+  LaneVector<std::int32_t> first;      ///< groups + 1
+  LaneVector<std::int32_t> neighbour;  ///< slots x lanes: place of the other disc
   std::vector<std::int32_t>
       contact;  ///< slots x lanes: contact c as c + 1, as -(c + 1) where the disc is its j; 0: none
 };

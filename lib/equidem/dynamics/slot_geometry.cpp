@@ -16,12 +16,15 @@ void fill_geometry(const LoopKind& kind, Vec2 branch, double lever_own, double l
       to += DiscLayout::lanes;
     }
   };
-  const double over_square = 1 / dot(branch, branch);
-  if (kind.equal_contacts) {
-    write({branch.x, branch.y, over_square});
-  } else if (kind.motion == LoopKind::Motion::finite) {
+  const double square = dot(branch, branch);
+  if (kind.motion == LoopKind::Motion::finite) {
     const double levers = lever_own + lever_other;
-    write({branch.x, branch.y, over_square, levers, levers > 0 ? lever_own / levers : 0.5, k.kN, k.kT});
+    write({branch.x, branch.y, square});
+    if (kind.equal_contacts) return;
+    slot += 3 * DiscLayout::lanes;
+    write({levers / norm(branch), levers > 0 ? lever_own / levers : 0.5, k.kN, k.kT});
+  } else if (kind.equal_contacts) {
+    write({branch.x, branch.y, 1 / square});
   } else {
     const Vec2 n = branch / norm(branch);
     write({n.x, n.y, lever_own, lever_other, k.kN, k.kT});

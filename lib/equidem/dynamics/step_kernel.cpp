@@ -46,6 +46,14 @@ __attribute__((target("avx2,fma"))) void step_wide(const LoopData& data, const S
                                                    std::int32_t begin, std::int32_t end, Dissipation& dissipation) {
   step<kind_of(Index)>(data, stage, parity, begin, end, dissipation);
 }
+
+/// The same vectors, and twice as many registers, which loops for finite motions have use for.
+template <std::size_t Index>
+__attribute__((target("avx2,fma,avx512f,avx512vl,avx512dq"))) void step_with_32_registers(
+    const LoopData& data, const Stage& stage, int parity, std::int32_t begin, std::int32_t end,
+    Dissipation& dissipation) {
+  step<kind_of(Index)>(data, stage, parity, begin, end, dissipation);
+}
 #endif
 
 template <std::size_t... Index>
@@ -58,6 +66,11 @@ template <std::size_t... Index>
 constexpr std::array<StepFunction, kinds> wide_steps(std::index_sequence<Index...>) {
   return {&step_wide<Index>...};
 }
+
+template <std::size_t... Index>
+constexpr std::array<StepFunction, kinds / 2> finite_steps(std::index_sequence<Index...>) {
+  return {&step_with_32_registers<kinds / 2 + Index>...};
+}
 #endif
 
 }  // namespace
@@ -68,7 +81,12 @@ StepFunction step_function(const LoopKind& kind) {
   constexpr auto all = std::make_index_sequence<kinds>{};
 #if defined(__x86_64__)
   static constexpr auto wide = wide_steps(all);
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return wide[index];
+  static constexpr auto finite = finite_steps(std::make_index_sequence<kinds / 2>{});
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+    const bool registers =
+        __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq");
+    return registers && kind.motion == LoopKind::Motion::finite ? finite[index - kinds / 2] : wide[index];
+  }
 #endif
   static constexpr auto plain = plain_steps(all);
   return plain[index];

@@ -27,9 +27,9 @@ struct LoopKind {
     dashpot,  ///< at contacts, from relative velocities; mass-proportional damping; gravity
   } resistance = Resistance::none;
 
-  [[nodiscard]] int unknowns() const { return springs == Springs::rotation ? 3 : 2; }
+  [[nodiscard]] constexpr int unknowns() const { return springs == Springs::rotation ? 3 : 2; }
   /// Doubles of a disc in the array of motions: (x, y) or (x, y, theta, 0).
-  [[nodiscard]] int width() const { return springs == Springs::rotation ? 4 : 2; }
+  [[nodiscard]] constexpr int width() const { return springs == Springs::rotation ? 4 : 2; }
   bool operator==(const LoopKind&) const = default;
 };
 
@@ -38,8 +38,8 @@ struct LoopData {
   const std::int32_t* first = nullptr;      ///< slots of group g: first[g] .. first[g + 1]
   const std::int32_t* neighbour = nullptr;  ///< per slot and lane: place
   /// Per slot, lanes together, with l the branch at rest, r the lever of the disc and r' that of its neighbour.
-  /// Equal contacts: l_x, l_y, 1/l². Else small motions: n_x, n_y, r, r', kN, kT;
-  /// finite motions: l_x, l_y, 1/l², r + r', r/(r + r'), kN, kT.
+  /// Small motions: l_x, l_y, 1/l² where contacts are equal, else n_x, n_y, r, r', kN, kT.
+  /// Finite motions: l_x, l_y, l², and where contacts are not equal (r + r')/|l|, r/(r + r'), kN, kT.
   /// Dashpots append c_N, c_T where contacts are not equal.
   const double* geometry = nullptr;
   const double* inverse_inertia = nullptr;      ///< per group: 1/m, 1/I, lanes together; absent where discs are equal

@@ -67,13 +67,24 @@ void step_strips(std::int32_t strips, std::int64_t stages, int depth, int thread
   const std::int64_t block = std::max<std::int64_t>(strips, 2L * depth);
   const auto start = [&](std::int64_t stage) { return stage / depth * block + 2 * (stage % depth); };
   const std::int64_t waves = start(stages - 1) + strips;
+  std::vector<int> thread_of(static_cast<std::size_t>(depth));
+  for (int k = 0; k < depth; ++k) thread_of[k] = static_cast<int>(static_cast<std::int64_t>(k) * threads / depth);
+  struct UnderWay {
+    std::int64_t stage, start;
+    int of_block;
+  };
+  const auto follow = [&](UnderWay& one) {
+    ++one.stage;
+    one.start += ++one.of_block < depth ? 2 : block - 2 * (depth - 1);
+    if (one.of_block == depth) one.of_block = 0;
+  };
   run_together(threads, [&](int thread) {
-    std::int64_t first = 0;  // of the stages that are under way
+    UnderWay first{0, 0, 0};
     for (std::int64_t wave = 0; wave < waves; ++wave) {
-      while (first < stages && wave - start(first) >= strips) ++first;
-      for (std::int64_t stage = first; stage < stages && start(stage) <= wave; ++stage) {
-        const std::int64_t strip = wave - start(stage);
-        if (strip < strips && stage % depth * threads / depth == thread) work(static_cast<std::int32_t>(strip), stage);
+      while (first.stage < stages && wave - first.start >= strips) follow(first);
+      for (UnderWay one = first; one.stage < stages && one.start <= wave; follow(one)) {
+        const std::int64_t strip = wave - one.start;
+        if (strip < strips && thread_of[one.of_block] == thread) work(static_cast<std::int32_t>(strip), one.stage);
       }
       if (threads > 1) barrier.wait();
     }

@@ -11,6 +11,7 @@
 
 #include "contender.hpp"
 #include "hand_loops.hpp"
+#include "heap.hpp"
 #include "plain_loops.hpp"
 #include "scene.hpp"
 
@@ -102,6 +103,22 @@ std::string compare_loops(const std::string& kind, std::int64_t discs, const std
                       100 * speed.median * traffic(assembly) / (cores * limits.bandwidth),
                       100 * speed.median * operations(assembly) / (cores * limits.arithmetic));
     }
+  }
+  return table;
+}
+
+std::string count_memory(const std::string& kind, std::int64_t discs) {
+  std::string table =
+      "| scene | discs | assembly, bytes/disc | simulation, bytes/disc | together |\n|---|---|---|---|---|\n";
+  const double before = heap_bytes();
+  const Assembly assembly = build_assembly(kind, discs);
+  const double with_assembly = heap_bytes(), size = static_cast<double>(assembly.size());
+  for (const std::size_t k : {std::size_t{0}, std::size_t{11}}) {
+    const double at_start = heap_bytes();
+    const Scenery scenery(assembly, variants()[k]);
+    const double own = (with_assembly - before) / size, simulation = (heap_bytes() - at_start) / size;
+    table += format("| {}, {} | {} | {:.0f} | {:.0f} | {:.0f} |\n", kind, variants()[k].name, assembly.size(), own,
+                    simulation, own + simulation);
   }
   return table;
 }

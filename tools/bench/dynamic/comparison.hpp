@@ -20,6 +20,9 @@ std::string compare_loops(const std::string& kind, std::int64_t discs, const std
                           const Limits& limits);
 std::string loops_header();
 
+/// What assembly and simulation hold, counted by the allocator.
+std::string count_memory(const std::string& kind, std::int64_t discs);
+
 /// Every variant beside the plain one, on one assembly.
 std::string compare_effects(const std::string& kind, std::int64_t discs, int rounds);
 

@@ -74,7 +74,7 @@ class HandLoop : public Contender {
 
   DiscLayout layout_;
   ContactSlots slots_;
-  std::vector<double> geometry_, before_, after_, velocity_;
+  LaneVector<double> geometry_, before_, after_, velocity_;
 };
 
 class RotationLoop : public HandLoop {

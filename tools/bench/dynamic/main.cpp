@@ -60,6 +60,10 @@ void run(const Request& request) {
       report.add(compare_loops(kind, static_cast<std::int64_t>(discs), request.threads, request.rounds, limits));
     }
   }
+  report.add("\n## Memory\n\nAll that is allocated and kept, counted by the allocator.\n\n");
+  for (const std::string& kind : request.kinds) {
+    report.add(count_memory(kind, static_cast<std::int64_t>(request.discs.back())) + "\n");
+  }
   for (const std::string& kind : request.kinds) {
     report.add(format("\n## What effects cost: {}, {} discs\n\n", kind, effects_discs));
     report.add(compare_effects(kind, effects_discs, request.rounds));
