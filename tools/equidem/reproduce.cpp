@@ -21,6 +21,7 @@
 
 #include "abe1996.hpp"
 #include "command.hpp"
+#include "fujioka2005.hpp"
 #include "mean_field.hpp"
 #include "verbs.hpp"
 
@@ -34,7 +35,7 @@ struct ReproduceOptions {
   std::string gauge = "centre";
   bool quick = false;
   std::vector<const CLI::Option*> of_block;  ///< that only the block of abe1996 knows
-  const CLI::Option* of_random = nullptr;    ///< that only abe1996_random knows
+  const CLI::Option* of_quick = nullptr;     ///< that abe1996 does not know
 };
 
 constexpr std::array plot_names{"figure7", "figure8", "error_by_size"};
@@ -220,22 +221,23 @@ int reproduce_block(const ReproduceOptions& given) {
 
 int reproduce(const ReproduceOptions& options) {
   if (options.paper == "abe1996") {
-    refuse_foreign(options.of_random, options);
+    refuse_foreign(options.of_quick, options);
     return reproduce_block(options);
   }
-  if (options.paper == "abe1996_random") {
+  if (options.paper == "abe1996_random" || options.paper == "fujioka2005") {
     for (const CLI::Option* option : options.of_block) refuse_foreign(option, options);
-    return mean_field::reproduce(options.common, options.quick);
+    return options.paper == "fujioka2005" ? fujioka2005::reproduce(options.common, options.quick)
+                                          : mean_field::reproduce(options.common, options.quick);
   }
-  bad_input(format("there is no reproduction of '{}'", options.paper), "those known are abe1996 and abe1996_random",
-            "Write 'equidem reproduce abe1996'");
+  bad_input(format("there is no reproduction of '{}'", options.paper),
+            "those known are abe1996, abe1996_random and fujioka2005", "Write 'equidem reproduce abe1996'");
 }
 
 }  // namespace
 
 Run declare_reproduce(CLI::App& command) {
   const auto options = std::make_shared<ReproduceOptions>();
-  command.add_option("PAPER", options->paper, "abe1996 or abe1996_random")->required()->type_name("NAME");
+  command.add_option("PAPER", options->paper, "abe1996, abe1996_random or fujioka2005")->required()->type_name("NAME");
   add_result_options(command, options->common);
   const auto add = [&](const char* name, auto& value, const char* help) {
     options->of_block.push_back(command.add_option(name, value, help)->capture_default_str());
@@ -243,16 +245,20 @@ Run declare_reproduce(CLI::App& command) {
   add("--columns", options->block.columns, "abe1996: discs in a long row of the block");
   add("--rows", options->block.rows, "abe1996: rows of the block");
   add("--gauge", options->gauge, "abe1996: where strains are read: centre, quarter or ends");
-  options->of_random =
-      command.add_flag("--quick", options->quick, "abe1996_random: few small cells, seconds instead of minutes");
+  options->of_quick = command.add_flag("--quick", options->quick,
+                                       "abe1996_random, fujioka2005: less of everything, seconds instead of minutes");
   command.footer(
       "abe1996: the tension test of Figs. 6 to 8, and the macroscopic stress of section 4.\n"
       "abe1996_random: what the paper leaves open, the mean field (21), (22) and the correction (11) beside the exact\n"
-      "moduli of random assemblies, over disorder, kT/kN and weightings.\n\n"
+      "moduli of random assemblies, over disorder, kT/kN and weightings.\n"
+      "fujioka2005: Tables 1, 2 and Figs. 4 to 7, 10, 11 of normal contact in collisions, our law exact_flow beside "
+      "the\n"
+      "paper's, and what the paper does not try: coming to rest, time of computing for an accuracy.\n\n"
       "Examples:\n"
       "  equidem reproduce abe1996                          tables on the screen\n"
       "  equidem reproduce abe1996 --out figures            and Figs. 7, 8, the error against size, a picture\n"
-      "  equidem reproduce abe1996_random --out figures     minutes; with --quick seconds");
+      "  equidem reproduce abe1996_random --out figures     minutes; with --quick seconds\n"
+      "  equidem reproduce fujioka2005 --out figures        the same");
   return [options] { return reproduce(*options); };
 }
 
