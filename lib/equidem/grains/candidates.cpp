@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -111,29 +110,12 @@ bool refresh_candidates(GrainSystem& system, double reach) {
 }
 
 double reach_of(const GrainSystem& system) {
-  double longest = 0;
-  for (std::size_t i = 0; i < system.motions.size(); ++i) {
-    const Vec2 way = system.next[i].position - system.motions[i].position;
-    const double square = dot(way, way);
-    if (square > longest || std::isnan(square)) longest = square;  // what is no number stays none: nothing is larger
-  }
+  double longest = system.longest_way;
   for (const WallPlace& wall : system.walls) {
     const Vec2 way = system.dt() * wall.velocity;
     if (dot(way, way) > longest) longest = dot(way, way);
   }
   return std::sqrt(longest);
-}
-
-void restore_contacts(GrainSystem& system) {
-  auto before = system.contacts_before.begin();
-  for (Candidate& candidate : system.candidates) {
-    ContactMemory& memory = candidate;
-    memory = {};
-    if (before == system.contacts_before.end() || before->i != candidate.i || before->j != candidate.j) continue;
-    memory = before->memory;
-    ++before;
-  }
-  assert(before == system.contacts_before.end());
 }
 
 void let_go(GrainSystem& system, Candidate& candidate) {

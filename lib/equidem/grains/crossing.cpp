@@ -29,8 +29,9 @@ constexpr double slow_way = 0.1;
       format("step {}: grain {} would {} {}", system.step, system.grain_of[i], happening, other),
       format("they move {:.4g} m against each other in a step of {:.4g} s, {:.4g} times the radius of the grain",
              norm(way), system.dt(), norm(way) / system.bodies[i].radius),
-      speed > 0 ? format("Use a step below {:.3g} s, or stiffer contacts if they are pressed through", room / speed)
-                : "Use stiffer contacts");
+      norm(way) > room
+          ? format("Use a step below {:.3g} s, or stiffer contacts if they are pressed through", room / speed)
+          : "Use stiffer contacts, or press less: a shorter step would not hold them");
 }
 
 void check_grains(const GrainSystem& system, const Candidate& candidate) {
@@ -48,6 +49,11 @@ void check_grains(const GrainSystem& system, const Candidate& candidate) {
   // centres that come this near and change sides were pressed through each other
   if (nearest < 0.5 * sum && dot(before, after) < 0) {
     refuse(system, candidate, way, 0.5 * small, "pass through");
+  }
+  // in short steps they would go round each other instead: no centre enters another body
+  const double distance = norm(after);
+  if (distance < sum - small && distance < norm(before)) {
+    refuse(system, candidate, way, 0.5 * small, "be pressed into");
   }
   const bool seen = norm(before) < sum || norm(after) < sum;
   if (!seen && nearest < sum - 0.5 * small) refuse(system, candidate, way, 0.5 * small, "pass through");
@@ -73,7 +79,8 @@ void refuse_runaway(const GrainSystem& system, double reach) {
 }
 
 void refuse_crossings(const GrainSystem& system, double reach) {
-  if (reach <= slow_way * system.smallest_radius && system.deepest < system.smallest_radius) return;
+  // two bodies come nearer by twice the reach at most
+  if (reach <= slow_way * system.smallest_radius && system.deepest + 2 * reach < system.smallest_radius) return;
   for (const Candidate& candidate : system.candidates) {
     if (candidate.j >= 0) {
       check_grains(system, candidate);

@@ -8,6 +8,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/grains/crossing.hpp"
 #include "equidem/grains/meeting.hpp"
+#include "equidem/grains/move_bodies.hpp"
 
 namespace equidem {
 namespace {
@@ -109,7 +110,7 @@ double solve(GrainSystem& system, Trial& trial) {
     if (trial.overlap + most <= 0) return 0;
   }
   const Vec2 way = dt * relative + relative_gain(system, candidate).way;
-  Trial before = trial;
+  const double impulse_before = trial.impulse, tangential_before = trial.tangential, moment_before = trial.moment;
   if (acted) give(system, candidate, trial, -1);
   const auto [normal, slope] = line_of(system, candidate, trial, way);
   trial.normal = normal;
@@ -140,8 +141,8 @@ double solve(GrainSystem& system, Trial& trial) {
   }
   give(system, candidate, trial, 1);
   if (trial.impulse != 0) ++system.counters.evaluations;
-  const double change = std::abs(trial.impulse - before.impulse) + std::abs(trial.tangential - before.tangential) +
-                        std::abs(trial.moment - before.moment) / dt;
+  const double change = std::abs(trial.impulse - impulse_before) + std::abs(trial.tangential - tangential_before) +
+                        std::abs(trial.moment - moment_before) / dt;
   const double scale = std::abs(trial.impulse) + std::abs(trial.tangential) +
                        candidate.reduced_mass * (std::abs(closing) + dt * (std::abs(a) + std::abs(b)));
   return scale > 0 ? change / scale : 0;
@@ -181,12 +182,39 @@ void sum_pushes(GrainSystem& system, const std::vector<Trial>& trials) {
   }
 }
 
+/// When a trial was solved last, and whether that changed nothing.
+struct Visit {
+  std::int32_t i, j;
+  bool quiet = false;
+  std::int64_t when = 0;
+};
+
 void sweep_until_settled(GrainSystem& system, std::vector<Trial>& trials) {
   double change = 0;
+  // A trial that has settled is solved again when another contact has changed what pushes its bodies: contacts that stand alone settle
+  // for themselves, whatever the clusters elsewhere take.
+  std::vector<Visit> visits;
+  visits.reserve(trials.size());
+  for (const Trial& trial : trials) {
+    const Candidate& candidate = system.candidates[trial.candidate];
+    visits.push_back({candidate.i, candidate.j});
+  }
+  std::vector<std::int64_t> pushed(system.bodies.size(), 0);
+  std::int64_t now = 0;
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     const double before = change;
     change = 0;
-    for (Trial& trial : trials) change = std::max(change, solve(system, trial));
+    for (std::size_t t = 0; t < trials.size(); ++t) {
+      Visit& visit = visits[t];
+      std::int64_t& on_i = pushed[static_cast<std::size_t>(visit.i)];
+      std::int64_t& on_j = visit.j < 0 ? on_i : pushed[static_cast<std::size_t>(visit.j)];
+      if (visit.quiet && on_i <= visit.when && on_j <= visit.when) continue;
+      const double own = solve(system, trials[t]);
+      visit.quiet = own <= settled;
+      visit.when = ++now;
+      if (!visit.quiet) on_i = on_j = now;
+      change = std::max(change, own);
+    }
     ++system.counters.sweeps;
     if (change <= settled) return;
     if (change <= rounding && sweep > 8 && change > 0.5 * before) return;
@@ -200,7 +228,7 @@ void sweep_until_settled(GrainSystem& system, std::vector<Trial>& trials) {
 
 void move(GrainSystem& system) {
   const double dt = system.dt();
-  for (std::size_t i = 0; i < system.motions.size(); ++i) {
+  move_bodies(system, [&](std::size_t i) {
     GrainMotion motion = system.motions[i];
     const Gain gain = gain_of(system, i);
     motion.position += dt * motion.velocity + gain.way;
@@ -208,8 +236,21 @@ void move(GrainSystem& system) {
     const double turn = system.bodies[i].inverse_moment * system.pushes[i].torque;
     motion.angle += dt * (motion.spin + 0.5 * turn);
     motion.spin += turn;
-    system.next[i] = motion;
-  }
+    return motion;
+  });
+}
+
+/// The same where nothing is near enough to push.
+void move_freely(GrainSystem& system) {
+  const double dt = system.dt();
+  const Vec2 fall = dt * system.scene.gravity, drop = (0.5 * dt * dt) * system.scene.gravity;
+  move_bodies(system, [&](std::size_t i) {
+    GrainMotion motion = system.motions[i];
+    motion.position += dt * motion.velocity + drop;
+    motion.velocity += fall;
+    motion.angle += dt * motion.spin;
+    return motion;
+  });
 }
 
 /// What the contacts remember, and what was lost in them.
@@ -254,10 +295,14 @@ void flow(GrainSystem& system) {
   // once more where the bodies move further than the candidates allow for
   for (int attempt = 0; attempt < 3; ++attempt) {
     trials = trials_of(system);
-    sum_pushes(system, trials);
-    sweep_until_settled(system, trials);
-    sum_pushes(system, trials);
-    move(system);
+    if (trials.empty()) {
+      move_freely(system);
+    } else {
+      sum_pushes(system, trials);
+      sweep_until_settled(system, trials);
+      sum_pushes(system, trials);
+      move(system);
+    }
     reach = reach_of(system);
     refuse_runaway(system, reach);
     if (!refresh_candidates(system, reach)) break;

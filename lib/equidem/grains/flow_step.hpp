@@ -4,7 +4,8 @@
 ///
 /// Each contact is solved exactly over the step (exact_contact.hpp) under an outside force that is linear in time and has the
 /// impulse and the first moment of all other forces on its two bodies; sweeps over the contacts repeat that until nothing changes.
-/// The normal is the mean one of the step, (r + r')/|r + r'|: along it the way of the bodies is the change of their distance.
+/// The normal is the mean one of the step, (r + r')/|r + r'|, and the way along it is scaled so that it is the change of the distance:
+/// the step is the same forwards and backwards in time, and elastic impacts keep their energy on the average.
 #pragma once
 
 #include "equidem/grains/grain_system.hpp"

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "equidem/grains/meeting.hpp"
+#include "equidem/grains/move_bodies.hpp"
 
 namespace equidem {
 namespace {
@@ -24,14 +25,15 @@ ContactStep normal_step(const Candidate& candidate, double depth, double closing
 }
 
 /// Give an impulse to j, its opposite to i; walls take it and do not move.
+template <bool friction>
 void push(GrainSystem& system, const Candidate& candidate, const Meeting& meeting, Vec2 impulse, double tangential) {
   Push& on_i = system.pushes[static_cast<std::size_t>(candidate.i)];
   on_i.impulse -= impulse;
-  on_i.torque -= meeting.lever_i * tangential;
+  if constexpr (friction) on_i.torque -= meeting.lever_i * tangential;
   if (candidate.j >= 0) {
     Push& on_j = system.pushes[static_cast<std::size_t>(candidate.j)];
     on_j.impulse += impulse;
-    on_j.torque -= meeting.lever_j * tangential;
+    if constexpr (friction) on_j.torque -= meeting.lever_j * tangential;
   } else {
     system.lost.work_of_walls -= dot(impulse, system.walls[static_cast<std::size_t>(~candidate.j)].velocity);
   }
@@ -59,13 +61,13 @@ double slide(GrainSystem& system, Candidate& candidate, const Meeting& meeting, 
 
 template <NormalLaw law, bool friction>
 void collide_by(GrainSystem& system) {
-  std::fill(system.pushes.begin(), system.pushes.end(), Push{});
-  system.contacts_before.clear();
+  if (!system.free_flight) std::fill(system.pushes.begin(), system.pushes.end(), Push{});
+  system.free_flight = true;
   const double dt = system.dt();
   const double length = system.length;
+  const double per_length = 1 / length, per_speed = dt / length, unit_speed = length / dt;
   for (Candidate& candidate : system.candidates) {
     const Meeting meeting = meeting_of(system, candidate);
-    if (candidate.touching) system.contacts_before.push_back({candidate.i, candidate.j, candidate});
     if (!(meeting.overlap > 0)) {
       if (candidate.touching) let_go(system, candidate);
       continue;
@@ -73,12 +75,13 @@ void collide_by(GrainSystem& system) {
     if constexpr (is_map(law)) {
       if (candidate.parted) let_go(system, candidate);
     }
+    system.free_flight = false;
     if (!candidate.touching) ++system.counters.contacts;
     ++system.counters.evaluations;
     const Vec2 relative = relative_velocity(system, candidate);
     const double closing = -dot(relative, meeting.normal);
-    const double depth = meeting.overlap / length;
-    const double sigma = closing * dt / length;
+    const double depth = meeting.overlap * per_length;
+    const double sigma = closing * per_speed;
     const ContactStep step = normal_step<law>(candidate, depth, sigma);
     candidate.touching = true;
     ++candidate.steps;
@@ -87,15 +90,15 @@ void collide_by(GrainSystem& system) {
     system.deepest = std::max(system.deepest, meeting.overlap);
     candidate.closing = closing;
     candidate.normal = meeting.normal;
-    const double unit = candidate.reduced_mass * length / dt;
+    const double unit = candidate.reduced_mass * unit_speed;
     candidate.impulse = -step.change * unit;
     Vec2 impulse = candidate.impulse * meeting.normal;
     if constexpr (is_map(law)) {
       candidate.parted = depth + step.shift + sigma + step.change <= 0;
-      system.lost.lost_restitution += step.loss * unit * length / dt;
+      system.lost.lost_restitution += step.loss * unit * unit_speed;
       if (step.shift != 0) shift(system, candidate, (step.shift * length * candidate.reduced_mass) * meeting.normal);
     } else {
-      system.lost.lost_dashpot += step.loss * unit * length / dt;
+      system.lost.lost_dashpot += step.loss * unit * unit_speed;
     }
     if constexpr (friction) {
       if (candidate.sliding.coefficient > 0) {
@@ -104,7 +107,7 @@ void collide_by(GrainSystem& system) {
         impulse += candidate.tangential_impulse * perpendicular(meeting.normal);
       }
     }
-    push(system, candidate, meeting, impulse, candidate.tangential_impulse);
+    push<friction>(system, candidate, meeting, impulse, candidate.tangential_impulse);
   }
 }
 
@@ -131,7 +134,17 @@ CollideFunction collide_function(NormalLaw law, bool friction) {
 void move_by_euler(GrainSystem& system) {
   const double dt = system.dt();
   const Vec2 fall = dt * system.scene.gravity;
-  for (std::size_t i = 0; i < system.motions.size(); ++i) {
+  if (system.free_flight) {
+    move_bodies(system, [&](std::size_t i) {
+      GrainMotion motion = system.motions[i];
+      motion.velocity += fall;
+      motion.position += dt * motion.velocity;
+      motion.angle += dt * motion.spin;
+      return motion;
+    });
+    return;
+  }
+  move_bodies(system, [&](std::size_t i) {
     const GrainBody& body = system.bodies[i];
     const Push& push = system.pushes[i];
     GrainMotion motion = system.motions[i];
@@ -139,28 +152,43 @@ void move_by_euler(GrainSystem& system) {
     motion.spin += body.inverse_moment * push.torque;
     motion.position += dt * motion.velocity + body.inverse_mass * push.moment;
     motion.angle += dt * motion.spin;
-    system.next[i] = motion;
-  }
+    return motion;
+  });
 }
 
 void drift_of_verlet(GrainSystem& system) {
   const double dt = system.dt();
-  for (std::size_t i = 0; i < system.motions.size(); ++i) {
+  const Vec2 fall = dt * system.scene.gravity;
+  if (system.free_flight) {
+    move_bodies(system, [&](std::size_t i) {
+      GrainMotion motion = system.motions[i];
+      motion.velocity += 0.5 * fall;
+      motion.position += dt * motion.velocity;
+      motion.angle += dt * motion.spin;
+      return motion;
+    });
+    return;
+  }
+  move_bodies(system, [&](std::size_t i) {
     const GrainBody& body = system.bodies[i];
     GrainMotion motion = system.motions[i];
-    motion.velocity += 0.5 * (body.inverse_mass * system.pushes[i].impulse + dt * system.scene.gravity);
+    motion.velocity += 0.5 * (body.inverse_mass * system.pushes[i].impulse + fall);
     motion.spin += 0.5 * body.inverse_moment * system.pushes[i].torque;
     motion.position += dt * motion.velocity;
     motion.angle += dt * motion.spin;
-    system.next[i] = motion;
-  }
+    return motion;
+  });
 }
 
 void kick_of_verlet(GrainSystem& system) {
+  const Vec2 fall = system.dt() * system.scene.gravity;
+  if (system.free_flight) {
+    for (GrainMotion& motion : system.motions) motion.velocity += 0.5 * fall;
+    return;
+  }
   for (std::size_t i = 0; i < system.motions.size(); ++i) {
     const GrainBody& body = system.bodies[i];
-    system.motions[i].velocity +=
-        0.5 * (body.inverse_mass * system.pushes[i].impulse + system.dt() * system.scene.gravity);
+    system.motions[i].velocity += 0.5 * (body.inverse_mass * system.pushes[i].impulse + fall);
     system.motions[i].spin += 0.5 * body.inverse_moment * system.pushes[i].torque;
   }
 }

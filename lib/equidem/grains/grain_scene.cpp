@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
@@ -28,13 +29,14 @@ void check_grain(const GrainScene& scene, std::size_t i) {
   if (!positive(grain.inertia.mass) || !positive(grain.inertia.moment)) {
     bad_input(
         format("grain {} has the mass {} and the moment of inertia {}", i, grain.inertia.mass, grain.inertia.moment),
-        "a force would move it without limit", "Give a density > 0");
+        "a force could not move it by a number", "Give a radius and a density whose mass is a number > 0");
   }
-  const double motion =
-      grain.position.x + grain.position.y + grain.velocity.x + grain.velocity.y + grain.spin + grain.angle;
-  if (!std::isfinite(motion)) {
-    bad_input(format("grain {} has a position, a velocity or a spin that is not a number", i),
-              "nothing can start from there", "Give finite numbers");
+  constexpr double most = 1e150;
+  for (const double number : {grain.position.x, grain.position.y, grain.radius, grain.velocity.x, grain.velocity.y,
+                              grain.spin * grain.radius, grain.spin, grain.angle}) {
+    if (std::abs(number) <= most) continue;
+    bad_input(format("grain {} has a place, a size or a speed of {}", i, number),
+              format("squares of what is above {:.0e} are no numbers", most), "Give smaller numbers");
   }
   if (grain.kind < 0 || grain.kind >= scene.kinds) {
     bad_input(format("grain {} is of the kind {}", i, grain.kind), format("the table of pairs has {}", scene.kinds),
@@ -73,13 +75,40 @@ void check_pair(const PairProperties& pair, const GrainOptions& options) {
   }
 }
 
-/// a = k dt²/m of the pair for the largest reduced stiffness over mass: five_case_map is limited by it.
-void check_five_case(const GrainScene& scene, const GrainOptions& options, const PairProperties& pair) {
-  double lightest = scene.grains.front().inertia.mass;
-  for (const Grain& grain : scene.grains) lightest = std::min(lightest, grain.inertia.mass);
-  const double a = pair.stiffness > 0 ? pair.stiffness * options.time_step * options.time_step / (0.5 * lightest)
-                                      : pair.dimensionless;
-  check_five_case_range(a, pair.restitution);
+/// 1/m of the two lightest bodies of a kind, 0 of walls and of bodies that are not there.
+struct Lightest {
+  double inverse = 0, second = 0;
+  int bodies = 0;
+};
+
+std::vector<Lightest> lightest_of_kinds(const GrainScene& scene) {
+  std::vector<Lightest> kinds(static_cast<std::size_t>(scene.kinds));
+  for (const Grain& grain : scene.grains) {
+    Lightest& kind = kinds[static_cast<std::size_t>(grain.kind)];
+    const double inverse = 1 / grain.inertia.mass;
+    kind.second = std::max(kind.second, std::min(kind.inverse, inverse));
+    kind.inverse = std::max(kind.inverse, inverse);
+    ++kind.bodies;
+  }
+  for (const GrainWall& wall : scene.walls) ++kinds[static_cast<std::size_t>(wall.kind)].bodies;
+  return kinds;
+}
+
+/// a = k dt²/m of the lightest bodies that meet so: five_case_map is limited by it.
+void check_five_case(const GrainScene& scene, const GrainOptions& options) {
+  const std::vector<Lightest> kinds = lightest_of_kinds(scene);
+  for (int a = 0; a < scene.kinds; ++a) {
+    for (int b = a; b < scene.kinds; ++b) {
+      const Lightest& first = kinds[static_cast<std::size_t>(a)];
+      const Lightest& other = kinds[static_cast<std::size_t>(b)];
+      if (first.bodies == 0 || other.bodies < (a == b ? 2 : 1)) continue;
+      const double inverse = first.inverse + (a == b ? first.second : other.inverse);
+      if (inverse == 0) continue;  // two walls
+      const PairProperties& pair = scene.between(a, b);
+      const double stiffness = pair.stiffness * options.time_step * options.time_step * inverse;
+      check_five_case_range(pair.stiffness > 0 ? stiffness : pair.dimensionless, pair.restitution);
+    }
+  }
 }
 
 void check_table(const GrainScene& scene, const GrainOptions& options) {
@@ -95,13 +124,19 @@ void check_table(const GrainScene& scene, const GrainOptions& options) {
         bad_input(format("kinds {} and {} meet by other rules than {} and {}", a, b, b, a), "action is reaction",
                   "Make the table symmetric");
       }
-      if (options.law == NormalLaw::five_case_map) check_five_case(scene, options, scene.between(a, b));
     }
   }
+  if (options.law == NormalLaw::five_case_map) check_five_case(scene, options);
+}
+
+[[noreturn]] void refuse_grain(std::size_t grain, const PlaceOfGrain& where, std::string problem, std::string why,
+                               std::string remedy) {
+  throw Error(ErrorKind::bad_input, std::move(problem), std::move(why), std::move(remedy),
+              where ? where(grain) : std::string());
 }
 
 /// Nothing may start inside something else.
-void check_places(const GrainScene& scene) {
+void check_places(const GrainScene& scene, const PlaceOfGrain& where) {
   std::vector<Circle> circles;
   for (const Grain& grain : scene.grains) circles.push_back({grain.position, grain.radius});
   const NeighbourList near = neighbours_within(circles, 0);
@@ -110,10 +145,10 @@ void check_places(const GrainScene& scene) {
       const auto j = static_cast<std::size_t>(near.partner[static_cast<std::size_t>(p)]);
       const double distance = norm(circles[j].centre - circles[i].centre);
       if (distance >= std::max(circles[i].radius, circles[j].radius)) continue;
-      bad_input(format("grains {} and {} start inside one another", i, j),
-                format("their centres are {:.4g} m apart, their radii {:.4g} m and {:.4g} m", distance,
-                       circles[i].radius, circles[j].radius),
-                "Move them apart");
+      refuse_grain(j, where, format("grains {} and {} start inside one another", i, j),
+                   format("their centres are {:.4g} m apart, their radii {:.4g} m and {:.4g} m", distance,
+                          circles[i].radius, circles[j].radius),
+                   "Move them apart");
     }
   }
   for (std::size_t i = 0; i < circles.size(); ++i) {
@@ -121,15 +156,16 @@ void check_places(const GrainScene& scene) {
       const Vec2 start = {wall.move_x.at(0), wall.move_y.at(0)};
       const double distance = nearest(wall, start, circles[i].centre).distance;
       if (distance > 0 && std::isfinite(distance)) continue;
-      bad_input(format("grain {} starts behind wall \"{}\" or on it", i, wall.name),
-                "a contact could not tell which way is out", "Move it, or turn the normal of the wall round");
+      refuse_grain(i, where, format("grain {} starts behind wall \"{}\" or on it", i, wall.name),
+                   "a contact could not tell which way is out",
+                   wall.shape == GrainWall::Shape::line ? "Move it, or turn the normal of the wall round" : "Move it");
     }
   }
 }
 
 }  // namespace
 
-void check(const GrainScene& scene, const GrainOptions& options) {
+void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where) {
   if (scene.grains.empty()) bad_input("the scene has no grains", "there is nothing to move", "Add a grain");
   if (!positive(options.time_step)) {
     bad_input(format("the time step is {} s", options.time_step), "time could not go on", "Give a step > 0");
@@ -147,7 +183,13 @@ void check(const GrainScene& scene, const GrainOptions& options) {
   if (!std::isfinite(scene.gravity.x + scene.gravity.y)) {
     bad_input("gravity is not a number", "nothing could fall by it", "Give finite numbers");
   }
-  for (std::size_t i = 0; i < scene.grains.size(); ++i) check_grain(scene, i);
+  for (std::size_t i = 0; i < scene.grains.size(); ++i) {
+    try {
+      check_grain(scene, i);
+    } catch (const Error& error) {
+      throw error.at(where ? where(i) : std::string());
+    }
+  }
   for (const GrainWall& wall : scene.walls) {
     check(wall);
     if (wall.kind < 0 || wall.kind >= scene.kinds) {
@@ -156,7 +198,7 @@ void check(const GrainScene& scene, const GrainOptions& options) {
     }
   }
   check_table(scene, options);
-  check_places(scene);
+  check_places(scene, where);
 }
 
 }  // namespace equidem

@@ -3,7 +3,10 @@
 /// Bodies that collide: what is there, what acts, by which law.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "equidem/contact/collision_laws.hpp"
@@ -68,10 +71,13 @@ struct GrainOptions {
   bool refuse_crossing = true;  ///< false: bodies may pass through one another, for studies of laws that let them
 };
 
-/// \throws Error (bad_input): no grains, radius or mass not positive, numbers not finite, kinds and pairs that do not fit, a table that is
+using PlaceOfGrain = std::function<std::string(std::size_t grain)>;
+
+/// \throws Error (bad_input): no grains, radius or mass not positive, numbers not finite or beyond 1e150, kinds and pairs that do not fit, a table that is
 ///         not symmetric, neither or both of stiffness and dimensionless, restitution out of range for the law, friction negative,
 ///         velocity_verlet with a map, the time step not positive, grains that start inside one another (centre within the other) or
 ///         with the centre behind a line
-void check(const GrainScene& scene, const GrainOptions& options);
+/// \param where the user wrote a grain, for errors; may be empty
+void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where = {});
 
 }  // namespace equidem

@@ -14,6 +14,13 @@
 #include "equidem/grains/meeting.hpp"
 
 namespace equidem {
+namespace {
+
+/// A refused step costs at most as many steps more; to keep a state so seldom costs next to nothing.
+constexpr std::int64_t steps_between_kept_states = 256;
+
+}  // namespace
+
 GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& options)
     : implementation_(std::make_unique<Implementation>()) {
   check(scene, options);
@@ -56,7 +63,7 @@ GrainSimulation::GrainSimulation(GrainSimulation&&) noexcept = default;
 GrainSimulation& GrainSimulation::operator=(GrainSimulation&&) noexcept = default;
 
 void GrainSimulation::Implementation::make_step() {
-  system.deepest = 0;
+  if (!verlet()) system.deepest = 0;  // verlet has found the overlaps at the end of the last step
   if (!collide) {
     flow(system);
   } else {
@@ -75,6 +82,7 @@ void GrainSimulation::Implementation::make_step() {
   ++system.step;
   place_walls(system);
   if (collide && verlet()) {
+    system.deepest = 0;
     collide(system);
     kick_of_verlet(system);
   }
@@ -83,14 +91,16 @@ void GrainSimulation::Implementation::make_step() {
 void GrainSimulation::advance(std::int64_t steps) {
   Implementation& self = *implementation_;
   for (std::int64_t k = 0; k < steps; ++k) {
-    const GrainLedger lost = self.system.lost;
+    const std::int64_t now = self.system.step;
     const GrainCounters counters = self.system.counters;
+    if (self.kept.grains.empty() || now - self.kept.step >= steps_between_kept_states) self.kept = save();
     try {
       self.make_step();
     } catch (...) {
-      self.system.lost = lost;
+      // it has changed contacts before it was refused: come to its start again, from a state before it
+      go_back_to(self.kept);
+      while (self.system.step < now) self.make_step();
       self.system.counters = counters;
-      if (self.collide && !self.verlet()) restore_contacts(self.system);
       throw;
     }
   }

@@ -101,6 +101,8 @@ class GrainSimulation {
   void restore(const GrainState& state);
 
  private:
+  void go_back_to(const GrainState& state);
+
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };

@@ -14,6 +14,7 @@ struct GrainSimulation::Implementation {
   Effects effects;
   CollideFunction collide = nullptr;  ///< none: exact_flow
   double potential_at_start = 0, energy_at_start = 0;
+  GrainState kept;  ///< a state not long ago, to come back to
 
   void make_step();
   [[nodiscard]] bool verlet() const { return system.options.scheme == GrainOptions::Scheme::velocity_verlet; }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <limits>
+
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
@@ -56,6 +58,11 @@ GrainState GrainSimulation::save() const {
 }
 
 void GrainSimulation::restore(const GrainState& state) {
+  go_back_to(state);
+  implementation_->kept = {};
+}
+
+void GrainSimulation::go_back_to(const GrainState& state) {
   GrainSystem& system = implementation_->system;
   if (state.grains.size() != system.motions.size() || state.contacts.size() % numbers_per_contact != 0 ||
       state.sums.size() != (implementation_->verlet() ? numbers_per_push * system.motions.size() : 0)) {
@@ -71,6 +78,8 @@ void GrainSimulation::restore(const GrainState& state) {
     const double* numbers = state.sums.data() + numbers_per_push * k;
     system.pushes[k] = {{numbers[0], numbers[1]}, numbers[2], {numbers[3], numbers[4]}};
   }
+  system.free_flight = false;
+  system.deepest = std::numeric_limits<double>::infinity();  // not known: verlet has to look
   place_walls(system);
   system.candidates.clear();
   system.exact_pairs.clear();

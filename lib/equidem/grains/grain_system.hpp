@@ -31,36 +31,27 @@ struct Push {
   Vec2 moment;  ///< maps: mass times shift of the position, kg m; exact_flow: integral of (dt - t) force dt, N s²
 };
 
-/// What a contact remembers from step to step.
-struct ContactMemory {
+/// Two bodies near enough to touch soon, or a body and a wall, with what their contact remembers.
+struct Candidate {
+  // what every step looks at comes first: bodies that are near but do not touch cost one line of the cache
+  std::int32_t i = 0;
+  std::int32_t j = 0;  ///< ~j: a wall, where negative
   bool touching = false;
-  bool parted = false;  // a map ended it with the step: what overlaps then is a new contact
+  bool parted = false;      // a map ended it with the step: what overlaps then is a new contact
+  bool attraction = false;  // does not change, like the next three
   int mode = 0;
+  double reduced_mass = 0;
+  double a = 0;         // dimensionless stiffness
+  double strength = 0;  // zeta, alpha or the restitution, by the law
   std::int64_t steps = 0;
-  double stretch = 0;  // of the tangential spring, m
   // of the last step
   double overlap = 0, closing = 0;
   Vec2 normal;
   double impulse = 0, moment = 0, tangential_impulse = 0;
-};
-
-/// Two bodies near enough to touch soon, or a body and a wall.
-struct Candidate : ContactMemory {
-  std::int32_t i = 0;
-  std::int32_t j = 0;  ///< ~j: a wall, where negative
-  // what does not change
-  double reduced_mass = 0;
-  double stiffness = 0;  // N/m, hertz: N/m^(3/2)
-  double a = 0;          // dimensionless stiffness
-  double strength = 0;   // zeta, alpha or the restitution, by the law
-  bool attraction = false;
-  Sliding sliding;
-};
-
-/// A contact as it was before the step being made.
-struct ContactBefore {
-  std::int32_t i = 0, j = 0;
-  ContactMemory memory;
+  // springs
+  double stretch = 0;    // of the tangential one, m
+  double stiffness = 0;  // N/m, hertz: N/m^(3/2); does not change
+  Sliding sliding;       // does not change
 };
 
 /// A wall where it is now and how it moves in this step.
@@ -90,9 +81,8 @@ struct GrainSystem {
   double base_margin = 0;              ///< while bodies are slow, m
   std::vector<GrainMotion> next;       ///< after the step being made
 
-  std::vector<ContactBefore>
-      contacts_before;  ///< of laws that change contacts before it is known whether the step can be made
-
+  bool free_flight = false;  ///< all pushes are zero
+  double longest_way = 0;    ///< of a body in the step being made, squared, m²
   double smallest_radius = 0;
   double deepest = 0;  ///< overlap of the step, m
   GrainLedger lost;    ///< losses and work since the start
@@ -120,9 +110,6 @@ bool refresh_candidates(GrainSystem& system, double reach);
 
 /// The longest way that a body goes in this step, walls included.
 double reach_of(const GrainSystem& system);
-
-/// Make the contacts again what contacts_before has.
-void restore_contacts(GrainSystem& system);
 
 /// Forget a contact that has ended.
 void let_go(GrainSystem& system, Candidate& candidate);

@@ -70,7 +70,7 @@ bool come_near(Vec2 branch, double radius_a, double radius_b, double margin) {
   return dot(branch, branch) < reach * reach;
 }
 
-void check(std::span<const Circle> circles, double margin) {
+void check(std::span<const Circle> circles, [[maybe_unused]] double margin) {
   assert(circles.size() < static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()));
   assert(margin >= 0 && std::isfinite(margin));
   for (const Circle& c : circles) {

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The motion of all bodies in a step.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "equidem/grains/grain_system.hpp"
+
+namespace equidem {
+
+/// system.next[i] = motion(i), the motion after the step; and system.longest_way, while the numbers are at hand.
+template <class Motion>
+void move_bodies(GrainSystem& system, const Motion& motion) {
+  const GrainMotion* before = system.motions.data();
+  GrainMotion* after = system.next.data();
+  const auto move = [&](std::size_t i, double& longest) {
+    after[i] = motion(i);
+    const Vec2 way = after[i].position - before[i].position;
+    const double square = dot(way, way);
+    longest = square > longest || square != square ? square : longest;  // what is no number stays: nothing is larger
+  };
+  constexpr std::size_t lanes = 4;  // maxima: one alone would wait for itself
+  std::array<double, lanes> longest{};
+  const std::size_t count = system.motions.size(), whole = count - count % lanes;
+  for (std::size_t i = 0; i < whole; i += lanes) {
+    for (std::size_t k = 0; k < lanes; ++k) move(i + k, longest[k]);
+  }
+  for (std::size_t i = whole; i < count; ++i) move(i, longest[0]);
+  for (std::size_t k = 1; k < lanes; ++k) {
+    if (longest[k] > longest[0] || longest[k] != longest[k]) longest[0] = longest[k];
+  }
+  system.longest_way = longest[0];
+}
+
+}  // namespace equidem

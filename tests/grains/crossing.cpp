@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A step that would let bodies pass through one another is refused before it happens.
+#include <cstdlib>
+
+#include "grains/scenes.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+struct Passing {
+  std::string name;
+  GrainScene scene;
+  std::string other;  // as it is called
+  double step = 1;
+};
+
+PairProperties stiff(NormalLaw law) {
+  PairProperties pair = one_second(law, 1);
+  pair.stiffness *= 1e4;  // contacts last a hundredth of a step
+  return pair;
+}
+
+GrainWall named(GrainWall::Shape shape, const std::string& name) {
+  GrainWall wall;
+  wall.shape = shape;
+  wall.name = name;
+  return wall;
+}
+
+/// Bodies that go several radii in a step of one second towards something small, thin or moving.
+std::vector<Passing> passings(NormalLaw law) {
+  std::vector<Passing> all;
+  const PairProperties pair = stiff(law);
+  const GrainWall floor = line("floor", {0, 0}, {0, 1});
+  GrainWall plate = named(GrainWall::Shape::segment, "plate");
+  plate.point = {-1, 0};
+  plate.end = {1, 0};
+  GrainWall bowl = named(GrainWall::Shape::arc, "bowl");
+  bowl.point = {0, 5};
+  bowl.radius = 5;
+  bowl.from = -3;
+  bowl.to = -0.1;
+  GrainWall ram = line("ram", {0, 0}, {0, 1});
+  ram.move_y = {Schedule::Kind::table, 0, 0, 0, 0, {0, 10}, {0, 40}};
+  all.push_back({"a line", scene_of({ball({0, 2}, 1, {0, -4})}, {floor}, pair), "wall \"floor\""});
+  all.push_back({"a segment", scene_of({ball({0.3, 2}, 1, {0, -4})}, {plate}, pair), "wall \"plate\""});
+  all.push_back({"an arc, from inside", scene_of({ball({0, 2}, 1, {0, -4})}, {bowl}, pair), "wall \"bowl\""});
+  all.push_back({"an arc, from outside", scene_of({ball({0, -2}, 1, {0, 4})}, {bowl}, pair), "wall \"bowl\""});
+  all.push_back({"a wall that comes", scene_of({ball({0, 2}, 1, {0, 0})}, {ram}, pair), "wall \"ram\""});
+  all.push_back({"a grain", scene_of({ball({0, 0}, 1, {}), ball({5, 0.1}, 1, {-10, 0})}, {}, pair), "grain 1"});
+  all.push_back({"a small grain", scene_of({ball({0, 0}, 0.1, {}), ball({2, 0.1}, 1, {-4, 0})}, {}, pair), "grain 1"});
+  all.push_back({"gravity that moves diameters in a step", scene_of({ball({0, 3}, 1, {0, 0})}, {floor}, pair, {0, -20}),
+                 "wall \"floor\""});
+  return all;
+}
+
+/// "Use a step below X s": X.
+double step_that_would_do(const Error& error) {
+  const std::size_t at = error.remedy().find("below ");
+  return at == std::string::npos ? 0 : std::atof(error.remedy().c_str() + at + 6);
+}
+
+}  // namespace
+
+TEST_CASE("what_would_pass_unseen_is_refused_with_the_step_that_would_do") {
+  const NormalLaw law = GENERATE(from_range(all_laws));
+  for (const Passing& passing : passings(law)) {
+    if (law == NormalLaw::exact_flow) continue;  // sees what happens within a step
+    GrainScene scene = passing.scene;
+    if (is_map(law)) scene.pairs[0] = {.dimensionless = 0.5};
+    GrainSimulation simulation(scene, options_of(law, 1));
+    CAPTURE(to_string(law), passing.name);
+    try {
+      simulation.advance(3);
+      FAIL("it passed");
+    } catch (const Error& error) {
+      CAPTURE(error.what());
+      CHECK(error.kind() == ErrorKind::computation_failed);
+      CHECK_THAT(error.what(), Catch::Contains("step ") && Catch::Contains("grain 0") &&
+                                   Catch::Contains(passing.other) && Catch::Contains("pass through"));
+      const double step = step_that_would_do(error);
+      CHECK(step > 0.01);
+      CHECK(step < 1);
+    }
+  }
+}
+
+TEST_CASE("exact_flow_sees_what_happens_within_a_step_or_refuses_it") {
+  for (const Passing& passing : passings(NormalLaw::exact_flow)) {
+    CAPTURE(passing.name);
+    GrainSimulation simulation(passing.scene, options_of(NormalLaw::exact_flow, 1));
+    try {
+      simulation.advance(2);
+      const GrainLedger ledger = simulation.energy();
+      CAPTURE(ledger.error(), ledger.initial);
+      CHECK(simulation.counters().contacts > 0);
+      CHECK(std::abs(ledger.error()) < 1e-12 * std::max(1.0, ledger.initial));
+    } catch (const Error& error) {
+      CHECK_THAT(error.what(), Catch::Contains("would pass through " + passing.other));
+    }
+  }
+}
+
+TEST_CASE("a_refused_step_leaves_the_state_before_it") {
+  // A busy box; a bullet comes, that a step would carry through a disc, wherever its last step began.
+  const Stepping stepping = GENERATE(from_range(all_steppings));
+  int refused = 0;
+  for (const double start : {40.0, 40.2, 40.4, 40.6}) {
+    GrainScene scene = busy_box(stepping.law, 3, 3, 31);
+    scene.walls.pop_back();
+    scene.walls.pop_back();
+    scene.grains.push_back(ball({start, 1.5}, 0.05, {-37.3, 0}));
+    scene.walls.push_back(line("shield", {-5, 0}, {1, 0}));
+    GrainSimulation simulation(scene, options_of(stepping, 0.02));
+    for (int k = 0; k < 100; ++k) {
+      const Bits before = bits_of(simulation);
+      const GrainState state = simulation.save();
+      try {
+        simulation.advance(1);
+        continue;
+      } catch (const Error& error) {
+        ++refused;
+        CAPTURE(stepping.name(), start, error.what(), simulation.step());
+        CHECK(simulation.step() == k);
+        CHECK(bits_of(simulation) == before);
+        const GrainState after = simulation.save();
+        CHECK(after.contacts == state.contacts);
+        CHECK(after.sums == state.sums);
+        CHECK(after.counters.evaluations == state.counters.evaluations);
+        CHECK(after.counters.contacts == state.counters.contacts);
+        CHECK_THROWS_WITH(simulation.advance(1), error.what());
+        CHECK(bits_of(simulation) == before);
+        break;
+      }
+    }
+  }
+  CAPTURE(stepping.name(), refused);
+  CHECK((refused > 0 || stepping.law == NormalLaw::exact_flow));
+}
+
+TEST_CASE("who_asks_for_it_may_let_bodies_pass") {
+  const NormalLaw law = GENERATE(NormalLaw::linear_dashpot, NormalLaw::hertz_dashpot);
+  GrainOptions options = options_of(law, 1);
+  options.refuse_crossing = false;
+  GrainSimulation simulation(passings(law)[5].scene, options);
+  CHECK_NOTHROW(simulation.advance(3));
+  CHECK(simulation.grains()[1].position.x < simulation.grains()[0].position.x);
+}
+
+TEST_CASE("a_motion_that_is_no_number_is_refused") {
+  GrainScene scene = scene_of({ball({0, 0.9}, 1, {0, 0})}, {line("floor", {0, 0}, {0, 1})}, {.stiffness = 1e308});
+  GrainSimulation simulation(scene, options_of(NormalLaw::linear_dashpot, 1e10));
+  CHECK_THROWS_WITH(simulation.advance(2), Catch::Contains("step 0"));
+  CHECK(simulation.step() == 0);
+}

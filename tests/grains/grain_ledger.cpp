@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The energy ledger: every joule that leaves the motion is found in one of the losses.
+#include "grains/scenes.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+struct Balance {
+  double error = 0;  // largest over the run, of the initial energy
+  GrainLedger last;
+  std::int64_t contacts = 0;
+};
+
+Balance run(const GrainScene& scene, const GrainOptions& options, double time) {
+  GrainSimulation simulation(scene, options);
+  Balance balance;
+  const auto steps = static_cast<std::int64_t>(std::llround(time / options.time_step));
+  for (std::int64_t k = 0; k < steps; ++k) {
+    simulation.advance(1);
+    const GrainLedger ledger = simulation.energy();
+    balance.error = std::max(balance.error, std::abs(ledger.error()) / ledger.initial);
+  }
+  balance.last = simulation.energy();
+  balance.contacts = simulation.counters().contacts;
+  return balance;
+}
+
+/// All that can take energy from a contact.
+PairProperties lossy(NormalLaw law) {
+  PairProperties pair = one_second(law, 0.7);
+  pair.friction = 0.1;
+  pair.tangential_ratio = 2;
+  pair.tangential_damping = 0.2;
+  return pair;
+}
+
+/// A spinning disc meets a floor that moves.
+GrainScene oblique_impact(NormalLaw law, Vec2 gravity, bool moving) {
+  Grain grain = ball({0, 1.03}, 1, {0.8, -1});
+  grain.spin = 0.5;
+  GrainWall floor = line("floor", {0, 0}, {0, 1});
+  if (moving) {
+    floor.move_x = {Schedule::Kind::sine, 0.1, 0, 0, 0.3};
+    floor.move_y = {Schedule::Kind::sine, -0.05, 0, 0, 0.8};
+  }
+  return scene_of({grain}, {floor}, lossy(law), gravity);
+}
+
+}  // namespace
+
+TEST_CASE("the_ledger_of_one_contact_closes_to_round_off_with_maps_and_exact_flow") {
+  const NormalLaw law = GENERATE(from_range(exact_laws));
+  const double step = GENERATE(0.02, 0.1);
+  for (const bool moving : {false, true}) {
+    for (const ContactEnd end : {ContactEnd::at_zero_force, ContactEnd::at_zero_overlap}) {
+      GrainScene scene = oblique_impact(law, {0, 0}, moving);
+      scene.pairs[0].end = end;
+      const Balance balance = run(scene, options_of(law, step), 3);
+      const GrainLedger& l = balance.last;
+      CAPTURE(to_string(law), step, moving, to_string(end), balance.error, l.lost_restitution, l.lost_dashpot,
+              l.lost_slip, l.lost_tangential_dashpot, l.lost_release, l.work_of_walls);
+      CHECK(balance.error < 1e-14);
+      CHECK(l.lost_slip + l.lost_tangential_dashpot > 0.005);
+      CHECK((is_map(law) ? l.lost_restitution : l.lost_dashpot) > 0.1);
+      CHECK((is_map(law) ? l.lost_dashpot : l.lost_restitution) == 0);
+      CHECK(moving == (l.work_of_walls != 0));
+    }
+  }
+}
+
+TEST_CASE("the_ledger_closes_to_the_order_of_the_integrator") {
+  // Force laws are of first order: the loss of a dashpot is taken at the start of the step, contacts begin and end between steps. Maps
+  // keep the balance of a contact, but not that of gravity acting within it. exact_flow keeps both.
+  const Stepping stepping = GENERATE(from_range(all_steppings));
+  const Vec2 gravity = GENERATE(Vec2{0, 0}, Vec2{0.1, -0.3});
+  std::vector<double> errors;
+  for (const double step : {0.02, 0.01, 0.005, 0.0025, 0.00125}) {
+    errors.push_back(run(oblique_impact(stepping.law, gravity, true), options_of(stepping, step), 6).error);
+  }
+  const double order = std::log2(errors.front() / errors.back()) / 4;
+  CAPTURE(stepping.name(), gravity.y, errors, order);
+  if (stepping.law == NormalLaw::exact_flow || (is_map(stepping.law) && gravity == Vec2{})) {
+    CHECK(*std::max_element(errors.begin(), errors.end()) < 1e-12);
+  } else {
+    CHECK(errors.front() < 0.03);
+    CHECK(order > 0.9);
+  }
+}
+
+TEST_CASE("losses_of_an_impact_belong_to_their_mechanisms") {
+  const Stepping stepping = GENERATE(from_range(all_steppings));
+  PairProperties pair = lossy(stepping.law);
+  pair.restitution = 0.8;
+  const bool exact = is_map(stepping.law) || stepping.law == NormalLaw::exact_flow;
+  const double accuracy = exact ? 1e-12 : 0.02;
+  Grain grain = ball({0, 1.03}, 1, {0.8, -1});
+
+  GrainSimulation rough(scene_of({grain}, {line("floor", {0, 0}, {0, 1})}, pair), options_of(stepping, 0.01));
+  REQUIRE(pass_contact(rough, 1000));
+  pair.friction = 0;
+  pair.tangential_damping = 0;
+  GrainSimulation smooth(scene_of({grain}, {line("floor", {0, 0}, {0, 1})}, pair), options_of(stepping, 0.01));
+  REQUIRE(pass_contact(smooth, 1000));
+
+  const GrainLedger l = rough.energy();
+  const GrainLedger s = smooth.energy();
+  CAPTURE(stepping.name(), l.initial, l.kinetic, s.kinetic, l.lost_restitution, l.lost_dashpot, l.lost_slip,
+          l.lost_tangential_dashpot, l.lost_release, s.lost_release);
+  // without friction the normal motion loses (1 - e²)/2, whatever takes it
+  CHECK(s.lost() == Approx(0.18).epsilon(accuracy));
+  CHECK(s.lost_slip + s.lost_tangential_dashpot == 0);
+  // friction does not change that: what else is lost, the tangential motion lacks
+  CHECK(l.lost_restitution == s.lost_restitution);
+  CHECK(l.lost_dashpot == s.lost_dashpot);
+  const double tangential = l.lost_slip + l.lost_tangential_dashpot + l.lost_release - s.lost_release;
+  CHECK(tangential == Approx(s.kinetic - l.kinetic).epsilon(2 * accuracy));
+}
+
+TEST_CASE("a_wall_works_on_what_it_pushes") {
+  // Seen from a wall that comes with speed 1 an impact with e = 1 turns the velocity round: from rest to 2.
+  const Stepping stepping = GENERATE(from_range(all_steppings));
+  GrainWall piston = line("piston", {-1.5, 0}, {1, 0});
+  piston.move_x = {Schedule::Kind::table, 0, 0, 0, 0, {0, 100}, {0, 100}};
+  GrainSimulation simulation(scene_of({ball({0, 0}, 1, {})}, {piston}, one_second(stepping.law, 1)),
+                             options_of(stepping, 1e-3));
+  REQUIRE(pass_contact(simulation, 100000));
+  const GrainLedger l = simulation.energy();
+  CAPTURE(stepping.name(), l.kinetic, l.work_of_walls, l.initial);
+  const bool exact = is_map(stepping.law) || stepping.law == NormalLaw::exact_flow;
+  CHECK(l.kinetic == Approx(2).epsilon(exact ? 1e-13 : 1e-5));
+  CHECK(l.work_of_walls == Approx(2).epsilon(exact ? 1e-13 : 1e-5));
+}
+
+TEST_CASE("the_ledger_of_many_contacts_closes_with_the_step") {
+  // Normals turn within a step and contacts overlap in time: exact_flow is of second order there.
+  const Stepping stepping = GENERATE(from_range(all_steppings));
+  std::vector<double> errors;
+  for (const double step : {0.008, 0.004, 0.002, 0.001}) {
+    errors.push_back(run(busy_box(stepping.law, 3, 3, 5), options_of(stepping, step), 2).error);
+  }
+  const double order = std::log2(errors.front() / errors.back()) / 3;
+  CAPTURE(stepping.name(), errors, order);
+  const bool exact = stepping.law == NormalLaw::exact_flow;
+  CHECK(errors.back() < (exact ? 2e-5 : 0.03));
+  if (!is_map(stepping.law)) CHECK(order > (exact ? 1.6 : 0.8));
+}
+
+TEST_CASE("a_disc_swings_in_a_round_bowl_without_loss") {
+  // Dropped beside the lowest point, e = 1: the normal turns all the time. Second order.
+  GrainWall bowl;
+  bowl.shape = GrainWall::Shape::arc;
+  bowl.name = "bowl";
+  bowl.point = {0, 0};
+  bowl.radius = 5;
+  bowl.from = -std::numbers::pi;
+  bowl.to = 0;
+  std::vector<double> errors;
+  for (const double step : {0.02, 0.01, 0.005}) {
+    GrainScene scene = scene_of({ball({2.4, -3.1}, 1)}, {bowl}, {.stiffness = 1000}, {0, -1});
+    GrainSimulation simulation(scene, options_of(NormalLaw::exact_flow, step));
+    const double energy = 0.2;
+    double worst = 0;
+    for (int k = 0; k < 200 / step; ++k) {
+      simulation.advance(1);
+      worst = std::max(worst, std::abs(simulation.energy().error()) / energy);
+    }
+    CHECK(simulation.counters().contacts > 20);
+    errors.push_back(worst);
+  }
+  CAPTURE(errors);
+  CHECK(errors[0] < 1e-5);
+  CHECK(errors[1] < errors[0] / 3.5);
+  CHECK(errors[2] < errors[1] / 3.5);
+}

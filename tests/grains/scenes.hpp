@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Small scenes of bodies that collide.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <initializer_list>
+#include <numbers>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "equidem/contact/collision_stiffness.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/random.hpp"
+#include "equidem/grains/grain_simulation.hpp"
+
+namespace equidem::test {
+
+constexpr std::array<NormalLaw, 5> all_laws{NormalLaw::linear_dashpot, NormalLaw::hertz_dashpot,
+                                            NormalLaw::five_case_map, NormalLaw::energy_map, NormalLaw::exact_flow};
+using Scheme = GrainOptions::Scheme;
+
+/// A law and a way to step that go together.
+struct Stepping {
+  NormalLaw law = NormalLaw::exact_flow;
+  Scheme scheme = Scheme::semi_implicit_euler;
+  [[nodiscard]] std::string name() const {
+    return to_string(law) + (scheme == Scheme::velocity_verlet ? ", velocity_verlet" : "");
+  }
+};
+inline const std::vector<Stepping> all_steppings{
+    {NormalLaw::linear_dashpot, Scheme::semi_implicit_euler}, {NormalLaw::linear_dashpot, Scheme::velocity_verlet},
+    {NormalLaw::hertz_dashpot, Scheme::semi_implicit_euler},  {NormalLaw::hertz_dashpot, Scheme::velocity_verlet},
+    {NormalLaw::five_case_map, Scheme::semi_implicit_euler},  {NormalLaw::energy_map, Scheme::semi_implicit_euler},
+    {NormalLaw::exact_flow, Scheme::semi_implicit_euler}};
+/// Those that keep the balance of one contact to round-off.
+inline const std::vector<NormalLaw> exact_laws{NormalLaw::five_case_map, NormalLaw::energy_map, NormalLaw::exact_flow};
+
+/// Of mass 1 unless said, by default with the inertia of a disc.
+inline Grain ball(Vec2 position, double radius, Vec2 velocity = {}, double mass = 1, double beta = 0.5) {
+  Grain grain;
+  grain.position = position;
+  grain.radius = radius;
+  grain.velocity = velocity;
+  grain.inertia = {mass, beta * mass * radius * radius};
+  return grain;
+}
+
+inline GrainWall line(std::string name, Vec2 point, Vec2 normal) {
+  GrainWall wall;
+  wall.name = std::move(name);
+  wall.point = point;
+  wall.normal = normal;
+  return wall;
+}
+
+/// Contacts of w = sqrt(k/m) = pi for the reduced mass given: an impact with e = 1 lasts one second. hertz_dashpot: for a closing speed
+/// of 1 m/s.
+inline PairProperties one_second(NormalLaw law, double restitution, double reduced_mass = 1) {
+  PairProperties pair;
+  pair.restitution = restitution;
+  pair.stiffness = reduced_mass * std::numbers::pi * std::numbers::pi;
+  if (law == NormalLaw::hertz_dashpot) {
+    const double overlap = 1 / hertz_impact(1, 1, 1).duration * hertz_impact(1, 1, 1).overlap;
+    pair.stiffness = 1.25 * reduced_mass / std::pow(overlap, 2.5);
+  }
+  return pair;
+}
+
+inline GrainScene scene_of(std::vector<Grain> grains, std::vector<GrainWall> walls, const PairProperties& pair,
+                           Vec2 gravity = {}) {
+  GrainScene scene;
+  scene.grains = std::move(grains);
+  scene.walls = std::move(walls);
+  scene.gravity = gravity;
+  scene.pairs = {pair};
+  return scene;
+}
+
+inline GrainOptions options_of(Stepping stepping, double step) {
+  GrainOptions options;
+  options.law = stepping.law;
+  options.scheme = stepping.scheme;
+  options.time_step = step;
+  return options;
+}
+inline GrainOptions options_of(NormalLaw law, double step) {
+  return options_of(Stepping{law, Scheme::semi_implicit_euler}, step);
+}
+
+/// Step until something touched and nothing touches any more.
+/// \return whether that happened
+inline bool pass_contact(GrainSimulation& simulation, std::int64_t most_steps) {
+  for (std::int64_t k = 0; k < most_steps; ++k) {
+    simulation.advance(1);
+    if (simulation.counters().contacts > 0 && simulation.contacts().empty()) return true;
+  }
+  return false;
+}
+
+/// All that a user can see of a state, bit by bit.
+struct Bits {
+  std::vector<std::uint64_t> words;
+  bool operator==(const Bits&) const = default;
+  friend std::ostream& operator<<(std::ostream& out, const Bits& bits) {
+    std::uint64_t mixed = bits.words.size();
+    for (const std::uint64_t word : bits.words) mixed = (mixed ^ word) * 0x9e3779b97f4a7c15ULL;
+    return out << bits.words.size() << " numbers, " << std::hex << mixed << std::dec;
+  }
+};
+inline Bits bits_of(const GrainSimulation& simulation) {
+  std::vector<std::uint64_t> bits{static_cast<std::uint64_t>(simulation.step())};
+  const auto add = [&](std::initializer_list<double> numbers) {
+    for (const double number : numbers) bits.push_back(std::bit_cast<std::uint64_t>(number));
+  };
+  for (const Grain& g : simulation.grains()) {
+    add({g.position.x, g.position.y, g.velocity.x, g.velocity.y, g.spin, g.angle});
+  }
+  for (const GrainContact& c : simulation.contacts()) {
+    bits.push_back(static_cast<std::uint64_t>(c.i) << 32 | static_cast<std::uint32_t>(c.j));
+    bits.push_back(static_cast<std::uint64_t>(c.steps) << 8 | static_cast<std::uint64_t>(c.mode));
+    add({c.overlap, c.closing, c.normal.x, c.normal.y, c.normal_force, c.tangential_force});
+  }
+  const GrainLedger l = simulation.energy();
+  add({l.kinetic, l.elastic_normal, l.elastic_tangential, l.potential, l.lost_restitution, l.lost_dashpot, l.lost_slip,
+       l.lost_tangential_dashpot, l.lost_release, l.work_of_walls, l.initial});
+  return {std::move(bits)};
+}
+
+/// Discs of several sizes thrown about in a box with friction, gravity and a floor that shakes: everything that a contact remembers is
+/// in use.
+inline GrainScene busy_box(NormalLaw law, int columns, int rows, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Grain> grains;
+  for (int i = 0; i < columns; ++i) {
+    for (int j = 0; j < rows; ++j) {
+      const double radius = random.uniform(0.3, 0.49);
+      const Vec2 velocity{random.uniform(-1, 1), random.uniform(-1, 1)};
+      Grain grain = ball({i + 0.5, j + 0.5}, radius, velocity, 4 * radius * radius);
+      grain.spin = random.uniform(-1, 1);
+      grains.push_back(grain);
+    }
+  }
+  std::vector<GrainWall> walls{line("floor", {0, 0}, {0, 1}), line("left", {0, 0}, {1, 0}),
+                               line("right", {1.0 * columns, 0}, {-1, 0}), line("lid", {0, 1.0 * rows}, {0, -1})};
+  walls[0].move_x = {Schedule::Kind::sine, 0.2, 0, 0, 0.5};
+  walls[0].move_y = {Schedule::Kind::sine, -0.02, 0, 0, 1.5};
+  PairProperties pair = one_second(law, 0.8, 0.5);
+  pair.stiffness *= 100;  // a tenth of a second
+  pair.friction = 0.4;
+  pair.tangential_ratio = 0.5;
+  pair.tangential_damping = 0.1;
+  return scene_of(std::move(grains), std::move(walls), pair, {0, -1});
+}
+
+}  // namespace equidem::test

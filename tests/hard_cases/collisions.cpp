@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Impacts that are hard: several at once, unequal, soft, fast, many.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "equidem/core/text.hpp"
+
+#include "grains/scenes.hpp"
+#include "hard_cases/ledger.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+std::string shown(double x) {
+  return format("{:.1e}", x);
+}
+
+double momentum(const std::vector<Grain>& grains) {
+  double sum = 0;
+  for (const Grain& grain : grains) sum += grain.inertia.mass * grain.velocity.x;
+  return sum;
+}
+
+/// The first of n balls in a row meets the others, which touch; contacts of w = sqrt(20), e = 1.
+struct Cradle {
+  std::vector<double> velocities;
+  double energy = 0, momentum = 0;  // error, of the whole
+};
+
+Cradle swing(int n, NormalLaw law, double step) {
+  std::vector<Grain> grains{ball({-2.5, 0}, 1, {1, 0})};
+  for (int i = 1; i < n; ++i) grains.push_back(ball({2.0 * (i - 1), 0}, 1));
+  GrainSimulation simulation(scene_of(grains, {}, {.stiffness = 10}), options_of(law, step));
+  simulation.advance(static_cast<std::int64_t>(std::llround(30 / step)));
+  CHECK(simulation.contacts().empty());
+  Cradle cradle;
+  for (const Grain& grain : simulation.grains()) cradle.velocities.push_back(grain.velocity.x);
+  cradle.energy = simulation.energy().kinetic / 0.5 - 1;
+  cradle.momentum = momentum(simulation.grains()) - 1;
+  return cradle;
+}
+
+double distance(const Cradle& a, const Cradle& b) {
+  double largest = 0;
+  for (std::size_t k = 0; k < a.velocities.size(); ++k) {
+    largest = std::max(largest, std::abs(a.velocities[k] - b.velocities[k]));
+  }
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("newtons_cradle_keeps_energy_and_momentum") {
+  HardCase table({.name = "Newton's cradle",
+                  .why = "a wave runs through balls that touch: each has two contacts at once, which end one by one. "
+                         "Springs disperse it: the last ball does not take all, whatever the step"});
+  for (const int n : {5, 10}) {
+    const Cradle fine = swing(n, NormalLaw::exact_flow, 0.0125);
+    std::vector<double> off, energy;
+    for (const double step : {0.2, 0.1, 0.05}) {
+      const Cradle cradle = swing(n, NormalLaw::exact_flow, step);
+      off.push_back(distance(cradle, fine));
+      energy.push_back(std::abs(cradle.energy));
+      CAPTURE(n, step, cradle.velocities, cradle.energy, cradle.momentum);
+      CHECK(std::abs(cradle.momentum) < 1e-13);
+    }
+    CAPTURE(n, fine.velocities, off, energy);
+    // fourth order but for beginnings and ends of contacts, which fall anywhere in a step
+    CHECK(off[0] < 1e-3);
+    CHECK(off[2] < 2e-5);
+    CHECK(energy[0] < 1e-4);
+    CHECK(energy[2] < 1e-6);
+    // what springs do is not what rigid balls are said to do
+    CHECK(fine.velocities.back() > 0.85);
+    CHECK(fine.velocities.back() < 0.95);
+    CHECK(fine.velocities.front() < -0.1);
+    table.note(format("{} balls, exact_flow, w dt = 0.22", n), "velocities 2e-5, energy 1e-6, momentum 1e-13",
+               format("velocities {}, energy {}; first ball {:.4f}, last {:.4f}", shown(off[2]), shown(energy[2]),
+                      fine.velocities.front(), fine.velocities.back()));
+    const Cradle map = swing(n, NormalLaw::energy_map, 0.05);
+    CHECK(std::abs(map.momentum) < 1e-13);
+    CHECK(map.energy > 0.01);
+    table.note(format("{} balls, energy_map, w dt = 0.22", n), "none: it keeps the energy of two bodies only",
+               format("energy {:+.1e}", map.energy));
+  }
+}
+
+TEST_CASE("a_mass_ratio_of_a_million_changes_nothing") {
+  HardCase table({.name = "a mass ratio of 1e6",
+                  .why = "the reduced mass is that of the light body alone; digits of the heavy one cancel"});
+  double worst = 0;
+  for (const NormalLaw law : exact_laws) {
+    for (const double e : {0.7, 1.0}) {
+      for (const bool heavy_moves : {true, false}) {
+        PairProperties pair = one_second(law, e);
+        GrainSimulation simulation(scene_of({ball({0, 0}, 10, {heavy_moves ? 1.0 : 0.0, 0}, 1e6),
+                                             ball({12.3, 0}, 2, {heavy_moves ? 0.0 : -1.0, 0}, 1)},
+                                            {}, pair),
+                                   options_of(law, 0.1));
+        REQUIRE(pass_contact(simulation, 1000));
+        const std::vector<Grain> after = simulation.grains();
+        const double off = std::abs(after[1].velocity.x - after[0].velocity.x - e);
+        const double light = (1 + e) / (1 + 1e-6) - (heavy_moves ? 0 : 1);
+        CAPTURE(to_string(law), e, heavy_moves, off, after[1].velocity.x);
+        CHECK(off < 1e-12);
+        CHECK(std::abs(after[1].velocity.x - light) < 1e-12);
+        CHECK(std::abs(simulation.energy().error()) < 1e-12 * simulation.energy().initial);
+        worst = std::max(worst, off);
+      }
+    }
+  }
+  table.note("impact, maps and exact_flow", "restitution to 1e-12", shown(worst));
+
+  // a heavy disc falls on a light one on the floor: both springs carry it back up
+  PairProperties pair = one_second(NormalLaw::exact_flow, 1);
+  pair.stiffness = 1e8;  // w dt = 0.5 of the light disc
+  GrainSimulation press(
+      scene_of({ball({0, 1}, 1, {}, 1), ball({0, 3.1}, 1, {0, -1}, 1e6)}, {line("floor", {0, 0}, {0, 1})}, pair),
+      options_of(NormalLaw::exact_flow, 5e-5));
+  double error = 0;
+  for (int k = 0; k < 150; ++k) {
+    press.advance(100);
+    error = std::max(error, std::abs(press.energy().error()) / press.energy().initial);
+  }
+  CAPTURE(error, press.counters().contacts, press.grains()[1].velocity.y);
+  CHECK(press.contacts().empty());
+  CHECK(press.grains()[1].velocity.y == Approx(1).epsilon(1e-5));
+  CHECK(error < 1e-9);
+  table.note("heavy on light on the floor, exact_flow, w dt = 0.5", "energy to 1e-9 over the impact", shown(error));
+}
+
+TEST_CASE("perfectly_plastic_and_perfectly_elastic_impacts_are_exact") {
+  HardCase table({.name = "restitution 0 and 1", .why = "the ends of the range, where a damping ratio is 1 or 0"});
+  for (const NormalLaw law : {NormalLaw::energy_map, NormalLaw::exact_flow}) {
+    for (const double e : {0.0, 1.0}) {
+      PairProperties pair = one_second(law, e, 0.75);
+      pair.end = ContactEnd::at_zero_overlap;
+      GrainSimulation simulation(scene_of({ball({0, 0}, 1, {1, 0}, 1), ball({2.01, 0}, 1, {0, 0}, 3)}, {}, pair),
+                                 options_of(law, 0.1));
+      simulation.advance(200);
+      const std::vector<Grain> after = simulation.grains();
+      const double parting = after[1].velocity.x - after[0].velocity.x;
+      CAPTURE(to_string(law), e, parting, simulation.energy().error());
+      CHECK(std::abs(parting - e) < 1e-14);
+      CHECK(std::abs(momentum(after) - 1) < 1e-14);
+      CHECK(std::abs(simulation.energy().error()) < 1e-14);
+      table.note(format("{}, e = {}", to_string(law), e), "1e-14", shown(std::abs(parting - e)));
+    }
+  }
+  const GrainScene scene = scene_of({ball({0, 0}, 1)}, {}, one_second(NormalLaw::exact_flow, 0));
+  const Answer answer = [&] {
+    Answer result;
+    try {
+      GrainSimulation simulation(scene, options_of(NormalLaw::exact_flow, 0.1));
+    } catch (const Error& error) {
+      result.refusal = {error.what(), error.kind()};
+      result.remedy = error.remedy();
+    }
+    return result;
+  }();
+  table.refused("exact_flow, e = 0, contacts that end at zero force", answer, {"infinite dashpot", "zero overlap"});
+}
+
+TEST_CASE("steps_that_close_a_radius_and_contacts_within_a_step_are_exact") {
+  HardCase table({.name = "steps as long as a radius or a contact",
+                  .why = "the first that is seen of a contact is a body half sunk, or its end"});
+  for (const NormalLaw law : {NormalLaw::energy_map, NormalLaw::exact_flow}) {
+    double worst = 0;
+    int refused = 0, runs = 0;
+    for (const double closing : {0.3, 0.6, 0.9, 0.99}) {  // radii per step
+      for (int p = 0; p < 10; ++p) {
+        PairProperties pair{.dimensionless = 2, .restitution = 0.7};
+        GrainSimulation simulation(
+            scene_of({ball({0, 1 + closing * p / 10.0}, 1, {0, -closing})}, {line("floor", {0, 0}, {0, 1})}, pair),
+            options_of(law, 1));
+        ++runs;
+        try {
+          REQUIRE(pass_contact(simulation, 100));
+        } catch (const Error& error) {
+          INFO(error.what());
+          CHECK(error.kind() == ErrorKind::computation_failed);
+          ++refused;
+          continue;
+        }
+        const double off = std::abs(simulation.grains()[0].velocity.y / closing - 0.7);
+        CAPTURE(to_string(law), closing, p, off);
+        CHECK(off < 1e-13);
+        worst = std::max(worst, off);
+      }
+    }
+    CAPTURE(to_string(law), refused, runs);
+    CHECK(refused < runs / 4);
+    table.note(format("{}, closing up to 0.99 radii a step, a = 2", to_string(law)), "restitution to 1e-13, or refused",
+               format("{}, {} of {} refused", shown(worst), refused, runs));
+  }
+  double worst = 0;
+  for (const double ratio : {10.0, 100.0, 1000.0}) {  // step over contact
+    for (int p = 0; p < 10; ++p) {
+      PairProperties pair = one_second(NormalLaw::exact_flow, 0.7);
+      pair.stiffness *= ratio * ratio;
+      GrainSimulation simulation(
+          scene_of({ball({0, 1 + 0.9 * p / 10.0}, 1, {0, -0.9})}, {line("floor", {0, 0}, {0, 1})}, pair),
+          options_of(NormalLaw::exact_flow, 1));
+      simulation.advance(3);
+      CAPTURE(ratio, p, simulation.counters().contacts);
+      CHECK(simulation.counters().contacts == 1);
+      worst = std::max(worst, std::abs(simulation.grains()[0].velocity.y / 0.9 - 0.7));
+    }
+  }
+  CAPTURE(worst);
+  CHECK(worst < 1e-12);
+  table.note("exact_flow, contacts of 1e-1 to 1e-3 of a step", "restitution to 1e-12", shown(worst));
+}
+
+TEST_CASE("gravity_that_moves_a_diameter_in_a_step_is_refused") {
+  HardCase table({.name = "gravity that moves a diameter in a step", .why = "nothing is near before the step"});
+  for (const NormalLaw law : all_laws) {
+    PairProperties pair{.dimensionless = 0.5};
+    GrainSimulation simulation(scene_of({ball({0, 1.5}, 1), ball({5, 1.5}, 1)}, {line("floor", {0, 0}, {0, 1})}, pair,
+                                        {0, law == NormalLaw::exact_flow ? -8.0 : -2.0}),
+                               options_of(law, 1));
+    const Bits before = bits_of(simulation);
+    Answer answer;
+    try {
+      simulation.advance(1);
+    } catch (const Error& error) {
+      answer.refusal = {error.what(), error.kind()};
+      answer.remedy = error.remedy();
+    }
+    CAPTURE(to_string(law), simulation.grains()[0].position.y, simulation.grains()[0].velocity.y);
+    CHECK(bits_of(simulation) == before);
+    table.refused("run, the state is that before", answer, {"step 0", "floor", "Use a step below"});
+  }
+}
+
+TEST_CASE("the_order_of_a_crowd_changes_no_bit") {
+  HardCase table({.name = "bodies and walls in opposite order",
+                  .why = "sums of forces depend on their order in the last digit, and collisions amplify it"});
+  for (const Stepping& stepping : all_steppings) {
+    const GrainScene scene = busy_box(stepping.law, 4, 3, 5);
+    GrainScene other = scene;
+    std::reverse(other.grains.begin(), other.grains.end());
+    std::reverse(other.walls.begin(), other.walls.end());
+    GrainSimulation one(scene, options_of(stepping, 0.005)), two(other, options_of(stepping, 0.005));
+    one.advance(400);
+    two.advance(400);
+    std::vector<Grain> back = two.grains();
+    std::reverse(back.begin(), back.end());
+    bool same = one.counters().contacts > 20;
+    for (std::size_t k = 0; k < back.size(); ++k) {
+      const Grain a = one.grains()[k];
+      same = same && a.position == back[k].position && a.velocity == back[k].velocity && a.spin == back[k].spin;
+    }
+    CAPTURE(stepping.name());
+    CHECK(same);
+  }
+  table.note("run, all laws, 12 discs, friction, a floor that shakes", "the same bits", "the same bits");
+}
+
+namespace {
+
+/// Discs of several sizes thrown about in a box, e = 1, no gravity.
+GrainSimulation billiards(NormalLaw law, double step, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Grain> grains;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      grains.push_back(
+          ball({i + 0.5, j + 0.5}, random.uniform(0.3, 0.45), {random.uniform(-1, 1), random.uniform(-1, 1)}));
+    }
+  }
+  return {scene_of(grains,
+                   {line("floor", {0, 0}, {0, 1}), line("left", {0, 0}, {1, 0}), line("right", {3, 0}, {-1, 0}),
+                    line("lid", {0, 3}, {0, -1})},
+                   {.stiffness = 1000}),
+          options_of(law, step)};
+}
+
+double largest_energy_error(GrainSimulation simulation, std::int64_t steps) {
+  double largest = 0;
+  for (std::int64_t k = 0; k < steps; k += 20) {
+    simulation.advance(20);
+    largest = std::max(largest, std::abs(simulation.energy().error()) / simulation.energy().initial);
+  }
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("billiards_in_a_box_keep_their_energy") {
+  HardCase table({.name = "elastic billiards in a box",
+                  .why = "thousands of impacts, oblique and several at once: any bias of one adds up"});
+  std::vector<double> errors;
+  for (const double step : {0.02, 0.01, 0.005}) {  // w dt = 0.9, 0.45, 0.22
+    double worst = 0;
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      const auto steps = static_cast<std::int64_t>(100 / step);
+      worst = std::max(worst, largest_energy_error(billiards(NormalLaw::exact_flow, step, seed), steps));
+    }
+    errors.push_back(worst);
+  }
+  CAPTURE(errors);
+  CHECK(errors[0] < 0.01);
+  CHECK(errors[2] < errors[0] / 16);
+  table.note("9 discs, 100 s, exact_flow, w dt = 0.9, 0.45, 0.22", "energy, second order or better",
+             format("{}, {}, {}", shown(errors[0]), shown(errors[1]), shown(errors[2])));
+  const double bounded = largest_energy_error(billiards(NormalLaw::exact_flow, 0.005, 1), 100000);
+  CAPTURE(bounded);
+  CHECK(bounded < 1e-3);
+  table.note("1e5 steps, exact_flow, w dt = 0.22", "energy to 1e-3", shown(bounded));
+}
