@@ -239,3 +239,21 @@ TEST_CASE("a_soft_spring_that_is_pressed_through_is_refused_or_shown") {
   CAPTURE(deepest);
   CHECK(deepest > 1);
 }
+
+TEST_CASE("steps_that_could_feed_a_cluster_are_counted") {
+  // a chain vibrates at up to sqrt(2) of a pair's frequency: its limit is w dt = pi/sqrt(2) = 2.22
+  const double turn = GENERATE(0.5, 1.0, 2.0, 2.8);
+  const int balls = GENERATE(2, 5);
+  GrainScene scene;
+  for (int k = 0; k < balls; ++k) {
+    const double closer = 2 - 1e-3;
+    scene.grains.push_back(ball({closer * k, 0}, 1, {}));
+  }
+  PairProperties pair;
+  pair.dimensionless = turn * turn;
+  scene.pairs = {pair};
+  GrainSimulation simulation(scene, options_of(NormalLaw::exact_flow, 1e-3));
+  simulation.advance(1);
+  CAPTURE(turn, balls, simulation.counters().doubtful);
+  CHECK((simulation.counters().doubtful > 0) == (balls > 2 && turn > 2.22));
+}

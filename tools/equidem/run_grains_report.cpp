@@ -222,6 +222,11 @@ std::string describe_grain_run(const GrainSetup& setup, const GrainSimulation& s
   out += report_line("balance", format("lacks {:.1e} of the largest term", relative_error(l)));
   if (std::abs(relative_error(l)) > balance_to_doubt)
     out += report_line("", "that is much: compare with a shorter step before trusting the motion");
+  if (counters.doubtful > 0)
+    out += report_line(
+        "", format("of all evaluations {} were of contacts pressed together in a step that may feed their vibration: "
+                   "the step is safe for one contact, not for any cluster; compare with one a third as long",
+                   grouped(counters.doubtful)));
   std::string stages;
   for (const auto& [stage, seconds] : times.stages())
     if (seconds >= 0.02 * times.total()) stages += format(", {} {:.2g} s", stage, seconds);

@@ -118,8 +118,9 @@ Pool& pool() {
 }  // namespace
 
 int thread_count() {
+  static const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const int requested = requested_threads;
-  return requested > 0 ? requested : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return requested > 0 ? requested : cores;
 }
 
 void set_thread_count(int count) {

@@ -34,7 +34,7 @@ void set_constants(const GrainSystem& system, Candidate& candidate) {
   }
   if (system.friction && properties.friction > 0) {
     candidate.sliding.coefficient = properties.friction;
-    candidate.sliding.stiffness = properties.tangential_ratio * candidate.stiffness;
+    candidate.sliding.stiffness = properties.tangential_ratio * candidate.stiffness * root_length;
     candidate.sliding.cap = properties.cap;
     // of bodies that just touch: it must not depend on where they were when they were found
     const Meeting meeting{

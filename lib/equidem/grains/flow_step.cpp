@@ -287,6 +287,40 @@ void remember(GrainSystem& system, const std::vector<Trial>& trials) {
   }
 }
 
+/// Count contacts that share a body with others and whose step is not stable for every arrangement of them: w dt sqrt(1 + rho)
+/// must stay below pi (exact_contact.hpp), and 1 + rho is at most 1 + m ((z_i - 1)/m_i + (z_j - 1)/m_j), z contacts on a body,
+/// m the reduced mass.
+void count_doubtful(GrainSystem& system, const std::vector<Trial>& trials) {
+  constexpr double pi = 3.14159265358979323846;
+  constexpr double most_contacts = 9;  // so many discs no smaller than it a disc never touches
+  const auto square_step = [&](const Trial& trial) {
+    const double turn = system.exact_pairs[trial.candidate].frequency * system.dt();
+    return turn * turn;
+  };
+  if (std::none_of(trials.begin(), trials.end(),
+                   [&](const Trial& trial) { return square_step(trial) * most_contacts > pi * pi; })) {
+    return;
+  }
+  std::vector<int> contacts(system.bodies.size(), 0);
+  const auto touches = [](const Trial& trial) { return trial.impulse != 0; };
+  const auto count = [&](std::int32_t body) -> int& { return contacts[static_cast<std::size_t>(body)]; };
+  for (const Trial& trial : trials) {
+    if (!touches(trial)) continue;
+    const Candidate& candidate = system.candidates[trial.candidate];
+    ++count(candidate.i);
+    if (candidate.j >= 0) ++count(candidate.j);
+  }
+  for (const Trial& trial : trials) {
+    if (!touches(trial)) continue;
+    const Candidate& candidate = system.candidates[trial.candidate];
+    const auto others = [&](std::int32_t body) {
+      return body < 0 ? 0 : system.bodies[static_cast<std::size_t>(body)].inverse_mass * (count(body) - 1);
+    };
+    const double coupling = candidate.reduced_mass * (others(candidate.i) + others(candidate.j));
+    if (coupling > 0 && square_step(trial) * (1 + coupling) > pi * pi) ++system.counters.doubtful;
+  }
+}
+
 }  // namespace
 
 void flow(GrainSystem& system) {
@@ -308,6 +342,7 @@ void flow(GrainSystem& system) {
     if (!refresh_candidates(system, reach)) break;
   }
   if (system.options.refuse_crossing) refuse_crossings(system, reach);
+  count_doubtful(system, trials);
   remember(system, trials);
 }
 

@@ -37,8 +37,9 @@ struct PairProperties {
   double restitution = 1;
   ContactEnd end = ContactEnd::at_zero_force;  ///< linear_dashpot, hertz_dashpot, exact_flow
   double friction = 0;                         ///< mu
-  double tangential_ratio =
-      0;  ///< kT/kN >= 0; with friction > 0 and 0 here the contact slides always, Coulomb's law regularized by the step alone
+  /// kT/kN >= 0; hertz_dashpot: kT/(k d_c^(1/2)). With friction > 0 and 0 here the contact slides always, Coulomb's law regularized by
+  /// the step alone.
+  double tangential_ratio = 0;
   double tangential_damping = 0;  ///< zeta_T: dashpot 2 zeta_T sqrt(m kT), m the effective tangential mass
   FrictionCap cap = FrictionCap::whole_force;
   bool operator==(const PairProperties&) const = default;

@@ -54,6 +54,8 @@ struct GrainCounters {
   std::int64_t contacts = 0;     ///< begun
   std::int64_t rebuilds = 0;     ///< of the neighbour lists
   std::int64_t sweeps = 0;       ///< exact_flow: over all contacts
+  /// exact_flow: contacts in a step that is not stable for every arrangement of their neighbours; where it is 0 none was.
+  std::int64_t doubtful = 0;
 };
 
 /// Everything needed to go on with the same bits, in the caller's order.

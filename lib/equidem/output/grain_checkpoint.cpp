@@ -61,7 +61,8 @@ class Unpacker {
 };
 
 constexpr std::int64_t GrainCounters::*counters[] = {&GrainCounters::evaluations, &GrainCounters::contacts,
-                                                     &GrainCounters::rebuilds, &GrainCounters::sweeps};
+                                                     &GrainCounters::rebuilds, &GrainCounters::sweeps,
+                                                     &GrainCounters::doubtful};
 static_assert(sizeof(GrainCounters) == std::size(counters) * sizeof(std::int64_t), "a counter is not saved");
 
 std::vector<double> packed(const GrainState& state, const GrainRecord& record) {
