@@ -36,6 +36,26 @@ TEST_CASE("mass_and_moment_are_the_integrals_over_the_body") {
   CHECK(inertia_factor(body) == Approx(moment / (mass * radius * radius)).epsilon(1e-6));
 }
 
+TEST_CASE("mass_and_moment_of_an_ellipse_are_the_integrals_over_it") {
+  const double a = GENERATE(0.01, 1.0, 20.0), b = GENERATE(0.01, 0.3, 1.0), density = GENERATE(1.0, 2480.0);
+  double mass = 0, moment = 0;  // strips x = a sin t of height 2 b cos t
+  constexpr int strips = 4000;
+  for (int k = 0; k < strips; ++k) {
+    const double t = -pi / 2 + (k + 0.5) * pi / strips, x = a * std::sin(t), half = b * std::cos(t);
+    const double strip = density * 2 * half * a * std::cos(t) * pi / strips;
+    mass += strip;
+    moment += strip * (x * x + half * half / 3);
+  }
+  const Inertia found = inertia_of_ellipse(a, b, density);
+  CAPTURE(a, b, density, mass, moment);
+  CHECK(found.mass == Approx(mass).epsilon(1e-6));
+  CHECK(found.moment == Approx(moment).epsilon(1e-6));
+  const Inertia disc = inertia_of(a, density, Body::disc), round = inertia_of_ellipse(a, a, density);
+  CHECK(round.mass == Approx(disc.mass).epsilon(1e-15));
+  CHECK(round.moment == Approx(disc.moment).epsilon(1e-15));
+  CHECK_THROWS_AS(inertia_of_ellipse(a, b, 0), Error);
+}
+
 TEST_CASE("every_disc_has_the_inertia_of_its_radius") {
   const std::vector<double> radii{0.5, 1, 2};
   for (const Body body : {Body::disc, Body::sphere}) {

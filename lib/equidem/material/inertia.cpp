@@ -10,6 +10,17 @@
 
 namespace equidem {
 
+namespace {
+
+void check_density(double density, const char* bodies) {
+  if (!(density > 0 && std::isfinite(density))) {
+    bad_input(format("the density of the {} is {:.6g} kg/m³", bodies, density), "it must be positive and finite",
+              "Give a density above 0 kg/m³");
+  }
+}
+
+}  // namespace
+
 Body body_from(const std::string& name) {
   if (name == "disc") return Body::disc;
   if (name == "sphere") return Body::sphere;
@@ -27,10 +38,7 @@ double inertia_factor(Body body) {
 
 Inertia inertia_of(double radius, double density, Body body) {
   assert(radius > 0);
-  if (!(density > 0 && std::isfinite(density))) {
-    bad_input(format("the density of the discs is {:.6g} kg/m³", density), "it must be positive and finite",
-              "Give a density above 0 kg/m³");
-  }
+  check_density(density, "discs");
   const double section = std::numbers::pi * radius * radius;
   const double mass = density * (body == Body::disc ? section : 4.0 / 3 * section * radius);
   return {mass, inertia_factor(body) * mass * radius * radius};
@@ -41,6 +49,13 @@ std::vector<Inertia> inertia_of(const std::vector<double>& radii, double density
   all.reserve(radii.size());
   for (const double radius : radii) all.push_back(inertia_of(radius, density, body));
   return all;
+}
+
+Inertia inertia_of_ellipse(double a, double b, double density) {
+  assert(a > 0 && b > 0);
+  check_density(density, "ellipses");
+  const double mass = density * std::numbers::pi * a * b;
+  return {mass, mass * (a * a + b * b) / 4};
 }
 
 }  // namespace equidem

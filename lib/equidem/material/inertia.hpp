@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Mass and moment of inertia of a disc.
+/// Mass and moment of inertia of discs and ellipses.
 #pragma once
 
 #include <string>
@@ -33,5 +33,11 @@ struct Inertia {
 Inertia inertia_of(double radius, double density, Body body);
 /// The same for every disc.
 std::vector<Inertia> inertia_of(const std::vector<double>& radii, double density, Body body);
+
+/// An elliptic cylinder per metre of depth: m = rho pi a b, I = m (a² + b²)/4 (Sukegawa 2010, eq. 4.54).
+/// \param a, b half-axes, m, > 0
+/// \param density kg/m³
+/// \throws Error (bad_input) where the density is not positive and finite
+Inertia inertia_of_ellipse(double a, double b, double density);
 
 }  // namespace equidem
