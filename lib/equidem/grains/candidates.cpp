@@ -94,6 +94,7 @@ void find_candidates(GrainSystem& system) {
       }
     }
   }
+  cover_joints(system);
   system.moved = 0;
   ++system.counters.rebuilds;
 }

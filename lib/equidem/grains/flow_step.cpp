@@ -153,6 +153,7 @@ std::vector<Trial> trials_of(GrainSystem& system) {
   trials.reserve(system.candidates.size());
   for (std::size_t c = 0; c < system.candidates.size(); ++c) {
     const Candidate& candidate = system.candidates[c];
+    if (candidate.covered) continue;
     const Meeting meeting = meeting_of(system, candidate);
     Trial trial;
     trial.candidate = c;

@@ -44,6 +44,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   if (options.law != NormalLaw::exact_flow) self.collide = collide_function(options.law, system.friction);
   place_walls(system);
   system.margin = std::max(system.base_margin, 8 * fastest * options.time_step);
+  system.joints = joints_of(system.scene.walls, 1e-6 * system.smallest_radius);
   find_candidates(system);
   for (std::size_t c = 0; c < system.candidates.size(); ++c) {
     // bodies that overlap at the start touch
@@ -81,6 +82,7 @@ void GrainSimulation::Implementation::make_step() {
   system.motions.swap(system.next);
   ++system.step;
   place_walls(system);
+  cover_joints(system);
   if (collide && verlet()) {
     system.deepest = 0;
     collide(system);

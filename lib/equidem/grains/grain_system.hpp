@@ -10,6 +10,7 @@
 #include "equidem/grains/grain_scene.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/neighbours.hpp"
+#include "equidem/grains/wall_joints.hpp"
 
 namespace equidem {
 
@@ -39,6 +40,7 @@ struct Candidate {
   bool touching = false;
   bool parted = false;      // a map ended it with the step: what overlaps then is a new contact
   bool attraction = false;  // does not change, like the next three
+  bool covered = false;     // with the end of a wall, where another wall goes on: does nothing (wall_joints.hpp)
   int mode = 0;
   double reduced_mass = 0;
   double a = 0;         // dimensionless stiffness
@@ -73,6 +75,7 @@ struct GrainSystem {
   std::vector<GrainMotion> motions;
   std::vector<Push> pushes;
   std::vector<WallPlace> walls;
+  std::vector<WallJoints> joints;     ///< of each wall; empty where none join
   std::vector<Candidate> candidates;  ///< ordered by i, then j, walls last
   NeighbourFinder finder;
   std::vector<Circle> circles;         ///< bodies, for the finder

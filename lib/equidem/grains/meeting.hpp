@@ -41,6 +41,8 @@ inline Meeting meeting_of(const GrainSystem& system, const Candidate& candidate)
                              system.motions[j].position - system.motions[i].position);
   }
   const auto w = static_cast<std::size_t>(~candidate.j);
+  const GrainBody& body = system.bodies[static_cast<std::size_t>(candidate.i)];
+  if (candidate.covered) return {-body.radius, {1, 0}, body.radius, 0};  // apart
   return meeting_with_wall(system.bodies[i], system.scene.walls[w], system.walls[w].displacement,
                            system.motions[i].position);
 }
