@@ -96,6 +96,16 @@ Line line_of(const GrainSystem& system, const Candidate& candidate, const Trial&
   return {normal_at(0.5), std::max(0.5, 0.5 * norm(normal_at(0) + normal_at(1)))};
 }
 
+/// Speed of the two bodies and what the step adds to it: velocities are known to so many digits of it, however slowly the bodies
+/// close.
+double speed_of_bodies(const GrainSystem& system, const Candidate& candidate) {
+  const auto speed = [&](std::int32_t body) {
+    const auto b = static_cast<std::size_t>(body);
+    return norm(system.motions[b].velocity) + norm(gain_of(system, b).velocity);
+  };
+  return speed(candidate.i) + (candidate.j >= 0 ? speed(candidate.j) : 0);
+}
+
 /// Solve one contact with all others as they stand.
 /// \return change of its impulses, relative
 double solve(GrainSystem& system, Trial& trial) {
@@ -144,7 +154,7 @@ double solve(GrainSystem& system, Trial& trial) {
   const double change = std::abs(trial.impulse - impulse_before) + std::abs(trial.tangential - tangential_before) +
                         std::abs(trial.moment - moment_before) / dt;
   const double scale = std::abs(trial.impulse) + std::abs(trial.tangential) +
-                       candidate.reduced_mass * (std::abs(closing) + dt * (std::abs(a) + std::abs(b)));
+                       candidate.reduced_mass * speed_of_bodies(system, candidate);
   return scale > 0 ? change / scale : 0;
 }
 
