@@ -29,7 +29,9 @@ TEST_CASE("every_integrator_converges_with_its_order") {
   const Integrator integrator =
       GENERATE(Integrator::leapfrog, Integrator::velocity_verlet, Integrator::thesis, Integrator::fourth_order);
   const auto motion = GENERATE(LoopKind::Motion::small, LoopKind::Motion::finite);
-  const double alpha = GENERATE(0.0, 0.3);
+  const Damping damping = GENERATE(Damping{}, Damping{.mass = 0.3}, Damping{.contact = 0.1});
+  const bool late = damping.contact > 0;
+  if (late && integrator == Integrator::fourth_order) return;  // refused
   const Assembly assembly = delaunay_block(25, 6);
   const ContactSprings springs(SpringConstants{1, 0.4});
   Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
@@ -39,13 +41,15 @@ TEST_CASE("every_integrator_converges_with_its_order") {
   const auto end_of = [&](Integrator how, int steps) {
     Simulation run(scene, {.motion = motion,
                            .integrator = how,
-                           .damping = {.mass = alpha},
+                           .damping = damping,
                            .gravity = {0, -0.01},
                            .time_step = duration / steps});
     run.advance(steps);
     return run.motions();
   };
-  const std::vector<DiscMotion> exact = end_of(Integrator::fourth_order, 2000);
+  // With dashpots of a scheme of the same order: errors fall from 1/100 to 1/400 of the time, and are 1/16000 there.
+  const std::vector<DiscMotion> exact =
+      late ? end_of(Integrator::leapfrog, 16000) : end_of(Integrator::fourth_order, 2000);
   std::vector<double> errors, steps;
   for (const int count : {100, 140, 200, 280, 400}) {
     errors.push_back(std::log(distance_of(end_of(integrator, count), exact)));
@@ -58,9 +62,9 @@ TEST_CASE("every_integrator_converges_with_its_order") {
     sxx += (steps[k] - mx) * (steps[k] - mx);
   }
   const double order = sxy / sxx;
-  CAPTURE(to_string(integrator), static_cast<int>(motion), alpha, order, std::exp(errors.front()),
-          std::exp(errors.back()));
-  CHECK(order == Approx(facts_of(integrator).order).margin(0.1));
+  CAPTURE(to_string(integrator), static_cast<int>(motion), damping.mass, damping.contact, order,
+          std::exp(errors.front()), std::exp(errors.back()));
+  CHECK(order == Approx(late ? order_with_late_velocities : facts_of(integrator).order).margin(0.1));
 }
 
 // q_n = cos(n theta) with sin(theta/2) = omega h/2: one disc on a spring, stepped many times.

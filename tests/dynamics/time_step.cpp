@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "equidem/core/stopwatch.hpp"
+
 #include "dynamics/moving_scenes.hpp"
 #include "support/catch.hpp"
 #include "support/fields.hpp"
@@ -157,4 +159,65 @@ TEST_CASE("steps_that_cannot_work_are_refused_with_the_limit") {
   const Scene loose{.assembly = dust, .springs = springs, .inertia = scene.inertia};
   CHECK(refusal_of([&] { (void)choose_time_step(loose, {}); }).says("nothing vibrates"));
   CHECK(choose_time_step(loose, {}, {.step = 1.0}).ratio() == 0);
+}
+
+// A disc that spins alone, six contacts with equal levers r: omega² = 6 kT r²/I. No motion grows faster than all of them together.
+TEST_CASE("negative_kT_is_found_however_small_it_is") {
+  const Assembly assembly = hexagonal_block(12);
+  const double ratio = GENERATE(1e-1, 1e-3, 1e-5, 1e-8, 1e-13);
+  const ContactSprings springs(SpringConstants{1, -ratio});
+  Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  const double alone = std::sqrt(12 * ratio / scene.inertia[0].mass);
+  const Stopwatch watch;
+  const TimeStep allowed = choose_time_step(scene, {}, {.allow_unstable = true});
+  CAPTURE(ratio, allowed.growth_rate, alone, watch.seconds());
+  CHECK(allowed.growth_rate >= alone * (1 - 1e-12));
+  CHECK(allowed.growth_rate <= std::sqrt(2) * alone);
+  CHECK(refusal_of([&] { (void)choose_time_step(scene, {}); }).says("whatever the step"));
+  scene.supports.resize(1);
+  scene.supports[0].group = "all";
+  scene.supports[0].rotation = always(0);
+  Assembly held = assembly;
+  for (std::int32_t d = 0; d < static_cast<std::int32_t>(held.size()); ++d) held.groups["all"].discs.push_back(d);
+  const Scene still{.assembly = held, .springs = springs, .inertia = scene.inertia, .supports = scene.supports};
+  CHECK(choose_time_step(still, {}, {.allow_unstable = true}).growth_rate < alone);
+}
+
+TEST_CASE("mass_damping_never_turns_velocities_around") {
+  const Assembly assembly = hexagonal_block(4);
+  const ContactSprings springs(SpringConstants{1, 0.4});
+  Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  scene.velocities = start_with(std::vector<DiscMotion>(assembly.size(), {{1, 0}, 0}));
+  const Integrator integrator = GENERATE(Integrator::leapfrog, Integrator::fourth_order);
+  const double alpha = GENERATE(0.1, 10.0, 1e4, 1e8);
+  SimulationOptions options{.integrator = integrator, .damping = {.mass = alpha}};
+  const TimeStep chosen = choose_time_step(scene, options);
+  options.time_step = chosen.step;
+  Simulation run(scene, options);
+  double slower = 1;
+  for (int n = 0; n < 20; ++n) {
+    run.advance(1);
+    const double v = run.velocities()[5].u.x;
+    CAPTURE(to_string(integrator), alpha, chosen.report(), n, v, slower);
+    REQUIRE(v >= 0);
+    REQUIRE(v <= slower);
+    slower = v;
+  }
+  const double least = std::exp(-alpha * 20 * chosen.step);
+  CAPTURE(to_string(integrator), alpha, chosen.report(), slower, least);
+  CHECK(chosen.step * alpha < 2);
+  // It slides to v/alpha; leapfrog is short of it by (alpha h/2)².
+  const double half = 0.5 * alpha * chosen.step, slide = (1 - least) / alpha;
+  CHECK(run.motions()[5].u.x ==
+        Approx(integrator == Integrator::leapfrog && alpha > 1 ? slide * (1 - half * half) : slide).epsilon(0.01));
+  const Refusal refused = refusal_of([&] { (void)choose_time_step(scene, options, {.step = 0.9 * chosen.critical}); });
+  CHECK(refused.says("turn velocities around") == (0.9 * chosen.critical * alpha > 2));
+}
+
+TEST_CASE("magnitudes_whose_squares_are_no_numbers_are_refused_before_a_step") {
+  const Assembly assembly = hexagonal_block(4);
+  const ContactSprings springs(SpringConstants{1e9, 1e9});
+  const Scene scene{
+      .assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1e-318, Body::disc)};
+  CHECK(refusal_of([&] { (void)choose_time_step(scene, {}); }).says("1e-150"));
 }

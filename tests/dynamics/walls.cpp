@@ -139,3 +139,25 @@ TEST_CASE("walls_that_mean_nothing_are_refused") {
   const Assembly periodic = hexagonal_lattice({.columns = 4, .rows = 4, .radius = 0.5, .periodic = true});
   CHECK(refusal({good}, periodic).find("periodic assembly") != std::string::npos);
 }
+
+TEST_CASE("a_disc_rebounds_from_a_wall_however_far_it_was") {
+  const auto motion = GENERATE(LoopKind::Motion::small, LoopKind::Motion::finite);
+  const double radii = GENERATE(0.5, 10.0, 1000.0);  // of the disc, from it to the wall
+  Assembly assembly;
+  assembly.centres = {{0, 0}};
+  assembly.radii = {1};
+  assembly.groups["all"] = {{0}, {}};
+  const ContactSprings springs(SpringConstants{1, 0});
+  const Scene scene{.assembly = assembly,
+                    .springs = springs,
+                    .inertia = {{1, 1}},
+                    .walls = {{"far", {1 + radii, 0}, {-1, 0}, 1e4, {}}},
+                    .velocities = {{"all", {1, 0}, 0}}};
+  const double step = 1e-3;
+  Simulation run(scene, {.motion = motion, .time_step = step});
+  run.advance(std::llround(1.5 * radii / step));
+  CAPTURE(static_cast<int>(motion), radii, run.motions()[0].u.x, run.energy().error());
+  // Half a period of contact is 0.03; contact from the middle of a step changes the speed by up to (omega h)²/8.
+  CHECK(run.motions()[0].u.x == Approx(radii / 2).epsilon(2.5e-3).margin(0.04));
+  CHECK(run.velocities()[0].u.x == Approx(-1).epsilon(1.3e-3));
+}

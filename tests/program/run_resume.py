@@ -128,7 +128,7 @@ class Resume(RunTest):
         self.run_case(SHAKE, *short)
         for option, *words in (("springs.kT=0.4e9", "kT"), ("run.damping.contact=0.03", "contact = 0.0"),
                                ("run.time_step=1e-6", "step 1e-06 s"), ("schedule.0.frequency=300", "frequency"),
-                               ("assembly.rows=33", "rows")):
+                               ("assembly.rows=33", "rows"), ("probe.0.group=bottom", "group = ")):
             with self.subTest(option=option):
                 self.check_error(equidem("run", SHAKE, *short, "--resume", "--set", option), 2, "another case", *words)
         # What is written and printed may change.

@@ -193,6 +193,30 @@ class Output(RunTest):
                                        "--set", "run.damping.contact=0.1"))
         self.assertIn("compare with a shorter step", done.stdout)
 
+    def test_the_balance_is_held_against_the_most_energy_of_the_run(self):
+        for case in (CORNER, PULSE):
+            report = self.check_done(equidem("run", case, "--threads", 1)).stdout
+            end, most = (float(x) for x in re.search(r"lacks (\S+) of the largest term of the run\s+at its end, at most "
+                                                     r"(\S+) on the way", report).groups())
+            self.assertLessEqual(end, most)
+
+    def test_the_order_is_that_of_the_dampers_too(self):
+        for option, order in (("run.damping.mass=1.0", 2), ("run.damping.contact=0.1", 1), ("run.damping.local=0.1", 1),
+                              ("run.damping.stiffness=1e-7", 1)):
+            report = self.check_done(equidem("run", PULSE, "--dry-run", "--set", option)).stdout
+            self.assertRegex(report, rf"integrator +leapfrog, order {order}")
+
+    def test_a_run_to_rest_says_that_schedules_stand_still(self):
+        for case, told in ((SHAKE, True), (REST, False)):
+            report = self.check_done(equidem("run", case, "--set", "run.duration=none", "--set", "run.until_rest=1e-6")
+                                     if told else equidem("run", case)).stdout
+            self.assertEqual(bool(re.search(r"schedules +as they are at t = 0", report)), told)
+
+    def test_an_interval_far_longer_than_the_run(self):
+        out = self.folder / "out"
+        self.assertEqual(self.run_case(PULSE, "--set", "run.duration=1e-300", "--out", out)["steps"], 1)
+        self.assertEqual(list(table(out / "history.csv")["step"]), [0, 1])
+
     def test_frames_and_histories_follow_their_schedules(self):
         out = self.folder / "out"
         result = self.run_case(SHAKE, "--out", out)

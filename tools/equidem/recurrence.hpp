@@ -19,10 +19,9 @@ class Recurrence {
     if (!(interval_ > 0)) return never;
     if (interval_ <= 1) return step + 1;
     const double turn = std::ceil((static_cast<double>(step) + 0.5) / interval_ - 1e-9);
-    const double next = std::floor(turn * interval_ + 0.5);
-    if (next >= 1e18) return never;
-    if (next > static_cast<double>(step)) return static_cast<std::int64_t>(next);
-    return static_cast<std::int64_t>(std::floor((turn + 1) * interval_ + 0.5));
+    double next = std::floor(turn * interval_ + 0.5);
+    if (next <= static_cast<double>(step)) next = std::floor((turn + 1) * interval_ + 0.5);
+    return next < 1e18 ? static_cast<std::int64_t>(next) : never;
   }
   [[nodiscard]] bool at(std::int64_t step) const { return step == 0 || (step > 0 && after(step - 1) == step); }
   static constexpr std::int64_t never = INT64_MAX;

@@ -27,9 +27,18 @@ double largest_energy(const EnergyLedger& ledger) {
                    std::abs(ledger.dissipated()), std::abs(ledger.input()), std::abs(ledger.initial)});
 }
 
-double relative_error(const EnergyLedger& ledger) {
-  const double size = largest_energy(ledger);
-  return size > 0 ? ledger.error() / size : 0.0;
+/// What the balance lacks now and at most, relative to the most energy that there was in the whole run.
+struct Balance {
+  double now = 0, most = 0;
+};
+Balance balance_of(const Simulation& simulation, const RunResult& result) {
+  const EnergyLedger end = simulation.energy();
+  double most = std::abs(end.error()), size = largest_energy(end);
+  for (const EnergySample& sample : result.energies) {
+    most = std::max(most, std::abs(sample.ledger.error()));
+    size = std::max(size, largest_energy(sample.ledger));
+  }
+  return size > 0 ? Balance{end.error() / size, most / size} : Balance{};
 }
 
 /// What a case asks for that a run to rest does not heed.
@@ -48,6 +57,16 @@ std::string unused_at_rest(const RunSetup& setup) {
   name(output.frame_interval.has_value(), "frame_interval");
   name(!run.probes.empty() || output.probe_interval, "[[probe]]");
   return out;
+}
+
+/// Whether anything of the scene changes with time.
+bool any_schedule(const Scene& scene) {
+  const auto changes = [](const std::optional<Schedule>& motion) { return motion && motion->changes(); };
+  return std::ranges::any_of(
+             scene.supports,
+             [&](const TimedSupport& s) { return changes(s.ux) || changes(s.uy) || changes(s.rotation); }) ||
+         std::ranges::any_of(scene.loads, [](const TimedLoad& load) { return load.factor.changes(); }) ||
+         std::ranges::any_of(scene.walls, [](const Wall& wall) { return wall.displacement.changes(); });
 }
 
 /// What of the output is not what a reader of the case would expect.
@@ -99,10 +118,16 @@ std::string describe_run_setup(const RunSetup& setup, const Simulation& simulati
   if (run.until_rest) {
     const std::string unused = unused_at_rest(setup);
     if (!unused.empty()) out += report_line("not used", unused + ": a run to rest has steps of its own and no time");
+    if (any_schedule(setup.scene)) {
+      out += report_line("schedules", "as they are at t = 0: a run to rest has no time, and starts from there");
+    }
     return out;
   }
   const IntegratorFacts facts = facts_of(run.integrator);
-  out += report_line("integrator", format("{}, order {}, {} a step", to_string(run.integrator), facts.order,
+  const bool late = run.damping.stiffness > 0 || run.damping.contact > 0 || run.damping.local > 0;
+  const int order = late ? order_with_late_velocities : facts.order;
+  out += report_line("integrator", format("{}, order {}{}, {} a step", to_string(run.integrator), order,
+                                          order < facts.order ? " (dampers act half a step late)" : "",
                                           counted(facts.force_evaluations, "force evaluation")));
   const TimeStep& step = setup.step;
   if (std::isinf(step.critical)) {
@@ -153,14 +178,11 @@ std::string describe_run(const RunSetup& setup, const Simulation& simulation, co
   }
   out += report_line("", format("dissipated by mass damping {:.6g}, contacts {:.6g}, local damping {:.6g}",
                                 ledger.damped_mass, ledger.damped_contact, ledger.damped_local));
-  double most = std::abs(ledger.error()), size = largest_energy(ledger);
-  for (const EnergySample& sample : result.energies) {
-    most = std::max(most, std::abs(sample.ledger.error()));
-    size = std::max(size, largest_energy(sample.ledger));
-  }
-  const double lacks = size > 0 ? most / size : 0.0;
-  out += report_line("balance", format("lacks {:.1e} of the largest term, and at most {:.1e} on the way",
-                                       relative_error(ledger), lacks));
+  const Balance balance = balance_of(simulation, result);
+  const double lacks = balance.most;
+  out +=
+      report_line("balance", format("lacks {:.1e} of the largest term of the run at its end, at most {:.1e} on the way",
+                                    std::abs(balance.now), lacks));
   if (lacks > balance_to_mention) {
     const Scene& scene = setup.scene;  // the work of what drives a run is counted to the second order
     const bool driven = !scene.loads.empty() || !scene.supports.empty() || !scene.walls.empty();
@@ -205,7 +227,7 @@ void add_run(JsonObject& object, const RunSetup& setup, const Simulation& simula
   energy.set("dissipated", ledger.dissipated())
       .set("input", ledger.input())
       .set("error", ledger.error())
-      .set("relative_error", relative_error(ledger));
+      .set("relative_error", balance_of(simulation, result).now);
   object.set("energy", energy);
   object.set("integrator", to_string(setup.run().integrator));
   object.set("particle_steps_per_second", disc_steps_per_second(setup, result));

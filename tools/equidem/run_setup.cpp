@@ -207,7 +207,7 @@ std::string RunSetup::fingerprint() const {
   if (TomlValue* table = known.document.find("run")) {
     erase(*table, {"duration", "time_step", "allow_unstable_step"});  // the step is below
   }
-  erase(known.document, {"title", "output", "probe", "homogenize", "ensemble", "solver"});
+  erase(known.document, {"title", "output", "homogenize", "ensemble", "solver"});
   sort_keys(known.document);
   return to_toml(known, {}) +
          format("{}{}{}{}\n# checksums: discs and contacts {}\n# springs {}\n# schedules {}\n", step_line,

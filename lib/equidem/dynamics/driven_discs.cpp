@@ -22,14 +22,6 @@ const DiscGroup& group_with_discs(const Assembly& assembly, const std::string& n
   return discs;
 }
 
-/// Small motions stay small beside a radius: discs further than that from every wall never meet one.
-bool may_touch_wall(const Scene& scene, std::size_t disc) {
-  return std::any_of(scene.walls.begin(), scene.walls.end(), [&](const Wall& wall) {
-    const double gap = dot(wall.normal, scene.assembly.centres[disc] - wall.point) - scene.assembly.radii[disc];
-    return gap < scene.assembly.radii[disc] || wall.displacement.changes();
-  });
-}
-
 /// The values of schedules at one time. The last one asked for is kept: discs that follow one another often share theirs.
 class ValuesAt {
  public:
@@ -83,14 +75,13 @@ DrivenDiscs::DrivenDiscs(const Scene& scene, const DiscLayout& layout, const Loo
     }
   }
   for (std::size_t disc = 0; !walls_.empty() && disc < scene.assembly.size(); ++disc) {
-    if (kind.motion == LoopKind::Motion::finite || may_touch_wall(scene, disc)) {
-      disc_of(static_cast<std::int32_t>(disc)).near_walls = true;
-    }
+    disc_of(static_cast<std::int32_t>(disc)).meets_walls = true;
   }
   // std::map keeps places, and so strips, in order.
   const auto strips = static_cast<std::size_t>(layout.strips());
   strip_first_.assign(strips + 1, 0);
   work_.resize(strips);
+  wall_motions_.resize(strips * walls_.size());
   std::size_t strip = 0;
   for (const auto& [place, disc] : discs) {
     while (place >= layout.strip_first[strip + 1] * DiscLayout::lanes) {
@@ -145,17 +136,24 @@ void DrivenDiscs::add_loads(const Scene& scene, std::vector<std::vector<DiscLoad
   }
 }
 
-DrivenDiscs::Push DrivenDiscs::push_of_walls(const Disc& disc, Vec2 u, double time, double time_after) const {
+std::span<const DrivenDiscs::WallMotion> DrivenDiscs::move_walls(std::int32_t strip, double time, double time_after) {
+  WallMotion* motions = wall_motions_.data() + static_cast<std::size_t>(strip) * walls_.size();
+  for (std::size_t k = 0; k < walls_.size(); ++k) {
+    const Schedule& displacement = walls_[k].displacement;
+    motions[k] = {displacement.at(time), 0.5 * (displacement.at(time_after) - displacement.at(2 * time - time_after))};
+  }
+  return {motions, walls_.size()};
+}
+
+DrivenDiscs::Push DrivenDiscs::push_of_walls(const Disc& disc, Vec2 u, std::span<const WallMotion> motions) const {
   Push push;
-  for (const Wall& wall : walls_) {
-    const double moved = wall.displacement.at(time);
-    const double gap = dot(wall.normal, disc.centre + u - wall.point) - moved - disc.radius;
+  for (std::size_t k = 0; k < walls_.size(); ++k) {
+    const Wall& wall = walls_[k];
+    const double gap = dot(wall.normal, disc.centre + u - wall.point) - motions[k].moved - disc.radius;
     if (gap >= 0) continue;
     push.force -= wall.kN * gap * wall.normal;
-    push.energy += 0.5 * wall.kN * gap * gap;
-    // over the way that velocities before and after the kick go, as that of loads
-    const double way = 0.5 * (wall.displacement.at(time_after) - wall.displacement.at(2 * time - time_after));
-    push.work -= wall.kN * gap * way;
+    push.work -= wall.kN * gap * motions[k].way;
+    push.any = true;
   }
   return push;
 }
@@ -180,6 +178,7 @@ void DrivenDiscs::after(std::int32_t strip, const LoopData& data, const Stage& s
   const double over_kick = stage.kick != 0 ? 1 / stage.kick : 0.0,
                over_drift = stage.drift != 0 ? 1 / stage.drift : 0.0;
   const bool damped = local_ || data.mass_damping != 0 || data.dashpot != nullptr;
+  const std::span<const WallMotion> walls = move_walls(strip, time, time_after);
   ValuesAt factors(schedules_, time);
   ValuesAt held[] = {{schedules_, time_after}, {schedules_, time_after}, {schedules_, time_after}};
   for (std::int32_t k = first; k < last; ++k) {
@@ -192,12 +191,12 @@ void DrivenDiscs::after(std::int32_t strip, const LoopData& data, const Stage& s
       const double factor = factors.of(loads_[l].schedule);
       for (int c = 0; c < 3; ++c) load[c] += loads_[l].force[c] * factor;
     }
-    if (disc.near_walls) {
-      const Push push = push_of_walls(disc, {u[0], u[1]}, time, time_after);
+    if (disc.meets_walls) {
+      const Push push = push_of_walls(disc, {u[0], u[1]}, walls);
       wall[0] = push.force.x;
       wall[1] = push.force.y;
       work.walls += push.work;
-      if (push.energy == 0 && disc.loads == 0 && !disc.any_held()) continue;
+      if (!push.any && disc.loads == 0 && !disc.any_held()) continue;
     }
     for (int c = 0; c < unknowns_; ++c) {
       const double v = disc.before[c], with_loop = velocity[4 * c], force = load[c] + wall[c];

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +33,7 @@ class DrivenDiscs {
              Dissipation& dissipation);
 
   [[nodiscard]] bool any() const { return !discs_.empty(); }
+  [[nodiscard]] std::size_t bytes() const { return discs_.size() * sizeof(Disc) + loads_.size() * sizeof(DiscLoad); }
   /// Prescribed components at the start.
   void prescribe(double* motion, double time) const;
   [[nodiscard]] DrivingWork work() const;
@@ -47,7 +49,7 @@ class DrivenDiscs {
     double radius = 0;
     std::int32_t held[3] = {-1, -1, -1};  // schedule of each component
     std::int32_t first_load = 0, loads = 0;
-    bool near_walls = false;
+    bool meets_walls = false;
     double before[3] = {0, 0, 0};  // velocities
     [[nodiscard]] bool any_held() const { return held[0] >= 0 || held[1] >= 0 || held[2] >= 0; }
   };
@@ -60,12 +62,19 @@ class DrivenDiscs {
   void add_loads(const Scene& scene, std::vector<std::vector<DiscLoad>>& loads) const;
   [[nodiscard]] double with_damping(double free, double v, double share) const;
   [[nodiscard]] double without_damping(double a, double v, double share) const;
-  /// Force of all walls on a disc displaced by u; their stored energy and the work that their motion does until `time_after`.
+  /// How far a wall has moved, and the way over which it works, m.
+  struct WallMotion {
+    double moved = 0, way = 0;
+  };
+  /// Of all walls, kept for the strip: the way is that which velocities before and after the kick go, as that of loads.
+  [[nodiscard]] std::span<const WallMotion> move_walls(std::int32_t strip, double time, double time_after);
+  /// Force of all walls on a disc displaced by u, and the work that their motion does.
   struct Push {
     Vec2 force;
-    double energy = 0, work = 0;
+    double work = 0;
+    bool any = false;
   };
-  [[nodiscard]] Push push_of_walls(const Disc& disc, Vec2 u, double time, double time_after) const;
+  [[nodiscard]] Push push_of_walls(const Disc& disc, Vec2 u, std::span<const WallMotion> motions) const;
 
   int unknowns_ = 2, width_ = 2;
   bool local_ = false;
@@ -74,7 +83,8 @@ class DrivenDiscs {
   std::vector<DiscLoad> loads_;
   std::vector<Schedule> schedules_;
   std::vector<Wall> walls_;
-  std::vector<DrivingWork> work_;  // per strip
+  std::vector<WallMotion> wall_motions_;  // by strip
+  std::vector<DrivingWork> work_;         // per strip
 };
 
 }  // namespace equidem

@@ -23,11 +23,14 @@ Integrator integrator_from(const std::string& name);
 std::string to_string(Integrator integrator);
 
 struct IntegratorFacts {
-  int order = 2;
+  int order = 2;                ///< where forces depend on positions, and for mass-proportional damping
   int force_evaluations = 1;    ///< per step
   bool velocities_lag = false;  ///< by half a step
 };
 IntegratorFacts facts_of(Integrator integrator);
+/// With forces that depend on velocities, of dashpots at contacts and of local damping: all schemes take them from before the
+/// step, half a step late at least.
+constexpr int order_with_late_velocities = 1;
 
 /// Largest stable omega dt of an oscillator u'' + 2 zeta omega u' + omega² u = 0. Mass-proportional damping of leapfrog is central and
 /// leaves its limit of 2; a contact dashpot (zeta > 0 from relative velocities) is evaluated half a step behind: 2 (sqrt(1 + zeta²)

@@ -192,7 +192,8 @@ double Simulation::bytes_per_disc() const {
   const std::size_t doubles = s.geometry.size() + s.inverse_inertia.size() + 2 * s.bodies.motion[0].size() +
                               s.bodies.velocity.size() + s.bodies.dashpot.size() + 2 * s.bodies.velocity_at[0].size();
   const std::size_t integers = s.first.size() + s.neighbour.size() + layout.disc_at.size() + layout.place_of.size();
-  return (8.0 * static_cast<double>(doubles) + 4.0 * static_cast<double>(integers)) /
+  return (8.0 * static_cast<double>(doubles) + 4.0 * static_cast<double>(integers) +
+          static_cast<double>(s.driven.bytes())) /
          static_cast<double>(s.scene.assembly.size());
 }
 

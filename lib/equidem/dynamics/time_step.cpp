@@ -127,13 +127,39 @@ double critical_step(const Vibration& vibration, const SquaredFrequency& squared
   return 0;
 }
 
-/// Motions that grow as exp(rate t), against mass-proportional damping: rate² + alpha rate + omega² = 0, omega² < 0.
+/// The lowest omega² of discs that spin alone, an upper bound of the lowest of all.
+double lowest_of_spins(const Vibration& vibration) {
+  if (vibration.unknowns.per_disc < 3) return 0;
+  const Scene& scene = vibration.scene;
+  std::vector<double> stiffness(scene.assembly.size(), 0.0);
+  for (std::size_t c = 0; c < scene.assembly.contacts.size(); ++c) {
+    const Contact& contact = scene.assembly.contacts[c];
+    const double kT = scene.springs[c].kT;
+    if (contact.i == contact.j) {  // an image of the disc itself turns with it
+      stiffness[contact.i] += kT * (contact.lever_i + contact.lever_j) * (contact.lever_i + contact.lever_j);
+      continue;
+    }
+    stiffness[contact.i] += kT * contact.lever_i * contact.lever_i;
+    stiffness[contact.j] += kT * contact.lever_j * contact.lever_j;
+  }
+  double lowest = 0;
+  for (std::size_t d = 0; d < stiffness.size(); ++d) {
+    if (vibration.unknowns.held[3 * d + 2] != DegreesOfFreedom::free) continue;
+    lowest = std::min(lowest, stiffness[d] / scene.inertia[d].moment);
+  }
+  return lowest;
+}
+
+/// Motions that grow as exp(rate t), against mass-proportional damping: rate² + alpha rate + omega² = 0, omega² < 0. Where kT
+/// is far below kN, Lanczos does not find the lowest omega² among many near 0 in reasonable time: then a bound of it serves.
 double growth_rate(const Vibration& vibration, double omega) {
   if (!vibration.scene.springs.any_negative() || vibration.unknowns.unknowns == 0) return 0;
-  const double lowest = extreme_squared_frequency(vibration.scene.assembly, vibration.scene.springs, vibration.unknowns,
-                                                  vibration.scene.inertia, SpectrumEnd::smallest)
-                            .value;
-  if (lowest > -1e-9 * omega * omega) return 0;
+  const LanczosOptions brief{.tolerance = 1e-9, .work = 2e7};
+  double lowest = extreme_squared_frequency(vibration.scene.assembly, vibration.scene.springs, vibration.unknowns,
+                                            vibration.scene.inertia, SpectrumEnd::smallest, brief)
+                      .value;
+  if (lowest > -1e-9 * omega * omega) lowest = 0;  // rounding
+  lowest = std::min(lowest, lowest_of_spins(vibration));
   const double half = 0.5 * vibration.options.damping.mass;
   return std::sqrt(half * half - lowest) - half;
 }
@@ -146,6 +172,28 @@ void check(const TimeStepOptions& wanted) {
   if (wanted.step && (!(*wanted.step > 0) || !std::isfinite(*wanted.step))) {
     bad_input(format("the time step is {} s", *wanted.step), "time could not go on", "Give a step > 0, or \"auto\"");
   }
+}
+
+/// What mass-proportional damping leaves of a velocity after a step is exp(-alpha h), and (1 - alpha h/2)/(1 + alpha h/2) in
+/// leapfrog: stable for every h, but past 2/alpha velocities turn around from step to step. The fourth-order scheme goes back in
+/// time within a step, where velocities grow by exp(0.21 alpha h).
+void respect_mass_damping(TimeStep& step, const SimulationOptions& options, const TimeStepOptions& wanted) {
+  const double alpha = options.damping.mass, longest = 2 / alpha;
+  if (!(alpha > 0) || options.integrator == Integrator::thesis || wanted.allow_unstable) return;
+  if (wanted.step && *wanted.step > longest) {
+    bad_input(format("the time step {:.6g} s is too long for the mass damping of {:.6g} 1/s", *wanted.step, alpha),
+              format("past 2/damping = {:.6g} s it would turn velocities around", longest),
+              "Give a smaller step, take \"auto\", or damp less");
+  }
+  if (!wanted.step && step.step > wanted.fraction * longest) {
+    step.step = wanted.fraction * longest;
+    step.notes.push_back(
+        format("Mass damping shortens the step: past 2/damping = {:.6g} s it would turn velocities around.", longest));
+  }
+  const double share = step.step / longest;
+  if (options.integrator == Integrator::fourth_order || share * share < 0.05) return;
+  step.notes.push_back(format("What mass damping brings to rest slides too short by up to {:.0f} %, (damping step/2)².",
+                              100 * share * share));
 }
 
 void refuse_unstable(const TimeStep& result, const SimulationOptions& options) {
@@ -192,6 +240,7 @@ std::string to_string(TimeStepRule rule) {
 
 TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, const TimeStepOptions& wanted) {
   check(wanted);
+  check_magnitudes(scene.assembly, scene.springs, scene.inertia);
   const Vibration vibration(scene, options);
   const auto bound = [&](const ContactSprings& springs) { return vibration.bound(springs); };
   const auto exact = [&](const ContactSprings& springs) { return vibration.exact(springs); };
@@ -206,10 +255,10 @@ TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, 
       wanted.duration / first_step < steps_worth_lanczos) {
     use_bound = true;
     if (!wanted.step && wanted.rule == TimeStepRule::lanczos) result.rule = "bound";
-    result.notes.push_back(
-        format("The guaranteed bound serves for the critical step: the run takes about {:.0f} steps, fewer than "
-               "finding the exact one is worth.",
-               std::ceil(wanted.duration / first_step)));
+    result.notes.push_back(format(
+        "The guaranteed bound serves for the critical step: the run takes about {}, fewer than finding the exact "
+        "one is worth.",
+        counted(std::llround(std::ceil(wanted.duration / first_step)), "step")));
   }
   if (!use_bound && first_step <= guaranteed && scene.assembly.size() > most_discs_of_lanczos) {
     use_bound = true;
@@ -241,6 +290,7 @@ TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, 
   } else {
     result.step = wanted.fraction * result.critical;
   }
+  respect_mass_damping(result, options, wanted);
   if (options.motion == LoopKind::Motion::finite) {
     result.notes.emplace_back(
         "The critical step is that of the reference state; contacts that turn and stretch change it.");

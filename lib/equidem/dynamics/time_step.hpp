@@ -37,7 +37,7 @@ struct TimeStep {
   double critical = 0;             ///< s: any step below is stable; infinite where nothing vibrates
   bool exact = false;              ///< critical is the limit itself, not a bound below it
   double omega_max = 0;            ///< rad/s: highest natural frequency, or the bound above it
-  double growth_rate = 0;          ///< 1/s: > 0 where motions grow whatever the step
+  double growth_rate = 0;          ///< 1/s: > 0 where motions grow whatever the step, at least so fast
   std::string rule;                ///< "lanczos", "bound", "thesis", "given"
   std::vector<std::string> notes;  ///< sentences: how it was decided, and what it does not cover
 
@@ -52,9 +52,10 @@ struct TimeStep {
 /// of the dashpots at contacts, which act half a step late; mass-proportional damping does not enter). The critical step is thus that
 /// of the springs k + 2 c/h, and is found from its own eigenvector in a few rounds. For stiffness-proportional damping it is
 /// omega h = 2 (sqrt(1 + zeta²) - zeta), zeta = beta omega/2 of the highest mode. Local damping by the share alpha lowers the limit
-/// to omega h = 2/sqrt(1 + alpha). The other integrators have the limits of
+/// to omega h = 2/sqrt(1 + alpha). Mass-proportional damping by alpha keeps the step of leapfrog and of the fourth-order scheme below
+/// 2/alpha, past which it turns velocities around. The other integrators have the limits of
 /// integrator.hpp for the highest mode.
-/// \throws Error (bad_input) on options out of range, a step past the limit, motions that grow whatever the step, a scheme
+/// \throws Error (bad_input) on options or magnitudes out of range, a step past the limit, motions that grow whatever the step, a scheme
 ///         that no step makes stable
 TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, const TimeStepOptions& wanted = {});
 
