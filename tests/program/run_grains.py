@@ -229,6 +229,17 @@ class Refusals(GrainTest):
         self.assertTrue((out / "run.checkpoint.h5").exists())
         self.assertFalse((out / "result.json").exists())
 
+    def test_motion_that_comes_from_nothing_is_no_answer(self):
+        text = BALL.replace("closing_speed = 1.0\n", "law = \"hertz_dashpot\"\n").replace("1.0e6", "1.0e14")
+        out = self.folder / "out"
+        done = equidem("run", self.write(text.replace("[run]", "[run]\ntime_step = 1.0e-4")), "--out", out)
+        self.check_error(done, 1, "case.toml", "times the energy", "shorter time_step")
+        self.assertFalse((out / "result.json").exists())
+
+    def test_a_grain_in_a_wrong_place_is_told_with_its_line(self):
+        self.check_error(equidem("run", self.write(BALL.replace("[0.0, 0.02]", "[0.0, -0.02]"))), 2,
+                         "case.toml:5: grain", "behind")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -47,7 +47,11 @@ double estimate_seconds(const GrainSetup& setup, GrainSimulation& simulation) {
     steps = std::min(steps, setup.steps - simulation.step());
     if (steps == 0) return 0;
     const Stopwatch watch;
-    simulation.advance(steps);
+    try {
+      simulation.advance(steps);
+    } catch (const Error& error) {
+      throw error.at(setup.resolved.where("run.time_step"));
+    }
     const double seconds = watch.seconds();
     if (seconds > enough || simulation.step() == setup.steps)
       return seconds / static_cast<double>(steps) * static_cast<double>(setup.steps);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <initializer_list>
 #include <memory>
 #include <string_view>
@@ -112,6 +113,36 @@ std::vector<double> history_row(const GrainCase& resolved, double time, const st
   return row;
 }
 
+/// What rounding of positions can make of kinetic energy and of potential.
+double rounding_of_energy(const GrainSetup& setup, const std::vector<Grain>& grains) {
+  constexpr double rounding = 1e-15;
+  double sum = 0;
+  for (const Grain& grain : grains) {
+    const double lost_way = rounding * norm(grain.position) / setup.step.step;
+    sum += grain.inertia.mass *
+           (lost_way * lost_way + 1e3 * rounding * norm(setup.resolved.gravity) * norm(grain.position));
+  }
+  return sum;
+}
+
+/// Losses may be counted badly where steps are long; motion out of nothing is no answer at all.
+/// \throws Error (computation_failed)
+void refuse_made_energy(const GrainSetup& setup, const GrainSimulation& simulation, const GrainLedger& ledger) {
+  if (!std::isfinite(ledger.error())) {
+    computation_failed(format("step {}: an energy is not a number any more", simulation.step()),
+                       "squares of speeds, or stiffnesses, are beyond all numbers", "Use smaller ones");
+  }
+  constexpr double most = 4;
+  const double given = ledger.initial + std::abs(ledger.work_of_walls) + std::abs(ledger.potential);
+  if (ledger.kinetic <= most * given) return;
+  if (ledger.kinetic <= most * (given + rounding_of_energy(setup, simulation.grains()))) return;
+  computation_failed(
+      format("step {}: the bodies move with {:.3g} times the energy that there was", simulation.step(),
+             ledger.kinetic / given),
+      "contacts make energy where steps are too long for them, and maps where several act on a body at once",
+      "Use a shorter time_step, or the law exact_flow");
+}
+
 class GrainLoop {
  public:
   GrainLoop(const GrainSetup& setup, GrainSimulation& simulation, const GrainFiles& files)
@@ -136,7 +167,7 @@ class GrainLoop {
       const std::int64_t next = std::min(
           {setup_.steps, frame_times_.after(now), probe_times_.after(now), now + stride_ - now % stride_, now + chunk});
       const Stopwatch steps;
-      advance(next - now);
+      keep_what_was_reached([&] { simulation_.advance(next - now); });
       const double taken = steps.seconds();
       result_.seconds += taken;
       if (taken < 0.5 * look_every && next - now == chunk) chunk *= 2;
@@ -160,10 +191,11 @@ class GrainLoop {
   }
 
  private:
-  /// \throws Error; what was reached is kept
-  void advance(std::int64_t steps) {
+  /// \throws Error of the work, with the line of the step
+  template <class Work>
+  void keep_what_was_reached(const Work& work) {
     try {
-      simulation_.advance(steps);
+      work();
     } catch (const Error& error) {
       save();
       close();
@@ -213,6 +245,7 @@ class GrainLoop {
     const bool row = history_ && history_->last_step() < step && (probe_times_.at(step) || last);
     if (!sample && !frame && !row) return;
     const GrainLedger ledger = simulation_.energy();
+    keep_what_was_reached([&] { refuse_made_energy(setup_, simulation_, ledger); });
     const double time = simulation_.time();
     const bool path = sample && draws_paths_;
     if (sample) energies.push_back({step, time, ledger});
@@ -282,11 +315,14 @@ GrainSetup::GrainSetup(GrainCase given)
 }
 
 GrainSimulation GrainSetup::simulation() const {
+  const GrainScene scene = build_grain_scene(resolved, step.step);
+  const GrainOptions options = grain_options(resolved, step.step);
   try {
-    return {build_grain_scene(resolved, step.step), grain_options(resolved, step.step)};
+    check(scene, options, [this](std::size_t grain) { return resolved.where_grain(grain); });
   } catch (const Error& error) {
-    throw error.at(resolved.document.where());
+    throw error.at(resolved.where("collisions"));
   }
+  return {scene, options};
 }
 
 std::string GrainSetup::fingerprint() const {

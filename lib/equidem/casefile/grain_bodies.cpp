@@ -40,9 +40,15 @@ constexpr std::array<const char*, columns> names = {"x",    "y",     "radius",  
 /// What a run writes beside, and this reader passes over.
 constexpr std::array ignored = {"grain", "mass_kg", "mass_kg_per_m"};
 
-/// "vx" of "vx" and of "vx_m_per_s".
-std::string_view without_unit(std::string_view name) {
-  return name.substr(0, name.find('_'));
+/// As a run writes them.
+constexpr std::array<const char*, columns> with_units = {
+    "x_m", "y_m", "radius_m", "vx_m_per_s", "vy_m_per_s", "spin_rad_per_s", "angle_rad", "density_kg_per_m3", "group"};
+
+/// The column of a name with or without its unit; `columns` where there is none.
+std::size_t column_of(std::string_view name) {
+  std::size_t c = 0;
+  while (c < columns && name != names[c] && name != with_units[c]) ++c;
+  return c;
 }
 
 /// Reads a file of grains line by line.
@@ -80,15 +86,19 @@ class GrainFile {
     at_.fill(width_);
     for (std::size_t c = 0; c < width_; ++c) {
       if (std::find(ignored.begin(), ignored.end(), cells[c]) != ignored.end()) continue;
-      const auto found = std::find(names.begin(), names.end(), without_unit(cells[c]));
-      if (found == names.end()) {
+      const std::size_t column = column_of(cells[c]);
+      if (column == columns) {
+        const std::size_t bare = column_of(cells[c].substr(0, cells[c].find('_')));
+        if (bare != columns)
+          fail(format("the column '{}' is in a unit of its own", cells[c]),
+               "lengths are in m, times in s, angles in rad", format("Convert it, and name it '{}'", names[bare]));
         const auto meant = nearest(cells[c], std::vector<std::string>(names.begin(), names.end()));
         fail(format("'{}' is no column of grains", cells[c]),
              "they are x, y, radius, vx, vy, spin, angle, density, group",
              meant ? format("Did you mean '{}'?", *meant) : "Name the columns in the first row");
       }
-      std::size_t& at = at_[static_cast<std::size_t>(found - names.begin())];
-      if (at != width_) fail(format("the column '{}' is there twice", *found), "", "Keep one");
+      std::size_t& at = at_[column];
+      if (at != width_) fail(format("the column '{}' is there twice", names[column]), "", "Keep one");
       at = c;
     }
     for (const Column needed : {x, y, radius})
@@ -98,7 +108,8 @@ class GrainFile {
 
   [[nodiscard]] double number(const std::vector<std::string_view>& cells, Column column, double otherwise) const {
     if (at_[column] == width_) return otherwise;
-    const std::string_view cell = cells[at_[column]];
+    std::string_view cell = cells[at_[column]];
+    if (cell.size() > 1 && cell.front() == '+' && cell[1] != '-') cell.remove_prefix(1);
     double value = 0;
     const auto [end, problem] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
     if (problem != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
@@ -128,7 +139,18 @@ class GrainFile {
     grain.inertia = inertia_of(grain.radius, own, bodies.body);
     bodies.grains.push_back(grain);
     bodies.densities.push_back(own);
-    bodies.groups.emplace_back(at_[group] == width_ || cells[at_[group]].empty() ? "grains" : cells[at_[group]]);
+    bodies.groups.push_back(group_of(cells));
+    bodies.lines.push_back(line_);
+  }
+
+  [[nodiscard]] std::string group_of(const std::vector<std::string_view>& cells) const {
+    if (at_[group] == width_ || cells[at_[group]].empty()) return "grains";
+    const std::string_view name = cells[at_[group]];
+    if (!is_plain_name(name))
+      fail(format("'{}' cannot name a group", name), "it stands in tables", "Use letters, digits, '_' and '-' only");
+    if (name == "walls")
+      fail("a group of grains is called 'walls'", "the name stands for all walls", "Name it otherwise");
+    return std::string(name);
   }
 
   fs::path path_;
@@ -173,7 +195,7 @@ GrainBodies read_bodies(TomlValue& root, const fs::path& folder) {
     } catch (const Error& error) {
       throw error.at(format("{}: grains.path", path->where()));
     }
-    path->text = file.string();
+    path->text = bodies.file = file.string();
   }
   for (const TomlValue& table : repeated(root, "grain")) read_grain_table(table, density, bodies);
   if (bodies.grains.empty()) {

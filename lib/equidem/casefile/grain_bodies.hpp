@@ -18,6 +18,8 @@ struct GrainBodies {
   std::vector<Grain> grains;        ///< those of the file, then those of the case
   std::vector<double> densities;    ///< kg/m³
   std::vector<std::string> groups;  ///< of each grain
+  std::string file;                 ///< that of [grains] path; empty: none
+  std::vector<int> lines;           ///< of its grains, in that file
 };
 
 /// \param root seen by check_and_complete; the path becomes that which the program opens

@@ -177,6 +177,11 @@ std::string GrainCase::where(std::string_view key) const {
   return format("{}: {}", value_at(document, key).where(), key);
 }
 
+std::string GrainCase::where_grain(std::size_t grain) const {
+  if (grain < grain_lines.size()) return format("{}:{}", grain_file, grain_lines[grain]);
+  return format("{}: grain", repeated(document, "grain")[grain - grain_lines.size()].where());
+}
+
 bool describes_grains(const fs::path& path, std::span<const std::string> overrides) {
   return describes_grains(document_of(read_file(path), path.string(), overrides));
 }
@@ -193,6 +198,8 @@ GrainCase parse_grain_case(std::string_view content, const std::string& name, co
   result.body = bodies.body;
   result.grains = std::move(bodies.grains);
   result.densities = std::move(bodies.densities);
+  result.grain_file = std::move(bodies.file);
+  result.grain_lines = std::move(bodies.lines);
   check_names_of_kinds(root, bodies.groups);
   const auto schedules = read_schedules(root, folder);
   for (const TomlValue& table : repeated(root, "wall")) result.walls.push_back(read_wall(table, schedules));

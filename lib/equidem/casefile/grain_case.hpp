@@ -40,6 +40,8 @@ struct GrainCase {
   Body body = Body::disc;
   std::vector<Grain> grains;      ///< those of the file, then those of the case
   std::vector<double> densities;  ///< kg/m³, of each
+  std::string grain_file;         ///< that of [grains] path; empty: none
+  std::vector<int> grain_lines;   ///< of its grains, in that file
   std::vector<GrainWall> walls;
   /// Of the scene, by name: groups of grains, "walls", walls with a pair of their own; with young_modulus a group counts once for
   /// each radius.
@@ -60,6 +62,8 @@ struct GrainCase {
 
   /// "cases/a.toml:7: wall.0": where the user wrote it, for errors.
   [[nodiscard]] std::string where(std::string_view key) const;
+  /// The same of a grain: "cases/a.toml:12: grain", "cases/grains.csv:3".
+  [[nodiscard]] std::string where_grain(std::size_t grain) const;
   [[nodiscard]] int kind_count() const { return static_cast<int>(kinds.size()); }
   [[nodiscard]] const PairCase& between(int a, int b) const {
     return pairs[static_cast<std::size_t>(a * kind_count() + b)];

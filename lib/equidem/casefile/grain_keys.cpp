@@ -120,9 +120,11 @@ std::vector<KeySpec> keys_of_contacts(const char* table, bool base) {
       {.table = table,
        .name = "tangential_ratio",
        .type = number,
-       .fallback = fallback("0.2857142857142857"),
-       .range = Range::not_negative(),
-       .help = "kT/kN of the tangential spring; without friction it has no effect"},
+       .fallback = none,
+       .range = {.low = 0, .high = 1e6},
+       .help =
+           "kT/kN of the tangential spring, with friction; left out: 2/7, and for the maps, which act in one or two "
+           "steps, 0: no spring, contacts slide"},
       {.table = table,
        .name = "tangential_damping",
        .type = number,

@@ -95,13 +95,14 @@ void check_base(const TomlValue& table, const Terms& base, const GrainCase& resu
             "Write body = \"sphere\" in [grains], or give stiffness");
 }
 
-/// The dashpot that gives the restitution exists.
+/// The dashpot that gives the restitution exists, and numbers resolve what it does.
 void check_restitution(const Terms& terms, NormalLaw law, const PairProperties& pair) {
-  try {
-    damping_ratio(law, pair);
-  } catch (const Error& error) {
-    throw error.at(format("{}: {}.restitution", terms.restitution->where(), terms.key));
-  }
+  constexpr double least = 1e-12;  // a dashpot a million times the critical one
+  if (is_map(law) || pair.end == ContactEnd::at_zero_overlap || pair.restitution >= least) return;
+  fail_at(*terms.restitution, terms.key + ".restitution",
+          format("restitution = {} of contacts that end at zero force", terms.restitution->shown()),
+          "it would need an infinite dashpot, or one too strong for numbers to resolve",
+          format("Give {} or more, or contact_end = \"zero_overlap\", or the law energy_map", least));
 }
 
 void set_stiffness(const Terms& terms, const GrainCase& result, const std::optional<ReducedMasses>& masses,
@@ -143,8 +144,16 @@ PairCase pair_of(const Terms& terms, const GrainCase& result, const std::optiona
   properties.end = result.law == NormalLaw::hertz_dashpot ? ContactEnd::at_zero_overlap : ContactEnd::at_zero_force;
   if (terms.end != nullptr) properties.end = contact_end_from(terms.end->text);
   properties.friction = terms.friction->real;
-  properties.tangential_ratio = properties.friction > 0 ? terms.tangential_ratio->real : 0;
-  properties.tangential_damping = properties.friction > 0 ? terms.tangential_damping->real : 0;
+  if (properties.friction > 0) {
+    // A map gives all of its impulse in one or two steps, in which a spring cannot be stretched to the force of friction.
+    const double usual = is_map(result.law) ? 0 : 2.0 / 7;
+    properties.tangential_ratio = terms.tangential_ratio != nullptr ? terms.tangential_ratio->real : usual;
+    properties.tangential_damping = terms.tangential_damping->real;
+    if (properties.tangential_damping > 0 && properties.tangential_ratio == 0)
+      fail_at(*terms.tangential_damping, terms.key + ".tangential_damping",
+              "tangential damping is given without a tangential spring", "it is measured by that spring",
+              "Give tangential_ratio > 0");
+  }
   properties.cap = terms.cap->text == "whole_force" ? FrictionCap::whole_force : FrictionCap::spring_alone;
   if (terms.closing_speed != nullptr) pair.closing_speed = terms.closing_speed->real;
   check_restitution(terms, result.law, properties);
@@ -292,7 +301,7 @@ std::optional<ReducedMasses> reduced_masses(const std::vector<KindMasses>& kinds
 
 double damping_ratio(NormalLaw law, const PairProperties& pair) {
   if (is_map(law)) return 0;
-  if (law == NormalLaw::hertz_dashpot) return hertz_damping_of(pair.restitution) / std::sqrt(5.0);
+  if (law == NormalLaw::hertz_dashpot) return hertz_damping_of(pair.restitution, pair.end) / std::sqrt(5.0);
   return damping_ratio_of(pair.restitution, pair.end);
 }
 

@@ -19,7 +19,9 @@ using std::numbers::pi;
 /// The contact of the lightest bodies of two kinds.
 struct Shortest {
   double duration = std::numeric_limits<double>::infinity();  ///< s
-  double omega = 0;                                           ///< 1/s, 0 for hertz_dashpot
+  /// s, what a step must resolve: the same, and where a strong dashpot does its work sooner, that time.
+  double detail = std::numeric_limits<double>::infinity();
+  double omega = 0;  ///< 1/s; hertz_dashpot: at the largest overlap; 0: not known
   double zeta = 0;
   int a = 0, b = 0;
   bool any = false;  ///< two bodies can meet
@@ -44,6 +46,8 @@ Shortest shortest_contact(const GrainCase& resolved, double step) {
         bad_input("time_step = \"auto\" with dimensionless_stiffness", "the step is what makes the stiffness",
                   "Give time_step = ... in s, or another stiffness");
       }
+      // exact_flow: omega dt = 1 by default, whatever the damping; else by the faster of the two rates of decay
+      const double haste = zeta > 1 ? zeta + std::sqrt(zeta * zeta - 1) : 1;
       if (resolved.law == NormalLaw::hertz_dashpot) {
         if (pair.closing_speed == 0) {
           if (step > 0) return Shortest{.duration = 0, .any = true};
@@ -57,15 +61,18 @@ Shortest shortest_contact(const GrainCase& resolved, double step) {
         const double k = properties.stiffness > 0
                              ? properties.stiffness
                              : properties.dimensionless * reduced->smallest / (step * step * std::sqrt(length));
-        duration = hertz_impact(k, reduced->smallest, pair.closing_speed).duration;
+        const HertzImpact impact = hertz_impact(k, reduced->smallest, pair.closing_speed);
+        duration = impact.duration;
+        omega = std::sqrt(1.5 * k * std::sqrt(impact.overlap) / reduced->smallest);
       } else {
         omega = pair.duration > 0          ? pi / (pair.duration * swing)
                 : properties.stiffness > 0 ? std::sqrt(properties.stiffness / reduced->smallest)
                                            : std::sqrt(properties.dimensionless) / step;
         duration = pi / (omega * swing);
       }
-      if (duration < shortest.duration) {
-        shortest = {.duration = duration, .omega = omega, .zeta = zeta, .a = a, .b = b, .any = true};
+      const double detail = resolved.law == NormalLaw::exact_flow ? pi / omega : duration / haste;
+      if (detail < shortest.detail) {
+        shortest = {.duration = duration, .detail = detail, .omega = omega, .zeta = zeta, .a = a, .b = b, .any = true};
       }
     }
   }
@@ -87,18 +94,18 @@ GrainStep choose_grain_step(const GrainCase& resolved) {
   }
   if (!shortest.any) return result;
   if (result.automatic) {
-    // exact_flow: omega dt = 1 by default, whatever the damping
-    const double duration = resolved.law == NormalLaw::exact_flow ? pi / shortest.omega : shortest.duration;
-    result.step = std::min(duration / resolved.steps_per_contact, resolved.duration);
+    result.step = std::min(shortest.detail / resolved.steps_per_contact, resolved.duration);
   }
   result.contact = shortest.duration;
   result.between = format("{} and {}", resolved.kinds[static_cast<std::size_t>(shortest.a)],
                           resolved.kinds[static_cast<std::size_t>(shortest.b)]);
   result.omega_step = shortest.omega * result.step;
-  const double zeta = shortest.zeta;
-  if (resolved.law == NormalLaw::linear_dashpot) result.limit = 2 * (std::sqrt(1 + zeta * zeta) - zeta);
+  // hertz_dashpot: the dashpot 2 zeta sqrt(5/4 m k) d^(1/4) over the critical one of the tangent stiffness 3/2 k d^(1/2)
+  const double zeta = resolved.law == NormalLaw::hertz_dashpot ? std::sqrt(5.0 / 6) * shortest.zeta : shortest.zeta;
+  const bool has_limit = resolved.law == NormalLaw::linear_dashpot || resolved.law == NormalLaw::hertz_dashpot;
+  if (has_limit) result.limit = 2 / (std::sqrt(1 + zeta * zeta) + zeta);
   if (is_map(resolved.law)) result.limit = 1;
-  if (resolved.law == NormalLaw::linear_dashpot && result.omega_step > result.limit) {
+  if (has_limit && result.omega_step > result.limit) {
     throw Error(ErrorKind::bad_input,
                 format("the step of {:.6g} s is {:.4g} times the limit of stability of a contact of {}", result.step,
                        result.omega_step / result.limit, result.between),

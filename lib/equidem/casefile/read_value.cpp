@@ -29,11 +29,15 @@ void check_names(const TomlValue& root, const char* list) {
   }
 }
 
-void check_plain_name(const TomlValue& value, const std::string& key, const std::string& what, const std::string& use) {
+bool is_plain_name(std::string_view name) {
   const auto plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   };
-  if (std::all_of(value.text.begin(), value.text.end(), plain)) return;
+  return std::all_of(name.begin(), name.end(), plain);
+}
+
+void check_plain_name(const TomlValue& value, const std::string& key, const std::string& what, const std::string& use) {
+  if (is_plain_name(value.text)) return;
   fail_at(value, key, format("{} cannot name {}", value.shown(), what), use, "Use letters, digits, '_' and '-' only");
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "equidem/casefile/toml.hpp"
@@ -52,6 +53,9 @@ std::filesystem::path opened(const std::filesystem::path& written, const std::fi
 
 /// \throws Error (bad_input) where two tables of a list have one name, or a name is empty
 void check_names(const TomlValue& root, const char* list);
+
+/// Of letters, digits, '_' and '-' alone.
+bool is_plain_name(std::string_view name);
 
 /// \param what "a load case"
 /// \param use "it becomes part of the names of files"

@@ -9,6 +9,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/neighbours.hpp"
+#include "equidem/grains/wall_joints.hpp"
 
 namespace equidem {
 namespace {
@@ -35,7 +36,7 @@ void check_grain(const GrainScene& scene, std::size_t i) {
   for (const double number : {grain.position.x, grain.position.y, grain.radius, grain.velocity.x, grain.velocity.y,
                               grain.spin * grain.radius, grain.spin, grain.angle}) {
     if (std::abs(number) <= most) continue;
-    bad_input(format("grain {} has a place, a size or a speed of {}", i, number),
+    bad_input(format("grain {} has a position, a velocity or a spin, a radius or an angle of {}", i, number),
               format("squares of what is above {:.0e} are no numbers", most), "Give smaller numbers");
   }
   if (grain.kind < 0 || grain.kind >= scene.kinds) {
@@ -196,6 +197,13 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
       bad_input(format("wall \"{}\" is of the kind {}", wall.name, wall.kind),
                 format("the table of pairs has {}", scene.kinds), "Use kinds from 0 to one less than that");
     }
+  }
+  double smallest = scene.grains.front().radius;
+  for (const Grain& grain : scene.grains) smallest = std::min(smallest, grain.radius);
+  if (const auto twice = coinciding_walls(scene.walls, joint_gap * smallest)) {
+    bad_input(format("walls \"{}\" and \"{}\" lie on one another", scene.walls[twice->first].name,
+                     scene.walls[twice->second].name),
+              "a grain would meet both at once, twice as stiff", "Remove one, or let it end where the other begins");
   }
   check_table(scene, options);
   check_places(scene, where);

@@ -44,7 +44,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   if (options.law != NormalLaw::exact_flow) self.collide = collide_function(options.law, system.friction);
   place_walls(system);
   system.margin = std::max(system.base_margin, 8 * fastest * options.time_step);
-  system.joints = joints_of(system.scene.walls, 1e-6 * system.smallest_radius);
+  system.joints = joints_of(system.scene.walls, joint_gap * system.smallest_radius);
   find_candidates(system);
   for (std::size_t c = 0; c < system.candidates.size(); ++c) {
     // bodies that overlap at the start touch

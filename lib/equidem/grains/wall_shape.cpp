@@ -34,10 +34,13 @@ Vec2 direction(double angle) {
 }
 
 /// From a point of the wall to the centre.
-WallContact contact_with_point(const Vec2& branch, const Vec2& own_normal) {
+WallContact contact_with_end(int end, const Vec2& branch, const Vec2& own_normal) {
   const double distance = norm(branch);
-  return distance < shortest ? WallContact{0, own_normal} : WallContact{distance, branch / distance};
+  return distance < shortest ? WallContact{0, own_normal, end} : WallContact{distance, branch / distance, end};
 }
+
+/// Next to an end: of the length of a segment, of the radius of an arc.
+constexpr double next_to = 1e-9;
 
 WallContact nearest_of_segment(const GrainWall& wall, const Vec2& centre) {
   const Vec2 along = wall.end - wall.point;
@@ -45,11 +48,13 @@ WallContact nearest_of_segment(const GrainWall& wall, const Vec2& centre) {
   const double length = norm(along);
   const Vec2 own_normal = perpendicular(along) / length;
   const double foot = dot(branch, along);
-  if (foot < 0) return contact_with_point(branch, own_normal);
-  if (foot > length * length) return contact_with_point(centre - wall.end, own_normal);
+  if (foot < 0) return contact_with_end(1, branch, own_normal);
+  if (foot > length * length) return contact_with_end(2, centre - wall.end, own_normal);
+  const double share = foot / (length * length);
+  const int end = share <= next_to ? 1 : share >= 1 - next_to ? 2 : 0;
   // By its height and not from the foot: next to the wall the difference would be all rounding.
   const double height = cross(along, branch) / length;
-  return height < 0 ? WallContact{-height, -own_normal} : WallContact{height, own_normal};
+  return height < 0 ? WallContact{-height, -own_normal, end} : WallContact{height, own_normal, end};
 }
 
 /// Whether the ray from the centre of the arc through a point meets the arc.
@@ -75,15 +80,18 @@ class Span {
 WallContact nearest_of_arc(const GrainWall& wall, const Vec2& centre) {
   const Vec2 p = centre - wall.point;
   const double distance = norm(p);
-  if (distance < shortest) return {wall.radius, -direction(0.5 * (wall.from + wall.to))};
+  if (distance < shortest) return {wall.radius, -direction(0.5 * (wall.from + wall.to)), 0};
   const Span span(wall);
   if (span.has(p)) {
     const Vec2 outwards = p / distance;
     const double height = distance - wall.radius;
-    return height < 0 ? WallContact{-height, -outwards} : WallContact{height, outwards};
+    const bool whole = wall.to - wall.from >= whole_turn * (1 - rounding);
+    const auto beside = [&](const Vec2& ray) { return !whole && norm(outwards - ray) <= next_to; };
+    const int end = beside(span.first()) ? 1 : beside(span.last()) ? 2 : 0;
+    return height < 0 ? WallContact{-height, -outwards, end} : WallContact{height, outwards, end};
   }
-  const WallContact first = contact_with_point(p - wall.radius * span.first(), span.first());
-  const WallContact last = contact_with_point(p - wall.radius * span.last(), span.last());
+  const WallContact first = contact_with_end(1, p - wall.radius * span.first(), span.first());
+  const WallContact last = contact_with_end(2, p - wall.radius * span.last(), span.last());
   return last.distance < first.distance ? last : first;
 }
 
@@ -166,7 +174,7 @@ WallContact nearest(const GrainWall& wall, const Vec2& displacement, const Vec2&
   const Vec2 relative = centre - displacement;
   switch (wall.shape) {
     case GrainWall::Shape::line:
-      return {dot(wall.normal, relative - wall.point), wall.normal};
+      return {dot(wall.normal, relative - wall.point), wall.normal, 0};
     case GrainWall::Shape::segment:
       return nearest_of_segment(wall, relative);
     case GrainWall::Shape::arc:

@@ -31,6 +31,7 @@ struct GrainWall {
 struct WallContact {
   double distance = 0;  ///< from the wall to the centre; line: signed, negative behind the wall
   Vec2 normal;          ///< unit, from the wall to the centre
+  int end = 0;          ///< 1, 2: the point is the first or second end of a segment or an arc, or next to it
 };
 
 /// Of a line its foot; of a segment or an arc the nearest of all its points, ends included. Never a NaN for a wall that

@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""equidem pack, as a user runs it: run_pack.py PROGRAM SOURCE_FOLDER [unittest options]."""
+import csv
+import math
+import pathlib
+import unittest
+
+from program import CASES, ProgramTest, equidem, parse_json
+
+SOIL, JAMMED, GRADED = (CASES / f"pack_{name}.toml" for name in ("soil", "jammed", "graded"))
+FEW = ("--set", "packing.grains=60", "--set", "packing.box=[0.15, 1.0]")
+
+
+def rows_of(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+class PackTest(ProgramTest):
+    def pack(self, case, *options, name="out"):
+        """Result, and the folder."""
+        out = self.folder / name
+        self.check_done(equidem("pack", case, "--out", out, *options))
+        return parse_json((out / "result.json").read_text()), out
+
+    def case_of(self, assembly, rest=""):
+        path = self.folder / "case.toml"
+        path.write_text(f'schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "{assembly}"\n{rest}')
+        return path
+
+
+class Files(PackTest):
+    def test_a_packing_jams_and_feeds_every_other_verb(self):
+        result, out = self.pack(JAMMED, "--set", "packing.grains=90")
+        self.assertGreater(result["solid_fraction"], 0.8)
+        network = parse_json((out / "assembly.json").read_text())
+        self.assertEqual(len(network["discs"]), 90)
+        self.assertEqual(len(network["contacts"]), result["contacts"])
+        self.assertEqual(network["springs"][0], [1e8, 5e7])
+        moduli = parse_json(self.check_done(
+            equidem("homogenize", self.case_of(out / "assembly.json"), "--json", "-")).stdout)
+        self.assertGreater(moduli["shear_modulus"], 1e7)
+        self.assertAlmostEqual(moduli["solid_fraction"], result["solid_fraction"], delta=1e-9)
+        waves = parse_json(self.check_done(
+            equidem("stability", self.case_of(out / "assembly.json"), "--json", "-")).stdout)
+        self.assertGreater(waves["omega_max"], 0)
+
+    def test_calibrated_springs_give_a_packing_the_moduli_wanted(self):
+        result, out = self.pack(JAMMED, "--set", "packing.grains=90")
+        assembly = parse_json((out / "assembly.json").read_text())
+        del assembly["springs"]
+        (self.folder / "bare.json").write_text(__import__("json").dumps(assembly))
+        wanted = '[material]\nshear_modulus = 1.0e8\npoisson_ratio = 0.2\nplane = "strain"\n'
+        done = parse_json(self.check_done(
+            equidem("calibrate", self.case_of(self.folder / "bare.json", wanted), "--json", "-")).stdout)
+        self.assertAlmostEqual(done["achieved"]["shear_modulus"] / 1e8, 1, delta=1e-6)
+
+    def test_discs_at_rest_are_solved_by_statics_and_stay_at_rest_in_a_run(self):
+        result, out = self.pack(SOIL, *FEW)
+        self.assertLessEqual(result["unbalanced_force_ratio"], 1e-6)
+        self.assertLess(result["static_motion_over_overlap"], 1e-2)
+        held = ('[[support]]\ngroup = "walls"\nux = 0.0\nuy = 0.0\nrotation = 0.0\n'
+                '[[group]]\nname = "one"\ndiscs = [0]\n[[load]]\ngroup = "one"\nforce = [0.0, -1.0]\n')
+        self.check_done(equidem("solve", self.case_of(out / "assembly_with_walls.json", held)))
+
+        run = self.folder / "run.toml"
+        run.write_text(f"""schema = "equidem/1"
+[grains]
+path = "{out / 'grains.csv'}"
+[collisions]
+law = "linear_dashpot"
+restitution = 0.1
+stiffness = 1.3147565255273284e8
+friction = 0.17
+[[wall]]
+name = "floor"
+point = [0.0, 0.0]
+normal = [0.0, 1.0]
+[[wall]]
+name = "left"
+point = [0.0, 0.0]
+normal = [1.0, 0.0]
+[[wall]]
+name = "right"
+point = [0.15, 0.0]
+normal = [-1.0, 0.0]
+[run]
+duration = 0.02
+time_step = 4.0e-6
+scheme = "velocity_verlet"
+gravity = [0.0, -9.8]
+""")
+        self.check_done(equidem("run", run, "--out", self.folder / "ran", "--set", "output.picture=false"))
+        before, after = rows_of(out / "grains.csv"), rows_of(self.folder / "ran" / "grains.csv")
+        moved = max(math.dist((float(a["x_m"]), float(a["y_m"])), (float(b["x_m"]), float(b["y_m"])))
+                    for a, b in zip(before, after))
+        # The springs of friction begin without stretch: discs may slip a little, but none falls (g t²/2 is 2 mm).
+        self.assertLess(moved, 2e-4)
+
+    def test_a_grading_curve_is_packed_to_the_solid_fraction_asked_for(self):
+        result, out = self.pack(GRADED, "--set", "packing.box=[0.1, 0.1]")
+        area = sum(math.pi * float(row["radius_m"]) ** 2 for row in rows_of(out / "grains.csv"))
+        self.assertAlmostEqual(area / 0.01, 0.8, delta=1e-12)
+        self.assertTrue((out / "picture.png").stat().st_size > 1000)
+        again = pathlib.Path(self.folder / "again")
+        self.check_done(equidem("pack", out / "case.toml", "--out", again))
+        self.assertEqual((out / "grains.csv").read_text(), (again / "grains.csv").read_text())
+
+
+class CommandLine(PackTest):
+    def test_seeds_give_other_packings_and_threads_do_not(self):
+        texts = []
+        for name, options in (("a", ["--seed", 3]), ("b", ["--seed", 3, "--threads", 2]), ("c", ["--seed", 4])):
+            _, out = self.pack(JAMMED, "--set", "packing.grains=40", *options, name=name)
+            texts.append((out / "grains.csv").read_text())
+        self.assertEqual(texts[0], texts[1])
+        self.assertNotEqual(texts[0], texts[2])
+
+    def test_errors_name_line_and_remedy(self):
+        self.check_error(equidem("pack", JAMMED, "--set", "packing.method=grow"), 2, "growth")
+        self.check_error(equidem("pack", JAMMED, "--set", "packing.solid_fraction=0.5"), 2, "Remove one")
+        crowded = ("--set", "packing.solid_fraction=0.95", "--set", "packing.box=none", "--set", "packing.grains=30")
+        self.check_error(equidem("pack", JAMMED, *crowded), 1, "jam")
+        _, out = self.pack(JAMMED, "--set", "packing.grains=20")
+        self.check_error(equidem("pack", JAMMED, "--out", out), 2, "exists")
+
+    def test_a_dry_run_packs_nothing(self):
+        done = self.check_done(equidem("pack", SOIL, "--dry-run", "--out", self.folder / "none"))
+        self.assertIn("3 000", done.stdout)
+        self.assertFalse((self.folder / "none").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
