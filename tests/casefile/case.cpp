@@ -157,7 +157,8 @@ TEST_CASE("every_case_of_the_data_folder_is_valid_and_can_be_built") {
   namespace fs = std::filesystem;
   int cases = 0;
   for (const auto& entry : fs::directory_iterator(fs::path(EQUIDEM_SOURCE_DIR) / "data/cases")) {
-    if (entry.path().extension() != ".toml" || entry.path().filename().string().starts_with("grains_")) continue;
+    const std::string name = entry.path().filename().string();
+    if (!name.ends_with(".toml") || name.starts_with("grains_") || name.starts_with("pack_")) continue;
     CAPTURE(entry.path());
     const Case c = read_case(entry.path());
     const Assembly assembly = build_assembly(c);

@@ -19,6 +19,7 @@ Run declare_solve(CLI::App& command);
 Run declare_homogenize(CLI::App& command);
 Run declare_calibrate(CLI::App& command);
 Run declare_stability(CLI::App& command);
+Run declare_pack(CLI::App& command);
 Run declare_run(CLI::App& command);
 Run declare_sweep(CLI::App& command);
 Run declare_reproduce(CLI::App& command);
@@ -34,6 +35,7 @@ inline constexpr std::array verbs{
     Verb{"homogenize", "effective stiffness and moduli of an assembly, with bounds", declare_homogenize},
     Verb{"calibrate", "wanted moduli -> springs, as a file that every other verb accepts", declare_calibrate},
     Verb{"stability", "mechanisms, waves, critical kT/kN, highest frequency and time step", declare_stability},
+    Verb{"pack", "make an assembly: discs in a box, at random or at rest", declare_pack},
     Verb{"run", "dynamics: the same contacts and springs, stepped in time or relaxed to rest", declare_run},
     Verb{"sweep", "solve over a range of one key: the curves", declare_sweep},
     Verb{"reproduce", "a paper's tables and figures beside ours: abe1996, abe1996_random", declare_reproduce},

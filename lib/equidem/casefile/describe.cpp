@@ -2,6 +2,7 @@
 #include "equidem/casefile/check_value.hpp"
 #include "equidem/casefile/grain_keys.hpp"
 #include "equidem/casefile/keys.hpp"
+#include "equidem/casefile/pack_keys.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -115,6 +116,23 @@ rest is below. An example:
   gravity  = [0.0, -9.81]
 )";
 
+constexpr const char* pack_example =
+    R"(
+Discs that fill a box, for 'equidem pack': a case with [packing] in place of [assembly]. An example:
+
+  schema = "equidem/1"
+  [packing]
+  method = "growth"
+  box    = [0.3, 0.2]
+  solid_fraction = 0.8
+  [packing.radii]
+  smallest = 0.002
+  largest  = 0.004
+  [springs]
+  kN = 1.0e8
+  kT = 0.5e8
+)";
+
 }  // namespace
 
 std::string describe_case_file() {
@@ -129,6 +147,8 @@ std::string describe_case_file() {
   for (const TableSpec& table : grains.tables)
     if (std::string_view(table.name) != "schedule" && std::string_view(table.name) != "output")
       append_table(out, grains, table);
+  out += pack_example;
+  for (const TableSpec& table : pack_file_spec().tables) append_table(out, pack_file_spec(), table);
   return out;
 }
 

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A case that fills a box, as typed values.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "equidem/casefile/toml.hpp"
+#include "equidem/packing/measures.hpp"
+#include "equidem/packing/packing.hpp"
+
+namespace equidem {
+
+/// A checked case: complete, in range and without contradiction.
+struct PackCase {
+  std::string title;
+  PackingOptions packing;
+  std::optional<Region> region;  ///< to measure in
+  bool csv = true, picture = true;
+  TomlValue document;  ///< behind it, defaults filled in
+};
+
+/// \param overrides "packing.seed=3", in order
+/// \throws Error (bad_input) with file, line and key
+PackCase read_pack_case(const std::filesystem::path& path, std::span<const std::string> overrides = {});
+
+/// The same from text.
+PackCase parse_pack_case(std::string_view text, const std::string& name, const std::filesystem::path& folder,
+                         std::span<const std::string> overrides = {});
+
+}  // namespace equidem

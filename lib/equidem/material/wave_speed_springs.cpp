@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/material/wave_speed_springs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+void need_positive(const char* name, double value) {
+  if (value > 0 && std::isfinite(value)) return;
+  bad_input(format("the {} is {}", name, value), "it must be positive and finite", "Correct it");
+}
+
+void need_damping(double value) {
+  if (value >= 0 && std::isfinite(value)) return;
+  bad_input(format("the damping is {}", value), "a negative one would feed the motion", "Give 0 or more");
+}
+
+}  // namespace
+
+WaveSpeeds wave_speeds_of(const ElasticModuli& moduli, double density) {
+  check(moduli);
+  need_positive("density", density);
+  const double g = moduli.shear_modulus;
+  return {std::sqrt(g / density), std::sqrt((moduli.bulk_modulus_2d() + g) / density)};
+}
+
+WaveSpeeds wave_speeds_from_shear(double shear_speed, double poisson_ratio) {
+  need_positive("shear wave speed", shear_speed);
+  if (!(poisson_ratio > -1 && poisson_ratio < 0.5)) {
+    bad_input(format("Poisson's ratio is {}", poisson_ratio), "in plane strain it lies between -1 and 1/2",
+              "Correct it");
+  }
+  return {shear_speed, shear_speed * std::sqrt(2 * (1 - poisson_ratio) / (1 - 2 * poisson_ratio))};
+}
+
+SpringConstants springs_of_wave_speeds(double density, const WaveSpeeds& speeds) {
+  need_positive("density", density);
+  need_positive("shear wave speed", speeds.shear);
+  need_positive("pressure wave speed", speeds.pressure);
+  const double quarter = std::numbers::pi / 4 * density;
+  return {quarter * speeds.pressure * speeds.pressure, quarter * speeds.shear * speeds.shear};
+}
+
+double dashpot_of(double damping, double mass, double stiffness) {
+  need_damping(damping);
+  need_positive("mass", mass);
+  need_positive("stiffness", stiffness);
+  return 2 * damping * std::sqrt(mass * stiffness);
+}
+
+double natural_period(double mass, double stiffness) {
+  need_positive("mass", mass);
+  need_positive("stiffness", stiffness);
+  return 2 * std::numbers::pi * std::sqrt(mass / stiffness);
+}
+
+double time_step_of_period(double shortest_period) {
+  need_positive("shortest period", shortest_period);
+  return shortest_period / 8;
+}
+
+double semi_implicit_limit(double damping_ratio) {
+  need_damping(damping_ratio);
+  return 2 / (std::sqrt(1 + damping_ratio * damping_ratio) + damping_ratio);
+}
+
+double averaged_velocity_limit(double damping_ratio) {
+  need_damping(damping_ratio);
+  return damping_ratio > 0 ? std::min(4 * damping_ratio, 1 / damping_ratio) : 0;
+}
+
+}  // namespace equidem

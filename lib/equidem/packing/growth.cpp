@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/random.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/packing/overlaps.hpp"
+#include "equidem/packing/packing.hpp"
+
+namespace equidem {
+namespace {
+
+class Growth {
+ public:
+  explicit Growth(const PackingOptions& options) : options_(options), radii_(options.radii) {
+    Random random(options.seed);
+    for (std::size_t k = 0; k < radii_.size(); ++k) {
+      const double x = random.uniform(0, options.box.size.x);
+      centres_.push_back({x, random.uniform(0, options.box.size.y)});
+    }
+    full_ = area_of_discs(options.radii) / options.box.area();
+  }
+
+  /// Grow to the solid fraction and push apart.
+  PushingReport grow_to(double solid_fraction, const PushingOptions& pushing) {
+    const double scale = std::sqrt(solid_fraction / full_);
+    for (std::size_t k = 0; k < radii_.size(); ++k) radii_[k] = scale * options_.radii[k];
+    fraction_ = solid_fraction;
+    const PushingReport report = push_apart(options_.box, radii_, pushing, finder_, centres_);
+    work_ += report.evaluations;
+    return report;
+  }
+
+  [[nodiscard]] double full() const { return full_; }
+  [[nodiscard]] double fraction() const { return fraction_; }
+
+  void give(DiscPacking& packing) {
+    packing.centres = std::move(centres_);
+    packing.radii = std::move(radii_);
+    packing.work = work_;
+  }
+
+ private:
+  const PackingOptions& options_;
+  std::vector<double> radii_;
+  std::vector<Vec2> centres_;
+  PairFinder finder_;
+  double full_ = 0, fraction_ = 0;
+  std::int64_t work_ = 0;
+};
+
+constexpr double first_fraction = 0.4;
+/// Steps of the solid fraction, ever smaller: the discs are few enough to find their way while there is room.
+double next_fraction(double fraction, double end) {
+  const double step = fraction < 0.7 ? 0.1 : fraction < 0.8 ? 0.02 : 0.005;
+  return std::min(fraction + step, end);
+}
+
+/// Radii larger by `spare` are pushed apart to overlaps of less than `spare`, so that the discs themselves do not touch.
+void grow_to_size(const PackingOptions& options, Growth& growth) {
+  const double spare = std::min(options.overlap, 1e-4);
+  const double end = growth.full() * (1 + spare) * (1 + spare);
+  Progress progress("growing");
+  double fraction = std::min(first_fraction, end);
+  for (;;) {
+    const bool last = fraction >= end;
+    const auto report = growth.grow_to(fraction, {.overlap = last ? spare : 0.01, .most = last ? 100000 : 3000});
+    progress.update(std::min(fraction / end, 1.0));
+    if (last && !report.apart) {
+      computation_failed(
+          format("the discs jam at a solid fraction of {:.4g}, where they overlap by {:.2g} of the mean radius and no "
+                 "longer move apart",
+                 growth.full(), report.largest_overlap),
+          "discs at random jam at 0.82 to 0.86, those of equal size at what is nearly a lattice",
+          "Ask for a smaller solid fraction, or for the densest one");
+    }
+    if (last) break;
+    fraction = next_fraction(fraction, end);
+  }
+  growth.grow_to(growth.full(), {.overlap = 1, .most = 1});
+}
+
+/// Compress until forces no longer vanish, then take the radii back until the mean overlap is the wanted one: it grows in
+/// proportion to the solid fraction above that of jamming (O'Hern et al. 2003, Phys. Rev. E 68, 011306).
+void grow_to_jamming(const PackingOptions& options, Growth& growth) {
+  Progress progress("growing");
+  PushingReport report;
+  double fraction = first_fraction;
+  for (;; fraction = next_fraction(fraction, 2)) {
+    report = growth.grow_to(fraction, {.overlap = 1e-3, .most = 3000});
+    progress.update(std::min(fraction, 0.99));
+    if (!report.apart && report.mean_overlap > 4e-3) break;
+  }
+  const PushingOptions exact{.overlap = 0.01 * options.overlap, .unbalanced = 1e-7, .most = 100000};
+  double loose = 0;  // the largest fraction seen at which nothing overlaps
+  for (int attempt = 0; attempt < 40; ++attempt) {
+    report = growth.grow_to(fraction, exact);
+    progress.update(0.99);
+    if (report.apart) {
+      loose = fraction;
+      fraction *= 1 + 2 * options.overlap;
+      continue;
+    }
+    const double ratio = report.mean_overlap / options.overlap;
+    if (report.balanced && ratio < 1.5 && ratio > 0.5) return;
+    // Strain 2 d/D, area twice the strain: fraction falls by about mean overlap/radius.
+    const double aim = fraction * (1 - (report.mean_overlap - options.overlap) * 0.9);
+    fraction = loose > 0 && aim <= loose ? 0.5 * (fraction + loose) : aim;
+  }
+  computation_failed(
+      format("no jammed state with a mean overlap of {:.2g} of the mean radius was found", options.overlap),
+      format("the last one had {:.2g} and an unbalanced force of {:.1e}", report.mean_overlap, report.unbalanced),
+      "Allow a larger overlap, or change the seed");
+}
+
+}  // namespace
+
+void fill_by_growth(const PackingOptions& options, DiscPacking& packing) {
+  Growth growth(options);
+  if (options.as_dense_as_possible) {
+    grow_to_jamming(options, growth);
+    packing.complete = false;
+  } else {
+    grow_to_size(options, growth);
+  }
+  growth.give(packing);
+}
+
+}  // namespace equidem

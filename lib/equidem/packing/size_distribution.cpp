@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/packing/size_distribution.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr double cut = 3;  // standard deviations of log_normal
+
+bool positive(double value) {
+  return value > 0 && std::isfinite(value);
+}
+
+/// e^x by its series, for |x| < 700; the one of the C library may differ in the last bit from machine to machine.
+double exponential(double x) {
+  const double halvings = std::nearbyint(x / std::numbers::ln2);
+  const double rest = x - halvings * std::numbers::ln2;
+  double sum = 1;
+  for (int k = 22; k >= 1; --k) sum = 1 + sum * rest / k;
+  return std::ldexp(sum, static_cast<int>(halvings));
+}
+
+/// ln x by Newton's method on it.
+double logarithm(double x) {
+  int power = 0;
+  const double fraction = std::frexp(x, &power);
+  double y = fraction - 1;
+  for (int k = 0; k < 8; ++k) {
+    const double e = exponential(y);
+    y += 2 * (fraction - e) / (fraction + e);
+  }
+  return y + power * std::numbers::ln2;
+}
+
+/// Integral of the normal density from -infinity to x by the series of Abramowitz & Stegun (26.2.11), |x| <= 4.
+double normal_share(double x) {
+  double term = x, sum = x;
+  for (int k = 1; k < 120 && std::abs(term) > 1e-18; ++k) {
+    term *= x * x / (2 * k + 1);
+    sum += term;
+  }
+  constexpr double inverse_root = 0.39894228040143267794;  // 1/sqrt(2 pi)
+  return 0.5 + inverse_root * exponential(-0.5 * x * x) * sum;
+}
+
+/// The x in [-cut, cut] below which the share p of the normal distribution cut there lies, by bisection.
+double cut_normal_quantile(double p) {
+  const double low_share = normal_share(-cut), high_share = normal_share(cut);
+  const double wanted = low_share + p * (high_share - low_share);
+  double low = -cut, high = cut;
+  for (int k = 0; k < 50; ++k) {
+    const double middle = 0.5 * (low + high);
+    (normal_share(middle) < wanted ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/// Number of grains between two sieves over their mass, up to a common factor: the mean of 1/d² over ln d.
+double grains_per_mass(double d1, double d2) {
+  const double a = 1 / (d1 * d1), b = 1 / (d2 * d2);
+  return (a - b) / (2 * logarithm(d2 / d1));
+}
+
+/// Shares of the grains below each sieve, by number.
+std::vector<double> shares_by_number(const std::vector<Sieve>& sieves) {
+  std::vector<double> below(sieves.size(), 0);
+  for (std::size_t k = 1; k < sieves.size(); ++k) {
+    below[k] = below[k - 1] + (sieves[k].passing - sieves[k - 1].passing) *
+                                  grains_per_mass(sieves[k - 1].diameter, sieves[k].diameter);
+  }
+  for (double& share : below) share /= below.back();
+  return below;
+}
+
+/// The radius below which the share p of the grains lies.
+double quantile(const SizeDistribution& sizes, const std::vector<double>& below, double p) {
+  switch (sizes.kind) {
+    case SizeDistribution::Kind::uniform:
+      return sizes.smallest + p * (sizes.largest - sizes.smallest);
+    case SizeDistribution::Kind::log_normal:
+      return sizes.median * exponential(sizes.deviation * cut_normal_quantile(p));
+    case SizeDistribution::Kind::sieve_curve:
+      break;
+  }
+  std::size_t k = 1;
+  while (k + 1 < below.size() && below[k] <= p) ++k;
+  // Between two sieves mass is uniform in ln d, so that numbers go as d^-3 dd and 1/d² is uniform.
+  const double within = (p - below[k - 1]) / (below[k] - below[k - 1]);
+  const double a = 1 / (sizes.sieves[k - 1].diameter * sizes.sieves[k - 1].diameter);
+  const double b = 1 / (sizes.sieves[k].diameter * sizes.sieves[k].diameter);
+  return 0.5 / std::sqrt(a - within * (a - b));
+}
+
+}  // namespace
+
+void check(const SizeDistribution& sizes) {
+  switch (sizes.kind) {
+    case SizeDistribution::Kind::uniform:
+      if (positive(sizes.smallest) && positive(sizes.largest) && sizes.smallest <= sizes.largest) return;
+      bad_input(format("radii from {} to {} m", sizes.smallest, sizes.largest),
+                "the first is the smaller, both are > 0", "Correct them");
+    case SizeDistribution::Kind::log_normal:
+      if (positive(sizes.median) && sizes.deviation >= 0 && sizes.deviation <= 2) return;
+      bad_input(format("radii with the median {} m and the deviation {}", sizes.median, sizes.deviation),
+                "the median is > 0, the deviation of the logarithm from 0 to 2", "Correct them");
+    case SizeDistribution::Kind::sieve_curve:
+      break;
+  }
+  const auto& sieves = sizes.sieves;
+  if (sieves.size() < 2 || sieves.front().passing != 0 || sieves.back().passing != 1) {
+    bad_input("the sieve curve does not run from 0 to 1", "all of the mass lies between its first and last diameter",
+              "Begin with a share of 0 and end with 1");
+  }
+  for (std::size_t k = 0; k < sieves.size(); ++k) {
+    const bool ascends =
+        k == 0 || (sieves[k].diameter > sieves[k - 1].diameter && sieves[k].passing >= sieves[k - 1].passing);
+    if (positive(sieves[k].diameter) && std::isfinite(sieves[k].passing) && ascends) continue;
+    bad_input(format("point {} of the sieve curve is {} m, {}", k + 1, sieves[k].diameter, sieves[k].passing),
+              "diameters ascend, and what passes never falls", "Correct it");
+  }
+}
+
+std::vector<Sieve> read_sieve_curve(const std::filesystem::path& path) {
+  const std::string content = read_file(path);
+  std::vector<Sieve> sieves;
+  std::string_view rest = content;
+  bool named = false;
+  for (int line = 1; !rest.empty(); ++line) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    std::string_view row = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    row = row.substr(0, row.find_last_not_of(" \t\r") + 1);
+    if (row.empty() || row.front() == '#') continue;
+    const std::size_t comma = row.find(',');
+    const std::string_view cells[] = {row.substr(0, comma), comma == row.npos ? "" : row.substr(comma + 1)};
+    double values[2] = {};
+    bool numbers = true;
+    for (int c = 0; c < 2; ++c) {
+      const std::string_view cell = cells[c].substr(std::min(cells[c].find_first_not_of(" \t"), cells[c].size()));
+      const std::string_view trimmed = cell.substr(0, cell.find_last_not_of(" \t") + 1);
+      const auto [stop, problem] = std::from_chars(trimmed.data(), trimmed.data() + trimmed.size(), values[c]);
+      numbers = numbers && problem == std::errc() && stop == trimmed.data() + trimmed.size();
+    }
+    if (!numbers && sieves.empty() && !std::exchange(named, true)) continue;  // the row of names
+    if (!numbers) {
+      throw Error(ErrorKind::bad_input, format("'{}' is no point of a sieve curve", row),
+                  "a diameter in m and a share passing are needed", "Write two numbers with a comma between them",
+                  format("{}:{}", path.string(), line));
+    }
+    sieves.push_back({values[0], values[1]});
+  }
+  try {
+    check(SizeDistribution{.kind = SizeDistribution::Kind::sieve_curve, .sieves = sieves});
+  } catch (const Error& error) {
+    throw error.at(path.string());
+  }
+  return sieves;
+}
+
+std::vector<double> draw_radii(const SizeDistribution& sizes, std::int64_t count, Random& random) {
+  check(sizes);
+  const bool curve = sizes.kind == SizeDistribution::Kind::sieve_curve;
+  const std::vector<double> below = curve ? shares_by_number(sizes.sieves) : std::vector<double>{};
+  std::vector<double> radii(static_cast<std::size_t>(count));
+  for (std::size_t k = 0; k < radii.size(); ++k) {
+    radii[k] = quantile(sizes, below, (static_cast<double>(k) + random.uniform()) / static_cast<double>(count));
+  }
+  for (std::size_t k = radii.size(); k > 1; --k) std::swap(radii[k - 1], radii[random.below(k)]);
+  return radii;
+}
+
+RadiusMoments moments_of(const SizeDistribution& sizes) {
+  check(sizes);
+  if (sizes.kind == SizeDistribution::Kind::uniform) {
+    const double a = sizes.smallest, b = sizes.largest;
+    return {0.5 * (a + b), (a * a + a * b + b * b) / 3};
+  }
+  if (sizes.kind == SizeDistribution::Kind::log_normal) {
+    // E[r^k] = median^k exp(k² s²/2) [Phi(cut - k s) - Phi(-cut - k s)]/[Phi(cut) - Phi(-cut)]
+    const auto share = [](double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); };
+    const auto moment = [&](double k) {
+      const double s = sizes.deviation;
+      return std::pow(sizes.median, k) * std::exp(0.5 * k * k * s * s) * (share(cut - k * s) - share(-cut - k * s)) /
+             (share(cut) - share(-cut));
+    };
+    return {moment(1), moment(2)};
+  }
+  // Mass is that of discs: with the mass uniform in ln d between sieves, E[r^k] over numbers is the integral of d^(k-2).
+  double numbers = 0, lengths = 0, squares = 0;
+  for (std::size_t k = 1; k < sizes.sieves.size(); ++k) {
+    const double d1 = sizes.sieves[k - 1].diameter, d2 = sizes.sieves[k].diameter;
+    const double mass = sizes.sieves[k].passing - sizes.sieves[k - 1].passing;
+    numbers += mass * grains_per_mass(d1, d2);
+    lengths += mass * (1 / d1 - 1 / d2) / std::log(d2 / d1);
+    squares += mass;
+  }
+  return {0.5 * lengths / numbers, 0.25 * squares / numbers};
+}
+
+}  // namespace equidem

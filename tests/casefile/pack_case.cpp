@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/casefile/pack_case.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "equidem/casefile/echo.hpp"
+#include "equidem/core/error.hpp"
+
+#include "support/catch.hpp"
+
+using namespace equidem;
+
+namespace {
+
+constexpr const char* example = R"(schema = "equidem/1"
+[packing]
+method = "growth"
+grains = 50
+box    = [0.2, 0.1]
+[packing.radii]
+smallest = 0.005
+largest  = 0.01
+[springs]
+kN = 1.0e8
+kT = 0.5e8
+)";
+
+PackCase parsed(const std::vector<std::string>& overrides = {}) {
+  return parse_pack_case(example, "case.toml", "", overrides);
+}
+
+}  // namespace
+
+TEST_CASE("two_of_grains_box_and_solid_fraction_give_the_third") {
+  const PackCase both = parsed();
+  CHECK(both.packing.radii.size() == 50);
+  CHECK(both.packing.box.size == Vec2{0.2, 0.1});
+  const PackCase no_box = parsed({"packing.box=none", "packing.solid_fraction=0.7"});
+  CHECK(area_of_discs(no_box.packing.radii) / no_box.packing.box.area() == Approx(0.7).epsilon(1e-13));
+  const PackCase no_count = parsed({"packing.grains=none", "packing.solid_fraction=0.7"});
+  CHECK(area_of_discs(no_count.packing.radii) / no_count.packing.box.area() == Approx(0.7).epsilon(1e-13));
+  CHECK(parsed({"packing.solid_fraction=auto"}).packing.as_dense_as_possible);
+}
+
+TEST_CASE("every_packing_of_the_data_folder_is_valid") {
+  namespace fs = std::filesystem;
+  int cases = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(EQUIDEM_SOURCE_DIR) / "data/cases")) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with("pack_") || !name.ends_with(".toml")) continue;
+    CAPTURE(name);
+    CHECK(read_pack_case(entry.path()).packing.radii.size() >= 3);
+    ++cases;
+  }
+  CHECK(cases >= 3);
+}
+
+TEST_CASE("springs_come_from_wave_speeds_or_are_given") {
+  CHECK(parsed().packing.settling.springs.kT == 0.5e8);
+  const PackCase soil =
+      parsed({"springs.kN=none", "springs.kT=none", "springs.shear_wave_speed=150.0", "springs.poisson_ratio=0.25"});
+  CHECK(soil.packing.settling.springs.kN == Approx(131475652.55273284).epsilon(1e-14));
+}
+
+TEST_CASE("the_resolved_packing_reads_back_to_the_same_discs") {
+  const PackCase first = parsed({"packing.seed=9"});
+  const PackCase again = parse_pack_case(to_toml(first.document, ""), "again.toml", "");
+  CHECK(first.packing.radii == again.packing.radii);
+  CHECK(first.packing.settling.time_step == again.packing.settling.time_step);
+}
+
+TEST_CASE("contradictions_of_a_packing_are_told_with_their_line") {
+  struct Wrong {
+    std::vector<std::string> overrides;
+    const char* word;
+  };
+  const std::vector<Wrong> all = {
+      {{"packing.solid_fraction=0.5"}, "all given"},
+      {{"packing.grains=none"}, "not said how much"},
+      {{"packing.method=falling", "packing.solid_fraction=auto"}, "falling"},
+      {{"packing.method=falling", "packing.sides=periodic"}, "for ever"},
+      {{"packing.method=local_moves", "packing.solid_fraction=auto"}, "local_moves"},
+      {{"packing.method=grow"}, "growth"},
+      {{"springs.shear_wave_speed=150.0"}, "how stiff"},
+      {{"springs.kT=none"}, "how stiff"},
+      {{"packing.radii.largest=0.001"}, "below the smallest"},
+      {{"packing.radii.median=0.001"}, "median"},
+      {{"packing.box=[0.2, -0.1]"}, "no area"},
+      {{"packing.grains=none", "packing.solid_fraction=0.5", "packing.box=[1e3, 1e3]"}, "fill the box"},
+      {{"packing.radii=none"}, "packing.radii"},
+      {{"settling.frictoin=0.1"}, "friction"},
+  };
+  for (const Wrong& wrong : all) {
+    CAPTURE(wrong.overrides);
+    try {
+      parsed(wrong.overrides);
+      FAIL_CHECK("accepted");
+    } catch (const Error& error) {
+      CHECK(error.kind() == ErrorKind::bad_input);
+      CHECK_THAT(error.what(), Catch::Contains(wrong.word));
+      CHECK_FALSE(error.where().empty());
+    }
+  }
+}

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/packing/measures.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "equidem/core/error.hpp"
+
+#include "packing/packings.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+
+TEST_CASE("clipped_areas_agree_with_points_thrown_at_random") {
+  Random random(3);
+  const Region region = {{0, 0}, {1, 0.6}};
+  constexpr int points = 20000;
+  for (int k = 0; k < 60; ++k) {
+    const double radius = random.uniform(0.05, 0.9);
+    const double x = random.uniform(-0.6, 1.6);
+    const Vec2 centre = {x, random.uniform(-0.6, 1.2)};
+    int hits = 0;
+    for (int p = 0; p < points; ++p) {
+      const double px = random.uniform(region.low.x, region.high.x);
+      const Vec2 way = Vec2{px, random.uniform(region.low.y, region.high.y)} - centre;
+      if (dot(way, way) < radius * radius) ++hits;
+    }
+    const double thrown = region.area() * hits / points;
+    CAPTURE(centre.x, centre.y, radius);
+    CHECK(clipped_area(centre, radius, region) == Approx(thrown).margin(4.5 * region.area() * 0.5 / std::sqrt(points)));
+  }
+}
+
+TEST_CASE("clipped_areas_of_special_places_are_exact") {
+  const Region region = {{0, 0}, {2, 1}};
+  const double whole = std::numbers::pi * 0.01;
+  CHECK(clipped_area({1, 0.5}, 0.1, region) == Approx(whole).epsilon(1e-14));
+  CHECK(clipped_area({1, 0.1}, 0.1, region) == Approx(whole).epsilon(1e-14));
+  CHECK(clipped_area({1, 0}, 0.1, region) == Approx(whole / 2).epsilon(1e-14));
+  CHECK(clipped_area({2, 1}, 0.1, region) == Approx(whole / 4).epsilon(1e-14));
+  CHECK(clipped_area({1, 0.5}, 10, region) == Approx(2).epsilon(1e-14));
+  CHECK(clipped_area({1, 1.2}, 0.1, region) == Approx(0).margin(1e-16));
+  CHECK(clipped_area({1, 1.1}, 0.1, region) == Approx(0).margin(1e-16));
+  // A segment: r² (alpha - sin alpha cos alpha), cos alpha = 1/2.
+  const double alpha = std::numbers::pi / 3;
+  CHECK(clipped_area({1, 1.05}, 0.1, region) ==
+        Approx(0.01 * (alpha - std::sin(alpha) * std::cos(alpha))).epsilon(1e-13));
+}
+
+TEST_CASE("regions_that_tile_the_box_hold_all_discs_between_them") {
+  const DiscPacking packing = pack(square_box(PackingMethod::growth, PackingBox::Sides::walls, 300, 0.8));
+  const Vec2 size = packing.box.size;
+  const double x = 0.37 * size.x, y = 0.61 * size.y;
+  double covered = 0;
+  for (const Region& region :
+       {Region{{0, 0}, {x, y}}, Region{{x, 0}, {size.x, y}}, Region{{0, y}, {x, size.y}}, Region{{x, y}, size}})
+    covered += measure(packing, region).solid_fraction * region.area();
+  CHECK(covered == Approx(area_of_discs(packing.radii)).epsilon(1e-12));
+}
+
+TEST_CASE("contacts_rattlers_and_void_ratio_of_a_row_of_discs_are_counted_by_hand") {
+  DiscPacking packing;
+  packing.box = {{4, 2}, PackingBox::Sides::walls};
+  packing.centres = {{0.5, 0.5}, {1.5, 0.5}, {2.499, 0.5}, {3.2, 1.2}};
+  packing.radii = {0.5, 0.5, 0.5, 0.3};
+  const PackingMeasures measures = measure(packing, Region{{0, 0}, {4, 2}});
+  CHECK(measures.contacts == 2);       // 0-1, 1-2
+  CHECK(measures.wall_contacts == 4);  // three on the floor, one at the left
+  CHECK(measures.coordination == 8.0 / 4);
+  // Three contacts hold a disc: 0 has floor, wall and 1; 1 has floor, 0, 2; 2 has two, so that it and then 1 and 0 are loose.
+  CHECK(measures.rattlers == 4);
+  CHECK(measures.largest_overlap == Approx(0.001 / 0.5));
+  const double solid = std::numbers::pi * (3 * 0.25 + 0.09) / 8;
+  CHECK(measures.solid_fraction == Approx(solid).epsilon(1e-13));
+  CHECK(measures.void_ratio == Approx((1 - solid) / solid).epsilon(1e-13));
+  CHECK(measures.void_ratio == Approx(measures.porosity / (1 - measures.porosity)).epsilon(1e-13));
+  packing.box.sides = PackingBox::Sides::open_top;  // two hold it where weight presses it down
+  CHECK(measure(packing, Region{{0, 0}, {4, 2}}).rattlers == 1);
+  CHECK_THROWS_AS(measure(packing, Region{{1, 0}, {0, 1}}), Error);
+}
+
+TEST_CASE("discs_touch_across_the_sides_of_a_periodic_box") {
+  DiscPacking packing;
+  packing.box = {{1, 1}, PackingBox::Sides::periodic};
+  packing.centres = {{0.05, 0.05}, {0.96, 0.96}, {0.5, 0.5}};
+  packing.radii = {0.1, 0.1, 0.05};
+  const auto contacts = contacts_of(packing);
+  REQUIRE(contacts.size() == 1);
+  CHECK(contacts[0].i == 0);
+  CHECK(contacts[0].j == 1);
+  CHECK(contacts[0].shift_x == -1);
+  CHECK(contacts[0].shift_y == -1);
+  CHECK(contacts[0].overlap == Approx(0.2 - std::hypot(0.09, 0.09)));
+}
+
+TEST_CASE("the_region_measured_keeps_away_from_walls_and_surface") {
+  const DiscPacking packing = pack(square_box(PackingMethod::growth, PackingBox::Sides::walls, 400, 0.8));
+  const Region region = measured_region(packing);
+  double mean = 0;
+  for (const double r : packing.radii) mean += r / static_cast<double>(packing.size());
+  CHECK(region.low.x == Approx(4 * mean));
+  CHECK(packing.box.size.y - region.high.y == Approx(4 * mean));
+}

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/threads.hpp"
+#include "equidem/packing/measures.hpp"
+
+#include "packing/packings.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+
+namespace {
+
+struct Reached {
+  PackingMethod method;
+  double solid_fraction;
+};
+/// What each method must reach with discs of 5 to 10 mm.
+constexpr Reached reached[] = {{PackingMethod::rejection, 0.5},
+                               {PackingMethod::local_moves, 0.72},
+                               {PackingMethod::insertion, 0.66},
+                               {PackingMethod::growth, 0.8}};
+constexpr PackingBox::Sides closed[] = {PackingBox::Sides::walls, PackingBox::Sides::periodic};
+
+}  // namespace
+
+TEST_CASE("discs_fill_the_box_as_asked_and_do_not_overlap") {
+  for (const auto& [method, fraction] : reached) {
+    for (const PackingBox::Sides sides : closed) {
+      const PackingOptions options = square_box(method, sides, 400, fraction);
+      const DiscPacking packing = pack(options);
+      INFO(to_string(method) << (packing.box.periodic() ? ", periodic" : ", walls"));
+      REQUIRE(packing.size() == options.radii.size());
+      CHECK(packing.complete);
+      auto given = options.radii, got = packing.radii;
+      std::sort(given.begin(), given.end());
+      std::sort(got.begin(), got.end());
+      double change = 0;
+      for (std::size_t k = 0; k < got.size(); ++k) change = std::max(change, std::abs(got[k] / given[k] - 1));
+      CHECK(change < 1e-14);
+      CHECK(area_of_discs(packing.radii) / packing.box.area() == Approx(fraction).epsilon(1e-12));
+      CHECK(largest_overlap(packing) <= options.overlap);
+      bool inside = true;
+      for (const Vec2 x : packing.centres)
+        inside = inside && x.x >= 0 && x.y >= 0 && x.x <= options.box.size.x && x.y <= options.box.size.y;
+      CHECK(inside);
+    }
+  }
+}
+
+TEST_CASE("a_seed_gives_the_same_bits_for_every_number_of_threads_and_another_seed_does_not") {
+  const int before = thread_count();
+  for (const PackingMethodEntry& entry : packing_methods()) {
+    const bool falls = entry.method == PackingMethod::falling;
+    PackingOptions options =
+        falls ? falling_soil(30, 0.1) : square_box(entry.method, PackingBox::Sides::walls, 100, 0.45);
+    INFO(entry.name);
+    set_thread_count(1);
+    const DiscPacking first = pack(options);
+    set_thread_count(3);
+    const DiscPacking again = pack(options);
+    set_thread_count(before);
+    CHECK(first.centres == again.centres);
+    CHECK(first.radii == again.radii);
+    CHECK(first.work == again.work);
+    options.seed = 2;
+    CHECK(first.centres != pack(options).centres);
+  }
+}
+
+// Feder (1980): the solid fraction of n throws lags behind that of infinitely many by a multiple of n^(-1/2). Equal discs: 0.547070
+// (Zhang & Torquato 2013, Phys. Rev. E 88, 053312).
+TEST_CASE("equal_discs_thrown_at_random_approach_their_known_limit_from_below") {
+  PackingOptions options;
+  options.method = PackingMethod::rejection;
+  options.box = {{1, 1}, PackingBox::Sides::periodic};
+  options.as_dense_as_possible = true;
+  options.attempts = 1;
+  constexpr double radius = 0.005, limit = 0.547070;
+  const double throws_per_time = 1 / (3.141592653589793 * radius * radius);
+  const auto after = [&](double time) {
+    options.radii.assign(static_cast<std::size_t>(time * throws_per_time), radius);
+    return area_of_discs(pack(options).radii);
+  };
+  const double early = after(16), late = after(64);
+  const double extrapolated = 2 * late - early;  // four times the throws: half the lag
+  CAPTURE(early, late, extrapolated);
+  CHECK(early < late);
+  CHECK(late < limit);
+  // The scatter of the solid fraction of 7000 discs is 0.001.
+  CHECK(extrapolated == Approx(limit).margin(0.006));
+}
+
+TEST_CASE("discs_that_grow_without_end_jam_where_every_disc_held_has_the_contacts_that_rigidity_needs") {
+  PackingOptions options = square_box(PackingMethod::growth, PackingBox::Sides::periodic, 400, 0.5);
+  options.as_dense_as_possible = true;
+  options.overlap = GENERATE(1e-3, 1e-5);
+  const DiscPacking packing = pack(options);
+  const PackingMeasures measures = measure(packing);
+  CAPTURE(options.overlap, measures.solid_fraction, measures.coordination_without_rattlers, measures.rattlers);
+  CHECK(measures.solid_fraction > 0.82);
+  CHECK(measures.solid_fraction < 0.88);
+  // Maxwell: two equations a disc, less two for the translations of all, and one more contact to press.
+  const double held = static_cast<double>(packing.size()) - static_cast<double>(measures.rattlers);
+  const double isostatic = 4 - 2 / held;
+  CHECK(measures.coordination_without_rattlers >= isostatic - 1e-9);
+  // It rises with the root of the overlap: z - 4 = 3.6 (phi - phi_J)^0.5 or so (O'Hern et al. 2003).
+  CHECK(measures.coordination_without_rattlers < 4 + 8 * std::sqrt(options.overlap));
+  // Radii keep their ratios.
+  CHECK(packing.radii[7] / packing.radii[3] == Approx(options.radii[7] / options.radii[3]).epsilon(1e-13));
+}
+
+TEST_CASE("what_does_not_fit_is_refused_with_what_was_reached") {
+  const auto problem = [](const PackingOptions& options) {
+    try {
+      pack(options);
+    } catch (const Error& error) {
+      return error.problem();
+    }
+    return std::string("none");
+  };
+  PackingOptions options = square_box(PackingMethod::rejection, PackingBox::Sides::walls, 200, 0.7);
+  options.attempts = 200;
+  CHECK(problem(options).find("of 200 discs found a place") != std::string::npos);
+  options.method = PackingMethod::insertion;
+  options.box.size *= 0.9;
+  CHECK(problem(options).find("of 200 discs found a gap") != std::string::npos);
+  options.method = PackingMethod::local_moves;
+  CHECK(problem(options).find("still overlap") != std::string::npos);
+  options = square_box(PackingMethod::growth, PackingBox::Sides::walls, 100, 0.93);
+  CHECK(problem(options).find("jam") != std::string::npos);
+  options = square_box(PackingMethod::growth, PackingBox::Sides::walls, 100, 1.2);
+  CHECK(problem(options).find("1.2 times the area") != std::string::npos);
+  options.box.sides = PackingBox::Sides::open_top;
+  CHECK(problem(options).find("open top") != std::string::npos);
+  options = square_box(PackingMethod::growth, PackingBox::Sides::walls, 3, 0.5);
+  options.box.size.x = 0.001;
+  CHECK(problem(options).find("the largest disc is") != std::string::npos);
+  options.radii.clear();
+  CHECK(problem(options).find("no discs") != std::string::npos);
+  CHECK_THROWS_AS(packing_method_from("grow"), Error);
+}
+
+TEST_CASE("one_disc_is_packed_by_every_method") {
+  for (const PackingMethodEntry& entry : packing_methods()) {
+    INFO(entry.name);
+    const bool falls = entry.method == PackingMethod::falling;
+    const DiscPacking packing =
+        pack(falls ? falling_soil(1, 0.1) : square_box(entry.method, PackingBox::Sides::walls, 1, 0.3));
+    REQUIRE(packing.size() == 1);
+    CHECK(largest_overlap(packing) < 1e-4);
+  }
+}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include "equidem/core/error.hpp"
+#include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/packing/measures.hpp"
+#include "equidem/packing/network.hpp"
+
+#include "packing/packings.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+
+TEST_CASE("settled_discs_carry_their_weights_and_statics_confirms_it") {
+  PackingOptions options = falling_soil(120, 0.2);
+  options.settling.relax_first = GENERATE(false, true);
+  const DiscPacking packing = pack(options);
+  const SettlingReport& report = packing.settling;
+  CAPTURE(options.settling.relax_first, report.unbalanced, report.largest_unbalanced, report.time, report.steps);
+  CHECK(report.unbalanced <= 1e-6);
+  // The floor and the friction of the walls carry all of the weight.
+  double weight = 0, carried = 0;
+  for (const Grain& grain : packing.grains) weight += grain.inertia.mass * options.settling.gravity;
+  for (const GrainContact& contact : packing.contacts) {
+    if (contact.j >= 0) continue;
+    const Vec2 on_wall =
+        contact.normal_force * contact.normal + contact.tangential_force * perpendicular(contact.normal);
+    carried -= on_wall.y;
+  }
+  CHECK(carried == Approx(weight).epsilon(1e-5));
+  // Springs are compressed by what they carry, and none pulls or slides beyond its friction.
+  double worst = 0;
+  for (const GrainContact& contact : packing.contacts) {
+    worst = std::max(worst, std::abs(contact.normal_force / (options.settling.springs.kN * contact.overlap) - 1));
+    const double mu = contact.j < 0 ? options.settling.wall_friction : options.settling.friction;
+    CHECK(contact.normal_force > 0);
+    CHECK(std::abs(contact.tangential_force) <= mu * contact.normal_force * (1 + 1e-9));
+  }
+  CHECK(worst < 1e-3);
+  const RestConfirmation rest = confirm_rest(packing, options.settling);
+  CAPTURE(rest.residual, rest.left_out, rest.mean_overlap);
+  CHECK(rest.residual < 1e-12);
+  // Soft motions, rolling above all, answer to a force a hundred times more than a contact does.
+  CHECK(rest.share() < 1e-3);
+}
+
+TEST_CASE("friction_keeps_settled_discs_looser") {
+  PackingOptions options = falling_soil(150, 0.2);
+  const auto height_of_mass = [&](double friction) {
+    options.settling.friction = options.settling.wall_friction = friction;
+    double moment = 0, mass = 0;
+    for (const Grain& grain : pack(options).grains) {
+      moment += grain.inertia.mass * grain.position.y;
+      mass += grain.inertia.mass;
+    }
+    return moment / mass;
+  };
+  CHECK(height_of_mass(0) < height_of_mass(0.8));
+}
+
+TEST_CASE("jammed_discs_have_moduli_between_those_of_their_bounds") {
+  PackingOptions options = square_box(PackingMethod::growth, PackingBox::Sides::periodic, 200, 0.5);
+  options.as_dense_as_possible = true;
+  options.overlap = 1e-3;
+  const DiscPacking packing = pack(options);
+  const SpringConstants springs{1e8, 5e7};
+  const Assembly assembly = network_of(packing, springs);
+  check(assembly);
+  REQUIRE(assembly.contacts.size() == contacts_of(packing).size());
+  const Matrix3 c = effective_stiffness(assembly, ContactSprings(springs)).stiffness;
+  double affine = 0;
+  for (const Contact& contact : assembly.contacts) {
+    const Vec2 l = assembly.branch(contact);
+    affine += (springs.kN + springs.kT) / 8 * dot(l, l) / assembly.area();
+  }
+  const double shear = (c[0][0] + c[1][1] - 2 * c[0][1] + 4 * c[2][2]) / 8;
+  CAPTURE(shear, affine);
+  CHECK(shear > 0.1 * affine);
+  CHECK(shear < affine);
+}
+
+TEST_CASE("discs_that_cannot_come_to_rest_are_refused") {
+  PackingOptions options = falling_soil(20, 0.1);
+  options.settling.longest = 0.01;
+  CHECK_THROWS_WITH(pack(options), Catch::Contains("not at rest"));
+  options.settling.longest = 1;
+  options.settling.springs.kT = 0;
+  CHECK_THROWS_WITH(pack(options), Catch::Contains("no tangential spring"));
+  options.settling.damping = options.settling.friction = options.settling.wall_friction = 0;
+  CHECK_THROWS_AS(pack(options), Error);
+}

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <CLI/CLI.hpp>
+
+#include "equidem/assembly/files.hpp"
+#include "equidem/casefile/echo.hpp"
+#include "equidem/casefile/pack_case.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
+#include "equidem/output/grain_picture.hpp"
+#include "equidem/output/grain_tables.hpp"
+#include "equidem/packing/network.hpp"
+
+#include "command.hpp"
+#include "pack_report.hpp"
+#include "verbs.hpp"
+
+namespace equidem {
+namespace {
+
+PackCase read(const CommonOptions& common) {
+  if (common.threads > 0) set_thread_count(common.threads);
+  set_progress_shown(!common.quiet);
+  std::vector<std::string> overrides = common.set;
+  if (common.seed) overrides.push_back(format("packing.seed={}", *common.seed));
+  return read_pack_case(common.case_file, overrides);
+}
+
+void check_outputs(const CommonOptions& common, const PackCase& resolved) {
+  const OutputPlan plan(common);
+  plan.expect_json();
+  for (const char* name : {"result.json", "case.toml", "assembly.json"}) plan.expect(name);
+  if (!resolved.packing.box.periodic()) plan.expect("assembly_with_walls.json");
+  if (resolved.csv) plan.expect("grains.csv");
+  if (resolved.picture) plan.expect("picture.png");
+}
+
+std::vector<GrainWall> walls_of(const PackingBox& box) {
+  if (box.periodic()) return {};
+  std::vector<GrainWall> walls = walls_of_box(box.size.x);
+  if (box.sides == PackingBox::Sides::walls) {
+    walls.push_back(walls.front());
+    walls.back().name = "lid";
+    walls.back().point = {0, box.size.y};
+    walls.back().normal = {0, -1};
+  }
+  return walls;
+}
+
+void write_files(const CommonOptions& common, const PackCase& resolved, const DiscPacking& packing) {
+  const auto& folder = *common.out;
+  const SettlingOptions& settling = resolved.packing.settling;
+  std::vector<Grain> grains = packing.grains;
+  if (grains.empty()) grains = scene_of(packing.centres, packing.radii, packing.box.size.x, settling).grains;
+  if (resolved.csv) {
+    write_grain_csv(folder / "grains.csv", grains, std::vector<std::string>(grains.size(), "grains"),
+                    std::vector<double>(grains.size(), settling.density), common.overwrite);
+  }
+  write_assembly(folder / "assembly.json", network_of(packing, settling.springs), common.overwrite);
+  if (!packing.box.periodic()) {
+    const HeldNetwork held = held_network_of(packing, settling.springs);
+    if (!held.discs.empty()) write_assembly(folder / "assembly_with_walls.json", held.assembly, common.overwrite);
+  }
+  if (resolved.picture) {
+    const std::vector<GrainWall> walls = walls_of(packing.box);
+    write_grain_picture(folder, "picture", {.title = resolved.title, .grains = grains, .walls = walls},
+                        common.overwrite);
+  }
+  write_file(folder / "case.toml", to_toml(resolved.document, folder), common.overwrite);
+}
+
+int dry_run(const CommonOptions& common, const PackCase& resolved) {
+  JsonObject object;
+  const std::string report = describe_pack_case(resolved);
+  add_common(object, "dry_run", report, {}, {});
+  object.set("grains", resolved.packing.radii.size());
+  CommonOptions without_folder = common;
+  without_folder.out.reset();
+  deliver(without_folder, report, object);
+  return 0;
+}
+
+/// Discs that settled stay what they are where statics cannot judge them: a network may have motions without stiffness.
+std::optional<ConfirmedRest> confirmed(const PackCase& resolved, const DiscPacking& packing) {
+  if (packing.contacts.empty()) return {};
+  ConfirmedRest rest;
+  try {
+    rest.confirmation = confirm_rest(packing, resolved.packing.settling);
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    rest.why_not = error.problem();
+  }
+  return rest;
+}
+
+int run(const CommonOptions& common) {
+  const PackCase resolved = read(common);
+  check_outputs(common, resolved);
+  if (common.dry_run) return dry_run(common, resolved);
+  StageTimes times;
+  Stopwatch watch;
+  const DiscPacking packing = pack(resolved.packing);
+  times.add("packing", watch.lap());
+  const PackingMeasures measures = measure(packing, resolved.region);
+  times.add("measures", watch.lap());
+  const std::optional<ConfirmedRest> rest = confirmed(resolved, packing);
+  times.add("statics", watch.lap());
+  if (common.out) write_files(common, resolved, packing);
+  times.add("files", watch.lap());
+  const std::string report = describe_pack_case(resolved) + describe_packing(resolved, packing, measures, rest, times);
+  JsonObject object;
+  add_common(object, "done", report, times, {});
+  add_packing(object, resolved, packing, measures, rest);
+  deliver(common, report, object);
+  if (common.out) say(common, format("written to {}", common.out->string()));
+  return 0;
+}
+
+}  // namespace
+
+Run declare_pack(CLI::App& command) {
+  auto common = std::make_shared<CommonOptions>();
+  add_common_options(command, *common);
+  command.get_option("--seed")->description("short for --set packing.seed=S");
+  return [common] { return run(*common); };
+}
+
+}  // namespace equidem

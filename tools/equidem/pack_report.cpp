@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pack_report.hpp"
+
+#include <algorithm>
+
+#include "equidem/core/text.hpp"
+
+#include "report.hpp"
+
+namespace equidem {
+namespace {
+
+const PackingMethodEntry& entry_of(PackingMethod method) {
+  const auto table = packing_methods();
+  return *std::find_if(table.begin(), table.end(), [&](const auto& entry) { return entry.method == method; });
+}
+
+const char* name_of(PackingBox::Sides sides) {
+  switch (sides) {
+    case PackingBox::Sides::walls:
+      return "walls";
+    case PackingBox::Sides::open_top:
+      return "walls and an open top";
+    case PackingBox::Sides::periodic:
+      return "periodic";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string describe_pack_case(const PackCase& resolved) {
+  const PackingOptions& options = resolved.packing;
+  std::string out;
+  if (!resolved.title.empty()) out += resolved.title + "\n\n";
+  const auto [low, high] = std::minmax_element(options.radii.begin(), options.radii.end());
+  out += report_line("discs", format("{}, radius {:.6g} to {:.6g} m",
+                                     grouped(static_cast<std::int64_t>(options.radii.size())), *low, *high));
+  const bool open = options.box.sides == PackingBox::Sides::open_top;
+  out += report_line("box", open ? format("{:.6g} m wide, {}", options.box.size.x, name_of(options.box.sides))
+                                 : format("{:.6g} m by {:.6g} m, {}", options.box.size.x, options.box.size.y,
+                                          name_of(options.box.sides)));
+  out += report_line("method", to_string(options.method));
+  const SpringConstants springs = options.settling.springs;
+  return out + report_line("springs", format("kN = {:.6g} Pa, kT = {:.6g} Pa", springs.kN, springs.kT));
+}
+
+std::string describe_packing(const PackCase& resolved, const DiscPacking& packing, const PackingMeasures& measures,
+                             const std::optional<ConfirmedRest>& rest, const StageTimes& times) {
+  const PackingOptions& options = resolved.packing;
+  std::string out;
+  if (!packing.complete) {
+    out += report_line("packed", packing.size() < options.radii.size()
+                                     ? format("{} of {} discs", packing.size(), options.radii.size())
+                                     : format("radii {:.6g} of those asked for", packing.radii[0] / options.radii[0]));
+  }
+  const Region& region = measures.region;
+  out += report_line("solid fraction", format("{:.6g}, porosity {:.6g}, void ratio {:.6g}", measures.solid_fraction,
+                                              measures.porosity, measures.void_ratio));
+  out += report_line("", format("measured from ({:.4g}, {:.4g}) to ({:.4g}, {:.4g}) m", region.low.x, region.low.y,
+                                region.high.x, region.high.y));
+  out +=
+      report_line("contacts", format("{} of discs, {} with walls; {:.4g} a disc, {:.4g} without {}",
+                                     grouped(measures.contacts), grouped(measures.wall_contacts), measures.coordination,
+                                     measures.coordination_without_rattlers, counted(measures.rattlers, "rattler")));
+  out += report_line("overlap", format("at most {:.3g} of the smaller radius", measures.largest_overlap));
+  if (rest) {
+    const SettlingReport& settling = packing.settling;
+    out += report_line("rest",
+                       format("after {:.4g} s in {} steps of {:.4g} s; unbalanced force {:.2g} of the mean contact "
+                              "force, of one disc {:.2g}",
+                              settling.time, grouped(settling.steps), settling.time_step, settling.unbalanced,
+                              settling.largest_unbalanced));
+    out += report_line(
+        "", rest->confirmation
+                ? format("statics on the same contacts would move no disc further than {:.2g} of the mean overlap",
+                         rest->confirmation->share())
+                : format("statics cannot judge the same contacts: {}", rest->why_not));
+  }
+  out += report_line("work", format("{} {}", grouped(packing.work), entry_of(options.method).unit_of_work));
+  std::string stages;
+  for (const auto& [stage, seconds] : times.stages())
+    if (seconds >= 0.02 * times.total()) stages += format(", {} {:.2g} s", stage, seconds);
+  return out + report_line("times", format("{:.2g} s in all{}", times.total(), stages));
+}
+
+void add_packing(JsonObject& object, const PackCase& resolved, const DiscPacking& packing,
+                 const PackingMeasures& measures, const std::optional<ConfirmedRest>& rest) {
+  const Region& region = measures.region;
+  object.set("title", resolved.title)
+      .set("method", to_string(resolved.packing.method))
+      .set("grains", packing.size())
+      .set("complete", packing.complete)
+      .set("box", std::vector<double>{packing.box.size.x, packing.box.size.y})
+      .set("region", std::vector<double>{region.low.x, region.low.y, region.high.x, region.high.y})
+      .set("solid_fraction", measures.solid_fraction)
+      .set("void_ratio", measures.void_ratio)
+      .set("porosity", measures.porosity)
+      .set("contacts", measures.contacts)
+      .set("wall_contacts", measures.wall_contacts)
+      .set("coordination_number", measures.coordination)
+      .set("coordination_number_without_rattlers", measures.coordination_without_rattlers)
+      .set("rattlers", measures.rattlers)
+      .set("largest_overlap", measures.largest_overlap)
+      .set("work", packing.work);
+  if (!rest) return;
+  object.set("unbalanced_force_ratio", packing.settling.unbalanced)
+      .set("largest_unbalanced_force_ratio", packing.settling.largest_unbalanced)
+      .set("time_step", packing.settling.time_step)
+      .set("time", packing.settling.time)
+      .set("steps", packing.settling.steps);
+  if (rest->confirmation) {
+    object.set("static_motion_over_overlap", rest->confirmation->share());
+  } else {
+    object.set_null("static_motion_over_overlap");
+  }
+}
+
+}  // namespace equidem
