@@ -176,3 +176,29 @@ TEST_CASE("a_disc_that_slides_comes_to_roll") {
   CHECK(std::abs(rolling.velocity.x - 1.4 / (1 + beta)) < (jitters ? 4e-4 : 1e-12));
   CHECK(std::abs(rolling.velocity.x + rolling.spin) < (jitters ? 4e-4 * (1 + 1 / beta) : 1e-12));
 }
+
+TEST_CASE("a_contact_that_sticks_under_a_steady_load_does_not_creep") {
+  // in a groove, pushed askew: friction holds the disc, both contacts carry a steady tangential force
+  const NormalLaw law = GENERATE(NormalLaw::linear_dashpot, NormalLaw::hertz_dashpot, NormalLaw::exact_flow);
+  const double root = std::sqrt(0.5);
+  GrainScene scene;
+  scene.grains = {ball({0, std::sqrt(2.0)}, 1)};
+  scene.walls = {line("left", {}, {root, root}), line("right", {}, {-root, root})};
+  scene.gravity = {2, -9.8};
+  PairProperties pair;
+  pair.stiffness = 1e6;
+  pair.restitution = 0.3;
+  pair.end = ContactEnd::at_zero_overlap;
+  pair.friction = 0.8;
+  pair.tangential_ratio = 0.5;
+  pair.tangential_damping = 0.3;
+  scene.pairs = {pair};
+  GrainSimulation simulation(scene, options_of(law, 1e-4));
+  simulation.advance(40000);
+  const Grain rest = simulation.grains().front();
+  double tangential = 0;
+  for (const GrainContact& contact : simulation.contacts()) tangential += std::abs(contact.tangential_force);
+  CAPTURE(to_string(law), norm(rest.velocity), rest.spin, tangential);
+  CHECK(tangential > 0.01);
+  CHECK(norm(rest.velocity) + std::abs(rest.spin) < 1e-12);
+}

@@ -44,15 +44,38 @@ void shift(GrainSystem& system, const Candidate& candidate, Vec2 moment) {
   if (candidate.j >= 0) system.pushes[static_cast<std::size_t>(candidate.j)].moment -= moment;
 }
 
+/// What the pushes of the step before and gravity add in a step to the slip of a contact, its own tangential force aside.
+double gain_of_slip(const GrainSystem& system, const Candidate& candidate, const Meeting& meeting, double mass) {
+  const auto i = static_cast<std::size_t>(candidate.i);
+  const GrainBody& bi = system.bodies[i];
+  Vec2 gain = -bi.inverse_mass * system.pushes_before[i].impulse;
+  double turning = meeting.lever_i * bi.inverse_moment * system.pushes_before[i].torque;
+  if (candidate.j >= 0) {
+    const auto j = static_cast<std::size_t>(candidate.j);
+    const GrainBody& bj = system.bodies[j];
+    gain += bj.inverse_mass * system.pushes_before[j].impulse;
+    turning += meeting.lever_j * bj.inverse_moment * system.pushes_before[j].torque;
+  } else {
+    gain -= system.dt() * system.scene.gravity;
+  }
+  return dot(gain, perpendicular(meeting.normal)) - turning - candidate.tangential_impulse / mass;
+}
+
 /// Tangential impulse on j over the step.
+///
+/// By the midpoint rule, with what other forces do to the slip over the step taken from the step before: a contact that sticks
+/// under a steady load does not creep.
 double slide(GrainSystem& system, Candidate& candidate, const Meeting& meeting, Vec2 relative, double normal_force) {
   const double velocity = slip_velocity(system, candidate, meeting, relative);
   const double dt = system.dt();
-  const bool explicitly = system.options.scheme == GrainOptions::Scheme::velocity_verlet;
-  const SlidingStep step = explicitly
-                               ? sliding_step(candidate.sliding, candidate.stretch, velocity, normal_force, dt)
-                               : sliding_step_midpoint(candidate.sliding, candidate.stretch, velocity,
-                                                       tangential_mass(system, candidate, meeting), normal_force, dt);
+  SlidingStep step;
+  if (system.options.scheme == GrainOptions::Scheme::velocity_verlet) {
+    step = sliding_step(candidate.sliding, candidate.stretch, velocity, normal_force, dt);
+  } else {
+    const double mass = tangential_mass(system, candidate, meeting);
+    const double predicted = velocity + 0.5 * gain_of_slip(system, candidate, meeting, mass);
+    step = sliding_step_midpoint(candidate.sliding, candidate.stretch, predicted, mass, normal_force, dt);
+  }
   candidate.stretch = step.stretch;
   system.lost.lost_slip += step.slip_loss;
   system.lost.lost_tangential_dashpot += step.dashpot_loss;
@@ -61,7 +84,8 @@ double slide(GrainSystem& system, Candidate& candidate, const Meeting& meeting, 
 
 template <NormalLaw law, bool friction>
 void collide_by(GrainSystem& system) {
-  if (!system.free_flight) std::fill(system.pushes.begin(), system.pushes.end(), Push{});
+  if constexpr (friction) system.pushes_before.swap(system.pushes);
+  if (friction || !system.free_flight) std::fill(system.pushes.begin(), system.pushes.end(), Push{});
   system.free_flight = true;
   const double dt = system.dt();
   const double length = system.length;

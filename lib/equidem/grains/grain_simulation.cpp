@@ -42,6 +42,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   system.base_margin = options.margin > 0 ? options.margin : 0.2 * system.smallest_radius;
   system.next = system.motions;
   if (options.law != NormalLaw::exact_flow) self.collide = collide_function(options.law, system.friction);
+  if (self.collide && system.friction) system.pushes_before.resize(system.pushes.size());
   place_walls(system);
   system.margin = std::max(system.base_margin, 8 * fastest * options.time_step);
   system.joints = joints_of(system.scene.walls, joint_gap * system.smallest_radius);
@@ -177,8 +178,9 @@ double GrainSimulation::bytes_per_grain() const {
   const GrainSystem& system = implementation_->system;
   const double bytes = static_cast<double>(
       system.bodies.capacity() * sizeof(GrainBody) + 2 * system.motions.capacity() * sizeof(GrainMotion) +
-      system.pushes.capacity() * sizeof(Push) + system.candidates.capacity() * sizeof(Candidate) +
-      system.exact_pairs.capacity() * sizeof(ExactPair) + system.scene.grains.capacity() * sizeof(Grain));
+      (system.pushes.capacity() + system.pushes_before.capacity()) * sizeof(Push) +
+      system.candidates.capacity() * sizeof(Candidate) + system.exact_pairs.capacity() * sizeof(ExactPair) +
+      system.scene.grains.capacity() * sizeof(Grain));
   return bytes / static_cast<double>(system.bodies.size());
 }
 

@@ -64,7 +64,7 @@ struct GrainState {
   std::vector<Grain> grains;
   std::vector<double> contacts;  ///< as the loop keeps them
   GrainLedger ledger;
-  std::vector<double> sums;  ///< pushes of the last step, velocity_verlet
+  std::vector<double> sums;  ///< pushes of the last step, where the next needs them
   GrainCounters counters;
 };
 

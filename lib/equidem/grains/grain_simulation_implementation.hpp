@@ -18,6 +18,8 @@ struct GrainSimulation::Implementation {
 
   void make_step();
   [[nodiscard]] bool verlet() const { return system.options.scheme == GrainOptions::Scheme::velocity_verlet; }
+  /// Whether a step needs the pushes of the one before.
+  [[nodiscard]] bool keeps_pushes() const { return verlet() || (collide && system.friction); }
   /// Of gravity, where the velocities are.
   [[nodiscard]] double potential() const;
   [[nodiscard]] double kinetic() const;

@@ -48,7 +48,7 @@ GrainState GrainSimulation::save() const {
   for (const Candidate& candidate : system.candidates) {
     if (candidate.touching) append(state.contacts, candidate);
   }
-  if (!implementation_->verlet()) return state;  // the others find all pushes of a step in that step
+  if (!implementation_->keeps_pushes()) return state;  // the others find all pushes of a step in that step
   for (const Push& push : system.pushes) {
     for (const double number : {push.impulse.x, push.impulse.y, push.torque, push.moment.x, push.moment.y}) {
       state.sums.push_back(number);
@@ -65,7 +65,7 @@ void GrainSimulation::restore(const GrainState& state) {
 void GrainSimulation::go_back_to(const GrainState& state) {
   GrainSystem& system = implementation_->system;
   if (state.grains.size() != system.motions.size() || state.contacts.size() % numbers_per_contact != 0 ||
-      state.sums.size() != (implementation_->verlet() ? numbers_per_push * system.motions.size() : 0)) {
+      state.sums.size() != (implementation_->keeps_pushes() ? numbers_per_push * system.motions.size() : 0)) {
     bad_input(format("the state is of {}", counted(static_cast<long long>(state.grains.size()), "grain")),
               format("the scene has {}", system.motions.size()), "Resume with the scene that the state was saved from");
   }

@@ -74,6 +74,7 @@ struct GrainSystem {
   std::vector<GrainBody> bodies;
   std::vector<GrainMotion> motions;
   std::vector<Push> pushes;
+  std::vector<Push> pushes_before;  ///< of the step before, where friction asks for them
   std::vector<WallPlace> walls;
   std::vector<WallJoints> joints;     ///< of each wall; empty where none join
   std::vector<Candidate> candidates;  ///< ordered by i, then j, walls last
