@@ -32,6 +32,7 @@ constexpr const char* examples = R"(Examples:
   equidem calibrate data/cases/calibrate_random.toml --springs springs.toml
   equidem stability data/cases/random_cell.toml --set assembly.discs=60 --out waves
   equidem run data/cases/run_pulse.toml --out pulse
+  equidem run data/cases/grains_cradle.toml --out cradle
   equidem pack data/cases/pack_jammed.toml --out jammed
   equidem help case          every key of the case file
 

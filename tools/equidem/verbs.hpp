@@ -36,9 +36,10 @@ inline constexpr std::array verbs{
     Verb{"calibrate", "wanted moduli -> springs, as a file that every other verb accepts", declare_calibrate},
     Verb{"stability", "mechanisms, waves, critical kT/kN, highest frequency and time step", declare_stability},
     Verb{"pack", "make an assembly: discs in a box, at random or at rest", declare_pack},
-    Verb{"run", "dynamics: the same contacts and springs, stepped in time or relaxed to rest", declare_run},
+    Verb{"run", "dynamics: bonded discs stepped in time or relaxed to rest, or bodies that collide", declare_run},
     Verb{"sweep", "solve over a range of one key: the curves", declare_sweep},
-    Verb{"reproduce", "a paper's tables and figures beside ours: abe1996, abe1996_random", declare_reproduce},
+    Verb{"reproduce", "a paper's tables and figures beside ours: abe1996, abe1996_random, fujioka2005",
+         declare_reproduce},
 };
 
 }  // namespace equidem
