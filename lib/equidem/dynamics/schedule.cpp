@@ -7,19 +7,10 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/turns.hpp"
 
 namespace equidem {
 namespace {
-
-/// sin(2 pi x) to 1e-15: its Taylor series on a quarter of a turn. Mathematical libraries differ in the last bits.
-double sine_of_turns(double x) {
-  x -= std::round(x);
-  if (std::abs(x) > 0.25) x = std::copysign(0.5, x) - x;
-  const double y = 2 * std::numbers::pi * x;
-  double sum = 1;
-  for (int k = 22; k >= 2; k -= 2) sum = 1 - y * y / (k * (k + 1)) * sum;
-  return y * sum;
-}
 
 double on_ramp(const Schedule& ramp, double time) {
   if (time <= ramp.start) return 0;

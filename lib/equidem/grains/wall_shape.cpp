@@ -7,6 +7,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/turns.hpp"
 
 namespace equidem {
 namespace {
@@ -16,17 +17,6 @@ constexpr double whole_turn = 2 * std::numbers::pi;
 constexpr double rounding = 1e-15;
 /// A vector shorter than this has no direction: its square is no number.
 constexpr double shortest = 1e-150;
-
-/// sin(2 pi x) to 1e-15: its Taylor series on a quarter of a turn. Mathematical libraries differ in the last bits.
-double sine_of_turns(double x) {
-  x -= std::round(x);
-  if (std::abs(x) > 0.25) x = std::copysign(0.5, x) - x;
-  const double y = whole_turn * x;
-  double sum = 1;
-#pragma GCC unroll 11
-  for (int k = 22; k >= 2; k -= 2) sum = 1 - y * y * (1.0 / (k * (k + 1))) * sum;
-  return y * sum;
-}
 
 Vec2 direction(double angle) {
   const double turns = angle / whole_turn;
