@@ -30,7 +30,6 @@ struct Trial {
   double closing = 0;  // at the start, along the normal
   ExactStep normal_step;
   SlidingStep sliding_step;
-  double drag = 0;  // impulse in the step that the outside gives, for the scale of changes
 };
 
 /// All that pushes a body over the step but gravity, as it stands in the sweeps.

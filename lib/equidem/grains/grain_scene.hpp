@@ -68,7 +68,6 @@ struct GrainOptions {
   double time_step = 0;         ///< s, > 0
   double reference_length = 0;  ///< d_c, m; 0: twice the largest radius
   double margin = 0;            ///< of the neighbour lists, m; 0: chosen from speeds and density
-  bool ledger = true;           ///< count losses
   bool refuse_crossing = true;  ///< false: bodies may pass through one another, for studies of laws that let them
 };
 

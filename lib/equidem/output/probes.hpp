@@ -11,10 +11,8 @@
 #include <vector>
 
 #include "equidem/contact/frame.hpp"
-#include "equidem/core/stopwatch.hpp"
 #include "equidem/dynamics/simulation.hpp"
-#include "equidem/output/csv.hpp"
-#include "equidem/output/open_file.hpp"
+#include "equidem/output/growing_csv.hpp"
 
 namespace equidem {
 
@@ -48,10 +46,6 @@ class ProbeWriter {
   ///         exists and neither `overwrite` nor `continue_after` is set, where it cannot be written, or where the file to go on
   ///         with has other columns
   ProbeWriter(std::filesystem::path path, std::vector<Probe> probes, std::size_t discs, const ProbeOptions& options);
-  /// Writes what is left; errors are lost: flush() before.
-  ~ProbeWriter();
-  ProbeWriter(const ProbeWriter&) = delete;
-  ProbeWriter& operator=(const ProbeWriter&) = delete;
 
   /// Add a row.
   /// \param step greater than last_step()
@@ -59,26 +53,17 @@ class ProbeWriter {
   void record(std::int64_t step, double time, std::span<const DiscMotion> motions,
               std::span<const DiscMotion> velocities, const EnergyLedger& ledger);
   /// Hand all rows to the operating system.
-  void flush();
+  void flush() { table_.flush(); }
   /// Return once all rows are on the disk, as they must be before a checkpoint counts on them.
-  void sync();
+  void sync() { table_.sync(); }
 
   /// Of the last row; -1: none.
-  [[nodiscard]] std::int64_t last_step() const { return last_step_; }
+  [[nodiscard]] std::int64_t last_step() const { return table_.last_step(); }
 
  private:
-  void go_on(std::int64_t after);
-
-  std::filesystem::path path_;
   std::vector<Probe> probes_;
-  ProbeOptions options_;
-  std::optional<OpenFile> file_;
-  std::uint64_t end_ = 0;  ///< of what is written
-  std::int64_t last_step_ = -1;
-  std::vector<std::string> columns_;
-  std::string header_;
-  CsvText rows_;  ///< the header, and rows that are not yet written
-  Stopwatch since_flush_;
+  bool energy_;
+  GrowingCsv table_;
 };
 
 }  // namespace equidem
