@@ -17,15 +17,45 @@
 
 namespace equidem {
 
-/// A round body. Units are those of its mass: kg and N for spheres, kg and N per metre of depth for discs.
+enum class GrainShape { disc, ellipse, clump };
+
+/// A body. Units are those of its mass: kg and N for spheres, kg and N per metre of depth for discs, ellipses and clumps.
 struct Grain {
-  Vec2 position;  ///< m
+  Vec2 position;  ///< of the centre of mass, m
+  /// Of the circle round the centre of mass that holds the body, m: the radius of a disc, the long half-axis of an ellipse.
   double radius = 0;
   Inertia inertia;
   Vec2 velocity = {};
   double spin = 0;   ///< rad/s
   double angle = 0;  ///< rad
   int kind = 0;      ///< row of the table of pairs
+  /// Ellipse: the short half-axis, m; at angle 0 the long one lies along x. 0: no ellipse.
+  double short_half_axis = 0;
+  int clump = -1;  ///< of GrainScene::clumps; -1: no clump
+
+  [[nodiscard]] GrainShape shape() const {
+    if (clump >= 0) return GrainShape::clump;
+    return short_half_axis > 0 ? GrainShape::ellipse : GrainShape::disc;
+  }
+};
+
+/// Discs tied rigidly, in the frame of their body: the origin is the centre of mass, the angle of the body is 0.
+struct Clump {
+  struct Disc {
+    Vec2 offset;        ///< of the centre, m
+    double radius = 0;  ///< m
+  };
+  std::vector<Disc> discs;
+};
+
+/// Two discs tied by dashpots along and across the line of their centres (Sukegawa 2010, (5.1)-(5.19)), springs where wanted. They do not
+/// collide with each other.
+struct GrainBond {
+  std::size_t i = 0, j = 0;
+  double normal_dashpot = 0, tangential_dashpot = 0;  ///< C_n, C_s; N s/m, discs: per metre of depth
+  double rolling_dashpot = 0;                         ///< against the relative spin, N m s
+  /// Springs between the discs as they are at the start, N/m; 0 in the thesis: what is pulled then creeps.
+  double normal_spring = 0, tangential_spring = 0;
 };
 
 /// How bodies of two kinds meet.
@@ -48,6 +78,8 @@ struct PairProperties {
 /// What collides.
 struct GrainScene {
   std::vector<Grain> grains;
+  std::vector<Clump> clumps;  ///< shapes, of any number of grains each
+  std::vector<GrainBond> bonds;
   std::vector<GrainWall> walls;
   Vec2 gravity = {};  ///< m/s²
   int kinds = 1;
@@ -68,6 +100,12 @@ struct GrainOptions {
   double time_step = 0;         ///< s, > 0
   double reference_length = 0;  ///< d_c, m; 0: twice the largest radius
   double margin = 0;            ///< of the neighbour lists, m; 0: chosen from speeds and density
+  /// How two ellipses, or an ellipse and a disc, are found to touch.
+  enum class EllipseLaw {
+    exact,                ///< closest points and common normal (ellipse_contact.hpp)
+    enlarged_as_printed,  ///< Sukegawa's test (4.1)-(4.49) (enlarged_ellipse.hpp): misses shallow contacts
+    enlarged_mended,      ///< the same with the quadrants of its angles mended
+  } ellipse_law = EllipseLaw::exact;
   bool refuse_crossing = true;  ///< false: bodies may pass through one another, for studies of laws that let them
 };
 
