@@ -15,6 +15,7 @@
 #include "equidem/output/json.hpp"
 
 #include "comparison.hpp"
+#include "matrix_file.hpp"
 #include "measurement.hpp"
 #include "problem.hpp"
 
@@ -27,7 +28,7 @@ struct Request {
   std::vector<std::string> solvers;
   std::vector<int> threads = {1, 2};
   int repetitions = 0;
-  std::string json_file, markdown_file;
+  std::string json_file, markdown_file, matrix_file;
 };
 
 int default_repetitions(double discs) {
@@ -88,7 +89,13 @@ int parse_and_run(int argc, char** argv) {
   program.add_option("--repetitions", request.repetitions, "rounds; the default falls with the size");
   program.add_option("--json", request.json_file, "file for all numbers");
   program.add_option("--markdown", request.markdown_file, "file for the tables");
+  program.add_option("--write-matrix", request.matrix_file,
+                     "no comparison: write the matrix of the first kind and size to this file, see matrix_file.hpp");
   CLI11_PARSE(program, argc, argv);
+  if (!request.matrix_file.empty()) {
+    write_matrix_file(request.matrix_file, request.kinds.front(), std::llround(request.discs.front()));
+    return 0;
+  }
   run(request);
   return 0;
 }
