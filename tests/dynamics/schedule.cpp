@@ -27,9 +27,23 @@ Schedule sine(double value, double start, double frequency) {
 Schedule table(std::vector<double> times, std::vector<double> values) {
   return {.kind = Schedule::Kind::table, .times = std::move(times), .values = std::move(values)};
 }
+Schedule cycles(double value, double start, double frequency, int count) {
+  return {.kind = Schedule::Kind::cycles,
+          .value = value,
+          .start = start,
+          .end = start + count / frequency,
+          .frequency = frequency};
+}
+Schedule smooth(std::vector<double> times, std::vector<double> values, std::vector<double> rates) {
+  return {.kind = Schedule::Kind::smooth_table,
+          .times = std::move(times),
+          .values = std::move(values),
+          .rates = std::move(rates)};
+}
 
 std::vector<Schedule> one_of_each() {
-  return {Schedule{.value = 3}, ramp(-2, 0.5, 2.5), sine(0.7, 0.25, 3), table({0.5, 1, 3}, {1, -1, 4})};
+  return {Schedule{.value = 3},           ramp(-2, 0.5, 2.5),      sine(0.7, 0.25, 3),
+          table({0.5, 1, 3}, {1, -1, 4}), cycles(0.7, 0.25, 3, 4), smooth({0.5, 1, 3}, {1, -1, 4}, {2, 0, -1})};
 }
 
 std::string refusal(const Schedule& schedule) {
@@ -96,6 +110,41 @@ TEST_CASE("a_table_is_straight_between_its_points_and_constant_outside") {
   CHECK(table({2}, {5}).at(3) == 5);
 }
 
+TEST_CASE("cycles_go_from_rest_to_rest_with_the_acceleration_of_a_cosine") {
+  const Schedule s = cycles(0.7, 0.25, 4, 3);
+  double worst = 0;
+  for (double t = -0.1; t < 1.3; t += 1.0 / 512) {
+    const bool inside = t > 0.25 && t < 1;
+    worst = std::max(worst, std::abs(s.at(t) - (inside ? 0.7 * (1 - std::cos(8 * pi * (t - 0.25))) : 0)));
+  }
+  CAPTURE(worst);
+  CHECK(worst < 1e-14);
+  const double h = 1e-5;
+  for (const double end : {0.25, 1.0}) {
+    const double speed = (s.at(end + h) - s.at(end - h)) / (2 * h), most = 0.7 * 8 * pi;
+    CAPTURE(end, speed);
+    CHECK(std::abs(speed) < 1e-3 * most);
+  }
+}
+
+TEST_CASE("a_smooth_table_is_any_cubic_exactly_and_has_the_rates_given") {
+  const auto cubic = [](double t) { return 1 + t * (-2 + t * (0.5 + 0.75 * t)); };
+  const auto rate = [](double t) { return -2 + t * (1 + 2.25 * t); };
+  const std::vector<double> times{-1, -0.25, 0.5, 2};
+  std::vector<double> values, rates;
+  for (const double t : times) {
+    values.push_back(cubic(t));
+    rates.push_back(rate(t));
+  }
+  const Schedule s = smooth(times, values, rates);
+  for (double t = -1; t <= 2; t += 1.0 / 64) {
+    CAPTURE(t);
+    CHECK(s.at(t) == Approx(cubic(t)).epsilon(0).margin(1e-14));
+  }
+  CHECK(s.at(-5) == cubic(-1));
+  CHECK(s.at(5) == cubic(2));
+}
+
 TEST_CASE("a_scaled_schedule_is_the_factor_times_it_at_every_time") {
   for (const Schedule& schedule : one_of_each()) {
     CHECK(refusal(schedule).empty());
@@ -126,6 +175,12 @@ TEST_CASE("schedules_without_a_meaning_are_refused_with_the_number_at_fault") {
            Bad{sine(1, 0, 0), "frequency 0 Hz"},
            Bad{sine(1, 0, -3), "frequency -3 Hz"},
            Bad{sine(1, 0, inf), "frequency = inf"},
+           Bad{cycles(1, 0, -3, 1), "frequency -3 Hz"},
+           Bad{{.kind = Schedule::Kind::cycles, .value = 1, .end = 1.25, .frequency = 2}, "2.5 cycles"},
+           Bad{{.kind = Schedule::Kind::cycles, .value = 1, .start = 1, .end = 1, .frequency = 2}, "0 cycles"},
+           Bad{smooth({1, 2}, {1, 1}, {0}), "2 times and 1 rate"},
+           Bad{smooth({1, 2}, {1, 1}, {0, nan}), "rate = nan"},
+           Bad{smooth({2, 1}, {1, 1}, {0, 0}), "the time 1 s comes after 2 s"},
            Bad{table({}, {}), "0 times"},
            Bad{table({1, 2}, {1}), "2 times and 1 value"},
            Bad{table({1, 1}, {0, 1}), "the time 1 s comes after 1 s"},
@@ -157,5 +212,8 @@ TEST_CASE("an_event_that_returns_within_a_step_is_missed_and_a_jump_is_not") {
   }
   CHECK(missed(sine(1, 0, 1000)).share == 1);
   CHECK(missed(sine(1, 0, 500)).share == 1);
+  CHECK(missed(cycles(1, 0, 500, 4)).share == 1);
+  CHECK(missed(cycles(1, 0, 10, 4)).share < 1e-3);
+  CHECK(missed(smooth({0.01, 0.0102, 0.0104}, {0, 1, 0}, {0, 0, 0})).share == Approx(1).epsilon(1e-12));
   CHECK(missed(sine(1, 0, 100)).share == Approx(1 - std::cos(0.1 * pi)).epsilon(1e-12));
 }

@@ -19,7 +19,7 @@ struct Ellipse {
 };
 
 /// In the direction of a unit vector n at the angle phi: h(phi) = max of x . n over the ellipse, x from its centre.
-struct Support {
+struct EllipseSupport {
   double reach = 0;         ///< h, m
   double slope = 0;         ///< h', m: the point that reaches farthest is h n + h' s, s = (-n_y, n_x)
   double radius = 0;        ///< R = h + h'', m: radius of curvature at that point
@@ -27,7 +27,7 @@ struct Support {
 };
 
 /// h = sqrt(a² p² + b² q²), h' = (b² - a²) p q/h, R = a² b²/h³, R' = -3 R h'/h with p = n . axis, q = n across it.
-inline Support support(const Ellipse& e, Vec2 n) {
+inline EllipseSupport support(const Ellipse& e, Vec2 n) {
   const double p = dot(e.axis, n), q = cross(e.axis, n), x = e.a * p, y = e.b * q;
   const double reach = std::sqrt(x * x + y * y);
   if (reach == 0) return {};
@@ -37,7 +37,7 @@ inline Support support(const Ellipse& e, Vec2 n) {
 }
 
 /// From the centre to the point that reaches farthest along n.
-inline Vec2 support_point(const Support& s, Vec2 n) {
+inline Vec2 support_point(const EllipseSupport& s, Vec2 n) {
   return s.reach * n + s.slope * perpendicular(n);
 }
 

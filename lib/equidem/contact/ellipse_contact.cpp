@@ -14,7 +14,7 @@ namespace {
 /// f and what belongs to it in one direction.
 struct Sample {
   Vec2 n;
-  Support i, j;
+  EllipseSupport i, j;
   double gap = 0;    ///< f
   double slope = 0;  ///< f'
 
@@ -163,7 +163,7 @@ EllipseState state_of(const Pair& pair, double gap) {
 }
 
 /// The point that reaches farthest along n turned by an angle, to its second order.
-inline Vec2 support_point_beside(const Support& s, Vec2 n, double turn) {
+inline Vec2 support_point_beside(const EllipseSupport& s, Vec2 n, double turn) {
   return support_point(s, n) +
          turn * ((s.radius + turn / 2 * s.radius_slope) * perpendicular(n) - turn / 2 * s.radius * n);
 }
@@ -208,7 +208,7 @@ EllipseContact contact_of_ellipses(const Ellipse& i, const Ellipse& j, Vec2 bran
 
 EllipseContact contact_with_line(const Ellipse& i, Vec2 to_line, Vec2 normal) {
   const Vec2 n = -normal;
-  const Support s = support(i, n);
+  const EllipseSupport s = support(i, n);
   const double gap = dot(to_line, n) - s.reach;
   const Vec2 arm = support_point(s, n);
   return {gap > 0 ? EllipseState::apart : EllipseState::touching, gap, n, arm, arm + gap * n - to_line};

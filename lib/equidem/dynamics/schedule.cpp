@@ -12,6 +12,10 @@
 namespace equidem {
 namespace {
 
+bool is_table(const Schedule& schedule) {
+  return schedule.kind == Schedule::Kind::table || schedule.kind == Schedule::Kind::smooth_table;
+}
+
 double on_ramp(const Schedule& ramp, double time) {
   if (time <= ramp.start) return 0;
   if (time >= ramp.end) return ramp.value;
@@ -27,6 +31,26 @@ double in_table(const Schedule& table, double time) {
   const auto k = static_cast<std::size_t>(next - table.times.begin());
   const double share = (time - table.times[k - 1]) / (table.times[k] - table.times[k - 1]);
   return table.values[k - 1] + share * (table.values[k] - table.values[k - 1]);
+}
+
+/// value (1 - cos(2 pi s)) = 2 value sin²(pi s)
+double in_cycles(const Schedule& cycles, double time) {
+  if (time <= cycles.start || time >= cycles.end) return 0;
+  const double root = sine_of_turns(0.5 * cycles.frequency * (time - cycles.start));
+  return 2 * cycles.value * (root * root);
+}
+
+/// Hermite's cubic.
+double in_smooth_table(const Schedule& table, double time) {
+  const auto next = std::upper_bound(table.times.begin(), table.times.end(), time);
+  if (next == table.times.begin()) return table.values.front();
+  if (next == table.times.end()) return table.values.back();
+  const auto k = static_cast<std::size_t>(next - table.times.begin());
+  const double length = table.times[k] - table.times[k - 1], share = (time - table.times[k - 1]) / length;
+  const double way = table.values[k] - table.values[k - 1];
+  const double first = length * table.rates[k - 1], last = length * table.rates[k];
+  return table.values[k - 1] +
+         share * (first + share * ((3 * way - 2 * first - last) + share * (first + last - 2 * way)));
 }
 
 void check_finite(double value, const char* name) {
@@ -48,6 +72,20 @@ void check_table(const Schedule& table) {
                 "times ascend, and a value cannot jump", "Order the points and leave out repeated times");
     }
   }
+  if (table.kind != Schedule::Kind::smooth_table) return;
+  if (table.rates.size() != table.times.size()) {
+    bad_input(format("a smooth table has {} and {}", counted(static_cast<long long>(table.times.size()), "time"),
+                     counted(static_cast<long long>(table.rates.size()), "rate")),
+              "each point needs its rate", "Give as many of one as of the other");
+  }
+  for (const double rate : table.rates) check_finite(rate, "rate");
+}
+
+void check_cycles(const Schedule& schedule) {
+  const double cycles = schedule.frequency * (schedule.end - schedule.start);
+  if (cycles >= 0.5 && std::abs(cycles - std::round(cycles)) <= 1e-9 * cycles) return;
+  bad_input(format("from {} s to {} s there are {} cycles", schedule.start, schedule.end, cycles),
+            "only a whole number of them begins and ends at rest", "Put the end whole periods after the start");
 }
 
 }  // namespace
@@ -62,22 +100,28 @@ double Schedule::at(double time) const {
       return time <= start ? 0 : value * sine_of_turns(frequency * (time - start));
     case Kind::table:
       return in_table(*this, time);
+    case Kind::cycles:
+      return in_cycles(*this, time);
+    case Kind::smooth_table:
+      return in_smooth_table(*this, time);
   }
   return 0;
 }
 
 void check(const Schedule& schedule) {
-  if (schedule.kind == Schedule::Kind::table) return check_table(schedule);
+  if (is_table(schedule)) return check_table(schedule);
   check_finite(schedule.value, "value");
   if (!schedule.changes()) return;
   check_finite(schedule.start, "start");
-  if (schedule.kind == Schedule::Kind::sine) {
+  const bool cycles = schedule.kind == Schedule::Kind::cycles;
+  if (schedule.kind == Schedule::Kind::sine || cycles) {
     check_finite(schedule.frequency, "frequency");
     if (!(schedule.frequency > 0))
       bad_input(format("a sine has the frequency {} Hz", schedule.frequency), "it must be > 0", "Give a positive one");
-    return;
+    if (!cycles) return;
   }
   check_finite(schedule.end, "end");
+  if (cycles) return check_cycles(schedule);
   if (!(schedule.end > schedule.start)) {
     bad_input(format("the ramp ends at {} s and starts at {} s", schedule.end, schedule.start),
               "it rises from start to end", "Put the end after the start");
@@ -86,11 +130,13 @@ void check(const Schedule& schedule) {
 
 MissedEvent missed_event(const Schedule& schedule, double step, double end) {
   MissedEvent most;
-  if (schedule.kind == Schedule::Kind::sine && schedule.value != 0 && schedule.start < end) {
+  const bool cycles = schedule.kind == Schedule::Kind::cycles;
+  if ((schedule.kind == Schedule::Kind::sine || cycles) && schedule.value != 0 && schedule.start < end) {
     const double turns = schedule.frequency * step;  // a peak may lie in the middle of a step
-    most = {turns < 0.5 ? 1 - std::cos(std::numbers::pi * turns) : 1.0, schedule.start + 0.25 / schedule.frequency};
+    most = {turns < 0.5 ? 1 - std::cos(std::numbers::pi * turns) : 1.0,
+            schedule.start + (cycles ? 0.5 : 0.25) / schedule.frequency};
   }
-  if (schedule.kind != Schedule::Kind::table) return most;
+  if (!is_table(schedule)) return most;
   const auto [low, high] = std::minmax_element(schedule.values.begin(), schedule.values.end());
   for (std::size_t k = 0; k < schedule.times.size() && *low < *high; ++k) {
     const double time = schedule.times[k], value = schedule.values[k];
@@ -106,6 +152,7 @@ MissedEvent missed_event(const Schedule& schedule, double step, double end) {
 Schedule scaled(Schedule schedule, double factor) {
   schedule.value *= factor;
   for (double& value : schedule.values) value *= factor;
+  for (double& rate : schedule.rates) rate *= factor;
   return schedule;
 }
 

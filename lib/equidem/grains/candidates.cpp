@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "equidem/contact/collision_stiffness.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/meeting.hpp"
+#include "equidem/grains/part_pairs.hpp"
 
 namespace equidem {
 namespace {
@@ -44,6 +46,13 @@ void set_constants(const GrainSystem& system, Candidate& candidate) {
   }
 }
 
+/// The dashpot across the normal by the spring alone: the mass is that of the arms at the time.
+PartPair with_damping(const GrainSystem& system, const Candidate& candidate, PartPair parts) {
+  parts.tangential_damping =
+      2 * system.properties(candidate).tangential_damping * std::sqrt(candidate.sliding.stiffness);
+  return parts;
+}
+
 ExactPair exact_pair_of(const GrainSystem& system, const Candidate& candidate) {
   return exact_pair(candidate.reduced_mass, candidate.stiffness, candidate.strength, system.properties(candidate).end,
                     system.dt());
@@ -65,33 +74,51 @@ void find_candidates(GrainSystem& system) {
   const NeighbourList& list = system.finder.within(circles, system.margin);
   std::vector<Candidate> before;
   std::vector<ExactPair> pairs_before;
+  std::vector<PartPair> parts_before;
   before.swap(system.candidates);
   pairs_before.swap(system.exact_pairs);
+  parts_before.swap(system.part_pairs);
   const bool exact = system.options.law == NormalLaw::exact_flow;
   std::size_t k = 0;
-  const auto add = [&](std::int32_t i, std::int32_t j) {
-    while (k < before.size() && (before[k].i < i || (before[k].i == i && rank(before[k].j) < rank(j)))) ++k;
-    if (k < before.size() && before[k].i == i && before[k].j == j) {
+  const bool shapes = !system.parts.empty();
+  const auto add = [&](std::int32_t i, std::int32_t j, const PartPair* parts = nullptr) {
+    const auto key = [&](std::int32_t a, std::int32_t b, const PartPair* p) {
+      return std::tuple(a, rank(b), p ? p->i : 0, p ? p->j : 0);
+    };
+    const auto key_before = [&] { return key(before[k].i, before[k].j, shapes ? &parts_before[k] : nullptr); };
+    while (k < before.size() && key_before() < key(i, j, parts)) ++k;
+    if (k < before.size() && key_before() == key(i, j, parts)) {
       system.candidates.push_back(before[k]);
       if (exact) system.exact_pairs.push_back(pairs_before[k]);
+      if (shapes) system.part_pairs.push_back(parts_before[k]);
       return;
     }
     Candidate candidate;
     candidate.i = i;
     candidate.j = j;
     set_constants(system, candidate);
+    if (shapes) system.part_pairs.push_back(with_damping(system, candidate, *parts));
     system.candidates.push_back(candidate);
     if (exact) system.exact_pairs.push_back(exact_pair_of(system, candidate));
   };
+  std::size_t next_bond = 0;
   for (std::size_t i = 0; i < system.bodies.size(); ++i) {
     for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
-      add(static_cast<std::int32_t>(i), list.partner[static_cast<std::size_t>(p)]);
+      const std::int32_t j = list.partner[static_cast<std::size_t>(p)];
+      if (are_tied(system.bonds, next_bond, static_cast<std::int32_t>(i), j)) continue;
+      if (!shapes) add(static_cast<std::int32_t>(i), j);
+      if (!shapes) continue;
+      for (const PartPair& parts : near_parts(system, i, static_cast<std::size_t>(j))) {
+        add(static_cast<std::int32_t>(i), j, &parts);
+      }
     }
     for (std::size_t w = 0; w < system.scene.walls.size(); ++w) {
       const WallContact contact = nearest(system.scene.walls[w], system.walls[w].displacement, circles[i].centre);
-      if (contact.distance <= circles[i].radius + system.margin) {
-        add(static_cast<std::int32_t>(i), ~static_cast<std::int32_t>(w));
-      }
+      if (!(contact.distance <= circles[i].radius + system.margin)) continue;
+      const std::int32_t j = ~static_cast<std::int32_t>(w);
+      if (!shapes) add(static_cast<std::int32_t>(i), j);
+      if (!shapes) continue;
+      for (const PartPair& parts : near_parts_of_wall(system, i, w)) add(static_cast<std::int32_t>(i), j, &parts);
     }
   }
   cover_joints(system);
@@ -116,7 +143,7 @@ double reach_of(const GrainSystem& system) {
     const Vec2 way = system.dt() * wall.velocity;
     if (dot(way, way) > longest) longest = dot(way, way);
   }
-  return std::sqrt(longest);
+  return std::sqrt(longest) + longest_turn(system);
 }
 
 void let_go(GrainSystem& system, Candidate& candidate) {

@@ -6,6 +6,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/part_crossing.hpp"
 
 namespace equidem {
 namespace {
@@ -34,14 +35,11 @@ constexpr double slow_way = 0.1;
           : "Use stiffer contacts, or press less: a shorter step would not hold them");
 }
 
-void check_grains(const GrainSystem& system, const Candidate& candidate) {
-  const auto i = static_cast<std::size_t>(candidate.i);
-  const auto j = static_cast<std::size_t>(candidate.j);
-  const Vec2 before = system.motions[j].position - system.motions[i].position;
-  const Vec2 after = system.next[j].position - system.next[i].position;
+void check_discs(const GrainSystem& system, const Candidate& candidate, const PartWay& parts) {
+  const auto [before, after, radius_i, radius_j] = parts;
   const Vec2 way = after - before;
-  const double small = std::min(system.bodies[i].radius, system.bodies[j].radius);
-  const double sum = system.bodies[i].radius + system.bodies[j].radius;
+  const double small = std::min(radius_i, radius_j);
+  const double sum = radius_i + radius_j;
   const double length2 = dot(way, way);
   if (!(length2 > 0)) return;
   const double along = std::clamp(-dot(before, way) / length2, 0.0, 1.0);
@@ -59,12 +57,14 @@ void check_grains(const GrainSystem& system, const Candidate& candidate) {
   if (!seen && nearest < sum - 0.5 * small) refuse(system, candidate, way, 0.5 * small, "pass through");
 }
 
-void check_wall(const GrainSystem& system, const Candidate& candidate) {
+void check_wall(const GrainSystem& system, std::size_t c) {
+  const Candidate& candidate = system.candidates[c];
   const auto i = static_cast<std::size_t>(candidate.i);
   const auto w = static_cast<std::size_t>(~candidate.j);
   const WallPlace& place = system.walls[w];
-  const Vec2 before = system.motions[i].position - place.displacement;
-  const Vec2 after = system.next[i].position - place.displacement - system.dt() * place.velocity;
+  const auto [start, end, radius_i, radius_j] = way_of_parts(system, c);
+  const Vec2 before = start - place.displacement;
+  const Vec2 after = end - place.displacement - system.dt() * place.velocity;
   if (passes_through(system.scene.walls[w], before, after)) {
     refuse(system, candidate, after - before, 0.5 * system.bodies[i].radius, "pass through");
   }
@@ -81,11 +81,14 @@ void refuse_runaway(const GrainSystem& system, double reach) {
 void refuse_crossings(const GrainSystem& system, double reach) {
   // two bodies come nearer by twice the reach at most
   if (reach <= slow_way * system.smallest_radius && system.deepest + 2 * reach < system.smallest_radius) return;
-  for (const Candidate& candidate : system.candidates) {
-    if (candidate.j >= 0) {
-      check_grains(system, candidate);
-    } else {
-      check_wall(system, candidate);
+  for (std::size_t c = 0; c < system.candidates.size(); ++c) {
+    const Candidate& candidate = system.candidates[c];
+    if (candidate.j < 0) {
+      check_wall(system, c);
+    } else if (const PartWay way = way_of_parts(system, c); !has_ellipse(system, c)) {
+      check_discs(system, candidate, way);
+    } else if (const char* happening = crossing_of_ellipses(system, c)) {
+      refuse(system, candidate, way.after - way.before, 0.5 * std::min(way.radius_i, way.radius_j), happening);
     }
   }
 }

@@ -68,13 +68,14 @@ double gain_of_slip(const GrainSystem& system, const Candidate& candidate, const
 double slide(GrainSystem& system, Candidate& candidate, const Meeting& meeting, Vec2 relative, double normal_force) {
   const double velocity = slip_velocity(system, candidate, meeting, relative);
   const double dt = system.dt();
+  const double mass = tangential_mass(system, candidate, meeting);
+  const double gain = gain_of_slip(system, candidate, meeting, mass);
   SlidingStep step;
   if (system.options.scheme == GrainOptions::Scheme::velocity_verlet) {
-    step = sliding_step(candidate.sliding, candidate.stretch, velocity, normal_force, dt);
+    step =
+        sliding_step(candidate.sliding, candidate.stretch, velocity, normal_force, dt, {0.5 * dt / mass, 0.5 * gain});
   } else {
-    const double mass = tangential_mass(system, candidate, meeting);
-    const double predicted = velocity + 0.5 * gain_of_slip(system, candidate, meeting, mass);
-    step = sliding_step_midpoint(candidate.sliding, candidate.stretch, predicted, mass, normal_force, dt);
+    step = sliding_step_midpoint(candidate.sliding, candidate.stretch, velocity + 0.5 * gain, mass, normal_force, dt);
   }
   candidate.stretch = step.stretch;
   system.lost.lost_slip += step.slip_loss;
@@ -107,6 +108,9 @@ void collide_by(GrainSystem& system) {
     const double depth = meeting.overlap * per_length;
     const double sigma = closing * per_speed;
     const ContactStep step = normal_step<law>(candidate, depth, sigma);
+    const double unit = candidate.reduced_mass * unit_speed;
+    if constexpr (!is_map(law))
+      system.lost.lost_dashpot += dashpot_heat<law>(candidate, step, depth, closing, unit, unit_speed);
     candidate.touching = true;
     ++candidate.steps;
     candidate.mode = step.mode;
@@ -114,15 +118,12 @@ void collide_by(GrainSystem& system) {
     system.deepest = std::max(system.deepest, meeting.overlap);
     candidate.closing = closing;
     candidate.normal = meeting.normal;
-    const double unit = candidate.reduced_mass * unit_speed;
     candidate.impulse = -step.change * unit;
     Vec2 impulse = candidate.impulse * meeting.normal;
     if constexpr (is_map(law)) {
       candidate.parted = depth + step.shift + sigma + step.change <= 0;
       system.lost.lost_restitution += step.loss * unit * unit_speed;
       if (step.shift != 0) shift(system, candidate, (step.shift * length * candidate.reduced_mass) * meeting.normal);
-    } else {
-      system.lost.lost_dashpot += step.loss * unit * unit_speed;
     }
     if constexpr (friction) {
       if (candidate.sliding.coefficient > 0) {

@@ -3,6 +3,8 @@
 /// Steps in which every contact is evaluated by itself: laws that give a force, and the maps.
 #pragma once
 
+#include <cmath>
+
 #include "equidem/grains/grain_system.hpp"
 
 namespace equidem {
@@ -11,6 +13,19 @@ using CollideFunction = void (*)(GrainSystem&);
 
 /// The loop over contacts compiled for a law, with or without friction: pushes of this step from positions and velocities.
 CollideFunction collide_function(NormalLaw law, bool friction);
+
+/// What the dashpot of a contact takes in a step, J, and where attraction is cut what the spring loses: its force at the mean velocity of
+/// the step, to the second order of the step: what other forces changed in the last step of the contact they change again.
+/// \param candidate as the last step left it
+/// \param depth, unit, unit_speed overlap over the length, and the units of step.change as impulse and as speed
+template <NormalLaw law>
+double dashpot_heat(const Candidate& candidate, const ContactStep& step, double depth, double closing, double unit,
+                    double unit_speed) {
+  const double spring = -candidate.a * depth * (law == NormalLaw::hertz_dashpot ? std::sqrt(depth) : 1.0);
+  const double by_others =
+      candidate.steps > 0 ? closing - candidate.closing + candidate.impulse / candidate.reduced_mass : 0;
+  return (spring - step.change) * unit * (closing + 0.5 * (step.change * unit_speed + by_others));
+}
 
 /// system.next from the pushes: v' = v + a dt, x' = x + v' dt (+ the shifts of maps).
 void move_by_euler(GrainSystem& system);

@@ -11,6 +11,18 @@ Effects::Entry entry(std::string name, bool active, std::string why_active, std:
   return {std::move(name), active, active ? std::move(why_active) : std::move(why_not)};
 }
 
+std::string law_of_ellipses(GrainOptions::EllipseLaw law) {
+  switch (law) {
+    case GrainOptions::EllipseLaw::exact:
+      return "contact by closest points and common normal";
+    case GrainOptions::EllipseLaw::enlarged_as_printed:
+      return "contact by the enlarged ellipse as printed: misses shallow contacts, does not keep the energy";
+    case GrainOptions::EllipseLaw::enlarged_mended:
+      break;
+  }
+  return "contact by the enlarged ellipse, angles mended: misses shallow contacts, does not keep the energy";
+}
+
 }  // namespace
 
 Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
@@ -20,15 +32,31 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
   const bool losses = any_pair([](const PairProperties& pair) { return pair.restitution < 1; });
   const bool gravity = scene.gravity != Vec2{};
   const bool moving = std::any_of(scene.walls.begin(), scene.walls.end(), [](const GrainWall& w) { return w.moves(); });
+  const auto any_shape = [&](GrainShape shape) {
+    return std::any_of(scene.grains.begin(), scene.grains.end(), [&](const Grain& g) { return g.shape() == shape; });
+  };
+  const bool ellipses = any_shape(GrainShape::ellipse), clumps = any_shape(GrainShape::clump);
   Effects effects;
   effects.tangential_springs = springs;
-  effects.rotation = friction;
+  const auto any_bond = [&](const auto& test) { return std::any_of(scene.bonds.begin(), scene.bonds.end(), test); };
+  const bool sprung = any_bond([](const GrainBond& b) { return b.normal_spring > 0 || b.tangential_spring > 0; });
+  const bool turning = any_bond(
+      [](const GrainBond& b) { return b.tangential_dashpot > 0 || b.rolling_dashpot > 0 || b.tangential_spring > 0; });
+  effects.rotation = friction || turning || ellipses || clumps;
   effects.entries = {
       entry(format("normal contact by {}", to_string(options.law)), true, "grains rebound", ""),
       entry("loss at impacts", losses, "restitution below 1", "restitution 1: impacts keep the energy"),
       entry("friction", friction, "a friction coefficient above 0", "friction 0 everywhere"),
       entry("tangential springs", springs, "tangential_ratio above 0", friction ? "tangential_ratio 0" : "no friction"),
-      entry("rotation", friction, "friction turns grains", "no friction: nothing can turn a grain"),
+      entry("ellipses", ellipses, law_of_ellipses(options.ellipse_law), "the scene has none"),
+      entry("clumps", clumps, "discs that are tied rigidly", "the scene has none"),
+      entry("rotation", effects.rotation,
+            friction  ? "friction turns grains"
+            : turning ? "bonds turn grains"
+                      : "normal forces turn ellipses and clumps",
+            "no friction: nothing can turn a grain"),
+      entry("bonds", !scene.bonds.empty(),
+            sprung ? "grains are tied by dashpots and springs" : "grains are tied by dashpots", "no grains are tied"),
       entry("gravity", gravity, "it is not 0", "it is 0"),
       entry("walls", !scene.walls.empty(), "the scene has some", "the scene has none"),
       entry("motion of walls", moving, "a wall has a schedule", "no wall moves"),

@@ -3,7 +3,7 @@
 #include <tuple>
 
 #include "equidem/grains/grain_simulation_implementation.hpp"
-#include "equidem/grains/meeting.hpp"
+#include "equidem/grains/part_meeting.hpp"
 
 namespace equidem {
 
@@ -33,10 +33,11 @@ std::pair<double, double> GrainSimulation::Implementation::elastic() const {
   const bool holds_from_first_step = !collide || is_map(system.options.law);
   double normal = 0;
   double tangential = 0;
-  for (const Candidate& candidate : system.candidates) {
+  for (std::size_t c = 0; c < system.candidates.size(); ++c) {
+    const Candidate& candidate = system.candidates[c];
     tangential += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
     if (holds_from_first_step && (!candidate.touching || candidate.parted)) continue;
-    const double overlap = meeting_of(system, candidate).overlap;
+    const double overlap = overlap_of(system, c);
     if (!(overlap > 0)) continue;
     if (system.options.law == NormalLaw::hertz_dashpot) {
       normal += 0.4 * candidate.stiffness * overlap * overlap * std::sqrt(overlap);
@@ -51,6 +52,7 @@ GrainLedger GrainSimulation::Implementation::energy() const {
   GrainLedger ledger = system.lost;
   ledger.kinetic = kinetic();
   std::tie(ledger.elastic_normal, ledger.elastic_tangential) = elastic();
+  ledger.elastic_bond = elastic_of_bonds(system);
   ledger.potential = potential() - potential_at_start;
   ledger.initial = energy_at_start;
   return ledger;

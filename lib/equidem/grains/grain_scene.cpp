@@ -8,7 +8,9 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/bond_step.hpp"
 #include "equidem/grains/neighbours.hpp"
+#include "equidem/grains/shape_check.hpp"
 #include "equidem/grains/wall_joints.hpp"
 
 namespace equidem {
@@ -145,7 +147,7 @@ void check_places(const GrainScene& scene, const PlaceOfGrain& where) {
     for (std::int64_t p = near.begin[i]; p < near.begin[i + 1]; ++p) {
       const auto j = static_cast<std::size_t>(near.partner[static_cast<std::size_t>(p)]);
       const double distance = norm(circles[j].centre - circles[i].centre);
-      if (distance >= std::max(circles[i].radius, circles[j].radius)) continue;
+      if (!are_inside_one_another(scene, scene.grains[i], scene.grains[j])) continue;
       refuse_grain(j, where, format("grains {} and {} start inside one another", i, j),
                    format("their centres are {:.4g} m apart, their radii {:.4g} m and {:.4g} m", distance,
                           circles[i].radius, circles[j].radius),
@@ -154,9 +156,7 @@ void check_places(const GrainScene& scene, const PlaceOfGrain& where) {
   }
   for (std::size_t i = 0; i < circles.size(); ++i) {
     for (const GrainWall& wall : scene.walls) {
-      const Vec2 start = {wall.move_x.at(0), wall.move_y.at(0)};
-      const double distance = nearest(wall, start, circles[i].centre).distance;
-      if (distance > 0 && std::isfinite(distance)) continue;
+      if (!is_behind(scene, scene.grains[i], wall)) continue;
       refuse_grain(i, where, format("grain {} starts behind wall \"{}\" or on it", i, wall.name),
                    "a contact could not tell which way is out",
                    wall.shape == GrainWall::Shape::line ? "Move it, or turn the normal of the wall round" : "Move it");
@@ -175,6 +175,7 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
     bad_input(format("the reference length is {} m, the margin {} m", options.reference_length, options.margin),
               "lengths are not negative", "Give 0 to have them chosen");
   }
+  check_laws_of_shapes(scene, options);
   const bool own_step = is_map(options.law) || options.law == NormalLaw::exact_flow;
   if (own_step && options.scheme == GrainOptions::Scheme::velocity_verlet) {
     bad_input(format("velocity_verlet is asked for with the law \"{}\"", to_string(options.law)),
@@ -187,6 +188,7 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
   for (std::size_t i = 0; i < scene.grains.size(); ++i) {
     try {
       check_grain(scene, i);
+      check_shape(scene, i);
     } catch (const Error& error) {
       throw error.at(where ? where(i) : std::string());
     }
@@ -207,6 +209,7 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
   }
   check_table(scene, options);
   check_places(scene, where);
+  check_bonds(scene, options);
 }
 
 }  // namespace equidem

@@ -64,7 +64,7 @@ struct PairProperties {
   double stiffness = 0;
   /// a = k dt²/m, held whatever the step and the masses (the paper's way); hertz_dashpot: k d_c^(1/2) dt²/m.
   double dimensionless = 0;
-  double restitution = 1;
+  double restitution = 1;                      ///< of central impacts; eccentric ones of shapes: part_step.hpp
   ContactEnd end = ContactEnd::at_zero_force;  ///< linear_dashpot, hertz_dashpot, exact_flow
   double friction = 0;                         ///< mu
   /// kT/kN >= 0; hertz_dashpot: kT/(k d_c^(1/2)). With friction > 0 and 0 here the contact slides always, Coulomb's law regularized by
@@ -98,7 +98,7 @@ struct GrainOptions {
     velocity_verlet,  ///< half kick, drift, force with the velocities of the half step, half kick (LAMMPS)
   } scheme = Scheme::semi_implicit_euler;
   double time_step = 0;         ///< s, > 0
-  double reference_length = 0;  ///< d_c, m; 0: twice the largest radius
+  double reference_length = 0;  ///< d_c, m; 0: twice the largest radius, of ellipses the long half-axis
   double margin = 0;            ///< of the neighbour lists, m; 0: chosen from speeds and density
   /// How two ellipses, or an ellipse and a disc, are found to touch.
   enum class EllipseLaw {
@@ -106,6 +106,11 @@ struct GrainOptions {
     enlarged_as_printed,  ///< Sukegawa's test (4.1)-(4.49) (enlarged_ellipse.hpp): misses shallow contacts
     enlarged_mended,      ///< the same with the quadrants of its angles mended
   } ellipse_law = EllipseLaw::exact;
+  /// How the dashpots of bonds act over a step.
+  enum class BondStep {
+    exact,  ///< decay exp(-C t/m) of each bond under the mean of all other forces, bond after bond: no limit to the step
+    explicit_euler,  ///< by the velocities at the start of the step (Sukegawa 2010, (5.2), (5.8)): limited (bond_step.hpp)
+  } bond_step = BondStep::exact;
   bool refuse_crossing = true;  ///< false: bodies may pass through one another, for studies of laws that let them
 };
 
@@ -113,7 +118,7 @@ using PlaceOfGrain = std::function<std::string(std::size_t grain)>;
 
 /// \throws Error (bad_input): no grains, radius or mass not positive, numbers not finite or beyond 1e150, kinds and pairs that do not fit, a table that is
 ///         not symmetric, neither or both of stiffness and dimensionless, restitution out of range for the law, friction negative,
-///         velocity_verlet with a map, the time step not positive, grains that start inside one another (centre within the other) or
+///         velocity_verlet with a map, shapes as in shape_check.hpp, the time step not positive, grains that start inside one another (centre within the other) or
 ///         with the centre behind a line
 /// \param where the user wrote a grain, for errors; may be empty
 void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where = {});

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "equidem/core/error.hpp"
@@ -11,13 +12,27 @@
 #include "equidem/grains/crossing.hpp"
 #include "equidem/grains/flow_step.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
-#include "equidem/grains/meeting.hpp"
+#include "equidem/grains/part_crossing.hpp"
+#include "equidem/grains/part_meeting.hpp"
+#include "equidem/grains/part_pairs.hpp"
+#include "equidem/grains/part_step.hpp"
 
 namespace equidem {
 namespace {
 
 /// A refused step costs at most as many steps more; to keep a state so seldom costs next to nothing.
 constexpr std::int64_t steps_between_kept_states = 256;
+
+/// As they were in the last step.
+std::pair<Vec2, Vec2> arms_of(const GrainSystem& system, std::size_t c) {
+  if (!system.parts.empty()) return {system.part_pairs[c].arm_i, system.part_pairs[c].arm_j};
+  const Candidate& candidate = system.candidates[c];
+  const double radius = system.bodies[static_cast<std::size_t>(candidate.i)].radius;
+  if (candidate.j < 0) return {radius * candidate.normal, {}};
+  const double sum = radius + system.bodies[static_cast<std::size_t>(candidate.j)].radius;
+  const double lever = radius / sum * (sum - candidate.overlap);
+  return {lever * candidate.normal, (lever - (sum - candidate.overlap)) * candidate.normal};
+}
 
 }  // namespace
 
@@ -28,6 +43,8 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   GrainSystem& system = self.system;
   system.options = options;
   order_by_place(system, scene);
+  tie_bonds(system, scene);
+  self.bond_limit = bond_step_limit(scene, options.bond_step);
   system.friction =
       std::any_of(scene.pairs.begin(), scene.pairs.end(), [](const PairProperties& pair) { return pair.friction > 0; });
   double largest = 0;
@@ -36,12 +53,22 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   for (const Grain& grain : scene.grains) {
     largest = std::max(largest, grain.radius);
     system.smallest_radius = std::min(system.smallest_radius, grain.radius);
-    fastest = std::max(fastest, norm(grain.velocity));
+    fastest = std::max(
+        fastest, norm(grain.velocity) + (grain.shape() == GrainShape::disc ? 0 : std::abs(grain.spin) * grain.radius));
   }
   system.length = options.reference_length > 0 ? options.reference_length : 2 * largest;
-  system.base_margin = options.margin > 0 ? options.margin : 0.2 * system.smallest_radius;
+  double smallest_size = system.smallest_radius;
+  for (const GrainPart& part : system.parts) {
+    smallest_size = std::min(smallest_size, part.size);
+    system.smallest_radius = std::min(system.smallest_radius, part.b);
+  }
+  system.base_margin = options.margin > 0 ? options.margin : 0.2 * smallest_size;
   system.next = system.motions;
-  if (options.law != NormalLaw::exact_flow) self.collide = collide_function(options.law, system.friction);
+  if (!system.parts.empty()) {
+    self.collide = collide_parts_function(options.law, system.friction);
+  } else if (options.law != NormalLaw::exact_flow) {
+    self.collide = collide_function(options.law, system.friction);
+  }
   if (self.collide && system.friction) system.pushes_before.resize(system.pushes.size());
   place_walls(system);
   system.margin = std::max(system.base_margin, 8 * fastest * options.time_step);
@@ -50,19 +77,27 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   for (std::size_t c = 0; c < system.candidates.size(); ++c) {
     // bodies that overlap at the start touch
     Candidate& candidate = system.candidates[c];
-    candidate.touching = meeting_of(system, candidate).overlap > 0;
+    candidate.touching = overlap_of(system, c) > 0;
     if (candidate.touching) ++system.counters.contacts;
   }
-  if (self.verlet()) self.collide(system);
+  if (self.verlet()) {
+    self.push();
+    count_half_a_kick(system);
+  }
   self.effects = effects_of(scene, options);
   self.potential_at_start = self.potential();
   const auto [normal, tangential] = self.elastic();
-  self.energy_at_start = self.kinetic() + normal + tangential;
+  self.energy_at_start = self.kinetic() + normal + tangential + elastic_of_bonds(system);
 }
 
 GrainSimulation::~GrainSimulation() = default;
 GrainSimulation::GrainSimulation(GrainSimulation&&) noexcept = default;
 GrainSimulation& GrainSimulation::operator=(GrainSimulation&&) noexcept = default;
+
+void GrainSimulation::Implementation::push() {
+  collide(system);
+  if (!system.bonds.empty()) push_bonds(system);
+}
 
 void GrainSimulation::Implementation::make_step() {
   if (!verlet()) system.deepest = 0;  // verlet has found the overlaps at the end of the last step
@@ -72,21 +107,23 @@ void GrainSimulation::Implementation::make_step() {
     if (verlet()) {
       drift_of_verlet(system);
     } else {
-      collide(system);
+      push();
       move_by_euler(system);
     }
     const double reach = reach_of(system);
     refuse_runaway(system, reach);
     refresh_candidates(system, reach);
+    refuse_bowls(system);
     if (system.options.refuse_crossing) refuse_crossings(system, reach);
   }
   system.motions.swap(system.next);
   ++system.step;
   place_walls(system);
+  turn_axes(system);
   cover_joints(system);
   if (collide && verlet()) {
     system.deepest = 0;
-    collide(system);
+    push();
     kick_of_verlet(system);
   }
 }
@@ -135,9 +172,11 @@ std::vector<Grain> GrainSimulation::grains() const {
 std::vector<GrainContact> GrainSimulation::contacts() const {
   const GrainSystem& system = implementation_->system;
   std::vector<GrainContact> contacts;
-  for (const Candidate& candidate : system.candidates) {
+  for (std::size_t c = 0; c < system.candidates.size(); ++c) {
+    const Candidate& candidate = system.candidates[c];
     if (!candidate.touching || candidate.steps == 0) continue;
     GrainContact contact;
+    std::tie(contact.arm_i, contact.arm_j) = arms_of(system, c);
     contact.i = static_cast<std::int32_t>(system.grain_of[static_cast<std::size_t>(candidate.i)]);
     contact.overlap = candidate.overlap;
     contact.closing = candidate.closing;
@@ -153,12 +192,14 @@ std::vector<GrainContact> GrainSimulation::contacts() const {
       if (contact.j < contact.i) {
         std::swap(contact.i, contact.j);
         contact.normal = -contact.normal;
+        std::swap(contact.arm_i, contact.arm_j);
       }
     }
     contacts.push_back(contact);
   }
-  std::sort(contacts.begin(), contacts.end(),
-            [](const GrainContact& a, const GrainContact& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
+  std::stable_sort(contacts.begin(), contacts.end(), [](const GrainContact& a, const GrainContact& b) {
+    return std::pair(a.i, a.j) < std::pair(b.i, b.j);
+  });
   return contacts;
 }
 
@@ -179,7 +220,9 @@ double GrainSimulation::bytes_per_grain() const {
   const double bytes = static_cast<double>(
       system.bodies.capacity() * sizeof(GrainBody) + 2 * system.motions.capacity() * sizeof(GrainMotion) +
       (system.pushes.capacity() + system.pushes_before.capacity()) * sizeof(Push) +
-      system.candidates.capacity() * sizeof(Candidate) + system.exact_pairs.capacity() * sizeof(ExactPair) +
+      system.candidates.capacity() * sizeof(Candidate) + system.part_pairs.capacity() * sizeof(PartPair) +
+      system.parts.capacity() * sizeof(GrainPart) + system.axes.capacity() * sizeof(Vec2) +
+      system.bonds.capacity() * sizeof(TiedPair) + system.exact_pairs.capacity() * sizeof(ExactPair) +
       system.scene.grains.capacity() * sizeof(Grain));
   return bytes / static_cast<double>(system.bodies.size());
 }

@@ -18,30 +18,32 @@ namespace equidem {
 struct GrainLedger {
   double kinetic = 0;
   double elastic_normal = 0, elastic_tangential = 0;
+  double elastic_bond = 0;      ///< springs of bonds
   double potential = 0;         ///< gravity, 0 at the start
   double lost_restitution = 0;  ///< maps
   double lost_dashpot = 0;      ///< normal
   double lost_slip = 0, lost_tangential_dashpot = 0;
   double lost_release =
       0;  ///< tangential springs, and normal springs of contacts that end at zero force, let go at the end of a contact
+  double lost_bond = 0;  ///< dashpots of bonds
   double work_of_walls = 0;
   double initial = 0;  ///< kinetic + elastic at the start
   [[nodiscard]] double lost() const {
-    return lost_restitution + lost_dashpot + lost_slip + lost_tangential_dashpot + lost_release;
+    return lost_restitution + lost_dashpot + lost_slip + lost_tangential_dashpot + lost_release + lost_bond;
   }
+  [[nodiscard]] double elastic() const { return elastic_normal + elastic_tangential + elastic_bond; }
   /// What the balance lacks: kinetic + elastic + potential + lost - work - initial.
-  [[nodiscard]] double error() const {
-    return kinetic + elastic_normal + elastic_tangential + potential + lost() - work_of_walls - initial;
-  }
+  [[nodiscard]] double error() const { return kinetic + elastic() + potential + lost() - work_of_walls - initial; }
 };
 
 /// A contact as it was in the last step.
 struct GrainContact {
-  std::int32_t i = 0;                             ///< grain
+  std::int32_t i = 0;                             ///< grain; clumps may meet in several contacts
   std::int32_t j = 0;                             ///< grain, or ~j a wall (negative)
   double overlap = 0;                             ///< at the beginning of the last step, m
   double closing = 0;                             ///< then, m/s
   Vec2 normal;                                    ///< unit, from i to j
+  Vec2 arm_i, arm_j;                              ///< from the centres of mass to the contact point, m; of a wall {}
   double normal_force = 0, tangential_force = 0;  ///< mean over the step
   int mode = 0;                                   ///< of the maps
   std::int64_t steps = 0;                         ///< it has lasted
@@ -56,6 +58,24 @@ struct GrainCounters {
   std::int64_t sweeps = 0;       ///< exact_flow: over all contacts
   /// exact_flow: contacts in a step that is not stable for every arrangement of their neighbours; where it is 0 none was.
   std::int64_t doubtful = 0;
+};
+
+/// How far a bond has given way since the start.
+struct BondDrift {
+  std::size_t i = 0, j = 0;  ///< grains
+  double distance = 0;       ///< of the centres, over the sum of the radii
+  double slip = 0;           ///< of the surfaces at the point of the bond, over the same: whole turns are not counted
+  double roll = 0;           ///< of j against i, rad
+};
+
+/// The same of all bonds.
+struct BondReport {
+  struct Drift {
+    double largest = 0, mean = 0;  ///< over the bonds, of absolute values
+  };
+  std::size_t number = 0;
+  Drift distance, slip, roll;  ///< as in BondDrift
+  double step_limit = 0;       ///< s, that the bonds impose; infinite: none
 };
 
 /// Everything needed to go on with the same bits, in the caller's order.
@@ -94,6 +114,9 @@ class GrainSimulation {
   [[nodiscard]] std::vector<GrainContact> contacts() const;
   [[nodiscard]] GrainLedger energy() const;
   [[nodiscard]] const GrainCounters& counters() const;
+  [[nodiscard]] BondReport bonds() const;
+  /// In the order of (i, j), i < j.
+  [[nodiscard]] std::vector<BondDrift> bond_drifts() const;
   [[nodiscard]] const Effects& effects() const;
   /// Bytes of all arrays, per grain.
   [[nodiscard]] double bytes_per_grain() const;

@@ -14,9 +14,12 @@ struct GrainSimulation::Implementation {
   Effects effects;
   CollideFunction collide = nullptr;  ///< none: exact_flow
   double potential_at_start = 0, energy_at_start = 0;
+  double bond_limit = 0;  ///< step that bonds impose, s
   GrainState kept;  ///< a state not long ago, to come back to
 
   void make_step();
+  /// What contacts and bonds give in the step.
+  void push();
   [[nodiscard]] bool verlet() const { return system.options.scheme == GrainOptions::Scheme::velocity_verlet; }
   /// Whether a step needs the pushes of the one before.
   [[nodiscard]] bool keeps_pushes() const { return verlet() || (collide && system.friction); }

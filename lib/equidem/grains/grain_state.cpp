@@ -4,13 +4,30 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
+#include "equidem/grains/part_pairs.hpp"
 
 namespace equidem {
 namespace {
 
-/// What a contact remembers, in numbers: i, j, steps, mode, then the rest.
-constexpr std::size_t numbers_per_contact = 13;
+/// What a contact remembers, in numbers: i, j, steps, mode, then the rest; of parts theirs and their arms.
+constexpr std::size_t numbers_per_plain_contact = 13;
+constexpr std::size_t numbers_per_pair_of_parts = 6;
 constexpr std::size_t numbers_per_push = 5;
+
+std::size_t numbers_per_contact_of(const GrainSystem& system) {
+  return numbers_per_plain_contact + (system.parts.empty() ? 0 : numbers_per_pair_of_parts);
+}
+
+void append(std::vector<double>& numbers, const PartPair& pair) {
+  for (const double number : {static_cast<double>(pair.i), static_cast<double>(pair.j), pair.arm_i.x, pair.arm_i.y,
+                              pair.arm_j.x, pair.arm_j.y}) {
+    numbers.push_back(number);
+  }
+}
+
+bool is_of(const double* numbers, const PartPair& pair) {
+  return numbers[0] == static_cast<double>(pair.i) && numbers[1] == static_cast<double>(pair.j);
+}
 
 void append(std::vector<double>& numbers, const Candidate& candidate) {
   for (const double number :
@@ -45,8 +62,10 @@ GrainState GrainSimulation::save() const {
   state.grains = grains();
   state.ledger = system.lost;
   state.counters = system.counters;
-  for (const Candidate& candidate : system.candidates) {
-    if (candidate.touching) append(state.contacts, candidate);
+  for (std::size_t c = 0; c < system.candidates.size(); ++c) {
+    if (!system.candidates[c].touching) continue;
+    append(state.contacts, system.candidates[c]);
+    if (!system.parts.empty()) append(state.contacts, system.part_pairs[c]);
   }
   if (!implementation_->keeps_pushes()) return state;  // the others find all pushes of a step in that step
   for (const Push& push : system.pushes) {
@@ -64,6 +83,8 @@ void GrainSimulation::restore(const GrainState& state) {
 
 void GrainSimulation::go_back_to(const GrainState& state) {
   GrainSystem& system = implementation_->system;
+  const std::size_t numbers_per_contact = numbers_per_contact_of(system);
+  const bool shapes = !system.parts.empty();
   if (state.grains.size() != system.motions.size() || state.contacts.size() % numbers_per_contact != 0 ||
       state.sums.size() != (implementation_->keeps_pushes() ? numbers_per_push * system.motions.size() : 0)) {
     bad_input(format("the state is of {}", counted(static_cast<long long>(state.grains.size()), "grain")),
@@ -81,19 +102,29 @@ void GrainSimulation::go_back_to(const GrainState& state) {
   system.free_flight = false;
   system.deepest = std::numeric_limits<double>::infinity();  // not known: verlet has to look
   place_walls(system);
+  turn_axes(system);
   system.candidates.clear();
   system.exact_pairs.clear();
+  system.part_pairs.clear();
   find_candidates(system);
   std::size_t c = 0;
   for (std::size_t at = 0; at < state.contacts.size(); at += numbers_per_contact) {
     const auto i = static_cast<std::int32_t>(state.contacts[at]);
     const auto j = static_cast<std::int32_t>(state.contacts[at + 1]);
-    while (c < system.candidates.size() && !(system.candidates[c].i == i && system.candidates[c].j == j)) ++c;
+    const double* numbers = state.contacts.data() + at + numbers_per_plain_contact;
+    const auto is_it = [&] {
+      if (system.candidates[c].i != i || system.candidates[c].j != j) return false;
+      return !shapes || is_of(numbers, system.part_pairs[c]);
+    };
+    while (c < system.candidates.size() && !is_it()) ++c;
     if (c == system.candidates.size()) {
       bad_input("the state has a contact of bodies that are apart", "it is of another scene, or damaged",
                 "Resume with the scene that the state was saved from");
     }
     take(state.contacts.data() + at, system.candidates[c]);
+    if (!shapes) continue;
+    system.part_pairs[c].arm_i = {numbers[2], numbers[3]};
+    system.part_pairs[c].arm_j = {numbers[4], numbers[5]};
   }
   system.counters = state.counters;
 }

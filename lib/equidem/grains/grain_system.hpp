@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "equidem/contact/exact_contact.hpp"
+#include "equidem/grains/bond_step.hpp"
+#include "equidem/grains/grain_parts.hpp"
 #include "equidem/grains/grain_scene.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/neighbours.hpp"
@@ -77,19 +79,25 @@ struct GrainSystem {
   std::vector<Push> pushes_before;  ///< of the step before, where friction asks for them
   std::vector<WallPlace> walls;
   std::vector<WallJoints> joints;     ///< of each wall; empty where none join
-  std::vector<Candidate> candidates;  ///< ordered by i, then j, walls last
+  std::vector<Candidate> candidates;  ///< ordered by i, then j, walls last, then parts
+  std::vector<TiedPair> bonds;        ///< ordered by i, then j
   NeighbourFinder finder;
   std::vector<Circle> circles;         ///< bodies, for the finder
   std::vector<ExactPair> exact_pairs;  ///< exact_flow: one for each candidate
-  double margin = 0, moved = 0;        ///< of the candidates; how far bodies may have moved since they were found, m
-  double base_margin = 0;              ///< while bodies are slow, m
-  std::vector<GrainMotion> next;       ///< after the step being made
+  // ellipses and clumps; all empty in scenes of discs alone
+  std::vector<GrainPart> parts;          ///< of body k: from first_part[k] to first_part[k + 1]
+  std::vector<std::int32_t> first_part;  ///< one more than bodies
+  std::vector<Vec2> axes;                ///< x-axis of each body where it is now
+  std::vector<PartPair> part_pairs;      ///< one for each candidate
+  double margin = 0, moved = 0;          ///< of the candidates; how far bodies may have moved since they were found, m
+  double base_margin = 0;                ///< while bodies are slow, m
+  std::vector<GrainMotion> next;         ///< after the step being made
 
-  bool free_flight = false;  ///< all pushes are zero
-  double longest_way = 0;    ///< of a body in the step being made, squared, m²
-  double smallest_radius = 0;
-  double deepest = 0;  ///< overlap of the step, m
-  GrainLedger lost;    ///< losses and work since the start
+  bool free_flight = false;    ///< all pushes are zero
+  double longest_way = 0;      ///< of a body in the step being made, squared, m²
+  double smallest_radius = 0;  ///< of the circles that parts hold, m
+  double deepest = 0;          ///< overlap of the step, m
+  GrainLedger lost;            ///< losses and work since the start
   GrainCounters counters;
 
   [[nodiscard]] double dt() const { return options.time_step; }

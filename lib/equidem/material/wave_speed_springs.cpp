@@ -54,6 +54,13 @@ double dashpot_of(double damping, double mass, double stiffness) {
   return 2 * damping * std::sqrt(mass * stiffness);
 }
 
+ContactDamping contact_damping_of(double damping, bool at_wall, double inertia_factor) {
+  need_damping(damping);
+  need_positive("inertia factor", inertia_factor);
+  const double normal = at_wall ? damping : damping * std::numbers::sqrt2;
+  return {normal, normal * std::sqrt(1 + 1 / inertia_factor)};
+}
+
 double natural_period(double mass, double stiffness) {
   need_positive("mass", mass);
   need_positive("stiffness", stiffness);

@@ -29,6 +29,14 @@ SpringConstants springs_of_wave_speeds(double density, const WaveSpeeds& speeds)
 /// is m/2 and the damping ratio sqrt(2) h.
 double dashpot_of(double damping, double mass, double stiffness);
 
+/// Damping ratios c/(2 sqrt(m' k)) of a contact whose two dashpots are c = 2 h sqrt(m k) (2.27). m is the mass of a disc, m' what
+/// the contact moves: m/2 along the normal, m at a wall; by 1 + m r²/I less along the tangent.
+struct ContactDamping {
+  double normal = 0, tangential = 0;
+};
+/// \param inertia_factor I/(m r²)
+ContactDamping contact_damping_of(double damping, bool at_wall, double inertia_factor);
+
 /// T = 2 pi sqrt(m/k), s; of a disc on its wave-speed spring 4 pi r/Vp.
 double natural_period(double mass, double stiffness);
 /// The thesis's rule: at most an eighth of the shortest natural period, s.

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// How long a step bonds allow, what they lose, and what must not change a bit.
+#include <limits>
+
+#include "equidem/grains/bond_step.hpp"
+
+#include "grains/bonded_scenes.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+using BondStep = GrainOptions::BondStep;
+
+GrainBond dashpots_alone() {
+  GrainBond bond = all_of_a_bond;
+  bond.normal_spring = bond.tangential_spring = 0;
+  return bond;
+}
+
+double energy_of(const GrainSimulation& simulation) {
+  const GrainLedger ledger = simulation.energy();
+  return ledger.kinetic + ledger.elastic();
+}
+
+/// Discs thrown about in a box, every column of it tied into a chain by all that bonds have.
+GrainScene busy_chains(NormalLaw law) {
+  constexpr int columns = 3, rows = 3;
+  GrainScene scene = busy_box(law, columns, rows, 31);
+  for (int i = 0; i < columns; ++i) {
+    for (int j = 0; j + 1 < rows; ++j) {
+      GrainBond bond = all_of_a_bond;
+      bond.i = static_cast<std::size_t>(i * rows + j);
+      bond.j = bond.i + 1;
+      scene.bonds.push_back(bond);
+    }
+  }
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("just_below_the_limit_of_its_bonds_a_chain_is_stable_and_above_it_is_refused") {
+  const Stepping stepping = GENERATE(from_range(bonding_steppings));
+  const auto bond_step = GENERATE(from_range(both_bond_steps));
+  const std::size_t discs = GENERATE(2, 3, 8);
+  const bool springs = GENERATE(false, true);
+  const GrainScene scene = chain_scene(stepping.law, discs, springs ? all_of_a_bond : dashpots_alone());
+  const double limit = bond_step_limit(scene, bond_step);
+  CAPTURE(stepping.name(), discs, springs, limit, bond_step == BondStep::exact);
+  if (!springs && bond_step == BondStep::exact) {
+    CHECK(limit == std::numeric_limits<double>::infinity());
+    return;
+  }
+  GrainOptions options = options_of(stepping, 0.999 * limit);
+  options.bond_step = bond_step;
+  GrainScene slow = scene;  // the chain keeps its shape
+  for (Grain& grain : slow.grains) grain.velocity *= 1e-6, grain.spin *= 1e-6;
+  GrainSimulation simulation(slow, options);
+  const double before = energy_of(simulation);
+  simulation.advance(2000);
+  CHECK(energy_of(simulation) < before);
+  CHECK(simulation.bonds().step_limit == limit);
+
+  options.time_step = 1.001 * limit;
+  CHECK_THROWS_WITH(GrainSimulation(scene, options),
+                    Catch::Contains("1.001 times the limit of ") && Catch::Contains("that the bonds impose"));
+}
+
+TEST_CASE("the_limit_of_a_long_chain_of_equal_discs_is_sharp") {
+  // straight: the highest mode of the normal dashpots alone is 4 C_n/m
+  GrainScene scene;
+  for (int k = 0; k < 40; ++k) scene.grains.push_back(ball({1.0 * k, 0}, 0.5));
+  for (std::size_t k = 0; k + 1 < 40; ++k) scene.bonds.push_back({.i = k, .j = k + 1, .normal_dashpot = 3});
+  CHECK(bond_step_limit(scene, BondStep::explicit_euler) == Approx(2 / (4 * 3.0)));
+  // and a pair has the limit of the thesis, 2 m/C_n with the reduced mass
+  scene.bonds.resize(1);
+  CHECK(bond_step_limit(scene, BondStep::explicit_euler) == Approx(2 * 0.5 / 3.0));
+}
+
+TEST_CASE("exact_dashpots_never_feed_the_motion_however_long_the_step") {
+  const Stepping stepping = GENERATE(from_range(bonding_steppings));
+  const double strength = GENERATE(1.0, 1e3, 1e6, 1e12);
+  GrainBond bond = dashpots_alone();
+  for (double* dashpot : {&bond.normal_dashpot, &bond.tangential_dashpot, &bond.rolling_dashpot}) *dashpot *= strength;
+  GrainScene scene = chain_scene(stepping.law, 9, bond);
+  GrainSimulation simulation(scene, options_of(stepping, 0.01));
+  double before = energy_of(simulation);
+  for (int k = 0; k < 300; ++k) {
+    simulation.advance(1);
+    const double now = energy_of(simulation);
+    CAPTURE(stepping.name(), strength, k, before, now);
+    REQUIRE(now <= before * (1 + 1e-14));
+    before = now;
+  }
+}
+
+TEST_CASE("the_ledger_of_dashpots_closes_to_round_off_with_euler") {
+  const auto bond_step = GENERATE(from_range(both_bond_steps));
+  const NormalLaw law = GENERATE(NormalLaw::linear_dashpot, NormalLaw::energy_map);
+  const GrainScene scene = chain_scene(law, 5, dashpots_alone());
+  GrainOptions options = options_of(law, 0.5 * bond_step_limit(scene, BondStep::explicit_euler));
+  options.bond_step = bond_step;
+  GrainSimulation simulation(scene, options);
+  simulation.advance(100);
+  const GrainLedger ledger = simulation.energy();
+  CAPTURE(to_string(law), ledger.kinetic, ledger.lost_bond, ledger.initial, ledger.error());
+  CHECK(simulation.counters().contacts == 0);
+  CHECK(std::abs(ledger.error()) < 1e-13 * ledger.initial);
+  CHECK(ledger.lost() == ledger.lost_bond);
+  CHECK(ledger.lost_bond > 0.3 * ledger.initial);
+}
+
+TEST_CASE("the_ledger_of_bonds_closes_with_the_step") {
+  const Stepping stepping = GENERATE(from_range(bonding_steppings));
+  const auto bond_step = GENERATE(from_range(both_bond_steps));
+  const GrainScene scene = chain_scene(stepping.law, 4, all_of_a_bond);
+  std::vector<double> errors;
+  for (const double step : {0.008, 0.004, 0.002, 0.001}) {
+    GrainOptions options = options_of(stepping, step);
+    options.bond_step = bond_step;
+    GrainSimulation simulation(scene, options);
+    simulation.advance(std::llround(1 / step));
+    const GrainLedger ledger = simulation.energy();
+    errors.push_back(std::abs(ledger.error()) / ledger.initial);
+  }
+  const double order = std::log2(errors[1] / errors[3]) / 2;
+  CAPTURE(stepping.name(), errors, order);
+  CHECK(errors.back() < 0.01);
+  CHECK(order > 0.85);
+}
+
+TEST_CASE("a_spinning_pair_drifts_apart_at_centrifugal_force_over_dashpot") {
+  const double spin = 0.5, dashpot = 50, time = 0.2;
+  GrainScene scene =
+      pair_scene(NormalLaw::linear_dashpot, {.j = 1, .normal_dashpot = dashpot, .tangential_dashpot = 50});
+  const double mass = 1 / (1 + 1 / 0.36), distance = 0.8;
+  scene.grains[0].velocity = {0, -spin * distance * mass};  // about the centre of mass
+  scene.grains[1].velocity = {0, spin * distance * mass / 0.36};
+  scene.grains[0].spin = scene.grains[1].spin = spin;
+  GrainSimulation simulation(scene, options_of(NormalLaw::linear_dashpot, 1e-4));
+  simulation.advance(1000);
+  const double before = simulation.bonds().distance.largest;
+  simulation.advance(2000);
+  const double rate = (simulation.bonds().distance.largest - before) * distance / time;
+  const double expected = mass * spin * spin * distance / dashpot;
+  CAPTURE(rate, expected);
+  CHECK(rate == Approx(expected).epsilon(0.02));
+}
+
+TEST_CASE("the_order_of_bodies_and_of_bonds_changes_no_bit") {
+  const Stepping stepping = GENERATE(from_range(bonding_steppings));
+  const GrainScene scene = busy_chains(stepping.law);
+  GrainScene other = scene;
+  const std::size_t last = scene.grains.size() - 1;
+  std::reverse(other.grains.begin(), other.grains.end());
+  std::reverse(other.bonds.begin(), other.bonds.end());
+  for (std::size_t b = 0; b < other.bonds.size(); ++b) {
+    GrainBond& bond = other.bonds[b];
+    bond.i = last - bond.i;
+    bond.j = last - bond.j;
+    if (b % 2 == 0) std::swap(bond.i, bond.j);
+  }
+  GrainSimulation one(scene, options_of(stepping, 0.005)), two(other, options_of(stepping, 0.005));
+  for (int k = 0; k < 30; ++k) {
+    one.advance(10);
+    two.advance(10);
+    const auto a = one.grains(), b = two.grains();
+    for (std::size_t g = 0; g <= last; ++g) {
+      CAPTURE(stepping.name(), k, g);
+      REQUIRE(a[g].position == b[last - g].position);
+      REQUIRE(a[g].velocity == b[last - g].velocity);
+      REQUIRE(a[g].spin == b[last - g].spin);
+    }
+    REQUIRE(one.energy().lost_bond == two.energy().lost_bond);
+    REQUIRE(one.energy().elastic_bond == two.energy().elastic_bond);
+    REQUIRE(one.bonds().slip.mean == two.bonds().slip.mean);
+  }
+  CHECK(one.counters().contacts > 5);
+}
+
+TEST_CASE("a_run_with_bonds_goes_on_with_the_same_bits") {
+  const Stepping stepping = GENERATE(from_range(bonding_steppings));
+  const GrainScene scene = busy_chains(stepping.law);
+  const GrainOptions options = options_of(stepping, 0.01);
+  constexpr int last = 100;
+  GrainSimulation whole(scene, options);
+  std::vector<GrainState> states;
+  for (int k = 0; k < last; ++k) {
+    if (k % 7 == 0) states.push_back(whole.save());
+    whole.advance(1);
+  }
+  const Bits end = bits_of(whole);
+  for (std::size_t s = 0; s < states.size(); ++s) {
+    GrainSimulation resumed(scene, options);
+    resumed.restore(states[s]);
+    resumed.advance(last - 7 * static_cast<int>(s));
+    CAPTURE(stepping.name(), s);
+    REQUIRE(bits_of(resumed) == end);
+    CHECK(resumed.energy().lost_bond == whole.energy().lost_bond);
+    CHECK(resumed.energy().elastic_bond == whole.energy().elastic_bond);
+    CHECK(resumed.bonds().roll.largest == whole.bonds().roll.largest);
+  }
+}
+
+TEST_CASE("bonds_that_make_no_sense_are_refused") {
+  const NormalLaw law = NormalLaw::linear_dashpot;
+  const GrainBond good{.j = 1, .normal_dashpot = 1, .tangential_dashpot = 1};
+  const auto refused = [&](const auto& change, const std::string& said) {
+    GrainScene scene = pair_scene(law, good);
+    GrainOptions options = options_of(law, 0.01);
+    change(scene, options);
+    CHECK_THROWS_WITH(check(scene, options), Catch::Contains(said));
+  };
+  using Scene = GrainScene;
+  using Options = GrainOptions;
+  refused([](Scene& s, Options&) { s.bonds[0].j = 2; }, "a bond ties grain 2 (there are 2 grains, counted from 0)");
+  refused([](Scene& s, Options&) { s.bonds[0].j = 0; }, "a bond ties grain 0 to itself");
+  refused([](Scene& s, Options&) { s.bonds.push_back({.i = 1, .j = 0, .normal_dashpot = 2}); },
+          "grains 0 and 1 are bonded twice");
+  refused([](Scene& s, Options&) { s.bonds[0].rolling_dashpot = -1; }, "has a dashpot or a spring of -1");
+  refused([](Scene& s, Options&) { s.bonds[0].normal_spring = std::numeric_limits<double>::quiet_NaN(); },
+          "has a dashpot or a spring of nan");
+  refused([](Scene& s, Options&) { s.bonds[0] = {.j = 1}; }, "it ties nothing");
+  refused([](Scene& s, Options&) { s.grains[1].short_half_axis = 0.1; }, "a bond ties grain 1, which is no disc");
+  refused([](Scene&, Options& o) { o.law = NormalLaw::exact_flow; }, "Use the law linear_dashpot");
+  refused([](Scene& s, Options&) { s.grains[1].position = s.grains[0].position; }, "inside one another");
+}
+
+TEST_CASE("bonded_discs_that_are_pressed_into_one_another_stop_the_run") {
+  GrainScene scene = pair_scene(NormalLaw::linear_dashpot, {.j = 1, .normal_dashpot = 0.5, .tangential_dashpot = 0.5});
+  scene.grains[1].position = {0, 0.8};
+  scene.walls = {line("floor", {0, -0.5}, {0, 1})};
+  scene.gravity = {0, -1};
+  GrainSimulation simulation(scene, options_of(NormalLaw::linear_dashpot, 1e-3));
+  CHECK_THROWS_WITH(simulation.advance(100000), Catch::Contains("the centres of the bonded grains 0 and 1"));
+  CHECK(simulation.bonds().distance.largest == Approx(1).epsilon(2e-3));
+}

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Small scenes of bonded discs.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "grains/scenes.hpp"
+
+namespace equidem::test {
+
+/// Those that know bonds.
+inline const std::vector<Stepping> bonding_steppings{{NormalLaw::linear_dashpot, Scheme::semi_implicit_euler},
+                                                     {NormalLaw::linear_dashpot, Scheme::velocity_verlet},
+                                                     {NormalLaw::hertz_dashpot, Scheme::semi_implicit_euler},
+                                                     {NormalLaw::energy_map, Scheme::semi_implicit_euler}};
+constexpr std::array both_bond_steps{GrainOptions::BondStep::exact, GrainOptions::BondStep::explicit_euler};
+
+/// Every dashpot and spring.
+constexpr GrainBond all_of_a_bond{
+    .normal_dashpot = 3, .tangential_dashpot = 2, .rolling_dashpot = 0.1, .normal_spring = 5, .tangential_spring = 4};
+
+/// Two unequal discs that just touch, the first at the origin, the other on the x axis.
+inline GrainScene pair_scene(NormalLaw law, const GrainBond& bond) {
+  GrainScene scene = scene_of({ball({0, 0}, 0.5, {}, 1), ball({0.8, 0}, 0.3, {}, 0.36)}, {}, one_second(law, 0.5));
+  scene.bonds = {bond};
+  return scene;
+}
+
+/// A crooked chain of discs that move at random, tied one to the next, without gravity and walls.
+inline GrainScene chain_scene(NormalLaw law, std::size_t discs, const GrainBond& like) {
+  Random random(discs);
+  std::vector<Grain> grains;
+  Vec2 place;
+  for (std::size_t k = 0; k < discs; ++k) {
+    const double radius = random.uniform(0.3, 0.5);
+    Grain grain = ball(place, radius, {random.uniform(-1, 1), random.uniform(-1, 1)}, 4 * radius * radius);
+    grain.spin = random.uniform(-1, 1);
+    grains.push_back(grain);
+    place += Vec2{1, k % 2 == 0 ? 0.3 : -0.5};
+  }
+  GrainScene scene = scene_of(std::move(grains), {}, one_second(law, 0.8));
+  for (std::size_t k = 0; k + 1 < discs; ++k) {
+    GrainBond bond = like;
+    bond.i = k;
+    bond.j = k + 1;
+    scene.bonds.push_back(bond);
+  }
+  return scene;
+}
+
+struct Momenta {
+  Vec2 linear;
+  double angular = 0;  ///< about the origin
+};
+
+inline Momenta momenta_of(const std::vector<Grain>& grains) {
+  Momenta sum;
+  for (const Grain& grain : grains) {
+    sum.linear += grain.inertia.mass * grain.velocity;
+    sum.angular += grain.inertia.mass * cross(grain.position, grain.velocity) + grain.inertia.moment * grain.spin;
+  }
+  return sum;
+}
+
+}  // namespace equidem::test

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What must not change a bit with ellipses and clumps: order, margin, saving.
+#include "grains/shapes.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+TEST_CASE("the_order_of_bodies_clumps_and_their_discs_changes_no_bit") {
+  const Stepping stepping = GENERATE(from_range(force_steppings));
+  const GrainScene scene = mixed_box(stepping.law, 4, 4, 71);
+  GrainScene other = scene;
+  std::reverse(other.grains.begin(), other.grains.end());
+  std::reverse(other.walls.begin(), other.walls.end());
+  std::reverse(other.clumps.begin(), other.clumps.end());
+  for (Clump& clump : other.clumps) std::reverse(clump.discs.begin(), clump.discs.end());
+  for (Grain& grain : other.grains) {
+    if (grain.clump >= 0) grain.clump = static_cast<int>(other.clumps.size()) - 1 - grain.clump;
+  }
+  GrainSimulation one(scene, options_of(stepping, 0.004)), two(other, options_of(stepping, 0.004));
+  one.advance(400);
+  two.advance(400);
+  CHECK(one.counters().contacts > 20);
+  CHECK(one.energy().kinetic == two.energy().kinetic);
+  std::vector<Grain> expected = one.grains();
+  std::reverse(expected.begin(), expected.end());
+  const std::vector<Grain> found = two.grains();
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    CAPTURE(stepping.name(), k);
+    CHECK(found[k].position == expected[k].position);
+    CHECK(found[k].velocity == expected[k].velocity);
+    CHECK(found[k].spin == expected[k].spin);
+    CHECK(found[k].angle == expected[k].angle);
+  }
+}
+
+TEST_CASE("the_margin_changes_no_bit_of_ellipses_and_clumps") {
+  const Stepping stepping = GENERATE(from_range(force_steppings));
+  const GrainScene scene = mixed_box(stepping.law, 4, 4, 72);
+  const auto run = [&](double margin) {
+    GrainOptions options = options_of(stepping, 0.004);
+    options.margin = margin;
+    GrainSimulation simulation(scene, options);
+    simulation.advance(400);
+    CHECK(simulation.counters().contacts > 20);
+    return bits_of(simulation);
+  };
+  const Bits chosen = run(0);
+  for (const double margin : {1e-6, 0.01, 0.3, 10.0}) {
+    CAPTURE(stepping.name(), margin);
+    CHECK(run(margin) == chosen);
+  }
+}
+
+TEST_CASE("ellipses_and_clumps_saved_at_any_step_go_on_with_the_same_bits") {
+  const Stepping stepping = GENERATE(from_range(force_steppings));
+  const GrainScene scene = mixed_box(stepping.law, 3, 3, 73);
+  const GrainOptions options = options_of(stepping, 0.01);
+  constexpr int last = 120;
+  GrainSimulation whole(scene, options);
+  std::vector<GrainState> states;
+  std::vector<Bits> seen;
+  for (int k = 0; k < last; ++k) {
+    states.push_back(whole.save());
+    seen.push_back(bits_of(whole));
+    whole.advance(1);
+  }
+  REQUIRE(whole.counters().contacts > 10);
+  const Bits end = bits_of(whole);
+  for (int k = 0; k < last; ++k) {
+    CAPTURE(stepping.name(), k);
+    GrainSimulation resumed(scene, options);
+    resumed.restore(states[static_cast<std::size_t>(k)]);
+    REQUIRE(bits_of(resumed) == seen[static_cast<std::size_t>(k)]);
+    resumed.advance(last - k);
+    REQUIRE(bits_of(resumed) == end);
+  }
+}
+
+TEST_CASE("an_ellipse_slides_over_a_joint_of_segments_as_over_one") {
+  // Where walls join, one contact: the floor in two pieces is as stiff as in one.
+  const bool clump = GENERATE(false, true);
+  const auto run = [&](const std::vector<double>& ends) {
+    GrainScene scene = scene_of({}, {}, {.stiffness = 1e4}, {0, -1});
+    scene.grains = {clump ? lump(scene, pair_of_discs(), {-3, 1 - 1e-5}, 0, {1, 0})
+                          : oval({-3, 0.5}, 1, 0.5, 0.1, {1, 0})};
+    for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+      GrainWall wall;
+      wall.shape = GrainWall::Shape::segment;
+      wall.name = std::to_string(k);
+      wall.point = {ends[k], 0};
+      wall.end = {ends[k + 1], 0};
+      scene.walls.push_back(wall);
+    }
+    GrainSimulation simulation(scene, options_of({NormalLaw::linear_dashpot, Scheme::velocity_verlet}, 1e-3));
+    simulation.advance(6000);
+    CHECK(simulation.grains()[0].position.x > 2.9);
+    return simulation.grains()[0];
+  };
+  const Grain whole = run({-20, 20}), pieces = run({-20, 0, 1, 20});
+  CAPTURE(clump, whole.position.y, pieces.position.y, whole.angle, pieces.angle);
+  CHECK(norm(whole.position - pieces.position) < 1e-9);
+  CHECK(std::abs(whole.angle - pieces.angle) < 1e-9);
+}

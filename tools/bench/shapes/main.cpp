@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a contact of ellipses or clumps costs beside one of discs: bench_shapes --help.
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/random.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/grains/clump.hpp"
+#include "equidem/grains/grain_simulation.hpp"
+#include "equidem/output/json.hpp"
+
+#include "contender.hpp"
+
+namespace equidem::bench {
+namespace {
+
+struct Request {
+  int side = 32, rounds = 7;
+  std::string file;
+};
+
+/// All of the area of a disc of the radius 0.5 m.
+struct Shape {
+  std::string label;
+  double aspect = 1;  ///< 0: disc, < 0: rigid pair, else the long half-axis over the short one
+  GrainOptions::EllipseLaw law = GrainOptions::EllipseLaw::exact;
+};
+
+std::vector<Shape> shapes() {
+  using Law = GrainOptions::EllipseLaw;
+  return {{"disc", 0},
+          {"disc in the loop of shapes", 1},
+          {"ellipse, aspect 1.2", 1.2},
+          {"ellipse, aspect 2", 2},
+          {"ellipse, aspect 5", 5},
+          {"ellipse, aspect 20", 20},
+          {"ellipse, aspect 2, enlarged, mended", 2, Law::enlarged_mended},
+          {"rigid pair of discs", -1}};
+}
+
+GrainWall line(const char* name, Vec2 point, Vec2 normal) {
+  GrainWall wall;
+  wall.name = name;
+  wall.point = point;
+  wall.normal = normal;
+  return wall;
+}
+
+/// Grains on a wide grid, turned at random, over a floor between two walls; the contact properties are those of sand.
+GrainScene grains_to_fall(const Shape& shape, int side) {
+  GrainScene scene;
+  Grain grain;
+  grain.radius = 0.5;
+  grain.inertia = inertia_of(0.5, 1, Body::disc);
+  if (shape.aspect > 0) {
+    grain.radius = 0.5 * std::sqrt(shape.aspect);
+    grain.short_half_axis = 0.5 / std::sqrt(shape.aspect);
+    grain.inertia = inertia_of_ellipse(grain.radius, grain.short_half_axis, 1);
+  } else if (shape.aspect < 0) {
+    const double radius = 0.5 / std::numbers::sqrt2;
+    scene.clumps = {centred_clump({{{-radius, 0}, radius}, {{radius, 0}, radius}})};
+    grain.clump = 0;
+    grain.radius = radius_of(scene.clumps[0]);
+    grain.inertia = inertia_of_clump(scene.clumps[0], 1);
+  }
+  Random random(1);
+  const double spacing = 2.05 * grain.radius;
+  for (int k = 0; k < side * side; ++k) {
+    grain.position = {(k % side + 0.5) * spacing, (std::floor(k / side) + 0.5) * spacing};
+    grain.velocity = {random.uniform(-0.3, 0.3), 0};
+    grain.angle = random.uniform(0, 2 * std::numbers::pi);
+    scene.grains.push_back(grain);
+  }
+  scene.gravity = {0, -1};
+  scene.walls = {line("floor", {0, 0}, {0, 1}), line("left", {0, 0}, {1, 0}),
+                 line("right", {side * spacing, 0}, {-1, 0})};
+  PairProperties pair;
+  pair.stiffness = 1e5;
+  pair.restitution = 0.3;
+  pair.friction = 0.17;
+  pair.tangential_ratio = 1.0 / 3;
+  pair.tangential_damping = 0.2;
+  scene.pairs = {pair};
+  return scene;
+}
+
+GrainSimulation settled(const Shape& shape, int side) {
+  GrainOptions options;
+  options.law = NormalLaw::linear_dashpot;
+  options.ellipse_law = shape.law;
+  const GrainScene scene = grains_to_fall(shape, side);
+  options.time_step = 0.1 * std::sqrt(scene.grains[0].inertia.mass / 1e5);
+  GrainSimulation simulation(scene, options);
+  const double height = side * 2 * scene.grains[0].radius;
+  simulation.advance(static_cast<std::int64_t>(3 * std::sqrt(height) / options.time_step));
+  return simulation;
+}
+
+std::string text(const Range& range, const char* digits) {
+  const auto one = [&](double value) { return format(fmt::runtime(digits), value); };
+  return one(range.median) + " (" + one(range.smallest) + " .. " + one(range.largest) + ")";
+}
+
+constexpr const char* introduction = R"(# Shapes
+
+equidem {0}, compiler {1}, `bench_shapes --side {2} --rounds {3}`. {4} grains of equal area that have fallen into a box under gravity, with
+friction, tangential springs and dashpots; the law linear_dashpot by semi-implicit Euler. One thread, processor time; medians (smallest ..
+largest) of {3} rounds in which all take turns. Everything that a step does is counted: contacts, grains that are near but apart, motion,
+lists. A contact is one that touches.
+
+| shape | contacts per grain | ns per grain and step | ns per contact | over a disc contact | bytes per grain |
+|---|---|---|---|---|---|
+)";
+
+void run(const Request& request) {
+  std::vector<GrainSimulation> simulations;
+  std::vector<Entry> entries;
+  for (const Shape& shape : shapes()) simulations.push_back(settled(shape, request.side));
+  std::vector<std::int64_t> evaluations;
+  for (std::size_t k = 0; k < simulations.size(); ++k) {
+    entries.push_back({shapes()[k].label, [&simulations, k](std::int64_t steps) { simulations[k].advance(steps); }});
+    evaluations.push_back(simulations[k].counters().evaluations);
+  }
+  constexpr std::int64_t steps = 500;
+  const std::vector<Seconds> seconds = take_turns(entries, steps, request.rounds);
+  const double grains = request.side * request.side;
+  std::string report =
+      format(introduction, library_version(), __VERSION__, request.side, request.rounds, request.side * request.side);
+  std::vector<double> contacts;
+  for (std::size_t k = 0; k < simulations.size(); ++k) {
+    const auto made = static_cast<double>(simulations[k].counters().evaluations - evaluations[k]);
+    contacts.push_back(made / (static_cast<double>(steps) * (request.rounds + 1) * grains));
+  }
+  const auto scaled = [](Range range, double scale) {
+    return Range{range.median * scale, range.smallest * scale, range.largest * scale};
+  };
+  for (std::size_t k = 0; k < simulations.size(); ++k) {
+    const Range each = scaled(range_of(seconds[k]), 1e9 / (static_cast<double>(steps) * grains));
+    const Range over = scaled(ratio_of(seconds[k], seconds[0]), contacts[0] / contacts[k]);
+    report +=
+        format("| {} | {:.2f} | {} | {} | {} | {:.0f} |\n", entries[k].label, contacts[k], text(each, "{:.0f}"),
+               text(scaled(each, 1 / contacts[k]), "{:.0f}"), text(over, "{:.2f}"), simulations[k].bytes_per_grain());
+  }
+  std::printf("%s", report.c_str());
+  if (request.file.empty()) return;
+  std::ofstream out(request.file);
+  out << report;
+  if (!out.flush()) bad_input(format("'{}' cannot be written", request.file), "", "Choose another path");
+}
+
+}  // namespace
+}  // namespace equidem::bench
+
+int main(int argc, char** argv) {
+  using namespace equidem;
+  bench::Request request;
+  CLI::App app("What a contact of ellipses or clumps costs beside one of discs");
+  app.add_option("--side", request.side, "grains in a row, and rows")
+      ->check(CLI::Range(4, 1000))
+      ->capture_default_str();
+  app.add_option("--rounds", request.rounds, "in which all take turns")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_option("--markdown", request.file, "file for the table");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    bench::run(request);
+  } catch (const Error& error) {
+    std::fprintf(stderr, "bench_shapes: %s\n", error.what());
+    return error.exit_code();
+  }
+  return 0;
+}
