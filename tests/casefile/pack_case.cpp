@@ -38,10 +38,34 @@ TEST_CASE("two_of_grains_box_and_solid_fraction_give_the_third") {
   CHECK(both.packing.radii.size() == 50);
   CHECK(both.packing.box.size == Vec2{0.2, 0.1});
   const PackCase no_box = parsed({"packing.box=none", "packing.solid_fraction=0.7"});
-  CHECK(area_of_discs(no_box.packing.radii) / no_box.packing.box.area() == Approx(0.7).epsilon(1e-13));
+  CHECK(area_of(no_box.packing.shape, no_box.packing.radii) / no_box.packing.box.area() == Approx(0.7).epsilon(1e-13));
   const PackCase no_count = parsed({"packing.grains=none", "packing.solid_fraction=0.7"});
-  CHECK(area_of_discs(no_count.packing.radii) / no_count.packing.box.area() == Approx(0.7).epsilon(1e-13));
+  CHECK(area_of(no_count.packing.shape, no_count.packing.radii) / no_count.packing.box.area() ==
+        Approx(0.7).epsilon(1e-13));
   CHECK(parsed({"packing.solid_fraction=auto"}).packing.as_dense_as_possible);
+}
+
+TEST_CASE("shapes_are_read_and_the_box_counts_their_area") {
+  const PackCase ellipses = parsed({"packing.shape.kind=ellipse", "packing.shape.aspect=3.0"});
+  CHECK(ellipses.packing.shape.kind == PackingShape::Kind::ellipse);
+  CHECK(ellipses.packing.shape.aspect == 3);
+  const PackCase clumps = parsed({"packing.shape.kind=clump", "packing.shape.discs=[[0, 0, 1], [1, 0, 0.5]]"});
+  REQUIRE(clumps.packing.shape.discs.size() == 2);
+  CHECK(clumps.packing.shape.discs[1].radius == 0.5);
+  // A pair of discs has twice the area of one: half as many of them fill the box.
+  const std::vector<std::string> filled = {"packing.grains=none", "packing.solid_fraction=0.6"};
+  auto pairs = filled;
+  pairs.push_back("packing.shape.kind=rigid_pair");
+  CHECK(2 * parsed(pairs).packing.radii.size() == Approx(parsed(filled).packing.radii.size()).margin(1));
+  const auto wrong = [](const std::vector<std::string>& overrides) {
+    CAPTURE(overrides);
+    CHECK_THROWS_AS(parsed(overrides), Error);
+  };
+  wrong({"packing.shape.kind=elipse"});
+  wrong({"packing.shape.aspect=2.0"});
+  wrong({"packing.shape.kind=clump"});
+  wrong({"packing.shape.kind=clump", "packing.shape.discs=[[0, 0]]"});
+  wrong({"packing.shape.kind=ellipse", "packing.shape.aspect=0.5"});
 }
 
 TEST_CASE("every_packing_of_the_data_folder_is_valid") {

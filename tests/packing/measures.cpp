@@ -48,7 +48,7 @@ TEST_CASE("clipped_areas_of_special_places_are_exact") {
 }
 
 TEST_CASE("regions_that_tile_the_box_hold_all_discs_between_them") {
-  const DiscPacking packing = pack(square_box(PackingMethod::growth, PackingBox::Sides::walls, 300, 0.8));
+  const GrainPacking packing = pack(square_box(PackingMethod::growth, PackingBox::Sides::walls, 300, 0.8));
   const Vec2 size = packing.box.size;
   const double x = 0.37 * size.x, y = 0.61 * size.y;
   double covered = 0;
@@ -59,10 +59,8 @@ TEST_CASE("regions_that_tile_the_box_hold_all_discs_between_them") {
 }
 
 TEST_CASE("contacts_rattlers_and_void_ratio_of_a_row_of_discs_are_counted_by_hand") {
-  DiscPacking packing;
-  packing.box = {{4, 2}, PackingBox::Sides::walls};
-  packing.centres = {{0.5, 0.5}, {1.5, 0.5}, {2.499, 0.5}, {3.2, 1.2}};
-  packing.radii = {0.5, 0.5, 0.5, 0.3};
+  GrainPacking packing = packing_of({{4, 2}, PackingBox::Sides::walls},
+                                    {{0.5, 0.5}, {1.5, 0.5}, {2.499, 0.5}, {3.2, 1.2}}, {0.5, 0.5, 0.5, 0.3});
   const PackingMeasures measures = measure(packing, Region{{0, 0}, {4, 2}});
   CHECK(measures.contacts == 2);       // 0-1, 1-2
   CHECK(measures.wall_contacts == 4);  // three on the floor, one at the left
@@ -80,10 +78,8 @@ TEST_CASE("contacts_rattlers_and_void_ratio_of_a_row_of_discs_are_counted_by_han
 }
 
 TEST_CASE("discs_touch_across_the_sides_of_a_periodic_box") {
-  DiscPacking packing;
-  packing.box = {{1, 1}, PackingBox::Sides::periodic};
-  packing.centres = {{0.05, 0.05}, {0.96, 0.96}, {0.5, 0.5}};
-  packing.radii = {0.1, 0.1, 0.05};
+  const GrainPacking packing =
+      packing_of({{1, 1}, PackingBox::Sides::periodic}, {{0.05, 0.05}, {0.96, 0.96}, {0.5, 0.5}}, {0.1, 0.1, 0.05});
   const auto contacts = contacts_of(packing);
   REQUIRE(contacts.size() == 1);
   CHECK(contacts[0].i == 0);
@@ -94,7 +90,7 @@ TEST_CASE("discs_touch_across_the_sides_of_a_periodic_box") {
 }
 
 TEST_CASE("the_region_measured_keeps_away_from_walls_and_surface") {
-  const DiscPacking packing = pack(square_box(PackingMethod::growth, PackingBox::Sides::walls, 400, 0.8));
+  const GrainPacking packing = pack(square_box(PackingMethod::growth, PackingBox::Sides::walls, 400, 0.8));
   const Region region = measured_region(packing);
   double mean = 0;
   for (const double r : packing.radii) mean += r / static_cast<double>(packing.size());

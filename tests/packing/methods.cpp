@@ -29,7 +29,7 @@ TEST_CASE("discs_fill_the_box_as_asked_and_do_not_overlap") {
   for (const auto& [method, fraction] : reached) {
     for (const PackingBox::Sides sides : closed) {
       const PackingOptions options = square_box(method, sides, 400, fraction);
-      const DiscPacking packing = pack(options);
+      const GrainPacking packing = pack(options);
       INFO(to_string(method) << (packing.box.periodic() ? ", periodic" : ", walls"));
       REQUIRE(packing.size() == options.radii.size());
       CHECK(packing.complete);
@@ -42,7 +42,7 @@ TEST_CASE("discs_fill_the_box_as_asked_and_do_not_overlap") {
       CHECK(area_of_discs(packing.radii) / packing.box.area() == Approx(fraction).epsilon(1e-12));
       CHECK(largest_overlap(packing) <= options.overlap);
       bool inside = true;
-      for (const Vec2 x : packing.centres)
+      for (const Vec2 x : centres_of(packing))
         inside = inside && x.x >= 0 && x.y >= 0 && x.x <= options.box.size.x && x.y <= options.box.size.y;
       CHECK(inside);
     }
@@ -57,15 +57,15 @@ TEST_CASE("a_seed_gives_the_same_bits_for_every_number_of_threads_and_another_se
         falls ? falling_soil(30, 0.1) : square_box(entry.method, PackingBox::Sides::walls, 100, 0.45);
     INFO(entry.name);
     set_thread_count(1);
-    const DiscPacking first = pack(options);
+    const GrainPacking first = pack(options);
     set_thread_count(3);
-    const DiscPacking again = pack(options);
+    const GrainPacking again = pack(options);
     set_thread_count(before);
-    CHECK(first.centres == again.centres);
+    CHECK(centres_of(first) == centres_of(again));
     CHECK(first.radii == again.radii);
     CHECK(first.work == again.work);
     options.seed = 2;
-    CHECK(first.centres != pack(options).centres);
+    CHECK(centres_of(first) != centres_of(pack(options)));
   }
 }
 
@@ -96,7 +96,7 @@ TEST_CASE("discs_that_grow_without_end_jam_where_every_disc_held_has_the_contact
   PackingOptions options = square_box(PackingMethod::growth, PackingBox::Sides::periodic, 400, 0.5);
   options.as_dense_as_possible = true;
   options.overlap = GENERATE(1e-3, 1e-5);
-  const DiscPacking packing = pack(options);
+  const GrainPacking packing = pack(options);
   const PackingMeasures measures = measure(packing);
   CAPTURE(options.overlap, measures.solid_fraction, measures.coordination_without_rattlers, measures.rattlers);
   CHECK(measures.solid_fraction > 0.82);
@@ -138,7 +138,7 @@ TEST_CASE("what_does_not_fit_is_refused_with_what_was_reached") {
   options.box.size.x = 0.001;
   CHECK(problem(options).find("the largest disc is") != std::string::npos);
   options.radii.clear();
-  CHECK(problem(options).find("no discs") != std::string::npos);
+  CHECK(problem(options).find("no bodies") != std::string::npos);
   CHECK_THROWS_AS(packing_method_from("grow"), Error);
 }
 
@@ -146,7 +146,7 @@ TEST_CASE("one_disc_is_packed_by_every_method") {
   for (const PackingMethodEntry& entry : packing_methods()) {
     INFO(entry.name);
     const bool falls = entry.method == PackingMethod::falling;
-    const DiscPacking packing =
+    const GrainPacking packing =
         pack(falls ? falling_soil(1, 0.1) : square_box(entry.method, PackingBox::Sides::walls, 1, 0.3));
     REQUIRE(packing.size() == 1);
     CHECK(largest_overlap(packing) < 1e-4);

@@ -8,7 +8,8 @@ import unittest
 
 from program import CASES, ProgramTest, equidem, parse_json
 
-SOIL, JAMMED, GRADED = (CASES / f"pack_{name}.toml" for name in ("soil", "jammed", "graded"))
+SOIL, JAMMED, GRADED, ELLIPSES, PAIRS = (
+    CASES / f"pack_{name}.toml" for name in ("soil", "jammed", "graded", "ellipses", "pairs"))
 FEW = ("--set", "packing.grains=60", "--set", "packing.box=[0.15, 1.0]")
 
 
@@ -106,6 +107,31 @@ gravity = [0.0, -9.8]
         again = pathlib.Path(self.folder / "again")
         self.check_done(equidem("pack", out / "case.toml", "--out", again))
         self.assertEqual((out / "grains.csv").read_text(), (again / "grains.csv").read_text())
+
+
+class Shapes(PackTest):
+    def test_ellipses_jam_and_their_table_says_what_they_are(self):
+        result, out = self.pack(ELLIPSES, "--set", "packing.grains=40", "--set", "packing.box=[0.15, 0.1]")
+        self.assertEqual(result["shape"], "ellipse")
+        self.assertGreater(result["solid_fraction"], 0.75)
+        rows = rows_of(out / "grains.csv")
+        self.assertEqual(len(rows), 40)
+        for row in rows:
+            self.assertAlmostEqual(float(row["radius_m"]) / float(row["short_half_axis_m"]), 2, delta=1e-12)
+        self.assertTrue((out / "picture.png").stat().st_size > 1000)
+        self.assertFalse((out / "assembly.json").exists())
+
+    def test_pairs_fall_and_come_to_rest(self):
+        result, out = self.pack(PAIRS, "--set", "packing.grains=12", "--set", "packing.box=[0.12, 1.0]")
+        self.assertLessEqual(result["unbalanced_force_ratio"], 1e-6)
+        self.assertIsNone(result["static_motion_over_overlap"])
+        self.assertEqual(len(rows_of(out / "grains.csv")), 12)
+
+    def test_what_a_shape_cannot_be_is_told_with_its_line(self):
+        self.check_error(equidem("pack", ELLIPSES, "--set", "packing.shape.aspect=0.5"), 2, "aspect")
+        self.check_error(equidem("pack", ELLIPSES, "--set", "packing.shape.kind=clump"), 2, "discs")
+        self.check_error(equidem("pack", ELLIPSES, "--set", "packing.method=insertion"), 2, "insertion")
+        self.check_error(equidem("pack", PAIRS, "--set", "settling.gravity=0"), 2, "gravity")
 
 
 class CommandLine(PackTest):

@@ -31,8 +31,11 @@ PackCase read(const CommonOptions& common) {
 void check_outputs(const CommonOptions& common, const PackCase& resolved) {
   const OutputPlan plan(common);
   plan.expect_json();
-  for (const char* name : {"result.json", "case.toml", "assembly.json"}) plan.expect(name);
-  if (!resolved.packing.box.periodic()) plan.expect("assembly_with_walls.json");
+  for (const char* name : {"result.json", "case.toml"}) plan.expect(name);
+  if (resolved.packing.shape.is_disc()) {
+    plan.expect("assembly.json");
+    if (!resolved.packing.box.periodic()) plan.expect("assembly_with_walls.json");
+  }
   if (resolved.csv) plan.expect("grains.csv");
   if (resolved.picture) plan.expect("picture.png");
 }
@@ -49,23 +52,25 @@ std::vector<GrainWall> walls_of(const PackingBox& box) {
   return walls;
 }
 
-void write_files(const CommonOptions& common, const PackCase& resolved, const DiscPacking& packing) {
+void write_files(const CommonOptions& common, const PackCase& resolved, const GrainPacking& packing) {
   const auto& folder = *common.out;
   const SettlingOptions& settling = resolved.packing.settling;
-  std::vector<Grain> grains = packing.grains;
-  if (grains.empty()) grains = scene_of(packing.centres, packing.radii, packing.box.size.x, settling).grains;
   if (resolved.csv) {
-    write_grain_csv(folder / "grains.csv", grains, std::vector<std::string>(grains.size(), "grains"),
-                    std::vector<double>(grains.size(), settling.density), common.overwrite);
+    const std::vector<std::string> groups(packing.grains.size(), "grains");
+    const std::vector<double> densities(packing.grains.size(), settling.density);
+    write_grain_csv(folder / "grains.csv", {packing.grains, packing.clumps, groups, densities}, common.overwrite);
   }
-  write_assembly(folder / "assembly.json", network_of(packing, settling.springs), common.overwrite);
-  if (!packing.box.periodic()) {
-    const HeldNetwork held = held_network_of(packing, settling.springs);
-    if (!held.discs.empty()) write_assembly(folder / "assembly_with_walls.json", held.assembly, common.overwrite);
+  if (packing.shape == PackingShape::Kind::disc) {
+    write_assembly(folder / "assembly.json", network_of(packing, settling.springs), common.overwrite);
+    if (!packing.box.periodic()) {
+      const HeldNetwork held = held_network_of(packing, settling.springs);
+      if (!held.discs.empty()) write_assembly(folder / "assembly_with_walls.json", held.assembly, common.overwrite);
+    }
   }
   if (resolved.picture) {
     const std::vector<GrainWall> walls = walls_of(packing.box);
-    write_grain_picture(folder, "picture", {.title = resolved.title, .grains = grains, .walls = walls},
+    write_grain_picture(folder, "picture",
+                        {.title = resolved.title, .grains = packing.grains, .clumps = packing.clumps, .walls = walls},
                         common.overwrite);
   }
   write_file(folder / "case.toml", to_toml(resolved.document, folder), common.overwrite);
@@ -82,8 +87,8 @@ int dry_run(const CommonOptions& common, const PackCase& resolved) {
   return 0;
 }
 
-/// Discs that settled stay what they are where statics cannot judge them: a network may have motions without stiffness.
-std::optional<ConfirmedRest> confirmed(const PackCase& resolved, const DiscPacking& packing) {
+/// Bodies that settled stay what they are where statics cannot judge them: a network may have motions without stiffness.
+std::optional<ConfirmedRest> confirmed(const PackCase& resolved, const GrainPacking& packing) {
   if (packing.contacts.empty()) return {};
   ConfirmedRest rest;
   try {
@@ -101,7 +106,7 @@ int run(const CommonOptions& common) {
   if (common.dry_run) return dry_run(common, resolved);
   StageTimes times;
   Stopwatch watch;
-  const DiscPacking packing = pack(resolved.packing);
+  const GrainPacking packing = pack(resolved.packing);
   times.add("packing", watch.lap());
   const PackingMeasures measures = measure(packing, resolved.region);
   times.add("measures", watch.lap());

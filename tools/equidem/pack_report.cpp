@@ -34,8 +34,9 @@ std::string describe_pack_case(const PackCase& resolved) {
   std::string out;
   if (!resolved.title.empty()) out += resolved.title + "\n\n";
   const auto [low, high] = std::minmax_element(options.radii.begin(), options.radii.end());
-  out += report_line("discs", format("{}, radius {:.6g} to {:.6g} m",
-                                     grouped(static_cast<std::int64_t>(options.radii.size())), *low, *high));
+  out += report_line(
+      noun_of(options.shape.kind) + "s",
+      format("{}, radius {:.6g} to {:.6g} m", grouped(static_cast<std::int64_t>(options.radii.size())), *low, *high));
   const bool open = options.box.sides == PackingBox::Sides::open_top;
   out += report_line("box", open ? format("{:.6g} m wide, {}", options.box.size.x, name_of(options.box.sides))
                                  : format("{:.6g} m by {:.6g} m, {}", options.box.size.x, options.box.size.y,
@@ -45,13 +46,14 @@ std::string describe_pack_case(const PackCase& resolved) {
   return out + report_line("springs", format("kN = {:.6g} Pa, kT = {:.6g} Pa", springs.kN, springs.kT));
 }
 
-std::string describe_packing(const PackCase& resolved, const DiscPacking& packing, const PackingMeasures& measures,
+std::string describe_packing(const PackCase& resolved, const GrainPacking& packing, const PackingMeasures& measures,
                              const std::optional<ConfirmedRest>& rest, const StageTimes& times) {
   const PackingOptions& options = resolved.packing;
+  const std::string noun = noun_of(options.shape.kind);
   std::string out;
   if (!packing.complete) {
     out += report_line("packed", packing.size() < options.radii.size()
-                                     ? format("{} of {} discs", packing.size(), options.radii.size())
+                                     ? format("{} of {}", packing.size(), options.radii.size())
                                      : format("radii {:.6g} of those asked for", packing.radii[0] / options.radii[0]));
   }
   const Region& region = measures.region;
@@ -59,23 +61,30 @@ std::string describe_packing(const PackCase& resolved, const DiscPacking& packin
                                               measures.porosity, measures.void_ratio));
   out += report_line("", format("measured from ({:.4g}, {:.4g}) to ({:.4g}, {:.4g}) m", region.low.x, region.low.y,
                                 region.high.x, region.high.y));
-  out +=
-      report_line("contacts", format("{} of discs, {} with walls; {:.4g} a disc, {:.4g} without {}",
-                                     grouped(measures.contacts), grouped(measures.wall_contacts), measures.coordination,
-                                     measures.coordination_without_rattlers, counted(measures.rattlers, "rattler")));
+  out += report_line("contacts",
+                     format("{} of {}s, {} with walls; {:.4g} of each, {:.4g} without {}", grouped(measures.contacts),
+                            noun, grouped(measures.wall_contacts), measures.coordination,
+                            measures.coordination_without_rattlers, counted(measures.rattlers, "rattler")));
   out += report_line("overlap", format("at most {:.3g} of the smaller radius", measures.largest_overlap));
   if (rest) {
     const SettlingReport& settling = packing.settling;
     out += report_line("rest",
                        format("after {:.4g} s in {} steps of {:.4g} s; unbalanced force {:.2g} of the mean contact "
-                              "force, of one disc {:.2g}",
-                              settling.time, grouped(settling.steps), settling.time_step, settling.unbalanced,
+                              "force, of one {} {:.2g}",
+                              settling.time, grouped(settling.steps), settling.time_step, settling.unbalanced, noun,
                               settling.largest_unbalanced));
     out += report_line(
         "", rest->confirmation
-                ? format("statics on the same contacts would move no disc further than {:.2g} of the mean overlap",
+                ? format("statics on the same contacts would move nothing further than {:.2g} of the mean overlap",
                          rest->confirmation->share())
                 : format("statics cannot judge the same contacts: {}", rest->why_not));
+    const BondReport& bonds = settling.bonds;
+    if (bonds.number > 0) {
+      out += report_line("bonds",
+                         format("the dashpots let pairs drift by {:.2g} of their length in the mean, {:.2g} at most; "
+                                "surfaces slipped by {:.2g} at most",
+                                bonds.distance.mean, bonds.distance.largest, bonds.slip.largest));
+    }
   }
   out += report_line("work", format("{} {}", grouped(packing.work), entry_of(options.method).unit_of_work));
   std::string stages;
@@ -84,11 +93,12 @@ std::string describe_packing(const PackCase& resolved, const DiscPacking& packin
   return out + report_line("times", format("{:.2g} s in all{}", times.total(), stages));
 }
 
-void add_packing(JsonObject& object, const PackCase& resolved, const DiscPacking& packing,
+void add_packing(JsonObject& object, const PackCase& resolved, const GrainPacking& packing,
                  const PackingMeasures& measures, const std::optional<ConfirmedRest>& rest) {
   const Region& region = measures.region;
   object.set("title", resolved.title)
       .set("method", to_string(resolved.packing.method))
+      .set("shape", to_string(packing.shape))
       .set("grains", packing.size())
       .set("complete", packing.complete)
       .set("box", std::vector<double>{packing.box.size.x, packing.box.size.y})
@@ -108,7 +118,13 @@ void add_packing(JsonObject& object, const PackCase& resolved, const DiscPacking
       .set("largest_unbalanced_force_ratio", packing.settling.largest_unbalanced)
       .set("time_step", packing.settling.time_step)
       .set("time", packing.settling.time)
-      .set("steps", packing.settling.steps);
+      .set("steps", packing.settling.steps)
+      .set("energy_error", packing.settling.ledger.error() / packing.settling.ledger.lost());
+  if (const BondReport& bonds = packing.settling.bonds; bonds.number > 0) {
+    object.set("bond_drift", bonds.distance.mean)
+        .set("largest_bond_drift", bonds.distance.largest)
+        .set("largest_bond_slip", bonds.slip.largest);
+  }
   if (rest->confirmation) {
     object.set("static_motion_over_overlap", rest->confirmation->share());
   } else {

@@ -14,7 +14,7 @@
 
 namespace equidem {
 
-/// What statics says of discs that settled.
+/// What statics says of bodies that settled.
 struct ConfirmedRest {
   std::optional<RestConfirmation> confirmation;
   std::string why_not = {};  ///< where there is none
@@ -24,10 +24,10 @@ struct ConfirmedRest {
 std::string describe_pack_case(const PackCase& resolved);
 
 /// How it came to lie.
-std::string describe_packing(const PackCase& resolved, const DiscPacking& packing, const PackingMeasures& measures,
+std::string describe_packing(const PackCase& resolved, const GrainPacking& packing, const PackingMeasures& measures,
                              const std::optional<ConfirmedRest>& rest, const StageTimes& times);
 
-void add_packing(JsonObject& object, const PackCase& resolved, const DiscPacking& packing,
+void add_packing(JsonObject& object, const PackCase& resolved, const GrainPacking& packing,
                  const PackingMeasures& measures, const std::optional<ConfirmedRest>& rest);
 
 }  // namespace equidem

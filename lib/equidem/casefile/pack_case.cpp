@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "equidem/casefile/keys.hpp"
 #include "equidem/casefile/pack_keys.hpp"
@@ -55,6 +54,17 @@ SpringConstants read_springs(const TomlValue& table, double density) {
           "Give kN and kT, or shear_wave_speed and poisson_ratio, and no others");
 }
 
+PackingShape read_shape(const TomlValue& table) {
+  PackingShape shape;
+  shape.kind = packing_shape_from(text(table, "kind"));
+  if (shape.kind == PackingShape::Kind::ellipse) shape.aspect = number(table, "aspect");
+  if (shape.kind == PackingShape::Kind::clump) {
+    for (const TomlValue& disc : table.find("discs")->items)
+      shape.discs.push_back({{disc.items[0].real, disc.items[1].real}, disc.items[2].real});
+  }
+  return shape;
+}
+
 /// Box and radii from two of grains, box and solid_fraction.
 void read_amount(const TomlValue& table, const SizeDistribution& sizes, PackingOptions& options) {
   const TomlValue* grains = table.find("grains");
@@ -65,11 +75,11 @@ void read_amount(const TomlValue& table, const SizeDistribution& sizes, PackingO
                       : text(table, "sides") == "periodic" ? PackingBox::Sides::periodic
                                                            : PackingBox::Sides::walls;
   if (falls && text(table, "sides") == "periodic")
-    fail_at(*table.find("sides"), "packing.sides", "discs fall into a periodic box", "they would fall for ever",
+    fail_at(*table.find("sides"), "packing.sides", "bodies fall into a periodic box", "they would fall for ever",
             "Take walls, or another method");
   const bool dense = fraction != nullptr && !fraction->is_number();
   if (falls && fraction != nullptr)
-    fail_at(*fraction, "packing.solid_fraction", "a solid fraction is wanted of falling discs",
+    fail_at(*fraction, "packing.solid_fraction", "a solid fraction is wanted of falling bodies",
             "it comes about by itself, lower with more friction", "Remove it");
   if (dense && options.method == PackingMethod::local_moves)
     fail_at(*fraction, "packing.solid_fraction", "auto with local_moves", "they do not know when to stop",
@@ -87,24 +97,24 @@ void read_amount(const TomlValue& table, const SizeDistribution& sizes, PackingO
     if (!(options.box.size.x > 0 && options.box.size.y > 0))
       fail_at(*box, "packing.box", "the box has no area", "width and height are positive", "Correct it");
   }
-  const double mean_area = std::numbers::pi * moments_of(sizes).mean_square;
+  const double mean_area = unit_body_of(options.shape).area * moments_of(sizes).mean_square;
   std::int64_t count = 0;
   if (grains != nullptr) {
     count = grains->integer;
   } else {
     const double wanted = std::round(fraction->real * options.box.area() / mean_area);
     if (!(wanted >= 1 && wanted <= 1e7))
-      fail_at(*box, "packing.box", format("{:.3g} discs would fill the box", wanted), "they are 1 to 1e7",
+      fail_at(*box, "packing.box", format("{:.3g} bodies would fill the box", wanted), "they are 1 to 1e7",
               "Change the box or the radii");
     count = static_cast<std::int64_t>(wanted);
   }
   options.radii = draw_radii(sizes, count, random);
-  // What drawing leaves open: a box for the discs, or radii for the box, to the last bit of the solid fraction.
+  // What drawing leaves open: a box for the bodies, or radii for the box, to the last bit of the solid fraction.
   if (box == nullptr) {
-    const double side = std::sqrt(area_of_discs(options.radii) / fraction->real);
+    const double side = std::sqrt(area_of(options.shape, options.radii) / fraction->real);
     options.box.size = {side, side};
   } else if (grains == nullptr) {
-    const double scale = std::sqrt(fraction->real * options.box.area() / area_of_discs(options.radii));
+    const double scale = std::sqrt(fraction->real * options.box.area() / area_of(options.shape, options.radii));
     for (double& radius : options.radii) radius *= scale;
   }
   options.as_dense_as_possible = dense;
@@ -121,6 +131,7 @@ SettlingOptions read_settling(const TomlValue& table) {
   settling.time_step = step.is_number() ? step.real : 0;
   settling.rest = number(table, "unbalanced");
   settling.longest = number(table, "longest");
+  settling.bond_share = number(table, "bond_share");
   return settling;
 }
 
@@ -139,6 +150,7 @@ PackCase parse_pack_case(std::string_view content, const std::string& name, cons
   options.seed = static_cast<std::uint64_t>(packing.find("seed")->integer);
   options.overlap = number(packing, "overlap");
   options.attempts = packing.find("attempts")->integer;
+  options.shape = read_shape(*packing.find("shape"));
   TomlValue* radii = packing.find("radii");
   if (radii == nullptr)
     fail_at(packing, "packing", "the table [packing.radii] is missing", "it says how large the discs are", "Add it");

@@ -17,10 +17,12 @@ std::vector<KeySpec> keys_of_packing() {
        .type = choice,
        .fallback = "\"growth\"",
        .choices = {"rejection", "local_moves", "insertion", "growth", "falling"},
-       .help = "rejection: places at random, up to about 0.5; local_moves: overlapping discs moved at random, to 0.78; "
-               "insertion: "
-               "into gaps, to 0.7; growth: discs grow and push each other apart, to jamming; falling: under gravity, "
-               "to rest"},
+       .help =
+           "rejection: places at random, up to about 0.5; local_moves: overlapping bodies moved at random, to 0.78; "
+           "insertion: "
+           "discs into gaps, to 0.7; growth: bodies grow and push each other apart, to jamming; falling: under "
+           "gravity, "
+           "to rest"},
       {.table = "packing",
        .name = "grains",
        .type = whole,
@@ -66,13 +68,35 @@ std::vector<KeySpec> keys_of_packing() {
        .unit = "kg/m³",
        .fallback = "2480.0",
        .range = Range::positive(),
-       .help = "of the discs"},
+       .help = "of the bodies"},
       {.table = "packing",
        .name = "region",
        .type = box,
        .unit = "m",
        .fallback = none,
        .help = "where void ratio and porosity are measured; left out: away from walls and surface"},
+
+      {.table = "packing.shape",
+       .name = "kind",
+       .type = choice,
+       .fallback = "\"disc\"",
+       .choices = {"disc", "ellipse", "bonded_pair", "rigid_pair", "clump"},
+       .help = "the radius drawn is that of the disc of equal area, of pairs that of their two discs; directions are "
+               "random; bonded_pair: tied by dashpots (falling), rigid_pair and clump: rigidly"},
+      {.table = "packing.shape",
+       .name = "aspect",
+       .type = number,
+       .fallback = "2.0",
+       .range = Range::from(1, 1000),
+       .when_key = "kind",
+       .when = {"ellipse"},
+       .help = "long over short half-axis: a = r aspect^(1/2), b = r/aspect^(1/2)"},
+      {.table = "packing.shape",
+       .name = "discs",
+       .type = circles,
+       .when_key = "kind",
+       .when = {"clump"},
+       .help = "in any place and unit; they may overlap"},
 
       {.table = "packing.radii",
        .name = "distribution",
@@ -161,7 +185,7 @@ std::vector<KeySpec> keys_of_packing() {
        .type = number,
        .fallback = "0.17",
        .range = Range::not_negative(),
-       .help = "between discs"},
+       .help = "between bodies"},
       {.table = "settling",
        .name = "wall_friction",
        .type = number,
@@ -172,20 +196,20 @@ std::vector<KeySpec> keys_of_packing() {
        .type = number,
        .fallback = "0.3",
        .range = {.low = 0, .high = 10, .low_open = true},
-       .help = "h of the dashpots 2 h sqrt(m k), m the mass of a disc"},
+       .help = "h of the dashpots 2 h sqrt(m k), m the mass of a body"},
       {.table = "settling",
        .name = "time_step",
        .type = number_or_auto,
        .unit = "s",
        .fallback = "\"auto\"",
        .range = Range::positive(),
-       .help = "auto: a quarter of the limit of stability of the lightest two discs"},
+       .help = "auto: a quarter of the limit of stability of the two lightest bodies"},
       {.table = "settling",
        .name = "unbalanced",
        .type = number,
        .fallback = "1.0e-6",
        .range = {.low = 1e-12, .high = 1, .high_open = true},
-       .help = "mean unbalanced force over mean contact force, at which the discs rest"},
+       .help = "mean unbalanced force over mean contact force, at which the bodies rest"},
       {.table = "settling",
        .name = "longest",
        .type = number,
@@ -193,6 +217,14 @@ std::vector<KeySpec> keys_of_packing() {
        .fallback = "10.0",
        .range = Range::positive(),
        .help = "of motion, before it is given up"},
+      {.table = "settling",
+       .name = "bond_share",
+       .type = number,
+       .fallback = "0.5",
+       .range = Range::positive(),
+       .help =
+           "dashpots of bonded pairs, of what an explicit step bears: C_n = share m/dt, C_s = a third of that; larger "
+           "ones let the pairs creep less"},
       {.table = "output", .name = "csv", .type = flag, .fallback = "true", .help = "grains.csv, for [grains] path"},
       {.table = "output", .name = "picture", .type = flag, .fallback = "true"},
   };
@@ -204,12 +236,13 @@ const FileSpec& pack_file_spec() {
   static const FileSpec spec = [] {
     FileSpec file{.schema = case_file_spec().schema,
                   .noun = "case file of a packing",
-                  .tables = {{.name = "packing", .required = true, .help = "how many discs fill which box"},
+                  .tables = {{.name = "packing", .required = true, .help = "how many bodies fill which box"},
+                             {.name = "packing.shape", .completed = true, .help = "what is packed"},
                              {.name = "packing.radii", .help = "how large they are; needed"},
                              {.name = "springs", .required = true, .help = "of contacts: kN and kT, or wave speeds"},
                              {.name = "settling",
                               .completed = true,
-                              .help = "how discs fall and come to rest (method = falling)"},
+                              .help = "how bodies fall and come to rest (method = falling)"},
                              {.name = "output", .completed = true, .help = "what is written with --out"}},
                   .keys = {}};
     for (const KeySpec& key : case_file_spec().keys) {

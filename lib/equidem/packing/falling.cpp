@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "equidem/core/progress.hpp"
 #include "equidem/core/random.hpp"
+#include "equidem/packing/outline.hpp"
 #include "equidem/packing/overlaps.hpp"
 #include "equidem/packing/packing.hpp"
 
 namespace equidem {
 namespace {
 
-/// Staggered rows, wide enough for the largest disc; each disc shifted at random within its room.
+/// Staggered rows, wide enough for the circle round the largest body; each shifted at random within its room.
 std::vector<Vec2> staggered_grid(std::span<const double> radii, double width, Random& random) {
   const double largest = *std::max_element(radii.begin(), radii.end());
   constexpr double room = 1.1;
@@ -33,21 +35,18 @@ std::vector<Vec2> staggered_grid(std::span<const double> radii, double width, Ra
 }
 
 /// Down without inertia and friction: contacts soft at first, so that forces are felt far, then as hard as they are.
-void relax_down(const PackingOptions& options, std::vector<Vec2>& centres, std::int64_t& work) {
-  double mean = 0, squares = 0;
-  for (const double radius : options.radii) mean += radius, squares += radius * radius;
-  mean /= static_cast<double>(options.radii.size());
-  const double mean_mass =
-      options.settling.density * area_of_discs(options.radii) / static_cast<double>(options.radii.size());
+void relax_down(const PackingOptions& options, const UnitBody& shape, Bodies& bodies, std::int64_t& work) {
+  const auto count = static_cast<double>(bodies.size());
+  const double mean = std::accumulate(bodies.radii.begin(), bodies.radii.end(), 0.0) / count;
+  const double mean_mass = options.settling.density * area_of(options.shape, bodies.radii) / count;
   const double hard = mean_mass * options.settling.gravity / (options.settling.springs.kN * mean);
   PairFinder finder;
   Progress progress("relaxing");
   constexpr double softest = 1e-4, factor = 10;
   for (double weight = std::max(softest, hard);; weight = std::max(weight / factor, hard)) {
     const bool last = weight <= hard;
-    const auto report =
-        push_apart(options.box, options.radii,
-                   {.unbalanced = last ? 1e-8 : 1e-3, .weight = {0, -weight}, .most = 200000}, finder, centres);
+    const auto report = push_apart(
+        options.box, shape, {.unbalanced = last ? 1e-8 : 1e-3, .weight = {0, -weight}, .most = 200000}, finder, bodies);
     work += report.evaluations;
     progress.update(last ? 1 : 0.5);
     if (last) return;
@@ -56,22 +55,30 @@ void relax_down(const PackingOptions& options, std::vector<Vec2>& centres, std::
 
 }  // namespace
 
-void fill_by_falling(const PackingOptions& options, DiscPacking& packing) {
+void fill_by_falling(const PackingOptions& options, GrainPacking& packing) {
   Random random(options.seed);
-  std::vector<Vec2> centres = staggered_grid(options.radii, options.box.size.x, random);
-  if (options.settling.relax_first) relax_down(options, centres, packing.work);
-  SettledDiscs settled = settle(centres, options.radii, options.box.size.x, options.settling);
+  const UnitBody shape = unit_body_of(options.shape);
+  std::vector<double> reaches;
+  for (const double radius : options.radii) reaches.push_back(shape.reach * radius);
+  Bodies bodies{staggered_grid(reaches, options.box.size.x, random), options.radii, {}};
+  if (!options.shape.is_disc())
+    for (std::size_t k = 0; k < bodies.size(); ++k) bodies.turns.push_back(random.uniform());
+  if (options.settling.relax_first) relax_down(options, shape, bodies, packing.work);
+  make_grains(options.shape, bodies, options.settling.density, packing);
+  GrainScene scene = scene_of_box(options.box.size.x, options.settling);
+  scene.grains = packing.grains;
+  scene.clumps = packing.clumps;
+  scene.bonds = packing.bonds;
+  SettledBodies settled = settle(std::move(scene), options.settling);
   packing.work += settled.report.steps;
-  double top = 0;
-  for (const Grain& grain : settled.grains) {
-    packing.centres.push_back(grain.position);
-    packing.radii.push_back(grain.radius);
-    top = std::max(top, grain.position.y + grain.radius);
-  }
-  packing.box.size.y = top;
   packing.grains = std::move(settled.grains);
   packing.contacts = std::move(settled.contacts);
+  packing.bonds = std::move(settled.bonds);
   packing.settling = settled.report;
+  double top = 0;
+  for (const Grain& grain : packing.grains)
+    top = std::max(top, grain.position.y + reach_along(outline_of(grain, packing.clumps), {0, 1}));
+  packing.box.size.y = top;
 }
 
 }  // namespace equidem

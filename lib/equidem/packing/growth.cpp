@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
@@ -14,65 +15,96 @@ namespace {
 
 class Growth {
  public:
-  explicit Growth(const PackingOptions& options) : options_(options), radii_(options.radii) {
-    Random random(options.seed);
-    for (std::size_t k = 0; k < radii_.size(); ++k) {
-      const double x = random.uniform(0, options.box.size.x);
-      centres_.push_back({x, random.uniform(0, options.box.size.y)});
-    }
-    full_ = area_of_discs(options.radii) / options.box.area();
+  explicit Growth(const PackingOptions& options)
+      : options_(options), shape_(unit_body_of(options.shape)), bodies_{{}, options.radii, {}} {
+    full_ = area_of(options.shape, options.radii) / options.box.area();
+    options.shape.is_disc() ? scatter() : place_apart();
   }
 
   /// Grow to the solid fraction and push apart.
   PushingReport grow_to(double solid_fraction, const PushingOptions& pushing) {
     const double scale = std::sqrt(solid_fraction / full_);
-    for (std::size_t k = 0; k < radii_.size(); ++k) radii_[k] = scale * options_.radii[k];
-    fraction_ = solid_fraction;
-    const PushingReport report = push_apart(options_.box, radii_, pushing, finder_, centres_);
+    for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_.radii[k] = scale * options_.radii[k];
+    const PushingReport report = push_apart(options_.box, shape_, pushing, finder_, bodies_);
     work_ += report.evaluations;
     return report;
   }
 
   [[nodiscard]] double full() const { return full_; }
-  [[nodiscard]] double fraction() const { return fraction_; }
+  /// At the start.
+  [[nodiscard]] double first_fraction() const { return first_; }
 
-  void give(DiscPacking& packing) {
-    packing.centres = std::move(centres_);
-    packing.radii = std::move(radii_);
+  void give(GrainPacking& packing) {
+    make_grains(options_.shape, bodies_, options_.settling.density, packing);
     packing.work = work_;
   }
 
  private:
+  /// Discs find their way apart from anywhere.
+  void scatter() {
+    Random random(options_.seed);
+    for (std::size_t k = 0; k < bodies_.radii.size(); ++k) {
+      const double x = random.uniform(0, options_.box.size.x);
+      bodies_.centres.push_back({x, random.uniform(0, options_.box.size.y)});
+    }
+    first_ = 0.4;
+  }
+
+  /// Clumps that start through one another may stay entangled: circles round the bodies, thrown at random where they have room.
+  void place_apart() {
+    PackingOptions circles = options_;
+    circles.shape = {};
+    circles.as_dense_as_possible = false;
+    constexpr double share = 0.3, widest = 0.45;  // of the box that the circles cover, of its shorter side
+    const Vec2 size = options_.box.size;
+    const double largest = *std::max_element(options_.radii.begin(), options_.radii.end());
+    const double scale = std::min(std::sqrt(share * size.x * size.y / area_of(circles.shape, options_.radii)),
+                                  widest * std::min(size.x, size.y) / largest);
+    for (double& radius : circles.radii) radius *= scale;
+    // Sorted like the radii, so that a circle finds the body that is in it.
+    std::vector<std::size_t> order(options_.radii.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return options_.radii[a] > options_.radii[b]; });
+    GrainPacking placed;
+    fill_by_rejection(circles, placed);
+    bodies_.centres.resize(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) bodies_.centres[order[k]] = placed.grains[k].position;
+    Random random(options_.seed ^ 0xa5a5a5a5ULL);
+    for (std::size_t k = 0; k < order.size(); ++k) bodies_.turns.push_back(random.uniform());
+    first_ = full_ * (scale / shape_.reach) * (scale / shape_.reach);
+  }
+
   const PackingOptions& options_;
-  std::vector<double> radii_;
-  std::vector<Vec2> centres_;
+  UnitBody shape_;
+  Bodies bodies_;
   PairFinder finder_;
-  double full_ = 0, fraction_ = 0;
+  double full_ = 0, first_ = 0;
   std::int64_t work_ = 0;
 };
 
-constexpr double first_fraction = 0.4;
-/// Steps of the solid fraction, ever smaller: the discs are few enough to find their way while there is room.
+/// Steps of the solid fraction, ever smaller: the bodies are few enough to find their way while there is room; at most 7 % of their
+/// size, so that none passes through another.
 double next_fraction(double fraction, double end) {
-  const double step = fraction < 0.7 ? 0.1 : fraction < 0.8 ? 0.02 : 0.005;
+  const double step = std::min(0.15 * fraction, fraction < 0.7 ? 0.1 : fraction < 0.8 ? 0.02 : 0.005);
   return std::min(fraction + step, end);
 }
 
-/// Radii larger by `spare` are pushed apart to overlaps of less than `spare`, so that the discs themselves do not touch.
+/// Radii larger by `spare` are pushed apart to overlaps of less than `spare`, so that the bodies themselves do not touch.
 void grow_to_size(const PackingOptions& options, Growth& growth) {
   const double spare = std::min(options.overlap, 1e-4);
   const double end = growth.full() * (1 + spare) * (1 + spare);
   Progress progress("growing");
-  double fraction = std::min(first_fraction, end);
+  double fraction = std::min(growth.first_fraction(), end);
   for (;;) {
     const bool last = fraction >= end;
     const auto report = growth.grow_to(fraction, {.overlap = last ? spare : 0.01, .most = last ? 100000 : 3000});
     progress.update(std::min(fraction / end, 1.0));
     if (last && !report.apart) {
       computation_failed(
-          format("the discs jam at a solid fraction of {:.4g}, where they overlap by {:.2g} of the mean radius and no "
+          format("the {}s jam at a solid fraction of {:.4g}, where they overlap by {:.2g} of the mean radius and no "
                  "longer move apart",
-                 growth.full(), report.largest_overlap),
+                 noun_of(options.shape.kind), growth.full(), report.largest_overlap),
           "discs at random jam at 0.82 to 0.86, those of equal size at what is nearly a lattice",
           "Ask for a smaller solid fraction, or for the densest one");
     }
@@ -87,7 +119,7 @@ void grow_to_size(const PackingOptions& options, Growth& growth) {
 void grow_to_jamming(const PackingOptions& options, Growth& growth) {
   Progress progress("growing");
   PushingReport report;
-  double fraction = first_fraction;
+  double fraction = growth.first_fraction();
   for (;; fraction = next_fraction(fraction, 2)) {
     report = growth.grow_to(fraction, {.overlap = 1e-3, .most = 3000});
     progress.update(std::min(fraction, 0.99));
@@ -117,7 +149,7 @@ void grow_to_jamming(const PackingOptions& options, Growth& growth) {
 
 }  // namespace
 
-void fill_by_growth(const PackingOptions& options, DiscPacking& packing) {
+void fill_by_growth(const PackingOptions& options, GrainPacking& packing) {
   Growth growth(options);
   if (options.as_dense_as_possible) {
     grow_to_jamming(options, growth);

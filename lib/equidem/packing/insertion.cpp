@@ -8,7 +8,7 @@
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/packing/packing.hpp"
-#include "equidem/packing/placed_discs.hpp"
+#include "equidem/packing/placed_bodies.hpp"
 
 namespace equidem {
 namespace {
@@ -29,17 +29,17 @@ std::optional<Vec2> tangent_place(Vec2 a, Vec2 way, double from_a, double from_b
 /// Tries gaps beside discs that lie already.
 class Inserter {
  public:
-  Inserter(const PackingOptions& options, double largest)
-      : box_(options.box), placed_(options.box, largest), random_(options.seed) {}
+  explicit Inserter(const PackingOptions& options)
+      : box_(options.box), placed_(options.box, unit_body_of(options.shape), options.radii), random_(options.seed) {}
 
-  [[nodiscard]] const PlacedDiscs& placed() const { return placed_; }
+  [[nodiscard]] const PlacedBodies& placed() const { return placed_; }
 
   /// Anywhere at first, so that the box fills evenly; then beside a disc.
   bool insert(double radius, std::int64_t attempt) {
     constexpr std::int64_t anywhere_first = 30;
-    if (attempt < anywhere_first || placed_.centres().empty()) return add(anywhere(radius), radius);
+    if (attempt < anywhere_first || placed_.bodies().size() == 0) return add(anywhere(radius), radius);
     if (open_.empty()) {
-      for (std::size_t k = 0; k < placed_.centres().size(); ++k) open_.push_back({static_cast<std::int32_t>(k), 0});
+      for (std::size_t k = 0; k < placed_.bodies().size(); ++k) open_.push_back({static_cast<std::int32_t>(k), 0});
     }
     const auto pick = static_cast<std::size_t>(random_.below(open_.size()));
     if (add(beside(static_cast<std::size_t>(open_[pick].disc), radius), radius)) return true;
@@ -60,9 +60,9 @@ class Inserter {
   static constexpr Vec2 nowhere = {INFINITY, INFINITY};
 
   bool add(Vec2 place, double radius) {
-    if (!std::isfinite(place.x) || !placed_.has_room(place, radius, rounding * radius)) return false;
-    open_.push_back({static_cast<std::int32_t>(placed_.centres().size()), 0});
-    placed_.add(place, radius);
+    if (!std::isfinite(place.x) || !placed_.has_room(place, radius, 0, rounding * radius)) return false;
+    open_.push_back({static_cast<std::int32_t>(placed_.bodies().size()), 0});
+    placed_.add(place, radius, 0);
     return true;
   }
 
@@ -74,12 +74,12 @@ class Inserter {
 
   /// A place where the disc touches disc a and one that it reaches from there, or a wall.
   Vec2 beside(std::size_t a, double radius) {
-    const Vec2 centre = placed_.centres()[a];
-    const double from_a = (placed_.radii()[a] + radius) * (1 + 0.5 * rounding);
+    const Vec2 centre = placed_.centre(a);
+    const double from_a = (placed_.radius(a) + radius) * (1 + 0.5 * rounding);
     partners_.clear();
-    placed_.any_near(centre, [&](std::int32_t other) {
+    placed_.any_near(centre, placed_.radius(a) + 2 * radius, [&](std::int32_t other) {
       const auto b = static_cast<std::size_t>(other);
-      if (b != a && norm(placed_.branch(centre, placed_.centres()[b])) < from_a + placed_.radii()[b] + radius)
+      if (b != a && norm(placed_.branch(centre, placed_.centre(b))) < from_a + placed_.radius(b) + radius)
         partners_.push_back(other);
       return false;
     });
@@ -89,8 +89,8 @@ class Inserter {
     const bool left = random_.below(2) == 0;
     if (pick < partners_.size()) {
       const auto b = static_cast<std::size_t>(partners_[pick]);
-      const double from_b = (placed_.radii()[b] + radius) * (1 + 0.5 * rounding);
-      const auto place = tangent_place(centre, placed_.branch(centre, placed_.centres()[b]), from_a, from_b, left);
+      const double from_b = (placed_.radius(b) + radius) * (1 + 0.5 * rounding);
+      const auto place = tangent_place(centre, placed_.branch(centre, placed_.centre(b)), from_a, from_b, left);
       return place ? placed_.wrapped(*place) : nowhere;
     }
     return at_wall(static_cast<int>(pick - partners_.size()), centre, from_a, radius, left);
@@ -107,7 +107,7 @@ class Inserter {
   }
 
   PackingBox box_;
-  PlacedDiscs placed_;
+  PlacedBodies placed_;
   Random random_;
   std::vector<std::int32_t> partners_;
   std::vector<Open> open_;
@@ -115,10 +115,10 @@ class Inserter {
 
 }  // namespace
 
-void fill_by_insertion(const PackingOptions& options, DiscPacking& packing) {
+void fill_by_insertion(const PackingOptions& options, GrainPacking& packing) {
   std::vector<double> radii = options.radii;
   if (!options.as_dense_as_possible) std::sort(radii.begin(), radii.end(), std::greater<>());
-  Inserter inserter(options, *std::max_element(radii.begin(), radii.end()));
+  Inserter inserter(options);
   Progress progress("inserting");
   for (std::size_t k = 0; k < radii.size(); ++k) {
     if (k % 64 == 0) progress.update(static_cast<double>(k) / static_cast<double>(radii.size()));
@@ -131,12 +131,11 @@ void fill_by_insertion(const PackingOptions& options, DiscPacking& packing) {
     packing.complete = false;
     if (options.as_dense_as_possible) continue;
     computation_failed(format("{} of {} discs found a gap, {:.4g} of the box", k, radii.size(),
-                              area_of_discs(inserter.placed().radii()) / options.box.area()),
+                              area_of(options.shape, inserter.placed().bodies().radii) / options.box.area()),
                        format("for the next one {} gaps were all too small", options.attempts),
                        "Ask for less, for more attempts, or use growth");
   }
-  packing.centres = inserter.placed().centres();
-  packing.radii = inserter.placed().radii();
+  make_grains(options.shape, inserter.placed().bodies(), options.settling.density, packing);
 }
 
 }  // namespace equidem

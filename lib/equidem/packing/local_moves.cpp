@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/packing/packing.hpp"
-#include "equidem/packing/placed_discs.hpp"
+#include "equidem/packing/placed_bodies.hpp"
 
 namespace equidem {
 namespace {
 
-/// How much a disc at a place overlaps others and walls: sum of squares, and the largest one, m.
+/// How much a body at a place overlaps others and walls: sum of squares, and the largest one, m.
 struct Crowding {
   double squares = 0, largest = 0;
   void add(double overlap) {
@@ -22,36 +23,31 @@ struct Crowding {
   }
 };
 
-Crowding crowding(const PlacedDiscs& placed, const PackingBox& box, std::int32_t disc, Vec2 place, double radius) {
+Crowding crowding(const PlacedBodies& placed, std::int32_t body, Placement there) {
   Crowding sum;
-  placed.any_near(place, [&](std::int32_t other) {
-    if (other == disc) return false;
-    const auto k = static_cast<std::size_t>(other);
-    const Vec2 way = placed.branch(place, placed.centres()[k]);
-    const double reach = placed.radii()[k] + radius, square = dot(way, way);
-    if (square < reach * reach) sum.add(reach - std::sqrt(square));
-    return false;
-  });
-  if (!box.periodic()) {
-    for (const double gap : {place.x, box.size.x - place.x, place.y, box.size.y - place.y}) sum.add(radius - gap);
-  }
+  placed.any_overlap(there.place, placed.radius(static_cast<std::size_t>(body)), there.turns, body,
+                     [&](double overlap) {
+                       sum.add(overlap);
+                       return false;
+                     });
   return sum;
 }
 
 }  // namespace
 
-/// Monte Carlo without temperature: a random move of a disc that overlaps is taken where it overlaps less afterwards, one that lies
-/// free is shaken. Radii are
-/// larger by a little than they should be, so that the discs end apart.
-void fill_by_local_moves(const PackingOptions& options, DiscPacking& packing) {
-  const double spare = std::max(options.overlap, 1e-4);
+/// Monte Carlo without temperature: a random move of a body that overlaps is taken where it overlaps less afterwards, one that lies
+/// free is shaken. Discs are larger by a little than they should be, so that they end apart.
+void fill_by_local_moves(const PackingOptions& options, GrainPacking& packing) {
+  const bool discs = options.shape.is_disc();
+  const double spare = discs ? std::max(options.overlap, 1e-4) : 0;
+  const double smallest = *std::min_element(options.radii.begin(), options.radii.end());
   Random random(options.seed);
-  const double largest = *std::max_element(options.radii.begin(), options.radii.end());
-  PlacedDiscs placed(options.box, (1 + spare) * largest);
-  for (const double radius : options.radii) {
-    const double margin = options.box.periodic() ? 0 : radius;
-    const double x = random.uniform(margin, options.box.size.x - margin);
-    placed.add({x, random.uniform(margin, options.box.size.y - margin)}, (1 + spare) * radius);
+  std::vector<double> radii = options.radii;
+  for (double& radius : radii) radius *= 1 + spare;
+  PlacedBodies placed(options.box, unit_body_of(options.shape), radii);
+  for (std::size_t k = 0; k < radii.size(); ++k) {
+    const Placement there = placement_at_random(options, placed.shape(), options.radii[k], random);
+    placed.add(there.place, radii[k], there.turns);
   }
   Progress progress("moving");
   constexpr double shake = 0.05;  // of the radius
@@ -62,35 +58,42 @@ void fill_by_local_moves(const PackingOptions& options, DiscPacking& packing) {
     ++packing.work;
     deepest = 0;
     std::int64_t overlapping = 0;
-    for (std::size_t k = 0; k < options.radii.size(); ++k) {
-      const auto disc = static_cast<std::int32_t>(k);
-      const double radius = placed.radii()[k];
-      Crowding here = crowding(placed, options.box, disc, placed.centres()[k], radius);
-      const bool lies_free = here.largest <= spare * options.radii[k];
+    for (std::size_t k = 0; k < radii.size(); ++k) {
+      const auto body = static_cast<std::int32_t>(k);
+      Placement at = {placed.centre(k), placed.turns(k)};
+      Crowding here = crowding(placed, body, at);
+      const bool lies_free = here.largest <= (discs ? spare * options.radii[k] : options.overlap * smallest);
       if (!lies_free) {
         ++overlapping;
-        deepest = std::max(deepest, here.largest / radius);
+        deepest = std::max(deepest, here.largest / radii[k]);
       }
-      // Discs that lie free are shaken, too: they make room for others.
-      const double reach = lies_free ? shake * radius : 1.2 * here.largest;
+      // Bodies that lie free are shaken, too: they make room for others.
+      const double reach = lies_free ? shake * radii[k] : 1.2 * here.largest;
       for (int move = 0; move < (lies_free ? 1 : moves); ++move) {
         const double dx = random.uniform(-reach, reach);
-        const Vec2 place = placed.wrapped(placed.centres()[k] + Vec2{dx, random.uniform(-reach, reach)});
-        const Crowding there = crowding(placed, options.box, disc, place, radius);
-        if (lies_free ? there.squares > 0 : there.squares >= here.squares) continue;
-        placed.move(disc, place);
-        here = there;
+        Placement there = {placed.wrapped(at.place + Vec2{dx, random.uniform(-reach, reach)}), at.turns};
+        if (!discs) {
+          const double most = std::min(0.25, reach / (2 * std::numbers::pi * placed.shape().reach * radii[k]));
+          there.turns += random.uniform(-most, most);
+        }
+        const Crowding then = crowding(placed, body, there);
+        if (lies_free ? then.squares > 0 : then.squares >= here.squares) continue;
+        placed.move(body, there.place, there.turns);
+        at = there;
+        here = then;
       }
     }
     if (overlapping > 0) continue;
-    packing.centres = placed.centres();
-    packing.radii = options.radii;
+    Bodies bodies = placed.bodies();
+    bodies.radii = options.radii;
+    make_grains(options.shape, bodies, options.settling.density, packing);
     return;
   }
-  computation_failed(format("after {} sweeps discs still overlap by {:.2g} of a radius at a solid fraction of {:.4g}",
-                            options.attempts, deepest, area_of_discs(options.radii) / options.box.area()),
-                     "small random moves find the way apart ever more slowly as the box fills",
-                     "Ask for less, for more attempts, or use growth");
+  computation_failed(
+      format("after {} sweeps {}s still overlap by {:.2g} of a radius at a solid fraction of {:.4g}", options.attempts,
+             noun_of(options.shape.kind), deepest, area_of(options.shape, options.radii) / options.box.area()),
+      "small random moves find the way apart ever more slowly as the box fills",
+      "Ask for less, for more attempts, or use growth");
 }
 
 }  // namespace equidem

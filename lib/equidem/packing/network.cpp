@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/packing/measures.hpp"
 #include "equidem/statics/equilibrium.hpp"
@@ -42,7 +43,7 @@ struct Lack {
   double moment = 0;
 };
 
-std::vector<Lack> lacks_of(const DiscPacking& packing, double gravity) {
+std::vector<Lack> lacks_of(const GrainPacking& packing, double gravity) {
   std::vector<Lack> lacks(packing.size());
   for (std::size_t k = 0; k < lacks.size(); ++k) lacks[k].force.y = -packing.grains[k].inertia.mass * gravity;
   for (const GrainContact& contact : packing.contacts) {
@@ -53,7 +54,7 @@ std::vector<Lack> lacks_of(const DiscPacking& packing, double gravity) {
     double lever = ri;
     if (contact.j >= 0) {
       const auto j = static_cast<std::size_t>(contact.j);
-      const double distance = norm(packing.centres[j] - packing.centres[i]);
+      const double distance = norm(packing.grains[j].position - packing.grains[i].position);
       lever = distance * ri / (ri + packing.radii[j]);
       lacks[j].force += on_j;
       lacks[j].moment -= (distance - lever) * contact.tangential_force;
@@ -91,10 +92,20 @@ std::vector<char> held_by_two(const std::vector<PackingContact>& contacts, std::
 
 }  // namespace
 
-Assembly network_of(const DiscPacking& packing, const SpringConstants& springs) {
+void check_network(const GrainPacking& packing) {
+  if (packing.shape == PackingShape::Kind::disc) return;
+  bad_input(format("the network of contacts of {}s is asked for", noun_of(packing.shape)),
+            packing.shape == PackingShape::Kind::bonded_pair
+                ? "dashpots tie them, and at rest these carry nothing"
+                : "their contacts lie off the line of their centres, and statics knows contacts of discs only",
+            "Pack discs for homogenize, calibrate, stability and solve");
+}
+
+Assembly network_of(const GrainPacking& packing, const SpringConstants& springs) {
+  check_network(packing);
   Assembly assembly;
   assembly.kind = "packing";
-  assembly.centres = packing.centres;
+  for (const Grain& grain : packing.grains) assembly.centres.push_back(grain.position);
   assembly.radii = packing.radii;
   if (packing.box.periodic()) assembly.period = packing.box.size;
   for (const PackingContact& found : contacts_of(packing))
@@ -102,7 +113,8 @@ Assembly network_of(const DiscPacking& packing, const SpringConstants& springs) 
   return assembly;
 }
 
-HeldNetwork held_network_of(const DiscPacking& packing, const SpringConstants& springs) {
+HeldNetwork held_network_of(const GrainPacking& packing, const SpringConstants& springs) {
+  check_network(packing);
   const auto contacts = contacts_of(packing);
   const std::vector<char> held = held_by_two(contacts, packing.size());
   HeldNetwork result;
@@ -112,7 +124,7 @@ HeldNetwork held_network_of(const DiscPacking& packing, const SpringConstants& s
   for (std::size_t k = 0; k < packing.size(); ++k) {
     if (!held[k]) continue;
     number[k] = static_cast<std::int32_t>(assembly.size());
-    assembly.centres.push_back(packing.centres[k]);
+    assembly.centres.push_back(packing.grains[k].position);
     assembly.radii.push_back(packing.radii[k]);
     result.discs.push_back(static_cast<std::int32_t>(k));
   }
@@ -126,7 +138,7 @@ HeldNetwork held_network_of(const DiscPacking& packing, const SpringConstants& s
       continue;
     }
     walls.discs.push_back(static_cast<std::int32_t>(assembly.size()));
-    assembly.centres.push_back(mirrored(packing.centres[i], ~found.j, packing.box.size));
+    assembly.centres.push_back(mirrored(packing.grains[i].position, ~found.j, packing.box.size));
     assembly.radii.push_back(packing.radii[i]);
     add_contact(assembly, found, walls.discs.back(), springs);
   }
@@ -134,7 +146,8 @@ HeldNetwork held_network_of(const DiscPacking& packing, const SpringConstants& s
   return result;
 }
 
-RestConfirmation confirm_rest(const DiscPacking& packing, const SettlingOptions& options) {
+RestConfirmation confirm_rest(const GrainPacking& packing, const SettlingOptions& options) {
+  check_network(packing);
   const std::vector<Lack> lacks = lacks_of(packing, options.gravity);
   HeldNetwork network = held_network_of(packing, options.springs);
   RestConfirmation result;

@@ -12,8 +12,11 @@
 
 namespace equidem {
 
+/// \throws Error (bad_input) on bodies other than discs: an assembly has its contacts on the lines of centres, theirs are elsewhere
+void check_network(const GrainPacking& packing);
+
 /// The discs and the contacts between them with the springs given, levers in proportion to the radii.
-Assembly network_of(const DiscPacking& packing, const SpringConstants& springs);
+Assembly network_of(const GrainPacking& packing, const SpringConstants& springs);
 
 /// What walls hold.
 struct HeldNetwork {
@@ -22,7 +25,7 @@ struct HeldNetwork {
   Assembly assembly;
   std::vector<std::int32_t> discs;  ///< of the packing: the first of the assembly
 };
-HeldNetwork held_network_of(const DiscPacking& packing, const SpringConstants& springs);
+HeldNetwork held_network_of(const GrainPacking& packing, const SpringConstants& springs);
 
 /// How statics sees a packing at rest.
 struct RestConfirmation {
@@ -35,6 +38,6 @@ struct RestConfirmation {
 
 /// Put the unbalanced forces of a settled packing on its network and solve.
 /// \throws Error as EquilibriumSolver
-RestConfirmation confirm_rest(const DiscPacking& packing, const SettlingOptions& options);
+RestConfirmation confirm_rest(const GrainPacking& packing, const SettlingOptions& options);
 
 }  // namespace equidem

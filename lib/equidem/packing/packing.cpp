@@ -10,16 +10,18 @@
 #include "equidem/core/nearest.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/material/inertia.hpp"
+#include "equidem/packing/outline.hpp"
 
 namespace equidem {
 namespace {
 
 constexpr std::array table{
-    PackingMethodEntry{PackingMethod::rejection, "rejection", "attempts", fill_by_rejection},
-    PackingMethodEntry{PackingMethod::local_moves, "local_moves", "sweeps", fill_by_local_moves},
-    PackingMethodEntry{PackingMethod::insertion, "insertion", "attempts", fill_by_insertion},
-    PackingMethodEntry{PackingMethod::growth, "growth", "evaluations of all overlaps", fill_by_growth},
-    PackingMethodEntry{PackingMethod::falling, "falling", "time steps, relaxation included", fill_by_falling},
+    PackingMethodEntry{PackingMethod::rejection, "rejection", "attempts", false, fill_by_rejection},
+    PackingMethodEntry{PackingMethod::local_moves, "local_moves", "sweeps", false, fill_by_local_moves},
+    PackingMethodEntry{PackingMethod::insertion, "insertion", "attempts", true, fill_by_insertion},
+    PackingMethodEntry{PackingMethod::growth, "growth", "evaluations of all overlaps", false, fill_by_growth},
+    PackingMethodEntry{PackingMethod::falling, "falling", "time steps, relaxation included", false, fill_by_falling},
 };
 
 const PackingMethodEntry& entry_of(PackingMethod method) {
@@ -32,14 +34,20 @@ bool positive(double value) {
 
 void check(const PackingOptions& options) {
   const bool falls = options.method == PackingMethod::falling;
-  if (options.radii.empty()) bad_input("there are no discs to pack", "the box would stay empty", "Give their number");
+  const UnitBody shape = unit_body_of(options.shape);
+  const std::string noun = noun_of(options.shape.kind);
+  if (entry_of(options.method).discs_only && !options.shape.is_disc()) {
+    bad_input(format("{}s shall be packed by {}", noun, to_string(options.method)),
+              "it finds the gaps where a disc touches two others", "Take another method, growth for dense ones");
+  }
+  if (options.radii.empty()) bad_input("there are no bodies to pack", "the box would stay empty", "Give their number");
   const PackingBox& box = options.box;
   if (!positive(box.size.x) || (!falls && !positive(box.size.y))) {
     bad_input(format("the box is {} m wide and {} m high", box.size.x, box.size.y), "it must have an area",
               "Correct it");
   }
   if (falls != (box.sides == PackingBox::Sides::open_top)) {
-    bad_input(falls ? "discs shall fall into a closed box"
+    bad_input(falls ? "bodies shall fall into a closed box"
                     : format("{} into a box with an open top", to_string(options.method)),
               "what falls comes from above, the others need a box to fill",
               falls ? "Open its top" : "Close the box, or make it periodic");
@@ -47,22 +55,23 @@ void check(const PackingOptions& options) {
   double largest = 0;
   for (std::size_t k = 0; k < options.radii.size(); ++k) {
     if (!positive(options.radii[k])) {
-      bad_input(format("disc {} has the radius {} m", k, options.radii[k]), "it must be positive and finite",
+      bad_input(format("{} {} has the radius {} m", noun, k, options.radii[k]), "it must be positive and finite",
                 "Correct the sizes");
     }
     largest = std::max(largest, options.radii[k]);
   }
-  // A disc may not reach a second image of another one.
+  // A body may not reach a second image of another one.
   const double room = (falls ? box.size.x : std::min(box.size.x, box.size.y)) / (box.periodic() ? 2 : 1);
-  if (2 * largest > room) {
+  const double width = 2 * shape.reach * largest;
+  if (width > room) {
     bad_input(
-        format("the largest disc is {:.4g} m wide, the box {:.4g} m by {:.4g} m", 2 * largest, box.size.x, box.size.y),
+        format("the largest {} is {:.4g} m wide, the box {:.4g} m by {:.4g} m", noun, width, box.size.x, box.size.y),
         box.periodic() ? "half a period must hold it" : "it does not fit in", "Make the box larger");
   }
-  const double share = area_of_discs(options.radii) / box.area();
+  const double share = area_of(options.shape, options.radii) / box.area();
   if (!falls && !options.as_dense_as_possible && share >= 1) {
-    bad_input(format("the discs have {:.3g} times the area of the box", share), "discs leave gaps between them",
-              "Make the box larger, or take fewer discs");
+    bad_input(format("the {}s have {:.3g} times the area of the box", noun, share), "they leave gaps between them",
+              "Make the box larger, or take fewer of them");
   }
   if (!(options.overlap > 0 && options.overlap <= 0.1)) {
     bad_input(format("the overlap allowed is {} of the smaller radius", options.overlap),
@@ -94,16 +103,51 @@ std::span<const PackingMethodEntry> packing_methods() {
   return table;
 }
 
-double area_of_discs(std::span<const double> radii) {
-  double squares = 0;
-  for (const double radius : radii) squares += radius * radius;
-  return std::numbers::pi * squares;
+void make_grains(const PackingShape& shape, const Bodies& bodies, double density, GrainPacking& packing) {
+  const UnitBody body = unit_body_of(shape);
+  const bool bonded = shape.kind == PackingShape::Kind::bonded_pair;
+  packing.shape = shape.kind;
+  packing.radii = bodies.radii;
+  packing.grains.clear();
+  packing.clumps.clear();
+  packing.bonds.clear();
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    const double r = bodies.radii[k];
+    Grain grain;
+    grain.position = bodies.centres[k];
+    grain.radius = body.reach * r;
+    if (!bodies.turns.empty()) grain.angle = 2 * std::numbers::pi * bodies.turns[k];
+    if (bonded) {
+      const Outline outline = outline_of(body, r, bodies.turns[k]);
+      grain.radius = r;
+      grain.inertia = inertia_of(r, density, Body::disc);
+      for (std::size_t part = 0; part < 2; ++part) {
+        packing.grains.push_back(grain);
+        packing.grains.back().position += outline.offset(part);
+      }
+      packing.bonds.push_back({.i = 2 * k, .j = 2 * k + 1});
+      continue;
+    }
+    if (shape.is_disc()) {
+      grain.inertia = inertia_of(r, density, Body::disc);
+    } else {
+      const double mass = density * body.area * r * r;
+      grain.inertia = {mass, mass * body.gyration * r * r};
+    }
+    if (shape.kind == PackingShape::Kind::ellipse) grain.short_half_axis = body.b * r;
+    if (!body.discs.empty()) {
+      grain.clump = static_cast<int>(packing.clumps.size());
+      packing.clumps.push_back({body.discs});
+      for (Clump::Disc& disc : packing.clumps.back().discs) disc = {r * disc.offset, r * disc.radius};
+    }
+    packing.grains.push_back(grain);
+  }
 }
 
-DiscPacking pack(const PackingOptions& options) {
+GrainPacking pack(const PackingOptions& options) {
   check(options);
   const Stopwatch watch;
-  DiscPacking packing;
+  GrainPacking packing;
   packing.box = options.box;
   entry_of(options.method).fill(options, packing);
   packing.seconds = watch.seconds();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Filling a box with discs (Sukegawa 2010, section 2.7).
+/// Filling a box with discs, ellipses, pairs or clumps (Sukegawa 2010, section 2.7).
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 
 #include "equidem/core/vector.hpp"
 #include "equidem/grains/grain_simulation.hpp"
+#include "equidem/packing/packing_shape.hpp"
 #include "equidem/packing/settling.hpp"
 
 namespace equidem {
@@ -42,30 +43,36 @@ std::string to_string(PackingMethod method);
 struct PackingOptions {
   PackingMethod method = PackingMethod::growth;
   PackingBox box;
-  std::vector<double> radii;  ///< m
+  PackingShape shape;
+  std::vector<double> radii;  ///< of each body as the shape says, m
   std::uint64_t seed = 1;
-  /// Not all discs need to fit: rejection and insertion leave out what does not (they take the discs in the order given), growth
-  /// scales the radii until the discs jam.
+  /// Not all bodies need to fit: rejection and insertion leave out what does not (they take the bodies in the order given), growth
+  /// scales the radii until the bodies jam.
   bool as_dense_as_possible = false;
-  double overlap = 1e-6;           ///< largest allowed, of the smaller radius; of jammed discs the mean wanted
-  std::int64_t attempts = 100000;  ///< to place a disc by rejection or insertion; sweeps of local moves
+  double overlap = 1e-6;           ///< largest allowed, of the smaller radius; of jammed bodies the mean wanted
+  std::int64_t attempts = 100000;  ///< to place a body by rejection or insertion; sweeps of local moves
   SettlingOptions settling;        ///< falling
 };
 
-/// Discs in a box.
-struct DiscPacking {
+/// Bodies in a box.
+struct GrainPacking {
   PackingBox box;
-  std::vector<Vec2> centres;  ///< m, in the box
-  std::vector<double> radii;  ///< m
-  bool complete = true;       ///< all discs asked for are there, as large as asked for
+  PackingShape::Kind shape = PackingShape::Kind::disc;
+  /// In the box; their masses are those of the density of the settling. A bonded pair is two of them, 2k and 2k + 1.
+  std::vector<Grain> grains;
+  std::vector<Clump> clumps;
+  std::vector<GrainBond> bonds;  ///< with their dashpots where they fell
+  std::vector<double> radii;     ///< of each body as the shape says, m
+  bool complete = true;          ///< all bodies asked for are there, as large as asked for
   double seconds = 0;
   std::int64_t work = 0;  ///< attempts, sweeps, evaluations of all contacts or time steps: as the method counts
   // falling
-  std::vector<Grain> grains;           ///< as they came to rest, with angles and velocities
   std::vector<GrainContact> contacts;  ///< with their forces
   SettlingReport settling;
 
-  [[nodiscard]] std::size_t size() const { return centres.size(); }
+  [[nodiscard]] std::size_t size() const { return radii.size(); }
+  /// The body that a grain belongs to.
+  [[nodiscard]] std::size_t body_of(std::size_t grain) const { return bonds.empty() ? grain : grain / 2; }
 };
 
 /// A row of the table of methods.
@@ -73,24 +80,25 @@ struct PackingMethodEntry {
   PackingMethod method;
   const char* name;
   const char* unit_of_work;
-  void (*fill)(const PackingOptions& options, DiscPacking& packing);  ///< centres, radii
+  bool discs_only;
+  void (*fill)(const PackingOptions& options, GrainPacking& packing);  ///< grains, clumps, bonds, radii
 };
 std::span<const PackingMethodEntry> packing_methods();
 
 /// Same options, same packing, whatever the number of threads.
-/// \throws Error (bad_input): no discs, a box or radii that are not positive, discs wider than the box, more disc than box, falling
-///         into a box without an open top and the reverse; (computation_failed): the discs do not fit, naming how dense they
-///         came to lie, and as settle
-DiscPacking pack(const PackingOptions& options);
+/// \throws Error (bad_input): no bodies, a shape that is none (unit_body_of) or that the method cannot pack, a box or radii that are not
+///         positive, bodies wider than the box, more area than the box has, falling into a box without an open top and the
+///         reverse; (computation_failed): the bodies do not fit, naming how dense they came to lie, and as settle
+GrainPacking pack(const PackingOptions& options);
 
-/// The area of all discs, m².
-double area_of_discs(std::span<const double> radii);
+/// Bodies as grains of a scene: `grains`, `clumps`, `bonds` (without dashpots) and `radii` of a packing.
+void make_grains(const PackingShape& shape, const Bodies& bodies, double density, GrainPacking& packing);
 
 // The methods, one file each.
-void fill_by_rejection(const PackingOptions& options, DiscPacking& packing);
-void fill_by_local_moves(const PackingOptions& options, DiscPacking& packing);
-void fill_by_insertion(const PackingOptions& options, DiscPacking& packing);
-void fill_by_growth(const PackingOptions& options, DiscPacking& packing);
-void fill_by_falling(const PackingOptions& options, DiscPacking& packing);
+void fill_by_rejection(const PackingOptions& options, GrainPacking& packing);
+void fill_by_local_moves(const PackingOptions& options, GrainPacking& packing);
+void fill_by_insertion(const PackingOptions& options, GrainPacking& packing);
+void fill_by_growth(const PackingOptions& options, GrainPacking& packing);
+void fill_by_falling(const PackingOptions& options, GrainPacking& packing);
 
 }  // namespace equidem

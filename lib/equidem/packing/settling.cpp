@@ -24,7 +24,7 @@ void check(const SettlingOptions& options) {
   if (!positive(options.density) || !positive(options.springs.kN) || !positive(options.gravity)) {
     bad_input(
         format("density {} kg/m³, kN {} Pa, gravity {} m/s²", options.density, options.springs.kN, options.gravity),
-        "discs that fall need all three", "Give numbers > 0");
+        "bodies that fall need all three", "Give numbers > 0");
   }
   if (!(options.springs.kT >= 0) || !(options.friction >= 0) || !(options.wall_friction >= 0)) {
     bad_input(
@@ -56,19 +56,43 @@ double tangential_damping(double damping) {
   return normal_damping(damping) * std::sqrt(1 + 1 / moment_of_disc);
 }
 
-/// A quarter of the limit of one contact: several at a disc lower it, dashpots in proportion to their number.
-double chosen_step(const SettlingOptions& options, double lightest) {
-  if (options.time_step > 0) return options.time_step;
-  const double mass = 0.5 * lightest;
-  const auto limit = [](double stiffness, double moved, double damping) {
-    return semi_implicit_limit(damping) / std::sqrt(stiffness / moved);
-  };
-  double step = limit(options.springs.kN, mass, normal_damping(options.damping));
-  if (options.springs.kT > 0) {
-    step =
-        std::min(step, limit(options.springs.kT, mass / (1 + 1 / moment_of_disc), tangential_damping(options.damping)));
+/// The longest arm that a force along the normal has about the centre of a body, m.
+double longest_lever(const Grain& grain, std::span<const Clump> clumps) {
+  if (grain.shape() == GrainShape::ellipse) return grain.radius - grain.short_half_axis;
+  double lever = 0;
+  if (grain.shape() == GrainShape::clump) {
+    for (const Clump::Disc& disc : clumps[static_cast<std::size_t>(grain.clump)].discs)
+      lever = std::max(lever, norm(disc.offset));
   }
+  return lever;
+}
+
+/// A quarter of the limit of one contact: several at a body lower it, dashpots in proportion to their number.
+double chosen_step(const GrainScene& scene, const SettlingOptions& options) {
+  if (options.time_step > 0) return options.time_step;
+  // Masses that the lightest contact moves: two bodies alike, arms as long as they get.
+  double normal = INFINITY, tangential = INFINITY, mass = INFINITY;
+  for (const Grain& grain : scene.grains) {
+    const Inertia& body = grain.inertia;
+    const auto moved = [&](double lever) { return 0.5 / (1 / body.mass + lever * lever / body.moment); };
+    mass = std::min(mass, body.mass);
+    normal = std::min(normal, moved(longest_lever(grain, scene.clumps)));
+    tangential = std::min(tangential, moved(grain.radius));
+  }
+  const auto limit = [&](double stiffness, double moved_mass) {
+    return semi_implicit_limit(options.damping * std::sqrt(mass / moved_mass)) / std::sqrt(stiffness / moved_mass);
+  };
+  double step = limit(options.springs.kN, normal);
+  if (options.springs.kT > 0) step = std::min(step, limit(options.springs.kT, tangential));
   return 0.25 * step;
+}
+
+void tie(GrainScene& scene, double share, double step) {
+  for (GrainBond& bond : scene.bonds) {
+    const double mass = 0.5 * scene.grains[bond.i].inertia.mass;
+    bond.normal_dashpot = share * 2 * mass / step;
+    bond.tangential_dashpot = bond.normal_dashpot / (1 + 1 / moment_of_disc);
+  }
 }
 
 double mean_mass(std::span<const Grain> grains) {
@@ -77,8 +101,10 @@ double mean_mass(std::span<const Grain> grains) {
   return mass / static_cast<double>(grains.size());
 }
 
+/// As a dashpot would: what is taken counts as lost in it.
 void stop_all(GrainSimulation& simulation) {
   GrainState state = simulation.save();
+  state.ledger.lost_dashpot += simulation.energy().kinetic;
   for (Grain& grain : state.grains) {
     grain.velocity = {};
     grain.spin = 0;
@@ -100,20 +126,12 @@ std::vector<GrainWall> walls_of_box(double width) {
   return {wall("floor", {0, 0}, {0, 1}), wall("left", {0, 0}, {1, 0}), wall("right", {width, 0}, {-1, 0})};
 }
 
-GrainScene scene_of(std::span<const Vec2> centres, std::span<const double> radii, double width,
-                    const SettlingOptions& options) {
+GrainScene scene_of_box(double width, const SettlingOptions& options) {
   GrainScene scene;
-  for (std::size_t k = 0; k < centres.size(); ++k) {
-    Grain grain;
-    grain.position = centres[k];
-    grain.radius = radii[k];
-    grain.inertia = inertia_of(radii[k], options.density, Body::disc);
-    scene.grains.push_back(grain);
-  }
   scene.walls = walls_of_box(width);
   scene.gravity = {0, -options.gravity};
   scene.kinds = 2;
-  // At a wall the mass that the contact moves is that of the disc.
+  // At a wall the mass that the contact moves is that of the body.
   const auto pair = [&](double share, double friction) {
     PairProperties made;
     made.stiffness = options.springs.kN;
@@ -126,12 +144,13 @@ GrainScene scene_of(std::span<const Vec2> centres, std::span<const double> radii
     }
     return made;
   };
-  const PairProperties discs = pair(0.5, options.friction), walls = pair(1, options.wall_friction);
-  scene.pairs = {discs, walls, walls, walls};
+  const PairProperties bodies = pair(0.5, options.friction), walls = pair(1, options.wall_friction);
+  scene.pairs = {bodies, walls, walls, walls};
   return scene;
 }
 
-SettlingReport unbalance(std::span<const Grain> grains, std::span<const GrainContact> contacts, Vec2 gravity) {
+SettlingReport unbalance(std::span<const Grain> grains, std::span<const GrainContact> contacts,
+                         std::span<const GrainBond> bonds, Vec2 gravity) {
   std::vector<Vec2> forces(grains.size());
   for (std::size_t k = 0; k < grains.size(); ++k) forces[k] = grains[k].inertia.mass * gravity;
   double carried = 0;
@@ -141,6 +160,10 @@ SettlingReport unbalance(std::span<const Grain> grains, std::span<const GrainCon
     if (contact.j >= 0) forces[static_cast<std::size_t>(contact.j)] += on_j;
     carried += norm(on_j);
   }
+  for (const GrainBond& bond : bonds) {
+    forces[bond.i] += forces[bond.j];
+    forces[bond.j] = {};
+  }
   SettlingReport report;
   double sum = 0, largest = 0;
   for (const Vec2 force : forces) {
@@ -148,18 +171,15 @@ SettlingReport unbalance(std::span<const Grain> grains, std::span<const GrainCon
     largest = std::max(largest, norm(force));
   }
   const double mean = contacts.empty() ? 0 : carried / static_cast<double>(contacts.size());
-  report.unbalanced = mean > 0 ? sum / static_cast<double>(grains.size()) / mean : INFINITY;
+  report.unbalanced = mean > 0 ? sum / static_cast<double>(grains.size() - bonds.size()) / mean : INFINITY;
   report.largest_unbalanced = mean > 0 ? largest / mean : INFINITY;
   return report;
 }
 
-SettledDiscs settle(std::span<const Vec2> centres, std::span<const double> radii, double width,
-                    const SettlingOptions& options) {
+SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
   check(options);
-  const GrainScene scene = scene_of(centres, radii, width, options);
-  double lightest = INFINITY;
-  for (const Grain& grain : scene.grains) lightest = std::min(lightest, grain.inertia.mass);
-  const double step = chosen_step(options, lightest);
+  const double step = chosen_step(scene, options);
+  tie(scene, options.bond_share, step);
   // Friction of the midpoint rule creeps under a steady force; that of velocity_verlet comes to rest.
   GrainSimulation simulation(scene, {.law = NormalLaw::linear_dashpot,
                                      .scheme = GrainOptions::Scheme::velocity_verlet,
@@ -167,12 +187,15 @@ SettledDiscs settle(std::span<const Vec2> centres, std::span<const double> radii
                                      .reference_length = 0,
                                      .margin = 0});
 
-  // What is left of the motion once the discs lie: they swing in the slowest modes, which contacts hardly damp. Where the kinetic
-  // energy has fallen to half a peak all of them are stopped, and the springs find them nearer to rest. Discs that can
-  // still drop by more than this share of their radius are left to fall.
-  constexpr double lying_drop = 1e-4, resting_drop = 1e-9;
-  const double weight_radius = static_cast<double>(scene.grains.size()) * mean_mass(scene.grains) * options.gravity *
-                               *std::min_element(radii.begin(), radii.end());
+  // What is left of the motion once the bodies lie: they swing in the slowest modes, which contacts hardly damp. Where the kinetic
+  // energy has fallen to half a peak all of them are stopped, and the springs find them nearer to rest. Bodies that can
+  // still drop by more than this share of their radius are left to fall; bonded pairs creep as long as they carry.
+  constexpr double lying_drop = 1e-4;
+  const double resting_drop = scene.bonds.empty() ? 1e-9 : 1e-5;
+  double smallest = INFINITY;
+  for (const Grain& grain : scene.grains) smallest = std::min(smallest, grain.radius);
+  const double weight_radius =
+      static_cast<double>(scene.grains.size()) * mean_mass(scene.grains) * options.gravity * smallest;
   constexpr std::int64_t block = 100;
   const double steps = std::ceil(options.longest / step);
   Progress progress("settling");
@@ -185,13 +208,14 @@ SettledDiscs settle(std::span<const Vec2> centres, std::span<const double> radii
     if (kinetic <= resting_drop * weight_radius) {
       const auto grains = simulation.grains();
       const auto contacts = simulation.contacts();
-      SettlingReport report = unbalance(grains, contacts, scene.gravity);
+      SettlingReport report = unbalance(grains, contacts, scene.bonds, scene.gravity);
       if (report.unbalanced <= options.rest) {
         report.time_step = step;
         report.time = simulation.time();
         report.steps = simulation.step();
         report.ledger = simulation.energy();
-        return {grains, contacts, report};
+        report.bonds = simulation.bonds();
+        return {grains, contacts, scene.bonds, report};
       }
     }
     if (kinetic < lying_drop * weight_radius && kinetic < 0.5 * peak) {
@@ -199,8 +223,8 @@ SettledDiscs settle(std::span<const Vec2> centres, std::span<const double> radii
       peak = 0;
     }
   }
-  const SettlingReport report = unbalance(simulation.grains(), simulation.contacts(), scene.gravity);
-  computation_failed(format("after {:.4g} s the discs are not at rest", simulation.time()),
+  const SettlingReport report = unbalance(simulation.grains(), simulation.contacts(), scene.bonds, scene.gravity);
+  computation_failed(format("after {:.4g} s the bodies are not at rest", simulation.time()),
                      format("the mean unbalanced force is {:.2g} of the mean contact force, {:.2g} was wanted",
                             report.unbalanced, options.rest),
                      "Give them longer, more friction or damping, or take a shorter step");

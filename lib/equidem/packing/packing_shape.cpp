@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/packing/packing_shape.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/nearest.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/grains/clipped_area.hpp"
+#include "equidem/grains/clump.hpp"
+
+namespace equidem {
+namespace {
+
+using Kind = PackingShape::Kind;
+
+struct Name {
+  Kind kind;
+  const char* name;
+  const char* noun;
+};
+constexpr std::array names{Name{Kind::disc, "disc", "disc"}, Name{Kind::ellipse, "ellipse", "ellipse"},
+                           Name{Kind::bonded_pair, "bonded_pair", "pair"}, Name{Kind::rigid_pair, "rigid_pair", "pair"},
+                           Name{Kind::clump, "clump", "clump"}};
+
+const Name& name_of(Kind kind) {
+  return *std::find_if(names.begin(), names.end(), [&](const Name& name) { return name.kind == kind; });
+}
+
+UnitBody unit_ellipse(double aspect) {
+  constexpr double longest = 1000;
+  if (!(aspect >= 1 && aspect <= longest)) {
+    bad_input(format("the aspect of the ellipses is {}", aspect),
+              format("it is the long half-axis over the short one, from 1 to {}", longest), "Correct it");
+  }
+  const double a = std::sqrt(aspect), b = 1 / a;
+  return {.a = a, .b = b, .reach = a, .lever = a - b, .area = std::numbers::pi, .gyration = 0.25 * (a * a + b * b)};
+}
+
+UnitBody unit_clump(std::vector<Clump::Disc> discs, double area) {
+  Clump clump = centred_clump(std::move(discs));
+  const DiscUnion whole = union_of(clump.discs);
+  const double scale = std::sqrt(area / whole.area);
+  UnitBody body{
+      .discs = std::move(clump.discs), .area = area, .gyration = area * whole.polar_moment / (whole.area * whole.area)};
+  body.reach = 0;
+  for (Clump::Disc& disc : body.discs) {
+    disc = {scale * disc.offset, scale * disc.radius};
+    body.reach = std::max(body.reach, norm(disc.offset) + disc.radius);
+    body.lever = std::max(body.lever, norm(disc.offset));
+  }
+  return body;
+}
+
+}  // namespace
+
+Kind packing_shape_from(const std::string& name) {
+  std::vector<std::string> known;
+  std::string list;
+  for (const Name& entry : names) {
+    if (name == entry.name) return entry.kind;
+    known.emplace_back(entry.name);
+    list += (list.empty() ? "" : ", ") + known.back();
+  }
+  const auto meant = nearest(name, known);
+  bad_input(format("there is no shape '{}' to pack", name), "they are " + list,
+            meant ? format("Did you mean '{}'?", *meant) : "Name one of them");
+}
+
+std::string to_string(Kind kind) {
+  return name_of(kind).name;
+}
+
+std::string noun_of(Kind kind) {
+  return name_of(kind).noun;
+}
+
+UnitBody unit_body_of(const PackingShape& shape) {
+  constexpr double pi = std::numbers::pi;
+  switch (shape.kind) {
+    case Kind::disc:
+      return {.area = pi, .gyration = 0.5};
+    case Kind::ellipse:
+      return unit_ellipse(shape.aspect);
+    case Kind::bonded_pair:
+    case Kind::rigid_pair:
+      return unit_clump({{{-1, 0}, 1}, {{1, 0}, 1}}, 2 * pi);
+    case Kind::clump:
+      break;
+  }
+  return unit_clump(shape.discs, pi);
+}
+
+double area_of(const PackingShape& shape, std::span<const double> radii) {
+  double squares = 0;
+  for (const double radius : radii) squares += radius * radius;
+  return unit_body_of(shape).area * squares;
+}
+
+}  // namespace equidem

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What is packed: discs, ellipses, pairs of discs, clumps.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "equidem/grains/grain_scene.hpp"
+
+namespace equidem {
+
+/// All bodies of a packing have one shape, in sizes and directions of their own. The radius drawn for a body is that of the disc of
+/// equal area, of a pair that of its discs.
+struct PackingShape {
+  enum class Kind {
+    disc,
+    ellipse,
+    bonded_pair,  ///< two equal discs tied by dashpots (Sukegawa 2010, chapter 5)
+    rigid_pair,   ///< the same, rigidly
+    clump,        ///< discs tied rigidly
+  } kind = Kind::disc;
+  double aspect = 2;  ///< ellipse: long over short half-axis; of area pi r² are a = r aspect^(1/2), b = r²/a
+  std::vector<Clump::Disc> discs = {};  ///< clump: in any place and unit; they may overlap
+
+  [[nodiscard]] bool is_disc() const { return kind == Kind::disc; }
+};
+
+/// \throws Error (bad_input) naming the choices
+PackingShape::Kind packing_shape_from(const std::string& name);
+std::string to_string(PackingShape::Kind kind);
+/// "disc", "ellipse", "pair", "clump"; plural with s.
+std::string noun_of(PackingShape::Kind kind);
+
+/// A body for the radius 1 at the angle 0, its centre of mass in the origin.
+struct UnitBody {
+  double a = 1, b = 1;                  ///< half-axes of a disc or an ellipse
+  std::vector<Clump::Disc> discs = {};  ///< pairs and clumps: instead
+  double reach = 1;                     ///< radius of the circle round the centre that holds it
+  double lever = 0;     ///< the longest arm of a force along the normal: 0 of a disc, which it never turns
+  double area = 0;      ///< times r²
+  double gyration = 0;  ///< I/m, times r²
+};
+/// \throws Error (bad_input) on an aspect below 1 or above 1000, a clump without discs or with discs that have no area
+UnitBody unit_body_of(const PackingShape& shape);
+
+/// The area of all bodies, m².
+double area_of(const PackingShape& shape, std::span<const double> radii);
+
+/// Bodies where they lie.
+struct Bodies {
+  std::vector<Vec2> centres;  ///< m
+  std::vector<double> radii;  ///< m
+  std::vector<double> turns;  ///< angles over 2 pi; of discs none
+
+  [[nodiscard]] std::size_t size() const { return centres.size(); }
+};
+
+}  // namespace equidem
