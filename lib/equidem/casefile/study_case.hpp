@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A study file, as typed values.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "equidem/casefile/toml.hpp"
+#include "equidem/study/study.hpp"
+
+namespace equidem {
+
+/// A key that a study varies.
+struct VariedKey {
+  std::vector<std::string> keys;  ///< of the case, with the same value: "assembly.rows", "assembly.columns"
+  std::vector<double> values;
+  enum class Refines { larger, smaller, not_at_all } refines = Refines::larger;
+};
+
+/// A checked study file.
+struct StudyCase {
+  std::string title;
+  std::string verb;
+  std::filesystem::path case_file;  ///< as the program opens it
+  std::string measure;              ///< "poisson_ratio.plane_strain"
+  Truth truth = Truth::finest;
+  double value = 0;  ///< Truth::known
+  std::optional<double> order;
+  bool relative = true;
+  std::vector<VariedKey> varied;  ///< at least one
+  TomlValue document;             ///< behind it, defaults filled in
+};
+
+/// \throws Error (bad_input) with file, line and key
+StudyCase read_study_case(const std::filesystem::path& path);
+
+/// The same from text.
+StudyCase parse_study_case(std::string_view text, const std::string& name, const std::filesystem::path& folder);
+
+/// What is tried: every combination of the values, as overrides "assembly.rows=33" of the case, with its setting.
+struct StudyPoint {
+  Setting setting;
+  std::vector<std::string> overrides;
+};
+std::vector<StudyPoint> points_of(const StudyCase& study);
+
+}  // namespace equidem

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/study/built_in.hpp"
+
+#include <vector>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/nearest.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr BuiltInStudy studies[] = {
+    {"abe_lattice", "nu and G of Abe's tension test against the size of the lattice", abe_lattice_study},
+    {"random_assembly", "moduli of random periodic cells against discs and seeds", random_assembly_study},
+    {"solvers", "solvers and tolerances of a block in tension, direct and by relaxation", solvers_study},
+    {"collision_laws", "laws of collision against the time step: one impact, stacked spheres", collision_laws_study},
+    {"integrators", "integrators against the time step on a wave in a bonded lattice", integrators_study},
+    {"ellipse_contact", "contact of ellipses: exact, sampled, enlarged as printed and mended", ellipse_contact_study},
+    {"settled_void_ratio", "void ratio of discs that fell, against the time step", settled_void_ratio_study},
+    {"neighbour_margin", "margin of the neighbour lists: time alone", neighbour_margin_study},
+    {"effects", "each effect on and off: time and bytes", effects_study},
+};
+
+}  // namespace
+
+std::span<const BuiltInStudy> built_in_studies() {
+  return studies;
+}
+
+Study built_in_study(const std::string& name, bool quick) {
+  std::vector<std::string> names;
+  std::string list;
+  for (const BuiltInStudy& study : studies) {
+    if (study.name == name) return study.make(quick);
+    names.emplace_back(study.name);
+    list += format("{}{}", list.empty() ? "" : ", ", study.name);
+  }
+  const auto meant = nearest(name, names);
+  bad_input(format("there is no study '{}'", name), "the built-in ones are " + list,
+            meant ? format("Did you mean '{}'?", *meant) : "Choose one of them, or give a study file (.toml)");
+}
+
+}  // namespace equidem

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/study/run_study.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/random.hpp"
+#include "equidem/core/stopwatch.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+/// The settings of one round in its order (Fisher & Yates).
+std::vector<std::size_t> order_of_round(std::size_t tasks, std::uint64_t seed, int round) {
+  std::vector<std::size_t> order(tasks);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  Random random(seed + 0x9e3779b97f4a7c15ULL * static_cast<std::uint64_t>(round + 1));
+  for (std::size_t k = tasks; k > 1; --k) std::swap(order[k - 1], order[random.below(k)]);
+  return order;
+}
+
+bool trusted(const StudySamples& samples, const StudyOptions& options) {
+  return std::all_of(samples.tasks.begin(), samples.tasks.end(), [&](const TaskSamples& task) {
+    return !task.refusal.empty() || summarize(task.times).relative_error() <= options.time_error;
+  });
+}
+
+/// The first round: the values, once.
+void try_once(const StudyTask& task, TaskSamples& samples, std::size_t quantities) {
+  try {
+    const Trial trial = task.prepare();
+    trial.work();
+    samples.values = trial.values();
+    assert(samples.values.size() == quantities);
+    (void)quantities;
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    samples.values.clear();
+    samples.refusal = error.what();
+  }
+}
+
+TimeSample time_once(const StudyTask& task) {
+  return time_work([&] { return task.prepare().work; });
+}
+
+}  // namespace
+
+int StudySamples::rounds() const {
+  std::size_t least = std::numeric_limits<std::size_t>::max();
+  for (const TaskSamples& task : tasks) {
+    if (!task.tried()) return 0;
+    if (task.refusal.empty()) least = std::min(least, task.times.size());
+  }
+  return least == std::numeric_limits<std::size_t>::max() ? 0 : static_cast<int>(least);
+}
+
+StudySamples run_study(const Study& study, const StudyOptions& options, StudySamples kept,
+                       const std::function<void(const StudySamples& done)>& save) {
+  assert(options.least_rounds >= 3 && options.most_rounds >= options.least_rounds);
+  StudySamples samples = std::move(kept);
+  samples.stopped = false;
+  samples.tasks.resize(study.tasks.size());
+  const Stopwatch watch;
+  double seconds_of_round = 0;
+  try {
+    Progress progress(study.name);
+    // Round r times those that have r - 1 times: an interrupted round is completed, round 0 gives values.
+    for (int round = 0; round <= options.most_rounds; ++round) {
+      const double begin = watch.seconds();
+      if (round > options.least_rounds && (trusted(samples, options) || begin + seconds_of_round > options.budget))
+        break;
+      bool worked = false;
+      double done = 0;
+      for (const std::size_t k : order_of_round(study.tasks.size(), options.seed, round)) {
+        TaskSamples& task = samples.tasks[k];
+        const double of_round = done++ / static_cast<double>(study.tasks.size());
+        const double by_rounds = (round + of_round) / (options.least_rounds + 1);
+        progress.update(std::min({1.0, by_rounds, watch.seconds() / options.budget}));
+        const bool due =
+            round == 0 ? !task.tried() : task.refusal.empty() && task.times.size() < static_cast<std::size_t>(round);
+        if (!due) continue;
+        if (round == 0)
+          try_once(study.tasks[k], task, study.quantities.size());
+        else
+          task.times.push_back(time_once(study.tasks[k]));
+        worked = true;
+        if (save) save(samples);
+      }
+      if (worked) seconds_of_round = watch.seconds() - begin;
+      if (round > 0 && std::all_of(samples.tasks.begin(), samples.tasks.end(),
+                                   [](const TaskSamples& task) { return !task.refusal.empty(); }))
+        break;
+    }
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::interrupted) throw;
+    samples.stopped = true;
+  }
+  return samples;
+}
+
+}  // namespace equidem

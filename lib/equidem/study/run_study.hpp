@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Carrying out a study: rounds over all settings.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "equidem/study/study.hpp"
+#include "equidem/study/timing.hpp"
+
+namespace equidem {
+
+struct StudyOptions {
+  double budget = 60;        ///< s, after which no round begins once `least_rounds` are there
+  int least_rounds = 5;      ///< >= 3
+  int most_rounds = 100;     ///< >= least_rounds
+  double time_error = 0.02;  ///< relative error of all medians at which times are trusted
+  std::uint64_t seed = 1;    ///< of the order of settings
+};
+
+/// What is known of one setting.
+struct TaskSamples {
+  std::vector<double> values;  ///< one per quantity; empty: not yet tried
+  std::string refusal;         ///< why the setting has no values; empty: it has
+  std::vector<TimeSample> times;
+
+  [[nodiscard]] bool tried() const { return !values.empty() || !refusal.empty(); }
+};
+
+struct StudySamples {
+  std::vector<TaskSamples> tasks;    ///< one per task
+  bool stopped = false;              ///< by the user, before the end
+  [[nodiscard]] int rounds() const;  ///< that all settings have been through
+};
+
+/// Every round goes once through all settings, in an order drawn anew, so that a machine that gets slower or busier hurts all alike.
+/// The first round warms up: it gives the values, its times are not kept. Rounds go on until all times are trusted or the budget is
+/// spent. A setting that fails is kept with its reason; the user's wish to stop ends the study and keeps what is done. Shows progress.
+/// \param kept of an earlier run of the same study, which goes on from there; empty: none
+/// \param save called after each setting with all samples so far; may be empty
+StudySamples run_study(const Study& study, const StudyOptions& options, StudySamples kept = {},
+                       const std::function<void(const StudySamples& done)>& save = {});
+
+}  // namespace equidem

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// One linear system, many ways: direct solvers with and without refinement, and relaxation to a tolerance.
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "equidem/assembly/lattices.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/dynamics/relaxation.hpp"
+#include "equidem/homogenize/tension_test.hpp"
+#include "equidem/study/built_in.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr double kN = 1e9, kT = 0.5e9, density = 2000;
+
+double squared(Vec2 v) {
+  return dot(v, v);
+}
+
+/// The block of Abe (1996), Fig. 6, in tension, and its true motions.
+struct Block {
+  explicit Block(int rows)
+      : assembly(hexagonal_lattice({.columns = rows, .rows = rows, .radius = 0.005})),
+        setup(tension_setup(assembly, {})),
+        truth(solve(SolverMethod::cholmod, 10)),
+        scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, density, Body::disc)} {
+    const auto always = [](double value) {
+      Schedule schedule;
+      schedule.value = value;
+      return schedule;
+    };
+    bool corner = false;  // the bottom row holds uy of its first disc already
+    for (const Support& support : setup.supports) {
+      TimedSupport timed;
+      timed.group = support.group;
+      if (support.ux) timed.ux = always(*support.ux);
+      if (support.uy && !corner) timed.uy = always(*support.uy);
+      corner = corner || support.uy.has_value();
+      scene.supports.push_back(timed);
+    }
+    for (const Load& load : setup.loads) scene.loads.push_back({load, always(1)});
+  }
+  Block(const Block&) = delete;
+  Block& operator=(const Block&) = delete;
+
+  [[nodiscard]] std::vector<DiscMotion> solve(SolverMethod method, int refinements) const {
+    EquilibriumOptions options;
+    options.solver.method = method;
+    options.solver.max_refinements = refinements;
+    return solve_equilibrium(assembly, springs, setup.supports, setup.loads, options).motions;
+  }
+
+  /// Of displacements, 2-norm.
+  [[nodiscard]] double error(const std::vector<DiscMotion>& motions) const {
+    double off = 0, size = 0;
+    for (std::size_t d = 0; d < motions.size(); ++d) {
+      off += squared(motions[d].u - truth[d].u);
+      size += squared(truth[d].u);
+    }
+    return std::sqrt(off / size);
+  }
+
+  Assembly assembly;
+  ContactSprings springs{SpringConstants{kN, kT}};
+  TensionSetup setup;
+  std::vector<DiscMotion> truth;
+  Scene scene;
+};
+
+/// Built when it is first needed.
+struct LazyBlock {
+  int rows;
+  std::optional<Block> block = {};
+  const Block& get() {
+    if (!block) block.emplace(rows);
+    return *block;
+  }
+};
+
+using Solve = std::function<std::vector<DiscMotion>(const Block&)>;
+
+StudyTask task_of(const std::shared_ptr<LazyBlock>& lazy, Setting setting, Solve solve) {
+  return {std::move(setting), [lazy, solve = std::move(solve)] {
+            const Block& block = lazy->get();
+            const auto motions = std::make_shared<std::vector<DiscMotion>>();
+            return Trial{.work = [=, &block] { *motions = solve(block); },
+                         .values = [=, &block] { return std::vector{block.error(*motions)}; }};
+          }};
+}
+
+}  // namespace
+
+Study solvers_study(bool quick) {
+  Study study{.name = "solvers",
+              .title = "A hexagonal block in tension: error of the displacements",
+              .quantities = {{.name = "displacements",
+                              .label = "relative error of the displacements",
+                              .source = "direct solution refined with the forces of contacts in twice the digits",
+                              .rounding = 1.1e-16}},
+              .tasks = {}};
+  for (const int rows : quick ? std::vector{15, 31} : std::vector{21, 61, 101}) {
+    const auto lazy = std::make_shared<LazyBlock>(rows);
+    const std::string problem = format("{} x {} discs", rows, rows);
+    for (const SolverMethod method : {SolverMethod::multifrontal, SolverMethod::cholmod, SolverMethod::umfpack}) {
+      for (const int refinements : {0, 4}) {
+        study.tasks.push_back(task_of(lazy,
+                                      {.problem = problem,
+                                       .method = to_string(method),
+                                       .values = {{"refinements", static_cast<double>(refinements)}}},
+                                      [=](const Block& block) { return block.solve(method, refinements); }));
+      }
+    }
+    for (int digits = 2; digits <= (quick ? 8 : 11); ++digits) {
+      const double tolerance = std::pow(10.0, -digits);
+      study.tasks.push_back(task_of(
+          lazy,
+          {.problem = problem, .method = "relaxation", .values = {{"tolerance", tolerance}}, .resolution = tolerance},
+          [=](const Block& block) {
+            RelaxationOptions options;
+            options.tolerance = tolerance;
+            return relax(block.scene, options).motions;
+          }));
+    }
+  }
+  study.orders = {{.method = "relaxation",
+                   .order = 1,
+                   .why = "the error is K^-1 times the unbalanced force; the tolerance is looked at now and then only, "
+                          "so that several "
+                          "of them end in the same state"}};
+  return study;
+}
+
+}  // namespace equidem

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What a study asks: which settings are tried, what is measured, against which truth.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace equidem {
+
+/// One way to compute an answer.
+struct Setting {
+  std::string problem = {};  ///< what is asked; answers to one problem compete. Empty where there is only one
+  std::string method = {};   ///< by what; empty where there is only one
+  std::vector<std::pair<std::string, double>> values = {};  ///< what is varied, by name
+  /// h > 0, smaller is finer: errors of a method of order p fall as h^p. Not a number: nothing is refined.
+  double resolution = std::numeric_limits<double>::quiet_NaN();
+
+  /// "rows = 33", "energy_map, time_step = 0.001": without the problem.
+  [[nodiscard]] std::string label() const;
+};
+
+/// How errors follow from what was measured.
+enum class Truth {
+  known,   ///< from a closed form or an independent method: Quantity::truth; 0 where a setting measures an error itself
+  finest,  ///< the value at the finest level of the same problem and method, whose own error is not known
+  richardson,  ///< the limit of the two finest levels of the same problem and method, by the order of theory
+};
+
+/// Something that is measured.
+struct Quantity {
+  std::string name;        ///< "poisson_ratio"
+  std::string label = {};  ///< of its axis: "error of Poisson's ratio"; facts: "bytes per disc"
+  /// A fact has no truth: it is told beside the errors.
+  bool fact = false;
+  bool relative = false;    ///< errors are divided by the truth
+  double truth = 0;         ///< Truth::known
+  std::string source = {};  ///< of the truth: "closed form, Abe (1996), eq. (22)"
+  double rounding = 1e-15;  ///< errors below are rounding: shown as this, and no part of an order
+};
+
+/// What theory says of the order of a method.
+struct ExpectedOrder {
+  std::string problem = {}, method = {}, quantity = {};  ///< empty: all
+  double order = 1;
+  std::string why = {};  ///< of it, or of what deviates from it
+};
+
+/// A setting made ready to be carried out once.
+struct Trial {
+  std::function<void()> work;  ///< timed
+  std::function<std::vector<double>()>
+      values;  ///< afterwards, not timed: one per quantity; not a number where it has none
+};
+
+/// A setting and how to carry it out. The work is the same each time, to the last bit.
+struct StudyTask {
+  Setting setting;
+  std::function<Trial()> prepare;  ///< not timed
+};
+
+struct Study {
+  std::string name;
+  std::string title;
+  std::vector<Quantity> quantities;
+  std::vector<StudyTask> tasks;
+  Truth truth = Truth::known;
+  std::vector<ExpectedOrder> orders = {};
+  std::vector<std::string> notes = {};  ///< sentences: what is computed, and what to make of it
+
+  /// The first entry that fits; empty: theory says nothing.
+  [[nodiscard]] const ExpectedOrder* expected(const Setting& setting, const std::string& quantity) const;
+  /// Of name, quantities, truth and settings, as 16 hexadecimal digits: measurements of studies with the same sum fit together.
+  /// \param context what else they depend on, such as machine and build
+  [[nodiscard]] std::string checksum(const std::string& context) const;
+};
+
+}  // namespace equidem

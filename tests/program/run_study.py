@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""equidem study, as a user does: run_study.py PROGRAM SOURCE_FOLDER [unittest options]."""
+import csv
+import signal
+import subprocess
+import time
+import unittest
+
+from program import CASES, PROGRAM, ProgramTest, equidem, parse_json
+
+STUDY = str(CASES / "study_tension.toml")
+SHORT = ("--budget", 0, "--rounds", 3)
+
+
+def rows(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+class Study(ProgramTest):
+    def test_a_study_file_gives_table_json_and_plot(self):
+        out = self.folder / "out"
+        result = parse_json(self.check_done(equidem("study", STUDY, *SHORT, "--out", out, "--json", "-")).stdout)
+        self.assertEqual(result["status"], "done")
+        self.assertEqual(result["rounds"], 3)
+        for key in ("processor", "cores", "compiler", "build", "version"):
+            self.assertIn(key, result["machine"])
+        self.assertIn("equidem study", result["command"])
+        order = result["orders"][0]
+        self.assertLess(abs(order["observed_order"] - 1), 0.1)
+        self.assertTrue(order["agrees"])
+        errors = [row["errors"]["poisson_ratio"] for row in result["settings"]]
+        self.assertEqual(errors, sorted(errors, reverse=True))
+        for row in result["settings"]:
+            self.assertEqual(row["seconds"]["repetitions"], 3)
+            self.assertLessEqual(row["seconds"]["lower_quartile"], row["seconds"]["median"])
+            self.assertGreater(row["seconds"]["processor_median"], 0)
+        for name in ("study.csv", "samples.csv", "result.json", "study_tension_poisson_ratio.png",
+                     "study_tension_poisson_ratio.gp"):
+            self.assertTrue((out / name).exists(), name)
+        self.assertEqual(len(rows(out / "study.csv")), 5)
+
+    def test_the_accuracy_asked_for_is_reached_or_refused(self):
+        done = self.check_done(equidem("study", STUDY, *SHORT, "--accuracy", 0.03, "--json", "-"))
+        chosen = parse_json(done.stdout)["recommendations"][0]["setting"]
+        self.assertLessEqual(chosen["errors"]["poisson_ratio"], 0.03)
+        done = equidem("study", STUDY, *SHORT, "--accuracy", 1e-9, "--quiet")
+        self.check_error(done, 1, "no setting reaches 1e-09", "the best one reaches")
+        self.check_error(equidem("study", "effects", "--quick", *SHORT, "--accuracy", 0.1, "--quiet"), 1, "no errors")
+        self.check_error(equidem("study", STUDY, "--accuracy", -1), 2, "not positive")
+
+    def test_a_second_run_goes_on_and_another_study_is_refused(self):
+        out = self.folder / "out"
+        command = ("study", STUDY, "--out", out, "--budget", 0, "--quiet")
+        self.check_done(equidem(*command, "--rounds", 3))
+        first = rows(out / "samples.csv")
+        self.check_done(equidem(*command, "--rounds", 5))
+        second = rows(out / "samples.csv")
+        self.assertEqual(max(int(row["round"]) for row in second), 5)
+        for row in first:
+            self.assertIn(row, second)
+        self.check_error(equidem("study", "abe_lattice", "--quick", *SHORT, "--out", out), 2, "another study", "--overwrite")
+        self.check_error(equidem(*command, "--seed", 2), 2, "another study")
+
+    def test_interrupted_it_keeps_what_it_has(self):
+        out = self.folder / "out"
+        command = [PROGRAM, "study", "solvers", "--out", str(out), "--budget", "600", "--quiet"]
+        running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        begin = time.monotonic()
+        while not (out / "samples.csv").exists() and time.monotonic() - begin < 60:
+            time.sleep(0.05)
+        running.send_signal(signal.SIGINT)
+        _, told = running.communicate(timeout=60)
+        self.assertEqual(running.returncode, 130, told)
+        self.assertIn("Run the same command to go on", told)
+        done = rows(out / "samples.csv")
+        self.assertGreater(len(done), 0)
+        self.assertEqual(parse_json((out / "result.json").read_text())["status"], "interrupted")
+        self.assertEqual([path for path in out.iterdir() if ".tmp" in path.name], [])
+
+    def test_settings_that_cannot_be_computed_are_told(self):
+        text = (CASES / "study_tension.toml").read_text().replace("abe1996_fig6.toml", str(CASES / "abe1996_fig6.toml"))
+        study = self.folder / "study.toml"
+        study.write_text(text.replace("[9, 17, 33, 65, 129]", "[1, 9, 17]"))
+        result = parse_json(self.check_done(equidem("study", study, *SHORT, "--json", "-")).stdout)
+        self.assertIn("refusal", result["settings"][0])
+        self.assertIn("errors", result["settings"][1])
+        study.write_text(text.replace('"poisson_ratio"', '"poison_ratio"'))
+        self.check_error(equidem("study", study, *SHORT, "--quiet"), 1, "none of the settings", "poison_ratio")
+
+    def test_the_built_in_studies_are_listed(self):
+        listed = self.check_done(equidem("study", "--list")).stdout
+        for name in ("abe_lattice", "random_assembly", "solvers", "collision_laws", "integrators", "ellipse_contact",
+                     "settled_void_ratio", "neighbour_margin", "effects"):
+            self.assertIn(name, listed)
+        self.check_error(equidem("study", "integrator"), 2, "Did you mean 'integrators'?")
+        self.check_error(equidem("study"), 2, "not said what to study")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// On what, and with what, times were measured.
+#pragma once
+
+#include <string>
+
+#include "equidem/output/json.hpp"
+
+namespace equidem {
+
+struct Machine {
+  std::string processor;  ///< "" where unknown
+  int cores = 0;
+  std::string compiler;
+  std::string build;  ///< "optimized, assertions off"
+  std::string version;
+
+  [[nodiscard]] std::string text() const;
+  [[nodiscard]] JsonObject json() const;
+};
+
+Machine this_machine();
+
+}  // namespace equidem
