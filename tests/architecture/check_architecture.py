@@ -32,6 +32,7 @@ PARTS = [
     ("metis.h", ["tools/bench/*"], 0),
     ("benchmark/*", ["tools/bench/*"], 0),
     ("CLI/*", ["tools/*"], 0),
+    ("petsc*", ["tools/bench/peers/matrix_petsc.cpp"], 1),
     ("catch2/*", ["tests/support/*"], 0),
 ]
 # Headers of the operating system and the compiler.

@@ -145,7 +145,8 @@ TEST_CASE("tables_of_grains_and_contacts_have_a_row_for_each") {
   const TemporaryFolder folder;
   const auto grains = grains_at(1, 2);
   const std::vector<double> densities{2500, 7800};
-  write_grain_csv(folder / "grains.csv", grains, {"sand", "steel"}, densities, false);
+  const std::vector<std::string> groups{"sand", "steel"};
+  write_grain_csv(folder / "grains.csv", {grains, {}, groups, densities}, false);
   const std::string table = read_file(folder / "grains.csv");
   CHECK(table.starts_with("grain,group,x_m,y_m,radius_m,vx_m_per_s,vy_m_per_s,spin_rad_per_s,angle_rad,"));
   CHECK(table.find("\n1,steel,") != std::string::npos);

@@ -34,6 +34,7 @@ constexpr const char* examples = R"(Examples:
   equidem run data/cases/run_pulse.toml --out pulse
   equidem run data/cases/grains_cradle.toml --out cradle
   equidem pack data/cases/pack_jammed.toml --out jammed
+  equidem study integrators --accuracy 1e-4
   equidem help case          every key of the case file
 
 Exit codes: 0 done; 1 the computation failed, and says why; 2 bad input or usage; 130 interrupted.)";
@@ -43,8 +44,11 @@ class HelpText : public CLI::Formatter {
  public:
   std::string make_usage(const CLI::App* command, std::string) const override {
     if (command->get_parent() == nullptr) return "Usage: equidem VERB CASE.toml [OPTIONS]\n";
-    const bool takes_case = command->get_option_no_throw("CASE") != nullptr;
-    return format("Usage: equidem {} {} [OPTIONS]\n", command->get_name(), takes_case ? "CASE.toml" : "PAPER");
+    const auto takes = [&](const char* what) { return command->get_option_no_throw(what) != nullptr; };
+    return format("Usage: equidem {} {} [OPTIONS]\n", command->get_name(),
+                  takes("CASE")    ? "CASE.toml"
+                  : takes("STUDY") ? "NAME|FILE.toml"
+                                   : "PAPER");
   }
 };
 

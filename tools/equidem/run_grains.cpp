@@ -2,6 +2,7 @@
 #include "run_grains.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "equidem/casefile/echo.hpp"
 #include "equidem/core/error.hpp"
@@ -36,6 +37,7 @@ void check_outputs(const CommonOptions& common, bool resume, const GrainCase& re
   plan.expect("result.json");
   plan.expect("case.toml");
   plan.expect("energy.csv");
+  if (resolved.measures) plan.expect("measures.csv");
   if (resolved.output.csv) plan.expect("grains.csv");
   if (resolved.output.picture) plan.expect("picture.png");
 }
@@ -87,19 +89,24 @@ void write_state(const std::filesystem::path& folder, const GrainSetup& setup, c
                                        resolved.kinds.begin()));
   }
   if (resolved.output.csv) {
-    write_grain_csv(folder / "grains.csv", grains, groups, resolved.densities, overwrite);
+    write_grain_csv(folder / "grains.csv", {grains, resolved.clumps, groups, resolved.densities}, overwrite);
     write_grain_contact_csv(folder / "contacts.csv", simulation.contacts(), resolved.walls, resolved.body, overwrite);
   }
+  if (resolved.output.csv && !resolved.bonds.bonds.empty())
+    write_bond_csv(folder / "bonds.csv", simulation.bond_drifts(), overwrite);
   if (resolved.output.picture) {
     write_grain_picture(folder, "picture",
                         {.title = resolved.title,
                          .time = simulation.time(),
                          .grains = grains,
+                         .clumps = resolved.clumps,
                          .groups = colours,
+                         .bonds = resolved.bonds.bonds,
                          .walls = resolved.walls,
                          .paths = run.record.paths},
                         overwrite);
     write_grain_energy_plot(folder, setup, run, overwrite);
+    write_probe_paths(folder, resolved, overwrite);
   }
   write_grain_energy_csv(folder / "energy.csv", run.record.energies, resolved.body, overwrite);
   write_file(folder / "case.toml", to_toml(resolved.document, folder), overwrite);
@@ -116,20 +123,27 @@ int run_grains(const CommonOptions& common, bool resume) {
   if (common.dry_run) return dry_run(common, setup);
   GrainSimulation simulation = setup.simulation();
   times.add("scene", watch.lap());
+  std::optional<GrainMeasures> measures;
+  if (setup.resolved.measures) measures.emplace(setup.resolved);
   const GrainRun run =
-      run_through(setup, simulation, {.folder = common.out, .overwrite = common.overwrite, .resume = resume});
+      run_through(setup, simulation, {.folder = common.out, .overwrite = common.overwrite, .resume = resume},
+                  measures ? &*measures : nullptr);
   times.add("steps", run.seconds);
   CommonOptions delivered = common;
   delivered.overwrite = common.overwrite || resume;
   if (common.out) {
     watch.lap();
     write_state(*common.out, setup, simulation, run, delivered.overwrite);
+    if (measures) measures->write_files(*common.out, simulation, delivered.overwrite);
     times.add("files", watch.lap());
   }
-  const std::string report = describe_grains(setup, simulation) + describe_grain_run(setup, simulation, run, times);
+  const std::string report = describe_grains(setup, simulation) + (measures ? measures->describe() : "") +
+                             describe_grain_run(setup, simulation, run, times);
   JsonObject object;
   add_common(object, "done", report, times, simulation.effects());
   add_grain_run(object, setup, simulation, run);
+  add_shaking(object, setup.resolved);
+  if (measures) measures->add_to(object);
   deliver(delivered, report, object);
   if (common.out) say(common, format("written to {}", common.out->string()));
   return 0;

@@ -10,12 +10,13 @@
 #include <utility>
 
 #include "equidem/casefile/echo.hpp"
+#include "equidem/core/checksum.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/frames.hpp"
 #include "equidem/output/grain_energy.hpp"
+#include "equidem/output/grain_frames.hpp"
 #include "equidem/output/grain_picture.hpp"
 #include "equidem/output/growing_csv.hpp"
 
@@ -27,47 +28,30 @@ namespace {
 constexpr double look_every = 0.2;                            // s of the clock on the wall: progress, interrupts
 constexpr std::int64_t moments = 200, moments_of_few = 1000;  // of the record, the latter where paths are drawn
 
-/// Tells whether files that a case names are still what they were: FNV-1a, 64 bits at a time, the upper ones folded down.
-class Checksum {
- public:
-  void add(double value) {
-    sum_ = (sum_ ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001b3U;
-    sum_ ^= sum_ >> 32U;
-  }
-  [[nodiscard]] std::string text() const { return format("{:016x}", sum_); }
-
- private:
-  std::uint64_t sum_ = 0xcbf29ce484222325U;
-};
-
+/// Tells whether files that a case names are still what they were.
 std::string checksum_of(const GrainCase& resolved) {
   Checksum sum;
   for (std::size_t g = 0; g < resolved.grains.size(); ++g) {
     const Grain& grain = resolved.grains[g];
     for (const double value : {grain.position.x, grain.position.y, grain.radius, grain.velocity.x, grain.velocity.y,
-                               grain.spin, grain.angle, resolved.densities[g], static_cast<double>(grain.kind)})
+                               grain.spin, grain.angle, resolved.densities[g], static_cast<double>(grain.kind),
+                               grain.short_half_axis, static_cast<double>(grain.clump)})
       sum.add(value);
   }
+  for (const GrainBond& bond : resolved.bonds.bonds)
+    for (const std::size_t grain : {bond.i, bond.j}) sum.add(static_cast<double>(grain));
+  for (const Clump& clump : resolved.clumps)
+    for (const Clump::Disc& disc : clump.discs)
+      for (const double value : {disc.offset.x, disc.offset.y, disc.radius}) sum.add(value);
   for (const GrainWall& wall : resolved.walls)
     for (const Schedule* schedule : {&wall.move_x, &wall.move_y})
-      for (const auto* values : {&schedule->times, &schedule->values})
-        for (const double value : *values) sum.add(value);
+      for (const auto* numbers : {&schedule->times, &schedule->values, &schedule->rates}) sum.add(*numbers);
   return sum.text();
 }
 
 void erase(TomlValue& table, std::initializer_list<std::string_view> names) {
   std::erase_if(table.entries,
                 [&](const auto& entry) { return std::find(names.begin(), names.end(), entry.first) != names.end(); });
-}
-
-/// Grains as frames know them: places and radii at the start.
-Assembly assembly_of(const std::vector<Grain>& grains) {
-  Assembly assembly;
-  for (const Grain& grain : grains) {
-    assembly.centres.push_back(grain.position);
-    assembly.radii.push_back(grain.radius);
-  }
-  return assembly;
 }
 
 std::vector<std::string> history_columns(const GrainCase& resolved) {
@@ -145,9 +129,10 @@ void refuse_made_energy(const GrainSetup& setup, const GrainSimulation& simulati
 
 class GrainLoop {
  public:
-  GrainLoop(const GrainSetup& setup, GrainSimulation& simulation, const GrainFiles& files)
+  GrainLoop(const GrainSetup& setup, GrainSimulation& simulation, const GrainFiles& files, GrainMeasures* measures)
       : setup_(setup),
         simulation_(simulation),
+        measures_(measures),
         draws_paths_(setup.resolved.grains.size() <= most_drawn_paths),
         stride_(static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(
             std::max<std::int64_t>(1, setup.steps / (draws_paths_ ? moments_of_few : moments)))))),
@@ -221,15 +206,14 @@ class GrainLoop {
     }
     checkpoint_.emplace(path, setup_.fingerprint(), files.overwrite || files.resume);
     if (resolved.output.frame_interval) {
-      start_ = assembly_of(resolved.grains);
       const double steps = static_cast<double>(setup_.steps);
       const double count = std::min(steps, steps * setup_.step.step / *resolved.output.frame_interval);
-      frames_.emplace(folder, "frames", start_,
-                      FrameOptions{.expected = static_cast<std::int64_t>(count) + 2,
-                                   .overwrite = files.overwrite,
-                                   .travelling = true,
-                                   .continue_after = after});
+      frames_ = std::make_unique<GrainFrames>(
+          folder, "frames", resolved.grains, resolved.clumps,
+          FrameOptions{
+              .expected = static_cast<std::int64_t>(count) + 2, .overwrite = files.overwrite, .continue_after = after});
     }
+    if (measures_ != nullptr) measures_->open(folder, files.overwrite, after);
     if (resolved.output.probe_interval) {
       history_ = std::make_unique<GrowingCsv>(folder / "history.csv", history_columns(resolved),
                                               GrowingCsvOptions{.overwrite = files.overwrite, .continue_after = after});
@@ -243,27 +227,22 @@ class GrainLoop {
     const bool sample = (energies.empty() || energies.back().step < step) && (last || step % stride_ == 0);
     const bool frame = frames_ && frames_->last_step() < step && (frame_times_.at(step) || last);
     const bool row = history_ && history_->last_step() < step && (probe_times_.at(step) || last);
-    if (!sample && !frame && !row) return;
+    const bool measured = measures_ != nullptr && measures_->last_step() < step && (probe_times_.at(step) || last);
+    if (!sample && !frame && !row && !measured) return;
     const GrainLedger ledger = simulation_.energy();
     keep_what_was_reached([&] { refuse_made_energy(setup_, simulation_, ledger); });
     const double time = simulation_.time();
     const bool path = sample && draws_paths_;
     if (sample) energies.push_back({step, time, ledger});
-    if (!path && !frame && !row) return;
+    if (!path && !frame && !row && !measured) return;
     const std::vector<Grain> grains = simulation_.grains();
     if (path) {
       auto& places = result_.record.paths.emplace_back();
       for (const Grain& grain : grains) places.push_back(grain.position);
     }
-    if (frame) {
-      std::vector<DiscMotion> motions, velocities;
-      for (const Grain& grain : grains) {
-        motions.push_back({grain.position, grain.angle});
-        velocities.push_back({grain.velocity, grain.spin});
-      }
-      frames_->append(step, time, motions, velocities);
-    }
+    if (frame) frames_->append(step, time, grains);
     if (row) history_->add(step, history_row(setup_.resolved, time, grains, ledger));
+    if (measured) measures_->record(step, time, grains);
   }
 
   /// Everything that the checkpoint counts on is on the disk before it is.
@@ -271,6 +250,7 @@ class GrainLoop {
     if (!checkpoint_) return;
     if (history_) history_->sync();
     if (frames_) frames_->sync();
+    if (measures_ != nullptr) measures_->sync();
     write_grain_checkpoint(*checkpoint_, simulation_.save(), result_.record);
   }
 
@@ -281,12 +261,12 @@ class GrainLoop {
 
   const GrainSetup& setup_;
   GrainSimulation& simulation_;
+  GrainMeasures* measures_;
   bool draws_paths_;
   std::int64_t stride_;  ///< steps from one moment of the record to the next
   Recurrence frame_times_, probe_times_;
   std::optional<CheckpointWriter> checkpoint_;
-  Assembly start_;
-  std::optional<FrameWriter> frames_;
+  std::unique_ptr<GrainFrames> frames_;
   std::unique_ptr<GrowingCsv> history_;
   GrainRun result_;
 };
@@ -328,13 +308,14 @@ GrainSimulation GrainSetup::simulation() const {
 std::string GrainSetup::fingerprint() const {
   TomlValue known = resolved.document;
   erase(*known.find("run"), {"duration", "time_step", "steps_per_contact"});  // the step is below
-  erase(known, {"title", "output", "probe"});
+  erase(known, {"title", "output", "probe", "measures"});
   return to_toml(std::move(known), {}) + format("\n# step {} s\n# checksum of grains and schedules {}\n",
                                                 toml_number(step.step), checksum_of(resolved));
 }
 
-GrainRun run_through(const GrainSetup& setup, GrainSimulation& simulation, const GrainFiles& files) {
-  return GrainLoop(setup, simulation, files).go();
+GrainRun run_through(const GrainSetup& setup, GrainSimulation& simulation, const GrainFiles& files,
+                     GrainMeasures* measures) {
+  return GrainLoop(setup, simulation, files, measures).go();
 }
 
 }  // namespace equidem

@@ -14,6 +14,8 @@
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/output/grain_checkpoint.hpp"
 
+#include "run_grains_measures.hpp"
+
 namespace equidem {
 
 struct GrainSetup {
@@ -45,6 +47,8 @@ struct GrainRun {
 /// Make all steps; frames, histories and checkpoints on their schedules, progress on stderr. An interrupt leaves a checkpoint, and so
 /// does a step that cannot be made.
 /// \throws Error as the writers, GrainSimulation::advance and stop_if_interrupted; (bad_input) where a checkpoint lies past the end
-GrainRun run_through(const GrainSetup& setup, GrainSimulation& simulation, const GrainFiles& files);
+/// \param measures recorded at the moments of the probes, at the start and at the end; none: nullptr
+GrainRun run_through(const GrainSetup& setup, GrainSimulation& simulation, const GrainFiles& files,
+                     GrainMeasures* measures = nullptr);
 
 }  // namespace equidem

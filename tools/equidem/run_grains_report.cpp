@@ -2,9 +2,11 @@
 #include "run_grains_report.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "equidem/casefile/grain_pairs.hpp"
 #include "equidem/core/text.hpp"
@@ -12,6 +14,7 @@
 #include "equidem/output/plot.hpp"
 
 #include "report.hpp"
+#include "run_bonds_report.hpp"
 
 namespace equidem {
 namespace {
@@ -25,8 +28,8 @@ double grain_steps_per_second(const GrainSetup& setup, const GrainRun& run) {
 
 /// What the balance is held against: the most energy that there was.
 double largest_term(const GrainLedger& ledger) {
-  return std::max({ledger.kinetic, ledger.elastic_normal + ledger.elastic_tangential, std::abs(ledger.potential),
-                   ledger.lost(), std::abs(ledger.work_of_walls), ledger.initial});
+  return std::max({ledger.kinetic, ledger.elastic(), std::abs(ledger.potential), ledger.lost(),
+                   std::abs(ledger.work_of_walls), ledger.initial});
 }
 
 double relative_error(const GrainLedger& ledger) {
@@ -43,6 +46,34 @@ std::string range(double smallest, double largest) {
   return smallest == largest ? format("{:.6g}", smallest) : format("{:.6g} to {:.6g}", smallest, largest);
 }
 
+/// How many bodies have each shape, in the order of GrainShape.
+std::array<std::int64_t, 3> counts_of_shapes(const GrainCase& resolved) {
+  std::array<std::int64_t, 3> counts{};
+  for (const Grain& grain : resolved.grains) ++counts[static_cast<std::size_t>(grain.shape())];
+  return counts;
+}
+
+/// "24 discs", "3 discs, 1 ellipse and 2 clumps".
+std::string describe_shapes(const GrainCase& resolved) {
+  const auto [round, ellipses, clumps] = counts_of_shapes(resolved);
+  std::vector<std::string> parts;
+  for (const auto& [count, name] :
+       {std::pair{round, to_string(resolved.body)}, std::pair{ellipses, std::string("ellipse")},
+        std::pair{clumps, std::string("clump")}})
+    if (count > 0) parts.push_back(format("{} {}{}", grouped(count), name, count == 1 ? "" : "s"));
+  std::string text = parts.front();
+  for (std::size_t k = 1; k < parts.size(); ++k) text += (k + 1 == parts.size() ? " and " : ", ") + parts[k];
+  return text;
+}
+
+const char* describe_ellipse_contact(GrainOptions::EllipseLaw law) {
+  using enum GrainOptions::EllipseLaw;
+  return law == exact ? "ellipses meet at their closest points (exact)"
+         : law == enlarged_mended
+             ? "ellipses meet by the test of enlarged ellipses, mended: shallow contacts are missed"
+             : "ellipses meet by the test of enlarged ellipses as printed: many contacts are missed";
+}
+
 std::string describe_bodies(const GrainCase& resolved) {
   double mass = 0, smallest = INFINITY, largest = 0;
   std::map<std::string, std::int64_t> groups;
@@ -52,11 +83,22 @@ std::string describe_bodies(const GrainCase& resolved) {
     largest = std::max(largest, grain.radius);
     ++groups[resolved.kinds[static_cast<std::size_t>(grain.kind)]];
   }
-  const auto count = static_cast<std::int64_t>(resolved.grains.size());
-  std::string out =
-      report_line("bodies", format("{} {}{}, radius {} m, {:.6g} {} in all", grouped(count), to_string(resolved.body),
-                                   count == 1 ? "" : "s", range(smallest, largest), mass,
-                                   resolved.body == Body::disc ? "kg per m of depth" : "kg"));
+  const auto [round, ellipses, clumps] = counts_of_shapes(resolved);
+  std::string out = report_line(
+      "bodies", format("{}, {} {} m, {:.6g} {} in all", describe_shapes(resolved),
+                       ellipses + clumps == 0 ? "radius" : "radius of the circle around each", range(smallest, largest),
+                       mass, resolved.body == Body::disc ? "kg per m of depth" : "kg"));
+  if (clumps > 0) {
+    std::size_t fewest = resolved.clumps.front().discs.size(), most = fewest;
+    for (const Clump& clump : resolved.clumps) {
+      fewest = std::min(fewest, clump.discs.size());
+      most = std::max(most, clump.discs.size());
+    }
+    out += report_line("",
+                       format("clumps of {} {}", fewest == most ? format("{}", most) : format("{} to {}", fewest, most),
+                              most == 1 ? "disc" : "discs"));
+  }
+  if (ellipses > 0) out += report_line("", describe_ellipse_contact(resolved.ellipse_law));
   if (groups.size() > 1) {
     std::string list;
     for (const auto& [name, members] : groups) list += format("{}{} {}", list.empty() ? "" : ", ", name, members);
@@ -189,7 +231,8 @@ std::string describe_grains(const GrainSetup& setup, const GrainSimulation& simu
   for (const Effects::Entry& entry : simulation.effects().entries)
     if (!entry.active) out += report_line("", format("no {}: {}", entry.name, entry.why));
   out += report_line("law", describe_law(resolved));
-  out += describe_pairs(resolved) + describe_step(setup) + describe_output(setup);
+  out += describe_pairs(resolved) + describe_shaking(resolved) + describe_step(setup) + describe_bonds(setup) +
+         describe_output(setup);
   return out + report_line("memory", format("{:.0f} bytes a grain in the loop", simulation.bytes_per_grain()));
 }
 
@@ -202,12 +245,12 @@ std::string describe_grain_run(const GrainSetup& setup, const GrainSimulation& s
   out += report_line("collisions",
                      format("{} contacts begun, {} at the end; {} evaluations of the law", grouped(counters.contacts),
                             simulation.contacts().size(), grouped(counters.evaluations)));
+  out += describe_drift_of_bonds(simulation.bonds());
   const GrainLedger l = simulation.energy();
-  out += report_line("energy",
-                     format("kinetic {:.6g}, elastic {:.6g}, potential {:.6g} {}", l.kinetic,
-                            l.elastic_normal + l.elastic_tangential, l.potential, energy_unit(setup.resolved.body)));
+  out += report_line("energy", format("kinetic {:.6g}, elastic {:.6g}, potential {:.6g} {}", l.kinetic, l.elastic(),
+                                      l.potential, energy_unit(setup.resolved.body)));
   const GrainLedger& start = run.record.energies.front().ledger;
-  const double overlap = start.elastic_normal + start.elastic_tangential;
+  const double overlap = start.elastic();
   out += report_line(
       "", format("at the start {:.6g}{}{}", l.initial,
                  overlap > 1e-6 * largest_term(l) ? format(", {:.6g} of it in bodies that overlap", overlap) : "",
@@ -216,7 +259,7 @@ std::string describe_grain_run(const GrainSetup& setup, const GrainSimulation& s
   for (const auto& [name, value] :
        {std::pair{"restitution", l.lost_restitution}, std::pair{"normal dashpots", l.lost_dashpot},
         std::pair{"slip", l.lost_slip}, std::pair{"tangential dashpots", l.lost_tangential_dashpot},
-        std::pair{"springs let go", l.lost_release}})
+        std::pair{"springs let go", l.lost_release}, std::pair{"bonds", l.lost_bond}})
     if (value != 0) lost += format("{}{} {:.6g}", lost.empty() ? "" : ", ", name, value);
   out += report_line("", lost.empty() ? "nothing lost" : format("lost {:.6g}: {}", l.lost(), lost));
   out += report_line("balance", format("lacks {:.1e} of the largest term", relative_error(l)));
@@ -251,18 +294,23 @@ void add_grain_step(JsonObject& object, const GrainStep& step) {
 void add_grain_run(JsonObject& object, const GrainSetup& setup, const GrainSimulation& simulation,
                    const GrainRun& run) {
   const GrainCase& resolved = setup.resolved;
+  const auto [round, ellipses, clumps] = counts_of_shapes(resolved);
+  JsonObject shapes;
+  shapes.set(to_string(resolved.body) + "s", round).set("ellipses", ellipses).set("clumps", clumps);
   object.set("title", resolved.title)
       .set("body", to_string(resolved.body))
       .set("grains", resolved.grains.size())
+      .set("shapes", shapes)
       .set("walls", resolved.walls.size())
       .set("law", to_string(resolved.law))
       .set("steps", simulation.step())
       .set("time", simulation.time());
   add_grain_step(object, setup.step);
+  add_bonds(object, setup, simulation.bonds());
   const GrainLedger ledger = simulation.energy();
   JsonObject energy;
   for (const GrainEnergyTerm& term : grain_energy_terms) energy.set(term.name, ledger.*term.value);
-  energy.set("elastic", ledger.elastic_normal + ledger.elastic_tangential)
+  energy.set("elastic", ledger.elastic())
       .set("dissipated", ledger.lost())
       .set("input", ledger.work_of_walls)
       .set("error", ledger.error())
@@ -291,12 +339,13 @@ void write_grain_energy_plot(const std::filesystem::path& folder, const GrainSet
   };
   constexpr Curve curves[] = {
       {"kinetic", PlotColour::blue, [](const GrainLedger& l) { return l.kinetic; }},
-      {"elastic", PlotColour::vermilion, [](const GrainLedger& l) { return l.elastic_normal + l.elastic_tangential; }},
+      {"elastic", PlotColour::vermilion, [](const GrainLedger& l) { return l.elastic(); }},
       {"potential", PlotColour::green, [](const GrainLedger& l) { return l.potential; }},
       {"lost at impacts", PlotColour::orange,
        [](const GrainLedger& l) { return l.lost_restitution + l.lost_dashpot + l.lost_release; }},
       {"lost by friction", PlotColour::purple,
        [](const GrainLedger& l) { return l.lost_slip + l.lost_tangential_dashpot; }},
+      {"lost in bonds", PlotColour::yellow, [](const GrainLedger& l) { return l.lost_bond; }},
       {"put in by walls", PlotColour::sky_blue, [](const GrainLedger& l) { return l.work_of_walls; }},
       {"what the balance lacks", PlotColour::black, [](const GrainLedger& l) { return l.error(); }},
   };

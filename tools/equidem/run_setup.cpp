@@ -2,7 +2,6 @@
 #include "run_setup.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "equidem/casefile/build_run.hpp"
+#include "equidem/core/checksum.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/checkpoint.hpp"
@@ -99,29 +99,15 @@ void check_events(const Case& resolved, TimeStep& step) {
   for (std::size_t k = 0; k < run.walls.size(); ++k) check(run.walls[k].displacement, "wall", k);
 }
 
-/// Tells whether files that a case names are still what they were: FNV-1a, 64 bits at a time, the upper ones folded
-/// down.
-class Checksum {
- public:
-  void add(std::uint64_t value) {
-    sum_ = (sum_ ^ value) * 0x100000001b3U;
-    sum_ ^= sum_ >> 32U;
-  }
-  void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
-  void add(const Schedule& schedule) {
-    for (const auto* values : {&schedule.times, &schedule.values})
-      for (const double value : *values) add(value);
-  }
-  [[nodiscard]] std::string text() const { return format("{:016x}", sum_); }
-
- private:
-  std::uint64_t sum_ = 0xcbf29ce484222325U;
-};
+/// Tells whether files that a case names are still what they were.
+void add(Checksum& sum, const Schedule& schedule) {
+  for (const auto* numbers : {&schedule.times, &schedule.values, &schedule.rates}) sum.add(*numbers);
+}
 
 std::string checksum_of(const Assembly& assembly) {
   Checksum sum;
   for (const Vec2 centre : assembly.centres) sum.add(centre.x), sum.add(centre.y);
-  for (const double radius : assembly.radii) sum.add(radius);
+  sum.add(assembly.radii);
   for (const Contact& contact : assembly.contacts) {
     for (const std::int32_t number : {contact.i, contact.j, contact.shift_x, contact.shift_y})
       sum.add(static_cast<std::uint64_t>(number));
@@ -140,9 +126,9 @@ std::string checksum_of_schedules(const Scene& scene) {
   Checksum sum;
   for (const TimedSupport& support : scene.supports)
     for (const auto* motion : {&support.ux, &support.uy, &support.rotation})
-      if (*motion) sum.add(**motion);
-  for (const TimedLoad& load : scene.loads) sum.add(load.factor);
-  for (const Wall& wall : scene.walls) sum.add(wall.displacement);
+      if (*motion) add(sum, **motion);
+  for (const TimedLoad& load : scene.loads) add(sum, load.factor);
+  for (const Wall& wall : scene.walls) add(sum, wall.displacement);
   return sum.text();
 }
 

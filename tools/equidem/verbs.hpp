@@ -22,6 +22,7 @@ Run declare_stability(CLI::App& command);
 Run declare_pack(CLI::App& command);
 Run declare_run(CLI::App& command);
 Run declare_sweep(CLI::App& command);
+Run declare_study(CLI::App& command);
 Run declare_reproduce(CLI::App& command);
 
 struct Verb {
@@ -38,6 +39,7 @@ inline constexpr std::array verbs{
     Verb{"pack", "make an assembly: discs in a box, at random or at rest", declare_pack},
     Verb{"run", "dynamics: bonded discs stepped in time or relaxed to rest, or bodies that collide", declare_run},
     Verb{"sweep", "solve over a range of one key: the curves", declare_sweep},
+    Verb{"study", "error against time: the order of a method, the cheapest setting for an accuracy", declare_study},
     Verb{"reproduce", "a paper's tables and figures beside ours: abe1996, abe1996_random, fujioka2005",
          declare_reproduce},
 };

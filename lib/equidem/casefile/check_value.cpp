@@ -61,6 +61,8 @@ std::string example(const KeySpec& key) {
       return "[0.0, 0.0, 1.0, 1.0]";
     case KeyType::discs:
       return "[0, 1, 2]";
+    case KeyType::circles:
+      return "[[0.0, 0.0, 0.01], [0.015, 0.0, 0.01]]";
     case KeyType::sizes:
       return "[100, 400, 1600]";
     case KeyType::numbers:
@@ -119,6 +121,16 @@ void check_list(const TomlValue& value, const KeySpec& key) {
   if (!value.is_array()) fail_type(value, key);
   if (value.items.empty())
     fail(value, key, "the list is empty", format("Write it like {} = {}", key.name, example(key)));
+}
+
+void check_circles(const TomlValue& value, const KeySpec& key) {
+  check_list(value, key);
+  for (const TomlValue& item : value.items) {
+    if (!item.is_array()) fail_type(value, key);
+    check_numbers(item, key, 3);
+    if (!(item.items[2].real > 0))
+      fail(item.items[2], key, format("the radius {} is out of range", item.items[2].shown()), "Give a number > 0");
+  }
 }
 
 void check_sizes(const TomlValue& value, const KeySpec& key) {
@@ -183,6 +195,8 @@ std::string expected(const KeySpec& key) {
       return "four numbers [x_min, y_min, x_max, y_max]" + unit;
     case KeyType::discs:
       return "a list of disc numbers, such as [0, 1, 2]";
+    case KeyType::circles:
+      return "a list of circles [x, y, radius]" + unit + ", radius > 0";
     case KeyType::sizes:
       return "a list of ascending whole numbers" + range;
     case KeyType::numbers:
@@ -247,6 +261,8 @@ void check_value(const TomlValue& value, const KeySpec& key) {
       return check_numbers(value, key, 4);
     case KeyType::discs:
       return check_discs(value, key);
+    case KeyType::circles:
+      return check_circles(value, key);
     case KeyType::sizes:
       return check_sizes(value, key);
     case KeyType::numbers:

@@ -3,6 +3,7 @@
 #include "equidem/casefile/grain_keys.hpp"
 #include "equidem/casefile/keys.hpp"
 #include "equidem/casefile/pack_keys.hpp"
+#include "equidem/casefile/study_keys.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -133,6 +134,23 @@ Discs that fill a box, for 'equidem pack': a case with [packing] in place of [as
   kT = 0.5e8
 )";
 
+constexpr const char* study_example =
+    R"(
+A study, for 'equidem study': error against time over the keys of a case. An example:
+
+  schema = "equidem/1"
+  [study]
+  verb    = "solve"
+  case    = "abe1996_fig6.toml"
+  measure = "poisson_ratio"
+  truth   = "known"
+  value   = 0.125
+  order   = 1.0
+  [[vary]]
+  key    = "assembly.rows, assembly.columns"
+  values = [9, 17, 33, 65]
+)";
+
 }  // namespace
 
 std::string describe_case_file() {
@@ -149,6 +167,8 @@ std::string describe_case_file() {
       append_table(out, grains, table);
   out += pack_example;
   for (const TableSpec& table : pack_file_spec().tables) append_table(out, pack_file_spec(), table);
+  out += study_example;
+  for (const TableSpec& table : study_file_spec().tables) append_table(out, study_file_spec(), table);
   return out;
 }
 

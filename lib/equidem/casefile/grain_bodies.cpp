@@ -7,7 +7,9 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <utility>
 
+#include "equidem/casefile/grain_shapes.hpp"
 #include "equidem/casefile/read_value.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/nearest.hpp"
@@ -33,16 +35,25 @@ std::vector<std::string_view> cells_of(std::string_view row) {
   }
 }
 
-/// Columns of a file of grains. The last one is text.
-enum Column { x, y, radius, vx, vy, spin, angle, density, group, columns };
-constexpr std::array<const char*, columns> names = {"x",    "y",     "radius",  "vx",   "vy",
-                                                    "spin", "angle", "density", "group"};
+/// Columns of a file of grains. The last two are text.
+enum Column { x, y, radius, short_half_axis, vx, vy, spin, angle, density, discs, group, columns };
+constexpr std::array<const char*, columns> names = {"x",    "y",     "radius",  "short_half_axis", "vx",   "vy",
+                                                    "spin", "angle", "density", "discs",           "group"};
 /// What a run writes beside, and this reader passes over.
 constexpr std::array ignored = {"grain", "mass_kg", "mass_kg_per_m"};
 
 /// As a run writes them.
-constexpr std::array<const char*, columns> with_units = {
-    "x_m", "y_m", "radius_m", "vx_m_per_s", "vy_m_per_s", "spin_rad_per_s", "angle_rad", "density_kg_per_m3", "group"};
+constexpr std::array<const char*, columns> with_units = {"x_m",
+                                                         "y_m",
+                                                         "radius_m",
+                                                         "short_half_axis_m",
+                                                         "vx_m_per_s",
+                                                         "vy_m_per_s",
+                                                         "spin_rad_per_s",
+                                                         "angle_rad",
+                                                         "density_kg_per_m3",
+                                                         "discs_m",
+                                                         "group"};
 
 /// The column of a name with or without its unit; `columns` where there is none.
 std::size_t column_of(std::string_view name) {
@@ -56,7 +67,7 @@ class GrainFile {
  public:
   explicit GrainFile(fs::path path) : path_(std::move(path)) {}
 
-  void read(std::optional<double> common_density, GrainBodies& bodies) {
+  void read(std::optional<double> common_density, GrainShapes& shapes, GrainBodies& bodies) {
     const std::string content = read_file(path_);
     std::string_view rest = content;
     constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
@@ -69,7 +80,7 @@ class GrainFile {
       if (width_ == 0) {
         read_heading(row);
       } else {
-        read_grain(row, common_density, bodies);
+        read_grain(row, common_density, shapes, bodies);
       }
     }
     if (width_ == 0) fail("the file has no row of names", "x, y and radius are needed", "Begin it with x,y,radius");
@@ -94,16 +105,17 @@ class GrainFile {
                "lengths are in m, times in s, angles in rad", format("Convert it, and name it '{}'", names[bare]));
         const auto meant = nearest(cells[c], std::vector<std::string>(names.begin(), names.end()));
         fail(format("'{}' is no column of grains", cells[c]),
-             "they are x, y, radius, vx, vy, spin, angle, density, group",
+             "they are x, y, radius, short_half_axis, vx, vy, spin, angle, density, discs, group",
              meant ? format("Did you mean '{}'?", *meant) : "Name the columns in the first row");
       }
       std::size_t& at = at_[column];
       if (at != width_) fail(format("the column '{}' is there twice", names[column]), "", "Keep one");
       at = c;
     }
-    for (const Column needed : {x, y, radius})
-      if (at_[needed] == width_)
-        fail(format("the column '{}' is missing", names[needed]), "every grain has a place and a size", "Add it");
+    for (const Column needed : {x, y, radius}) {
+      if (at_[needed] != width_ || (needed == radius && at_[discs] != width_)) continue;
+      fail(format("the column '{}' is missing", names[needed]), "every grain has a place and a size", "Add it");
+    }
   }
 
   [[nodiscard]] double number(const std::vector<std::string_view>& cells, Column column, double otherwise) const {
@@ -117,30 +129,58 @@ class GrainFile {
     return value;
   }
 
-  void read_grain(std::string_view row, std::optional<double> common_density, GrainBodies& bodies) const {
+  /// The text of a cell; empty where the column is not there.
+  [[nodiscard]] std::string_view cell(const std::vector<std::string_view>& cells, Column column) const {
+    return at_[column] == width_ ? std::string_view() : cells[at_[column]];
+  }
+
+  void read_grain(std::string_view row, std::optional<double> common_density, GrainShapes& shapes,
+                  GrainBodies& bodies) const {
     const auto cells = cells_of(row);
     if (cells.size() != width_)
       fail(format("the row has {}", counted(static_cast<long long>(cells.size()), "cell")),
            format("the first row names {}", counted(static_cast<long long>(width_), "column")), "Correct it");
-    Grain grain{.position = {number(cells, x, 0), number(cells, y, 0)},
-                .radius = number(cells, radius, 0),
-                .inertia = {},
-                .velocity = {number(cells, vx, 0), number(cells, vy, 0)},
-                .spin = number(cells, spin, 0),
-                .angle = number(cells, angle, 0),
-                .kind = 0};
-    if (!(grain.radius > 0)) fail(format("the radius {} is not positive", grain.radius), "", "Correct it");
+    Grain grain;
+    grain.position = {number(cells, x, 0), number(cells, y, 0)};
+    grain.velocity = {number(cells, vx, 0), number(cells, vy, 0)};
+    grain.spin = number(cells, spin, 0);
+    grain.angle = number(cells, angle, 0);
     const double own = number(cells, density, common_density.value_or(0));
     if (!(own > 0)) {
       if (at_[density] != width_) fail(format("the density {} is not positive", own), "", "Correct it");
       fail("the density of the grains is missing", "motion needs their mass",
            "Add density = ... in kg/m³ to [grains], or a column of that name");
     }
-    grain.inertia = inertia_of(grain.radius, own, bodies.body);
+    try {
+      read_shape(cells, own, shapes, grain);
+    } catch (const Error& error) {
+      throw error.at(format("{}:{}", path_.string(), line_));
+    }
     bodies.grains.push_back(grain);
     bodies.densities.push_back(own);
     bodies.groups.push_back(group_of(cells));
     bodies.lines.push_back(line_);
+  }
+
+  void read_shape(const std::vector<std::string_view>& cells, double own_density, GrainShapes& shapes,
+                  Grain& grain) const {
+    const bool is_clump = !cell(cells, discs).empty();
+    const double half_axis = cell(cells, short_half_axis).empty() ? 0 : number(cells, short_half_axis, 0);
+    if (is_clump && half_axis != 0)
+      fail("the grain has discs and a short half-axis", "it is a clump or an ellipse", "Leave one of the cells empty");
+    if (!is_clump) {
+      const double size = number(cells, radius, 0);
+      if (half_axis == 0) return shapes.make_disc(grain, size, own_density);
+      return shapes.make_ellipse(grain, size, half_axis, own_density);
+    }
+    shapes.make_clump(grain, clump_from(cell(cells, discs)), own_density);
+    if (cell(cells, radius).empty()) return;
+    constexpr double tolerance = 1e-9;
+    const double size = number(cells, radius, 0);
+    if (std::abs(size - grain.radius) > tolerance * grain.radius) {
+      fail(format("the radius is {} m, and the discs reach {} m from their mass centre", size, grain.radius),
+           "that is the radius of a clump", "Correct one of them, or leave the radius empty");
+    }
   }
 
   [[nodiscard]] std::string group_of(const std::vector<std::string_view>& cells) const {
@@ -159,7 +199,38 @@ class GrainFile {
   std::array<std::size_t, columns> at_{};
 };
 
-void read_grain_table(const TomlValue& table, std::optional<double> common_density, GrainBodies& bodies) {
+/// Disc, ellipse or clump.
+void read_shape(const TomlValue& table, double density, GrainShapes& shapes, Grain& grain) {
+  const TomlValue* given = nullptr;
+  std::string key;
+  for (const char* name : {"radius", "half_axes", "discs"}) {
+    const TomlValue* value = table.find(name);
+    if (value == nullptr) continue;
+    if (given != nullptr)
+      fail_at(*value, format("grain.{}", name), format("{} and {} are both given", key, name),
+              "a body has one shape: radius is for a disc, half_axes for an ellipse, discs for a clump",
+              "Remove one of them");
+    given = value;
+    key = name;
+  }
+  if (given == nullptr)
+    fail_at(table, "grain", "it is not said what shape the grain has",
+            "radius is for a disc, half_axes for an ellipse, discs for a clump",
+            "Add one of them, such as radius = 0.01");
+  try {
+    if (key == "radius") return shapes.make_disc(grain, given->real, density);
+    if (key == "half_axes") return shapes.make_ellipse(grain, given->items[0].real, given->items[1].real, density);
+    std::vector<Clump::Disc> discs_given;
+    for (const TomlValue& disc : given->items)
+      discs_given.push_back({{disc.items[0].real, disc.items[1].real}, disc.items[2].real});
+    shapes.make_clump(grain, std::move(discs_given), density);
+  } catch (const Error& error) {
+    throw error.at(format("{}: grain.{}", given->where(), key));
+  }
+}
+
+void read_grain_table(const TomlValue& table, std::optional<double> common_density, GrainShapes& shapes,
+                      GrainBodies& bodies) {
   const std::optional<double> own = optional_number(table, "density");
   if (!own && !common_density) {
     fail_at(table, "grain.density", "the density is missing", "motion needs the mass of the grains",
@@ -168,15 +239,13 @@ void read_grain_table(const TomlValue& table, std::optional<double> common_densi
   if (text(table, "group").empty())
     fail_at(*table.find("group"), "grain.group", "the name is empty", "a group is known by its name", "Name it");
   check_plain_name(*table.find("group"), "grain.group", "a group", "it stands in tables");
-  Grain grain{.position = vector(table, "position"),
-              .radius = number(table, "radius"),
-              .inertia = {},
-              .velocity = vector(table, "velocity"),
-              .spin = number(table, "spin"),
-              .angle = number(table, "angle"),
-              .kind = 0};
+  Grain grain;
+  grain.position = vector(table, "position");
+  grain.velocity = vector(table, "velocity");
+  grain.spin = number(table, "spin");
+  grain.angle = number(table, "angle");
   bodies.densities.push_back(own ? *own : *common_density);
-  grain.inertia = inertia_of(grain.radius, bodies.densities.back(), bodies.body);
+  read_shape(table, bodies.densities.back(), shapes, grain);
   bodies.grains.push_back(grain);
   bodies.groups.push_back(text(table, "group"));
 }
@@ -187,17 +256,19 @@ GrainBodies read_bodies(TomlValue& root, const fs::path& folder) {
   TomlValue& common = *root.find("grains");
   GrainBodies bodies;
   bodies.body = body_from(text(common, "body"));
+  GrainShapes shapes(bodies.body);
   const std::optional<double> density = optional_number(common, "density");
   if (TomlValue* path = common.find("path")) {
     const fs::path file = opened(path->text, folder);
     try {
-      GrainFile(file).read(density, bodies);
+      GrainFile(file).read(density, shapes, bodies);
     } catch (const Error& error) {
       throw error.at(format("{}: grains.path", path->where()));
     }
     path->text = bodies.file = file.string();
   }
-  for (const TomlValue& table : repeated(root, "grain")) read_grain_table(table, density, bodies);
+  for (const TomlValue& table : repeated(root, "grain")) read_grain_table(table, density, shapes, bodies);
+  bodies.clumps = shapes.clumps();
   if (bodies.grains.empty()) {
     fail_at(root, "grain", "there are no grains", "something has to move",
             "Add [[grain]] with position and radius, or [grains] with path");

@@ -17,6 +17,7 @@ struct GrainBodies {
   Body body = Body::disc;
   std::vector<Grain> grains;        ///< those of the file, then those of the case
   std::vector<double> densities;    ///< kg/m³
+  std::vector<Clump> clumps;        ///< shapes, each once
   std::vector<std::string> groups;  ///< of each grain
   std::string file;                 ///< that of [grains] path; empty: none
   std::vector<int> lines;           ///< of its grains, in that file

@@ -142,6 +142,19 @@ GrainProbe read_probe(const TomlValue& table, const std::vector<std::string>& gr
   return probe;
 }
 
+void read_ellipse_contact(const TomlValue& collisions, GrainCase& result) {
+  const TomlValue* given = collisions.find("ellipse_contact");
+  if (given == nullptr) return;
+  const auto is_ellipse = [](const Grain& grain) { return grain.shape() == GrainShape::ellipse; };
+  if (std::ranges::none_of(result.grains, is_ellipse))
+    fail_at(*given, "collisions.ellipse_contact", "ellipse_contact is given without ellipses",
+            "discs have no need of it", "Remove it, or give grains half_axes");
+  using enum GrainOptions::EllipseLaw;
+  result.ellipse_law = given->text == "exact"      ? exact
+                       : given->text == "enlarged" ? enlarged_mended
+                                                   : enlarged_as_printed;
+}
+
 double usual_steps_per_contact(NormalLaw law) {
   if (law == NormalLaw::exact_flow) return 3.141592653589793;  // omega dt = 1
   return is_map(law) ? 10 : 50;
@@ -198,16 +211,21 @@ GrainCase parse_grain_case(std::string_view content, const std::string& name, co
   result.body = bodies.body;
   result.grains = std::move(bodies.grains);
   result.densities = std::move(bodies.densities);
+  result.clumps = std::move(bodies.clumps);
   result.grain_file = std::move(bodies.file);
   result.grain_lines = std::move(bodies.lines);
+  result.bonds = read_bonds(root, folder, result.grains.size());
   check_names_of_kinds(root, bodies.groups);
   const auto schedules = read_schedules(root, folder);
   for (const TomlValue& table : repeated(root, "wall")) result.walls.push_back(read_wall(table, schedules));
   const TomlValue& collisions = *root.find("collisions");
   result.law = normal_law_from(text(collisions, "law"));
+  read_ellipse_contact(collisions, result);
   result.reference_length = optional_number(collisions, "reference_length").value_or(0);
   read_collisions(root, bodies.groups, result);
   read_run(*root.find("run"), result);
+  if (root.find("shaking") != nullptr) result.shaking = read_shaking(root, folder, result.duration, result.walls);
+  if (const TomlValue* table = root.find("measures")) result.measures = read_measures(*table, result.body);
   for (const TomlValue& table : repeated(root, "probe")) result.probes.push_back(read_probe(table, bodies.groups));
   const TomlValue& output = *root.find("output");
   result.output.csv = flag(output, "csv");

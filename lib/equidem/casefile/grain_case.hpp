@@ -11,7 +11,10 @@
 #include <string_view>
 #include <vector>
 
+#include "equidem/casefile/bond_case.hpp"
 #include "equidem/casefile/case.hpp"
+#include "equidem/casefile/measure_case.hpp"
+#include "equidem/casefile/shaking_case.hpp"
 #include "equidem/casefile/toml.hpp"
 #include "equidem/grains/grain_scene.hpp"
 
@@ -40,20 +43,25 @@ struct GrainCase {
   Body body = Body::disc;
   std::vector<Grain> grains;      ///< those of the file, then those of the case
   std::vector<double> densities;  ///< kg/m³, of each
+  std::vector<Clump> clumps;      ///< shapes, each once
   std::string grain_file;         ///< that of [grains] path; empty: none
   std::vector<int> grain_lines;   ///< of its grains, in that file
+  BondCase bonds;
   std::vector<GrainWall> walls;
   /// Of the scene, by name: groups of grains, "walls", walls with a pair of their own; with young_modulus a group counts once for
   /// each radius.
   std::vector<std::string> kinds;
   std::vector<PairCase> pairs;  ///< of the kinds of the scene, row by row, symmetric
   NormalLaw law = NormalLaw::exact_flow;
+  GrainOptions::EllipseLaw ellipse_law = GrainOptions::EllipseLaw::exact;
   double reference_length = 0;      ///< m; 0: twice the largest radius
   double duration = 0;              ///< s
   std::optional<double> time_step;  ///< s; none: by steps_per_contact
   double steps_per_contact = 0;
   GrainOptions::Scheme scheme = GrainOptions::Scheme::semi_implicit_euler;
-  Vec2 gravity;  ///< m/s²
+  Vec2 gravity;                        ///< m/s²
+  std::optional<ShakingCase> shaking;  ///< its motion is in the walls
+  std::optional<MeasureCase> measures;
   std::vector<GrainProbe> probes;
   OutputCase output;
 

@@ -3,7 +3,11 @@
 
 #include <string_view>
 
+#include "equidem/casefile/bond_case.hpp"
+#include "equidem/casefile/grain_pair_keys.hpp"
+#include "equidem/casefile/measure_case.hpp"
 #include "equidem/casefile/read_value.hpp"
+#include "equidem/casefile/shaking_case.hpp"
 
 namespace equidem {
 namespace {
@@ -31,11 +35,33 @@ std::vector<KeySpec> keys_of_bodies() {
        .name = "path",
        .type = path,
        .fallback = none,
-       .help = "a CSV file of grains: the columns x, y, radius and, where wanted, vx, vy, spin, angle, density, group; "
-               "grains.csv of a run can be read back"},
+       .help =
+           "a CSV file of grains: the columns x, y, radius and, where wanted, short_half_axis (of an ellipse, radius "
+           "being the long one), discs (of a clump: x y r; x y r), vx, vy, spin, angle, density, group; grains.csv "
+           "of run and pack can be read back"},
 
-      {.table = "grain", .name = "position", .type = vector, .unit = "m", .help = "of the centre"},
-      {.table = "grain", .name = "radius", .type = number, .unit = "m", .range = Range::positive()},
+      {.table = "grain", .name = "position", .type = vector, .unit = "m", .help = "of the mass centre"},
+      {.table = "grain",
+       .name = "radius",
+       .type = number,
+       .unit = "m",
+       .fallback = none,
+       .range = Range::positive(),
+       .help = "of a disc or sphere; or give one of the next two"},
+      {.table = "grain",
+       .name = "half_axes",
+       .type = vector,
+       .unit = "m",
+       .fallback = none,
+       .range = Range::positive(),
+       .help = "[a, b] of an ellipse, the long one first: it lies along x at angle 0"},
+      {.table = "grain",
+       .name = "discs",
+       .type = circles,
+       .unit = "m",
+       .fallback = none,
+       .help = "of a clump, tied rigidly, in the frame of the body at angle 0; they may overlap, what two share counts "
+               "once; all are shifted so that their mass centre is the origin"},
       {.table = "grain", .name = "velocity", .type = vector, .unit = "m/s", .fallback = "[0.0, 0.0]"},
       {.table = "grain",
        .name = "spin",
@@ -57,142 +83,6 @@ std::vector<KeySpec> keys_of_bodies() {
        .fallback = "\"grains\"",
        .help = "for [[collisions.pair]] and [[probe]]"},
   };
-}
-
-/// What may be said of the contacts of every pair of bodies.
-/// \param base the table says it for all: then restitution is needed, friction has a default, and keys are explained
-std::vector<KeySpec> keys_of_contacts(const char* table, bool base) {
-  const auto fallback = [&](const char* value) { return base ? value : none; };
-  std::vector<KeySpec> keys{
-      {.table = table,
-       .name = "restitution",
-       .type = number,
-       .fallback = base ? KeySpec::required : none,
-       .range = Range::from(0, 1),
-       .help = "speed after over speed before, of two bodies that meet head-on without gravity"},
-      {.table = table,
-       .name = "contact_end",
-       .type = choice,
-       .fallback = none,
-       .choices = {"zero_force", "zero_overlap"},
-       .help = "of laws with a dashpot; zero_force: contacts never pull (default, but of hertz_dashpot); zero_overlap: "
-               "they may pull while the bodies part"},
-      {.table = table,
-       .name = "stiffness",
-       .type = number,
-       .unit = "N/m (hertz_dashpot N/m^1.5; discs: per m of depth)",
-       .fallback = none,
-       .range = Range::positive(),
-       .help = "k; give it or one of the next keys"},
-      {.table = table,
-       .name = "dimensionless_stiffness",
-       .type = number,
-       .fallback = none,
-       .range = Range::positive(),
-       .help = "a = k dt²/m, m the reduced mass: held whatever the step and the masses; hertz_dashpot: k d^0.5 dt²/m"},
-      {.table = table,
-       .name = "contact_duration",
-       .type = number,
-       .unit = "s",
-       .fallback = none,
-       .range = Range::positive(),
-       .help = "until the overlap is zero again, the same for all masses; not hertz_dashpot"},
-      {.table = table,
-       .name = "largest_overlap",
-       .type = number,
-       .unit = "m",
-       .fallback = none,
-       .range = Range::positive(),
-       .help = "not exceeded by two bodies that meet at closing_speed"},
-      {.table = table,
-       .name = "closing_speed",
-       .type = number,
-       .unit = "m/s",
-       .fallback = none,
-       .range = Range::positive(),
-       .help = "of the fastest impact expected; for largest_overlap, and for an automatic step of hertz_dashpot"},
-      {.table = table,
-       .name = "friction",
-       .type = number,
-       .fallback = fallback("0.0"),
-       .range = Range::not_negative(),
-       .help = "Coulomb's mu"},
-      {.table = table,
-       .name = "tangential_ratio",
-       .type = number,
-       .fallback = none,
-       .range = {.low = 0, .high = 1e6},
-       .help =
-           "kT/kN of the tangential spring, with friction; left out: 2/7, and for the maps, which act in one or two "
-           "steps, 0: no spring, contacts slide"},
-      {.table = table,
-       .name = "tangential_damping",
-       .type = number,
-       .fallback = fallback("0.0"),
-       .range = Range::not_negative(),
-       .help = "zeta of the tangential dashpot"},
-      {.table = table,
-       .name = "friction_cap",
-       .type = choice,
-       .fallback = fallback("\"whole_force\""),
-       .choices = {"whole_force", "spring_alone"},
-       .help = "what mu times the normal force limits: spring and dashpot together, or the spring alone"},
-  };
-  if (!base)
-    for (KeySpec& key : keys) key.help = "";  // as in the base
-  return keys;
-}
-
-std::vector<KeySpec> keys_of_collisions() {
-  const std::vector<std::string> hertz = {"hertz_dashpot"};
-  std::vector<KeySpec> keys{
-      {.table = "collisions",
-       .name = "law",
-       .type = choice,
-       .fallback = "\"exact_flow\"",
-       .choices = {"exact_flow", "linear_dashpot", "hertz_dashpot", "five_case_map", "energy_map"},
-       .help =
-           "exact_flow: linear spring and dashpot solved exactly within the step, all contacts together; "
-           "linear_dashpot (C of Fujioka & Ushijima 2005): the same by the scheme of [run]; hertz_dashpot (T): Hertz "
-           "spring; five_case_map (F), energy_map (P): restitution at the first step of a contact, energy kept "
-           "after it"},
-      {.table = "collisions",
-       .name = "young_modulus",
-       .type = number,
-       .unit = "Pa",
-       .fallback = none,
-       .range = Range::positive(),
-       .when_key = "law",
-       .when = hertz,
-       .help = "of all spheres, walls being rigid: k by Hertz; with poisson_ratio, instead of stiffness"},
-      {.table = "collisions",
-       .name = "poisson_ratio",
-       .type = number,
-       .fallback = none,
-       .range = {.low = -1, .high = 0.5, .low_open = true},
-       .when_key = "law",
-       .when = hertz,
-       .help = "of all spheres"},
-      {.table = "collisions",
-       .name = "reference_length",
-       .type = number,
-       .unit = "m",
-       .fallback = none,
-       .range = Range::positive(),
-       .when_key = "law",
-       .when = hertz,
-       .help = "d of dimensionless_stiffness; left out: twice the largest radius"},
-  };
-  const auto append = [&](std::vector<KeySpec> more) { keys.insert(keys.end(), more.begin(), more.end()); };
-  append(keys_of_contacts("collisions", true));
-  append(keys_of_contacts("collisions.walls", false));
-  append({{.table = "collisions.pair", .name = "group", .type = text, .help = "of grains"},
-          {.table = "collisions.pair",
-           .name = "with",
-           .type = text,
-           .help = "a group of grains, or the name of a [[wall]]"}});
-  append(keys_of_contacts("collisions.pair", false));
-  return keys;
 }
 
 std::vector<KeySpec> keys_of_walls() {
@@ -321,6 +211,8 @@ const FileSpec& grain_file_spec() {
                   .noun = "case file of colliding bodies",
                   .tables = {{.name = "grains", .completed = true, .help = "what all grains have in common"},
                              {.name = "grain", .repeated = true, .help = "one body"},
+                             {.name = "bonds", .help = "what all bonds have in common"},
+                             {.name = "bond", .repeated = true, .help = "two discs tied by dashpots"},
                              {.name = "collisions", .required = true, .help = "how bodies meet, rebound and part"},
                              {.name = "collisions.walls", .help = "where a grain and a wall differ from that"},
                              {.name = "collisions.pair",
@@ -329,12 +221,15 @@ const FileSpec& grain_file_spec() {
                              {.name = "wall", .repeated = true, .help = "a wall of infinite mass"},
                              {.name = "run", .required = true, .help = "how long and in which steps"},
                              {.name = "schedule", .repeated = true, .help = "how a wall moves"},
+                             {.name = "shaking", .help = "walls that move all alike: a box that shakes"},
+                             {.name = "measures", .help = "what is read off the bodies in a box"},
                              {.name = "probe", .repeated = true, .help = "a history of grains"},
                              {.name = "output", .completed = true, .help = "what is written with --out"}},
                   .keys = {}};
     for (const KeySpec& key : case_file_spec().keys)
       if (is_shared(key)) file.keys.push_back(key);
-    for (const auto& more : {keys_of_bodies(), keys_of_collisions(), keys_of_walls(), keys_of_motion()})
+    for (const auto& more : {keys_of_bodies(), bond_keys(), keys_of_collisions(), keys_of_walls(), keys_of_motion(),
+                             shaking_keys(), measure_keys()})
       file.keys.insert(file.keys.end(), more.begin(), more.end());
     return file;
   }();

@@ -3,15 +3,18 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <numbers>
+#include <string_view>
 #include <utility>
 
 #include "equidem/casefile/read_value.hpp"
 #include "equidem/contact/collision_stiffness.hpp"
 #include "equidem/core/nearest.hpp"
+#include "equidem/material/wave_speed_springs.hpp"
 
 namespace equidem {
 namespace {
@@ -23,6 +26,7 @@ constexpr std::size_t most_kinds = 256;
 struct Terms {
   std::string key;  ///< of the table, for errors
   const TomlValue* restitution = nullptr;
+  const TomlValue* damping = nullptr;  ///< instead of it
   const TomlValue* end = nullptr;
   const TomlValue* stiffness = nullptr;  ///< by the key `by`
   const char* by = "";
@@ -33,11 +37,30 @@ struct Terms {
   const TomlValue* cap = nullptr;
 };
 
-constexpr std::array ways_to_stiffness = {"stiffness", "dimensionless_stiffness", "contact_duration", "largest_overlap",
-                                          "young_modulus"};
+constexpr std::array ways_to_stiffness = {"stiffness",       "dimensionless_stiffness", "contact_duration",
+                                          "largest_overlap", "young_modulus",           "shear_wave_speed"};
+
+/// Two kinds, as far as their contact depends on it.
+struct Meeting {
+  std::optional<ReducedMasses> masses;
+  bool on_wall = false;
+  std::function<double()> stiffness_by_hertz;
+  SpringConstants by_wave_speeds;  ///< Pa; where they are given
+};
 
 bool has_end(NormalLaw law) {
   return !is_map(law);
+}
+
+void check_damping(const TomlValue& table, const std::string& key, NormalLaw law) {
+  const TomlValue& damping = *table.find("damping");
+  if (table.find("restitution") != nullptr)
+    fail_at(damping, key + ".damping", "restitution and damping are both given", "each says how strong the dashpot is",
+            "Remove one of them");
+  if (law != NormalLaw::exact_flow && law != NormalLaw::linear_dashpot)
+    fail_at(damping, key + ".damping", format("{} has no use for damping", to_string(law)),
+            "it is h of the dashpots 2 h sqrt(m k) of linear springs",
+            "Give restitution, or the law exact_flow or linear_dashpot");
 }
 
 /// `terms` with what a table says instead.
@@ -47,6 +70,8 @@ Terms with(Terms terms, const TomlValue& table, const std::string& key, NormalLa
     if (const TomlValue* found = table.find(name)) value = found;
   };
   take(terms.restitution, "restitution");
+  if (table.find("restitution") != nullptr) terms.damping = nullptr;
+  take(terms.damping, "damping");
   take(terms.end, "contact_end");
   take(terms.closing_speed, "closing_speed");
   take(terms.friction, "friction");
@@ -66,6 +91,7 @@ Terms with(Terms terms, const TomlValue& table, const std::string& key, NormalLa
   if (const TomlValue* end = table.find("contact_end"); end != nullptr && !has_end(law))
     fail_at(*end, key + ".contact_end", format("{} has no use for contact_end", to_string(law)), "it has no dashpot",
             "Remove it");
+  if (table.find("damping") != nullptr) check_damping(table, key, law);
   if (const TomlValue* duration = table.find("contact_duration");
       duration != nullptr && law == NormalLaw::hertz_dashpot)
     fail_at(*duration, key + ".contact_duration", "a Hertz contact lasts the shorter the faster it is",
@@ -74,39 +100,85 @@ Terms with(Terms terms, const TomlValue& table, const std::string& key, NormalLa
   return terms;
 }
 
-void check_base(const TomlValue& table, const Terms& base, const GrainCase& result) {
+void check_springs_of_moduli(const TomlValue& table, const GrainCase& result) {
   const TomlValue* young = table.find("young_modulus");
+  const TomlValue* shear = table.find("shear_wave_speed");
   const TomlValue* poisson = table.find("poisson_ratio");
-  if (base.stiffness == nullptr) {
-    if (poisson != nullptr)
-      fail_at(*poisson, "collisions.poisson_ratio", "poisson_ratio is given without young_modulus",
-              "both make the stiffness of a Hertz contact", "Add young_modulus = ... in Pa");
+  if (young == nullptr && shear == nullptr) {
+    if (poisson == nullptr) return;
     const bool hertz = result.law == NormalLaw::hertz_dashpot;
-    fail_at(table, "collisions.stiffness", "it is not said how stiff contacts are", "there is no default for it",
-            hertz ? "Add stiffness, or young_modulus with poisson_ratio, or largest_overlap with closing_speed"
-                  : "Add contact_duration = ... in s, or stiffness, or largest_overlap with closing_speed");
+    fail_at(*poisson, "collisions.poisson_ratio",
+            format("poisson_ratio is given without {}", hertz ? "young_modulus" : "shear_wave_speed"),
+            "both make the stiffness of a contact",
+            hertz ? "Add young_modulus = ... in Pa" : "Add shear_wave_speed = ... in m/s");
   }
-  if (young == nullptr) return;
+  const TomlValue& given = young != nullptr ? *young : *shear;
+  const char* name = young != nullptr ? "young_modulus" : "shear_wave_speed";
+  const std::string key = format("collisions.{}", name);
   if (poisson == nullptr)
-    fail_at(*young, "collisions.young_modulus", "young_modulus is given without poisson_ratio",
-            "both make the stiffness of a Hertz contact", "Add poisson_ratio = ...");
-  if (result.body == Body::disc)
-    fail_at(*young, "collisions.young_modulus", "the bodies are discs", "the stiffness by Hertz is that of spheres",
-            "Write body = \"sphere\" in [grains], or give stiffness");
+    fail_at(given, key, format("{} is given without poisson_ratio", name), "both make the stiffness of a contact",
+            "Add poisson_ratio = ...");
+  if (young != nullptr) {
+    if (result.body == Body::disc)
+      fail_at(given, key, "the bodies are discs", "the stiffness by Hertz is that of spheres",
+              "Write body = \"sphere\" in [grains], or give stiffness");
+    return;
+  }
+  if (result.body == Body::sphere)
+    fail_at(given, key, "the bodies are spheres", "springs of wave speeds are those of cylinders, per metre of depth",
+            "Write body = \"disc\" in [grains], or give stiffness");
+  if (!(poisson->real < 0.5))
+    fail_at(*poisson, "collisions.poisson_ratio", "poisson_ratio = 0.5 with wave speeds",
+            "what keeps its volume has an infinite speed of pressure waves", "Give less than 0.5");
+  if (const TomlValue* ratio = table.find("tangential_ratio"))
+    fail_at(*ratio, "collisions.tangential_ratio", "tangential_ratio and shear_wave_speed are both given",
+            "each says how stiff the tangential spring is", "Remove one of them");
+  const auto [least, most] = std::ranges::minmax(result.densities);
+  if (least < most)
+    fail_at(given, key, format("the grains have densities from {} to {} kg/m³", least, most),
+            "springs of wave speeds belong to one density",
+            "Give one density, or stiffness and tangential_ratio for each pair");
+}
+
+void check_base(const TomlValue& table, const Terms& base, const GrainCase& result) {
+  if (base.restitution == nullptr && base.damping == nullptr)
+    fail_at(table, "collisions.restitution", "it is not said how contacts rebound", "there is no default for it",
+            "Add restitution = ... from 0 to 1, or damping = ... of the dashpots");
+  check_springs_of_moduli(table, result);
+  if (base.stiffness != nullptr) return;
+  const bool hertz = result.law == NormalLaw::hertz_dashpot;
+  fail_at(table, "collisions.stiffness", "it is not said how stiff contacts are", "there is no default for it",
+          hertz ? "Add stiffness, or young_modulus with poisson_ratio, or largest_overlap with closing_speed"
+                : "Add contact_duration = ... in s, or stiffness, or largest_overlap with closing_speed, or "
+                  "shear_wave_speed with poisson_ratio");
+}
+
+/// The restitution, and zeta of the tangential dashpot where nothing else is said of it.
+double read_dashpots(const Terms& terms, const GrainCase& result, bool on_wall, PairProperties& properties) {
+  if (terms.damping == nullptr) {
+    properties.restitution = terms.restitution->real;
+    return 0;
+  }
+  if (properties.end == ContactEnd::at_zero_overlap)
+    fail_at(*terms.end, terms.key + ".contact_end", "contact_end = \"zero_overlap\" with damping",
+            "a strong dashpot never lets the overlap come back to zero", "Remove it, or give restitution");
+  const ContactDamping zeta = contact_damping_of(terms.damping->real, on_wall, inertia_factor(result.body));
+  properties.restitution = restitution_of(zeta.normal, properties.end);
+  return zeta.tangential;
 }
 
 /// The dashpot that gives the restitution exists, and numbers resolve what it does.
 void check_restitution(const Terms& terms, NormalLaw law, const PairProperties& pair) {
   constexpr double least = 1e-12;  // a dashpot a million times the critical one
   if (is_map(law) || pair.end == ContactEnd::at_zero_overlap || pair.restitution >= least) return;
+  assert(terms.damping == nullptr);
   fail_at(*terms.restitution, terms.key + ".restitution",
           format("restitution = {} of contacts that end at zero force", terms.restitution->shown()),
           "it would need an infinite dashpot, or one too strong for numbers to resolve",
           format("Give {} or more, or contact_end = \"zero_overlap\", or the law energy_map", least));
 }
 
-void set_stiffness(const Terms& terms, const GrainCase& result, const std::optional<ReducedMasses>& masses,
-                   const std::function<double()>& by_hertz, PairCase& pair) {
+void set_stiffness(const Terms& terms, const GrainCase& result, const Meeting& meeting, PairCase& pair) {
   PairProperties& properties = pair.properties;
   const std::string by = terms.by;
   const double value = terms.stiffness->real;
@@ -126,29 +198,35 @@ void set_stiffness(const Terms& terms, const GrainCase& result, const std::optio
       fail_at(*terms.stiffness, terms.key + ".largest_overlap", "largest_overlap is given without closing_speed",
               "the overlap depends on the speed", "Add closing_speed = ... in m/s");
     const double speed = terms.closing_speed->real;
-    const double mass = masses ? masses->largest : 1;
+    const double mass = meeting.masses ? meeting.masses->largest : 1;
     properties.stiffness = result.law == NormalLaw::hertz_dashpot
                                ? 1.25 * mass * speed * speed / std::pow(value, 2.5)  // (5 m v²/(4 k))^(2/5), undamped
                                : stiffness_from_overlap(value, speed, mass, damping_ratio(result.law, properties));
+  } else if (by == "young_modulus") {
+    properties.stiffness = meeting.stiffness_by_hertz();
   } else {
-    properties.stiffness = by_hertz();
+    properties.stiffness = meeting.by_wave_speeds.kN;
   }
 }
 
-PairCase pair_of(const Terms& terms, const GrainCase& result, const std::optional<ReducedMasses>& masses,
-                 const std::function<double()>& by_hertz) {
+PairCase pair_of(const Terms& terms, const GrainCase& result, const Meeting& meeting) {
   PairCase pair;
   PairProperties& properties = pair.properties;
-  properties.restitution = terms.restitution->real;
   // That of hertz_dashpot is exact for this end.
   properties.end = result.law == NormalLaw::hertz_dashpot ? ContactEnd::at_zero_overlap : ContactEnd::at_zero_force;
   if (terms.end != nullptr) properties.end = contact_end_from(terms.end->text);
+  const double tangential_zeta = read_dashpots(terms, result, meeting.on_wall, properties);
   properties.friction = terms.friction->real;
   if (properties.friction > 0) {
     // A map gives all of its impulse in one or two steps, in which a spring cannot be stretched to the force of friction.
-    const double usual = is_map(result.law) ? 0 : 2.0 / 7;
+    const bool by_wave_speeds = std::string_view(terms.by) == "shear_wave_speed";
+    const double usual = is_map(result.law) ? 0 : by_wave_speeds ? meeting.by_wave_speeds.ratio() : 2.0 / 7;
     properties.tangential_ratio = terms.tangential_ratio != nullptr ? terms.tangential_ratio->real : usual;
-    properties.tangential_damping = terms.tangential_damping->real;
+    if (terms.tangential_damping != nullptr) {
+      properties.tangential_damping = terms.tangential_damping->real;
+    } else if (properties.tangential_ratio > 0) {
+      properties.tangential_damping = tangential_zeta;
+    }
     if (properties.tangential_damping > 0 && properties.tangential_ratio == 0)
       fail_at(*terms.tangential_damping, terms.key + ".tangential_damping",
               "tangential damping is given without a tangential spring", "it is measured by that spring",
@@ -157,7 +235,7 @@ PairCase pair_of(const Terms& terms, const GrainCase& result, const std::optiona
   properties.cap = terms.cap->text == "whole_force" ? FrictionCap::whole_force : FrictionCap::spring_alone;
   if (terms.closing_speed != nullptr) pair.closing_speed = terms.closing_speed->real;
   check_restitution(terms, result.law, properties);
-  set_stiffness(terms, result, masses, by_hertz, pair);
+  set_stiffness(terms, result, meeting, pair);
   return pair;
 }
 
@@ -242,6 +320,10 @@ void read_collisions(const TomlValue& root, const std::vector<std::string>& grou
   check_base(table, base, result);
   Terms walls = base;
   if (const TomlValue* differs = table.find("walls")) walls = with(base, *differs, "collisions.walls", result.law);
+  SpringConstants by_wave_speeds;
+  if (const TomlValue* shear = table.find("shear_wave_speed"))
+    by_wave_speeds = springs_of_wave_speeds(result.densities.front(),
+                                            wave_speeds_from_shear(shear->real, number(table, "poisson_ratio")));
   const auto masses = masses_of_kinds(result);
   const int count = result.kind_count();
   result.pairs.resize(static_cast<std::size_t>(count) * static_cast<std::size_t>(count));
@@ -260,7 +342,7 @@ void read_collisions(const TomlValue& root, const std::vector<std::string>& grou
         return on_wall ? hertz_stiffness_on_rigid_wall(young, poisson, radii[first])
                        : hertz_stiffness(young, poisson, radii[first], young, poisson, radii[second]);
       };
-      const PairCase pair = pair_of(terms, result, reduced_masses(masses, a, b), by_hertz);
+      const PairCase pair = pair_of(terms, result, {reduced_masses(masses, a, b), on_wall, by_hertz, by_wave_speeds});
       result.pairs[static_cast<std::size_t>(a * count + b)] = pair;
       result.pairs[static_cast<std::size_t>(b * count + a)] = pair;
     }

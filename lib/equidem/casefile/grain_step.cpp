@@ -5,11 +5,13 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "equidem/casefile/grain_pairs.hpp"
 #include "equidem/contact/collision_stiffness.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/bond_step.hpp"
 
 namespace equidem {
 namespace {
@@ -27,11 +29,40 @@ struct Shortest {
   bool any = false;  ///< two bodies can meet
 };
 
+/// The longest lever of a normal force about the mass centre, m: of an ellipse a - b.
+double longest_lever(const GrainCase& resolved, const Grain& grain) {
+  switch (grain.shape()) {
+    case GrainShape::ellipse:
+      return grain.radius - grain.short_half_axis;
+    case GrainShape::clump: {
+      double lever = 0;
+      for (const Clump::Disc& disc : resolved.clumps[static_cast<std::size_t>(grain.clump)].discs)
+        lever = std::max(lever, norm(disc.offset));
+      return lever;
+    }
+    case GrainShape::disc:
+      break;
+  }
+  return 0;
+}
+
+/// Of each kind the largest 1 + m l²/I: a push at the lever l moves a body as if its mass were less by that.
+std::vector<double> agility_of_kinds(const GrainCase& resolved) {
+  std::vector<double> agility(resolved.kinds.size(), 1.0);
+  for (const Grain& grain : resolved.grains) {
+    const double lever = longest_lever(resolved, grain);
+    double& most = agility[static_cast<std::size_t>(grain.kind)];
+    most = std::max(most, 1 + grain.inertia.mass * lever * lever / grain.inertia.moment);
+  }
+  return agility;
+}
+
 /// \param step s, of a stiffness that is held in steps; 0: not known
 /// \throws Error where the contact of some pair has no known duration
 Shortest shortest_contact(const GrainCase& resolved, double step) {
   Shortest shortest;
   const auto masses = masses_of_kinds(resolved);
+  const auto agility = agility_of_kinds(resolved);
   for (int a = 0; a < resolved.kind_count(); ++a) {
     for (int b = a; b < resolved.kind_count(); ++b) {
       const auto reduced = reduced_masses(masses, a, b);
@@ -39,7 +70,10 @@ Shortest shortest_contact(const GrainCase& resolved, double step) {
       shortest.any = true;
       const PairCase& pair = resolved.between(a, b);
       const PairProperties& properties = pair.properties;
-      const double zeta = damping_ratio(resolved.law, properties);
+      // Spring and dashpot of a contact are those of bodies that do not turn.
+      const double faster =
+          std::sqrt(std::max(agility[static_cast<std::size_t>(a)], agility[static_cast<std::size_t>(b)]));
+      const double zeta = faster * damping_ratio(resolved.law, properties);
       const double swing = zeta < 1 ? std::sqrt(1 - zeta * zeta) : 1;
       double duration = 0, omega = 0;
       if (properties.dimensionless > 0 && step == 0) {
@@ -62,12 +96,13 @@ Shortest shortest_contact(const GrainCase& resolved, double step) {
                              ? properties.stiffness
                              : properties.dimensionless * reduced->smallest / (step * step * std::sqrt(length));
         const HertzImpact impact = hertz_impact(k, reduced->smallest, pair.closing_speed);
-        duration = impact.duration;
-        omega = std::sqrt(1.5 * k * std::sqrt(impact.overlap) / reduced->smallest);
+        duration = impact.duration / faster;
+        omega = faster * std::sqrt(1.5 * k * std::sqrt(impact.overlap) / reduced->smallest);
       } else {
-        omega = pair.duration > 0          ? pi / (pair.duration * swing)
-                : properties.stiffness > 0 ? std::sqrt(properties.stiffness / reduced->smallest)
-                                           : std::sqrt(properties.dimensionless) / step;
+        const double still = damping_ratio(resolved.law, properties);
+        omega = faster * (pair.duration > 0          ? pi / (pair.duration * std::sqrt(1 - still * still))
+                          : properties.stiffness > 0 ? std::sqrt(properties.stiffness / reduced->smallest)
+                                                     : std::sqrt(properties.dimensionless) / step);
         duration = pi / (omega * swing);
       }
       const double detail = resolved.law == NormalLaw::exact_flow ? pi / omega : duration / haste;
@@ -77,6 +112,21 @@ Shortest shortest_contact(const GrainCase& resolved, double step) {
     }
   }
   return shortest;
+}
+
+/// Half the limit of bonds: there the dashpots of a pair bring it to rest in a step.
+void limit_by_bonds(const GrainCase& resolved, GrainStep& result) {
+  const double limit = bond_step_limit(build_grain_scene(resolved, result.step), resolved.bonds.step);
+  if (std::isfinite(limit)) result.bond_limit = limit;
+  if (result.automatic) result.step = std::min(result.step, 0.5 * limit);
+  try {
+    check_bonds(build_grain_scene(resolved, result.step), grain_options(resolved, result.step));
+  } catch (const Error& error) {
+    const char* table = resolved.document.find("bonds") != nullptr ? "bonds" : "bond";
+    throw error.at(resolved.where(resolved.law == NormalLaw::exact_flow ? "collisions.law"
+                                  : result.step >= limit                ? "run.time_step"
+                                                                        : table));
+  }
 }
 
 }  // namespace
@@ -96,6 +146,7 @@ GrainStep choose_grain_step(const GrainCase& resolved) {
   if (result.automatic) {
     result.step = std::min(shortest.detail / resolved.steps_per_contact, resolved.duration);
   }
+  if (!resolved.bonds.bonds.empty()) limit_by_bonds(resolved, result);
   result.contact = shortest.duration;
   result.between = format("{} and {}", resolved.kinds[static_cast<std::size_t>(shortest.a)],
                           resolved.kinds[static_cast<std::size_t>(shortest.b)]);
@@ -128,11 +179,13 @@ std::int64_t count_steps(const GrainCase& resolved, double step) {
 }
 
 GrainScene build_grain_scene(const GrainCase& resolved, double step) {
-  GrainScene scene{.grains = resolved.grains,
-                   .walls = resolved.walls,
-                   .gravity = resolved.gravity,
-                   .kinds = resolved.kind_count(),
-                   .pairs = {}};
+  GrainScene scene;
+  scene.grains = resolved.grains;
+  scene.clumps = resolved.clumps;
+  scene.bonds = resolved.bonds.bonds;
+  scene.walls = resolved.walls;
+  scene.gravity = resolved.gravity;
+  scene.kinds = resolved.kind_count();
   for (const PairCase& pair : resolved.pairs) {
     PairProperties properties = pair.properties;
     if (pair.duration > 0) {
@@ -151,6 +204,8 @@ GrainOptions grain_options(const GrainCase& resolved, double step) {
   options.scheme = resolved.scheme;
   options.time_step = step;
   options.reference_length = resolved.reference_length;
+  options.ellipse_law = resolved.ellipse_law;
+  options.bond_step = resolved.bonds.step;
   return options;
 }
 

@@ -23,6 +23,7 @@ struct GrainStep {
   /// Largest omega dt at which the scheme is stable for one contact: 2 (sqrt(1 + zeta²) - zeta) of the laws with a dashpot, zeta over the
   /// critical one there; 1 of the maps (past it a contact is over in a step); 0: none.
   double limit = 0;
+  double bond_limit = 0;  ///< s, of bonds; 0: none
   bool automatic = false;
 
   [[nodiscard]] double steps_in_contact() const { return contact / step; }

@@ -25,6 +25,7 @@ enum class KeyType {
   number_or_auto,  ///< a number, or "auto"
   box,             ///< [x_min, y_min, x_max, y_max]
   discs,           ///< [0, 1, 2, ...]
+  circles,         ///< [[x, y, radius], ...]
   sizes,           ///< ascending whole numbers, [100, 400, 1600]
   numbers,         ///< [0.0, 0.5, ...]
   words,           ///< a list of words of KeySpec::choices

@@ -26,41 +26,6 @@ bool read_number(std::string_view text, double& value) {
   return problem == std::errc() && end == text.data() + text.size() && std::isfinite(value);
 }
 
-/// Rows "time,value"; a first row of words names the columns, '#' begins a comment.
-void read_points(const fs::path& path, Schedule& table) {
-  const std::string content = read_file(path);
-  std::string_view rest = content;
-  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-  if (rest.starts_with(byte_order_mark)) rest.remove_prefix(byte_order_mark.size());
-  bool first = true;
-  for (int line = 1; !rest.empty(); ++line) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    const std::string_view row = trimmed(rest.substr(0, end));
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-    if (row.empty() || row.front() == '#') continue;
-    const std::size_t comma = std::min(row.find(','), row.size());
-    const std::string_view left = trimmed(row.substr(0, comma));
-    const std::string_view right = trimmed(row.substr(std::min(comma + 1, row.size())));
-    const bool heading = first && left == "time" && right == "value";
-    first = false;
-    if (heading) continue;
-    double time = 0, value = 0;
-    if (!read_number(left, time) || !read_number(right, value)) {
-      throw Error(ErrorKind::bad_input, "this row is not a time and a value", "two numbers with a comma are needed",
-                  "Write it like 0.5,1.0", format("{}:{}", path.string(), line));
-    }
-    if (!table.times.empty() && time <= table.times.back()) {
-      throw Error(ErrorKind::bad_input, format("the time {} s comes after {} s", time, table.times.back()),
-                  "times ascend, and a value cannot jump", "Order the rows and leave out repeated times",
-                  format("{}:{}", path.string(), line));
-    }
-    table.times.push_back(time);
-    table.values.push_back(value);
-  }
-  if (table.times.empty())
-    bad_input(format("'{}' has no points", path.string()), "a table needs at least one", "Add rows like 0.5,1.0");
-}
-
 void read_table(TomlValue& table, const fs::path& folder, Schedule& result) {
   TomlValue* path = table.find("path");
   const TomlValue* times = table.find("times");
@@ -73,7 +38,7 @@ void read_table(TomlValue& table, const fs::path& folder, Schedule& result) {
   if (path != nullptr) {
     const fs::path file = opened(path->text, folder);
     try {
-      read_points(file, result);
+      read_points(file, result, "value");
     } catch (const Error& error) {
       throw error.at(format("{}: schedule.path", path->where()));
     }
@@ -107,6 +72,40 @@ Schedule read_schedule(TomlValue& table, const fs::path& folder) {
 }
 
 }  // namespace
+
+void read_points(const fs::path& path, Schedule& table, std::string_view column) {
+  const std::string content = read_file(path);
+  std::string_view rest = content;
+  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+  if (rest.starts_with(byte_order_mark)) rest.remove_prefix(byte_order_mark.size());
+  bool first = true;
+  for (int line = 1; !rest.empty(); ++line) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    const std::string_view row = trimmed(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (row.empty() || row.front() == '#') continue;
+    const std::size_t comma = std::min(row.find(','), row.size());
+    const std::string_view left = trimmed(row.substr(0, comma));
+    const std::string_view right = trimmed(row.substr(std::min(comma + 1, row.size())));
+    const bool heading = first && left == "time" && right == column;
+    first = false;
+    if (heading) continue;
+    double time = 0, value = 0;
+    if (!read_number(left, time) || !read_number(right, value)) {
+      throw Error(ErrorKind::bad_input, "this row is not a time and a value", "two numbers with a comma are needed",
+                  "Write it like 0.5,1.0", format("{}:{}", path.string(), line));
+    }
+    if (!table.times.empty() && time <= table.times.back()) {
+      throw Error(ErrorKind::bad_input, format("the time {} s comes after {} s", time, table.times.back()),
+                  "times ascend, and a value cannot jump", "Order the rows and leave out repeated times",
+                  format("{}:{}", path.string(), line));
+    }
+    table.times.push_back(time);
+    table.values.push_back(value);
+  }
+  if (table.times.empty())
+    bad_input(format("'{}' has no points", path.string()), "a table needs at least one", "Add rows like 0.5,1.0");
+}
 
 std::vector<NamedSchedule> read_schedules(TomlValue& root, const fs::path& folder) {
   std::vector<NamedSchedule> schedules;

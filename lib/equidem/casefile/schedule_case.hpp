@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "equidem/casefile/toml.hpp"
@@ -23,6 +24,11 @@ struct NamedSchedule {
 /// \throws Error (bad_input) with line and key: an end before the start, points that are missing or do not ascend, a file
 ///         that is not a table of two columns
 std::vector<NamedSchedule> read_schedules(TomlValue& root, const std::filesystem::path& folder);
+
+/// The rows "time,value" of a file as the points of a table; '#' begins a comment.
+/// \param column what a first row that names the columns calls the second one
+/// \throws Error (bad_input) with file and line: a row that is no two numbers, times that do not ascend, no rows
+void read_points(const std::filesystem::path& path, Schedule& table, std::string_view column);
 
 /// `value` times the schedule that the table names; constant where it names none.
 /// \param key of the table, for errors: "load"

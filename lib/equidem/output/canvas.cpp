@@ -104,6 +104,15 @@ struct Canvas::Implementation {
     for (const Vec2 corner : corners) cairo_line_to(context, corner.x, corner.y);
     cairo_close_path(context);
   }
+  void ellipse(Vec2 centre, Vec2 half_axes, double angle) const {
+    cairo_save(context);
+    cairo_translate(context, centre.x, centre.y);
+    cairo_rotate(context, angle);
+    cairo_scale(context, half_axes.x, half_axes.y);
+    cairo_arc(context, 0, 0, 1, 0, 2 * std::numbers::pi);
+    cairo_close_path(context);
+    cairo_restore(context);  // lines keep their width
+  }
   void choose_font(double size, bool bold) const {
     cairo_select_font_face(context, font, CAIRO_FONT_SLANT_NORMAL,
                            bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
@@ -145,6 +154,19 @@ void Canvas::stroke_circle(Vec2 centre, double radius, double width, const Colou
   cairo_arc(context, centre.x, centre.y, radius, 0, 2 * std::numbers::pi);
   cairo_close_path(context);
   cairo_stroke(context);
+}
+
+void Canvas::fill_ellipse(Vec2 centre, Vec2 half_axes, double angle, const Colour& colour) {
+  implementation_->source(colour);
+  implementation_->ellipse(centre, half_axes, angle);
+  cairo_fill(implementation_->context);
+}
+
+void Canvas::stroke_ellipse(Vec2 centre, Vec2 half_axes, double angle, double width, const Colour& colour) {
+  implementation_->source(colour);
+  cairo_set_line_width(implementation_->context, width);
+  implementation_->ellipse(centre, half_axes, angle);
+  cairo_stroke(implementation_->context);
 }
 
 void Canvas::line(Vec2 from, Vec2 to, double width, const Colour& colour) {

@@ -40,6 +40,9 @@ class Canvas {
 
   void fill_circle(Vec2 centre, double radius, const Colour& colour);
   void stroke_circle(Vec2 centre, double radius, double width, const Colour& colour);
+  /// \param half_axes the first along `angle`, rad, from x to y (clockwise on the page)
+  void fill_ellipse(Vec2 centre, Vec2 half_axes, double angle, const Colour& colour);
+  void stroke_ellipse(Vec2 centre, Vec2 half_axes, double angle, double width, const Colour& colour);
   /// With round ends.
   void line(Vec2 from, Vec2 to, double width, const Colour& colour);
   void fill_polygon(const std::vector<Vec2>& corners, const Colour& colour);

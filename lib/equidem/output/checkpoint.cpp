@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "equidem/core/checksum.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
@@ -41,18 +42,6 @@ constexpr Field fields[] = {{"motions", &SimulationState::motions},
 std::string ledger_name(const EnergyTerm& term) {
   return format("ledger/{}", term.name);
 }
-
-/// FNV-1a (Fowler, Noll & Vo), 64 bits: every change of a single byte changes it.
-class Checksum {
- public:
-  void add(std::span<const std::byte> bytes) {
-    for (const std::byte b : bytes) value_ = (value_ ^ static_cast<std::uint64_t>(b)) * 0x100000001b3ULL;
-  }
-  [[nodiscard]] std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 0xcbf29ce484222325ULL;
-};
 
 /// The 512 bytes before the HDF5 part; the last line is a checksum of the lines before and of all that follows.
 struct Header {

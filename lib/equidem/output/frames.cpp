@@ -32,28 +32,6 @@ constexpr std::array<const char*, 4> moving(bool travelling) {
   return {translation_of(travelling), rotation_of(travelling), "velocity", "spin"};
 }
 
-Hdf5Layout layout_of(const Assembly& assembly, std::int64_t room, bool travelling) {
-  using enum Hdf5Number;
-  const std::uint64_t n = assembly.size(), m = assembly.contacts.size(), k = static_cast<std::uint64_t>(room);
-  Hdf5Layout layout;
-  layout.attributes = {{"schema", schema}, {"library_version", library_version()}};
-  layout.arrays = {{"discs/centre", float64, {n, 2}, "m"},
-                   {"discs/radius", float64, {n}, "m"},
-                   {"discs/number", int32, {n}},
-                   {"contacts/discs", int32, {m, 2}},
-                   {"contacts/shift", int32, {m, 2}},
-                   {"contacts/lever", float64, {m, 2}, "m"},
-                   {"frames", int64, {1}},
-                   {"time", float64, {k}, "s"},
-                   {"step", int64, {k}},
-                   {translation_of(travelling), float64, {k, n, 3}, "m"},
-                   {rotation_of(travelling), float64, {k, n}, "rad"},
-                   {"velocity", float64, {k, n, 3}, "m/s"},
-                   {"spin", float64, {k, n}, "rad/s"}};
-  if (assembly.period) layout.arrays.push_back({"period", float64, {2}, "m"});
-  return layout;
-}
-
 /// Bytes of one frame, and where it begins.
 std::uint64_t frame_bytes(const Hdf5Array& array) {
   return array.bytes() / array.shape[0];
@@ -118,7 +96,8 @@ FrameWriter::FrameWriter(const std::filesystem::path& folder, const std::string&
     : path_(folder / (name + ".h5")),
       index_path_(folder / (name + ".xdmf2")),
       assembly_(assembly),
-      travelling_(options.travelling) {
+      travelling_(options.travelling),
+      of_discs_(options.of_discs) {
   assert(options.expected >= 1);
   const bool replace = options.overwrite || options.continue_after;
   check_writable(path_, replace);
@@ -185,13 +164,41 @@ void FrameWriter::write_static(OpenFile& file, const Hdf5Layout& layout) const {
   write_contacts("contacts/discs", std::int32_t{}, [](const Contact& c) { return std::pair(c.i, c.j); });
   write_contacts("contacts/shift", std::int32_t{}, [](const Contact& c) { return std::pair(c.shift_x, c.shift_y); });
   write_contacts("contacts/lever", double{}, [](const Contact& c) { return std::pair(c.lever_i, c.lever_j); });
+  for (const DiscNumbers& added : of_discs_) {
+    assert(added.values.size() == assembly_.size());
+    write_numbers(file, layout["discs/" + added.name].offset, added.values);
+  }
   if (assembly_.period) write_numbers(file, layout["period"].offset, std::vector{*assembly_.period});
+}
+
+Hdf5Layout FrameWriter::layout_of(std::int64_t room) const {
+  using enum Hdf5Number;
+  const std::uint64_t n = assembly_.size(), m = assembly_.contacts.size(), k = static_cast<std::uint64_t>(room);
+  Hdf5Layout layout;
+  layout.attributes = {{"schema", schema}, {"library_version", library_version()}};
+  layout.arrays = {{"discs/centre", float64, {n, 2}, "m"},
+                   {"discs/radius", float64, {n}, "m"},
+                   {"discs/number", int32, {n}},
+                   {"contacts/discs", int32, {m, 2}},
+                   {"contacts/shift", int32, {m, 2}},
+                   {"contacts/lever", float64, {m, 2}, "m"},
+                   {"frames", int64, {1}},
+                   {"time", float64, {k}, "s"},
+                   {"step", int64, {k}},
+                   {translation_of(travelling_), float64, {k, n, 3}, "m"},
+                   {rotation_of(travelling_), float64, {k, n}, "rad"},
+                   {"velocity", float64, {k, n, 3}, "m/s"},
+                   {"spin", float64, {k, n}, "rad/s"}};
+  if (assembly_.period) layout.arrays.push_back({"period", float64, {2}, "m"});
+  for (const DiscNumbers& numbers : of_discs_)
+    layout.arrays.push_back({"discs/" + numbers.name, float64, {n}, numbers.unit});
+  return layout;
 }
 
 /// A new file takes the place of the old one, if any, with the frames of that.
 void FrameWriter::resize(std::int64_t room) {
   Replacement replacement(path_);
-  const Hdf5Layout layout = write_hdf5_layout(replacement.path(), layout_of(assembly_, room, travelling_));
+  const Hdf5Layout layout = write_hdf5_layout(replacement.path(), layout_of(room));
   OpenFile file(replacement.path(), OpenFile::Mode::update);
   write_static(file, layout);
   std::vector<std::byte> bytes;
@@ -217,14 +224,14 @@ void FrameWriter::go_on(std::int64_t after) {
   std::error_code ignored;
   if (!std::filesystem::exists(path_, ignored)) cannot_continue(path_, "there is no such file");
   std::vector<std::string> names;
-  for (const Hdf5Array& array : layout_of(assembly_, 1, travelling_).arrays) names.push_back(array.name);
+  for (const Hdf5Array& array : layout_of(1).arrays) names.push_back(array.name);
   layout_ = read_hdf5_layout(path_, names);
   if (layout_.attributes["schema"] != schema) {
     cannot_continue(path_, format("its schema is '{}', not '{}'", layout_.attributes["schema"], schema));
   }
   const std::vector<std::uint64_t> time_shape = layout_["time"].shape;
   const std::uint64_t room = time_shape.size() == 1 ? time_shape[0] : 0;
-  for (const Hdf5Array& wanted : layout_of(assembly_, static_cast<std::int64_t>(room), travelling_).arrays) {
+  for (const Hdf5Array& wanted : layout_of(static_cast<std::int64_t>(room)).arrays) {
     const Hdf5Array& found = layout_[wanted.name];
     if (found.number != wanted.number || found.shape != wanted.shape || room == 0) {
       cannot_continue(path_, format("its array '{}' is not that of an assembly of {} and {}", wanted.name,
@@ -237,6 +244,9 @@ void FrameWriter::go_on(std::int64_t after) {
       !holds(*file_, layout_["discs/radius"], assembly_.radii)) {
     cannot_continue(path_, "its discs have other places or radii");
   }
+  for (const DiscNumbers& added : of_discs_)
+    if (!holds(*file_, layout_["discs/" + added.name], added.values))
+      cannot_continue(path_, format("its discs have others of '{}'", added.name));
   const std::int64_t finished = read_numbers<std::int64_t>(*file_, layout_["frames"], 1)[0];
   if (finished < 0 || static_cast<std::uint64_t>(finished) > room) {
     cannot_continue(path_, format("it says that {} of {} frames are finished", finished, room));
@@ -251,8 +261,9 @@ void FrameWriter::go_on(std::int64_t after) {
 }
 
 void FrameWriter::list_frame(std::size_t frame) {
-  index_ += xdmf_frame({path_.filename().string(), assembly_.size(), layout_["time"].shape[0], travelling_}, frame,
-                       times_[frame]);
+  XdmfSource source{path_.filename().string(), assembly_.size(), layout_["time"].shape[0], travelling_};
+  for (const DiscNumbers& added : of_discs_) source.of_discs.push_back(added.name);
+  index_ += xdmf_frame(source, frame, times_[frame]);
 }
 
 void FrameWriter::write_index() const {

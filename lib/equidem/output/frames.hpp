@@ -17,6 +17,13 @@
 
 namespace equidem {
 
+/// Of every disc a number that stays: `discs/NAME` (n).
+struct DiscNumbers {
+  std::string name;  ///< of letters and '_'
+  std::string unit;  ///< empty: none
+  std::vector<double> values;
+};
+
 struct FrameOptions {
   /// Frames to leave room for, >= 1. Where more come the file is copied into one of twice the room.
   std::int64_t expected = 100;
@@ -26,10 +33,11 @@ struct FrameOptions {
   bool travelling = false;
   /// Go on with the files of an earlier run: frames later than this step are dropped.
   std::optional<std::int64_t> continue_after = {};
+  std::vector<DiscNumbers> of_discs = {};  ///< beside the radius
 };
 
 /// Writes frames. NAME.h5 (schema "equidem-frames/1"), n discs, m contacts, room for K frames:
-///   discs/centre (n, 2) and discs/radius (n), m; discs/number (n); contacts/discs (m, 2), contacts/shift (m, 2),
+///   discs/centre (n, 2) and discs/radius (n), m; discs/number (n); what FrameOptions::of_discs adds; contacts/discs (m, 2), contacts/shift (m, 2),
 ///   contacts/lever (m, 2), m; period (2), m, where there is one;
 ///   frames (1): how many are finished; of the others the arrays hold nothing, and their times are NaN;
 ///   time (K), s; step (K); displacement (K, n, 3), m; rotation (K, n), rad; velocity (K, n, 3), m/s; spin (K, n), rad/s;
@@ -63,6 +71,7 @@ class FrameWriter {
  private:
   void go_on(std::int64_t after);
   void resize(std::int64_t room);
+  [[nodiscard]] Hdf5Layout layout_of(std::int64_t room) const;
   void write_static(OpenFile& file, const Hdf5Layout& layout) const;
   void write_field(const std::string& translation, const std::string& rotation, std::span<const DiscMotion> values);
   void list_frame(std::size_t frame);
@@ -71,6 +80,7 @@ class FrameWriter {
   std::filesystem::path path_, index_path_;
   const Assembly& assembly_;
   bool travelling_;
+  std::vector<DiscNumbers> of_discs_;
   Hdf5Layout layout_;
   std::optional<OpenFile> file_;
   std::vector<double> times_;

@@ -11,6 +11,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/output/canvas.hpp"
 #include "equidem/output/picture.hpp"
+#include "equidem/output/placed_discs.hpp"
 #include "equidem/output/scene.hpp"
 
 namespace equidem {
@@ -146,27 +147,84 @@ std::size_t tone(const GrainPicture& picture, std::size_t grain) {
   return picture.groups.empty() ? 0 : static_cast<std::size_t>(picture.groups[grain]) % fills.size();
 }
 
-/// A mark from the centre to the edge shows how far a grain has turned, where any has.
+std::span<const Clump::Disc> discs_of(const GrainPicture& picture, const Grain& grain) {
+  return picture.clumps[static_cast<std::size_t>(grain.clump)].discs;
+}
+
+/// The smallest half-width of what is drawn, m.
+double smallest_radius(const GrainPicture& picture, const Grain& grain) {
+  switch (grain.shape()) {
+    case GrainShape::ellipse:
+      return grain.short_half_axis;
+    case GrainShape::clump:
+      return std::ranges::min(discs_of(picture, grain), {}, &Clump::Disc::radius).radius;
+    case GrainShape::disc:
+      break;
+  }
+  return grain.radius;
+}
+
+/// One outline round all discs: their edges first, then what lies inside.
+void draw_clump(Canvas& canvas, const PageFrame& frame, const Grain& grain, std::span<const Clump::Disc> discs,
+                const Colour& fill, const Colour& edge, double width) {
+  for (const bool inside : {false, true}) {
+    if (!inside && width == 0) continue;
+    for (const Clump::Disc& disc : discs) {
+      const Vec2 centre = frame.to_page(grain.position + turned(disc.offset, grain.angle));
+      canvas.fill_circle(centre, disc.radius * frame.scale - (inside ? width : 0), inside ? fill : edge);
+    }
+  }
+}
+
+/// A mark shows how far a grain has turned, where any has: of a disc from the centre to the edge, of an ellipse along the long
+/// half-axis, of a clump in its first disc.
 void draw_grains(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
-  const bool turned =
+  constexpr double width = 0.8;
+  const bool any_turned =
       std::any_of(picture.grains.begin(), picture.grains.end(), [](const Grain& g) { return g.angle != 0; });
   for (std::size_t g = 0; g < picture.grains.size(); ++g) {
     const Grain& grain = picture.grains[g];
     const double radius = grain.radius * frame.scale;
     const Vec2 centre = frame.to_page(grain.position);
-    const Colour& ink_of = inks[tone(picture, g)];
-    canvas.fill_circle(centre, radius, fills[tone(picture, g)]);
-    if (radius < smallest_marked) continue;
-    canvas.stroke_circle(centre, radius - 0.4, 0.8, ink_of);
-    if (turned) canvas.line(centre, centre + radius * Vec2{std::cos(grain.angle), -std::sin(grain.angle)}, 0.8, ink_of);
+    const Colour &fill = fills[tone(picture, g)], &edge = inks[tone(picture, g)];
+    const bool outlined = smallest_radius(picture, grain) * frame.scale >= smallest_marked;
+    Vec2 mark_from = centre;
+    double mark = radius;
+    if (grain.shape() == GrainShape::clump) {
+      const auto discs = discs_of(picture, grain);
+      draw_clump(canvas, frame, grain, discs, fill, edge, outlined ? width : 0);
+      mark_from = frame.to_page(grain.position + turned(discs[0].offset, grain.angle));
+      mark = discs[0].radius * frame.scale;
+    } else {
+      // The page has y down.
+      const double other = grain.shape() == GrainShape::ellipse ? grain.short_half_axis * frame.scale : radius;
+      canvas.fill_ellipse(centre, {radius, other}, -grain.angle, fill);
+      const double inset = 0.5 * width;
+      if (outlined) canvas.stroke_ellipse(centre, {radius - inset, other - inset}, -grain.angle, width, edge);
+    }
+    if (any_turned && outlined) {
+      const Vec2 along = turned({1, 0}, grain.angle);
+      canvas.line(mark_from, mark_from + mark * Vec2{along.x, -along.y}, width, edge);
+    }
+  }
+}
+
+/// Of bodies that are no discs only the places are known: a circle in the middle.
+void draw_bonds(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
+  constexpr double widest = 4;  // units
+  for (const GrainBond& bond : picture.bonds) {
+    const Grain &i = picture.grains[bond.i], &j = picture.grains[bond.j];
+    const double width = std::min(widest, 0.3 * frame.scale * std::min(i.radius, j.radius));
+    canvas.line(frame.to_page(i.position), frame.to_page(j.position), width, inks[tone(picture, bond.i)]);
   }
 }
 
 void draw_starts(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
   if (picture.paths.empty()) return;
   for (std::size_t g = 0; g < picture.grains.size(); ++g) {
-    const double radius = std::max(1.5, picture.grains[g].radius * frame.scale);
-    canvas.stroke_circle(frame.to_page(picture.paths.front()[g]), radius, 0.7, hatch_colour);
+    const Grain& grain = picture.grains[g];
+    const double size = grain.shape() == GrainShape::disc ? grain.radius : 0.5 * smallest_radius(picture, grain);
+    canvas.stroke_circle(frame.to_page(picture.paths.front()[g]), std::max(1.5, size * frame.scale), 0.7, hatch_colour);
   }
 }
 
@@ -223,6 +281,7 @@ std::string draw(const GrainPicture& picture, const PageFrame& frame, PageFormat
   draw_walls(canvas, frame, picture);
   draw_starts(canvas, frame, picture);
   draw_grains(canvas, frame, picture);
+  draw_bonds(canvas, frame, picture);
   draw_paths(canvas, frame, picture);
   draw_legend(canvas, frame, picture);
   return canvas.finish();

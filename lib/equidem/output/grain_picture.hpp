@@ -20,7 +20,9 @@ struct GrainPicture {
   std::string title = {};
   double time = 0;  ///< s, by which walls have moved
   std::span<const Grain> grains = {};
-  std::span<const int> groups = {};  ///< of each grain: its colour; empty: all alike
+  std::span<const Clump> clumps = {};
+  std::span<const int> groups = {};       ///< of each grain: its colour; empty: all alike
+  std::span<const GrainBond> bonds = {};  ///< lines from centre to centre
   std::span<const GrainWall> walls = {};
   /// Places of all grains at moments; empty: no paths.
   std::span<const std::vector<Vec2>> paths = {};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/output/grain_tables.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cstdint>
 
@@ -10,19 +11,46 @@
 
 namespace equidem {
 
-void write_grain_csv(const std::filesystem::path& path, std::span<const Grain> grains,
-                     const std::vector<std::string>& groups, std::span<const double> densities, bool overwrite) {
+namespace {
+
+std::string discs_in_a_cell(const Clump& clump) {
+  std::string cell;
+  for (const Clump::Disc& disc : clump.discs)
+    cell += format("{}{} {} {}", cell.empty() ? "" : "; ", disc.offset.x, disc.offset.y, disc.radius);
+  return cell;
+}
+
+}  // namespace
+
+void write_grain_csv(const std::filesystem::path& path, const GrainRows& rows, bool overwrite) {
+  const auto& [grains, clumps, groups, densities] = rows;
   assert(groups.size() == grains.size() && densities.size() == grains.size());
-  CsvText text({"grain", "group", "x_m", "y_m", "radius_m", "vx_m_per_s", "vy_m_per_s", "spin_rad_per_s", "angle_rad",
-                "density_kg_per_m3"},
-               grains.size());
+  const auto any = [&](GrainShape shape) {
+    return std::ranges::any_of(rows.grains, [&](const Grain& grain) { return grain.shape() == shape; });
+  };
+  const bool ellipses = any(GrainShape::ellipse), any_clumps = any(GrainShape::clump);
+  std::vector<std::string> columns{"grain", "group", "x_m", "y_m", "radius_m"};
+  if (ellipses) columns.emplace_back("short_half_axis_m");
+  columns.insert(columns.end(), {"vx_m_per_s", "vy_m_per_s", "spin_rad_per_s", "angle_rad", "density_kg_per_m3"});
+  if (any_clumps) columns.emplace_back("discs_m");
+  CsvText text(columns, grains.size());
   for (std::size_t g = 0; g < grains.size(); ++g) {
     const Grain& grain = grains[g];
     text.cell(static_cast<std::int64_t>(g));
     text.cell(std::string_view(groups[g]));
-    for (const double value : {grain.position.x, grain.position.y, grain.radius, grain.velocity.x, grain.velocity.y,
-                               grain.spin, grain.angle, densities[g]})
+    for (const double value : {grain.position.x, grain.position.y, grain.radius}) text.cell(value);
+    if (grain.shape() == GrainShape::ellipse) {
+      text.cell(grain.short_half_axis);
+    } else if (ellipses) {
+      text.empty_cell();
+    }
+    for (const double value : {grain.velocity.x, grain.velocity.y, grain.spin, grain.angle, densities[g]})
       text.cell(value);
+    if (grain.shape() == GrainShape::clump) {
+      text.cell(std::string_view(discs_in_a_cell(clumps[static_cast<std::size_t>(grain.clump)])));
+    } else if (any_clumps) {
+      text.empty_cell();
+    }
     text.end_row();
   }
   write_file(path, text.text(), overwrite);
@@ -62,6 +90,17 @@ void write_grain_energy_csv(const std::filesystem::path& path, std::span<const G
     text.cell(sample.step);
     text.cell(sample.time);
     for (const double value : grain_energy_cells(sample.ledger)) text.cell(value);
+    text.end_row();
+  }
+  write_file(path, text.text(), overwrite);
+}
+
+void write_bond_csv(const std::filesystem::path& path, std::span<const BondDrift> bonds, bool overwrite) {
+  CsvText text({"i", "j", "distance_drift", "slip_drift", "roll_rad"}, bonds.size());
+  for (const BondDrift& bond : bonds) {
+    text.cell(static_cast<std::int64_t>(bond.i));
+    text.cell(static_cast<std::int64_t>(bond.j));
+    for (const double value : {bond.distance, bond.slip, bond.roll}) text.cell(value);
     text.end_row();
   }
   write_file(path, text.text(), overwrite);

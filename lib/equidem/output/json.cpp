@@ -189,6 +189,15 @@ void add_equilibrium(JsonObject& object, const Equilibrium& equilibrium) {
   if (equilibrium.unstable_modes < 0) object.set_null("unstable_modes");
 }
 
+std::optional<double> number_in_json(std::string_view text, const std::string& path) {
+  const Json root = Json::parse(text, nullptr, false);
+  std::string pointer = "/" + path;
+  std::replace(pointer.begin(), pointer.end(), '.', '/');
+  const Json::json_pointer at(pointer);
+  if (root.is_discarded() || !root.contains(at) || !root[at].is_number()) return {};
+  return root[at].get<double>();
+}
+
 void add_tension(JsonObject& object, const TensionTest& test, const TensionSetup& setup, const TensionResult& result) {
   JsonObject gauge;
   gauge.set("placement", to_string(test.gauge))

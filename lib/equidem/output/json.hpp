@@ -6,6 +6,7 @@
 #include <concepts>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -58,6 +59,9 @@ class JsonObject {
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
+
+/// The number at a path of keys and positions such as "poisson_ratio.plane_strain" or "stress.0" in a JSON text; none where there is none.
+std::optional<double> number_in_json(std::string_view text, const std::string& path);
 
 /// The version of the library, "0.1.0".
 std::string library_version();

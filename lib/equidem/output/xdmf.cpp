@@ -45,6 +45,8 @@ std::string xdmf_frame(const XdmfSource& source, std::uint64_t frame, double tim
           ? format("<Geometry GeometryType=\"XYZ\">{}</Geometry>\n", slab(source, "position", frame, 3))
           : format("<Geometry GeometryType=\"XY\">{}</Geometry>\n", array(source, "discs/centre", format("{} 2", n)));
   text += attribute("radius", "Scalar", array(source, "discs/radius", format("{}", n)));
+  for (const std::string& name : source.of_discs)
+    text += attribute(name, "Scalar", array(source, "discs/" + name, format("{}", n)));
   for (const char* name : {source.travelling ? "position" : "displacement", "velocity"})
     text += attribute(name, "Vector", slab(source, name, frame, 3));
   for (const char* name : {source.travelling ? "angle" : "rotation", "spin"})

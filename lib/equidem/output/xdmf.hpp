@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace equidem {
 
@@ -15,6 +16,7 @@ struct XdmfSource {
   std::uint64_t discs = 0;
   std::uint64_t room = 0;   ///< frames that it has room for
   bool travelling = false;  ///< points at `position`, which replaces displacement, as angle does rotation
+  std::vector<std::string> of_discs = {};  ///< `discs/NAME`, beside the radius
 };
 
 /// One point in time: discs as points; radius, displacement, rotation, velocity, spin.

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/casefile/bond_case.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "equidem/casefile/read_value.hpp"
+#include "equidem/core/file.hpp"
+
+namespace equidem {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Strength {
+  const char* key;
+  double GrainBond::*value;
+  const char* unit;
+  const char* help;
+};
+constexpr Strength strengths[] = {
+    {"normal_dashpot", &GrainBond::normal_dashpot, "N s/m (discs: per m of depth)",
+     "C_n along the line of centres: a pair stops as exp(-C_n t/m), m the reduced mass; a steady pull N makes it creep "
+     "at "
+     "N/C_n"},
+    {"tangential_dashpot", &GrainBond::tangential_dashpot, "N s/m (discs: per m of depth)",
+     "C_s across it, at the point of the bond; no friction limits it"},
+    {"rolling_dashpot", &GrainBond::rolling_dashpot, "N m s",
+     "against the relative spin; 0 in the thesis: discs roll freely on one another"},
+    {"normal_spring", &GrainBond::normal_spring, "N/m (discs: per m of depth)",
+     "back to the distance at the start; 0 in the thesis: bonds creep"},
+    {"tangential_spring", &GrainBond::tangential_spring, "N/m (discs: per m of depth)", "the same across"},
+};
+
+std::string_view trimmed(std::string_view text) {
+  constexpr const char* space = " \t\r";
+  text.remove_prefix(std::min(text.find_first_not_of(space), text.size()));
+  return text.substr(0, text.find_last_not_of(space) + 1);
+}
+
+/// Takes the first cell off a row.
+std::string_view next_cell(std::string_view& row) {
+  const std::size_t comma = std::min(row.find(','), row.size());
+  const std::string_view cell = trimmed(row.substr(0, comma));
+  row.remove_prefix(std::min(comma + 1, row.size()));
+  return cell;
+}
+
+/// Knows where each pair was written.
+class Pairs {
+ public:
+  explicit Pairs(std::size_t grains) : grains_(grains) {}
+
+  /// \throws Error at the place given
+  void add(GrainBond bond, std::int64_t i, std::int64_t j, const std::string& where, BondCase& result) {
+    const auto fail = [&](const std::string& problem, const std::string& why, const std::string& remedy) {
+      throw Error(ErrorKind::bad_input, problem, why, remedy, where);
+    };
+    for (const std::int64_t grain : {i, j})
+      if (grain < 0 || static_cast<std::size_t>(grain) >= grains_)
+        fail(format("there is no grain {}", grain), format("they are counted 0 to {}", grains_ - 1),
+             "Correct the number");
+    if (i == j) fail(format("grain {} is tied to itself", i), "a bond ties two", "Name two grains");
+    const auto [before, fresh] = places_.try_emplace(std::minmax(i, j), where);
+    if (!fresh)
+      fail(format("grains {} and {} are tied twice", i, j), "the first time at " + before->second,
+           "Remove one of them");
+    bond.i = static_cast<std::size_t>(i);
+    bond.j = static_cast<std::size_t>(j);
+    result.bonds.push_back(bond);
+  }
+
+ private:
+  std::size_t grains_;
+  std::map<std::pair<std::int64_t, std::int64_t>, std::string> places_;
+};
+
+/// Rows "i,j"; the first row names the columns, others are passed over.
+void read_file_of_bonds(const fs::path& path, const GrainBond& common, Pairs& pairs, BondCase& result) {
+  const std::string content = read_file(path);
+  std::string_view rest = content;
+  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+  if (rest.starts_with(byte_order_mark)) rest.remove_prefix(byte_order_mark.size());
+  bool heading = true;
+  for (int line = 1; !rest.empty(); ++line) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    std::string_view row = trimmed(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (row.empty() || row.front() == '#') continue;
+    const std::string where = format("{}:{}", path.string(), line);
+    const std::string_view left = next_cell(row), right = next_cell(row);
+    if (std::exchange(heading, false)) {
+      if (left == "i" && right == "j") continue;
+      throw Error(ErrorKind::bad_input, "the first two columns are not i and j", "they say which grains are tied",
+                  "Begin the file with i,j", where);
+    }
+    std::int64_t grains[2] = {};
+    for (const auto& [cell, number] : {std::pair{left, &grains[0]}, std::pair{right, &grains[1]}}) {
+      const auto [stop, problem] = std::from_chars(cell.data(), cell.data() + cell.size(), *number);
+      if (problem == std::errc() && stop == cell.data() + cell.size()) continue;
+      throw Error(ErrorKind::bad_input, format("'{}' is no number of a grain", cell), "grains are counted 0, 1, 2, ...",
+                  "Correct it", where);
+    }
+    pairs.add(common, grains[0], grains[1], where, result);
+  }
+}
+
+/// What the table says of a bond, over what was said before.
+GrainBond strengths_of(const TomlValue& table, GrainBond bond) {
+  for (const Strength& strength : strengths)
+    if (const auto given = optional_number(table, strength.key)) bond.*strength.value = *given;
+  return bond;
+}
+
+bool ties(const GrainBond& bond) {
+  return std::any_of(std::begin(strengths), std::end(strengths), [&](const Strength& s) { return bond.*s.value > 0; });
+}
+
+constexpr const char* no_strength = "it would tie nothing";
+constexpr const char* give_strength = "Add normal_dashpot and tangential_dashpot to [bonds]";
+
+}  // namespace
+
+std::vector<KeySpec> bond_keys() {
+  constexpr const char* none = KeySpec::none;
+  std::vector<KeySpec> keys{
+      {.table = "bonds",
+       .name = "path",
+       .type = KeyType::path,
+       .fallback = none,
+       .help =
+           "a CSV file whose first two columns i, j number the grains that are tied; bonds.csv of a run can be read "
+           "back"},
+      {.table = "bonds",
+       .name = "step",
+       .type = KeyType::choice,
+       .fallback = none,
+       .choices = {"exact", "explicit"},
+       .help =
+           "exact (default): each bond decays as it should in whatever step; explicit: dashpots by the velocities at "
+           "the start of the step, as in Sukegawa (2010), with the limit dt < 2 m/C_n, 2 m/(3 C_s) of equal discs"},
+  };
+  for (const char* table : {"bonds", "bond"}) {
+    const bool base = std::string_view(table) == "bonds";
+    if (!base)
+      keys.push_back({.table = table,
+                      .name = "grains",
+                      .type = KeyType::discs,
+                      .help = "[i, j]: two discs, counted from 0, those of the file first; they do not collide"});
+    for (const Strength& strength : strengths)
+      keys.push_back({.table = table,
+                      .name = strength.key,
+                      .type = KeyType::number,
+                      .unit = strength.unit,
+                      .fallback = none,
+                      .range = Range::not_negative(),
+                      .help = base ? strength.help : "instead of that of [bonds]"});
+  }
+  return keys;
+}
+
+BondCase read_bonds(TomlValue& root, const fs::path& folder, std::size_t grains) {
+  BondCase result;
+  GrainBond common;
+  Pairs pairs(grains);
+  if (TomlValue* table = root.find("bonds")) {
+    common = strengths_of(*table, common);
+    const TomlValue* step = table->find("step");
+    if (step != nullptr && step->text == "explicit") result.step = GrainOptions::BondStep::explicit_euler;
+    if (TomlValue* path = table->find("path")) {
+      if (!ties(common)) fail_at(*path, "bonds.path", "bonds have no dashpot", no_strength, give_strength);
+      const fs::path file = opened(path->text, folder);
+      try {
+        read_file_of_bonds(file, common, pairs, result);
+      } catch (const Error& error) {
+        throw error.at(format("{}: bonds.path", path->where()));
+      }
+      path->text = file.string();
+    } else if (repeated(root, "bond").empty()) {
+      fail_at(*table, "bonds", "no grains are tied", "the table only says how", "Add [[bond]] with grains, or a path");
+    }
+  }
+  for (const TomlValue& table : repeated(root, "bond")) {
+    const TomlValue& two = *table.find("grains");
+    if (two.items.size() != 2)
+      fail_at(two, "bond.grains",
+              format("{} are {}", two.shown(), counted(static_cast<long long>(two.items.size()), "grain")),
+              "a bond ties two", "Write it like grains = [0, 1]");
+    const GrainBond bond = strengths_of(table, common);
+    if (!ties(bond)) fail_at(table, "bond", "the bond has no dashpot", no_strength, give_strength);
+    pairs.add(bond, two.items[0].integer, two.items[1].integer, format("{}: bond.grains", two.where()), result);
+  }
+  return result;
+}
+
+}  // namespace equidem

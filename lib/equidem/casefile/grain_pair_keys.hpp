@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The keys of [collisions]: how bodies meet, rebound and part.
+#pragma once
+
+#include <vector>
+
+#include "equidem/casefile/keys.hpp"
+
+namespace equidem {
+
+/// Of [collisions], [collisions.walls] and [[collisions.pair]].
+std::vector<KeySpec> keys_of_collisions();
+
+}  // namespace equidem

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// [shaking]: the motion of a box.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "equidem/casefile/keys.hpp"
+#include "equidem/grains/shaking.hpp"
+
+namespace equidem {
+
+struct ShakingCase {
+  Vec2 direction;       ///< unit
+  GroundMotion motion;  ///< along it
+  bool recorded = false;
+  double frequency = 0;     ///< Hz, not recorded
+  std::int64_t cycles = 0;  ///< not recorded
+};
+
+/// The keys of [shaking] and wall.shaken.
+std::vector<KeySpec> shaking_keys();
+
+/// Read [shaking] and let the walls move so, but for those with shaken = false.
+/// \param root seen by check_and_complete, with [shaking]; the path of the record becomes that which the program opens
+/// \param walls in the order of [[wall]]
+/// \param run_duration s: as long the box shakes where nothing else is said
+/// \throws Error (bad_input) with line and key: no motion or two, a duration of no whole cycles, no wall that moves, a wall that moves by
+///         itself as well, a record that is no table
+ShakingCase read_shaking(TomlValue& root, const std::filesystem::path& folder, double run_duration,
+                         std::span<GrainWall> walls);
+
+}  // namespace equidem

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// [bonds] and [[bond]] of a case file.
+#include "equidem/casefile/bond_case.hpp"
+
+#include <fstream>
+#include <string>
+
+#include "equidem/casefile/grain_case.hpp"
+#include "equidem/casefile/grain_step.hpp"
+#include "equidem/core/error.hpp"
+
+#include "support/catch.hpp"
+
+using namespace equidem;
+
+namespace {
+
+const std::string discs = R"(schema = "equidem/1"
+[grains]
+density = 1000.0
+[[grain]]
+position = [0.0, 0.0]
+radius = 0.1
+[[grain]]
+position = [0.2, 0.0]
+radius = 0.1
+[[grain]]
+position = [0.4, 0.0]
+radius = 0.1
+[collisions]
+restitution = 0.5
+stiffness = 1e5
+law = "linear_dashpot"
+[run]
+duration = 1.0
+)";
+
+GrainCase parsed(const std::string& more, const std::vector<std::string>& overrides = {}) {
+  return parse_grain_case(discs + more, "case.toml", ".", overrides);
+}
+
+}  // namespace
+
+TEST_CASE("bonds_take_what_they_do_not_say_from_the_common_table") {
+  const GrainCase made = parsed(R"([bonds]
+normal_dashpot = 20.0
+tangential_dashpot = 10.0
+[[bond]]
+grains = [0, 1]
+[[bond]]
+grains = [2, 1]
+normal_dashpot = 5.0
+normal_spring = 3.0
+)");
+  REQUIRE(made.bonds.bonds.size() == 2);
+  const GrainBond &first = made.bonds.bonds[0], &second = made.bonds.bonds[1];
+  CHECK((first.i == 0 && first.j == 1 && second.i == 2 && second.j == 1));
+  CHECK((first.normal_dashpot == 20 && first.tangential_dashpot == 10 && first.normal_spring == 0));
+  CHECK((second.normal_dashpot == 5 && second.tangential_dashpot == 10 && second.normal_spring == 3));
+  CHECK(made.bonds.step == GrainOptions::BondStep::exact);
+  CHECK(build_grain_scene(made, 1e-4).bonds.size() == 2);
+  CHECK(parsed("").bonds.bonds.empty());
+}
+
+TEST_CASE("an_automatic_step_keeps_to_half_the_limit_of_explicit_bonds") {
+  const std::string bond = "[bonds]\nstep = \"explicit\"\n[[bond]]\ngrains = [0, 1]\n";
+  const double mass = 1000 * 3.141592653589793 * 0.01, dashpot = 1e7;
+  const GrainCase made = parsed(bond + "normal_dashpot = 1e7\n");
+  const GrainStep step = choose_grain_step(made);
+  CAPTURE(step.step, step.bond_limit);
+  CHECK(step.bond_limit == Approx(2 * (mass / 2) / dashpot));
+  CHECK(step.step == 0.5 * step.bond_limit);
+  // exact bonds leave the step to the contacts
+  const GrainStep free = choose_grain_step(parsed(bond + "normal_dashpot = 1e7\n", {"bonds.step=exact"}));
+  CHECK(free.bond_limit == 0);
+  CHECK(free.step > 10 * step.step);
+  CHECK_THROWS_WITH(
+      choose_grain_step(parsed(bond + "normal_dashpot = 1e7\n", {"run.time_step=4e-6"})),
+      Catch::Contains("run.time_step") && Catch::Contains("the limit of") && Catch::Contains("that the bonds impose"));
+}
+
+TEST_CASE("a_file_of_bonds_ties_grains_by_number") {
+  const std::string path = "equidem_test_bonds.csv";
+  const std::string table = "[bonds]\nnormal_dashpot = 1.0\npath = \"" + path + "\"\n";
+  const auto write = [&](const std::string& text) { std::ofstream(path) << text; };
+  write("i,j,distance_drift\n0,1,0.5\n# none\n 1 , 2 ,0\n");
+  const GrainCase made = parsed(table);
+  REQUIRE(made.bonds.bonds.size() == 2);
+  CHECK((made.bonds.bonds[1].i == 1 && made.bonds.bonds[1].j == 2 && made.bonds.bonds[1].normal_dashpot == 1));
+  for (const auto& [text, said] : {std::pair{"a,b\n0,1\n", ":1: the first two columns are not i and j"},
+                                   std::pair{"i,j\n0,one\n", ":2: 'one' is no number of a grain"},
+                                   std::pair{"i,j\n0,7\n", ":2: there is no grain 7"},
+                                   std::pair{"i,j\n0,1\n1,0\n", ":3: grains 1 and 0 are tied twice"},
+                                   std::pair{"i,j\n2,2\n", ":2: grain 2 is tied to itself"}}) {
+    write(text);
+    CAPTURE(text);
+    CHECK_THROWS_WITH(parsed(table), Catch::Contains(said));
+  }
+  std::remove(path.c_str());
+}
+
+TEST_CASE("bonds_that_a_case_cannot_mean_are_refused_with_their_line") {
+  for (const auto& [text, said] :
+       {std::pair{"[[bond]]\ngrains = [0, 1]\n", "the bond has no dashpot"},
+        std::pair{"[bonds]\nnormal_dashpot = 1.0\n", "no grains are tied"},
+        std::pair{"[[bond]]\ngrains = [0, 1, 2]\nnormal_dashpot = 1.0\n", "a bond ties two"},
+        std::pair{"[[bond]]\ngrains = [0, 3]\nnormal_dashpot = 1.0\n", "there is no grain 3"},
+        std::pair{"[[bond]]\ngrains = [1, 1]\nnormal_dashpot = 1.0\n", "grain 1 is tied to itself"},
+        std::pair{"[[bond]]\ngrains = [0, 1]\nnormal_dashpot = -1.0\n", "-1.0 is out of range"}}) {
+    CAPTURE(text);
+    CHECK_THROWS_WITH(parsed(text), Catch::Contains("case.toml:") && Catch::Contains(said));
+  }
+  const GrainCase exact = parsed("[[bond]]\ngrains = [0, 1]\nnormal_dashpot = 1.0\n", {"collisions.law=exact_flow"});
+  CHECK_THROWS_WITH(choose_grain_step(exact), Catch::Contains("collisions.law") && Catch::Contains("linear_dashpot"));
+}

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Ellipses and clumps in files and pictures.
+#include "equidem/casefile/grain_shapes.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "equidem/casefile/grain_case.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/output/grain_frames.hpp"
+#include "equidem/output/grain_picture.hpp"
+#include "equidem/output/grain_tables.hpp"
+#include "equidem/output/hdf5.hpp"
+#include "equidem/output/placed_discs.hpp"
+
+#include "output/runs.hpp"
+#include "output/states.hpp"
+#include "support/catch.hpp"
+#include "support/fields.hpp"
+
+using namespace equidem;
+
+namespace {
+
+/// A disc, an ellipse, two clumps of one shape and one of another, moving.
+struct Bodies {
+  GrainShapes shapes{Body::disc};
+  std::vector<Grain> grains;
+  std::vector<std::string> groups;
+  std::vector<double> densities;
+
+  Bodies() {
+    const std::vector<Clump::Disc> pair{{{1, 2}, 0.1}, {{1.15, 2.01}, 0.12}};
+    for (int k = 0; k < 5; ++k) {
+      Grain& grain = grains.emplace_back();
+      grain.position = {1.0 / 3 + k, 0.7 + 0.1 * k};
+      grain.velocity = {0.1 * k, -1.0 / 7};
+      grain.angle = 0.3 + 1.1 * k;
+      grain.spin = 2.5 - k;
+      densities.push_back(1000 + 100.0 * k);
+      groups.emplace_back(k % 2 == 0 ? "a" : "b");
+      if (k == 0) shapes.make_disc(grain, 0.2, densities[0]);
+      if (k == 1) shapes.make_ellipse(grain, 0.3, 0.1, densities[1]);
+      if (k == 2 || k == 3) shapes.make_clump(grain, pair, densities.back());
+      if (k == 4) shapes.make_clump(grain, {{{0, 0}, 0.1}, {{0.1, 0}, 0.1}, {{0.05, 0.1}, 0.1}}, densities[4]);
+    }
+  }
+  [[nodiscard]] GrainRows rows() const { return {grains, shapes.clumps(), groups, densities}; }
+};
+
+std::vector<double> numbers_of(const OpenFile& file, const Hdf5Array& array) {
+  std::vector<double> numbers(array.size());
+  file.read_at(array.offset, std::as_writable_bytes(std::span(numbers)));
+  return numbers;
+}
+
+}  // namespace
+
+TEST_CASE("a_table_of_grains_is_read_back_to_the_same_bits") {
+  const TemporaryFolder folder;
+  const Bodies bodies;
+  write_grain_csv(folder / "grains.csv", bodies.rows(), false);
+  CAPTURE(read_file(folder / "grains.csv"));
+  const GrainCase found = parse_grain_case(
+      "schema = \"equidem/1\"\n[grains]\npath = \"grains.csv\"\n[collisions]\nrestitution = 0.5\nstiffness = 1e6\n"
+      "[run]\nduration = 1.0\n",
+      "case.toml", folder.path());
+  REQUIRE(found.grains.size() == bodies.grains.size());
+  CHECK(found.clumps.size() == 2);
+  for (std::size_t g = 0; g < bodies.grains.size(); ++g) {
+    CAPTURE(g);
+    const Grain &a = bodies.grains[g], &b = found.grains[g];
+    CHECK(b.shape() == a.shape());
+    CHECK(b.position == a.position);
+    CHECK(b.velocity == a.velocity);
+    CHECK(b.angle == a.angle);
+    CHECK(b.spin == a.spin);
+    CHECK(b.radius == a.radius);
+    CHECK(b.short_half_axis == a.short_half_axis);
+    CHECK(b.inertia.mass == a.inertia.mass);
+    CHECK(b.inertia.moment == a.inertia.moment);
+    CHECK(found.densities[g] == bodies.densities[g]);
+    if (a.shape() != GrainShape::clump) continue;
+    const auto &wanted = bodies.shapes.clumps()[static_cast<std::size_t>(a.clump)].discs,
+               &discs = found.clumps[static_cast<std::size_t>(b.clump)].discs;
+    REQUIRE(discs.size() == wanted.size());
+    for (std::size_t d = 0; d < discs.size(); ++d) {
+      CHECK(discs[d].offset == wanted[d].offset);
+      CHECK(discs[d].radius == wanted[d].radius);
+    }
+  }
+}
+
+TEST_CASE("frames_show_clumps_as_their_discs_and_ellipses_with_both_half_axes") {
+  const TemporaryFolder folder;
+  Bodies bodies;
+  const auto& clumps = bodies.shapes.clumps();
+  {
+    GrainFrames frames(folder.path(), "frames", bodies.grains, clumps, {.expected = 1});
+    frames.append(0, 0.0, bodies.grains);
+    for (Grain& grain : bodies.grains) grain.angle += 0.5;
+    frames.append(7, 0.5, bodies.grains);
+    frames.finish();
+  }
+  const Hdf5Layout layout = read_hdf5_layout(
+      folder / "frames.h5", {"discs/radius", "discs/short_half_axis", "discs/body", "position", "velocity", "angle"});
+  const OpenFile file(folder / "frames.h5", OpenFile::Mode::read);
+  CHECK(numbers_of(file, layout["discs/body"]) == std::vector<double>{0, 1, 2, 2, 3, 3, 4, 4, 4});
+  const auto radius = numbers_of(file, layout["discs/radius"]),
+             axis = numbers_of(file, layout["discs/short_half_axis"]);
+  CHECK(radius[1] == 0.3);
+  CHECK(axis[1] == 0.1);
+  CHECK(axis[0] == radius[0]);
+  CHECK(axis[3] == radius[3]);
+  const auto position = numbers_of(file, layout["position"]), velocity = numbers_of(file, layout["velocity"]),
+             angle = numbers_of(file, layout["angle"]);
+  const std::size_t n = radius.size();
+  // The second disc of the third body, in the second frame: by the rotation matrix, and its velocity by a difference.
+  const Grain& grain = bodies.grains[2];
+  const Vec2 offset = clumps[0].discs[1].offset;
+  const auto place = [&](double turn) {
+    const double c = std::cos(grain.angle + turn), s = std::sin(grain.angle + turn);
+    return grain.position + Vec2{c * offset.x - s * offset.y, s * offset.x + c * offset.y};
+  };
+  const std::size_t at = n + 3;
+  CHECK(position[3 * at] == Approx(place(0).x).epsilon(1e-14));
+  CHECK(position[3 * at + 1] == Approx(place(0).y).epsilon(1e-14));
+  CHECK(angle[at] == grain.angle);
+  const double dt = 1e-6;
+  const Vec2 difference = (place(grain.spin * dt) - place(-grain.spin * dt)) / (2 * dt) + grain.velocity;
+  CHECK(velocity[3 * at] == Approx(difference.x).epsilon(1e-8));
+  CHECK(velocity[3 * at + 1] == Approx(difference.y).epsilon(1e-8));
+  const std::string index = read_file(folder / "frames.xdmf2");
+  CHECK(index.find("Name=\"short_half_axis\"") != std::string::npos);
+  CHECK(index.find("Name=\"body\"") != std::string::npos);
+  // Frames of other shapes are none to go on with.
+  Bodies other;
+  other.grains[1].short_half_axis = 0.11;
+  CHECK(equidem::test::refusal_of([&] {
+          GrainFrames(folder.path(), "frames", other.grains, clumps, {.expected = 1, .continue_after = 7});
+        }).says("short_half_axis"));
+}
+
+TEST_CASE("pictures_of_clumps_and_ellipses_are_written") {
+  const TemporaryFolder folder;
+  const Bodies bodies;
+  CHECK(write_grain_picture(folder.path(), "shapes", {.grains = bodies.grains, .clumps = bodies.shapes.clumps()}, false)
+            .size() == 2);
+  CHECK(read_file(folder / "shapes.svg").find("matrix") == std::string::npos);  // lines as wide as elsewhere
+}
