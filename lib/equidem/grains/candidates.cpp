@@ -10,7 +10,18 @@
 namespace equidem {
 namespace {
 
-/// Fill in what the law needs of a pair.
+ExactPair exact_pair_of(const GrainSystem& system, const Candidate& candidate) {
+  return exact_pair(candidate.reduced_mass, candidate.stiffness, candidate.strength, system.properties(candidate).end,
+                    system.dt());
+}
+
+/// Order of partners of one body: grains ascending, then walls ascending.
+std::uint32_t rank(std::int32_t j) {
+  return j >= 0 ? static_cast<std::uint32_t>(j) : 0x80000000U + static_cast<std::uint32_t>(~j);
+}
+
+}  // namespace
+
 void set_constants(const GrainSystem& system, Candidate& candidate) {
   const GrainBody& bi = system.bodies[static_cast<std::size_t>(candidate.i)];
   double inverse_mass = bi.inverse_mass;
@@ -44,18 +55,6 @@ void set_constants(const GrainSystem& system, Candidate& candidate) {
   }
 }
 
-ExactPair exact_pair_of(const GrainSystem& system, const Candidate& candidate) {
-  return exact_pair(candidate.reduced_mass, candidate.stiffness, candidate.strength, system.properties(candidate).end,
-                    system.dt());
-}
-
-/// Order of partners of one body: grains ascending, then walls ascending.
-std::uint32_t rank(std::int32_t j) {
-  return j >= 0 ? static_cast<std::uint32_t>(j) : 0x80000000U + static_cast<std::uint32_t>(~j);
-}
-
-}  // namespace
-
 void find_candidates(GrainSystem& system) {
   std::vector<Circle>& circles = system.circles;
   circles.clear();
@@ -68,6 +67,7 @@ void find_candidates(GrainSystem& system) {
   before.swap(system.candidates);
   pairs_before.swap(system.exact_pairs);
   const bool exact = system.options.law == NormalLaw::exact_flow;
+  const bool only_near = system.near.active && system.near.all_discs;
   std::size_t k = 0;
   const auto add = [&](std::int32_t i, std::int32_t j) {
     while (k < before.size() && (before[k].i < i || (before[k].i == i && rank(before[k].j) < rank(j)))) ++k;
@@ -84,8 +84,9 @@ void find_candidates(GrainSystem& system) {
     if (exact) system.exact_pairs.push_back(exact_pair_of(system, candidate));
   };
   for (std::size_t i = 0; i < system.bodies.size(); ++i) {
-    for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
-      add(static_cast<std::int32_t>(i), list.partner[static_cast<std::size_t>(p)]);
+    for (std::int64_t p = list.begin[i]; !only_near && p < list.begin[i + 1]; ++p) {
+      const std::int32_t j = list.partner[static_cast<std::size_t>(p)];
+      if (!is_near_pair(system, i, static_cast<std::size_t>(j))) add(static_cast<std::int32_t>(i), j);
     }
     for (std::size_t w = 0; w < system.scene.walls.size(); ++w) {
       const WallContact contact = nearest(system.scene.walls[w], system.walls[w].displacement, circles[i].centre);
@@ -95,6 +96,8 @@ void find_candidates(GrainSystem& system) {
     }
   }
   cover_joints(system);
+  system.near.outer = &list;
+  if (system.near.active) find_near_pairs(system, std::sqrt(system.longest_way));
   system.moved = 0;
   ++system.counters.rebuilds;
 }
@@ -102,11 +105,12 @@ void find_candidates(GrainSystem& system) {
 bool refresh_candidates(GrainSystem& system, double reach) {
   if (2 * (system.moved + reach) <= system.margin) {
     system.moved += reach;
+    if (system.near.active) refresh_near_pairs(system, reach);
     return false;
   }
   system.margin = std::max(system.base_margin, 8 * reach);
   find_candidates(system);
-  system.moved = reach;
+  system.moved = system.near.moved = reach;
   return true;
 }
 

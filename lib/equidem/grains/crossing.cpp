@@ -81,6 +81,12 @@ void refuse_runaway(const GrainSystem& system, double reach) {
 void refuse_crossings(const GrainSystem& system, double reach) {
   // two bodies come nearer by twice the reach at most
   if (reach <= slow_way * system.smallest_radius && system.deepest + 2 * reach < system.smallest_radius) return;
+  for (std::size_t p = 0; p < system.near.count; ++p) {
+    Candidate pair;
+    pair.i = system.near.first(p);
+    pair.j = system.near.second(p);
+    check_grains(system, pair);
+  }
   for (const Candidate& candidate : system.candidates) {
     if (candidate.j >= 0) {
       check_grains(system, candidate);

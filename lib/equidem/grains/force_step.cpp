@@ -40,8 +40,8 @@ void push(GrainSystem& system, const Candidate& candidate, const Meeting& meetin
 }
 
 void shift(GrainSystem& system, const Candidate& candidate, Vec2 moment) {
-  system.pushes[static_cast<std::size_t>(candidate.i)].moment += moment;
-  if (candidate.j >= 0) system.pushes[static_cast<std::size_t>(candidate.j)].moment -= moment;
+  system.moments[static_cast<std::size_t>(candidate.i)] += moment;
+  if (candidate.j >= 0) system.moments[static_cast<std::size_t>(candidate.j)] -= moment;
 }
 
 /// What the pushes of the step before and gravity add in a step to the slip of a contact, its own tangential force aside.
@@ -86,7 +86,14 @@ template <NormalLaw law, bool friction>
 void collide_by(GrainSystem& system) {
   if constexpr (friction) system.pushes_before.swap(system.pushes);
   if (friction || !system.free_flight) std::fill(system.pushes.begin(), system.pushes.end(), Push{});
+  if (is_map(law) && !system.free_flight) std::fill(system.moments.begin(), system.moments.end(), Vec2{});
   system.free_flight = true;
+  if (system.near.active) {
+    system.near.loop(system);
+    if (friction && system.options.scheme == GrainOptions::Scheme::velocity_verlet) {
+      for (std::size_t i = 0; i < system.bodies.size(); ++i) turn_rims(system.pushes[i], system.bodies[i]);
+    }
+  }
   const double dt = system.dt();
   const double length = system.length;
   const double per_length = 1 / length, per_speed = dt / length, unit_speed = length / dt;
@@ -140,6 +147,30 @@ CollideFunction choose(bool friction) {
   return friction ? collide_by<law, true> : collide_by<law, false>;
 }
 
+/// The same for bodies that near pairs ask for.
+template <bool friction>
+void move_near(GrainSystem& system) {
+  const double dt = system.dt();
+  const Vec2 fall = dt * system.scene.gravity;
+  move_bodies(system, [&](std::size_t i) {
+    const GrainBody& body = system.bodies[i];
+    Push& push = system.pushes[i];
+    GrainMotion motion = system.motions[i];
+    const Vec2 gain = body.inverse_mass * push.impulse;
+    double turn = 0;
+    motion.velocity += gain + fall;
+    if constexpr (friction) {
+      turn_rims(push, body);
+      turn = body.inverse_moment * push.torque;
+      motion.spin += turn;
+    }
+    motion.position += dt * motion.velocity;
+    motion.angle += dt * motion.spin;
+    system.near.bodies[i] = pair_body(body, motion, gain, turn);
+    return motion;
+  });
+}
+
 }  // namespace
 
 CollideFunction collide_function(NormalLaw law, bool friction) {
@@ -158,6 +189,7 @@ CollideFunction collide_function(NormalLaw law, bool friction) {
 void move_by_euler(GrainSystem& system) {
   const double dt = system.dt();
   const Vec2 fall = dt * system.scene.gravity;
+  if (system.near.active) return system.friction ? move_near<true>(system) : move_near<false>(system);
   if (system.free_flight) {
     move_bodies(system, [&](std::size_t i) {
       GrainMotion motion = system.motions[i];
@@ -174,7 +206,8 @@ void move_by_euler(GrainSystem& system) {
     GrainMotion motion = system.motions[i];
     motion.velocity += body.inverse_mass * push.impulse + fall;
     motion.spin += body.inverse_moment * push.torque;
-    motion.position += dt * motion.velocity + body.inverse_mass * push.moment;
+    motion.position += dt * motion.velocity;
+    if (!system.moments.empty()) motion.position += body.inverse_mass * system.moments[i];
     motion.angle += dt * motion.spin;
     return motion;
   });
@@ -183,6 +216,19 @@ void move_by_euler(GrainSystem& system) {
 void drift_of_verlet(GrainSystem& system) {
   const double dt = system.dt();
   const Vec2 fall = dt * system.scene.gravity;
+  if (system.near.active) {
+    move_bodies(system, [&](std::size_t i) {
+      const GrainBody& body = system.bodies[i];
+      GrainMotion motion = system.motions[i];
+      motion.velocity += 0.5 * (body.inverse_mass * system.pushes[i].impulse + fall);
+      motion.spin += 0.5 * body.inverse_moment * system.pushes[i].torque;
+      motion.position += dt * motion.velocity;
+      motion.angle += dt * motion.spin;
+      system.near.bodies[i] = pair_body(body, motion, {}, 0);
+      return motion;
+    });
+    return;
+  }
   if (system.free_flight) {
     move_bodies(system, [&](std::size_t i) {
       GrainMotion motion = system.motions[i];

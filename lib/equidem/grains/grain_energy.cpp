@@ -33,17 +33,19 @@ std::pair<double, double> GrainSimulation::Implementation::elastic() const {
   const bool holds_from_first_step = !collide || is_map(system.options.law);
   double normal = 0;
   double tangential = 0;
-  for (const Candidate& candidate : system.candidates) {
+  const auto add = [&](const Candidate& candidate) {
     tangential += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
-    if (holds_from_first_step && (!candidate.touching || candidate.parted)) continue;
+    if (holds_from_first_step && (!candidate.touching || candidate.parted)) return;
     const double overlap = meeting_of(system, candidate).overlap;
-    if (!(overlap > 0)) continue;
+    if (!(overlap > 0)) return;
     if (system.options.law == NormalLaw::hertz_dashpot) {
       normal += 0.4 * candidate.stiffness * overlap * overlap * std::sqrt(overlap);
     } else {
       normal += 0.5 * candidate.stiffness * overlap * overlap;
     }
-  }
+  };
+  for (std::size_t p = 0; p < system.near.count; ++p) add(candidate_of(system, p));
+  for (const Candidate& candidate : system.candidates) add(candidate);
   return {normal, tangential};
 }
 

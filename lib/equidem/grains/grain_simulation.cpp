@@ -39,20 +39,24 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
     fastest = std::max(fastest, norm(grain.velocity));
   }
   system.length = options.reference_length > 0 ? options.reference_length : 2 * largest;
-  system.base_margin = options.margin > 0 ? options.margin : 0.2 * system.smallest_radius;
+  system.base_margin = options.margin > 0 ? options.margin : 0.35 * system.smallest_radius;
   system.next = system.motions;
   if (options.law != NormalLaw::exact_flow) self.collide = collide_function(options.law, system.friction);
   if (self.collide && system.friction) system.pushes_before.resize(system.pushes.size());
+  if (!self.collide || is_map(options.law)) system.moments.resize(system.pushes.size());
   place_walls(system);
+  prepare_near_pairs(system);
   system.margin = std::max(system.base_margin, 8 * fastest * options.time_step);
   system.joints = joints_of(system.scene.walls, joint_gap * system.smallest_radius);
   find_candidates(system);
+  touch_near_pairs(system);
   for (std::size_t c = 0; c < system.candidates.size(); ++c) {
     // bodies that overlap at the start touch
     Candidate& candidate = system.candidates[c];
     candidate.touching = meeting_of(system, candidate).overlap > 0;
     if (candidate.touching) ++system.counters.contacts;
   }
+  system.near.record = true;
   if (self.verlet()) self.collide(system);
   self.effects = effects_of(scene, options);
   self.potential_at_start = self.potential();
@@ -98,11 +102,15 @@ void GrainSimulation::advance(std::int64_t steps) {
     const GrainCounters counters = self.system.counters;
     if (self.kept.grains.empty() || now - self.kept.step >= steps_between_kept_states) self.kept = save();
     try {
+      self.system.near.record = k + 1 == steps || now + 1 - self.kept.step >= steps_between_kept_states;
       self.make_step();
     } catch (...) {
       // it has changed contacts before it was refused: come to its start again, from a state before it
       go_back_to(self.kept);
-      while (self.system.step < now) self.make_step();
+      while (self.system.step < now) {
+        self.system.near.record = self.system.step + 1 == now;
+        self.make_step();
+      }
       self.system.counters = counters;
       throw;
     }
@@ -135,8 +143,8 @@ std::vector<Grain> GrainSimulation::grains() const {
 std::vector<GrainContact> GrainSimulation::contacts() const {
   const GrainSystem& system = implementation_->system;
   std::vector<GrainContact> contacts;
-  for (const Candidate& candidate : system.candidates) {
-    if (!candidate.touching || candidate.steps == 0) continue;
+  const auto add = [&](const Candidate& candidate) {
+    if (!candidate.touching || candidate.steps == 0) return;
     GrainContact contact;
     contact.i = static_cast<std::int32_t>(system.grain_of[static_cast<std::size_t>(candidate.i)]);
     contact.overlap = candidate.overlap;
@@ -156,7 +164,9 @@ std::vector<GrainContact> GrainSimulation::contacts() const {
       }
     }
     contacts.push_back(contact);
-  }
+  };
+  for (std::size_t p = 0; p < system.near.count; ++p) add(candidate_of(system, p));
+  for (const Candidate& candidate : system.candidates) add(candidate);
   std::sort(contacts.begin(), contacts.end(),
             [](const GrainContact& a, const GrainContact& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
   return contacts;
@@ -177,7 +187,8 @@ const Effects& GrainSimulation::effects() const {
 double GrainSimulation::bytes_per_grain() const {
   const GrainSystem& system = implementation_->system;
   const double bytes = static_cast<double>(
-      system.bodies.capacity() * sizeof(GrainBody) + 2 * system.motions.capacity() * sizeof(GrainMotion) +
+      system.near.bytes() + system.bodies.capacity() * sizeof(GrainBody) + system.moments.capacity() * sizeof(Vec2) +
+      2 * system.motions.capacity() * sizeof(GrainMotion) +
       (system.pushes.capacity() + system.pushes_before.capacity()) * sizeof(Push) +
       system.candidates.capacity() * sizeof(Candidate) + system.exact_pairs.capacity() * sizeof(ExactPair) +
       system.scene.grains.capacity() * sizeof(Grain));

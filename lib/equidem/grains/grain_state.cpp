@@ -10,7 +10,7 @@ namespace {
 
 /// What a contact remembers, in numbers: i, j, steps, mode, then the rest.
 constexpr std::size_t numbers_per_contact = 13;
-constexpr std::size_t numbers_per_push = 5;
+constexpr std::size_t numbers_per_push = 3;
 
 void append(std::vector<double>& numbers, const Candidate& candidate) {
   for (const double number :
@@ -23,6 +23,8 @@ void append(std::vector<double>& numbers, const Candidate& candidate) {
 }
 
 void take(const double* numbers, Candidate& candidate) {
+  candidate.i = static_cast<std::int32_t>(numbers[0]);
+  candidate.j = static_cast<std::int32_t>(numbers[1]);
   candidate.steps = static_cast<std::int64_t>(numbers[2]);
   candidate.mode = static_cast<int>(numbers[3]);
   candidate.stretch = numbers[4];
@@ -45,12 +47,15 @@ GrainState GrainSimulation::save() const {
   state.grains = grains();
   state.ledger = system.lost;
   state.counters = system.counters;
+  for (std::size_t p = 0; p < system.near.count; ++p) {
+    if (system.near.touching(p)) append(state.contacts, candidate_of(system, p));
+  }
   for (const Candidate& candidate : system.candidates) {
     if (candidate.touching) append(state.contacts, candidate);
   }
   if (!implementation_->keeps_pushes()) return state;  // the others find all pushes of a step in that step
   for (const Push& push : system.pushes) {
-    for (const double number : {push.impulse.x, push.impulse.y, push.torque, push.moment.x, push.moment.y}) {
+    for (const double number : {push.impulse.x, push.impulse.y, push.torque}) {
       state.sums.push_back(number);
     }
   }
@@ -76,24 +81,40 @@ void GrainSimulation::go_back_to(const GrainState& state) {
     system.motions[k] = {grain.position, grain.velocity, grain.spin, grain.angle};
     if (state.sums.empty()) continue;
     const double* numbers = state.sums.data() + numbers_per_push * k;
-    system.pushes[k] = {{numbers[0], numbers[1]}, numbers[2], {numbers[3], numbers[4]}};
+    system.pushes[k] = {{numbers[0], numbers[1]}, numbers[2]};
   }
   system.free_flight = false;
   system.deepest = std::numeric_limits<double>::infinity();  // not known: verlet has to look
   place_walls(system);
   system.candidates.clear();
   system.exact_pairs.clear();
+  std::vector<Candidate> near;
+  std::vector<const double*> others;
+  for (std::size_t at = 0; at < state.contacts.size(); at += numbers_per_contact) {
+    Candidate contact;
+    take(state.contacts.data() + at, contact);
+    const bool is_near = contact.j >= 0 &&
+                         is_near_pair(system, static_cast<std::size_t>(contact.i), static_cast<std::size_t>(contact.j));
+    if (is_near)
+      near.push_back(contact);
+    else
+      others.push_back(state.contacts.data() + at);
+  }
+  if (system.near.active) {
+    load_pair_bodies(system);
+    take_near_pairs(system, near);
+  }
   find_candidates(system);
   std::size_t c = 0;
-  for (std::size_t at = 0; at < state.contacts.size(); at += numbers_per_contact) {
-    const auto i = static_cast<std::int32_t>(state.contacts[at]);
-    const auto j = static_cast<std::int32_t>(state.contacts[at + 1]);
+  for (const double* numbers : others) {
+    const auto i = static_cast<std::int32_t>(numbers[0]);
+    const auto j = static_cast<std::int32_t>(numbers[1]);
     while (c < system.candidates.size() && !(system.candidates[c].i == i && system.candidates[c].j == j)) ++c;
     if (c == system.candidates.size()) {
       bad_input("the state has a contact of bodies that are apart", "it is of another scene, or damaged",
                 "Resume with the scene that the state was saved from");
     }
-    take(state.contacts.data() + at, system.candidates[c]);
+    take(numbers, system.candidates[c]);
   }
   system.counters = state.counters;
 }

@@ -9,6 +9,7 @@
 #include "equidem/contact/exact_contact.hpp"
 #include "equidem/grains/grain_scene.hpp"
 #include "equidem/grains/grain_simulation.hpp"
+#include "equidem/grains/near_pairs.hpp"
 #include "equidem/grains/neighbours.hpp"
 #include "equidem/grains/wall_joints.hpp"
 
@@ -26,10 +27,10 @@ struct GrainBody {
 };
 
 /// What contacts give a body in one step.
-struct Push {
+struct alignas(32) Push {
   Vec2 impulse;       ///< N s
   double torque = 0;  ///< impulse of the moment, N m s
-  Vec2 moment;  ///< maps: mass times shift of the position, kg m; exact_flow: integral of (dt - t) force dt, N s²
+  double rim = 0;     ///< impulse along the rim of a disc by near pairs, N s; the move of bodies makes a torque of it
 };
 
 /// Two bodies near enough to touch soon, or a body and a wall, with what their contact remembers.
@@ -75,9 +76,12 @@ struct GrainSystem {
   std::vector<GrainMotion> motions;
   std::vector<Push> pushes;
   std::vector<Push> pushes_before;  ///< of the step before, where friction asks for them
+  /// maps: mass times shift of the position, kg m; exact_flow: integral of (dt - t) force dt, N s²; other laws: empty
+  std::vector<Vec2> moments;
   std::vector<WallPlace> walls;
-  std::vector<WallJoints> joints;     ///< of each wall; empty where none join
-  std::vector<Candidate> candidates;  ///< ordered by i, then j, walls last
+  std::vector<WallJoints> joints;  ///< of each wall; empty where none join
+  NearPairs near;
+  std::vector<Candidate> candidates;  ///< that are no near pairs; ordered by i, then j, walls last
   NeighbourFinder finder;
   std::vector<Circle> circles;         ///< bodies, for the finder
   std::vector<ExactPair> exact_pairs;  ///< exact_flow: one for each candidate
@@ -103,6 +107,9 @@ struct GrainSystem {
 
 /// Put grains and walls in the order of their places, so that the caller's order changes no bit.
 void order_by_place(GrainSystem& system, const GrainScene& scene);
+
+/// Fill in what the law needs of a pair.
+void set_constants(const GrainSystem& system, Candidate& candidate);
 
 /// Find all candidates within the margin anew; contacts keep what they remember.
 void find_candidates(GrainSystem& system);
