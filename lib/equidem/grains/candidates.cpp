@@ -22,6 +22,18 @@ std::uint32_t rank(std::int32_t j) {
 
 }  // namespace
 
+void find_strengths(GrainSystem& system) {
+  for (const PairProperties& pair : system.scene.pairs) {
+    if (is_map(system.options.law)) {
+      system.strengths.push_back(pair.restitution);
+    } else if (system.options.law == NormalLaw::hertz_dashpot) {
+      system.strengths.push_back(hertz_damping_of(pair.restitution, pair.end));
+    } else {
+      system.strengths.push_back(damping_ratio_of(pair.restitution, pair.end));
+    }
+  }
+}
+
 void set_constants(const GrainSystem& system, Candidate& candidate) {
   const GrainBody& bi = system.bodies[static_cast<std::size_t>(candidate.i)];
   double inverse_mass = bi.inverse_mass;
@@ -36,13 +48,7 @@ void set_constants(const GrainSystem& system, Candidate& candidate) {
                             : stiffness_from_dimensionless(properties.dimensionless, m, dt) / root_length;
   candidate.a = properties.stiffness > 0 ? properties.stiffness * root_length * dt * dt / m : properties.dimensionless;
   candidate.attraction = properties.end == ContactEnd::at_zero_overlap;
-  if (is_map(system.options.law)) {
-    candidate.strength = properties.restitution;
-  } else if (hertz) {
-    candidate.strength = hertz_damping_of(properties.restitution, properties.end);
-  } else {
-    candidate.strength = damping_ratio_of(properties.restitution, properties.end);
-  }
+  candidate.strength = system.strengths[static_cast<std::size_t>(&properties - system.scene.pairs.data())];
   if (system.friction && properties.friction > 0) {
     candidate.sliding.coefficient = properties.friction;
     candidate.sliding.stiffness = properties.tangential_ratio * candidate.stiffness * root_length;

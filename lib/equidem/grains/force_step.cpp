@@ -147,30 +147,6 @@ CollideFunction choose(bool friction) {
   return friction ? collide_by<law, true> : collide_by<law, false>;
 }
 
-/// The same for bodies that near pairs ask for.
-template <bool friction>
-void move_near(GrainSystem& system) {
-  const double dt = system.dt();
-  const Vec2 fall = dt * system.scene.gravity;
-  move_bodies(system, [&](std::size_t i) {
-    const GrainBody& body = system.bodies[i];
-    Push& push = system.pushes[i];
-    GrainMotion motion = system.motions[i];
-    const Vec2 gain = body.inverse_mass * push.impulse;
-    double turn = 0;
-    motion.velocity += gain + fall;
-    if constexpr (friction) {
-      turn_rims(push, body);
-      turn = body.inverse_moment * push.torque;
-      motion.spin += turn;
-    }
-    motion.position += dt * motion.velocity;
-    motion.angle += dt * motion.spin;
-    system.near.bodies[i] = pair_body(body, motion, gain, turn);
-    return motion;
-  });
-}
-
 }  // namespace
 
 CollideFunction collide_function(NormalLaw law, bool friction) {
@@ -189,7 +165,7 @@ CollideFunction collide_function(NormalLaw law, bool friction) {
 void move_by_euler(GrainSystem& system) {
   const double dt = system.dt();
   const Vec2 fall = dt * system.scene.gravity;
-  if (system.near.active) return system.friction ? move_near<true>(system) : move_near<false>(system);
+  if (system.near.active) return move_pair_bodies(system);
   if (system.free_flight) {
     move_bodies(system, [&](std::size_t i) {
       GrainMotion motion = system.motions[i];

@@ -44,6 +44,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   if (options.law != NormalLaw::exact_flow) self.collide = collide_function(options.law, system.friction);
   if (self.collide && system.friction) system.pushes_before.resize(system.pushes.size());
   if (!self.collide || is_map(options.law)) system.moments.resize(system.pushes.size());
+  find_strengths(system);
   place_walls(system);
   prepare_near_pairs(system);
   system.margin = std::max(system.base_margin, 8 * fastest * options.time_step);

@@ -66,7 +66,8 @@ struct WallPlace {
 struct GrainSystem {
   GrainScene scene;  ///< walls and grains in the order of their places
   GrainOptions options;
-  double length = 0;  ///< d_c
+  double length = 0;              ///< d_c
+  std::vector<double> strengths;  ///< of scene.pairs
   bool friction = false;
   std::vector<std::size_t> grain_of, wall_of;  ///< caller's number of the k-th
   std::vector<std::int32_t> place_of_grain, place_of_wall;
@@ -107,6 +108,9 @@ struct GrainSystem {
 
 /// Put grains and walls in the order of their places, so that the caller's order changes no bit.
 void order_by_place(GrainSystem& system, const GrainScene& scene);
+
+/// Restitution, zeta or alpha of the pairs of kinds, by the law.
+void find_strengths(GrainSystem& system);
 
 /// Fill in what the law needs of a pair.
 void set_constants(const GrainSystem& system, Candidate& candidate);

@@ -112,6 +112,9 @@ void load_pair_bodies(GrainSystem& system);
 /// Bodies that overlap now touch.
 void touch_near_pairs(GrainSystem& system);
 
+/// system.next as move_by_euler(), and what the loop reads of bodies for the next step.
+void move_pair_bodies(GrainSystem& system);
+
 /// A pair with all that its contact remembers.
 Candidate candidate_of(const GrainSystem& system, std::size_t p);
 
