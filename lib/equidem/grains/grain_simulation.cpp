@@ -39,7 +39,6 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
     fastest = std::max(fastest, norm(grain.velocity));
   }
   system.length = options.reference_length > 0 ? options.reference_length : 2 * largest;
-  system.base_margin = options.margin > 0 ? options.margin : 0.35 * system.smallest_radius;
   system.next = system.motions;
   if (options.law != NormalLaw::exact_flow) self.collide = collide_function(options.law, system.friction);
   if (self.collide && system.friction) system.pushes_before.resize(system.pushes.size());
@@ -47,6 +46,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   find_strengths(system);
   place_walls(system);
   prepare_near_pairs(system);
+  system.base_margin = options.margin > 0 ? options.margin : (system.near.active ? 0.6 : 0.2) * system.smallest_radius;
   system.margin = std::max(system.base_margin, 8 * fastest * options.time_step);
   system.joints = joints_of(system.scene.walls, joint_gap * system.smallest_radius);
   find_candidates(system);

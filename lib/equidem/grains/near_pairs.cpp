@@ -15,7 +15,7 @@ namespace equidem {
 namespace {
 
 /// Margin of the pairs: of the smallest radius, and in steps of the fastest body.
-constexpr double least_margin = 0.02, margin_in_steps = 32;
+constexpr double least_margin = 0.02, margin_in_steps = 64;
 
 PairLaw law_of(const Candidate& candidate) {
   return {candidate.stiffness, candidate.attraction ? -std::numeric_limits<double>::infinity() : 0,
@@ -38,9 +38,11 @@ class PairLists {
     near_.slips.clear();
     near_.laws.clear();
     near_.records.clear();
-    near_.groups.reserve(groups_.size() + 8);
-    near_.slips.reserve(slips_.empty() ? 0 : slips_.size() + 8);
-    near_.laws.reserve(laws_.empty() ? 0 : laws_.size() + 8);
+    const std::size_t room = groups_.size() + groups_.size() / 16 + 8;
+    near_.groups.reserve(room);
+    if (system.friction) near_.slips.reserve(room);
+    if (!near_.equal) near_.laws.reserve(room);
+    if (!records_.empty()) near_.records.reserve(room);
     near_.count = 0;
   }
 
@@ -162,13 +164,15 @@ void prepare_near_pairs(GrainSystem& system) {
   NearPairs& near = system.near;
   const GrainScene& scene = system.scene;
   if (system.options.law != NormalLaw::linear_dashpot && system.options.law != NormalLaw::hertz_dashpot) return;
-  std::vector<bool> met(static_cast<std::size_t>(scene.kinds));
+  std::vector<bool> of_walls(static_cast<std::size_t>(scene.kinds)), met(of_walls);
+  for (const GrainWall& wall : scene.walls) of_walls[static_cast<std::size_t>(wall.kind)] = true;
   std::size_t discs = 0;
   for (std::size_t i = 0; i < scene.grains.size(); ++i) {
     if (!is_disc(system, i)) continue;
     ++discs;
     met[static_cast<std::size_t>(scene.grains[i].kind)] = true;
   }
+  for (std::size_t k = 0; k < met.size(); ++k) met[k] = met[k] || !of_walls[k];  // all but what only walls are
   if (discs < 2) return;
   near.all_discs = discs == scene.grains.size();
   const PairProperties* first = nullptr;
