@@ -73,7 +73,6 @@ void find_candidates(GrainSystem& system) {
   before.swap(system.candidates);
   pairs_before.swap(system.exact_pairs);
   const bool exact = system.options.law == NormalLaw::exact_flow;
-  const bool only_near = system.near.active && system.near.all_discs;
   std::size_t k = 0;
   const auto add = [&](std::int32_t i, std::int32_t j) {
     while (k < before.size() && (before[k].i < i || (before[k].i == i && rank(before[k].j) < rank(j)))) ++k;
@@ -90,9 +89,8 @@ void find_candidates(GrainSystem& system) {
     if (exact) system.exact_pairs.push_back(exact_pair_of(system, candidate));
   };
   for (std::size_t i = 0; i < system.bodies.size(); ++i) {
-    for (std::int64_t p = list.begin[i]; !only_near && p < list.begin[i + 1]; ++p) {
-      const std::int32_t j = list.partner[static_cast<std::size_t>(p)];
-      if (!is_near_pair(system, i, static_cast<std::size_t>(j))) add(static_cast<std::int32_t>(i), j);
+    for (std::int64_t p = list.begin[i]; !system.near.active && p < list.begin[i + 1]; ++p) {
+      add(static_cast<std::int32_t>(i), list.partner[static_cast<std::size_t>(p)]);
     }
     for (std::size_t w = 0; w < system.scene.walls.size(); ++w) {
       const WallContact contact = nearest(system.scene.walls[w], system.walls[w].displacement, circles[i].centre);

@@ -93,9 +93,7 @@ void GrainSimulation::go_back_to(const GrainState& state) {
   for (std::size_t at = 0; at < state.contacts.size(); at += numbers_per_contact) {
     Candidate contact;
     take(state.contacts.data() + at, contact);
-    const bool is_near = contact.j >= 0 &&
-                         is_near_pair(system, static_cast<std::size_t>(contact.i), static_cast<std::size_t>(contact.j));
-    if (is_near)
+    if (system.near.active && contact.j >= 0)
       near.push_back(contact);
     else
       others.push_back(state.contacts.data() + at);

@@ -148,10 +148,6 @@ class PairLists {
   std::size_t count_, at_ = 0;
 };
 
-bool is_disc(const GrainSystem& system, std::size_t i) {
-  return system.scene.grains[i].shape() == GrainShape::disc;
-}
-
 }  // namespace
 
 std::size_t NearPairs::bytes() const {
@@ -164,17 +160,15 @@ void prepare_near_pairs(GrainSystem& system) {
   NearPairs& near = system.near;
   const GrainScene& scene = system.scene;
   if (system.options.law != NormalLaw::linear_dashpot && system.options.law != NormalLaw::hertz_dashpot) return;
+  if (scene.grains.size() < 2) return;
+  if (!std::all_of(scene.grains.begin(), scene.grains.end(),
+                   [](const Grain& grain) { return grain.shape() == GrainShape::disc; })) {
+    return;
+  }
   std::vector<bool> of_walls(static_cast<std::size_t>(scene.kinds)), met(of_walls);
   for (const GrainWall& wall : scene.walls) of_walls[static_cast<std::size_t>(wall.kind)] = true;
-  std::size_t discs = 0;
-  for (std::size_t i = 0; i < scene.grains.size(); ++i) {
-    if (!is_disc(system, i)) continue;
-    ++discs;
-    met[static_cast<std::size_t>(scene.grains[i].kind)] = true;
-  }
+  for (const Grain& grain : scene.grains) met[static_cast<std::size_t>(grain.kind)] = true;
   for (std::size_t k = 0; k < met.size(); ++k) met[k] = met[k] || !of_walls[k];  // all but what only walls are
-  if (discs < 2) return;
-  near.all_discs = discs == scene.grains.size();
   const PairProperties* first = nullptr;
   near.equal = true;
   for (int a = 0; a < scene.kinds; ++a) {
@@ -191,22 +185,13 @@ void prepare_near_pairs(GrainSystem& system) {
   near.active = true;
   if (near.equal) {
     Candidate candidate;
-    std::size_t i = 0;
-    while (!is_disc(system, i)) ++i;
-    std::size_t j = i + 1;
-    while (!is_disc(system, j)) ++j;
-    candidate.i = static_cast<std::int32_t>(i);
-    candidate.j = static_cast<std::int32_t>(j);
+    candidate.j = 1;
     set_constants(system, candidate);
     near.law = law_of(candidate);
   }
   near.loop = near_pair_loop(system);
   near.bodies.resize(system.bodies.size());
   load_pair_bodies(system);
-}
-
-bool is_near_pair(const GrainSystem& system, std::size_t i, std::size_t j) {
-  return system.near.active && (system.near.all_discs || (is_disc(system, i) && is_disc(system, j)));
 }
 
 void find_near_pairs(GrainSystem& system, double reach) {
@@ -221,7 +206,6 @@ void find_near_pairs(GrainSystem& system, double reach) {
     for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
       const std::int32_t partner = list.partner[static_cast<std::size_t>(p)];
       const auto j = static_cast<std::size_t>(partner);
-      if (!near.all_discs && !is_near_pair(system, i, j)) continue;
       const Vec2 branch = system.motions[j].position - centre;
       const double far = own + system.bodies[j].radius;
       lists.see(static_cast<std::int32_t>(i), partner, dot(branch, branch) <= far * far);

@@ -3,7 +3,7 @@
 /// Pairs of discs under a law that gives a force: those that touch or nearly touch, packed by eights for the loop over them.
 ///
 /// They are a list within the list of the neighbour finder, with a smaller margin and found anew more often: in a packing at rest it
-/// holds hardly more than the contacts. Everything else that meets is a Candidate.
+/// holds hardly more than the contacts. Discs and walls, and all that meets by other laws, are Candidates.
 #pragma once
 
 #include <cstddef>
@@ -71,11 +71,10 @@ struct alignas(64) PairRecords {
 struct NearPairs {
   using Loop = void (*)(GrainSystem& system);
 
-  bool active = false;    ///< the scene has such pairs
-  bool all_discs = true;  ///< other pairs are candidates
-  bool equal = false;     ///< one law for all pairs
-  bool record = false;    ///< the step being made is one that contacts() will be asked about
-  PairLaw law;            ///< where equal
+  bool active = false;  ///< the scene has such pairs
+  bool equal = false;   ///< one law for all pairs
+  bool record = false;  ///< the step being made is one that contacts() will be asked about
+  PairLaw law;          ///< where equal
   Loop loop = nullptr;
   const NeighbourList* outer = nullptr;  ///< of the finder, with the margin of the candidates
   LaneVector<PairBody> bodies;
@@ -94,11 +93,9 @@ struct NearPairs {
   }
 };
 
-/// Decide whether the scene has pairs for the loop, and choose it.
+/// Decide whether grains meet in the loop over near pairs, and choose it: discs, a law that gives a force, no contact that slides
+/// always.
 void prepare_near_pairs(GrainSystem& system);
-
-/// Whether a pair of bodies is one for the loop.
-bool is_near_pair(const GrainSystem& system, std::size_t i, std::size_t j);
 
 /// Find the pairs anew among those of the neighbour finder, for bodies that move by about `reach` in a step.
 void find_near_pairs(GrainSystem& system, double reach);

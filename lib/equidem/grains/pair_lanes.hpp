@@ -27,7 +27,7 @@ EQUIDEM_ALWAYS_INLINE void store(const Lanes& lanes, double* to) {
   std::memcpy(to, &lanes, sizeof lanes);
 }
 EQUIDEM_ALWAYS_INLINE Lanes all(double value) {
-  return Lanes{} + value;
+  return Lanes{value, value, value, value, value, value, value, value};
 }
 EQUIDEM_ALWAYS_INLINE Lanes larger(const Lanes& a, const Lanes& b) {
   return a > b ? a : b;

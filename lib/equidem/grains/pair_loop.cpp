@@ -23,6 +23,7 @@ struct PairLoopKind {
 
 struct LoopNumbers {
   PairLaw law;
+  double tangential_compliance = 0;
   double dt = 0;
   std::int64_t now = 0;  ///< step before the one being made
   bool record = false;
@@ -36,17 +37,24 @@ struct Sums {
 };
 
 struct Law {
-  Lanes stiffness, least, friction, tangential_stiffness, beyond_cap;
+  Lanes stiffness, least, friction, tangential_stiffness, beyond_cap, tangential_compliance;
 };
 
 template <PairLoopKind kind>
 EQUIDEM_ALWAYS_INLINE Law law_of(const LoopNumbers& numbers, const PairLaws* laws) {
   if constexpr (kind.equal) {
     const PairLaw& law = numbers.law;
-    return {all(law.stiffness), all(law.least), all(law.friction), all(law.tangential_stiffness), Lanes{}};
+    return {all(law.stiffness),
+            all(law.least),
+            all(law.friction),
+            all(law.tangential_stiffness),
+            Lanes{},
+            all(numbers.tangential_compliance)};
   } else {
-    return {load(laws->stiffness), load(laws->least), load(laws->friction), load(laws->tangential_stiffness),
-            load(laws->beyond_cap)};
+    const Lanes spring = load(laws->tangential_stiffness);
+    return {load(laws->stiffness),  load(laws->least),
+            load(laws->friction),   spring,
+            load(laws->beyond_cap), 1 / (spring > 0 ? spring : all(1))};
   }
 }
 
@@ -83,7 +91,7 @@ EQUIDEM_ALWAYS_INLINE Tangent slide(const Law& law, const Lanes& dashpot, const 
     force += drag;
   }
   const Lanes moved = stretch + mean * dt;
-  const Lanes largest = kind.equal ? yield * (1 / law.tangential_stiffness) : yield / (spring > 0 ? spring : all(1));
+  const Lanes largest = yield * law.tangential_compliance;
   Lanes end = choose(slides, smaller(larger(moved, -largest), largest), moved);
   if constexpr (!kind.equal) end = spring > 0 ? end : Lanes{};
   const Lanes released = 0.5 * spring * (stretch - end) * (stretch + end);
@@ -116,7 +124,7 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairB
   const Choice touch = negative(zero - overlap) & ~negative(since - PairGroup::apart);
   const Choice alive = ~negative(since - (PairGroup::apart + 1));
   const Choice begun = touch & ~alive, ended = alive & ~touch;
-  if (any(begun | ended)) {
+  if (any(touch ^ alive)) {
     since = choose(begun, Choice{} + numbers.now,
                    choose(ended, Choice{} + static_cast<long long>(PairGroup::apart), since));
     std::memcpy(group.since, &since, sizeof since);
@@ -189,7 +197,8 @@ template <PairLoopKind kind>
 EQUIDEM_ALWAYS_INLINE void collide_all(GrainSystem& system) {
   NearPairs& near = system.near;
   const bool verlet = system.options.scheme == GrainOptions::Scheme::velocity_verlet;
-  const LoopNumbers numbers{near.law, system.dt(), system.step - (verlet ? 1 : 0), near.record};
+  const LoopNumbers numbers{near.law, 1 / near.law.tangential_stiffness, system.dt(), system.step - (verlet ? 1 : 0),
+                            near.record};
   near.records.resize(near.record ? near.groups.size() : 0);
   Sums sums;
   const PairBody* bodies = near.bodies.data();
