@@ -14,8 +14,9 @@
 namespace equidem {
 namespace {
 
-/// Margin of the pairs: of the smallest radius, and in steps of the fastest body.
-constexpr double least_margin = 0.02, margin_in_steps = 64;
+/// Margin of the pairs: of the smallest radius; and a multiple of the mean of that and the way in a step, where pairs too many cost as
+/// much as lists found anew.
+constexpr double least_margin = 0.02, margin_of_mean = 2.5;
 
 PairLaw law_of(const Candidate& candidate) {
   return {candidate.stiffness, candidate.attraction ? -std::numeric_limits<double>::infinity() : 0,
@@ -197,7 +198,9 @@ void prepare_near_pairs(GrainSystem& system) {
 void find_near_pairs(GrainSystem& system, double reach) {
   const NeighbourList& list = *system.near.outer;
   NearPairs& near = system.near;
-  near.margin = std::min(system.margin, std::max(least_margin * system.smallest_radius, margin_in_steps * reach));
+  near.margin = std::max(
+      {least_margin * system.smallest_radius, margin_of_mean * std::sqrt(reach * system.smallest_radius), 4 * reach});
+  near.margin = std::min(near.margin, system.margin);
   near.moved = 0;
   PairLists lists(system);
   for (std::size_t i = 0; i < system.bodies.size(); ++i) {

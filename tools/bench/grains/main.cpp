@@ -34,7 +34,7 @@ PairProperties contact(double friction) {
 }
 
 /// Discs of radius 0.5 .. 1 cm, each in its own square of a loose lattice, above the floor of a box without a lid.
-GrainScene loose_discs(std::size_t count, bool friction) {
+GrainScene loose_discs(std::size_t count, bool friction, bool single) {
   const double spacing = 0.0205, width = width_of_3000 * std::sqrt(static_cast<double>(count) / 3000);
   const auto columns = static_cast<std::size_t>(width / spacing);
   Random random(7);
@@ -61,6 +61,13 @@ GrainScene loose_discs(std::size_t count, bool friction) {
   scene.kinds = 2;
   const PairProperties grains = contact(friction ? 0.17 : 0), walls = contact(friction ? 0.25 : 0);
   scene.pairs = {grains, walls, walls, walls};
+  if (single) {
+    // a kind that no body is of, and whose contacts slide always: with it contacts are computed one by one
+    PairProperties sliding = contact(0.1);
+    sliding.tangential_ratio = sliding.tangential_damping = 0;
+    scene.kinds = 3;
+    scene.pairs = {grains, walls, sliding, walls, walls, sliding, sliding, sliding, sliding};
+  }
   return scene;
 }
 
@@ -103,6 +110,8 @@ int main(int argc, char** argv) {
   app.add_option("--rounds", rounds, "measurements; the median is reported");
   app.add_option("--work", work, "discs times steps in each measurement");
   app.add_option("--settle", settle, "time for 3000 discs to fall and come to rest, s");
+  bool single = false;
+  app.add_flag("--single", single, "compute contacts one by one, as with laws that the packed loop does not have");
   CLI11_PARSE(app, argc, argv);
   set_thread_count(1);
   std::printf(
@@ -111,7 +120,7 @@ int main(int argc, char** argv) {
   for (const std::size_t size : sizes) {
     const auto steps = static_cast<std::int64_t>(work / static_cast<double>(size));
     for (const bool friction : {true, false}) {
-      GrainScene scene = loose_discs(size, friction);
+      GrainScene scene = loose_discs(size, friction, single);
       const double time = settle * std::pow(static_cast<double>(size) / 3000, 0.25);
       report(friction ? "settled" : "settled, no friction", scene, &scene, static_cast<std::int64_t>(time / step),
              steps, rounds);
