@@ -12,7 +12,37 @@
 namespace equidem {
 namespace {
 
-/// Fill in what the law needs of a pair.
+ExactPair exact_pair_of(const GrainSystem& system, const Candidate& candidate) {
+  return exact_pair(candidate.reduced_mass, candidate.stiffness, candidate.strength, system.properties(candidate).end,
+                    system.dt());
+}
+
+/// The dashpot across the normal by the spring alone: the mass is that of the arms at the time.
+PartPair with_damping(const GrainSystem& system, const Candidate& candidate, PartPair parts) {
+  parts.tangential_damping =
+      2 * system.properties(candidate).tangential_damping * std::sqrt(candidate.sliding.stiffness);
+  return parts;
+}
+
+/// Order of partners of one body: grains ascending, then walls ascending.
+std::uint32_t rank(std::int32_t j) {
+  return j >= 0 ? static_cast<std::uint32_t>(j) : 0x80000000U + static_cast<std::uint32_t>(~j);
+}
+
+}  // namespace
+
+void find_strengths(GrainSystem& system) {
+  for (const PairProperties& pair : system.scene.pairs) {
+    if (is_map(system.options.law)) {
+      system.strengths.push_back(pair.restitution);
+    } else if (system.options.law == NormalLaw::hertz_dashpot) {
+      system.strengths.push_back(hertz_damping_of(pair.restitution, pair.end));
+    } else {
+      system.strengths.push_back(damping_ratio_of(pair.restitution, pair.end));
+    }
+  }
+}
+
 void set_constants(const GrainSystem& system, Candidate& candidate) {
   const GrainBody& bi = system.bodies[static_cast<std::size_t>(candidate.i)];
   double inverse_mass = bi.inverse_mass;
@@ -27,13 +57,7 @@ void set_constants(const GrainSystem& system, Candidate& candidate) {
                             : stiffness_from_dimensionless(properties.dimensionless, m, dt) / root_length;
   candidate.a = properties.stiffness > 0 ? properties.stiffness * root_length * dt * dt / m : properties.dimensionless;
   candidate.attraction = properties.end == ContactEnd::at_zero_overlap;
-  if (is_map(system.options.law)) {
-    candidate.strength = properties.restitution;
-  } else if (hertz) {
-    candidate.strength = hertz_damping_of(properties.restitution, properties.end);
-  } else {
-    candidate.strength = damping_ratio_of(properties.restitution, properties.end);
-  }
+  candidate.strength = system.strengths[static_cast<std::size_t>(&properties - system.scene.pairs.data())];
   if (system.friction && properties.friction > 0) {
     candidate.sliding.coefficient = properties.friction;
     candidate.sliding.stiffness = properties.tangential_ratio * candidate.stiffness * root_length;
@@ -45,25 +69,6 @@ void set_constants(const GrainSystem& system, Candidate& candidate) {
                                 std::sqrt(tangential_mass(system, candidate, meeting) * candidate.sliding.stiffness);
   }
 }
-
-/// The dashpot across the normal by the spring alone: the mass is that of the arms at the time.
-PartPair with_damping(const GrainSystem& system, const Candidate& candidate, PartPair parts) {
-  parts.tangential_damping =
-      2 * system.properties(candidate).tangential_damping * std::sqrt(candidate.sliding.stiffness);
-  return parts;
-}
-
-ExactPair exact_pair_of(const GrainSystem& system, const Candidate& candidate) {
-  return exact_pair(candidate.reduced_mass, candidate.stiffness, candidate.strength, system.properties(candidate).end,
-                    system.dt());
-}
-
-/// Order of partners of one body: grains ascending, then walls ascending.
-std::uint32_t rank(std::int32_t j) {
-  return j >= 0 ? static_cast<std::uint32_t>(j) : 0x80000000U + static_cast<std::uint32_t>(~j);
-}
-
-}  // namespace
 
 void find_candidates(GrainSystem& system) {
   std::vector<Circle>& circles = system.circles;
@@ -103,7 +108,7 @@ void find_candidates(GrainSystem& system) {
   };
   std::size_t next_bond = 0;
   for (std::size_t i = 0; i < system.bodies.size(); ++i) {
-    for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
+    for (std::int64_t p = list.begin[i]; !system.near.active && p < list.begin[i + 1]; ++p) {
       const std::int32_t j = list.partner[static_cast<std::size_t>(p)];
       if (are_tied(system.bonds, next_bond, static_cast<std::int32_t>(i), j)) continue;
       if (!shapes) add(static_cast<std::int32_t>(i), j);
@@ -122,6 +127,8 @@ void find_candidates(GrainSystem& system) {
     }
   }
   cover_joints(system);
+  system.near.outer = &list;
+  if (system.near.active) find_near_pairs(system, std::sqrt(system.longest_way));
   system.moved = 0;
   ++system.counters.rebuilds;
 }
@@ -129,11 +136,12 @@ void find_candidates(GrainSystem& system) {
 bool refresh_candidates(GrainSystem& system, double reach) {
   if (2 * (system.moved + reach) <= system.margin) {
     system.moved += reach;
+    if (system.near.active) refresh_near_pairs(system, reach);
     return false;
   }
   system.margin = std::max(system.base_margin, 8 * reach);
   find_candidates(system);
-  system.moved = reach;
+  system.moved = system.near.moved = reach;
   return true;
 }
 

@@ -81,6 +81,15 @@ void refuse_runaway(const GrainSystem& system, double reach) {
 void refuse_crossings(const GrainSystem& system, double reach) {
   // two bodies come nearer by twice the reach at most
   if (reach <= slow_way * system.smallest_radius && system.deepest + 2 * reach < system.smallest_radius) return;
+  for (std::size_t p = 0; p < system.near.count; ++p) {
+    Candidate pair;
+    pair.i = system.near.first(p);
+    pair.j = system.near.second(p);
+    const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
+    check_discs(system, pair,
+                {system.motions[j].position - system.motions[i].position,
+                 system.next[j].position - system.next[i].position, system.bodies[i].radius, system.bodies[j].radius});
+  }
   for (std::size_t c = 0; c < system.candidates.size(); ++c) {
     const Candidate& candidate = system.candidates[c];
     if (candidate.j < 0) {

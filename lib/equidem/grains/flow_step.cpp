@@ -39,12 +39,12 @@ void give(GrainSystem& system, const Candidate& candidate, const Trial& trial, d
   const Vec2 moment = sign * (trial.moment * trial.normal + (0.5 * system.dt() * trial.tangential) * tangent);
   const auto i = static_cast<std::size_t>(candidate.i);
   system.pushes[i].impulse -= impulse;
-  system.pushes[i].moment -= moment;
+  system.moments[i] -= moment;
   system.pushes[i].torque -= sign * trial.lever_i * trial.tangential;
   if (candidate.j < 0) return;
   const auto j = static_cast<std::size_t>(candidate.j);
   system.pushes[j].impulse += impulse;
-  system.pushes[j].moment += moment;
+  system.moments[j] += moment;
   system.pushes[j].torque -= sign * trial.lever_j * trial.tangential;
 }
 
@@ -57,7 +57,7 @@ Gain gain_of(const GrainSystem& system, std::size_t body) {
   const double dt = system.dt();
   const double inverse = system.bodies[body].inverse_mass;
   return {inverse * system.pushes[body].impulse + dt * system.scene.gravity,
-          inverse * system.pushes[body].moment + (0.5 * dt * dt) * system.scene.gravity};
+          inverse * system.moments[body] + (0.5 * dt * dt) * system.scene.gravity};
 }
 
 /// Gain of j, or of the wall, over that of i.
@@ -186,6 +186,7 @@ std::vector<Trial> trials_of(GrainSystem& system) {
 /// Pushes from the contacts in their order: no trace of the way in which sweeps came to them.
 void sum_pushes(GrainSystem& system, const std::vector<Trial>& trials) {
   std::fill(system.pushes.begin(), system.pushes.end(), Push{});
+  std::fill(system.moments.begin(), system.moments.end(), Vec2{});
   for (const Trial& trial : trials) {
     if (trial.impulse == 0 && trial.tangential == 0 && trial.moment == 0) continue;
     give(system, system.candidates[trial.candidate], trial, 1);

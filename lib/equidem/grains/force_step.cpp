@@ -40,8 +40,8 @@ void push(GrainSystem& system, const Candidate& candidate, const Meeting& meetin
 }
 
 void shift(GrainSystem& system, const Candidate& candidate, Vec2 moment) {
-  system.pushes[static_cast<std::size_t>(candidate.i)].moment += moment;
-  if (candidate.j >= 0) system.pushes[static_cast<std::size_t>(candidate.j)].moment -= moment;
+  system.moments[static_cast<std::size_t>(candidate.i)] += moment;
+  if (candidate.j >= 0) system.moments[static_cast<std::size_t>(candidate.j)] -= moment;
 }
 
 /// What the pushes of the step before and gravity add in a step to the slip of a contact, its own tangential force aside.
@@ -87,7 +87,14 @@ template <NormalLaw law, bool friction>
 void collide_by(GrainSystem& system) {
   if constexpr (friction) system.pushes_before.swap(system.pushes);
   if (friction || !system.free_flight) std::fill(system.pushes.begin(), system.pushes.end(), Push{});
+  if (is_map(law) && !system.free_flight) std::fill(system.moments.begin(), system.moments.end(), Vec2{});
   system.free_flight = true;
+  if (system.near.active) {
+    system.near.loop(system);
+    if (friction && system.options.scheme == GrainOptions::Scheme::velocity_verlet) {
+      for (std::size_t i = 0; i < system.bodies.size(); ++i) turn_rims(system.pushes[i], system.bodies[i]);
+    }
+  }
   const double dt = system.dt();
   const double length = system.length;
   const double per_length = 1 / length, per_speed = dt / length, unit_speed = length / dt;
@@ -159,6 +166,7 @@ CollideFunction collide_function(NormalLaw law, bool friction) {
 void move_by_euler(GrainSystem& system) {
   const double dt = system.dt();
   const Vec2 fall = dt * system.scene.gravity;
+  if (system.near.active) return move_pair_bodies(system);
   if (system.free_flight) {
     move_bodies(system, [&](std::size_t i) {
       GrainMotion motion = system.motions[i];
@@ -175,7 +183,8 @@ void move_by_euler(GrainSystem& system) {
     GrainMotion motion = system.motions[i];
     motion.velocity += body.inverse_mass * push.impulse + fall;
     motion.spin += body.inverse_moment * push.torque;
-    motion.position += dt * motion.velocity + body.inverse_mass * push.moment;
+    motion.position += dt * motion.velocity;
+    if (!system.moments.empty()) motion.position += body.inverse_mass * system.moments[i];
     motion.angle += dt * motion.spin;
     return motion;
   });
@@ -184,6 +193,21 @@ void move_by_euler(GrainSystem& system) {
 void drift_of_verlet(GrainSystem& system) {
   const double dt = system.dt();
   const Vec2 fall = dt * system.scene.gravity;
+  if (system.near.active) {
+    move_bodies(system, [&](std::size_t i) {
+      const GrainBody& body = system.bodies[i];
+      GrainMotion motion = system.motions[i];
+      const Vec2 gain = body.inverse_mass * system.pushes[i].impulse;
+      const double turn = body.inverse_moment * system.pushes[i].torque;
+      motion.velocity += 0.5 * (gain + fall);
+      motion.spin += 0.5 * turn;
+      motion.position += dt * motion.velocity;
+      motion.angle += dt * motion.spin;
+      system.near.bodies[i] = pair_body(body, motion, gain, turn);
+      return motion;
+    });
+    return;
+  }
   if (system.free_flight) {
     move_bodies(system, [&](std::size_t i) {
       GrainMotion motion = system.motions[i];

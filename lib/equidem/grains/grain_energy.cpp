@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "equidem/grains/grain_simulation_implementation.hpp"
+#include "equidem/grains/meeting.hpp"
 #include "equidem/grains/part_meeting.hpp"
 
 namespace equidem {
@@ -33,18 +34,21 @@ std::pair<double, double> GrainSimulation::Implementation::elastic() const {
   const bool holds_from_first_step = !collide || is_map(system.options.law);
   double normal = 0;
   double tangential = 0;
-  for (std::size_t c = 0; c < system.candidates.size(); ++c) {
-    const Candidate& candidate = system.candidates[c];
+  const auto add = [&](const Candidate& candidate, double overlap) {
     tangential += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
-    if (holds_from_first_step && (!candidate.touching || candidate.parted)) continue;
-    const double overlap = overlap_of(system, c);
-    if (!(overlap > 0)) continue;
+    if (holds_from_first_step && (!candidate.touching || candidate.parted)) return;
+    if (!(overlap > 0)) return;
     if (system.options.law == NormalLaw::hertz_dashpot) {
       normal += 0.4 * candidate.stiffness * overlap * overlap * std::sqrt(overlap);
     } else {
       normal += 0.5 * candidate.stiffness * overlap * overlap;
     }
+  };
+  for (std::size_t p = 0; p < system.near.count; ++p) {
+    const Candidate candidate = candidate_of(system, p);
+    add(candidate, meeting_of(system, candidate).overlap);
   }
+  for (std::size_t c = 0; c < system.candidates.size(); ++c) add(system.candidates[c], overlap_of(system, c));
   return {normal, tangential};
 }
 

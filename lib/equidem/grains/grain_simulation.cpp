@@ -12,6 +12,7 @@
 #include "equidem/grains/crossing.hpp"
 #include "equidem/grains/flow_step.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
+#include "equidem/grains/move_bodies.hpp"
 #include "equidem/grains/part_crossing.hpp"
 #include "equidem/grains/part_meeting.hpp"
 #include "equidem/grains/part_pairs.hpp"
@@ -24,14 +25,17 @@ namespace {
 constexpr std::int64_t steps_between_kept_states = 256;
 
 /// As they were in the last step.
-std::pair<Vec2, Vec2> arms_of(const GrainSystem& system, std::size_t c) {
-  if (!system.parts.empty()) return {system.part_pairs[c].arm_i, system.part_pairs[c].arm_j};
-  const Candidate& candidate = system.candidates[c];
+std::pair<Vec2, Vec2> arms_of_discs(const GrainSystem& system, const Candidate& candidate) {
   const double radius = system.bodies[static_cast<std::size_t>(candidate.i)].radius;
   if (candidate.j < 0) return {radius * candidate.normal, {}};
   const double sum = radius + system.bodies[static_cast<std::size_t>(candidate.j)].radius;
   const double lever = radius / sum * (sum - candidate.overlap);
   return {lever * candidate.normal, (lever - (sum - candidate.overlap)) * candidate.normal};
+}
+
+std::pair<Vec2, Vec2> arms_of(const GrainSystem& system, std::size_t c) {
+  if (system.parts.empty()) return arms_of_discs(system, system.candidates[c]);
+  return {system.part_pairs[c].arm_i, system.part_pairs[c].arm_j};
 }
 
 }  // namespace
@@ -62,7 +66,6 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
     smallest_size = std::min(smallest_size, part.size);
     system.smallest_radius = std::min(system.smallest_radius, part.b);
   }
-  system.base_margin = options.margin > 0 ? options.margin : 0.2 * smallest_size;
   system.next = system.motions;
   if (!system.parts.empty()) {
     self.collide = collide_parts_function(options.law, system.friction);
@@ -70,16 +73,22 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
     self.collide = collide_function(options.law, system.friction);
   }
   if (self.collide && system.friction) system.pushes_before.resize(system.pushes.size());
+  if (!self.collide || is_map(options.law)) system.moments.resize(system.pushes.size());
+  find_strengths(system);
   place_walls(system);
+  prepare_near_pairs(system);
+  system.base_margin = options.margin > 0 ? options.margin : (system.near.active ? 0.6 : 0.2) * smallest_size;
   system.margin = std::max(system.base_margin, 8 * fastest * options.time_step);
   system.joints = joints_of(system.scene.walls, joint_gap * system.smallest_radius);
   find_candidates(system);
+  touch_near_pairs(system);
   for (std::size_t c = 0; c < system.candidates.size(); ++c) {
     // bodies that overlap at the start touch
     Candidate& candidate = system.candidates[c];
     candidate.touching = overlap_of(system, c) > 0;
     if (candidate.touching) ++system.counters.contacts;
   }
+  system.near.record = true;
   if (self.verlet()) {
     self.push();
     count_half_a_kick(system);
@@ -96,7 +105,11 @@ GrainSimulation& GrainSimulation::operator=(GrainSimulation&&) noexcept = defaul
 
 void GrainSimulation::Implementation::push() {
   collide(system);
-  if (!system.bonds.empty()) push_bonds(system);
+  if (system.bonds.empty()) return;
+  if (system.near.active && system.friction) {  // bonds ask what others do to the spin
+    for (std::size_t i = 0; i < system.bodies.size(); ++i) turn_rims(system.pushes[i], system.bodies[i]);
+  }
+  push_bonds(system);
 }
 
 void GrainSimulation::Implementation::make_step() {
@@ -135,11 +148,15 @@ void GrainSimulation::advance(std::int64_t steps) {
     const GrainCounters counters = self.system.counters;
     if (self.kept.grains.empty() || now - self.kept.step >= steps_between_kept_states) self.kept = save();
     try {
+      self.system.near.record = k + 1 == steps || now + 1 - self.kept.step >= steps_between_kept_states;
       self.make_step();
     } catch (...) {
       // it has changed contacts before it was refused: come to its start again, from a state before it
       go_back_to(self.kept);
-      while (self.system.step < now) self.make_step();
+      while (self.system.step < now) {
+        self.system.near.record = self.system.step + 1 == now;
+        self.make_step();
+      }
       self.system.counters = counters;
       throw;
     }
@@ -172,11 +189,10 @@ std::vector<Grain> GrainSimulation::grains() const {
 std::vector<GrainContact> GrainSimulation::contacts() const {
   const GrainSystem& system = implementation_->system;
   std::vector<GrainContact> contacts;
-  for (std::size_t c = 0; c < system.candidates.size(); ++c) {
-    const Candidate& candidate = system.candidates[c];
-    if (!candidate.touching || candidate.steps == 0) continue;
+  const auto add = [&](const Candidate& candidate, std::pair<Vec2, Vec2> arms) {
+    if (!candidate.touching || candidate.steps == 0) return;
     GrainContact contact;
-    std::tie(contact.arm_i, contact.arm_j) = arms_of(system, c);
+    std::tie(contact.arm_i, contact.arm_j) = arms;
     contact.i = static_cast<std::int32_t>(system.grain_of[static_cast<std::size_t>(candidate.i)]);
     contact.overlap = candidate.overlap;
     contact.closing = candidate.closing;
@@ -196,7 +212,12 @@ std::vector<GrainContact> GrainSimulation::contacts() const {
       }
     }
     contacts.push_back(contact);
+  };
+  for (std::size_t p = 0; p < system.near.count; ++p) {
+    const Candidate candidate = candidate_of(system, p);
+    add(candidate, arms_of_discs(system, candidate));
   }
+  for (std::size_t c = 0; c < system.candidates.size(); ++c) add(system.candidates[c], arms_of(system, c));
   std::stable_sort(contacts.begin(), contacts.end(), [](const GrainContact& a, const GrainContact& b) {
     return std::pair(a.i, a.j) < std::pair(b.i, b.j);
   });
@@ -218,7 +239,8 @@ const Effects& GrainSimulation::effects() const {
 double GrainSimulation::bytes_per_grain() const {
   const GrainSystem& system = implementation_->system;
   const double bytes = static_cast<double>(
-      system.bodies.capacity() * sizeof(GrainBody) + 2 * system.motions.capacity() * sizeof(GrainMotion) +
+      system.near.bytes() + system.bodies.capacity() * sizeof(GrainBody) + system.moments.capacity() * sizeof(Vec2) +
+      2 * system.motions.capacity() * sizeof(GrainMotion) +
       (system.pushes.capacity() + system.pushes_before.capacity()) * sizeof(Push) +
       system.candidates.capacity() * sizeof(Candidate) + system.part_pairs.capacity() * sizeof(PartPair) +
       system.parts.capacity() * sizeof(GrainPart) + system.axes.capacity() * sizeof(Vec2) +

@@ -15,7 +15,7 @@ struct GrainSimulation::Implementation {
   CollideFunction collide = nullptr;  ///< none: exact_flow
   double potential_at_start = 0, energy_at_start = 0;
   double bond_limit = 0;  ///< step that bonds impose, s
-  GrainState kept;  ///< a state not long ago, to come back to
+  GrainState kept;        ///< a state not long ago, to come back to
 
   void make_step();
   /// What contacts and bonds give in the step.

@@ -12,7 +12,7 @@ namespace {
 /// What a contact remembers, in numbers: i, j, steps, mode, then the rest; of parts theirs and their arms.
 constexpr std::size_t numbers_per_plain_contact = 13;
 constexpr std::size_t numbers_per_pair_of_parts = 6;
-constexpr std::size_t numbers_per_push = 5;
+constexpr std::size_t numbers_per_push = 3;
 
 std::size_t numbers_per_contact_of(const GrainSystem& system) {
   return numbers_per_plain_contact + (system.parts.empty() ? 0 : numbers_per_pair_of_parts);
@@ -40,6 +40,8 @@ void append(std::vector<double>& numbers, const Candidate& candidate) {
 }
 
 void take(const double* numbers, Candidate& candidate) {
+  candidate.i = static_cast<std::int32_t>(numbers[0]);
+  candidate.j = static_cast<std::int32_t>(numbers[1]);
   candidate.steps = static_cast<std::int64_t>(numbers[2]);
   candidate.mode = static_cast<int>(numbers[3]);
   candidate.stretch = numbers[4];
@@ -62,6 +64,9 @@ GrainState GrainSimulation::save() const {
   state.grains = grains();
   state.ledger = system.lost;
   state.counters = system.counters;
+  for (std::size_t p = 0; p < system.near.count; ++p) {
+    if (system.near.touching(p)) append(state.contacts, candidate_of(system, p));
+  }
   for (std::size_t c = 0; c < system.candidates.size(); ++c) {
     if (!system.candidates[c].touching) continue;
     append(state.contacts, system.candidates[c]);
@@ -69,7 +74,7 @@ GrainState GrainSimulation::save() const {
   }
   if (!implementation_->keeps_pushes()) return state;  // the others find all pushes of a step in that step
   for (const Push& push : system.pushes) {
-    for (const double number : {push.impulse.x, push.impulse.y, push.torque, push.moment.x, push.moment.y}) {
+    for (const double number : {push.impulse.x, push.impulse.y, push.torque}) {
       state.sums.push_back(number);
     }
   }
@@ -97,7 +102,7 @@ void GrainSimulation::go_back_to(const GrainState& state) {
     system.motions[k] = {grain.position, grain.velocity, grain.spin, grain.angle};
     if (state.sums.empty()) continue;
     const double* numbers = state.sums.data() + numbers_per_push * k;
-    system.pushes[k] = {{numbers[0], numbers[1]}, numbers[2], {numbers[3], numbers[4]}};
+    system.pushes[k] = {{numbers[0], numbers[1]}, numbers[2]};
   }
   system.free_flight = false;
   system.deepest = std::numeric_limits<double>::infinity();  // not known: verlet has to look
@@ -106,12 +111,26 @@ void GrainSimulation::go_back_to(const GrainState& state) {
   system.candidates.clear();
   system.exact_pairs.clear();
   system.part_pairs.clear();
+  std::vector<Candidate> near;
+  std::vector<const double*> others;
+  for (std::size_t at = 0; at < state.contacts.size(); at += numbers_per_contact) {
+    Candidate contact;
+    take(state.contacts.data() + at, contact);
+    if (system.near.active && contact.j >= 0)
+      near.push_back(contact);
+    else
+      others.push_back(state.contacts.data() + at);
+  }
+  if (system.near.active) {
+    load_pair_bodies(system);
+    take_near_pairs(system, near);
+  }
   find_candidates(system);
   std::size_t c = 0;
-  for (std::size_t at = 0; at < state.contacts.size(); at += numbers_per_contact) {
-    const auto i = static_cast<std::int32_t>(state.contacts[at]);
-    const auto j = static_cast<std::int32_t>(state.contacts[at + 1]);
-    const double* numbers = state.contacts.data() + at + numbers_per_plain_contact;
+  for (const double* contact : others) {
+    const auto i = static_cast<std::int32_t>(contact[0]);
+    const auto j = static_cast<std::int32_t>(contact[1]);
+    const double* numbers = contact + numbers_per_plain_contact;
     const auto is_it = [&] {
       if (system.candidates[c].i != i || system.candidates[c].j != j) return false;
       return !shapes || is_of(numbers, system.part_pairs[c]);
@@ -121,7 +140,7 @@ void GrainSimulation::go_back_to(const GrainState& state) {
       bad_input("the state has a contact of bodies that are apart", "it is of another scene, or damaged",
                 "Resume with the scene that the state was saved from");
     }
-    take(state.contacts.data() + at, system.candidates[c]);
+    take(contact, system.candidates[c]);
     if (!shapes) continue;
     system.part_pairs[c].arm_i = {numbers[2], numbers[3]};
     system.part_pairs[c].arm_j = {numbers[4], numbers[5]};

@@ -11,6 +11,7 @@
 #include "equidem/grains/grain_parts.hpp"
 #include "equidem/grains/grain_scene.hpp"
 #include "equidem/grains/grain_simulation.hpp"
+#include "equidem/grains/near_pairs.hpp"
 #include "equidem/grains/neighbours.hpp"
 #include "equidem/grains/wall_joints.hpp"
 
@@ -28,10 +29,10 @@ struct GrainBody {
 };
 
 /// What contacts give a body in one step.
-struct Push {
+struct alignas(32) Push {
   Vec2 impulse;       ///< N s
   double torque = 0;  ///< impulse of the moment, N m s
-  Vec2 moment;  ///< maps: mass times shift of the position, kg m; exact_flow: integral of (dt - t) force dt, N s²
+  double rim = 0;     ///< impulse along the rim of a disc by near pairs, N s; the move of bodies makes a torque of it
 };
 
 /// Two bodies near enough to touch soon, or a body and a wall, with what their contact remembers.
@@ -67,7 +68,8 @@ struct WallPlace {
 struct GrainSystem {
   GrainScene scene;  ///< walls and grains in the order of their places
   GrainOptions options;
-  double length = 0;  ///< d_c
+  double length = 0;              ///< d_c
+  std::vector<double> strengths;  ///< of scene.pairs
   bool friction = false;
   std::vector<std::size_t> grain_of, wall_of;  ///< caller's number of the k-th
   std::vector<std::int32_t> place_of_grain, place_of_wall;
@@ -77,9 +79,12 @@ struct GrainSystem {
   std::vector<GrainMotion> motions;
   std::vector<Push> pushes;
   std::vector<Push> pushes_before;  ///< of the step before, where friction asks for them
+  /// maps: mass times shift of the position, kg m; exact_flow: integral of (dt - t) force dt, N s²; other laws: empty
+  std::vector<Vec2> moments;
   std::vector<WallPlace> walls;
-  std::vector<WallJoints> joints;     ///< of each wall; empty where none join
-  std::vector<Candidate> candidates;  ///< ordered by i, then j, walls last, then parts
+  std::vector<WallJoints> joints;  ///< of each wall; empty where none join
+  NearPairs near;
+  std::vector<Candidate> candidates;  ///< that are no near pairs; ordered by i, then j, walls last, then parts
   std::vector<TiedPair> bonds;        ///< ordered by i, then j
   NeighbourFinder finder;
   std::vector<Circle> circles;         ///< bodies, for the finder
@@ -111,6 +116,12 @@ struct GrainSystem {
 
 /// Put grains and walls in the order of their places, so that the caller's order changes no bit.
 void order_by_place(GrainSystem& system, const GrainScene& scene);
+
+/// Restitution, zeta or alpha of the pairs of kinds, by the law.
+void find_strengths(GrainSystem& system);
+
+/// Fill in what the law needs of a pair.
+void set_constants(const GrainSystem& system, Candidate& candidate);
 
 /// Find all candidates within the margin anew; contacts keep what they remember.
 void find_candidates(GrainSystem& system);

@@ -10,6 +10,18 @@
 
 namespace equidem {
 
+/// \param gain,turn of velocity and spin by the contacts in the last step
+inline PairBody pair_body(const GrainBody& body, const GrainMotion& motion, Vec2 gain, double turn) {
+  return {motion.position, motion.velocity, motion.spin * body.radius, motion.velocity + 0.5 * gain,
+          (motion.spin + 0.5 * turn) * body.radius};
+}
+
+/// Torque of the forces that near pairs gave along the rim.
+inline void turn_rims(Push& push, const GrainBody& body) {
+  push.torque += body.radius * push.rim;
+  push.rim = 0;
+}
+
 /// system.next[i] = motion(i), the motion after the step; and system.longest_way, while the numbers are at hand.
 template <class Motion>
 void move_bodies(GrainSystem& system, const Motion& motion) {
