@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/statics/dense_kernels.hpp"
 
+#include <vector>
+
 #include <cblas.h>
 
-extern "C" void dpotrf_(const char* triangle, const int* n, double* a, const int* lda, int* info);
+extern "C" {
+void dpotrf_(const char* triangle, const int* n, double* a, const int* lda, int* info);
+void dsyevd_(const char* job, const char* triangle, const int* n, double* a, const int* lda, double* values,
+             double* work, const int* work_size, int* iwork, const int* iwork_size, int* info);
+void zheevd_(const char* job, const char* triangle, const int* n, std::complex<double>* a, const int* lda,
+             double* values, std::complex<double>* work, const int* work_size, double* rwork, const int* rwork_size,
+             int* iwork, const int* iwork_size, int* info);
+}
 
 namespace equidem::dense {
 namespace {
@@ -89,6 +98,31 @@ void solve_lower_transposed(std::size_t n, std::size_t columns, const double* l,
     cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans, diagonal(unit), as_int(n), as_int(columns), 1.0, l,
                 as_int(ldl), x, as_int(ldx));
   }
+}
+
+// Divide and conquer; the sizes of the work arrays are those that LAPACK's documentation asks for.
+int find_spectrum(std::size_t n, double* a, double* values, bool vectors) {
+  if (n == 0) return 0;
+  const int size = as_int(n), work_size = vectors ? 1 + 6 * size + 2 * size * size : 2 * size + 1;
+  const int iwork_size = vectors ? 3 + 5 * size : 1;
+  std::vector<double> work(static_cast<std::size_t>(work_size));
+  std::vector<int> iwork(static_cast<std::size_t>(iwork_size));
+  int info = 0;
+  dsyevd_(vectors ? "V" : "N", "L", &size, a, &size, values, work.data(), &work_size, iwork.data(), &iwork_size, &info);
+  return info;
+}
+
+int find_spectrum(std::size_t n, std::complex<double>* a, double* values, bool vectors) {
+  if (n == 0) return 0;
+  const int size = as_int(n), work_size = vectors ? 2 * size + size * size : size + 1;
+  const int rwork_size = vectors ? 1 + 5 * size + 2 * size * size : size, iwork_size = vectors ? 3 + 5 * size : 1;
+  std::vector<std::complex<double>> work(static_cast<std::size_t>(work_size));
+  std::vector<double> rwork(static_cast<std::size_t>(rwork_size));
+  std::vector<int> iwork(static_cast<std::size_t>(iwork_size));
+  int info = 0;
+  zheevd_(vectors ? "V" : "N", "L", &size, a, &size, values, work.data(), &work_size, rwork.data(), &rwork_size,
+          iwork.data(), &iwork_size, &info);
+  return info;
 }
 
 }  // namespace equidem::dense

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/waves/hermitian.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -9,14 +9,16 @@
 #include <numbers>
 #include <utility>
 
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/statics/dense_kernels.hpp"
+
 namespace equidem {
 namespace {
 
 using Matrix = Eigen::MatrixXcd;
-using Solver = Eigen::SelfAdjointEigenSolver<Matrix>;
 using RealMatrix = Eigen::MatrixXd;
 using RealVector = Eigen::VectorXd;
-using RealSolver = Eigen::SelfAdjointEigenSolver<RealMatrix>;
 
 /// An eigenvalue below this share of the largest is zero up to round-off.
 constexpr double zero_share = 1e-12;
@@ -32,19 +34,6 @@ ComplexMatrix copy_of(const Matrix& m) {
   return result;
 }
 
-double largest_magnitude(const Solver& solver) {
-  return solver.eigenvalues().size() == 0 ? 0 : solver.eigenvalues().cwiseAbs().maxCoeff();
-}
-
-/// D^+ B for a positive semidefinite D.
-Matrix pseudo_solve(const Matrix& d, const Matrix& b) {
-  const Solver solver(d);
-  const double smallest = zero_share * largest_magnitude(solver);
-  Eigen::VectorXd inverse = solver.eigenvalues();
-  for (double& value : inverse) value = value > smallest ? 1 / value : 0;
-  return solver.eigenvectors() * (inverse.asDiagonal() * (solver.eigenvectors().adjoint() * b));
-}
-
 RealMatrix real_part(const ComplexMatrix& m) {
   return view(m).real();
 }
@@ -52,14 +41,50 @@ RealMatrix imaginary_part(const ComplexMatrix& m) {
   return view(m).imag();
 }
 
-struct RealSpectrum {
-  RealVector values;  // ascending
-  RealMatrix vectors;
+// The compiler takes seconds for a product of matrices of yet another kind: all pass here.
+template <class AnyMatrix>
+AnyMatrix product(const AnyMatrix& a, const AnyMatrix& b) {
+  return a * b;
+}
+/// A^H B C.
+template <class AnyMatrix>
+AnyMatrix product(const AnyMatrix& a, const AnyMatrix& b, const AnyMatrix& c) {
+  return product<AnyMatrix>(a.adjoint(), product(b, c));
+}
+
+/// Ascending, with orthonormal eigenvectors.
+template <class AnyMatrix>
+struct Spectrum {
+  RealVector values;
+  AnyMatrix vectors;
+
+  explicit Spectrum(AnyMatrix symmetric, bool with_vectors = true)
+      : values(symmetric.rows()), vectors(std::move(symmetric)) {
+    [[maybe_unused]] static const bool one_thread = (dense::use_one_thread_per_call(), true);
+    if (dense::find_spectrum(static_cast<std::size_t>(values.size()), vectors.data(), values.data(), with_vectors) !=
+        0) {
+      computation_failed(format("the spectrum of a matrix of {} rows is not found", values.size()), "",
+                         "Report the case: this happens only where numbers are not finite");
+    }
+  }
+
+  [[nodiscard]] double largest_magnitude() const { return values.size() == 0 ? 0 : values.cwiseAbs().maxCoeff(); }
 };
-RealSpectrum spectrum_of(const RealMatrix& symmetric) {
-  if (symmetric.size() == 0) return {RealVector(0), RealMatrix(0, 0)};
-  const RealSolver solver(symmetric);
-  return {solver.eigenvalues(), solver.eigenvectors()};
+using RealSpectrum = Spectrum<RealMatrix>;
+
+template <class AnyMatrix>
+RealVector eigenvalues_of(AnyMatrix symmetric) {
+  return Spectrum<AnyMatrix>(std::move(symmetric), false).values;
+}
+
+/// D^+ B for a positive semidefinite D.
+Matrix pseudo_solve(const Matrix& d, const Matrix& b) {
+  const Spectrum<Matrix> spectrum(d);
+  const double smallest = zero_share * spectrum.largest_magnitude();
+  RealVector inverse = spectrum.values;
+  for (double& value : inverse) value = value > smallest ? 1 / value : 0;
+  const Matrix parts = product<Matrix>(spectrum.vectors.adjoint(), b);
+  return product<Matrix>(spectrum.vectors, inverse.asDiagonal() * parts);
 }
 
 /// Eigenvectors of a positive semidefinite matrix, apart.
@@ -68,12 +93,13 @@ struct NullAndRange {
   RealVector values;  // of the columns of range, > 0
 
   explicit NullAndRange(const RealMatrix& matrix) {
-    const auto [all, vectors] = spectrum_of(matrix);
-    const double smallest = all.size() == 0 ? 0 : zero_share * all.cwiseAbs().maxCoeff();
-    const Eigen::Index first = std::upper_bound(all.begin(), all.end(), smallest) - all.begin();
-    null = vectors.leftCols(first);
-    range = vectors.rightCols(all.size() - first);
-    values = all.tail(all.size() - first);
+    const RealSpectrum all(matrix);
+    const Eigen::Index first =
+        std::upper_bound(all.values.begin(), all.values.end(), zero_share * all.largest_magnitude()) -
+        all.values.begin();
+    null = all.vectors.leftCols(first);
+    range = all.vectors.rightCols(all.values.size() - first);
+    values = all.values.tail(all.values.size() - first);
   }
 };
 
@@ -95,12 +121,13 @@ class LongWavePencil {
     const RealMatrix n0 = real_part(normal.zeroth), t0 = real_part(tangential.zeroth);
     // Rotations follow translations by `follow`; what they do beside that is decoupled, or a gear.
     const NullAndRange turning(t0(turn, turn));
+    const RealMatrix compliance = -turning.range * turning.values.cwiseInverse().asDiagonal();
     const RealMatrix follow =
-        -turning.range * turning.values.cwiseInverse().asDiagonal() * (turning.range.transpose() * t0(turn, u));
-    const RealMatrix t = t0(u, u) + t0(u, turn) * follow;
+        product<RealMatrix>(compliance, product<RealMatrix>(turning.range.transpose(), t0(turn, u)));
+    const RealMatrix t = t0(u, u) + product<RealMatrix>(t0(u, turn), follow);
     const NullAndRange moving(n0(u, u) + t);
     const RealMatrix whitened = moving.range * moving.values.cwiseSqrt().cwiseInverse().asDiagonal();
-    const RealSpectrum shares = spectrum_of(whitened.transpose() * t * whitened);
+    const RealSpectrum shares(product(whitened, t, whitened));
     share_ = shares.values;
     const auto with_rotations = [&](const RealMatrix& translations, const RealMatrix& rotations) {
       RealMatrix all = RealMatrix::Zero(n0.rows(), translations.cols());
@@ -111,9 +138,9 @@ class LongWavePencil {
     const auto still = [&](Eigen::Index columns) {
       return RealMatrix::Zero(static_cast<Eigen::Index>(u.size()), columns);
     };
-    const RealMatrix free = with_rotations(moving.null, follow * moving.null);
+    const RealMatrix free = with_rotations(moving.null, product(follow, moving.null));
     const RealMatrix gears = with_rotations(still(turning.null.cols()), turning.null);
-    const RealMatrix v = whitened * shares.vectors, y = with_rotations(v, follow * v);
+    const RealMatrix v = product(whitened, shares.vectors), y = with_rotations(v, product(follow, v));
     const RealMatrix y_turning = with_rotations(still(turning.range.cols()), turning.range);
     RealMatrix z(n0.rows(), free.cols() + gears.cols());
     z << free, gears;
@@ -121,16 +148,16 @@ class LongWavePencil {
 
     RealMatrix coupling[2];
     for (int a = 0; a < 2; ++a) {
-      linear_normal_[a] = z.transpose() * imaginary_part(normal.first[a]) * y;
-      linear_tangential_[a] = z.transpose() * imaginary_part(tangential.first[a]) * y;
-      coupling[a] = z.transpose() * imaginary_part(tangential.first[a]) * y_turning;
+      linear_normal_[a] = product(z, imaginary_part(normal.first[a]), y);
+      linear_tangential_[a] = product(z, imaginary_part(tangential.first[a]), y);
+      coupling[a] = product(z, imaginary_part(tangential.first[a]), y_turning);
     }
     for (int a = 0; a < 3; ++a) {
       const RealMatrix &p = coupling[a / 2], &q = coupling[(a + 1) / 2];
-      RealMatrix turned = p * turning.values.cwiseInverse().asDiagonal() * q.transpose();
+      RealMatrix turned = product<RealMatrix>(p * turning.values.cwiseInverse().asDiagonal(), q.transpose());
       if (a == 1) turned += turned.transpose().eval();
-      normal_[a] = z.transpose() * real_part(normal.second[a]) * z;
-      tangential_[a] = z.transpose() * real_part(tangential.second[a]) * z - turned;
+      normal_[a] = product(z, real_part(normal.second[a]), z);
+      tangential_[a] = product(z, real_part(tangential.second[a]), z) - turned;
       if (z.cols() > 0)
         scale_ = std::max({scale_, normal_[a].cwiseAbs().maxCoeff(), tangential_[a].cwiseAbs().maxCoeff()});
     }
@@ -176,23 +203,23 @@ class LongWavePencil {
     const RealMatrix lx = linear_normal_[0] + ratio * linear_tangential_[0];
     const RealMatrix ly = linear_normal_[1] + ratio * linear_tangential_[1];
     const RealMatrix over_x = lx * d.cwiseInverse().asDiagonal(), over_y = ly * d.cwiseInverse().asDiagonal();
-    const RealMatrix cross = over_x * ly.transpose();
-    return {normal_[0] + ratio * tangential_[0] - over_x * lx.transpose(),
+    const RealMatrix to_x = lx.transpose(), to_y = ly.transpose(), cross = product(over_x, to_y);
+    return {normal_[0] + ratio * tangential_[0] - product(over_x, to_x),
             normal_[1] + ratio * tangential_[1] - cross - cross.transpose(),
-            normal_[2] + ratio * tangential_[2] - over_y * ly.transpose()};
+            normal_[2] + ratio * tangential_[2] - product(over_y, to_y)};
   }
 
   /// With gears, whose block is negative semidefinite for r < 0, eliminated.
   [[nodiscard]] double smallest_eigenvalue(const RealMatrix& a, double ratio) const {
     const Eigen::Index gears = a.rows() - translations_;
-    if (gears == 0) return RealSolver(a, Eigen::EigenvaluesOnly).eigenvalues()[0];
-    const RealSolver solver(a.bottomRightCorner(gears, gears));
+    if (gears == 0) return eigenvalues_of(a)[0];
+    const RealSpectrum turning(a.bottomRightCorner(gears, gears));
     const double smallest = zero_share * std::abs(ratio) * scale_;
-    RealVector inverse = solver.eigenvalues();
+    RealVector inverse = turning.values;
     for (double& value : inverse) value = value < -smallest ? 1 / value : 0;
-    const RealMatrix b = a.topRightCorner(translations_, gears) * solver.eigenvectors();
-    const RealMatrix left = a.topLeftCorner(translations_, translations_) - b * inverse.asDiagonal() * b.transpose();
-    return RealSolver(left, Eigen::EigenvaluesOnly).eigenvalues()[0];
+    const RealMatrix b = product<RealMatrix>(a.topRightCorner(translations_, gears), turning.vectors);
+    const RealMatrix gone = product<RealMatrix>(b * inverse.asDiagonal(), b.transpose());
+    return eigenvalues_of<RealMatrix>(a.topLeftCorner(translations_, translations_) - gone)[0];
   }
 
   RealVector share_;                                             // of their energy in T, of the motions Y
@@ -206,15 +233,13 @@ class LongWavePencil {
 
 HermitianSpectrum spectrum(const ComplexMatrix& hermitian) {
   if (hermitian.size == 0) return {};
-  const Solver solver(view(hermitian));
-  const Eigen::VectorXd& values = solver.eigenvalues();
-  return {{values.begin(), values.end()}, copy_of(solver.eigenvectors())};
+  const Spectrum<Matrix> all(view(hermitian));
+  return {{all.values.begin(), all.values.end()}, copy_of(all.vectors)};
 }
 
 std::vector<double> eigenvalues(const ComplexMatrix& hermitian) {
   if (hermitian.size == 0) return {};
-  const Solver solver(view(hermitian), Eigen::EigenvaluesOnly);
-  const Eigen::VectorXd& values = solver.eigenvalues();
+  const RealVector values = eigenvalues_of<Matrix>(view(hermitian));
   return {values.begin(), values.end()};
 }
 
@@ -227,43 +252,41 @@ ComplexMatrix condense(const ComplexMatrix& matrix, const std::vector<char>& eli
   const Matrix a = whole(kept, kept);
   if (gone.empty()) return copy_of(a);
   const Matrix b = whole(kept, gone), d = whole(gone, gone);
-  const Matrix left = a - b * pseudo_solve(d, b.adjoint());
+  const Matrix left = a - product(b, pseudo_solve(d, b.adjoint()));
   return copy_of(0.5 * (left + left.adjoint()));
 }
 
 double largest_share(const ComplexMatrix& n, const ComplexMatrix& t) {
   if (n.size == 0) return 0;
-  const Solver sum(view(n) + view(t));
-  const double smallest = zero_share * largest_magnitude(sum);
-  const Eigen::VectorXd& values = sum.eigenvalues();
-  const Eigen::Index first = std::upper_bound(values.begin(), values.end(), smallest) - values.begin();
+  const Spectrum<Matrix> sum(view(n) + view(t));
+  const RealVector& values = sum.values;
+  const Eigen::Index first =
+      std::upper_bound(values.begin(), values.end(), zero_share * sum.largest_magnitude()) - values.begin();
   const Eigen::Index count = values.size() - first;
   if (count == 0) return 0;
-  const Matrix whitened =
-      sum.eigenvectors().rightCols(count) * values.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
-  const Matrix share_t = whitened.adjoint() * view(t) * whitened;
-  const double share = Solver(share_t, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+  const Matrix whitened = sum.vectors.rightCols(count) * values.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
+  const double share = eigenvalues_of(product<Matrix>(whitened, view(t), whitened)).maxCoeff();
   return std::clamp(share, 0.0, 1.0);
 }
 
 LongWaves long_waves(const ComplexMatrix& d0, const ComplexMatrix& d1, const ComplexMatrix& d2) {
-  const Solver solver(view(d0));
-  const Eigen::VectorXd& values = solver.eigenvalues();
-  const double smallest = 1e-11 * std::max(largest_magnitude(solver), view(d2).cwiseAbs().maxCoeff() * 1e-3);
+  const Spectrum<Matrix> still(view(d0));
+  const RealVector& values = still.values;
+  const double smallest = 1e-11 * std::max(still.largest_magnitude(), view(d2).cwiseAbs().maxCoeff() * 1e-3);
   std::vector<Eigen::Index> zero, other;
   for (Eigen::Index k = 0; k < values.size(); ++k) (std::abs(values[k]) <= smallest ? zero : other).push_back(k);
-  const Matrix z = solver.eigenvectors()(Eigen::all, zero);
-  Matrix h = z.adjoint() * view(d2) * z;
+  const Matrix z = still.vectors(Eigen::all, zero);
+  Matrix h = product<Matrix>(z, view(d2), z);
   if (!other.empty()) {
-    const Matrix y = solver.eigenvectors()(Eigen::all, other).adjoint() * (view(d1) * z);
-    const Eigen::VectorXd inverse = values(other).cwiseInverse();
-    h -= y.adjoint() * inverse.asDiagonal() * y;
+    const Matrix y = product<Matrix>(still.vectors(Eigen::all, other), view(d1), z);
+    const RealVector inverse = values(other).cwiseInverse();
+    h -= product<Matrix>(y.adjoint(), inverse.asDiagonal() * y);
   }
   LongWaves result;
   if (zero.empty()) return result;
-  const Solver slow(0.5 * (h + h.adjoint()));
-  result.squared_speeds.assign(slow.eigenvalues().begin(), slow.eigenvalues().end());
-  const Matrix turned = z * slow.eigenvectors();
+  const Spectrum<Matrix> slow(0.5 * (h + h.adjoint()));
+  result.squared_speeds.assign(slow.values.begin(), slow.values.end());
+  const Matrix turned = product(z, slow.vectors);
   for (Eigen::Index k = 0; k < turned.cols(); ++k)
     result.vectors.emplace_back(turned.col(k).data(), turned.col(k).data() + turned.rows());
   return result;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/waves/lanczos.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +9,7 @@
 
 #include "equidem/core/progress.hpp"
 #include "equidem/core/random.hpp"
+#include "equidem/statics/dense_kernels.hpp"
 
 namespace equidem {
 namespace {
@@ -50,9 +51,10 @@ void solve_dense(const Operator& a, SpectrumEnd end, ExtremeEigenvalue& result) 
     a.perform_op(unit.data(), matrix.col(k).data());
   }
   result.products = a.rows();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
-  const Eigen::Index at = end == SpectrumEnd::largest ? a.rows() - 1 : 0;
-  const Eigen::VectorXd x = solver.eigenvectors().col(at);
+  std::vector<double> values(result.products);
+  dense::use_one_thread_per_call();
+  if (dense::find_spectrum(values.size(), matrix.data(), values.data(), true) != 0) return;
+  const auto x = matrix.col(end == SpectrumEnd::largest ? a.rows() - 1 : 0);
   result.vector.assign(x.begin(), x.end());
   result.converged = true;
 }
