@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""equidem reproduce sukegawa2010, as a user does: run_reproduce_sukegawa.py PROGRAM SOURCE_FOLDER [unittest options]."""
+import csv
+import json
+import signal
+import subprocess
+import time
+import unittest
+
+from program import PROGRAM, ProgramTest, equidem, parse_json
+
+SHAPES = ("discs", "ellipses", "bonded_pairs", "rigid_pairs")
+
+
+def numbers(result):
+    """Of each run what does not depend on the machine."""
+    return {run["name"]: {key: value for key, value in run.items() if key != "seconds"} for run in result["runs"]}
+
+
+class Sukegawa2010(ProgramTest):
+    def test_tables_pictures_and_going_on(self):
+        out = self.folder / "out"
+        command = ("reproduce", "sukegawa2010", "--quick", "--out", out, "--json", "-")
+        result = parse_json(self.check_done(equidem(*command)).stdout)
+        self.assertEqual(result["status"], "done")
+        self.assertEqual(len(result["runs"]), result["planned"])
+        runs = {run["name"]: run for run in result["runs"]}
+
+        for shape in SHAPES:
+            run = runs[f"{shape}_1_400gal_10Hz"]
+            self.assertLess(0.1, run["void_ratio_before"], shape)
+            self.assertLess(run["void_ratio_before"], 0.3, shape)
+            self.assertLess(run["centre_height_m"], run["centre_height_before_m"], shape)
+            for end in ("_start.png", "_filled.png"):
+                self.assertTrue((out / f"{shape}_1{end}").exists(), shape + end)
+            for name in (f"{shape}_1_400gal_10Hz_after.png", f"{shape}_1_400gal_10Hz_during.png",
+                         f"{shape}_paths.png", f"{shape}_falling_y.png", f"{shape}_shaken_angle.csv"):
+                self.assertTrue((out / name).exists(), name)
+        discs = [run["void_ratio_before"] for run in result["runs"] if run["shape"] == "discs"]
+        self.assertLess(runs["ellipses_1_400gal_10Hz"]["void_ratio_before"], min(discs))
+        self.assertGreater(runs["discs_1_1200gal_2Hz"]["largest_slope"],
+                           10 * runs["discs_1_400gal_10Hz"]["largest_slope"])
+        self.assertGreater(runs["bonded_pairs_1_400gal_10Hz"]["bond_creep"], 0)
+        self.assertIsNone(runs["rigid_pairs_1_400gal_10Hz"]["bond_creep"])
+
+        page = (out / "discs_1_1200gal_2Hz.html").read_text(encoding="utf-8")
+        self.assertTrue(page.startswith("<!DOCTYPE html>"))
+        self.assertLess(len(page), 2_000_000)
+        report = (out / "report.txt").read_text(encoding="utf-8")
+        for words in ("0.213", "0.139", "1.85 s follows from neither", "(7.2) as printed"):
+            self.assertIn(words, report)
+        with open(out / "runs.csv", newline="", encoding="utf-8") as file:
+            self.assertEqual([row["run"] for row in csv.DictReader(file)], list(runs))
+
+        # Again on one thread, with a filling and a shaking of it taken away: the same bits.
+        for name in ("discs_2.h5", "discs_2_400gal_10Hz.json", "discs_1_400gal_10Hz.json"):
+            (out / "runs" / name).unlink()
+        again = parse_json(self.check_done(equidem(*command, "--threads", "1")).stdout)
+        self.assertEqual(numbers(again), numbers(result))
+
+        # A run of other settings is not taken for one of these.
+        kept = out / "runs" / "discs_3_400gal_10Hz.json"
+        kept.write_text(json.dumps(dict(json.loads(kept.read_text(encoding="utf-8")), settings="others")),
+                        encoding="utf-8")
+        self.check_error(equidem(*command), 2, "other settings", "discs_3_400gal_10Hz.json", "--out")
+
+    def test_options_of_other_papers_are_refused(self):
+        self.check_error(equidem("reproduce", "sukegawa2010", "--rows", "5"), 2, "--rows", "sukegawa2010")
+
+    def test_interrupted_it_stops_soon_and_can_go_on(self):
+        out = self.folder / "out"
+        running = subprocess.Popen([PROGRAM, "reproduce", "sukegawa2010", "--out", str(out), "--quiet"],
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        try:
+            time.sleep(2)
+            self.assertIsNone(running.poll())
+            running.send_signal(signal.SIGINT)
+            stdout, stderr = running.communicate(timeout=60)
+        finally:
+            if running.poll() is None:
+                running.kill()
+                running.communicate()
+        self.assertEqual(running.returncode, 130, stderr)
+        self.assertEqual(stdout, "")
+        self.assertIn("same command again", stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/core/text.hpp"
+
+#include "sukegawa2010.hpp"
+
+namespace equidem::sukegawa2010 {
+namespace {
+
+/// As short as one second and two cycles.
+Shaking whole_cycles(double gal, double frequency) {
+  return {gal, frequency, std::max<std::int64_t>(2, std::llround(frequency))};
+}
+
+Run shaken(const Fill& fill, double gal, double frequency, bool shown = false) {
+  return {.fill = fill, .shaking = whole_cycles(gal, frequency), .shown = shown};
+}
+
+/// One thing changed at a time, in a smaller box.
+std::vector<Fill> variants_of(const Fill& base) {
+  const auto made = [&](const char* name, auto change) {
+    Fill fill = base;
+    change(fill);
+    fill.variant = name;
+    return fill;
+  };
+  return {made("small", [](Fill&) {}),
+          made("long", [](Fill&) {}),
+          made("half_step", [](Fill& f) { f.step_share /= 2; }),
+          made("soft", [](Fill& f) { f.softness = 9; }),
+          made("less_damping", [](Fill& f) { f.damping = 0.1; }),
+          made("printed_cap", [](Fill& f) { f.cap = FrictionCap::spring_alone, f.step_share = 0.25; }),
+          made("low_drop", [](Fill& f) { f.row_share = 0.7; }),
+          made("smooth", [](Fill& f) { f.friction = 0; }),
+          made("rough", [](Fill& f) { f.friction = 0.5; })};
+}
+
+/// Fewer grains, softer ones, fewer shakings.
+std::vector<Run> quick_plan() {
+  const Fill discs{.grid = {.columns = 8, .rows = 24}, .softness = 25};
+  const auto filled = [&](Shape shape, std::uint64_t seed) {
+    Fill fill = discs;
+    fill.shape = shape;
+    fill.seed = seed;
+    return fill;
+  };
+  std::vector<Run> runs;
+  for (const Shape shape : {Shape::disc, Shape::bonded_pair, Shape::rigid_pair, Shape::ellipse})
+    runs.push_back(shaken(filled(shape, 1), 400, 10, true));
+  for (const std::uint64_t seed : {2, 3}) runs.push_back(shaken(filled(Shape::disc, seed), 400, 10));
+  for (const Shape shape : {Shape::disc, Shape::bonded_pair}) {
+    runs.push_back(shaken(filled(shape, 1), 1200, 2, true));
+    runs.back().animated = shape == Shape::disc;
+  }
+  for (Run& run : runs)
+    run.mapped = run.fill.seed == 1 && (run.fill.shape == Shape::disc || run.fill.shape == Shape::bonded_pair);
+  return runs;
+}
+
+}  // namespace
+
+std::vector<Run> plan(bool quick) {
+  if (quick) return quick_plan();
+  std::vector<Run> runs;
+  const auto shapes = [&](std::initializer_list<Shape> of, std::uint64_t seed) {
+    for (const Shape shape : of) runs.push_back(shaken({.shape = shape, .seed = seed}, 400, 10, seed == 1));
+  };
+  // How heaps flow does not depend on how hard the grains are.
+  const auto softer = [](Shape shape) { return Fill{.shape = shape, .softness = 9, .variant = "softer"}; };
+  const auto add_mapped = [&](Run run) {
+    run.mapped = true;
+    runs.push_back(std::move(run));
+  };
+  const auto shakings = [&](Shape shape) {
+    for (const double frequency : {1, 2, 10}) {
+      for (const double gal : {1200, 800, 400}) {
+        Run run = shaken(softer(shape), gal, frequency, true);
+        run.animated = shape == Shape::disc && gal == 1200 && frequency == 1;
+        add_mapped(run);
+      }
+    }
+  };
+  shapes({Shape::disc, Shape::bonded_pair, Shape::rigid_pair, Shape::ellipse}, 1);
+  shakings(Shape::disc);
+  for (const std::uint64_t seed : {2, 3}) shapes({Shape::disc, Shape::bonded_pair}, seed);
+  shakings(Shape::bonded_pair);
+  for (const double period : {printed_period, 1.32, 0.75, 2.4, 1.6, 1.1}) {
+    add_mapped({.fill = softer(Shape::disc), .shaking = Shaking{.gal = 400, .frequency = 1 / period, .cycles = 3}});
+  }
+  const StartGrid small{.columns = 18, .rows = 34};
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    for (Fill fill : variants_of({.grid = small, .seed = seed})) {
+      runs.push_back(shaken(fill, 400, 10));
+      if (fill.variant == "long") runs.back().shaking->cycles = 50;
+    }
+  }
+  Fill pairs{.shape = Shape::bonded_pair, .grid = small, .variant = "small"};
+  runs.push_back(shaken(pairs, 400, 10));
+  runs.push_back(shaken(pairs, 0, 10));
+  pairs.bond_step *= 10;
+  pairs.variant = "weak_bonds";
+  runs.push_back(shaken(pairs, 400, 10));
+  for (const double gal : {1200, 800, 400}) add_mapped(shaken(softer(Shape::disc), gal, 5));
+  for (const std::uint64_t seed : {2, 3}) shapes({Shape::rigid_pair, Shape::ellipse}, seed);
+  return runs;
+}
+
+double cost_of(const Run& run) {
+  const double bodies = static_cast<double>(run.fill.grid.places()) / (run.fill.shape == Shape::rigid_pair ? 2 : 1);
+  const double factor = run.fill.shape == Shape::ellipse ? 5 : run.fill.shape == Shape::disc ? 1 : 1.5;
+  const double moved = run.shaking ? 0.5 + static_cast<double>(run.shaking->cycles) / run.shaking->frequency : 1.3;
+  return bodies * factor * moved / (run.fill.step_share * std::sqrt(run.fill.softness));
+}
+
+std::string plural_of(Shape shape) {
+  switch (shape) {
+    case Shape::disc:
+      return "discs";
+    case Shape::ellipse:
+      return "ellipses";
+    case Shape::bonded_pair:
+      return "bonded_pairs";
+    case Shape::rigid_pair:
+      return "rigid_pairs";
+    case Shape::clump:
+      break;
+  }
+  return "clumps";
+}
+
+std::string Fill::name() const {
+  return format("{}{}{}_{}", plural_of(shape), variant.empty() ? "" : "_", variant, seed);
+}
+
+std::string Run::name() const {
+  if (!shaking) return fill.name();
+  return format("{}_{:g}gal_{:.3g}Hz", fill.name(), shaking->gal, shaking->frequency);
+}
+
+namespace {
+
+/// Row and column, from 0.
+std::pair<std::int64_t, std::int64_t> place_of_followed(const StartGrid& grid, std::size_t k) {
+  const std::array rows{grid.rows / 6, grid.rows / 2, grid.rows * 5 / 6};
+  const std::array columns{grid.columns / 8 - 1, grid.columns / 2 - 1, grid.columns * 7 / 8 - 1};
+  return {rows[k / 3], columns[k % 3]};
+}
+
+}  // namespace
+
+std::array<std::size_t, 9> followed(const StartGrid& grid, Shape shape) {
+  std::array<std::size_t, 9> grains{};
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    const auto [row, column] = place_of_followed(grid, k);
+    grains[k] = static_cast<std::size_t>(row * grid.columns + column);
+    if (shape == Shape::rigid_pair) grains[k] /= 2;
+  }
+  return grains;
+}
+
+std::string label_of_followed(const StartGrid& grid, std::size_t k) {
+  const auto [row, column] = place_of_followed(grid, k);
+  return format("No. {}", row * grid.columns + column + 1);
+}
+
+}  // namespace equidem::sukegawa2010
