@@ -15,10 +15,10 @@ inline const std::vector<Stepping> bonding_steppings{{NormalLaw::linear_dashpot,
                                                      {NormalLaw::linear_dashpot, Scheme::velocity_verlet},
                                                      {NormalLaw::hertz_dashpot, Scheme::semi_implicit_euler},
                                                      {NormalLaw::energy_map, Scheme::semi_implicit_euler}};
-constexpr std::array both_bond_steps{GrainOptions::BondStep::exact, GrainOptions::BondStep::explicit_euler};
+inline constexpr std::array both_bond_steps{GrainOptions::BondStep::exact, GrainOptions::BondStep::explicit_euler};
 
 /// Every dashpot and spring.
-constexpr GrainBond all_of_a_bond{
+inline constexpr GrainBond all_of_a_bond{
     .normal_dashpot = 3, .tangential_dashpot = 2, .rolling_dashpot = 0.1, .normal_spring = 5, .tangential_spring = 4};
 
 /// Two unequal discs that just touch, the first at the origin, the other on the x axis.

@@ -38,6 +38,9 @@ TEST_CASE("scenes_of_shapes_that_cannot_be_stepped_are_refused") {
   CHECK_THAT(refusal(two(fine, fine)), Contains("start inside one another"));
   CHECK_THAT(refusal(two(oval({0, 0}, 2, 1), oval({0.5, 0}, 0.5, 0.1))), Contains("start inside one another"));
   CHECK_THAT(refusal(two(oval({0, 0}, 2, 1), oval({0, 1.1}, 2, 1, 1.5))), Contains("start inside one another"));
+  // needles: one runs through the other, far from the centres of both; its tip presses on the other's side
+  CHECK_THAT(refusal(two(oval({0, 0}, 2, 0.1), oval({1.2, 1.4}, 2, 0.1, 1.5))), Contains("start inside one another"));
+  CHECK(refusal(two(oval({0, 0}, 2, 0.1), oval({1.2, 2.06}, 2, 0.1, 1.5))).empty());
   // side by side, nearer than half an axis, they are not
   CHECK(refusal(two(oval({0, 0}, 2, 0.1), oval({0, 0.25}, 2, 0.1))).empty());
   for (const NormalLaw law : exact_laws) {

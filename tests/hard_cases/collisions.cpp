@@ -153,17 +153,9 @@ TEST_CASE("perfectly_plastic_and_perfectly_elastic_impacts_are_exact") {
     }
   }
   const GrainScene scene = scene_of({ball({0, 0}, 1)}, {}, one_second(NormalLaw::exact_flow, 0));
-  const Answer answer = [&] {
-    Answer result;
-    try {
-      GrainSimulation simulation(scene, options_of(NormalLaw::exact_flow, 0.1));
-    } catch (const Error& error) {
-      result.refusal = {error.what(), error.kind()};
-      result.remedy = error.remedy();
-    }
-    return result;
-  }();
-  table.refused("exact_flow, e = 0, contacts that end at zero force", answer, {"infinite dashpot", "zero overlap"});
+  table.refused("exact_flow, e = 0, contacts that end at zero force",
+                attempt([&] { GrainSimulation(scene, options_of(NormalLaw::exact_flow, 0.1)); }),
+                {"infinite dashpot", "zero overlap"});
 }
 
 TEST_CASE("steps_that_close_a_radius_and_contacts_within_a_step_are_exact") {
@@ -225,13 +217,7 @@ TEST_CASE("gravity_that_moves_a_diameter_in_a_step_is_refused") {
                                         {0, law == NormalLaw::exact_flow ? -8.0 : -2.0}),
                                options_of(law, 1));
     const Bits before = bits_of(simulation);
-    Answer answer;
-    try {
-      simulation.advance(1);
-    } catch (const Error& error) {
-      answer.refusal = {error.what(), error.kind()};
-      answer.remedy = error.remedy();
-    }
+    const Answer answer = attempt([&] { simulation.advance(1); });
     CAPTURE(to_string(law), simulation.grains()[0].position.y, simulation.grains()[0].velocity.y);
     CHECK(bits_of(simulation) == before);
     table.refused("run, the state is that before", answer, {"step 0", "floor", "Use a step below"});

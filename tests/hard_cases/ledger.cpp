@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
 #include "equidem/statics/degrees_of_freedom.hpp"
 
 #include "hard_cases/oracle.hpp"
@@ -18,8 +19,7 @@
 namespace equidem::test {
 namespace {
 
-template <typename Call>
-void answer_or_refuse(Answer& answer, Call call) {
+void answer_or_refuse(Answer& answer, const std::function<void()>& call) {
   try {
     call();
   } catch (const Error& error) {
@@ -80,6 +80,12 @@ std::string shown(double x) {
 
 }  // namespace
 
+Answer attempt(const std::function<void()>& call) {
+  Answer answer;
+  answer_or_refuse(answer, call);
+  return answer;
+}
+
 Answer solve(const Problem& problem) {
   Answer answer;
   answer_or_refuse(answer, [&] {
@@ -115,6 +121,11 @@ Answer homogenize(const Assembly& cell, const ContactSprings& springs, Rotation 
   Answer answer = homogenize(cell, springs, rotation, isotropic_stiffness(1, 1));
   return answer.refusal.message.empty() ? homogenize(cell, springs, rotation, exact_stiffness(cell, springs, rotation))
                                         : answer;
+}
+
+HardCase::HardCase(Words words) : words_(std::move(words)) {
+  const char* threads = std::getenv("EQUIDEM_HARD_CASES_THREADS");
+  if (threads != nullptr) set_thread_count(std::atoi(threads));
 }
 
 void HardCase::right(const std::string& task, const Answer& answer, double promised) {

@@ -4,6 +4,7 @@
 /// promises and measures becomes a row of data/hard_cases.md (make_table.py).
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -31,6 +32,9 @@ struct Answer {
   Refusal refusal;     ///< empty where it answered
 };
 
+/// Its refusal, if it is refused.
+Answer attempt(const std::function<void()>& call);
+
 /// Assembly under supports and loads (no tractions), against quadruple precision.
 struct Problem {
   Assembly assembly;
@@ -48,14 +52,14 @@ Answer homogenize(const Assembly& cell, const ContactSprings& springs, Rotation 
 Answer homogenize(const Assembly& cell, const ContactSprings& springs, Rotation rotation, const Matrix3& exact);
 
 /// One case of the table: collects what its tests ask of each task, checks it, and writes a row for each task to the file that
-/// EQUIDEM_HARD_CASES names.
+/// EQUIDEM_HARD_CASES names. From the first on, all cases run on as many threads as EQUIDEM_HARD_CASES_THREADS says.
 class HardCase {
  public:
   struct Words {
     std::string name;
     std::string why;  ///< it is hard
   };
-  explicit HardCase(Words words) : words_(std::move(words)) {}
+  explicit HardCase(Words words);
   ~HardCase();
   HardCase(const HardCase&) = delete;
   HardCase& operator=(const HardCase&) = delete;

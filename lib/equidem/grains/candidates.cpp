@@ -171,7 +171,12 @@ void place_walls(GrainSystem& system) {
     if (!wall.moves() && system.step > 0) continue;  // where it always was
     const Vec2 here = {wall.move_x.at(now), wall.move_y.at(now)};
     const Vec2 there = {wall.move_x.at(next), wall.move_y.at(next)};
-    system.walls[w] = {here, (there - here) / system.dt()};
+    const Vec2 velocity = (there - here) / system.dt();
+    system.walls[w] = {here, velocity, velocity};
+    if (system.options.scheme != GrainOptions::Scheme::velocity_verlet || system.step == 0) continue;
+    const double past = static_cast<double>(system.step - 1) * system.dt();
+    const Vec2 before = {wall.move_x.at(past), wall.move_y.at(past)};
+    system.walls[w].acting_velocity = (there - before) / (2 * system.dt());
   }
 }
 

@@ -35,7 +35,7 @@ void push(GrainSystem& system, const Candidate& candidate, const Meeting& meetin
     on_j.impulse += impulse;
     if constexpr (friction) on_j.torque -= meeting.lever_j * tangential;
   } else {
-    system.lost.work_of_walls -= dot(impulse, system.walls[static_cast<std::size_t>(~candidate.j)].velocity);
+    system.lost.work_of_walls -= dot(impulse, system.walls[static_cast<std::size_t>(~candidate.j)].acting_velocity);
   }
 }
 

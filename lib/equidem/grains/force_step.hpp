@@ -18,13 +18,14 @@ CollideFunction collide_function(NormalLaw law, bool friction);
 /// the step, to the second order of the step: what other forces changed in the last step of the contact they change again.
 /// \param candidate as the last step left it
 /// \param depth, unit, unit_speed overlap over the length, and the units of step.change as impulse and as speed
+/// \param eccentric the reduced mass over that of the contact points along the normal: 1 where the normal passes through both centres
 template <NormalLaw law>
 double dashpot_heat(const Candidate& candidate, const ContactStep& step, double depth, double closing, double unit,
-                    double unit_speed) {
+                    double unit_speed, double eccentric = 1) {
   const double spring = -candidate.a * depth * (law == NormalLaw::hertz_dashpot ? std::sqrt(depth) : 1.0);
   const double by_others =
-      candidate.steps > 0 ? closing - candidate.closing + candidate.impulse / candidate.reduced_mass : 0;
-  return (spring - step.change) * unit * (closing + 0.5 * (step.change * unit_speed + by_others));
+      candidate.steps > 0 ? closing - candidate.closing + eccentric * candidate.impulse / candidate.reduced_mass : 0;
+  return (spring - step.change) * unit * (closing + 0.5 * (eccentric * step.change * unit_speed + by_others));
 }
 
 /// system.next from the pushes: v' = v + a dt, x' = x + v' dt (+ the shifts of maps).

@@ -92,6 +92,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   if (self.verlet()) {
     self.push();
     count_half_a_kick(system);
+    system.lost.work_of_walls *= 0.5;
   }
   self.effects = effects_of(scene, options);
   self.potential_at_start = self.potential();

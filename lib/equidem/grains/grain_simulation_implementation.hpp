@@ -26,6 +26,7 @@ struct GrainSimulation::Implementation {
   /// Of gravity, where the velocities are.
   [[nodiscard]] double potential() const;
   [[nodiscard]] double kinetic() const;
+  [[nodiscard]] double work_ahead() const;
   /// Normal and tangential springs as they stand.
   [[nodiscard]] std::pair<double, double> elastic() const;
   [[nodiscard]] GrainLedger energy() const;

@@ -63,6 +63,8 @@ struct Candidate {
 struct WallPlace {
   Vec2 displacement;
   Vec2 velocity;  ///< mean over the step
+  /// That contacts see and walls do work with: velocity_verlet, whose forces act half in the step before, the mean over both.
+  Vec2 acting_velocity;
 };
 
 struct GrainSystem {

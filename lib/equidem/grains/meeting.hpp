@@ -50,7 +50,7 @@ inline Meeting meeting_of(const GrainSystem& system, const Candidate& candidate)
 /// Velocity of j, or of the wall, over that of i.
 inline Vec2 relative_velocity(const GrainSystem& system, const Candidate& candidate) {
   const Vec2 other = candidate.j >= 0 ? system.motions[static_cast<std::size_t>(candidate.j)].velocity
-                                      : system.walls[static_cast<std::size_t>(~candidate.j)].velocity;
+                                      : system.walls[static_cast<std::size_t>(~candidate.j)].acting_velocity;
   return other - system.motions[static_cast<std::size_t>(candidate.i)].velocity;
 }
 

@@ -75,12 +75,13 @@ class PairLists {
     const bool hertz = system_.options.law == NormalLaw::hertz_dashpot;
     near_.groups.back().dashpot[k] =
         (hertz ? 1 : 2) * candidate.strength * std::sqrt(candidate.stiffness * candidate.reduced_mass);
+    const GrainBody &bi = system_.bodies[static_cast<std::size_t>(i)],
+                    &bj = system_.bodies[static_cast<std::size_t>(j)];
+    near_.groups.back().mass[k] = bi.inverse_mass + bj.inverse_mass;
+    near_.groups.back().impulse[k] = 0;
     if (system_.friction) {
-      const GrainBody &bi = system_.bodies[static_cast<std::size_t>(i)],
-                      &bj = system_.bodies[static_cast<std::size_t>(j)];
       const double share_i = bi.radius / (bi.radius + bj.radius), share_j = bj.radius / (bi.radius + bj.radius);
       PairSlips& slips = near_.slips.back();
-      slips.mass[k] = bi.inverse_mass + bj.inverse_mass;
       slips.turning[k] = share_i * share_i * bi.inverse_moment + share_j * share_j * bj.inverse_moment;
       slips.dashpot[k] = candidate.sliding.dashpot;
       slips.stretch[k] = slips.impulse[k] = 0;
@@ -119,11 +120,11 @@ class PairLists {
   void keep() {
     const std::size_t from = lane(), to = make_room(old().i[from], old().j[from]);
     near_.groups.back().since[to] = old().since[from];
-    near_.groups.back().reach[to] = old().reach[from];
-    near_.groups.back().dashpot[to] = old().dashpot[from];
+    copy(old(), from, near_.groups.back(), to,
+         {&PairGroup::reach, &PairGroup::dashpot, &PairGroup::mass, &PairGroup::impulse});
     if (system_.friction) {
       copy(slips_[at_ / lanes_of_pairs], from, near_.slips.back(), to,
-           {&PairSlips::mass, &PairSlips::turning, &PairSlips::dashpot, &PairSlips::stretch, &PairSlips::impulse});
+           {&PairSlips::turning, &PairSlips::dashpot, &PairSlips::stretch, &PairSlips::impulse});
     }
     if (!near_.equal) {
       copy(laws_[at_ / lanes_of_pairs], from, near_.laws.back(), to,
@@ -132,8 +133,7 @@ class PairLists {
     }
     if (!records_.empty()) {
       copy(records_[at_ / lanes_of_pairs], from, near_.records.back(), to,
-           {&PairRecords::overlap, &PairRecords::closing, &PairRecords::normal_x, &PairRecords::normal_y,
-            &PairRecords::impulse});
+           {&PairRecords::overlap, &PairRecords::closing, &PairRecords::normal_x, &PairRecords::normal_y});
     }
   }
 
@@ -261,6 +261,7 @@ Candidate candidate_of(const GrainSystem& system, std::size_t p) {
   candidate.touching = near.touching(p);
   if (!candidate.touching) return candidate;
   candidate.steps = system.step - near.groups[g].since[k];
+  candidate.impulse = near.groups[g].impulse[k];
   if (system.friction) {
     candidate.stretch = near.slips[g].stretch[k];
     candidate.tangential_impulse = near.slips[g].impulse[k];
@@ -270,7 +271,6 @@ Candidate candidate_of(const GrainSystem& system, std::size_t p) {
     candidate.overlap = records.overlap[k];
     candidate.closing = records.closing[k];
     candidate.normal = {records.normal_x[k], records.normal_y[k]};
-    candidate.impulse = records.impulse[k];
   }
   return candidate;
 }
@@ -287,12 +287,12 @@ void take_near_pairs(GrainSystem& system, const std::vector<Candidate>& contacts
     lists.add(contact.i, contact.j);
     const std::size_t k = (near.count - 1) % lanes_of_pairs;
     near.groups.back().since[k] = system.step - contact.steps;
+    near.groups.back().impulse[k] = contact.impulse;
     PairRecords& records = near.records.back();
     records.overlap[k] = contact.overlap;
     records.closing[k] = contact.closing;
     records.normal_x[k] = contact.normal.x;
     records.normal_y[k] = contact.normal.y;
-    records.impulse[k] = contact.impulse;
     if (!system.friction) continue;
     near.slips.back().stretch[k] = contact.stretch;
     near.slips.back().impulse[k] = contact.tangential_impulse;

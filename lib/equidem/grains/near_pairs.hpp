@@ -41,11 +41,12 @@ struct alignas(64) PairGroup {
   std::int64_t since[lanes_of_pairs];  ///< step before the first of the contact; `apart`: none; `unused`: no pair
   PairLanes reach;                     ///< r_i + r_j, m
   PairLanes dashpot;                   ///< normal; N s/m, hertz: N s/m^(5/4)
+  PairLanes mass;                      ///< 1/m_i + 1/m_j
+  PairLanes impulse;                   ///< normal, of the last step, N s
 };
 
-/// The same pairs with friction. Mobility of the contact: mass + turning * distance².
+/// The same pairs with friction. Mobility of the contact: PairGroup::mass + turning * distance².
 struct alignas(64) PairSlips {
-  PairLanes mass;     ///< 1/m_i + 1/m_j
   PairLanes turning;  ///< (r_i²/I_i + r_j²/I_j)/(r_i + r_j)²
   PairLanes dashpot;  ///< N s/m
   PairLanes stretch;  ///< m
@@ -66,7 +67,7 @@ struct alignas(64) PairLaws {
 
 /// What contacts() tells of the last step.
 struct alignas(64) PairRecords {
-  PairLanes overlap, closing, normal_x, normal_y, impulse;
+  PairLanes overlap, closing, normal_x, normal_y;
 };
 
 struct NearPairs {

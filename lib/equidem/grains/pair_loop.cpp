@@ -156,14 +156,17 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairB
   }
   const Lanes force = only(touch, larger(elastic + drag, law.least));
   const Lanes impulse = force * dt;
-  const Lanes mean_closing = -(m[5] * nx + m[6] * ny);
+  // of the mean over the step the part of this contact is known, not only that of the last step
+  const Lanes mass = load(group.mass);
+  const Lanes mean_closing = 0.5 * mass * (load(group.impulse) - impulse) - (m[5] * nx + m[6] * ny);
+  store(impulse, group.impulse);
   const Lanes normal_loss = only(touch, (force - elastic) * mean_closing * dt);
   sums.deepest = larger(deep, sums.deepest);
   Lanes px = impulse * nx, py = impulse * ny;
   Half row[8];
   if constexpr (friction) {
     const Lanes stretch = load(slips->stretch);
-    const Lanes half = 0.5 * (load(slips->mass) + load(slips->turning) * square);
+    const Lanes half = 0.5 * (mass + load(slips->turning) * square);
     const Lanes share = distance / reach;
     // without this contact's own part in it
     const Lanes middle = (m[6] * nx - m[5] * ny) - share * m[7] - half * load(slips->impulse);
@@ -188,7 +191,6 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairB
     store(closing, records->closing);
     store(nx, records->normal_x);
     store(ny, records->normal_y);
-    store(impulse, records->impulse);
   }
   // of both bodies the rim is pushed the same way round, and its lever is the radius
   const HalfChoice turned = {0, 0, 0, minus};

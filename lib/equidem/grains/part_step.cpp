@@ -35,7 +35,7 @@ struct Contact {
 [[gnu::always_inline]] inline Vec2 relative_velocity(const GrainSystem& system, const Contact& contact) {
   const GrainMotion& motion = system.motions[contact.i()];
   const Vec2 of_i = motion.velocity + motion.spin * perpendicular(contact.meeting.arm_i);
-  if (!contact.body_j) return system.walls[static_cast<std::size_t>(~contact.candidate.j)].velocity - of_i;
+  if (!contact.body_j) return system.walls[static_cast<std::size_t>(~contact.candidate.j)].acting_velocity - of_i;
   const GrainMotion& other = system.motions[contact.j()];
   return other.velocity + other.spin * perpendicular(contact.meeting.arm_j) - of_i;
 }
@@ -51,6 +51,18 @@ struct Contact {
     inverse += contact.body_j->inverse_mass + lever_j * lever_j * contact.body_j->inverse_moment;
   }
   return 1 / inverse;
+}
+
+/// (1/m' of the contact points along the normal)/(1/m of the centres); see collide_parts_function.
+[[gnu::always_inline]] inline double eccentricity(const Contact& contact) {
+  const PartMeeting& meeting = contact.meeting;
+  const double lever_i = cross(meeting.arm_i, meeting.normal);
+  double inverse = lever_i * lever_i * contact.body_i.inverse_moment;
+  if (contact.body_j) {
+    const double lever_j = cross(meeting.arm_j, meeting.normal);
+    inverse += lever_j * lever_j * contact.body_j->inverse_moment;
+  }
+  return 1 + contact.candidate.reduced_mass * inverse;
 }
 
 /// What the pushes of the step before and gravity add in a step to the slip of a contact, its own tangential force aside.
@@ -98,7 +110,8 @@ struct Contact {
     on_j.impulse += impulse;
     on_j.torque += cross(contact.meeting.arm_j, impulse);
   } else {
-    system.lost.work_of_walls -= dot(impulse, system.walls[static_cast<std::size_t>(~contact.candidate.j)].velocity);
+    system.lost.work_of_walls -=
+        dot(impulse, system.walls[static_cast<std::size_t>(~contact.candidate.j)].acting_velocity);
   }
 }
 
@@ -128,7 +141,8 @@ void collide_parts(GrainSystem& system) {
     const auto normal_step = law == NormalLaw::hertz_dashpot ? hertz_dashpot_step : linear_dashpot_step;
     const ContactStep step = normal_step(depth, sigma, candidate.a, candidate.strength, candidate.attraction);
     const double unit = candidate.reduced_mass * unit_speed;
-    system.lost.lost_dashpot += dashpot_heat<law>(candidate, step, depth, closing, unit, unit_speed);
+    system.lost.lost_dashpot +=
+        dashpot_heat<law>(candidate, step, depth, closing, unit, unit_speed, eccentricity(contact));
     candidate.touching = true;
     ++candidate.steps;
     candidate.overlap = meeting.overlap;

@@ -50,6 +50,16 @@ void check_arcs(const GrainScene& scene, const Grain& grain, std::size_t i) {
   }
 }
 
+/// \param branch from the centre of p to that of q
+bool run_through_one_another(const GrainPart& p, Vec2 axis_p, const GrainPart& q, Vec2 axis_q, Vec2 branch) {
+  const double skew = cross(axis_p, axis_q);
+  if (skew == 0) return false;
+  const auto reaches = [](const GrainPart& part, double along) {
+    return std::abs(along) < part.a - part.b * part.b / part.a;
+  };
+  return reaches(p, cross(branch, axis_q) / skew) && reaches(q, cross(branch, axis_p) / skew);
+}
+
 }  // namespace
 
 void check_shape(const GrainScene& scene, std::size_t i) {
@@ -101,7 +111,8 @@ bool are_inside_one_another(const GrainScene& scene, const Grain& a, const Grain
   return std::any_of(of_a.begin(), of_a.end(), [&](const GrainPart& p) {
     return std::any_of(of_b.begin(), of_b.end(), [&](const GrainPart& q) {
       const Vec2 branch = b.position - a.position + (offset_of(q, axis_b) - offset_of(p, axis_a));
-      return holds(p, axis_a, branch) || holds(q, axis_b, branch);
+      return holds(p, axis_a, branch) || holds(q, axis_b, branch) ||
+             run_through_one_another(p, axis_a, q, axis_b, branch);
     });
   });
 }

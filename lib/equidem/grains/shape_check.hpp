@@ -14,7 +14,8 @@ void check_shape(const GrainScene& scene, std::size_t grain);
 /// \throws Error (bad_input): laws that ellipses and clumps cannot have, spheres among them
 void check_laws_of_shapes(const GrainScene& scene, const GrainOptions& options);
 
-/// Whether a part of one grain has its centre in a part of the other; of discs: whether the centre of one is in the other.
+/// Whether a part of one grain has its centre in a part of the other, or ellipses run through one another: the lines between the centres
+/// of curvature of their tips cross. Of discs: whether the centre of one is in the other.
 bool are_inside_one_another(const GrainScene& scene, const Grain& a, const Grain& b);
 
 /// Whether a centre of a part is behind a wall or on it.
