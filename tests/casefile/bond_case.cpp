@@ -88,7 +88,15 @@ TEST_CASE("a_file_of_bonds_ties_grains_by_number") {
   const GrainCase made = parsed(table);
   REQUIRE(made.bonds.bonds.size() == 2);
   CHECK((made.bonds.bonds[1].i == 1 && made.bonds.bonds[1].j == 2 && made.bonds.bonds[1].normal_dashpot == 1));
-  for (const auto& [text, said] : {std::pair{"a,b\n0,1\n", ":1: the first two columns are not i and j"},
+  write("i,j,distance_drift,normal_spring,normal_dashpot\n0,1,0.5,7,3\n1,2,0,,\n");
+  const GrainCase own = parsed(table);
+  REQUIRE(own.bonds.bonds.size() == 2);
+  CHECK((own.bonds.bonds[0].normal_dashpot == 3 && own.bonds.bonds[0].normal_spring == 7));
+  CHECK((own.bonds.bonds[1].normal_dashpot == 1 && own.bonds.bonds[1].normal_spring == 0));
+  for (const auto& [text, said] : {std::pair{"i,j,normal_dashpot\n0,1,-1\n", ":2: '-1' is no normal_dashpot"},
+                                   std::pair{"i,j,normal_dashpot\n0,1,inf\n", ":2: 'inf' is no normal_dashpot"},
+                                   std::pair{"i,j,normal_dashpot\n0,1,0\n", ":2: the bond has no dashpot"},
+                                   std::pair{"a,b\n0,1\n", ":1: the first two columns are not i and j"},
                                    std::pair{"i,j\n0,one\n", ":2: 'one' is no number of a grain"},
                                    std::pair{"i,j\n0,7\n", ":2: there is no grain 7"},
                                    std::pair{"i,j\n0,1\n1,0\n", ":3: grains 1 and 0 are tied twice"},

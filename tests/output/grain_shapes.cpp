@@ -4,7 +4,9 @@
 #include "equidem/casefile/grain_shapes.hpp"
 
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -149,5 +151,9 @@ TEST_CASE("pictures_of_clumps_and_ellipses_are_written") {
   const Bodies bodies;
   CHECK(write_grain_picture(folder.path(), "shapes", {.grains = bodies.grains, .clumps = bodies.shapes.clumps()}, false)
             .size() == 2);
-  CHECK(read_file(folder / "shapes.svg").find("matrix") == std::string::npos);  // lines as wide as elsewhere
+  const std::string picture = read_file(folder / "shapes.svg");
+  CHECK(picture.find("matrix") == std::string::npos);  // lines as wide as elsewhere
+  // one tie to each disc of a clump, of the width of no other line here
+  const std::regex tie("stroke-width[:=]\"?2[;\"]");
+  CHECK(std::distance(std::sregex_iterator(picture.begin(), picture.end(), tie), {}) == 2 + 2 + 3);
 }

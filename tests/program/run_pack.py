@@ -129,7 +129,9 @@ class Shapes(PackTest):
 
     def test_what_a_shape_cannot_be_is_told_with_its_line(self):
         self.check_error(equidem("pack", ELLIPSES, "--set", "packing.shape.aspect=0.5"), 2, "aspect")
-        self.check_error(equidem("pack", ELLIPSES, "--set", "packing.shape.kind=clump"), 2, "discs")
+        self.check_error(equidem("pack", ELLIPSES, "--set", "packing.shape.kind=clump"), 2, "aspect", "clump")
+        self.check_error(equidem("pack", ELLIPSES, "--set", "packing.shape.kind=clump", "--set",
+                                 "packing.shape.aspect=none"), 2, "discs")
         self.check_error(equidem("pack", ELLIPSES, "--set", "packing.method=insertion"), 2, "insertion")
         self.check_error(equidem("pack", PAIRS, "--set", "settling.gravity=0"), 2, "gravity")
 

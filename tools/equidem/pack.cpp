@@ -36,7 +36,10 @@ void check_outputs(const CommonOptions& common, const PackCase& resolved) {
     plan.expect("assembly.json");
     if (!resolved.packing.box.periodic()) plan.expect("assembly_with_walls.json");
   }
-  if (resolved.csv) plan.expect("grains.csv");
+  if (resolved.csv) {
+    plan.expect("grains.csv");
+    if (resolved.packing.shape.kind == PackingShape::Kind::bonded_pair) plan.expect("bonds.csv");
+  }
   if (resolved.picture) plan.expect("picture.png");
 }
 
@@ -59,6 +62,7 @@ void write_files(const CommonOptions& common, const PackCase& resolved, const Gr
     const std::vector<std::string> groups(packing.grains.size(), "grains");
     const std::vector<double> densities(packing.grains.size(), settling.density);
     write_grain_csv(folder / "grains.csv", {packing.grains, packing.clumps, groups, densities}, common.overwrite);
+    if (!packing.bonds.empty()) write_bond_csv(folder / "bonds.csv", packing.bonds, {}, common.overwrite);
   }
   if (packing.shape == PackingShape::Kind::disc) {
     write_assembly(folder / "assembly.json", network_of(packing, settling.springs), common.overwrite);
@@ -70,7 +74,12 @@ void write_files(const CommonOptions& common, const PackCase& resolved, const Gr
   if (resolved.picture) {
     const std::vector<GrainWall> walls = walls_of(packing.box);
     write_grain_picture(folder, "picture",
-                        {.title = resolved.title, .grains = packing.grains, .clumps = packing.clumps, .walls = walls},
+                        {.title = resolved.title,
+                         .time = packing.settling.time,
+                         .grains = packing.grains,
+                         .clumps = packing.clumps,
+                         .bonds = packing.bonds,
+                         .walls = walls},
                         common.overwrite);
   }
   write_file(folder / "case.toml", to_toml(resolved.document, folder), common.overwrite);
@@ -129,6 +138,12 @@ Run declare_pack(CLI::App& command) {
   auto common = std::make_shared<CommonOptions>();
   add_common_options(command, *common);
   command.get_option("--seed")->description("short for --set packing.seed=S");
+  command.footer(
+      "Examples:\n"
+      "  equidem pack data/cases/pack_jammed.toml --out jammed      a cell for homogenize, stability, calibrate\n"
+      "  equidem pack data/cases/pack_soil.toml --set packing.grains=300 --out soil      discs that fell\n"
+      "  equidem pack data/cases/pack_ellipses.toml --out ellipses\n"
+      "  equidem pack data/cases/pack_pairs.toml --set packing.shape.kind=bonded_pair --out pairs");
   return [common] { return run(*common); };
 }
 

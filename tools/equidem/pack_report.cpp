@@ -77,7 +77,7 @@ std::string describe_packing(const PackCase& resolved, const GrainPacking& packi
         "", rest->confirmation
                 ? format("statics on the same contacts would move nothing further than {:.2g} of the mean overlap",
                          rest->confirmation->share())
-                : format("statics cannot judge the same contacts: {}", rest->why_not));
+                : format("statics does not confirm it: {}", rest->why_not));
     const BondReport& bonds = settling.bonds;
     if (bonds.number > 0) {
       out += report_line("bonds",

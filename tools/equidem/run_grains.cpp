@@ -93,7 +93,7 @@ void write_state(const std::filesystem::path& folder, const GrainSetup& setup, c
     write_grain_contact_csv(folder / "contacts.csv", simulation.contacts(), resolved.walls, resolved.body, overwrite);
   }
   if (resolved.output.csv && !resolved.bonds.bonds.empty())
-    write_bond_csv(folder / "bonds.csv", simulation.bond_drifts(), overwrite);
+    write_bond_csv(folder / "bonds.csv", resolved.bonds.bonds, simulation.bond_drifts(), overwrite);
   if (resolved.output.picture) {
     write_grain_picture(folder, "picture",
                         {.title = resolved.title,

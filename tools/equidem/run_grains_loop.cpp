@@ -39,7 +39,10 @@ std::string checksum_of(const GrainCase& resolved) {
       sum.add(value);
   }
   for (const GrainBond& bond : resolved.bonds.bonds)
-    for (const std::size_t grain : {bond.i, bond.j}) sum.add(static_cast<double>(grain));
+    for (const double value :
+         {static_cast<double>(bond.i), static_cast<double>(bond.j), bond.normal_dashpot, bond.tangential_dashpot,
+          bond.rolling_dashpot, bond.normal_spring, bond.tangential_spring})
+      sum.add(value);
   for (const Clump& clump : resolved.clumps)
     for (const Clump::Disc& disc : clump.discs)
       for (const double value : {disc.offset.x, disc.offset.y, disc.radius}) sum.add(value);

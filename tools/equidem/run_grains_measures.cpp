@@ -8,6 +8,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/fields/coarse_fields.hpp"
 #include "equidem/output/csv.hpp"
 
 #include "csv_cells.hpp"
@@ -47,6 +48,13 @@ std::vector<double> cells_of(const MeasuredMoment& m) {
           static_cast<double>(m.outside)};
 }
 
+/// When the box begins to shake, s.
+double start_of_shaking(const GrainCase& resolved) {
+  if (!resolved.shaking) return 0;
+  const Schedule& motion = resolved.shaking->motion.displacement;
+  return motion.kind == Schedule::Kind::cycles ? motion.start : motion.times.front();
+}
+
 /// Rows of numbers of a table that the program wrote.
 std::vector<std::vector<double>> rows_of(const std::filesystem::path& path, std::size_t columns) {
   auto cells = csv_cells(read_file(path));
@@ -66,9 +74,11 @@ std::vector<std::vector<double>> rows_of(const std::filesystem::path& path, std:
 GrainMeasures::GrainMeasures(const GrainCase& resolved)
     : resolved_(resolved),
       start_(box_of(resolved.walls, resolved.grains, 0)),
+      shaken_from_(start_of_shaking(resolved)),
       diameter_(mean_diameter(resolved.grains, resolved.clumps)),
       columns_(resolved.measures->columns),
       throws_(resolved.grains.size()) {
+  check_cells();
   if (columns_ > 0) return;
   double largest = 0;
   for (const Grain& grain : resolved.grains) largest = std::max(largest, grain.radius);
@@ -77,8 +87,24 @@ GrainMeasures::GrainMeasures(const GrainCase& resolved)
   columns_ = static_cast<std::size_t>(std::clamp(fitting, 2.0, most));
 }
 
+/// Before the run, not after it.
+void GrainMeasures::check_cells() const {
+  if (!resolved_.measures->cell) return;
+  try {
+    static_cast<void>(grid_over(start_.inside, *resolved_.measures->cell));
+  } catch (const Error& error) {
+    throw error.at(resolved_.where("measures.cell"));
+  }
+}
+
 Vec2 GrainMeasures::displacement(double time) const {
   return resolved_.shaking ? resolved_.shaking->motion.displacement.at(time) * resolved_.shaking->direction : Vec2{};
+}
+
+const MeasuredMoment& GrainMeasures::before() const {
+  const auto later = std::find_if(moments_.begin() + 1, moments_.end(),
+                                  [this](const MeasuredMoment& moment) { return moment.time > shaken_from_; });
+  return *(later - 1);
 }
 
 void GrainMeasures::open(const std::filesystem::path& folder, bool overwrite,
@@ -109,11 +135,10 @@ void GrainMeasures::go_on(std::int64_t after) {
                         .ever_thrown = static_cast<std::int64_t>(row[10]),
                         .outside = static_cast<std::int64_t>(row[11])});
   }
-  const auto profiles = rows_of(folder_ / "surface.csv", columns_ + 2);
-  if (!profiles.empty()) {
-    const double width = (start_.inside.high.x - start_.inside.low.x) / static_cast<double>(columns_);
-    first_ = {start_.inside.low.x, width, {profiles.front().begin() + 2, profiles.front().end()}};
-  }
+  const double width = (start_.inside.high.x - start_.inside.low.x) / static_cast<double>(columns_);
+  for (const auto& row : rows_of(folder_ / "surface.csv", columns_ + 2))
+    if (!moments_.empty() && static_cast<std::int64_t>(row[0]) == before().step)
+      before_ = {start_.inside.low.x, width, {row.begin() + 2, row.end()}};
   for (const auto& row : rows_of(folder_ / "thrown.csv", 3)) {
     const auto step = static_cast<std::int64_t>(row[1]);
     if (step <= after) throws_.at(static_cast<std::size_t>(row[0])) = Throw{step, row[2]};
@@ -144,7 +169,7 @@ void GrainMeasures::record(std::int64_t step, double time, const std::vector<Gra
                      heap);
   last_.left = start_.inside.low.x;
   for (double& height : last_.heights) height -= moved.y;
-  if (moments_.empty()) first_ = last_;
+  if (moments_.empty() || time <= shaken_from_) before_ = last_;
   moment.surface = shape_of(last_);
   moment.centre = centre_of_mass(grains) - moved;
   for (std::size_t g = 0; g < grains.size(); ++g) {

@@ -47,7 +47,7 @@ class GrainMeasures {
   /// For the report, after the last step.
   [[nodiscard]] std::string describe() const;
   void add_to(JsonObject& object) const;
-  /// surface_plot: the surface at the start and at the end; void_ratio_plot; fields where asked for.
+  /// surface_plot: the surface before and at the end; void_ratio_plot; fields where asked for.
   void write_files(const std::filesystem::path& folder, const GrainSimulation& simulation, bool overwrite) const;
 
  private:
@@ -59,15 +59,19 @@ class GrainMeasures {
   };
   [[nodiscard]] Vec2 displacement(double time) const;
   [[nodiscard]] Sloshing sloshing() const;
+  /// The last moment before the shaking begins; without [shaking] the start of the run.
+  [[nodiscard]] const MeasuredMoment& before() const;
+  void check_cells() const;
   void go_on(std::int64_t after);
   void write_thrown() const;
 
   const GrainCase& resolved_;
-  GrainBox start_;       ///< the box at t = 0
-  double diameter_ = 0;  ///< mean, m
+  GrainBox start_;          ///< the box at t = 0
+  double shaken_from_ = 0;  ///< s
+  double diameter_ = 0;     ///< mean, m
   std::size_t columns_ = 0;
   std::vector<MeasuredMoment> moments_;
-  SurfaceProfile first_, last_;
+  SurfaceProfile before_, last_;
   struct Throw {
     std::int64_t step = 0;
     double time = 0;

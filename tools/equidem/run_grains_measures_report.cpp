@@ -53,12 +53,12 @@ GrainMeasures::Sloshing GrainMeasures::sloshing() const {
   Sloshing result;
   result.period = result.theory = unknown;
   const double width = start_.inside.high.x - start_.inside.low.x;
-  const double depth = moments_.front().surface.height - start_.inside.low.y, gravity = -resolved_.gravity.y;
+  const double depth = before().surface.height - start_.inside.low.y, gravity = -resolved_.gravity.y;
   if (gravity > 0 && depth > 0 && width > 0) result.theory = sloshing_period(width, depth, gravity);
   // Free motion says more than what is forced: two periods of it suffice.
   const double end = end_of_shaking(resolved_), last = moments_.back().time;
   const bool free = !std::isnan(result.theory) && last - end >= 2 * result.theory;
-  result.from = free ? end : 0;
+  result.from = free ? end : before().time;
   std::vector<double> times, slopes;
   for (const MeasuredMoment& moment : moments_) {
     if (moment.time < result.from || std::isnan(moment.surface.slope)) continue;
@@ -80,12 +80,15 @@ GrainMeasures::Sloshing GrainMeasures::sloshing() const {
 }
 
 std::string GrainMeasures::describe() const {
-  const MeasuredMoment& before = moments_.front();
+  const MeasuredMoment& before = this->before();
   const MeasuredMoment& after = moments_.back();
-  std::string out = report_line(
-      "void ratio", format("e = {} before, {} after (porosity {}, {}), {}", shown(before.void_ratio),
-                           shown(after.void_ratio), shown(before.porosity), shown(after.porosity),
-                           resolved_.measures->region ? "in the region given" : "away from walls and surface"));
+  std::string out;
+  if (resolved_.shaking)
+    out += report_line("measured", format("before, at t = {:.4g} s, and after, at {:.4g} s", before.time, after.time));
+  out += report_line("void ratio",
+                     format("e = {} before, {} after (porosity {}, {}), {}", shown(before.void_ratio),
+                            shown(after.void_ratio), shown(before.porosity), shown(after.porosity),
+                            resolved_.measures->region ? "in the region given" : "away from walls and surface"));
   out += report_line("surface", format("height {} before, {} after; slope {}, {}; roughness {}, {}",
                                        shown(before.surface.height, " m"), shown(after.surface.height, " m"),
                                        shown(before.surface.slope), shown(after.surface.slope),
@@ -113,7 +116,7 @@ std::string GrainMeasures::describe() const {
 }
 
 void GrainMeasures::add_to(JsonObject& object) const {
-  const MeasuredMoment& before = moments_.front();
+  const MeasuredMoment& before = this->before();
   const MeasuredMoment& after = moments_.back();
   const Sloshing slosh = sloshing();
   JsonObject period;
@@ -124,6 +127,7 @@ void GrainMeasures::add_to(JsonObject& object) const {
       .set("frequency_resolution", slosh.frequency_resolution);
   JsonObject measures;
   measures.set("mean_diameter", diameter_)
+      .set("time", before_and_after(before.time, after.time))
       .set("void_ratio", before_and_after(before.void_ratio, after.void_ratio))
       .set("porosity", before_and_after(before.porosity, after.porosity))
       .set("surface_height", before_and_after(before.surface.height, after.surface.height))
@@ -152,7 +156,7 @@ void GrainMeasures::write_files(const std::filesystem::path& folder, const Grain
       }
       plot.series.push_back(std::move(series));
     };
-    add(first_, moments_.front().time, PlotColour::sky_blue);
+    add(before_, before().time, PlotColour::sky_blue);
     add(last_, moments_.back().time, PlotColour::vermilion);
     write_plot(folder, "surface_plot", plot, overwrite);
     Series ratio{.label = "", .colour = PlotColour::blue, .column = "void_ratio"};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -80,13 +81,33 @@ class Pairs {
   std::map<std::pair<std::int64_t, std::int64_t>, std::string> places_;
 };
 
-/// Rows "i,j"; the first row names the columns, others are passed over.
+bool ties(const GrainBond& bond) {
+  return std::any_of(std::begin(strengths), std::end(strengths), [&](const Strength& s) { return bond.*s.value > 0; });
+}
+
+constexpr const char* no_strength = "it would tie nothing";
+constexpr const char* give_strength = "Add normal_dashpot and tangential_dashpot to [bonds]";
+
+/// The strengths that the cells after i and j give, by the names of the columns; null for others, which are passed over.
+std::vector<const Strength*> strengths_of_columns(std::string_view row) {
+  std::vector<const Strength*> columns;
+  while (!row.empty()) {
+    const std::string_view name = next_cell(row);
+    const auto known =
+        std::find_if(std::begin(strengths), std::end(strengths), [&](const Strength& s) { return name == s.key; });
+    columns.push_back(known == std::end(strengths) ? nullptr : known);
+  }
+  return columns;
+}
+
+/// Rows "i,j,..." under a row of names.
 void read_file_of_bonds(const fs::path& path, const GrainBond& common, Pairs& pairs, BondCase& result) {
   const std::string content = read_file(path);
   std::string_view rest = content;
   constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
   if (rest.starts_with(byte_order_mark)) rest.remove_prefix(byte_order_mark.size());
   bool heading = true;
+  std::vector<const Strength*> columns;
   for (int line = 1; !rest.empty(); ++line) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
     std::string_view row = trimmed(rest.substr(0, end));
@@ -95,9 +116,11 @@ void read_file_of_bonds(const fs::path& path, const GrainBond& common, Pairs& pa
     const std::string where = format("{}:{}", path.string(), line);
     const std::string_view left = next_cell(row), right = next_cell(row);
     if (std::exchange(heading, false)) {
-      if (left == "i" && right == "j") continue;
-      throw Error(ErrorKind::bad_input, "the first two columns are not i and j", "they say which grains are tied",
-                  "Begin the file with i,j", where);
+      if (left != "i" || right != "j")
+        throw Error(ErrorKind::bad_input, "the first two columns are not i and j", "they say which grains are tied",
+                    "Begin the file with i,j", where);
+      columns = strengths_of_columns(row);
+      continue;
     }
     std::int64_t grains[2] = {};
     for (const auto& [cell, number] : {std::pair{left, &grains[0]}, std::pair{right, &grains[1]}}) {
@@ -106,7 +129,18 @@ void read_file_of_bonds(const fs::path& path, const GrainBond& common, Pairs& pa
       throw Error(ErrorKind::bad_input, format("'{}' is no number of a grain", cell), "grains are counted 0, 1, 2, ...",
                   "Correct it", where);
     }
-    pairs.add(common, grains[0], grains[1], where, result);
+    GrainBond bond = common;
+    for (const Strength* strength : columns) {
+      const std::string_view cell = next_cell(row);
+      if (strength == nullptr || cell.empty()) continue;
+      double& value = bond.*strength->value;
+      const auto [stop, problem] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+      if (problem == std::errc() && stop == cell.data() + cell.size() && std::isfinite(value) && value >= 0) continue;
+      throw Error(ErrorKind::bad_input, format("'{}' is no {}", cell, strength->key), "a number >= 0 is needed",
+                  "Correct it", where);
+    }
+    if (!ties(bond)) throw Error(ErrorKind::bad_input, "the bond has no dashpot", no_strength, give_strength, where);
+    pairs.add(bond, grains[0], grains[1], where, result);
   }
 }
 
@@ -116,13 +150,6 @@ GrainBond strengths_of(const TomlValue& table, GrainBond bond) {
     if (const auto given = optional_number(table, strength.key)) bond.*strength.value = *given;
   return bond;
 }
-
-bool ties(const GrainBond& bond) {
-  return std::any_of(std::begin(strengths), std::end(strengths), [&](const Strength& s) { return bond.*s.value > 0; });
-}
-
-constexpr const char* no_strength = "it would tie nothing";
-constexpr const char* give_strength = "Add normal_dashpot and tangential_dashpot to [bonds]";
 
 }  // namespace
 
@@ -134,8 +161,8 @@ std::vector<KeySpec> bond_keys() {
        .type = KeyType::path,
        .fallback = none,
        .help =
-           "a CSV file whose first two columns i, j number the grains that are tied; bonds.csv of a run can be read "
-           "back"},
+           "a CSV file whose first two columns i, j number the grains that are tied; columns named like the keys below "
+           "say how, instead of these; bonds.csv of run and pack can be read back"},
       {.table = "bonds",
        .name = "step",
        .type = KeyType::choice,
@@ -173,7 +200,6 @@ BondCase read_bonds(TomlValue& root, const fs::path& folder, std::size_t grains)
     const TomlValue* step = table->find("step");
     if (step != nullptr && step->text == "explicit") result.step = GrainOptions::BondStep::explicit_euler;
     if (TomlValue* path = table->find("path")) {
-      if (!ties(common)) fail_at(*path, "bonds.path", "bonds have no dashpot", no_strength, give_strength);
       const fs::path file = opened(path->text, folder);
       try {
         read_file_of_bonds(file, common, pairs, result);

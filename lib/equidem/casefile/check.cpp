@@ -35,7 +35,11 @@ class Checker {
     check_schema();
     check_table("", root_);
     for (const TableSpec& table : spec_.tables) {
-      if (root_.find(table.name) != nullptr) continue;
+      const std::string name = table.name;
+      const std::size_t dot = name.find('.');
+      TomlValue* parent = dot == std::string::npos ? &root_ : root_.find(name.substr(0, dot));
+      const std::string leaf = dot == std::string::npos ? name : name.substr(dot + 1);
+      if (parent == nullptr || parent->find(leaf) != nullptr) continue;
       if (table.required) {
         throw Error(ErrorKind::bad_input, "missing table", format("it describes {}", table.help),
                     format("Add [{}]", table.name), format("{}: [{}]", root_.where(), table.name));
@@ -44,7 +48,7 @@ class Checker {
         TomlValue added;
         added.source = root_.source;
         check_table(table.name, added);
-        root_.entries.emplace_back(table.name, std::move(added));
+        parent->entries.emplace_back(leaf, std::move(added));
       }
     }
   }

@@ -193,6 +193,10 @@ ShakingCase read_shaking(TomlValue& root, const fs::path& folder, double run_dur
   } else {
     read_harmonic(table, run_duration, shaking);
   }
+  constexpr double fastest = 3e8;  // light
+  if (!(shaking.motion.peak_velocity < fastest))
+    fail_at(table, "shaking", format("the box would move with {:.3g} m/s", shaking.motion.peak_velocity),
+            format("nothing is faster than {:.0e} m/s", fastest), "Give a smaller acceleration, or check the units");
   bool any = false;
   const auto& tables = repeated(root, "wall");
   for (std::size_t k = 0; k < walls.size(); ++k) {

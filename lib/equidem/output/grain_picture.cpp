@@ -176,6 +176,15 @@ void draw_clump(Canvas& canvas, const PageFrame& frame, const Grain& grain, std:
   }
 }
 
+/// What ties the discs of a clump: from its mass centre to their centres.
+void draw_ties(Canvas& canvas, const PageFrame& frame, const Grain& grain, std::span<const Clump::Disc> discs,
+               const Colour& colour) {
+  constexpr double width = 2;
+  for (const Clump::Disc& disc : discs)
+    canvas.line(frame.to_page(grain.position), frame.to_page(grain.position + turned(disc.offset, grain.angle)), width,
+                colour);
+}
+
 /// A mark shows how far a grain has turned, where any has: of a disc from the centre to the edge, of an ellipse along the long
 /// half-axis, of a clump in its first disc.
 void draw_grains(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
@@ -193,6 +202,7 @@ void draw_grains(Canvas& canvas, const PageFrame& frame, const GrainPicture& pic
     if (grain.shape() == GrainShape::clump) {
       const auto discs = discs_of(picture, grain);
       draw_clump(canvas, frame, grain, discs, fill, edge, outlined ? width : 0);
+      if (outlined) draw_ties(canvas, frame, grain, discs, edge);
       mark_from = frame.to_page(grain.position + turned(discs[0].offset, grain.angle));
       mark = discs[0].radius * frame.scale;
     } else {
@@ -209,7 +219,6 @@ void draw_grains(Canvas& canvas, const PageFrame& frame, const GrainPicture& pic
   }
 }
 
-/// Of bodies that are no discs only the places are known: a circle in the middle.
 void draw_bonds(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
   constexpr double widest = 4;  // units
   for (const GrainBond& bond : picture.bonds) {
@@ -219,6 +228,7 @@ void draw_bonds(Canvas& canvas, const PageFrame& frame, const GrainPicture& pict
   }
 }
 
+/// Of bodies that are no discs only the places are known: a circle in the middle.
 void draw_starts(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
   if (picture.paths.empty()) return;
   for (std::size_t g = 0; g < picture.grains.size(); ++g) {

@@ -95,12 +95,23 @@ void write_grain_energy_csv(const std::filesystem::path& path, std::span<const G
   write_file(path, text.text(), overwrite);
 }
 
-void write_bond_csv(const std::filesystem::path& path, std::span<const BondDrift> bonds, bool overwrite) {
-  CsvText text({"i", "j", "distance_drift", "slip_drift", "roll_rad"}, bonds.size());
-  for (const BondDrift& bond : bonds) {
+void write_bond_csv(const std::filesystem::path& path, std::span<const GrainBond> bonds,
+                    std::span<const BondDrift> drifts, bool overwrite) {
+  assert(drifts.empty() || drifts.size() == bonds.size());
+  std::vector<std::string> columns{
+      "i", "j", "normal_dashpot", "tangential_dashpot", "rolling_dashpot", "normal_spring", "tangential_spring"};
+  if (!drifts.empty())
+    for (const char* name : {"distance_drift", "slip_drift", "roll_rad"}) columns.emplace_back(name);
+  CsvText text(columns, bonds.size());
+  for (std::size_t b = 0; b < bonds.size(); ++b) {
+    const GrainBond& bond = bonds[b];
     text.cell(static_cast<std::int64_t>(bond.i));
     text.cell(static_cast<std::int64_t>(bond.j));
-    for (const double value : {bond.distance, bond.slip, bond.roll}) text.cell(value);
+    for (const double value : {bond.normal_dashpot, bond.tangential_dashpot, bond.rolling_dashpot, bond.normal_spring,
+                               bond.tangential_spring})
+      text.cell(value);
+    if (!drifts.empty())
+      for (const double value : {drifts[b].distance, drifts[b].slip, drifts[b].roll}) text.cell(value);
     text.end_row();
   }
   write_file(path, text.text(), overwrite);

@@ -39,9 +39,12 @@ void write_grain_contact_csv(const std::filesystem::path& path, std::span<const 
 void write_grain_energy_csv(const std::filesystem::path& path, std::span<const GrainEnergySample> energies, Body body,
                             bool overwrite);
 
-/// One row per bond: i, j, and its drift since the start: distance_drift, slip_drift (over the sum of the radii), roll_rad. A case file
-/// reads i and j back with [bonds] path.
+/// One row per bond: i, j, normal_dashpot, tangential_dashpot, rolling_dashpot, normal_spring, tangential_spring (units: GrainBond), and where
+/// `drifts` are given what each has drifted since the start: distance_drift, slip_drift (over the sum of the radii), roll_rad. A case
+/// file reads it back with [bonds] path; springs are then as long as the bonds are there.
+/// \param drifts of the same bonds in the same order, or none
 /// \throws Error (bad_input) as write_file does
-void write_bond_csv(const std::filesystem::path& path, std::span<const BondDrift> bonds, bool overwrite);
+void write_bond_csv(const std::filesystem::path& path, std::span<const GrainBond> bonds,
+                    std::span<const BondDrift> drifts, bool overwrite);
 
 }  // namespace equidem

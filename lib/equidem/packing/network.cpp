@@ -94,7 +94,7 @@ std::vector<char> held_by_two(const std::vector<PackingContact>& contacts, std::
 
 void check_network(const GrainPacking& packing) {
   if (packing.shape == PackingShape::Kind::disc) return;
-  bad_input(format("the network of contacts of {}s is asked for", noun_of(packing.shape)),
+  bad_input(format("contacts of {}s make no network for statics", noun_of(packing.shape)),
             packing.shape == PackingShape::Kind::bonded_pair
                 ? "dashpots tie them, and at rest these carry nothing"
                 : "their contacts lie off the line of their centres, and statics knows contacts of discs only",
