@@ -33,8 +33,7 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
       ->required()
       ->type_name("FILE");
   command
-      .add_option("--set", options.set,
-                  "set a key of the case file, such as springs.kT=0.3e9, or take it out: KEY=none; repeatable")
+      .add_option("--set", options.set, "set a key of the case, as springs.kT=0.3e9; KEY=none takes it out; repeatable")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
   command.add_option("--seed", options.seed, "short for --set assembly.seed=S")->type_name("S");

@@ -39,20 +39,6 @@ Assembly build_cell(Case resolved, std::int64_t discs, std::uint64_t seed) {
   return build_assembly(resolved);
 }
 
-HomogenizedCell homogenize_cell(const Case& resolved, std::int64_t discs, std::uint64_t seed) {
-  const Assembly assembly = build_cell(resolved, discs, seed);
-  const BuiltSprings springs = build_springs(resolved, assembly);
-  const EffectiveStiffness effective = effective_stiffness(assembly, springs.springs, options_of(resolved));
-  if (effective.unstable_modes != 0) {
-    computation_failed(effective.unstable_modes > 0 ? "the cell is unstable" : "the stability of the cell is not known",
-                       effective.unstable_modes > 0
-                           ? format("it would give way by {}", counted(effective.unstable_modes, "mode"))
-                           : "this solver does not count negative pivots",
-                       effective.unstable_modes > 0 ? "Use a larger kT" : "Set solver.method = \"auto\"");
-  }
-  return {static_cast<std::int64_t>(assembly.size()), effective_moduli(effective.stiffness)};
-}
-
 /// The case but for sizes and samples, of which more may be asked later.
 std::string continued_part(CommonOptions options, const std::filesystem::path& folder) {
   options.set.emplace_back("ensemble={discs = [3], samples = 2}");
@@ -88,40 +74,15 @@ std::vector<EnsembleSample> with_kept(const std::vector<EnsembleSample>& done,
   return result;
 }
 
-void check_outputs(CommonOptions options, bool resume) {
-  OutputPlan(options).expect_json();
-  options.overwrite = options.overwrite || resume;
-  const OutputPlan plan(options);
-  for (const char* name : {samples_name, statistics_name, case_name, "result.json"}) plan.expect(name);
-  for (const char* name : ensemble_plot_names)
-    for (const char* end : {".csv", ".gp", ".svg", ".png"}) plan.expect(std::string(name) + end);
-}
-
-/// Title, what is sampled, springs and effects; those of the first cell stand for all.
-struct Preamble {
-  std::string text;
-  Effects effects;
-};
-Preamble describe_plan(const Case& resolved, const EnsemblePlan& plan, double confidence) {
-  const Assembly first = build_cell(resolved, plan.discs.front(), plan.first_seed);
-  const BuiltSprings springs = build_springs(resolved, first);
-  Preamble preamble{.text = resolved.title.empty() ? "" : resolved.title + "\n\n",
-                    .effects = derive_effects(springs.springs, resolved.rotation)};
+std::string describe_plan(const EnsemblePlan& plan, double confidence) {
   std::string sizes;
   for (const std::int64_t discs : plan.discs) sizes += format("{}{}", sizes.empty() ? "" : ", ", discs);
-  preamble.text +=
-      report_line("ensemble", format("{} of {} discs each, seeds {} to {}; intervals of {:.4g} % confidence",
-                                     counted(plan.samples, "cell"), sizes, plan.first_seed,
-                                     plan.first_seed + static_cast<std::uint64_t>(plan.samples) - 1, 100 * confidence));
-  preamble.text += report_line(
-      "cells", format("{}, points = \"{}\", boundary = \"{}\"", first.kind,
-                      to_string(resolved.assembly.delaunay.points), to_string(options_of(resolved).boundary)));
-  preamble.text += report_line("springs", springs.report + (resolved.material ? " (of the first cell)" : ""));
-  preamble.text += report_line("effects", preamble.effects.report());
-  return preamble;
+  return format("{} of {} discs each, seeds {} to {}; intervals of {:.4g} % confidence", counted(plan.samples, "cell"),
+                sizes, plan.first_seed, plan.first_seed + static_cast<std::uint64_t>(plan.samples) - 1,
+                100 * confidence);
 }
 
-int dry_run(const CommonOptions& options, const EnsemblePlan& plan, const Preamble& preamble) {
+int dry_run(const CommonOptions& options, const EnsemblePlan& plan, const EnsemblePreamble& preamble) {
   std::string text = preamble.text;
   std::vector<std::int64_t> unknowns;
   for (const std::int64_t discs : plan.discs) {
@@ -140,6 +101,42 @@ int dry_run(const CommonOptions& options, const EnsemblePlan& plan, const Preamb
 
 }  // namespace
 
+HomogenizedCell homogenize_cell(const Case& resolved, std::int64_t discs, std::uint64_t seed) {
+  const Assembly assembly = build_cell(resolved, discs, seed);
+  const BuiltSprings springs = build_springs(resolved, assembly);
+  const EffectiveStiffness effective = effective_stiffness(assembly, springs.springs, options_of(resolved));
+  if (effective.unstable_modes != 0) {
+    computation_failed(effective.unstable_modes > 0 ? "the cell is unstable" : "the stability of the cell is not known",
+                       effective.unstable_modes > 0
+                           ? format("it would give way by {}", counted(effective.unstable_modes, "mode"))
+                           : "this solver does not count negative pivots",
+                       effective.unstable_modes > 0 ? "Use a larger kT" : "Set solver.method = \"auto\"");
+  }
+  return {static_cast<std::int64_t>(assembly.size()), effective_moduli(effective.stiffness)};
+}
+
+void check_ensemble_outputs(const CommonOptions& options) {
+  OutputPlan(options).expect_json();
+  const OutputPlan plan(options);
+  for (const char* name : {samples_name, statistics_name, case_name, "result.json"}) plan.expect(name);
+  for (const char* name : ensemble_plot_names)
+    for (const char* end : {".csv", ".gp", ".svg", ".png"}) plan.expect(std::string(name) + end);
+}
+
+EnsemblePreamble describe_cells(const Case& resolved, std::int64_t discs, std::uint64_t seed, const std::string& plan) {
+  const Assembly first = build_cell(resolved, discs, seed);
+  const BuiltSprings springs = build_springs(resolved, first);
+  EnsemblePreamble preamble{.text = resolved.title.empty() ? "" : resolved.title + "\n\n",
+                            .effects = derive_effects(springs.springs, resolved.rotation)};
+  if (!plan.empty()) preamble.text += report_line("ensemble", plan);
+  preamble.text += report_line(
+      "cells", format("{}, points = \"{}\", boundary = \"{}\"", first.kind,
+                      to_string(resolved.assembly.delaunay.points), to_string(options_of(resolved).boundary)));
+  preamble.text += report_line("springs", springs.report + (resolved.material ? " (of the first cell)" : ""));
+  preamble.text += report_line("effects", preamble.effects.report());
+  return preamble;
+}
+
 int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool resume) {
   const EnsembleCase& asked = *resolved.ensemble;
   EnsembleResult result{
@@ -148,9 +145,14 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
       .accuracy = asked.accuracy,
       .samples = {},
       .statistics = {}};
-  const Preamble preamble = describe_plan(resolved, result.plan, asked.confidence);
-  if (options.dry_run) return dry_run(options, result.plan, preamble);
-  check_outputs(options, resume);
+  const EnsemblePlan& plan = result.plan;
+  const EnsemblePreamble preamble =
+      describe_cells(resolved, plan.discs.front(), plan.first_seed, describe_plan(plan, asked.confidence));
+  if (options.dry_run) return dry_run(options, plan, preamble);
+  CommonOptions written = options;
+  written.overwrite = options.overwrite || resume;
+  OutputPlan(options).expect_json();
+  check_ensemble_outputs(written);
   const std::vector<EnsembleSample> kept = samples_to_keep(options, resume);
 
   const auto& folder = options.out;

@@ -3,6 +3,7 @@
 /// equidem homogenize: the stiffness of the continuum that an assembly stands for.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -23,6 +24,7 @@
 #include "ensemble.hpp"
 #include "homogenized.hpp"
 #include "report.hpp"
+#include "solve_accuracy.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
@@ -31,6 +33,7 @@ namespace {
 struct Options {
   CommonOptions common;
   bool resume = false;
+  std::optional<double> accuracy;
 };
 
 /// Discs up to which the bounds that need a solution of their own are found unasked.
@@ -246,6 +249,13 @@ int dry_run(const CommonOptions& options, const Problem& problem) {
 int homogenize(const Options& options) {
   const CommonOptions& common = options.common;
   Case resolved = read_case(common);
+  refuse_dry_run_with_accuracy(common, options.accuracy.has_value());
+  if (options.accuracy && resolved.assembly.kind == AssemblyKind::delaunay) {
+    if (options.resume)
+      bad_input("--resume and --accuracy exclude each other", "what is sampled follows from the samples",
+                "Run it anew");
+    return homogenize_to_accuracy(common, resolved, *options.accuracy);
+  }
   if (resolved.ensemble) return homogenize_ensemble(common, resolved, options.resume);
   if (options.resume) {
     throw Error(ErrorKind::bad_input, "--resume has nothing to continue", "the case has no [ensemble]",
@@ -256,17 +266,28 @@ int homogenize(const Options& options) {
   if (common.dry_run) return dry_run(common, problem);
 
   Homogenized homogenized = homogenize(problem);
+  std::optional<ReachedAccuracy> reached;
+  if (options.accuracy) {
+    const EffectiveStiffness& result = homogenized.result;
+    double largest = 0;
+    for (const auto& row : result.stiffness)
+      for (const double entry : row) largest = std::max(largest, std::abs(entry));
+    reached =
+        solver_accuracy(*options.accuracy, result.error_bound / largest, result.condition, homogenized.times.total());
+  }
   if (common.out) {
     Stopwatch watch;
     write_states(common, homogenized);
     write_file(*common.out / "case.toml", to_toml(problem.resolved, *common.out), common.overwrite);
     homogenized.times.add("files", watch.lap());
   }
-  const std::string report = describe_problem(problem, homogenized.result.effects) + describe_homogenized(homogenized);
+  std::string report = describe_problem(problem, homogenized.result.effects) + describe_homogenized(homogenized);
+  if (reached) report += describe_accuracy(*reached);
   JsonObject object;
   add_common(object, homogenized.status(), report, homogenized.times, homogenized.result.effects);
   add_homogenized(object, homogenized);
   object.set("strain_of_states", written_strain);
+  if (reached) add_accuracy(object, *reached);
   deliver(common, report, object);
   if (common.out) {
     const bool states = !homogenized.result.fluctuations.empty();
@@ -284,11 +305,15 @@ Run declare_homogenize(CLI::App& command) {
   add_common_options(command, options->common);
   command.add_flag("--resume", options->resume,
                    "with [ensemble]: keep the samples that lie in --out, compute the others");
+  add_accuracy_option(
+      command, options->accuracy,
+      "random cells: the size and number that tell the moduli to X; else: fail unless the error is below X");
   command.footer(
       "Examples:\n"
       "  equidem homogenize data/cases/random_cell.toml\n"
       "  equidem homogenize data/cases/random_cell.toml --set effects.rotation=restrained\n"
-      "  equidem homogenize data/cases/random_cell.toml --set springs.kT=0.2e9 --out result --json -");
+      "  equidem homogenize data/cases/random_cell.toml --set springs.kT=0.2e9 --out result --json -\n"
+      "  equidem homogenize data/cases/random_cell.toml --accuracy 0.01     as many cells, as large as 1 % needs");
   return [options] { return homogenize(*options); };
 }
 

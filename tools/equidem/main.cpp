@@ -97,6 +97,11 @@ int parse_failure(const CLI::App& verb, const CLI::ParseError& error) {
     std::vector<std::string> options;
     for (const CLI::Option* option : verb.get_options()) options.push_back(option->get_name());
     for (const std::string& extra : verb.remaining()) {
+      if (extra == "--accuracy" || extra.starts_with("--accuracy=")) {
+        return usage_error(format("'equidem {}' takes no --accuracy", verb.get_name()),
+                           "it has no setting that could be chosen for one",
+                           "solve, homogenize, run and study do; 'equidem study --list' shows what accuracy costs");
+      }
       if (extra.starts_with("-")) {
         const auto meant = nearest(extra, options);
         return usage_error(format("unknown option '{}'", extra), "",

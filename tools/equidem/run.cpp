@@ -17,6 +17,7 @@
 #include "equidem/output/vtk.hpp"
 
 #include "command.hpp"
+#include "run_accuracy.hpp"
 #include "run_grains.hpp"
 #include "run_loop.hpp"
 #include "run_report.hpp"
@@ -29,6 +30,7 @@ namespace {
 struct Options {
   CommonOptions common;
   bool resume = false;
+  std::optional<double> accuracy;
 };
 
 void check_outputs(const Options& options, const Case& resolved) {
@@ -111,9 +113,25 @@ int relax_to_rest(const Options& options, const RunSetup& setup) {
   return 0;
 }
 
-int run(const Options& options) {
-  const CommonOptions& common = options.common;
-  if (describes_grains(common.case_file, common.set)) return run_grains(common, options.resume);
+int run(Options options) {
+  CommonOptions& common = options.common;
+  refuse_dry_run_with_accuracy(common, options.accuracy.has_value());
+  if (describes_grains(common.case_file, common.set)) {
+    if (options.accuracy) {
+      bad_input("--accuracy does not act on bodies that collide",
+                "their motions do not converge by one order with the step: impacts begin and end within it",
+                "'equidem study collision_laws' shows the error of each law against the step");
+    }
+    return run_grains(common, options.resume);
+  }
+  std::optional<ReachedAccuracy> reached;
+  if (options.accuracy) {
+    if (options.resume)
+      bad_input("--resume and --accuracy exclude each other", "the step is that of the checkpoint",
+                "Leave one of them out");
+    check_outputs(options, read_case(common));
+    reached = choose_step(common, *options.accuracy);
+  }
   Case resolved = read_case(common);
   check_outputs(options, resolved);
   const bool goes_on = options.resume && resolved.run && resolved.run->duration;
@@ -135,10 +153,12 @@ int run(const Options& options) {
     write_energy_plot(*common.out, setup, result, overwrite);
     times.add("files", watch.lap());
   }
-  const std::string report = describe_run_setup(setup, simulation) + describe_run(setup, simulation, result, times);
+  std::string report = describe_run_setup(setup, simulation) + describe_run(setup, simulation, result, times);
+  if (reached) report += describe_accuracy(*reached);
   JsonObject object;
   add_common(object, "done", report, times, simulation.effects());
   add_run(object, setup, simulation, result);
+  if (reached) add_accuracy(object, *reached);
   CommonOptions delivered = common;
   delivered.overwrite = common.overwrite || options.resume;
   deliver(delivered, report, object);
@@ -152,6 +172,8 @@ Run declare_run(CLI::App& command) {
   const auto options = std::make_shared<Options>();
   add_common_options(command, options->common);
   command.add_flag("--resume", options->resume, "go on from the checkpoint in --out");
+  add_accuracy_option(command, options->accuracy,
+                      "bonded discs: the time step that tells the displacements at the end to X");
   command.footer(
       "Examples:\n"
       "  equidem run data/cases/run_tension.toml                    to rest: the answer of 'equidem solve'\n"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// equidem solve: equilibrium under supports and loads, or Abe's tension test.
+#include <algorithm>
 #include <map>
 #include <memory>
 
@@ -15,6 +16,7 @@
 #include "command.hpp"
 #include "problem.hpp"
 #include "report.hpp"
+#include "solve_accuracy.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
@@ -152,7 +154,21 @@ int dry_run(const CommonOptions& options, const Problem& problem) {
   return 0;
 }
 
-int solve(const CommonOptions& options) {
+/// The worst of all load cases.
+ReachedAccuracy bound_of(const std::vector<SolvedCase>& results, double accuracy, double seconds) {
+  const auto worst = std::max_element(results.begin(), results.end(), [](const SolvedCase& a, const SolvedCase& b) {
+    return a.equilibrium.error_bound < b.equilibrium.error_bound;
+  });
+  return solver_accuracy(accuracy, worst->equilibrium.error_bound, worst->equilibrium.condition, seconds);
+}
+
+int solve(CommonOptions options, const std::optional<double>& accuracy) {
+  refuse_dry_run_with_accuracy(options, accuracy.has_value());
+  std::optional<ReachedAccuracy> reached;
+  if (accuracy) {
+    check_outputs(options, read_case(options));
+    reached = choose_block(options, *accuracy);
+  }
   Case resolved = read_case(options);
   check_outputs(options, resolved);
   const Problem problem = build_problem(std::move(resolved));
@@ -180,7 +196,9 @@ int solve(const CommonOptions& options) {
   }
 
   const Effects& effects = solver.effects();
-  const std::string report = describe_problem(problem, effects) + describe_results(problem, results, times);
+  std::string report = describe_problem(problem, effects) + describe_results(problem, results, times);
+  if (accuracy && !reached) reached = bound_of(results, *accuracy, times.total());
+  if (reached) report += describe_accuracy(*reached);
   JsonObject object;
   add_common(object, results.front().status(), report, times, effects);
   add_problem(object, problem);
@@ -196,6 +214,7 @@ int solve(const CommonOptions& options) {
     }
     object.set("load_cases", cases);
   }
+  if (reached) add_accuracy(object, *reached);
   deliver(options, report, object);
   if (options.out) say(options, format("written to {}", options.out->string()));
   return 0;
@@ -205,13 +224,17 @@ int solve(const CommonOptions& options) {
 
 Run declare_solve(CLI::App& command) {
   const auto options = std::make_shared<CommonOptions>();
+  const auto accuracy = std::make_shared<std::optional<double>>();
   add_common_options(command, *options);
+  add_accuracy_option(command, *accuracy,
+                      "tension test of a lattice: the size that tells nu to X; else: fail unless the error is below X");
   command.footer(
       "Examples:\n"
       "  equidem solve data/cases/abe1996_fig6.toml\n"
       "  equidem solve data/cases/cantilever.toml --out result      tables, picture, files for ParaView\n"
-      "  equidem solve data/cases/abe1996_fig6.toml --set springs.kT=0 --json -");
-  return [options] { return solve(*options); };
+      "  equidem solve data/cases/abe1996_fig6.toml --set springs.kT=0 --json -\n"
+      "  equidem solve data/cases/abe1996_fig6.toml --accuracy 1e-3    the size of the block that tells nu to 1e-3");
+  return [options, accuracy] { return solve(*options, *accuracy); };
 }
 
 }  // namespace equidem

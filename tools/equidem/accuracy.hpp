@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// --accuracy X of the verbs: what was asked, what is estimated to be reached, and what ten times more would cost.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "equidem/output/json.hpp"
+
+#include "command.hpp"
+
+namespace equidem {
+
+/// A setting of the verb, by its keys in the case file.
+using AccuracySetting = std::vector<std::pair<std::string, double>>;
+
+struct ReachedAccuracy {
+  double requested = 0;
+  double estimated = 0;
+  std::string of;         ///< what the numbers are errors of, and from what
+  std::string knob;       ///< what was chosen, in words; empty: there was nothing to choose
+  AccuracySetting value;  ///< what it was set to
+  /// What a tenth of the error asked for would take.
+  struct TenTimesMore {
+    double time_factor = 1;  ///< times the time of what was chosen
+    double seconds = 0;      ///< by that
+    AccuracySetting value;
+    std::string note;  ///< said in its place, where nothing would have to be done or could be done; may be empty
+  } ten_times_more;
+};
+
+/// --accuracy X, 0 < X < 1. \param what it does
+void add_accuracy_option(CLI::App& command, std::optional<double>& accuracy, const std::string& what);
+
+/// \throws Error (bad_input) where both are given: settings are chosen by computing, and a dry run computes nothing
+void refuse_dry_run_with_accuracy(const CommonOptions& options, bool accuracy);
+
+std::string describe_accuracy(const ReachedAccuracy& reached);
+/// accuracy: {requested, estimated, of, knob, value, ten_times_more: {time_factor, seconds, value, note}}.
+void add_accuracy(JsonObject& object, const ReachedAccuracy& reached);
+
+}  // namespace equidem
