@@ -37,8 +37,10 @@ def compare(bench, quick, rounds):
             solvers = ["equidem", "cholmod-metis", "cholmod-amd"]
             call([bench, "--discs", discs, "--kinds", "hexagonal", "--solvers", ",".join(solvers), "--threads", "1,2", "--repetitions", 1,
                   "--json", file], OMP_THREAD_LIMIT="2")
-            for run in json.loads(file.read_text())["comparisons"][0]["measurements"]:
-                found["ours"].setdefault(f"{run['solver']}, {run['threads']}", []).append(run)
+            for run in json.loads(file.read_text())["comparisons"][0]["series"]:
+                total = sum(run[stage][0] for stage in ("order", "analyze", "factorize", "solve"))
+                one = {"total": total, "residual": run["residual"][0]}
+                found["ours"].setdefault(f"{run['solver']}, {run['threads']}", []).append(one)
             tell(f"matrix: round {k + 1} of {rounds}")
     return found
 
