@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// A run that was saved goes on as if it had never stopped.
+#include "grains/resuming.hpp"
 #include "grains/scenes.hpp"
 #include "support/catch.hpp"
 
@@ -9,28 +10,8 @@ using namespace equidem::test;
 
 TEST_CASE("a_run_saved_at_any_step_goes_on_with_the_same_bits") {
   const Stepping stepping = GENERATE(from_range(all_steppings));
-  const GrainScene scene = busy_box(stepping.law, 3, 3, 21);
-  const GrainOptions options = options_of(stepping, 0.01);
-  constexpr int last = 120;
-  GrainSimulation whole(scene, options);
-  std::vector<GrainState> states;
-  std::vector<Bits> seen;
-  for (int k = 0; k < last; ++k) {
-    states.push_back(whole.save());
-    seen.push_back(bits_of(whole));
-    whole.advance(1);
-  }
-  REQUIRE(whole.counters().contacts > 10);
-  const Bits end = bits_of(whole);
-  for (int k = 0; k < last; ++k) {
-    CAPTURE(stepping.name(), k, states[static_cast<std::size_t>(k)].contacts.size());
-    GrainSimulation resumed(scene, options);
-    resumed.restore(states[static_cast<std::size_t>(k)]);
-    REQUIRE(bits_of(resumed) == seen[static_cast<std::size_t>(k)]);
-    resumed.advance(last - k);
-    REQUIRE(bits_of(resumed) == end);
-    CHECK(resumed.counters().contacts == whole.counters().contacts);
-  }
+  CAPTURE(stepping.name());
+  check_resuming(busy_box(stepping.law, 3, 3, 21), options_of(stepping, 0.01), 120);
 }
 
 TEST_CASE("a_simulation_that_has_run_can_be_taken_back") {

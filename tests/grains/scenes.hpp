@@ -129,7 +129,7 @@ inline Bits bits_of(const GrainSimulation& simulation) {
   }
   const GrainLedger l = simulation.energy();
   add({l.kinetic, l.elastic_normal, l.elastic_tangential, l.potential, l.lost_restitution, l.lost_dashpot, l.lost_slip,
-       l.lost_tangential_dashpot, l.lost_release, l.work_of_walls, l.initial});
+       l.lost_tangential_dashpot, l.lost_release, l.work_of_walls, l.initial, l.elastic_bond, l.lost_bond});
   return {std::move(bits)};
 }
 

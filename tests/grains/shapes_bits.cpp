@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// What must not change a bit with ellipses and clumps: order, margin, saving.
+#include "grains/resuming.hpp"
 #include "grains/shapes.hpp"
 #include "support/catch.hpp"
 
@@ -55,27 +56,8 @@ TEST_CASE("the_margin_changes_no_bit_of_ellipses_and_clumps") {
 
 TEST_CASE("ellipses_and_clumps_saved_at_any_step_go_on_with_the_same_bits") {
   const Stepping stepping = GENERATE(from_range(force_steppings));
-  const GrainScene scene = mixed_box(stepping.law, 3, 3, 73);
-  const GrainOptions options = options_of(stepping, 0.01);
-  constexpr int last = 120;
-  GrainSimulation whole(scene, options);
-  std::vector<GrainState> states;
-  std::vector<Bits> seen;
-  for (int k = 0; k < last; ++k) {
-    states.push_back(whole.save());
-    seen.push_back(bits_of(whole));
-    whole.advance(1);
-  }
-  REQUIRE(whole.counters().contacts > 10);
-  const Bits end = bits_of(whole);
-  for (int k = 0; k < last; ++k) {
-    CAPTURE(stepping.name(), k);
-    GrainSimulation resumed(scene, options);
-    resumed.restore(states[static_cast<std::size_t>(k)]);
-    REQUIRE(bits_of(resumed) == seen[static_cast<std::size_t>(k)]);
-    resumed.advance(last - k);
-    REQUIRE(bits_of(resumed) == end);
-  }
+  CAPTURE(stepping.name());
+  check_resuming(mixed_box(stepping.law, 3, 3, 73), options_of(stepping, 0.01), 120);
 }
 
 TEST_CASE("an_ellipse_slides_over_a_joint_of_segments_as_over_one") {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
@@ -45,15 +44,6 @@ void check(const SettlingOptions& options) {
                      options.time_step),
               "the ratio lies between 1e-12 and 1, times are positive", "Correct it");
   }
-}
-
-/// Damping ratios of a contact of two discs: c = 2 h sqrt(m k) (2.27) over 2 sqrt(m' k), m' the mass that the contact moves: m/2
-/// along the normal, by 1 + m r²/I smaller along the tangent.
-double normal_damping(double damping) {
-  return damping * std::numbers::sqrt2;
-}
-double tangential_damping(double damping) {
-  return normal_damping(damping) * std::sqrt(1 + 1 / moment_of_disc);
 }
 
 /// The longest arm that a force along the normal has about the centre of a body, m.
@@ -131,20 +121,19 @@ GrainScene scene_of_box(double width, const SettlingOptions& options) {
   scene.walls = walls_of_box(width);
   scene.gravity = {0, -options.gravity};
   scene.kinds = 2;
-  // At a wall the mass that the contact moves is that of the body.
-  const auto pair = [&](double share, double friction) {
+  const auto pair = [&](bool at_wall, double friction) {
+    const ContactDamping damping = contact_damping_of(options.damping, at_wall, moment_of_disc);
     PairProperties made;
     made.stiffness = options.springs.kN;
-    made.restitution =
-        restitution_of(normal_damping(options.damping) * std::sqrt(0.5 / share), ContactEnd::at_zero_force);
+    made.restitution = restitution_of(damping.normal, ContactEnd::at_zero_force);
     made.friction = friction;
     if (friction > 0 && options.springs.kT > 0) {
       made.tangential_ratio = options.springs.ratio();
-      made.tangential_damping = tangential_damping(options.damping) * std::sqrt(0.5 / share);
+      made.tangential_damping = damping.tangential;
     }
     return made;
   };
-  const PairProperties bodies = pair(0.5, options.friction), walls = pair(1, options.wall_friction);
+  const PairProperties bodies = pair(false, options.friction), walls = pair(true, options.wall_friction);
   scene.pairs = {bodies, walls, walls, walls};
   return scene;
 }

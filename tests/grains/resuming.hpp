@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A run saved at any of its steps goes on with the same bits.
+#pragma once
+
+#include <vector>
+
+#include "grains/scenes.hpp"
+#include "support/catch.hpp"
+
+namespace equidem::test {
+
+inline void check_resuming(const GrainScene& scene, const GrainOptions& options, int last) {
+  GrainSimulation whole(scene, options);
+  std::vector<GrainState> states;
+  std::vector<Bits> seen;
+  for (int k = 0; k < last; ++k) {
+    states.push_back(whole.save());
+    seen.push_back(bits_of(whole));
+    whole.advance(1);
+  }
+  REQUIRE(whole.counters().contacts > 10);
+  const Bits end = bits_of(whole);
+  for (int k = 0; k < last; ++k) {
+    CAPTURE(k, states[static_cast<std::size_t>(k)].contacts.size());
+    GrainSimulation resumed(scene, options);
+    resumed.restore(states[static_cast<std::size_t>(k)]);
+    REQUIRE(bits_of(resumed) == seen[static_cast<std::size_t>(k)]);
+    resumed.advance(last - k);
+    REQUIRE(bits_of(resumed) == end);
+    CHECK(resumed.counters().contacts == whole.counters().contacts);
+  }
+}
+
+}  // namespace equidem::test
