@@ -305,3 +305,50 @@ TEST_CASE("a_file_cut_off_anywhere_is_refused") {
     CHECK(sentence.find("line ") != std::string::npos);
   }
 }
+
+TEST_CASE("contacts_off_the_line_of_centres_survive_a_file_bit_for_bit_and_what_is_amiss_is_named") {
+  const std::string head = R"({"schema": "equidem-assembly/1", "discs": [[0, 0, 1], [2, 0.5, 1]], )";
+  const std::string contacts = R"("contacts": [[0, 1, 0, 0], [1, 0, 0, 0]], )";
+  const std::string arms = R"("levers": [[1.25, 0.75], [1.5, 0.5]], "normals": [[1, 0], [-1, 0]], )";
+  const std::string offsets = R"("offsets": [[0.7, -0.2], [1.1, -0.6]])";
+  const std::string sections = R"(, "sections": [[3, 1.5], [3.1, 1.7]])";
+  const Assembly assembly = read_text(head + contacts + arms + offsets + sections + "}");
+  REQUIRE(assembly.contact_arms.size() == 2);
+  CHECK(assembly.contact_arms[1].normal == Vec2{-1, 0});
+  CHECK(assembly.contact_arms[0].offset_j == -0.2);
+  CHECK(assembly.sections[1].polar_moment == 1.7);
+  CHECK(assembly.solid_fraction() == Approx(6.1 / assembly.area()).epsilon(1e-15));
+
+  Assembly odd = assembly;
+  odd.centres[1] = {2 + 1.0 / 3, 0.5 - 1e-17};
+  odd.contact_arms[0].normal = {std::cos(0.3), std::sin(0.3)};
+  const Vec2 n = odd.contact_arms[0].normal, l = odd.centres[1];
+  odd.contacts[0].lever_i = dot(l, n) + 0.1, odd.contacts[0].lever_j = -0.1;
+  odd.contact_arms[0].offset_i = dot(l, perpendicular(n)) - 0.3, odd.contact_arms[0].offset_j = 0.3;
+  odd.contacts[1].lever_i = odd.centres[1].x - 0.5;
+  const TemporaryFolder folder;
+  write_assembly(folder / "odd.json", odd, false);
+  const Assembly again = read_assembly(folder / "odd.json");
+  for (std::size_t c = 0; c < 2; ++c) {
+    CHECK(again.contacts[c].lever_j == odd.contacts[c].lever_j);
+    CHECK(again.contact_arms[c].normal == odd.contact_arms[c].normal);
+    CHECK(again.contact_arms[c].offset_i == odd.contact_arms[c].offset_i);
+    CHECK(again.contact_arms[c].offset_j == odd.contact_arms[c].offset_j);
+    CHECK(again.sections[c].area == odd.sections[c].area);
+    CHECK(again.sections[c].polar_moment == odd.sections[c].polar_moment);
+  }
+
+  CHECK_THAT(refusal(head + contacts + arms + R"("title": ""})"), Catch::Contains("'offsets' is missing"));
+  CHECK_THAT(refusal(head + contacts + offsets + "}"), Catch::Contains("'levers' is missing"));
+  CHECK_THAT(refusal(head + contacts + arms + R"("offsets": [[0.7, -0.2]]})"),
+             Catch::Contains("1 entry for 2 contacts"));
+  CHECK_THAT(refusal(head + contacts + arms + R"("offsets": [[0.7, -0.2], [1.1, -0.5]]})"),
+             Catch::Contains("contact 1") && Catch::Contains("apart at their ends"));
+  CHECK_THAT(refusal(head + contacts + arms + offsets + R"(, "sections": [[3, 1.5]]})"),
+             Catch::Contains("1 entry for 2 discs"));
+  CHECK_THAT(refusal(head + R"("sections": [[3, 1.5], [3, 1.5]]})"), Catch::Contains("sections but no contacts"));
+  // The same place twice, from either end.
+  CHECK_THAT(refusal(head + contacts + R"("levers": [[1.25, 0.75], [0.75, 1.25]], "normals": [[1, 0], [-1, 0]],
+                     "offsets": [[0.7, -0.2], [-0.2, 0.7]]})"),
+             Catch::Contains("contacts 0 and 1 are the same, of discs 0 and 1"));
+}

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/assembly/lattices.hpp"
+
 #include <cmath>
 #include <numbers>
 #include <numeric>
 #include <set>
 
 #include "equidem/assembly/delaunay.hpp"
-#include "equidem/assembly/lattices.hpp"
 #include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/stopwatch.hpp"
@@ -33,7 +34,7 @@ std::multiset<oracle::Pair> named(const std::vector<Contact>& contacts) {
   return result;
 }
 
-double sum(const std::vector<double>& values) {
+double total(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
@@ -121,9 +122,9 @@ TEST_CASE("sides_of_a_free_lattice_are_its_outer_discs") {
   const auto left = group(assembly, "left");
   const auto top = group(assembly, "top");
   CHECK(left.discs.size() == static_cast<std::size_t>(rows));
-  CHECK(sum(left.tributary_lengths) == Approx(rows * row_distance));
-  CHECK(sum(group(assembly, "right").tributary_lengths) == Approx(rows * row_distance));
-  CHECK(sum(group(assembly, "bottom").tributary_lengths) == Approx(6 * 2 * a));
+  CHECK(total(left.tributary_lengths) == Approx(rows * row_distance));
+  CHECK(total(group(assembly, "right").tributary_lengths) == Approx(rows * row_distance));
+  CHECK(total(group(assembly, "bottom").tributary_lengths) == Approx(6 * 2 * a));
   CHECK(top.discs.size() == (hexagonal && rows % 2 == 0 ? 5 : 6));
   for (const char* corner : {"bottom_left", "bottom_right", "top_left", "top_right"}) {
     CHECK(group(assembly, corner).discs.size() == 1);

@@ -24,7 +24,7 @@ using std::numbers::pi;
 
 namespace {
 
-constexpr double sqrt3 = std::numbers::sqrt3;
+using std::numbers::sqrt3;
 
 Assembly lattice(const std::string& kind) {
   const LatticeOptions options{.columns = 4, .rows = 6, .radius = 0.005, .periodic = true};
@@ -180,7 +180,7 @@ TEST_CASE("uniform_stress_estimate_stores_the_energy_of_forces_that_carry_the_st
         const Vec2 l = assembly.branch(assembly.contacts[c]);
         const Vec2 m = Vec2{b.yy * l.x - b.xy * l.y, b.xx * l.y - b.yx * l.x} / determinant;
         const Vec2 force = area * (stress * m);
-        const ContactFrame frame = frame_of(assembly, assembly.contacts[c]);
+        const ContactFrame frame = frame_of(assembly, c);
         forces.push_back({dot(force, frame.normal), dot(force, frame.tangent())});
         energy += linear_spring_energy_of(springs[c], forces.back());
       }

@@ -98,7 +98,7 @@ TEST_CASE("accuracy_asked_of_random_cells_is_kept_at_most_twice_the_least_cost")
     scatter[q] = measure(q, known.dependence[q].amplitude, truth[q]);
   }
 
-  Random random(11);
+  Random random(501);
   constexpr int requests = 200;
   int kept = 0, cheap = 0, estimated_in_vain = 0;
   double dearest = 0;

@@ -96,12 +96,12 @@ inline std::vector<Resultant> contact_resultants(const Assembly& assembly, const
   std::vector<Resultant> resultants(assembly.size());
   for (std::size_t c = 0; c < forces.size(); ++c) {
     const Contact& contact = assembly.contacts[c];
-    const ContactFrame frame = frame_of(assembly, contact);
+    const ContactFrame frame = frame_of(assembly, c);
     const Vec2 on_i = force_on_i(frame, forces[c]);
     resultants[contact.i].force += on_i;
-    resultants[contact.i].moment += cross(frame.lever_i * frame.normal, on_i);
+    resultants[contact.i].moment += cross(arm_of_i(frame), on_i);
     resultants[contact.j].force -= on_i;
-    resultants[contact.j].moment += cross(-frame.lever_j * frame.normal, -on_i);
+    resultants[contact.j].moment += cross(-arm_to_j(frame), -on_i);
   }
   return resultants;
 }

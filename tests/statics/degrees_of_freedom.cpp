@@ -31,7 +31,7 @@ std::string refused(const Assembly& assembly, const std::vector<Support>& suppor
   return refusal.message;
 }
 
-void check_says(const std::string& sentence, const std::vector<std::string>& words) {
+void check_words(const std::string& sentence, const std::vector<std::string>& words) {
   INFO("the sentence: " << (sentence.empty() ? "(accepted)" : sentence));
   for (const std::string& word : words) {
     INFO("looked for: " << word);
@@ -97,25 +97,25 @@ TEST_CASE("supports_that_make_no_sense_are_refused_with_their_reason") {
   Assembly block = hexagonal_lattice({.columns = 4, .rows = 3});
   block.groups["nobody"] = {};
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-  check_says(refused(block, {{.group = "lft", .ux = 0.0, .uy = {}, .rotation = {}}}),
-             {"no group 'lft'", "its groups are", "left"});
-  check_says(refused(block, {{.group = "nobody", .ux = 0.0, .uy = {}, .rotation = {}}}),
-             {"support", "'nobody'", "is empty", "it would hold nothing"});
-  check_says(refused(block, {{.group = "left", .ux = nan, .uy = {}, .rotation = {}}}),
-             {"'left'", "ux = nan", "finite"});
-  check_says(refused(block, {{.group = "left", .ux = {}, .uy = -infinity, .rotation = {}}}),
-             {"'left'", "uy = -inf", "finite"});
-  check_says(refused(block, {{.group = "left", .ux = {}, .uy = {}, .rotation = nan}}),
-             {"'left'", "rotation = nan", "finite"});
+  check_words(refused(block, {{.group = "lft", .ux = 0.0, .uy = {}, .rotation = {}}}),
+              {"no group 'lft'", "its groups are", "left"});
+  check_words(refused(block, {{.group = "nobody", .ux = 0.0, .uy = {}, .rotation = {}}}),
+              {"support", "'nobody'", "is empty", "it would hold nothing"});
+  check_words(refused(block, {{.group = "left", .ux = nan, .uy = {}, .rotation = {}}}),
+              {"'left'", "ux = nan", "finite"});
+  check_words(refused(block, {{.group = "left", .ux = {}, .uy = -infinity, .rotation = {}}}),
+              {"'left'", "uy = -inf", "finite"});
+  check_words(refused(block, {{.group = "left", .ux = {}, .uy = {}, .rotation = nan}}),
+              {"'left'", "rotation = nan", "finite"});
   // Disc 0 is in both groups.
-  check_says(refused(block, {{.group = "left", .ux = 0.0, .uy = {}, .rotation = {}},
-                             {.group = "bottom", .ux = 1e-3, .uy = {}, .rotation = {}}}),
-             {"'bottom' prescribes ux of disc 0 a second time", "different value", "once"});
-  check_says(refused(block, {{.group = "left", .ux = {}, .uy = 0.0, .rotation = 0.1},
-                             {.group = "bottom", .ux = {}, .uy = 0.0, .rotation = 0.2}}),
-             {"prescribes rotation of disc 0 a second time"});
-  check_says(refused(block, {{.group = "left", .ux = {}, .uy = {}, .rotation = 0.1}}, {1e9, 0}),
-             {"prescribes a rotation of 0.1 rad", "no unknowns", "tangential springs"});
+  check_words(refused(block, {{.group = "left", .ux = 0.0, .uy = {}, .rotation = {}},
+                              {.group = "bottom", .ux = 1e-3, .uy = {}, .rotation = {}}}),
+              {"'bottom' prescribes ux of disc 0 a second time", "different value", "once"});
+  check_words(refused(block, {{.group = "left", .ux = {}, .uy = 0.0, .rotation = 0.1},
+                              {.group = "bottom", .ux = {}, .uy = 0.0, .rotation = 0.2}}),
+              {"prescribes rotation of disc 0 a second time"});
+  check_words(refused(block, {{.group = "left", .ux = {}, .uy = {}, .rotation = 0.1}}, {1e9, 0}),
+              {"prescribes a rotation of 0.1 rad", "no unknowns", "tangential springs"});
 }
 
 TEST_CASE("the_same_value_twice_is_no_contradiction_and_a_rotation_held_at_zero_needs_no_rotation") {

@@ -252,7 +252,7 @@ TEST_CASE("a_moment_on_a_disc_whose_contacts_have_no_lever_is_refused") {
 }
 
 TEST_CASE("the_estimate_is_what_the_solve_then_reports") {
-  for (const Scene& scene : held_scenes()) {
+  for (const HeldScene& scene : held_scenes()) {
     const SolveEstimate estimate = estimate_solve(scene.assembly(), scene.springs, scene.supports, scene.options);
     const Equilibrium state = solve_equilibrium(scene.assembly(), scene.springs, scene.supports, {}, scene.options);
     CAPTURE(scene.name, estimate.factor_nonzeros, state.factor_nonzeros, estimate.factor_bytes, state.factor_bytes);

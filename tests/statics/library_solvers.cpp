@@ -17,6 +17,7 @@
 
 #include "support/catch.hpp"
 #include "support/dense_oracle.hpp"
+#include "support/fields.hpp"
 
 using namespace equidem;
 
@@ -64,7 +65,7 @@ bool first_disc_held(std::int32_t disc, int component) {
   return disc == 0 && component < 2;
 }
 
-constexpr SpringConstants stiff{1e9, 0.5e9};
+constexpr SpringConstants usual{1e9, 0.5e9};
 
 System hexagonal(SpringConstants k) {
   Assembly discs = hexagonal_lattice({.columns = 9, .rows = 8});
@@ -74,19 +75,19 @@ System hexagonal(SpringConstants k) {
 System square_restrained() {
   Assembly discs = square_lattice({.columns = 7, .rows = 9});
   const auto held = left_side(discs);
-  return {"square, rotation restrained", std::move(discs), stiff, 2, held};
+  return {"square, rotation restrained", std::move(discs), usual, 2, held};
 }
 System periodic(int columns, int rows) {
   return {format("periodic hexagonal {} x {}", columns, rows),
-          hexagonal_lattice({.columns = columns, .rows = rows, .periodic = true}), stiff, 3, first_disc_held};
+          hexagonal_lattice({.columns = columns, .rows = rows, .periodic = true}), usual, 3, first_disc_held};
 }
 System delaunay() {
   Assembly discs = delaunay_assembly({.discs = 80});
   const auto held = left_side(discs);
-  return {"delaunay", std::move(discs), stiff, 3, held};
+  return {"delaunay", std::move(discs), usual, 3, held};
 }
 System all_held() {
-  return {"all held", hexagonal_lattice({.columns = 2, .rows = 2}), stiff, 3, [](std::int32_t, int) { return true; }};
+  return {"all held", hexagonal_lattice({.columns = 2, .rows = 2}), usual, 3, [](std::int32_t, int) { return true; }};
 }
 
 struct BackEnd {
@@ -115,17 +116,10 @@ BackEnd umfpack() {
           [](const System& s, FactorReport* report) { return umfpack_lu(s.on_graph(), s.unknowns, report); }};
 }
 
-std::vector<double> random_vector(std::size_t size, std::uint64_t seed) {
-  Random random(seed);
-  std::vector<double> x(size);
-  for (double& value : x) value = random.uniform(-1, 1);
-  return x;
-}
-
 /// Largest relative error of the solutions of `count` random right-hand sides, solved at once.
 double error_against_dense(const System& system, const Factorization& factor, int count) {
   const test::DenseMatrix k = test::dense(system.matrix, system.assembly);
-  std::vector<double> x = random_vector(k.size * count, 7);
+  std::vector<double> x = test::random_vector(k.size * count, 7);
   std::vector<double> expected;
   for (int c = 0; c < count; ++c) {
     const auto one = test::solve(k, {x.begin() + c * k.size, x.begin() + (c + 1) * k.size});
@@ -141,7 +135,7 @@ TEST_CASE("all_back_ends_give_the_answer_of_gauss") {
   auto back_ends = cholesky_back_ends();
   back_ends.push_back(umfpack());
   const int right_hand_sides = GENERATE(1, 3);
-  for (const System& system : {hexagonal(stiff), hexagonal({1e9, 1e9}), square_restrained(), periodic(4, 4),
+  for (const System& system : {hexagonal(usual), hexagonal({1e9, 1e9}), square_restrained(), periodic(4, 4),
                                periodic(2, 2), delaunay(), all_held()}) {
     for (const BackEnd& back_end : back_ends) {
       CAPTURE(system.name, system.unknowns.unknowns, back_end.name, right_hand_sides);
@@ -174,7 +168,7 @@ TEST_CASE("umfpack_solves_indefinite_systems_that_cholesky_refuses") {
 }
 
 TEST_CASE("a_free_body_has_a_pivot_without_stiffness") {
-  const System loose("free hexagonal", hexagonal_lattice({.columns = 5, .rows = 4}), stiff, 3,
+  const System loose("free hexagonal", hexagonal_lattice({.columns = 5, .rows = 4}), usual, 3,
                      [](std::int32_t, int) { return false; });
   auto back_ends = cholesky_back_ends();
   back_ends.push_back(umfpack());
@@ -195,14 +189,14 @@ TEST_CASE("cholmod_starts_no_threads") {
   };
   Assembly discs = hexagonal_lattice({.columns = 60, .rows = 60});  // fronts large enough to be shared out
   const auto held = left_side(discs);
-  const System system("large hexagonal", std::move(discs), stiff, 3, held);
+  const System system("large hexagonal", std::move(discs), usual, 3, held);
   const auto before = threads();
   REQUIRE(cholesky_back_ends()[2].factorize(system, nullptr) != nullptr);
   CHECK(threads() == before);
 }
 
 TEST_CASE("cholesky_back_ends_agree_on_the_smallest_pivot_with_one_order") {
-  const System system = hexagonal(stiff);
+  const System system = hexagonal(usual);
   const auto back_ends = cholesky_back_ends();
   FactorReport multifrontal, supernodal;
   REQUIRE(back_ends[0].factorize(system, &multifrontal) != nullptr);

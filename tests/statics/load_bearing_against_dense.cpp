@@ -26,13 +26,13 @@ namespace {
 
 using Number = long double;  // random networks come near to mechanisms
 using Vector = std::vector<Number>;
-using Dense = std::vector<Vector>;
+using LongMatrix = std::vector<Vector>;
 
 Number dot(const Vector& x, const Vector& y) {
   return std::inner_product(x.begin(), x.end(), y.begin(), Number{0});
 }
 
-double largest(const Vector& x) {
+double largest_of(const Vector& x) {
   Number size = 0;
   for (const Number value : x) size = std::max(size, std::abs(value));
   return static_cast<double>(size);
@@ -41,11 +41,11 @@ double largest(const Vector& x) {
 /// Cholesky's factorization of a positive semi-definite matrix of entries of order 1 that takes the largest diagonal
 /// first and stops where only rounding is left.
 struct SemidefiniteFactor {
-  Dense l;
+  LongMatrix l;
   std::vector<std::size_t> pivots;
   Number smallest = 1, left_over = 0;
 
-  explicit SemidefiniteFactor(Dense a) {
+  explicit SemidefiniteFactor(LongMatrix a) {
     const std::size_t n = a.size();
     std::vector<bool> done(n, false);
     for (std::size_t step = 0; step < n; ++step) {
@@ -103,7 +103,7 @@ struct Network {
 
 /// Stretch and slip of all contacts as rows over (u_x, u_y, theta) of all discs, straight from the contact law.
 struct Compatibility {
-  Dense rows;
+  LongMatrix rows;
   Vector stiffness;        ///< per row
   std::vector<bool> free;  ///< per component
 
@@ -116,7 +116,7 @@ struct Compatibility {
     }
     for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
       const Contact& c = assembly.contacts[k];
-      const DeformationGradient g = deformation_gradient(frame_of(assembly, c), 1);
+      const DeformationGradient g = deformation_gradient(frame_of(assembly, k), 1);
       Vector normal(free.size(), 0.0), tangential(free.size(), 0.0);
       for (std::size_t m = 0; m < 3; ++m) {
         normal[3 * c.i + m] += g.normal_i[m];
@@ -132,8 +132,8 @@ struct Compatibility {
   }
 
   /// K over the free components; unit rows for the others.
-  [[nodiscard]] Dense stiffness_matrix() const {
-    Dense k(free.size(), Vector(free.size(), 0.0));
+  [[nodiscard]] LongMatrix stiffness_matrix() const {
+    LongMatrix k(free.size(), Vector(free.size(), 0.0));
     for (std::size_t p = 0; p < free.size(); ++p) {
       if (!free[p]) k[p][p] = 1;
       for (std::size_t q = 0; q < free.size(); ++q) {
@@ -157,7 +157,7 @@ Vector forces_at_rest(const Assembly& assembly, const Compatibility& law, Vector
                       const Vector& loads) {
   Vector affine(law.rows.size(), 0.0);
   for (std::size_t k = 0; k < assembly.contacts.size() && assembly.periodic(); ++k) {
-    const ContactFrame frame = frame_of(assembly, assembly.contacts[k]);
+    const ContactFrame frame = frame_of(assembly, k);
     const Vec2 du = H * assembly.branch(assembly.contacts[k]);
     affine[2 * k] = equidem::dot(du, frame.normal);
     affine[2 * k + 1] = equidem::dot(du, frame.tangent());
@@ -258,7 +258,7 @@ Network random_network(Random& random) {
   return network;
 }
 
-Vector random_vector(std::size_t size, Random& random) {
+Vector random_long_vector(std::size_t size, Random& random) {
   Vector x(size);
   for (Number& value : x) value = random.uniform(-1, 1);
   return x;
@@ -310,10 +310,11 @@ TEST_CASE("what_is_left_out_carries_no_force_and_changes_none") {
     Vector most_force(whole.contacts.size(), 0.0);
     for (int load_case = 0; load_case < 3; ++load_case) {
       const Tensor2 H{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
-      Vector motion = random_vector(3 * whole.size(), random);
+      Vector motion = random_long_vector(3 * whole.size(), random);
       for (std::size_t d = 0; d < whole.size() && !rotation; ++d) motion[3 * d + 2] = 0;
       // Loads on what is left that it can carry: those that balance some motion of it.
-      const Vector carried = rest_law.forces(random_vector(3 * rest.size(), random), Vector(rest_law.rows.size(), 0.0));
+      const Vector carried =
+          rest_law.forces(random_long_vector(3 * rest.size(), random), Vector(rest_law.rows.size(), 0.0));
       Vector rest_loads(3 * rest.size(), 0.0), loads(3 * whole.size(), 0.0);
       for (std::size_t p = 0; p < rest_loads.size(); ++p) {
         for (std::size_t r = 0; r < rest_law.rows.size() && load_case > 0; ++r) {
@@ -325,7 +326,7 @@ TEST_CASE("what_is_left_out_carries_no_force_and_changes_none") {
       const Vector rest_forces = forces_at_rest(rest, rest_law, chosen(motion, discs, 3), H, rest_loads);
 
       constexpr double tolerance = 1e-10;
-      const double scale = std::max(1.0, largest(forces));
+      const double scale = std::max(1.0, largest_of(forces));
       const Vector restricted = chosen(forces, contacts, 2);
       double difference = 0;
       for (std::size_t r = 0; r < restricted.size(); ++r) {
@@ -374,7 +375,7 @@ TEST_CASE("states_of_self_stress_are_constraints_beyond_the_rank") {
     const Effects effects = network.effects();
     Compatibility law(network.assembly, network.springs, effects.rotation, network.held);
     // Self-stresses: contact forces that balance, f^T B = 0, hence the null space of B B^T over the springs there are.
-    Dense products;
+    LongMatrix products;
     for (std::size_t r = 0; r < law.rows.size(); ++r) {
       if (law.stiffness[r] == 0) continue;
       products.emplace_back();

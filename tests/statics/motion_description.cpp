@@ -26,7 +26,7 @@ Assembly hexagonal(int columns, int rows, bool periodic = false) {
   return hexagonal_lattice({.columns = columns, .rows = rows, .radius = radius, .periodic = periodic});
 }
 
-Assembly square(int columns, int rows) {
+Assembly square_block(int columns, int rows) {
   return square_lattice({.columns = columns, .rows = rows, .radius = radius});
 }
 
@@ -174,7 +174,7 @@ TEST_CASE("a_piece_that_moves_alone_is_named") {
 }
 
 TEST_CASE("counter_rotation_is_named") {
-  const Assembly assembly = square(6, 5);
+  const Assembly assembly = square_block(6, 5);
   check_says(assembly, gears(assembly), {"counter-rotation in place of all 30 discs", "gears"});
   std::vector<DiscMotion> spin(assembly.size(), {{}, 1.0});
   const std::string words = describe_motion(assembly, spin);
@@ -196,7 +196,7 @@ TEST_CASE("local_motions_name_their_discs") {
 }
 
 TEST_CASE("motions_of_the_whole_are_told_apart") {
-  const Assembly assembly = square(12, 12);
+  const Assembly assembly = square_block(12, 12);
   const auto field = [&](auto&& u) {
     std::vector<DiscMotion> motions;
     for (const Vec2 x : assembly.centres) motions.push_back({u(x), 0});
@@ -306,12 +306,12 @@ TEST_CASE("mechanisms_have_no_stiffness_but_rounding") {
     CHECK(quotient < 1e-27);
   }
   SECTION("gears") {
-    const Assembly assembly = square(30, 30);
+    const Assembly assembly = square_block(30, 30);
     const double kT = GENERATE(1e9, 1.0, -1e8);
     CHECK(std::abs(softness(assembly, ContactSprings(SpringConstants{1e9, kT}), gears(assembly))) < 1e-28);
   }
   SECTION("the shear of a square lattice without tangential springs, computed from its singular matrix") {
-    const Assembly assembly = square(10, 30);
+    const Assembly assembly = square_block(10, 30);
     const ContactSprings springs(SpringConstants{1e9, 0});
     const DegreesOfFreedom unknowns = clamp_first_row(assembly, 10, 2);
     BandSolver solver(assembly, springs, unknowns, 1e-13);

@@ -114,7 +114,7 @@ TEST_CASE("indefinite_matrices_are_solved_with_their_inertia_and_bounded_growth"
     RandomSystem system = random_system(discs, block, trial % 3 * 8, leaf_size, random);
     system.fill_at_random(random, zero_share);
     const DenseMatrix a = system.dense_matrix();
-    const Inertia expected = inertia_of(a, 1e-10);
+    const Signs expected = signs_of(a, 1e-10);
     const auto factor = multifrontal_ldlt(system.symbolic, system.on_graph(), {.threshold = u});
     const FactorReport& report = factor->report();
     CAPTURE(u, zero_share, trial, discs, block, leaf_size, expected.negative, expected.zero, report.negative_pivots,
@@ -136,7 +136,7 @@ TEST_CASE("the_same_matrix_has_the_same_inertia_whatever_the_pivots") {
   Random random(4);
   RandomSystem coarse = random_system(60, 3, 20, 60, random);
   coarse.fill_at_random(random, 0.5);
-  const Inertia expected = inertia_of(coarse.dense_matrix(), 1e-10);
+  const Signs expected = signs_of(coarse.dense_matrix(), 1e-10);
   for (const int leaf_size : {1, 2, 5, 10, 100}) {
     RandomSystem fine(coarse.assembly, 3, leaf_size);
     fine.matrix = coarse.matrix;
@@ -173,7 +173,7 @@ TEST_CASE("zero_pivots_count_the_null_space_of_unsupported_assemblies") {
         for (const int leaf_size : {3, 10}) {
           const Loose loose(kind.assembly, ratio, per_disc, leaf_size);
           const DenseMatrix a = dense(loose.matrix, kind.assembly);
-          const Inertia expected = inertia_of(a, 1e-12);
+          const Signs expected = signs_of(a, 1e-12);
           const auto factor = multifrontal_ldlt(loose.symbolic, loose.on_graph());
           const FactorReport& report = factor->report();
           CAPTURE(kind.name, ratio, per_disc, leaf_size, expected.zero, expected.negative, report.zero_pivots,

@@ -23,7 +23,7 @@ namespace {
 const SpringConstants stiff{1e9, 5e8};
 const std::vector<Support> left_held{{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = 0.0}};
 
-Assembly block() {
+Assembly small_block() {
   Assembly assembly = hexagonal_lattice({.columns = 5, .rows = 4});
   assembly.groups["nobody"] = {};
   assembly.groups["all"] = {};
@@ -74,16 +74,16 @@ LoadCase load_on(const std::string& group, Vec2 force, double moment = 0, LoadKi
 
 TEST_CASE("loads_that_make_no_sense_are_refused") {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-  check_refused(block(), stiff, left_held, load_on("nobody", {1, 0}),
+  check_refused(small_block(), stiff, left_held, load_on("nobody", {1, 0}),
                 {"load", "'nobody'", "empty", "no disc to carry it"});
-  check_refused(block(), stiff, left_held, load_on("rihgt", {1, 0}), {"no group 'rihgt'", "right"});
-  check_refused(block(), stiff, left_held, load_on("right", {nan, 0}), {"'right'", "nan", "finite"});
-  check_refused(block(), stiff, left_held, load_on("right", {0, infinity}), {"'right'", "inf", "finite"});
-  check_refused(block(), stiff, left_held, load_on("right", {}, -infinity), {"'right'", "-inf", "finite"});
-  check_refused(block(), stiff, left_held, load_on("all", {1, 0}, 0, LoadKind::traction),
+  check_refused(small_block(), stiff, left_held, load_on("rihgt", {1, 0}), {"no group 'rihgt'", "right"});
+  check_refused(small_block(), stiff, left_held, load_on("right", {nan, 0}), {"'right'", "nan", "finite"});
+  check_refused(small_block(), stiff, left_held, load_on("right", {0, infinity}), {"'right'", "inf", "finite"});
+  check_refused(small_block(), stiff, left_held, load_on("right", {}, -infinity), {"'right'", "-inf", "finite"});
+  check_refused(small_block(), stiff, left_held, load_on("all", {1, 0}, 0, LoadKind::traction),
                 {"traction", "'all'", "no side"});
-  check_refused(block(), {1e9, 0}, left_held, load_on("right", {}, 1), {"moment", "'right'", "no unknowns"});
-  check_refused(block(), stiff, left_held, load_on("right", {}, 1), {"moment", "'right'", "no unknowns"},
+  check_refused(small_block(), {1e9, 0}, left_held, load_on("right", {}, 1), {"moment", "'right'", "no unknowns"});
+  check_refused(small_block(), stiff, left_held, load_on("right", {}, 1), {"moment", "'right'", "no unknowns"},
                 {.rotation = Rotation::restrained, .solver = {}});
 }
 
@@ -99,7 +99,7 @@ TEST_CASE("assemblies_of_no_or_one_disc_are_refused") {
 }
 
 TEST_CASE("contacts_that_cannot_be_are_refused") {
-  Assembly absent = block(), self = block(), lever = block(), same = block();
+  Assembly absent = small_block(), self = small_block(), lever = small_block(), same = small_block();
   absent.contacts[3].j = 99;
   check_refused(absent, stiff, left_held, {}, {"contact 3", "disc 99", "numbered from 0 to"});
   self.contacts[2].j = self.contacts[2].i;
@@ -111,13 +111,13 @@ TEST_CASE("contacts_that_cannot_be_are_refused") {
 }
 
 TEST_CASE("what_can_move_freely_is_refused_and_named") {
-  check_refused(block(), stiff, {}, {}, {"no support", "translation along x and along y, and rotation"});
-  check_refused(block(), stiff, {{.group = "bottom", .ux = {}, .uy = 0.0, .rotation = {}}}, {},
+  check_refused(small_block(), stiff, {}, {}, {"no support", "translation along x and along y, and rotation"});
+  check_refused(small_block(), stiff, {{.group = "bottom", .ux = {}, .uy = 0.0, .rotation = {}}}, {},
                 {"translation along x"});
-  check_refused(block(), stiff, {{.group = "bottom_left", .ux = 0.0, .uy = 0.0, .rotation = {}}}, {},
+  check_refused(small_block(), stiff, {{.group = "bottom_left", .ux = 0.0, .uy = 0.0, .rotation = {}}}, {},
                 {"rotation about (0.005"});
 
-  Assembly rattler = block();
+  Assembly rattler = small_block();
   rattler.centres.push_back({1, 1});
   rattler.radii.push_back(0.005);
   rattler.cell_areas.clear();
@@ -195,5 +195,5 @@ TEST_CASE("solver_methods_have_names_and_refuse_what_they_cannot_do") {
   CHECK(unknown.says("auto, multifrontal, cholmod, umfpack"));
   EquilibriumOptions options;
   options.solver.method = SolverMethod::cholmod;
-  check_refused(block(), {1e9, -1e8}, left_held, {}, {"'cholmod'", "negative", "method = \"auto\""}, options);
+  check_refused(small_block(), {1e9, -1e8}, left_held, {}, {"'cholmod'", "negative", "method = \"auto\""}, options);
 }

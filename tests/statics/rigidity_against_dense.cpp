@@ -76,14 +76,14 @@ std::int64_t nullity(const Dense& a) {
   return zero;
 }
 
-struct Scene {
+struct RandomScene {
   Assembly assembly;
   ContactSprings springs{SpringConstants{}};
   DegreesOfFreedom unknowns;
 };
 
 /// K without supports, dense.
-Dense dense_stiffness(const Scene& scene) {
+Dense dense_stiffness(const RandomScene& scene) {
   DegreesOfFreedom all = scene.unknowns;
   std::fill(all.held.begin(), all.held.end(), std::uint8_t{0});
   const StiffnessMatrix K = assemble_stiffness(scene.assembly, ContactGraph(scene.assembly), scene.springs, all);
@@ -110,7 +110,7 @@ Dense dense_stiffness(const Scene& scene) {
 }
 
 /// Zero eigenvalues of K over the components that are not held.
-std::int64_t zero_modes(const Scene& scene, const Dense& K) {
+std::int64_t zero_modes(const RandomScene& scene, const Dense& K) {
   Dense free;
   for (std::size_t p = 0; p < K.size(); ++p) {
     if (scene.unknowns.held[p] != 0) continue;
@@ -156,7 +156,7 @@ std::vector<bool> resisted(const Assembly& assembly, const ContactSprings& sprin
 
 /// Motions in which the centres of every piece move rigidly and every disc turns as it likes: the columns of P. Zero
 /// eigenvalues of P^T K P, with supports added as springs of stiffness 1.
-std::int64_t rigid_zero_modes(const Scene& scene, const Dense& K) {
+std::int64_t rigid_zero_modes(const RandomScene& scene, const Dense& K) {
   const Assembly& a = scene.assembly;
   const std::size_t b = scene.unknowns.per_disc;
   Dense columns;
@@ -211,7 +211,7 @@ std::int64_t rigid_zero_modes(const Scene& scene, const Dense& K) {
   return nullity(projected);
 }
 
-bool refused(const Scene& scene) {
+bool refused(const RandomScene& scene) {
   try {
     check_rigidity(scene.assembly, ContactGraph(scene.assembly), scene.springs, scene.unknowns);
   } catch (const Error&) {
@@ -221,7 +221,7 @@ bool refused(const Scene& scene) {
 }
 
 /// Hold components at random, and rotations that nothing resists.
-void hold_at_random(Scene& scene, bool rotations, double share, Random& random) {
+void hold_at_random(RandomScene& scene, bool rotations, double share, Random& random) {
   scene.unknowns.per_disc = rotations ? 3 : 2;
   scene.unknowns.rotation_scale = scene.assembly.mean_radius();
   scene.unknowns.held.assign(scene.assembly.size() * scene.unknowns.per_disc, 0);
@@ -233,8 +233,8 @@ void hold_at_random(Scene& scene, bool rotations, double share, Random& random) 
 }
 
 /// Lattices, shaken or not, that have lost some contacts; five ways to place the contact points.
-Scene random_scene(Random& random) {
-  Scene scene;
+RandomScene random_scene(Random& random) {
+  RandomScene scene;
   const bool hexagonal = random.uniform() < 0.5;
   const bool periodic = random.uniform() < 0.3;
   const int columns = 2 + static_cast<int>(random.below(2));
@@ -280,7 +280,7 @@ TEST_CASE("rigid_and_gear_modes_are_the_zero_modes_with_rigidly_moving_centres")
   int accepted = 0;
   int other_mechanisms = 0;
   for (int trial = 0; trial < 600; ++trial) {
-    const Scene scene = random_scene(random);
+    const RandomScene scene = random_scene(random);
     const RigidityReport report =
         examine_rigidity(scene.assembly, ContactGraph(scene.assembly), scene.springs, scene.unknowns);
     const std::int64_t told = report.free_rigid_motions + report.gear_modes;
@@ -307,7 +307,7 @@ TEST_CASE("a_triangulated_assembly_has_no_other_zero_modes") {
   int accepted = 0;
   int refusals = 0;
   for (int trial = 0; trial < 200; ++trial) {
-    Scene scene;
+    RandomScene scene;
     const bool periodic = trial % 4 == 0;
     scene.assembly = hexagonal_lattice({.columns = 3, .rows = periodic ? 4 : 3, .radius = 0.5, .periodic = periodic});
     for (Vec2& x : scene.assembly.centres) x += {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)};

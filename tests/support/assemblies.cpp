@@ -163,8 +163,8 @@ const AssemblyKind& assembly_kind(const std::string& name) {
   throw std::out_of_range("no assembly kind " + name);
 }
 
-std::vector<Scene> held_scenes() {
-  std::vector<Scene> scenes;
+std::vector<HeldScene> held_scenes() {
+  std::vector<HeldScene> scenes;
   for (const AssemblyKind& kind : assembly_kinds()) {
     if (kind.loose) continue;
     for (const double ratio : {0.5, 0.0, -0.05}) {

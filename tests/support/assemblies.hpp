@@ -32,7 +32,7 @@ const AssemblyKind& assembly_kind(const std::string& name);
 Assembly chain_of_discs(int count, double radius);
 
 /// An assembly, its springs, and supports that leave K regular: "anchor" held, and where free "guide" along y.
-struct Scene {
+struct HeldScene {
   std::string name;
   const AssemblyKind& kind;
   ContactSprings springs;
@@ -44,6 +44,6 @@ struct Scene {
 
 /// Every kind with free and with restrained rotation, kT/kN = 0.5, 0 (triangulated kinds) and -0.05, springs uniform
 /// and weighted; kN = 1e9 Pa.
-std::vector<Scene> held_scenes();
+std::vector<HeldScene> held_scenes();
 
 }  // namespace equidem::test

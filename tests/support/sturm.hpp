@@ -65,10 +65,10 @@ inline std::int64_t eigenvalues_below(const Tridiagonal& t, double x) {
 }
 
 /// Eigenvalues below, within and above +-tolerance times the norm.
-struct Inertia {
+struct Signs {
   std::int64_t negative = 0, zero = 0, positive = 0;
 };
-inline Inertia inertia_of(const DenseMatrix& a, double tolerance) {
+inline Signs signs_of(const DenseMatrix& a, double tolerance) {
   const Tridiagonal t = tridiagonalize(a);
   if (t.norm == 0) return {0, static_cast<std::int64_t>(a.size), 0};
   const std::int64_t negative = eigenvalues_below(t, -tolerance * t.norm);

@@ -99,7 +99,7 @@ TEST_CASE("no_assembly_vibrates_faster_than_its_element_bound") {
 }
 
 TEST_CASE("holding_discs_lowers_the_highest_frequency") {
-  for (const Scene& scene : held_scenes()) {
+  for (const HeldScene& scene : held_scenes()) {
     const Assembly& assembly = scene.assembly();
     const auto inertia = inertia_of(assembly.radii, 1000, Body::disc);
     const Effects effects = derive_effects(scene.springs, scene.options.rotation);

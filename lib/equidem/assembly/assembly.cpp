@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -89,16 +90,51 @@ void check_contact(const Assembly& assembly, std::size_t index) {
     bad_input(format("{}, is {} m long", described(c, index), norm(l)), length_limits(), "Choose other units");
   }
   for (const double lever : {c.lever_i, c.lever_j}) {
-    if (!(lever >= 0) || !std::isfinite(lever)) {
+    const bool on_line = assembly.contact_arms.empty();
+    if ((on_line && !(lever >= 0)) || !std::isfinite(lever)) {
       bad_input(format("{}, has the lever arm {}", described(c, index), lever),
-                "lever arms must be finite and not negative", "Correct it");
+                on_line ? "lever arms must be finite and not negative" : "lever arms must be finite", "Correct it");
     }
+  }
+}
+
+void check_arms(const Assembly& assembly, std::size_t index) {
+  const Contact& c = assembly.contacts[index];
+  const ContactArms& given = assembly.contact_arms[index];
+  constexpr double close = 1e-9, rounding = 8 * std::numeric_limits<double>::epsilon();  // of lengths, of coordinates
+  if (!(std::abs(norm(given.normal) - 1) <= close)) {
+    bad_input(format("{}, has the normal ({}, {})", described(c, index), given.normal.x, given.normal.y),
+              "its length must be 1", "Divide it by its length");
+  }
+  const Vec2 l = assembly.branch(c);
+  const Vec2 arms =
+      (c.lever_i + c.lever_j) * given.normal + (given.offset_i + given.offset_j) * perpendicular(given.normal);
+  const double coordinates = norm(assembly.centres[c.i]) + norm(assembly.centres[c.i] + l);
+  const double reach = std::abs(c.lever_i) + std::abs(c.lever_j) + std::abs(given.offset_i) + std::abs(given.offset_j);
+  if (norm(arms - l) <= close * std::max(norm(l), reach) + rounding * coordinates) return;
+  bad_input(format("{}, has arms that are {:.6g} m apart at their ends", described(c, index), norm(arms - l)),
+            "levers along the normal and offsets across it must lead from both centres to the same point",
+            "Give the contact point with all its digits");
+}
+
+void check_bodies(const Assembly& assembly) {
+  if (assembly.sections.empty()) return;
+  check_count("sections", assembly.sections.size(), "bodies", assembly.size());
+  for (std::size_t d = 0; d < assembly.size(); ++d) {
+    const BodySection& section = assembly.sections[d];
+    if (section.area > 0 && section.polar_moment > 0 && std::isfinite(section.area + section.polar_moment)) continue;
+    bad_input(format("body {} has the area {} m² and the polar moment {} m⁴", d, section.area, section.polar_moment),
+              "both must be positive and finite", "Correct its section");
   }
 }
 
 void check_contacts(const Assembly& assembly) {
   const std::size_t m = assembly.contacts.size();
-  for (std::size_t c = 0; c < m; ++c) check_contact(assembly, c);
+  if (!assembly.contact_arms.empty()) check_count("arms", assembly.contact_arms.size(), "contacts", m);
+  for (std::size_t c = 0; c < m; ++c) {
+    check_contact(assembly, c);
+    if (!assembly.contact_arms.empty()) check_arms(assembly, c);
+  }
   if (!assembly.facet_lengths.empty()) {
     check_count("facet lengths", assembly.facet_lengths.size(), "contacts", m);
     for (std::size_t c = 0; c < m; ++c) {
@@ -159,6 +195,11 @@ double Assembly::area() const {
 }
 
 double Assembly::solid_fraction() const {
+  if (!sections.empty()) {
+    double covered = 0;
+    for (const BodySection& section : sections) covered += section.area;
+    return covered / area();
+  }
   double squares = 0;
   for (const double r : radii) squares += r * r;
   return std::numbers::pi * squares / area();
@@ -170,6 +211,11 @@ double Assembly::coordination_number() const {
 
 double Assembly::mean_radius() const {
   return radii.empty() ? 0 : std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
+}
+
+bool on_lines_of_centres(const Assembly& assembly) {
+  return std::all_of(assembly.contact_arms.begin(), assembly.contact_arms.end(),
+                     [](const ContactArms& arms) { return arms.offset_i == 0 && arms.offset_j == 0; });
 }
 
 std::string length_limits() {
@@ -187,6 +233,7 @@ void check(const Assembly& assembly) {
               "Choose other units");
   }
   check_discs(assembly);
+  check_bodies(assembly);
   check_contacts(assembly);
   for (const auto& [name, discs] : assembly.groups) check_group(assembly, name, discs);
 }

@@ -26,6 +26,23 @@ struct Contact {
   double lever_j = 0;  ///< m
 };
 
+/// Where a contact lies that is not on the line of centres. With the normal n and s = (-n_y, n_x) the contact point is
+///
+///   x_i + lever_i n + offset_i s   and, the same point,   x_j - lever_j n - offset_j s,
+///
+/// so that (lever_i + lever_j) n + (offset_i + offset_j) s is the branch vector. Here levers may be negative.
+struct ContactArms {
+  Vec2 normal;          ///< unit, from i to j
+  double offset_i = 0;  ///< m
+  double offset_j = 0;  ///< m
+};
+
+/// The cross-section of a body that is no disc.
+struct BodySection {
+  double area = 0;          ///< m²
+  double polar_moment = 0;  ///< m⁴: the integral of r² over the area, about its own centre
+};
+
 /// Discs chosen by name, for supports and loads. On the sides of a free assembly every disc also stands for a stretch
 /// of the side, over which a traction is spread.
 struct DiscGroup {
@@ -33,7 +50,8 @@ struct DiscGroup {
   std::vector<double> tributary_lengths;  ///< m, one per disc; empty where the group is not a side
 };
 
-/// A contact network of discs; SI units, per metre of depth.
+/// A contact network of discs, or of other bodies, each then with its centre of mass and the radius of the disc of equal area; SI units,
+/// per metre of depth. Two bodies may touch in several places.
 struct Assembly {
   std::string kind;           ///< "hexagonal", "square", "delaunay", "file", ...
   std::vector<Vec2> centres;  ///< m
@@ -42,8 +60,10 @@ struct Assembly {
   std::optional<Vec2> period;         ///< (Lx, Ly) in m of a periodic cell; none: free boundary
   std::vector<double> cell_areas;     ///< m², the Voronoi (power) cell of each disc, clipped to the sides where free
   std::vector<double> facet_lengths;  ///< m, per contact: the edge its two cells share; empty where unknown
-  std::vector<double> contact_kN;     ///< Pa, per contact: overrides the springs of the case; empty: none given
-  std::vector<double> contact_kT;     ///< Pa, likewise
+  std::vector<ContactArms> contact_arms;    ///< per contact; empty: all lie on the lines of centres, n = l/|l|
+  std::vector<BodySection> sections;        ///< per body; empty: discs of these radii
+  std::vector<double> contact_kN;           ///< Pa, per contact: overrides the springs of the case; empty: none given
+  std::vector<double> contact_kT;           ///< Pa, likewise
   std::map<std::string, DiscGroup> groups;  ///< left, right, bottom, top, bottom_left, ... and the user's own
 
   [[nodiscard]] std::size_t size() const { return centres.size(); }
@@ -56,13 +76,16 @@ struct Assembly {
   }
   /// m²: of the periodic cell, else the sum of the cells of the discs.
   [[nodiscard]] double area() const;
-  /// Share of the area that discs cover: gamma/rho of Abe 1996.
+  /// Share of the area that discs (or the sections of other bodies) cover: gamma/rho of Abe 1996.
   [[nodiscard]] double solid_fraction() const;
   /// Mean number of contacts of a disc, z.
   [[nodiscard]] double coordination_number() const;
   /// Mean radius, m: the length a by which rotations are scaled to a*theta.
   [[nodiscard]] double mean_radius() const;
 };
+
+/// Whether the normals of all contacts point through both centres, so that no normal force turns a body.
+bool on_lines_of_centres(const Assembly& assembly);
 
 /// Lengths between which areas, their squares and their inverses stay within a double, m.
 inline constexpr double shortest_length = 1e-70, longest_length = 1e70;
@@ -75,7 +98,7 @@ std::string length_limits();
 
 /// Check everything that later parts rely on: counts agree, radii, periods and distances of discs in contact are
 /// measurable, contacts join two existing discs (or a disc and another image of itself) with lever arms that are not
-/// negative.
+/// negative; where contacts have arms of their own: unit normals, and arms that meet in one point to 1e-9 of the distance.
 /// \throws Error (bad_input) naming the first disc or contact that breaks this
 void check(const Assembly& assembly);
 

@@ -80,6 +80,7 @@ void take_network(Assembly& assembly, PowerCells&& cells) {
   assembly.contacts = std::move(cells.neighbours);
   assembly.facet_lengths = std::move(cells.facet_lengths);
   assembly.cell_areas = std::move(cells.areas);
+  assembly.contact_arms.clear();
   assembly.contact_kN.clear();
   assembly.contact_kT.clear();
   set_midpoints(assembly);

@@ -9,12 +9,12 @@
 #include <set>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "equidem/assembly/delaunay.hpp"
+#include "equidem/assembly/repeated_contact.hpp"
 #include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
@@ -27,8 +27,8 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* schema = "equidem-assembly/1";
-const std::vector<std::string> known_keys = {"schema",   "title",  "cell",    "discs",
-                                             "contacts", "levers", "springs", "groups"};
+const std::vector<std::string> known_keys = {"schema", "title",   "cell",    "discs",   "sections", "contacts",
+                                             "levers", "normals", "offsets", "springs", "groups"};
 
 const char* kind_of(const Json& value) {
   switch (value.type()) {
@@ -95,12 +95,25 @@ const Json& row(const Json& value, std::size_t count, const char* names, const s
          format("an entry is [{}]", names), "Correct the entry", entry);
 }
 
-const Json& list_per_contact(const Json& value, std::size_t contacts, const std::string& entry) {
+const Json& list_per(const char* what, const Json& value, std::size_t count, const std::string& entry) {
   list(value, entry);
-  if (value.size() == contacts) return value;
+  if (value.size() == count) return value;
   refuse(format("{} for {}", counted(static_cast<long long>(value.size()), "entry", "entries"),
-                counted(static_cast<long long>(contacts), "contact")),
+                counted(static_cast<long long>(count), what)),
          "there must be one for each", "Correct the list or remove it", entry);
+}
+
+/// "key": one pair of numbers for each of `count`; take(k, first, second). Nothing where the file has no such key.
+template <typename Take>
+void read_pairs(const Json& file, const char* key, const char* names, const char* what, std::size_t count,
+                const Take& take) {
+  if (!file.contains(key)) return;
+  const Json& pairs = list_per(what, file[key], count, key);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::string entry = format("{}[{}]", key, k);
+    const Json& pair = row(pairs[k], 2, names, entry);
+    take(k, number(pair[0], entry), number(pair[1], entry));
+  }
 }
 
 void check_keys(const Json& file) {
@@ -136,37 +149,32 @@ void read_discs(const Json& file, Assembly& assembly) {
     assembly.centres.push_back({number(disc[0], entry), number(disc[1], entry)});
     assembly.radii.push_back(number(disc[2], entry));
   }
+  read_pairs(file, "sections", "area, polar moment", "disc", assembly.size(),
+             [&](std::size_t, double area, double moment) {
+               assembly.sections.push_back({area, moment});
+             });
 }
 
 void refuse_repeated(const Assembly& assembly) {
-  std::vector<std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t, std::size_t>> named;
-  named.reserve(assembly.contacts.size());
-  for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
-    const Contact& c = assembly.contacts[k];
-    if (std::tuple(c.i, 0, 0) <= std::tuple(c.j, c.shift_x, c.shift_y)) {
-      named.emplace_back(c.i, c.j, c.shift_x, c.shift_y, k);
-    } else {
-      named.emplace_back(c.j, c.i, -c.shift_x, -c.shift_y, k);
-    }
-  }
-  std::sort(named.begin(), named.end());
-  const auto same = [](const auto& a, const auto& b) {
-    return std::get<0>(a) == std::get<0>(b) && std::get<1>(a) == std::get<1>(b) && std::get<2>(a) == std::get<2>(b) &&
-           std::get<3>(a) == std::get<3>(b);
-  };
-  const auto twice = std::adjacent_find(named.begin(), named.end(), same);
-  if (twice == named.end()) return;
-  refuse(format("contacts {} and {} are the same, of discs {} and {}", std::get<4>(*twice), std::get<4>(*(twice + 1)),
-                std::get<0>(*twice), std::get<1>(*twice)),
-         "its springs would count twice", "Remove one of them", format("contacts[{}]", std::get<4>(*(twice + 1))));
+  const auto twice = find_repeated_contact(assembly);
+  if (!twice) return;
+  const auto& [first, second] = *twice;
+  const Contact& c = assembly.contacts[first];
+  refuse(format("contacts {} and {} are the same, of discs {} and {}", first, second, std::min(c.i, c.j),
+                std::max(c.i, c.j)),
+         "its springs would count twice", "Remove one of them", format("contacts[{}]", second));
 }
 
 void read_contacts(const Json& file, Assembly& assembly) {
   if (!file.contains("contacts")) {
-    for (const char* key : {"levers", "springs"}) {
+    for (const char* key : {"levers", "normals", "offsets", "springs"}) {
       if (!file.contains(key)) continue;
       refuse(format("there are {} but no contacts", key), "they are given in the order of the contacts",
              "Add \"contacts\"", key);
+    }
+    if (file.contains("sections")) {
+      refuse("there are sections but no contacts", "only of discs it is known where they touch", "Add \"contacts\"",
+             "sections");
     }
     check(assembly);
     assembly.contacts = touching_discs(assembly);
@@ -183,7 +191,6 @@ void read_contacts(const Json& file, Assembly& assembly) {
   }
   // Discs that exist are needed before the midpoints of branches.
   check(assembly);
-  refuse_repeated(assembly);
   for (Contact& contact : assembly.contacts) {
     contact.lever_i = contact.lever_j = 0.5 * norm(assembly.branch(contact));
   }
@@ -191,24 +198,31 @@ void read_contacts(const Json& file, Assembly& assembly) {
 
 void read_levers_and_springs(const Json& file, Assembly& assembly) {
   const std::size_t contacts = assembly.contacts.size();
-  if (file.contains("levers")) {
-    const Json& levers = list_per_contact(file["levers"], contacts, "levers");
-    for (std::size_t k = 0; k < contacts; ++k) {
-      const std::string entry = format("levers[{}]", k);
-      const Json& pair = row(levers[k], 2, "r_i, r_j", entry);
-      assembly.contacts[k].lever_i = number(pair[0], entry);
-      assembly.contacts[k].lever_j = number(pair[1], entry);
+  read_pairs(file, "levers", "r_i, r_j", "contact", contacts, [&](std::size_t k, double r_i, double r_j) {
+    assembly.contacts[k].lever_i = r_i;
+    assembly.contacts[k].lever_j = r_j;
+  });
+  if (file.contains("normals") || file.contains("offsets")) {
+    for (const char* key : {"levers", "normals", "offsets"}) {
+      if (file.contains(key)) continue;
+      refuse(format("the key '{}' is missing", key),
+             "off the line of centres a contact has a normal, levers along it and offsets across it",
+             format("Add \"{}\"", key), key);
     }
+    assembly.contact_arms.resize(contacts);
   }
-  if (file.contains("springs")) {
-    const Json& springs = list_per_contact(file["springs"], contacts, "springs");
-    for (std::size_t k = 0; k < contacts; ++k) {
-      const std::string entry = format("springs[{}]", k);
-      const Json& pair = row(springs[k], 2, "kN, kT", entry);
-      assembly.contact_kN.push_back(number(pair[0], entry));
-      assembly.contact_kT.push_back(number(pair[1], entry));
-    }
-  }
+  read_pairs(file, "normals", "n_x, n_y", "contact", contacts, [&](std::size_t k, double x, double y) {
+    assembly.contact_arms[k].normal = {x, y};
+  });
+  read_pairs(file, "offsets", "o_i, o_j", "contact", contacts, [&](std::size_t k, double o_i, double o_j) {
+    assembly.contact_arms[k].offset_i = o_i;
+    assembly.contact_arms[k].offset_j = o_j;
+  });
+  read_pairs(file, "springs", "kN, kT", "contact", contacts, [&](std::size_t, double kN, double kT) {
+    assembly.contact_kN.push_back(kN);
+    assembly.contact_kT.push_back(kT);
+  });
+  refuse_repeated(assembly);
 }
 
 DiscGroup read_group(const Json& value, const std::string& entry) {
@@ -308,6 +322,9 @@ void append_list(std::string& text, const char* key, std::size_t count, const En
   for (std::size_t k = 0; k < count; ++k) text += (k == 0 ? "\n" : ",\n") + entry(k);
   text += "]";
 }
+std::string pair_of(double first, double second) {
+  return format("[{}, {}]", shortest(first), shortest(second));
+}
 
 template <typename Values, typename Write>
 std::string joined(const Values& values, const Write& write) {
@@ -325,17 +342,26 @@ std::string text_of(const Assembly& assembly) {
     return format("[{}, {}, {}]", shortest(assembly.centres[k].x), shortest(assembly.centres[k].y),
                   shortest(assembly.radii[k]));
   });
+  if (!assembly.sections.empty()) {
+    append_list(text, "sections", assembly.size(),
+                [&](std::size_t k) { return pair_of(assembly.sections[k].area, assembly.sections[k].polar_moment); });
+  }
   const auto& contacts = assembly.contacts;
   append_list(text, "contacts", contacts.size(), [&](std::size_t k) {
     return format("[{}, {}, {}, {}]", contacts[k].i, contacts[k].j, contacts[k].shift_x, contacts[k].shift_y);
   });
-  append_list(text, "levers", contacts.size(), [&](std::size_t k) {
-    return format("[{}, {}]", shortest(contacts[k].lever_i), shortest(contacts[k].lever_j));
-  });
+  append_list(text, "levers", contacts.size(),
+              [&](std::size_t k) { return pair_of(contacts[k].lever_i, contacts[k].lever_j); });
+  const auto& arms = assembly.contact_arms;
+  if (!arms.empty()) {
+    append_list(text, "normals", contacts.size(),
+                [&](std::size_t k) { return pair_of(arms[k].normal.x, arms[k].normal.y); });
+    append_list(text, "offsets", contacts.size(),
+                [&](std::size_t k) { return pair_of(arms[k].offset_i, arms[k].offset_j); });
+  }
   if (!assembly.contact_kN.empty()) {
-    append_list(text, "springs", contacts.size(), [&](std::size_t k) {
-      return format("[{}, {}]", shortest(assembly.contact_kN[k]), shortest(assembly.contact_kT[k]));
-    });
+    append_list(text, "springs", contacts.size(),
+                [&](std::size_t k) { return pair_of(assembly.contact_kN[k], assembly.contact_kT[k]); });
   }
   if (!assembly.groups.empty()) {
     std::string separator = ",\n\"groups\": {\n";

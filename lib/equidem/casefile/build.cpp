@@ -124,6 +124,10 @@ Assembly build_assembly(const Case& resolved) {
   Assembly assembly;
   try {
     assembly = generate(resolved.assembly);
+    if (!resolved.assembly.own_springs) {
+      assembly.contact_kN.clear();
+      assembly.contact_kT.clear();
+    }
   } catch (const Error& error) {
     throw error.at(resolved.where(resolved.assembly.kind == AssemblyKind::file ? "assembly.path" : "assembly"));
   }
@@ -173,7 +177,10 @@ BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
   const bool own = !assembly.contact_kN.empty();
   if (!resolved.springs && !resolved.material && !own) {
     fail(resolved.where("assembly.path"), "the springs are missing",
-         "neither the case file nor the assembly file gives any", "Add [springs] with kN and kT to the case file");
+         resolved.assembly.own_springs
+             ? "neither the case file nor the assembly file gives any"
+             : "the case file gives none, and says that those of the assembly file do not count",
+         "Add [springs] with kN and kT to the case file");
   }
   const std::string where = resolved.where(resolved.material ? "material" : "springs");
   try {

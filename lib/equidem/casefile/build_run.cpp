@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "equidem/assembly/body_inertia.hpp"
 #include "equidem/casefile/build.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
@@ -70,7 +71,7 @@ void check_velocities_count(const Case& resolved, const Scene& scene) {
       {"uy", "velocity", &TimedSupport::uy, [](const InitialVelocity& v) { return v.velocity.y; }},
       {"rotation", "spin", &TimedSupport::rotation, [](const InitialVelocity& v) { return v.spin; }}};
   const auto& velocities = resolved.run->velocities;
-  const bool turns = derive_effects(scene.springs, resolved.rotation).rotation;
+  const bool turns = derive_effects(scene.assembly, scene.springs, resolved.rotation).rotation;
   for (std::size_t k = 0; k < velocities.size(); ++k) {
     if (velocities[k].spin != 0 && !turns) {
       fail(resolved.where(format("velocity.{}.spin", k)),
@@ -137,7 +138,7 @@ Scene build_scene(const Case& resolved, const Assembly& assembly, const ContactS
   const RunCase& run = *resolved.run;
   Scene scene{.assembly = assembly,
               .springs = springs,
-              .inertia = inertia_of(assembly.radii, *density, resolved.assembly.body),
+              .inertia = inertia_of(assembly, *density, resolved.assembly.body),
               .supports = run.supports,
               .loads = run.loads,
               .walls = run.walls,

@@ -25,6 +25,7 @@ AssemblyCase read_assembly_table(TomlValue& table, const fs::path& folder) {
     TomlValue& path = *table.find("path");
     result.path = opened(path.text, folder);
     path.text = result.path.string();
+    result.own_springs = flag(table, "own_springs");
     return result;
   }
   if (kind != "delaunay") {

@@ -35,6 +35,7 @@ struct AssemblyCase {
   LatticeOptions lattice;
   DelaunayOptions delaunay;
   std::filesystem::path path;     ///< as the program opens it
+  bool own_springs = true;        ///< springs of the file count
   std::optional<double> density;  ///< kg/m³, of the discs themselves
   Body body = Body::disc;
 };

@@ -121,6 +121,13 @@ std::vector<KeySpec> scene_keys() {
        .when_key = "kind",
        .when = {"file"},
        .help = "an assembly file (JSON)"},
+      {.table = "assembly",
+       .name = "own_springs",
+       .type = flag,
+       .fallback = "true",
+       .when_key = "kind",
+       .when = {"file"},
+       .help = "springs that the file gives count; false: those of the case do, or calibrate's"},
 
       {.table = "assembly.radii", .name = "smallest", .type = number, .unit = "m", .range = Range::positive()},
       {.table = "assembly.radii",

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 
@@ -41,9 +42,8 @@ void check(const SpringConstants& k, const std::string& where) {
 
 /// cos 2 theta, sin 2 theta, cos 4 theta, sin 4 theta at the direction of a contact. Odd harmonics of psi vanish: each
 /// contact is seen from both of its discs.
-std::array<double, 4> harmonics_at(const Assembly& assembly, const Contact& contact) {
-  const Vec2 l = assembly.branch(contact);
-  const Vec2 n = l / norm(l);
+std::array<double, 4> harmonics_at(const Assembly& assembly, std::size_t contact) {
+  const Vec2 n = frame_of(assembly, contact).normal;
   const double c2 = n.x * n.x - n.y * n.y;
   const double s2 = 2 * n.x * n.y;
   return {c2, s2, c2 * c2 - s2 * s2, 2 * c2 * s2};
@@ -139,7 +139,7 @@ ContactSprings contact_springs(const Assembly& assembly, SpringConstants springs
 ContactHarmonics contact_harmonics(const Assembly& assembly) {
   ContactHarmonics sum;
   const auto count = static_cast<double>(assembly.contacts.size());
-  for (const Contact& contact : assembly.contacts) {
+  for (std::size_t contact = 0; contact < assembly.contacts.size(); ++contact) {
     const auto h = harmonics_at(assembly, contact);
     sum.a2 += 2 * h[0] / count;
     sum.b2 += 2 * h[1] / count;
@@ -154,7 +154,7 @@ std::vector<double> contact_density(const Assembly& assembly) {
   const double psi_mean = assembly.coordination_number() / (2 * std::numbers::pi);
   std::vector<double> psi;
   psi.reserve(assembly.contacts.size());
-  for (const Contact& contact : assembly.contacts) {
+  for (std::size_t contact = 0; contact < assembly.contacts.size(); ++contact) {
     const auto h = harmonics_at(assembly, contact);
     psi.push_back(psi_mean * (1 + mean.a2 * h[0] + mean.b2 * h[1] + mean.a4 * h[2] + mean.b4 * h[3]));
   }

@@ -7,12 +7,30 @@
 namespace equidem {
 namespace {
 
-Effects::Entry rotation_entry(bool tangential_springs, Rotation rotation) {
-  if (!tangential_springs) return {"rotation", false, "kT = 0 everywhere: nothing can turn a disc"};
+Effects::Entry rotation_entry(bool tangential_springs, bool off_lines, Rotation rotation) {
+  if (!tangential_springs && !off_lines) return {"rotation", false, "kT = 0 everywhere: nothing can turn a disc"};
   if (rotation == Rotation::restrained) {
     return {"rotation", false, "restrained as asked: moments hold the discs, and the stress need not be symmetric"};
   }
+  if (off_lines) return {"rotation", true, "contacts off the lines of centres turn the bodies"};
   return {"rotation", true, "tangential springs turn the discs"};
+}
+
+Effects derive(const ContactSprings& springs, bool off_lines, Rotation rotation) {
+  Effects effects;
+  effects.tangential_springs = springs.any_tangential();
+  const Effects::Entry turning = rotation_entry(effects.tangential_springs, off_lines, rotation);
+  effects.rotation = turning.active;
+  effects.restrained = !turning.active && (effects.tangential_springs || off_lines);
+
+  effects.entries.push_back({"normal springs", true, "every contact has one"});
+  if (effects.tangential_springs) {
+    effects.entries.push_back({"tangential springs", true, "kT is not 0 at some contact"});
+  } else {
+    effects.entries.push_back({"tangential springs", false, "kT = 0 everywhere"});
+  }
+  effects.entries.push_back(turning);
+  return effects;
 }
 
 }  // namespace
@@ -38,20 +56,12 @@ std::string Effects::report() const {
   return text;
 }
 
-Effects derive_effects(const ContactSprings& springs, Rotation rotation) {
-  Effects effects;
-  effects.tangential_springs = springs.any_tangential();
-  const Effects::Entry turning = rotation_entry(effects.tangential_springs, rotation);
-  effects.rotation = turning.active;
+Effects derive_effects(const Assembly& assembly, const ContactSprings& springs, Rotation rotation) {
+  return derive(springs, !on_lines_of_centres(assembly), rotation);
+}
 
-  effects.entries.push_back({"normal springs", true, "every contact has one"});
-  if (effects.tangential_springs) {
-    effects.entries.push_back({"tangential springs", true, "kT is not 0 at some contact"});
-  } else {
-    effects.entries.push_back({"tangential springs", false, "kT = 0 everywhere"});
-  }
-  effects.entries.push_back(turning);
-  return effects;
+Effects derive_effects(const ContactSprings& springs, Rotation rotation) {
+  return derive(springs, false, rotation);
 }
 
 }  // namespace equidem

@@ -29,7 +29,8 @@ struct Effects {
   };
   std::vector<Entry> entries;
   bool tangential_springs = false;
-  bool rotation = false;  ///< rotations are unknowns
+  bool rotation = false;    ///< rotations are unknowns
+  bool restrained = false;  ///< rotations that contacts would resist are none
 
   [[nodiscard]] int unknowns_per_disc() const { return rotation ? 3 : 2; }
   /// "active: normal springs, tangential springs. inactive: rotation (kT = 0 everywhere: nothing can turn a disc)."
@@ -37,7 +38,10 @@ struct Effects {
 };
 
 /// Normal springs always; tangential springs where some kT != 0; rotation where moreover it is not restrained. Free
-/// rotation with kT = 0 would leave rotations without stiffness: they are inert and are no unknowns.
+/// rotation with kT = 0 would leave rotations without stiffness: they are inert and are no unknowns, unless contacts lie off the lines of
+/// centres, where normal springs resist them.
+Effects derive_effects(const Assembly& assembly, const ContactSprings& springs, Rotation rotation);
+/// The same of contacts that all lie on the lines of centres.
 Effects derive_effects(const ContactSprings& springs, Rotation rotation);
 
 }  // namespace equidem

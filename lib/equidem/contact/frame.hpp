@@ -3,16 +3,21 @@
 /// From the motion of two bodies to stretch and slip at their contact, and back from contact forces to the bodies.
 #pragma once
 
+#include <cstddef>
+
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/core/vector.hpp"
 
 namespace equidem {
 
-/// The geometry of one contact: the unit normal n from i to j and the lever arms.
+/// The geometry of one contact: the unit normal n from i to j and the arms of the contact point, lever n + offset s from the centre of i
+/// and its negative from that of j (ContactArms).
 struct ContactFrame {
   Vec2 normal;
-  double lever_i = 0;  ///< m
-  double lever_j = 0;  ///< m
+  double lever_i = 0;   ///< m
+  double lever_j = 0;   ///< m
+  double offset_i = 0;  ///< m; zero on the line of centres
+  double offset_j = 0;  ///< m
 
   [[nodiscard]] Vec2 tangent() const { return perpendicular(normal); }
 };
@@ -40,27 +45,60 @@ struct ForceOf {
 };
 using ContactForce = ForceOf<double>;
 
-inline ContactFrame frame_of(const Assembly& assembly, const Contact& contact) {
-  const Vec2 l = assembly.branch(contact);
-  return {l / norm(l), contact.lever_i, contact.lever_j};
+/// Of a contact of the assembly, by its number: the one place that knows where contacts lie.
+inline ContactFrame frame_of(const Assembly& assembly, std::size_t contact) {
+  const Contact& c = assembly.contacts[contact];
+  if (!assembly.contact_arms.empty()) {
+    const ContactArms& arms = assembly.contact_arms[contact];
+    return {arms.normal, c.lever_i, c.lever_j, arms.offset_i, arms.offset_j};
+  }
+  const Vec2 l = assembly.branch(c);
+  return {l / norm(l), c.lever_i, c.lever_j};
 }
 
-/// dn = du . n,  ds = du . s - turn, with du = u_j - u_i and turn = r_i theta_i + r_j theta_j: Abe 1996, eqs. (1)-(3) with
-/// r_i = r_j = a. In any precision: residuals need more than a double.
+/// Whether a rotation deforms a contact with the tangential spring kT, of which it moves the point by `lever` along and by `offset`
+/// across the contact.
+constexpr bool turns_against(double lever, double offset, double kT) {
+  return offset != 0 || (kT != 0 && lever != 0);
+}
+
+/// dn = du . n + opening,  ds = du . s - turn, with du = u_j - u_i, turn = r_i theta_i + r_j theta_j and opening = o_i theta_i +
+/// o_j theta_j of levers r and offsets o: Abe 1996, eqs. (1)-(3) with r_i = r_j = a, o_i = o_j = 0. In any precision: residuals need
+/// more than a double.
 template <typename Number>
-DeformationOf<Number> deformation(const ContactFrame& frame, Number du_x, Number du_y, Number turn) {
+DeformationOf<Number> deformation(const ContactFrame& frame, Number du_x, Number du_y, Number turn,
+                                  Number opening = 0) {
   const Vec2 n = frame.normal, s = frame.tangent();
-  return {du_x * n.x + du_y * n.y, du_x * s.x + du_y * s.y - turn};
+  return {du_x * n.x + du_y * n.y + opening, du_x * s.x + du_y * s.y - turn};
 }
 
 inline ContactDeformation deformation(const ContactFrame& frame, const DiscMotion& i, const DiscMotion& j) {
   const Vec2 du = j.u - i.u;
-  return deformation(frame, du.x, du.y, frame.lever_i * i.theta + frame.lever_j * j.theta);
+  return deformation(frame, du.x, du.y, frame.lever_i * i.theta + frame.lever_j * j.theta,
+                     frame.offset_i * i.theta + frame.offset_j * j.theta);
 }
 
 /// The force that disc i feels through the contact; disc j feels its negative.
 inline Vec2 force_on_i(const ContactFrame& frame, const ContactForce& f) {
   return f.normal * frame.normal + f.tangential * frame.tangent();
+}
+
+/// The moments that the contact exerts on i and on j, about their centres, N.
+template <typename Number>
+Number moment_on_i(const ContactFrame& frame, const ForceOf<Number>& f) {
+  return frame.lever_i * f.tangential - frame.offset_i * f.normal;
+}
+template <typename Number>
+Number moment_on_j(const ContactFrame& frame, const ForceOf<Number>& f) {
+  return frame.lever_j * f.tangential - frame.offset_j * f.normal;
+}
+
+/// From the centre of i to the contact point, and from there to the centre of j, m.
+inline Vec2 arm_of_i(const ContactFrame& frame) {
+  return frame.lever_i * frame.normal + frame.offset_i * frame.tangent();
+}
+inline Vec2 arm_to_j(const ContactFrame& frame) {
+  return frame.lever_j * frame.normal + frame.offset_j * frame.tangent();
 }
 
 }  // namespace equidem

@@ -44,8 +44,8 @@ struct DeformationGradient {
 inline DeformationGradient deformation_gradient(const ContactFrame& frame, double rotation_scale) {
   const Vec2 n = frame.normal;
   const Vec2 s = frame.tangent();
-  return {{-n.x, -n.y, 0.0},
-          {n.x, n.y, 0.0},
+  return {{-n.x, -n.y, frame.offset_i / rotation_scale},
+          {n.x, n.y, frame.offset_j / rotation_scale},
           {-s.x, -s.y, -frame.lever_i / rotation_scale},
           {s.x, s.y, -frame.lever_j / rotation_scale}};
 }

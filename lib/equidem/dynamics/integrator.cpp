@@ -18,8 +18,8 @@ constexpr std::array<double, 4> kicks = {0.5 - lambda, lambda, lambda, 0.5 - lam
 /// After each kick; the last one holds that before the first kick of the next step, too.
 constexpr std::array<double, 4> drifts = {chi, 1 - 2 * (chi + xi), chi, 2 * xi};
 
-constexpr std::array all = {Integrator::leapfrog, Integrator::velocity_verlet, Integrator::thesis,
-                            Integrator::fourth_order};
+constexpr std::array all_integrators = {Integrator::leapfrog, Integrator::velocity_verlet, Integrator::thesis,
+                                        Integrator::fourth_order};
 
 /// Half the trace of what one step of the fourth-order scheme does to an oscillator with W = omega dt; stable while in [-1, 1].
 double half_trace(double w) {
@@ -49,7 +49,7 @@ double fourth_order_limit() {
 
 Integrator integrator_from(const std::string& name) {
   std::string known;
-  for (const Integrator integrator : all) {
+  for (const Integrator integrator : all_integrators) {
     if (name == to_string(integrator)) return integrator;
     known += (known.empty() ? "" : ", ") + to_string(integrator);
   }

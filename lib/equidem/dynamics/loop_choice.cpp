@@ -51,6 +51,14 @@ bool in_the_middle(const Assembly& assembly, const Contact& contact) {
 
 }  // namespace
 
+void check_contacts(const Assembly& assembly) {
+  if (assembly.contact_arms.empty()) return;
+  bad_input(
+      "the contacts of the assembly lie off the lines of centres",
+      "the motion of a contact network is that of discs, whose normal forces pass through both centres",
+      "Run the grains themselves ([grains], as pack writes them), or solve, homogenize or judge the network at rest");
+}
+
 void check(const Scene& scene, const SimulationOptions& options) {
   if (!(options.time_step > 0) || !std::isfinite(options.time_step)) {
     bad_input(format("the time step is {} s", options.time_step), "time could not go on", "Give a step > 0");
@@ -59,12 +67,13 @@ void check(const Scene& scene, const SimulationOptions& options) {
     bad_input(format("{} have a mass", counted(static_cast<std::int64_t>(scene.inertia.size()), "disc")),
               format("the assembly has {}", scene.assembly.size()), "Give the inertia of every disc");
   }
+  check_contacts(scene.assembly);
   check_inertia(scene);
   check_damping(options);
 }
 
 Effects effects_of(const Scene& scene, const SimulationOptions& options) {
-  Effects effects = derive_effects(scene.springs, options.rotation);
+  Effects effects = derive_effects(scene.assembly, scene.springs, options.rotation);
   const auto add = [&](const char* name, bool active, const char* why) {
     effects.entries.push_back({name, active, active ? "" : why});
   };

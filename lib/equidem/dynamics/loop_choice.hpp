@@ -8,7 +8,10 @@
 
 namespace equidem {
 
-/// \throws Error (bad_input) where a mass is not positive, a damping is out of range, or several exclude one another
+/// \throws Error (bad_input) where contacts lie off the lines of centres: no loop knows of them
+void check_contacts(const Assembly& assembly);
+
+/// \throws Error (bad_input) as check_contacts, where a mass is not positive, a damping is out of range, or several exclude one another
 void check(const Scene& scene, const SimulationOptions& options);
 
 /// What is active in a run, and why each other effect is not: those of statics, then damping, gravity, loads, supports, walls, large

@@ -46,7 +46,7 @@ class StillScene {
       : scene_(scene),
         motion_(options.motion),
         time_(options.time),
-        effects_(derive_effects(scene.springs, options.rotation)),
+        effects_(derive_effects(scene.assembly, scene.springs, options.rotation)),
         unknowns_(unknowns_at(scene, effects_, options.time)),
         contacts_(Scene{.assembly = scene.assembly,
                         .springs = scene.springs,
@@ -301,7 +301,7 @@ double relative_unbalanced_force(const Scene& scene, LoopKind::Motion motion, co
     const ContactDeformation d =
         motion == LoopKind::Motion::finite
             ? bond_deformation(bond_of(scene.assembly, contact, scene.springs[c]), bond_motion(i, j))
-            : deformation(frame_of(scene.assembly, contact), i, j);
+            : deformation(frame_of(scene.assembly, c), i, j);
     const ContactForce f = linear_spring_force(scene.springs[c], d);
     carried += f.normal * f.normal + f.tangential * f.tangential;
   }

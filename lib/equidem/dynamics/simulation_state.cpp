@@ -94,7 +94,7 @@ double Simulation::Implementation::elastic_energy(const std::vector<DiscMotion>&
     if (kind.motion == LoopKind::Motion::finite) {
       energy += bond_energy(bond_of(scene.assembly, contact, scene.springs[c]), i, j);
     } else {
-      const ContactDeformation d = deformation(frame_of(scene.assembly, contact), i, j);
+      const ContactDeformation d = deformation(frame_of(scene.assembly, c), i, j);
       energy += 0.5 * (scene.springs[c].kN * d.normal * d.normal + scene.springs[c].kT * d.tangential * d.tangential);
     }
   }

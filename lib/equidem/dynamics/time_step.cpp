@@ -17,7 +17,7 @@
 namespace equidem {
 namespace {
 
-constexpr std::array all = {TimeStepRule::lanczos, TimeStepRule::bound, TimeStepRule::thesis};
+constexpr std::array all_rules = {TimeStepRule::lanczos, TimeStepRule::bound, TimeStepRule::thesis};
 constexpr double infinite = std::numeric_limits<double>::infinity();
 /// Lanczos takes some hundred products with K, each the work of a few steps; the bound costs a quarter of the steps.
 constexpr double steps_worth_lanczos = 2000;
@@ -38,7 +38,7 @@ struct Vibration {
   Vibration(const Scene& scene_in, const SimulationOptions& options_in)
       : scene(scene_in),
         options(options_in),
-        effects(derive_effects(scene.springs, options.rotation)),
+        effects(derive_effects(scene.assembly, scene.springs, options.rotation)),
         unknowns(unknowns_at(scene, effects, 0)) {
     double xx = 0, xy = 0, yy = 0, lightest = infinite;
     for (const Wall& wall : scene.walls) {
@@ -219,7 +219,7 @@ void refuse_unstable(const TimeStep& result, const SimulationOptions& options) {
 
 TimeStepRule time_step_rule_from(const std::string& name) {
   std::string known;
-  for (const TimeStepRule rule : all) {
+  for (const TimeStepRule rule : all_rules) {
     if (name == to_string(rule)) return rule;
     known += (known.empty() ? "" : ", ") + to_string(rule);
   }
@@ -240,6 +240,7 @@ std::string to_string(TimeStepRule rule) {
 
 TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, const TimeStepOptions& wanted) {
   check(wanted);
+  check_contacts(scene.assembly);
   check_magnitudes(scene.assembly, scene.springs, scene.inertia);
   const Vibration vibration(scene, options);
   const auto bound = [&](const ContactSprings& springs) { return vibration.bound(springs); };

@@ -12,7 +12,7 @@ std::vector<ContactDeformation> affine_deformations(const Assembly& assembly, co
     const Contact& contact = assembly.contacts[c];
     const DiscMotion i{.u = {}, .theta = rotation};
     const DiscMotion j{.u = gradient * assembly.branch(contact), .theta = rotation};
-    result[c] = deformation(frame_of(assembly, contact), i, j);
+    result[c] = deformation(frame_of(assembly, c), i, j);
   }
   return result;
 }

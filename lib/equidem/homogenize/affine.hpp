@@ -24,7 +24,9 @@ std::vector<ContactDeformation> affine_deformations(const Assembly& assembly, co
 /// Contact forces, N/m, where each contact sees the affine motion u = h x and all discs turn by the same `rotation`
 /// (rad):
 ///
-///   dn = n . h l,   ds = s . h l - (r_i + r_j) rotation,   l the branch vector.
+///   dn = n . h l,   ds = s . h l - (r_i + r_j) rotation,   l the branch vector
+///
+/// (off the line of centres dn has the term (o_i + o_j) rotation of the offsets too).
 ///
 /// With rotation = 0 these are the forces of Abe 1996, eq. (54). On a lattice with one disc in its primitive cell
 /// they balance on every disc; elsewhere they do not, and their energy is the Voigt bound.

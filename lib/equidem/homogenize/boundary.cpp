@@ -105,6 +105,7 @@ TractionSample cut_open(const Assembly& assembly, const ContactSprings& springs)
   opened.period.reset();
   const std::vector<Contact> contacts = std::move(opened.contacts);
   opened.contacts.clear();
+  const std::vector<ContactArms> arms = std::exchange(opened.contact_arms, {});
   opened.facet_lengths.clear();
   opened.contact_kN.clear();
   opened.contact_kT.clear();
@@ -113,6 +114,7 @@ TractionSample cut_open(const Assembly& assembly, const ContactSprings& springs)
     const Contact& contact = contacts[c];
     if (!crosses(contact)) {
       opened.contacts.push_back(contact);
+      if (!arms.empty()) opened.contact_arms.push_back(arms[c]);
       left.push_back(springs[c]);
       continue;
     }

@@ -40,6 +40,17 @@ void refuse_negative_springs(const Assembly& assembly, const ContactSprings& spr
             "Give kT >= 0, or do without this estimate");
 }
 
+/// Off the lines of centres the stress B/A loads tangential springs too.
+void refuse_absent_springs(const Assembly& assembly, const ContactSprings& springs) {
+  if (on_lines_of_centres(assembly)) return;
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    if (springs[c].kT != 0) continue;
+    bad_input(format("contact {} has kT = 0", c),
+              "where contacts lie off the lines of centres, a uniform stress loads all tangential springs",
+              "Give kT > 0, or do without this estimate");
+  }
+}
+
 /// The branch fabric B/A.
 Tensor2 spanning_fabric(const Assembly& assembly) {
   const Tensor2 h = fabric(assembly).branch;
@@ -74,13 +85,14 @@ Symmetric2 inverse_in_the_limit(const Symmetric2& finite, const Symmetric2& infi
 }  // namespace
 
 Matrix3 voigt_stiffness(const Assembly& assembly, const ContactSprings& springs) {
+  const bool off_line = !assembly.contact_arms.empty();
   const Triangle sum = contact_sums<6>(assembly.contacts.size(), [&](std::size_t c, Triangle& sums) {
     const Vec2 l = assembly.branch(assembly.contacts[c]);
-    const double length = norm(l);
-    const Vec2 n = l / length, s = perpendicular(n);
+    const ContactFrame frame = frame_of(assembly, c);
+    const Vec2 n = frame.normal, s = frame.tangent();
     const auto [kN, kT] = springs[c];
     // n . e l and s . e l for unit strains e_xx, e_yy, gamma_xy.
-    add_square(kN, {n.x * l.x, n.y * l.y, n.x * l.y}, sums);
+    add_square(kN, {n.x * l.x, n.y * l.y, off_line ? 0.5 * (n.x * l.y + n.y * l.x) : n.x * l.y}, sums);
     add_square(kT, {s.x * l.x, s.y * l.y, 0.5 * (s.x * l.y + s.y * l.x)}, sums);
   });
   Matrix3 stiffness = symmetric(sum);
@@ -94,6 +106,8 @@ Matrix3 voigt_stiffness(const Assembly& assembly, const ContactSprings& springs)
 Matrix3 uniform_stress_estimate(const Assembly& assembly, const ContactSprings& given) {
   const Tensor2 h = spanning_fabric(assembly);
   refuse_negative_springs(assembly, given);
+  const bool off_line = !assembly.contact_arms.empty();
+  if (off_line) refuse_absent_springs(assembly, given);
   const double unit = spring_unit(given);
   const ContactSprings springs = scaled_springs(assembly, given, 1 / unit);
   const double area = assembly.area();
@@ -104,12 +118,13 @@ Matrix3 uniform_stress_estimate(const Assembly& assembly, const ContactSprings& 
   // springs are absent.
   const auto sum = contact_sums<12>(assembly.contacts.size(), [&](std::size_t c, std::array<double, 12>& sums) {
     const Vec2 l = assembly.branch(assembly.contacts[c]);
-    const Vec2 n = l / norm(l), s = perpendicular(n);
+    const ContactFrame frame = frame_of(assembly, c);
+    const Vec2 n = frame.normal, s = frame.tangent();
     const Vec2 m = h_inverse * l;
     const Vec2 deviator{m.x, -m.y}, shear{m.y, m.x};
     const auto [kN, kT] = springs[c];
-    add_square(1 / (kN * area), {norm(l), dot(n, deviator), dot(n, shear)}, sums);
-    const std::array<double, 3> tangential{0, dot(s, deviator), dot(s, shear)};
+    add_square(1 / (kN * area), {off_line ? dot(n, l) : norm(l), dot(n, deviator), dot(n, shear)}, sums);
+    const std::array<double, 3> tangential{off_line ? dot(s, l) : 0, dot(s, deviator), dot(s, shear)};
     if (kT != 0) add_square(1 / (kT * area), tangential, sums);
     if (kT == 0) add_square(1 / area, tangential, sums, 6);
   });

@@ -50,7 +50,7 @@ void check(const Assembly& assembly, const CalibrateOptions& options) {
   }
   if (!assembly.contact_kN.empty() || !assembly.contact_kT.empty()) {
     bad_input("the assembly file gives springs of its own", "calibration chooses the springs",
-              "Remove \"springs\" from the assembly file");
+              "Remove \"springs\" from the assembly file, or set assembly.own_springs = false");
   }
 }
 

@@ -21,7 +21,7 @@ using WeakStrain = std::array<double, 3>;
 
 /// What levers that leave a gap or an overlap cost: a rigid rotation of all discs would make their contact slip.
 void check_levers(const Assembly& assembly, const ContactSprings& springs, const Effects& effects) {
-  if (!effects.rotation) return;
+  if (!effects.rotation || !assembly.contact_arms.empty()) return;  // check(Assembly) sees that these meet
   constexpr double close = 1e-9, rounding = 8 * std::numeric_limits<double>::epsilon();  // of lengths, of coordinates
   for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
     const Contact& c = assembly.contacts[k];
@@ -44,7 +44,7 @@ EffectiveStiffness solve(const Assembly& assembly, const ContactSprings& springs
   const ContactSprings scaled = scaled_springs(assembly, springs, 1 / unit);
   EffectiveStiffness result;
   result.boundary = options.boundary;
-  result.effects = derive_effects(springs, options.rotation);
+  result.effects = derive_effects(assembly, springs, options.rotation);
   result.area = assembly.area();
   check_levers(assembly, springs, result.effects);
   if (options.boundary == Boundary::traction) {

@@ -38,13 +38,17 @@ double rounding_of_energies(const SampleSolver& solver, const std::vector<Soluti
   const Assembly& assembly = solver.assembly();
   const auto b = static_cast<std::size_t>(solver.unknowns().per_disc);
   const double scale = solver.unknowns().rotation_scale;
+  const auto reach = [](double lever, double offset) { return std::abs(lever) + std::abs(offset); };
   const auto sum = contact_sums<1>(assembly.contacts.size(), [&](std::size_t c, std::array<double, 1>& total) {
     const Contact& contact = assembly.contacts[c];
+    const ContactFrame frame = frame_of(assembly, c);
     double force = 0, distance = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const double *u_i = &solutions[k].motion.high[contact.i * b], *u_j = &solutions[k].motion.high[contact.j * b];
-      const double rolled =
-          b == 3 ? (contact.lever_i * std::abs(u_i[2]) + contact.lever_j * std::abs(u_j[2])) / scale : 0;
+      const double rolled = b == 3 ? (reach(frame.lever_i, frame.offset_i) * std::abs(u_i[2]) +
+                                      reach(frame.lever_j, frame.offset_j) * std::abs(u_j[2])) /
+                                         scale
+                                   : 0;
       distance = std::max(distance, rolled + norm(unit_gradients[k] * assembly.branch(contact) +
                                                   Vec2{u_j[0] - u_i[0], u_j[1] - u_i[1]}));
       const auto f = linear_spring_force(solver.springs()[c], deformations[k][c]);
@@ -85,7 +89,7 @@ void solve_strains(const Assembly& assembly, const ContactSprings& springs, cons
   const bool displaced = options.boundary == Boundary::displacement;
   SampleSolver solver(assembly, springs, options, displaced ? boundary_discs(assembly) : std::vector<std::uint8_t>{},
                       displaced, result);
-  const bool turned = result.effects.tangential_springs && !result.effects.rotation;
+  const bool turned = result.effects.restrained;
   std::vector<RightHandSide> cases(turned ? 4 : 3);
   for (std::size_t k = 0; k < cases.size(); ++k) {
     cases[k].imposed = affine_deformations(solver.assembly(), unit_gradients[k], 0);

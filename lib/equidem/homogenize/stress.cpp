@@ -34,9 +34,15 @@ std::vector<Tensor2> disc_stresses(const Assembly& assembly, std::span<const Con
   std::vector<Tensor2> stresses(assembly.size());
   for (std::size_t c = 0; c < forces.size(); ++c) {
     const Contact& contact = assembly.contacts[c];
-    const ContactFrame frame = frame_of(assembly, contact);
+    const ContactFrame frame = frame_of(assembly, c);
     // j feels -F at -r_j n: the same sign of F_i l_j at both ends.
-    const Tensor2 force_by_normal = outer(force_on_i(frame, forces[c]), frame.normal);
+    const Vec2 force = force_on_i(frame, forces[c]);
+    if (frame.offset_i != 0 || frame.offset_j != 0) {
+      stresses[contact.i] += outer(force, arm_of_i(frame));
+      stresses[contact.j] += outer(force, arm_to_j(frame));
+      continue;
+    }
+    const Tensor2 force_by_normal = outer(force, frame.normal);
     stresses[contact.i] += frame.lever_i * force_by_normal;
     stresses[contact.j] += frame.lever_j * force_by_normal;
   }
@@ -70,8 +76,11 @@ Tensor2 macroscopic_stress(const Assembly& assembly, std::span<const ContactForc
   parallel_tasks(partial.size(), [&](std::size_t task, int) {
     const std::size_t end = std::min(forces.size(), (task + 1) * block);
     for (std::size_t c = task * block; c < end; ++c) {
-      const ContactFrame frame = frame_of(assembly, assembly.contacts[c]);
-      partial[task] += (frame.lever_i + frame.lever_j) * outer(force_on_i(frame, forces[c]), frame.normal);
+      const ContactFrame frame = frame_of(assembly, c);
+      const Vec2 force = force_on_i(frame, forces[c]);
+      partial[task] += frame.offset_i != 0 || frame.offset_j != 0
+                           ? outer(force, arm_of_i(frame) + arm_to_j(frame))
+                           : (frame.lever_i + frame.lever_j) * outer(force, frame.normal);
     }
   });
   return (1 / area) * std::accumulate(partial.begin(), partial.end(), Tensor2{});

@@ -38,9 +38,10 @@ std::vector<double> tractions(const Assembly& assembly, const TractionSample& sa
   for (const auto& cut : sample.cuts) {
     const Contact& contact = assembly.contacts[cut.contact];
     const Vec2 f = stress * cut.a;
-    const double tangential = dot(f, frame_of(assembly, contact).tangent());
-    add(contact.i, f, contact.lever_i * tangential);
-    add(contact.j, -f, contact.lever_j * tangential);
+    const ContactFrame frame = frame_of(assembly, cut.contact);
+    const ContactForce carried{dot(f, frame.normal), dot(f, frame.tangent())};
+    add(contact.i, f, moment_on_i(frame, carried));
+    add(contact.j, -f, moment_on_j(frame, carried));
   }
   return force;
 }
@@ -49,7 +50,7 @@ std::vector<double> tractions(const Assembly& assembly, const TractionSample& sa
 PairEnergies energies_of_cuts(const Assembly& assembly, const ContactSprings& springs, const TractionSample& sample) {
   PairEnergies energies;
   for (const auto& cut : sample.cuts) {
-    const ContactFrame frame = frame_of(assembly, assembly.contacts[cut.contact]);
+    const ContactFrame frame = frame_of(assembly, cut.contact);
     const SpringConstants k = springs[cut.contact];
     for (int a = 0; a < 3; ++a) {
       for (int b = 0; b < 3; ++b) {

@@ -154,6 +154,8 @@ void write_contact_csv(const std::filesystem::path& path, const AssemblyState& s
   const Assembly& assembly = state.assembly;
   std::vector<std::string> columns{"i",          "j",          "shift_x",   "shift_y",
                                    "branch_x_m", "branch_y_m", "lever_i_m", "lever_j_m"};
+  const auto& arms = assembly.contact_arms;
+  if (!arms.empty()) columns.insert(columns.end(), {"normal_x", "normal_y", "offset_i_m", "offset_j_m"});
   if (!state.contact_forces.empty()) {
     columns.insert(columns.end(),
                    {"normal_force_N_per_m", "tangential_force_N_per_m", "force_x_N_per_m", "force_y_N_per_m"});
@@ -167,9 +169,13 @@ void write_contact_csv(const std::filesystem::path& path, const AssemblyState& s
     }
     const Vec2 branch = assembly.branch(contact);
     for (const double v : {branch.x, branch.y, contact.lever_i, contact.lever_j}) text.cell(v);
+    if (!arms.empty()) {
+      const ContactArms& a = arms[index];
+      for (const double v : {a.normal.x, a.normal.y, a.offset_i, a.offset_j}) text.cell(v);
+    }
     if (!state.contact_forces.empty()) {
       const ContactForce& force = state.contact_forces[index];
-      const Vec2 on_i = force_on_i(frame_of(assembly, contact), force);
+      const Vec2 on_i = force_on_i(frame_of(assembly, index), force);
       for (const double v : {force.normal, force.tangential, on_i.x, on_i.y}) text.cell(v);
     }
     text.end_row();

@@ -20,7 +20,7 @@ constexpr double cell_reach = 1.1547005383792517;
 constexpr double irregular_reach = 1.35;  // of the radius of a circle as large as the cell
 constexpr double too_small_to_see = 0.6;  // image pixels, radius: below it a pixel takes the mean of its discs
 
-Colour colour_of(const Scene& scene, std::size_t disc) {
+Colour colour_of(const PictureScene& scene, std::size_t disc) {
   return scene.values.empty() ? uncoloured : scene.colours.colour_of(scene.values[disc]);
 }
 
@@ -36,7 +36,7 @@ double reach_of(const Assembly& assembly, std::size_t disc) {
 
 /// Each pixel shows the disc with the smallest power distance d² - r²; where discs are smaller than pixels, the mean
 /// of those in it.
-Raster paint_cells(const Scene& scene, double per_unit) {
+Raster paint_cells(const PictureScene& scene, double per_unit) {
   const PageFrame& frame = scene.frame;
   const Assembly& assembly = scene.state.assembly;
   const double scale = frame.scale * per_unit;
@@ -99,7 +99,7 @@ Raster paint_cells(const Scene& scene, double per_unit) {
 
 }  // namespace
 
-void draw_discs(Canvas& canvas, const Scene& scene) {
+void draw_discs(Canvas& canvas, const PictureScene& scene) {
   const PageFrame& frame = scene.frame;
   const Assembly& assembly = scene.state.assembly;
   if (scene.as_image) {

@@ -18,7 +18,7 @@ constexpr double thinnest = 0.12;  // units
 constexpr double border = 0.7;     // units
 constexpr double bordered = 2.2;   // units, width
 
-std::vector<Chain> chains_of(const Scene& scene) {
+std::vector<Chain> chains_of(const PictureScene& scene) {
   const Assembly& assembly = scene.state.assembly;
   std::vector<Chain> chains;
   for (std::size_t index = 0; index < assembly.contacts.size(); ++index) {
@@ -46,7 +46,7 @@ std::vector<Chain> chains_of(const Scene& scene) {
 
 }  // namespace
 
-void draw_force_chains(Canvas& canvas, const Scene& scene) {
+void draw_force_chains(Canvas& canvas, const PictureScene& scene) {
   if (!scene.force_chains) return;
   const std::vector<Chain> chains = chains_of(scene);
   for (const Chain& chain : chains) {

@@ -24,7 +24,7 @@ std::string tick_text(double value) {
   return text.front() == '-' ? "−" + text.substr(1) : text;
 }
 
-void draw_colour_bar(Canvas& canvas, const Scene& scene) {
+void draw_colour_bar(Canvas& canvas, const PictureScene& scene) {
   const ColourScale& scale = scene.colours;
   const PageFrame& frame = scene.frame;
   const double low = std::min(scale.low, scale.high), high = std::max(scale.low, scale.high);
@@ -59,7 +59,7 @@ void draw_colour_bar(Canvas& canvas, const Scene& scene) {
   canvas.text(scene.colour_unit, {left, top - tip - 11}, small_text, TextAnchor::left, ink);
 }
 
-void draw_scale_bar(Canvas& canvas, const Scene& scene, double left, double y) {
+void draw_scale_bar(Canvas& canvas, const PictureScene& scene, double left, double y) {
   const PageFrame& frame = scene.frame;
   const double wanted = 0.2 * frame.room.x / frame.scale;  // m
   const double power = std::pow(10.0, std::floor(std::log10(wanted)));
@@ -71,7 +71,7 @@ void draw_scale_bar(Canvas& canvas, const Scene& scene, double left, double y) {
   canvas.text(with_unit(length, "m"), {0.5 * (left + right), y - 9}, small_text, TextAnchor::centre, ink);
 }
 
-void draw_force_legend(Canvas& canvas, const Scene& scene, double right, double y) {
+void draw_force_legend(Canvas& canvas, const PictureScene& scene, double right, double y) {
   const std::string widest = format("widest line {}", with_unit(scene.widest_force, "N/m"));
   double x = right;
   const auto put_text = [&](const std::string& text, const Colour& colour) {
@@ -123,7 +123,7 @@ void draw_support(Canvas& canvas, Vec2 centre, double radius, const DrawnSupport
 
 }  // namespace
 
-void draw_supports_and_loads(Canvas& canvas, const Scene& scene) {
+void draw_supports_and_loads(Canvas& canvas, const PictureScene& scene) {
   const PageFrame& frame = scene.frame;
   const Assembly& assembly = scene.state.assembly;
   for (const DrawnSupport& support : scene.options.supports) {
@@ -150,7 +150,7 @@ void draw_supports_and_loads(Canvas& canvas, const Scene& scene) {
   }
 }
 
-void draw_legends(Canvas& canvas, const Scene& scene) {
+void draw_legends(Canvas& canvas, const PictureScene& scene) {
   const PageFrame& frame = scene.frame;
   constexpr double left = 40;
   if (!scene.options.title.empty()) {

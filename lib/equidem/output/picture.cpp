@@ -12,11 +12,11 @@
 namespace equidem {
 namespace {
 
-int pixel_height(const Scene& scene) {
+int pixel_height(const PictureScene& scene) {
   return static_cast<int>(std::ceil(scene.frame.height * scene.frame.pixels));
 }
 
-std::string draw(const Scene& scene, PageFormat page) {
+std::string draw(const PictureScene& scene, PageFormat page) {
   Canvas canvas(page, scene.options.width, pixel_height(scene), scene.frame.pixels);
   draw_discs(canvas, scene);
   draw_force_chains(canvas, scene);
@@ -40,7 +40,7 @@ DiscColour disc_colour_from(const std::string& name) {
 
 PictureResult write_picture(const std::filesystem::path& folder, const std::string& name, const AssemblyState& state,
                             const PictureOptions& options, bool overwrite) {
-  const Scene scene = plan_scene(state, options);
+  const PictureScene scene = plan_scene(state, options);
   const auto svg = folder / (name + ".svg");
   const auto png = folder / (name + ".png");
   check_writable(svg, overwrite);

@@ -109,7 +109,7 @@ std::string colour_name(DiscColour colour) {
   return "";
 }
 
-void colour_discs(Scene& scene) {
+void colour_discs(PictureScene& scene) {
   const AssemblyState& state = scene.state;
   const bool by_motion = scene.options.colour == DiscColour::displacement;
   const bool known = by_motion ? !state.motions.empty() : !state.stresses.empty();
@@ -129,7 +129,7 @@ void colour_discs(Scene& scene) {
 
 /// Widths are taken from the force below which 99.5 % of the contacts lie, so that one loaded corner does not thin
 /// all others.
-void plan_force_chains(Scene& scene, double mean_radius) {
+void plan_force_chains(PictureScene& scene, double mean_radius) {
   const auto forces = scene.state.contact_forces;
   const double radius = mean_radius * scene.frame.scale;  // units
   if (!scene.options.force_chains || forces.empty() || scene.as_image || radius * scene.frame.pixels < finest_chained)
@@ -161,10 +161,14 @@ PageFrame lay_out_page(const Bounds& bounds, const PictureOptions& options, bool
   return frame;
 }
 
-std::string caption_of(const Scene& scene) {
+std::string caption_of(const PictureScene& scene) {
   const Assembly& assembly = scene.state.assembly;
-  std::string text = format("{}, {}", counted(static_cast<long long>(assembly.size()), "disc"),
-                            counted(static_cast<long long>(assembly.contacts.size()), "contact"));
+  std::string text = format(
+      "{}, {}",
+      assembly.sections.empty()
+          ? counted(static_cast<long long>(assembly.size()), "disc")
+          : counted(static_cast<long long>(assembly.size()), "body", "bodies") + ", drawn as discs of equal area",
+      counted(static_cast<long long>(assembly.contacts.size()), "contact"));
   if (!scene.state.motions.empty()) {
     text += scene.displacement_scale == 1 ? ", displacements to scale"
                                           : format(", displacements × {:.6g}", scene.displacement_scale);
@@ -178,11 +182,11 @@ std::string caption_of(const Scene& scene) {
 
 }  // namespace
 
-Scene plan_scene(const AssemblyState& state, const PictureOptions& options) {
+PictureScene plan_scene(const AssemblyState& state, const PictureOptions& options) {
   assert_consistent(state);
   check(state, options);
   const Assembly& assembly = state.assembly;
-  Scene scene{.state = state, .options = options};
+  PictureScene scene{.state = state, .options = options};
   scene.as_image = assembly.size() > most_drawn_discs;
   colour_discs(scene);
 

@@ -30,7 +30,7 @@ struct PageFrame {
   }
 };
 
-struct Scene {
+struct PictureScene {
   const AssemblyState& state;
   const PictureOptions& options;
   PageFrame frame = {};
@@ -55,19 +55,19 @@ struct Scene {
 
 /// Everything that is decided before drawing.
 /// \throws Error (bad_input) as write_picture does
-Scene plan_scene(const AssemblyState& state, const PictureOptions& options);
+PictureScene plan_scene(const AssemblyState& state, const PictureOptions& options);
 
 /// Whether a load points away from the middle of the assembly: its arrow then starts at the disc, else it ends there.
-inline bool pulls(const Scene& scene, const DrawnLoad& load) {
+inline bool pulls(const PictureScene& scene, const DrawnLoad& load) {
   return dot(load.force, scene.centres[load.disc] - scene.middle) >= 0;
 }
 
-void draw_discs(Canvas& canvas, const Scene& scene);
-void draw_force_chains(Canvas& canvas, const Scene& scene);
-void draw_supports_and_loads(Canvas& canvas, const Scene& scene);
+void draw_discs(Canvas& canvas, const PictureScene& scene);
+void draw_force_chains(Canvas& canvas, const PictureScene& scene);
+void draw_supports_and_loads(Canvas& canvas, const PictureScene& scene);
 
 /// Title, colour bar, scale bar, legend of the force chains, caption.
-void draw_legends(Canvas& canvas, const Scene& scene);
+void draw_legends(Canvas& canvas, const PictureScene& scene);
 
 inline constexpr Colour tension_colour{0.45, 0.02, 0.02};
 inline constexpr Colour compression_colour{0.02, 0.10, 0.33};

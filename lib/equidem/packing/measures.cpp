@@ -89,15 +89,19 @@ std::vector<PackingContact> contacts_of(const GrainPacking& packing) {
     const Vec2 branch = circles[j].centre + pair.shift - circles[i].centre;
     const double gap = touching_gap * std::min(radius_of(packing, pair.i), radius_of(packing, pair.j));
     for_touches(outlines[i], outlines[j], branch, gap, [&](const Touch& touch) {
+      // Midway between the points of the two surfaces, then nearer to the smaller one.
+      const Vec2 middle = 0.5 * (touch.arm_i + touch.arm_j + branch);
       contacts.push_back({pair.i, pair.j, whole(pair.shift.x, packing.box.size.x),
-                          whole(pair.shift.y, packing.box.size.y), touch.overlap});
+                          whole(pair.shift.y, packing.box.size.y), touch.overlap, touch.normal,
+                          middle + (0.5 - touch.share) * touch.overlap * touch.normal});
     });
   }
   for (std::size_t k = 0; k < circles.size(); ++k) {
     const auto grain = static_cast<std::int32_t>(k);
     for_wall_touches(outlines[k], circles[k].centre, packing.box, touching_gap * radius_of(packing, grain),
                      [&](int wall, const Touch& touch) {
-                       contacts.push_back({grain, ~wall, 0, 0, touch.overlap});
+                       contacts.push_back({grain, ~wall, 0, 0, touch.overlap, touch.normal,
+                                           touch.arm_i - touch.overlap * touch.normal});
                      });
   }
   return contacts;

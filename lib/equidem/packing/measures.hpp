@@ -18,6 +18,10 @@ struct PackingContact {
   std::int32_t j = 0;                     ///< ~j a wall, where negative: 0 floor, 1 left, 2 right, 3 lid
   std::int32_t shift_x = 0, shift_y = 0;  ///< i touches j at x_j + (shift_x Lx, shift_y Ly)
   double overlap = 0;                     ///< m
+  Vec2 normal;                            ///< unit, from i to j
+  /// From the centre of grain i to the contact point, m: between the surfaces in proportion to the radii of the parts that touch, on the
+  /// wall.
+  Vec2 arm_i;
 };
 
 /// All that overlap or whose gap is at most 1e-8 of the smaller radius; i < j, ordered. The grains of a bonded pair do not touch each other.

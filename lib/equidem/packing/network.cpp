@@ -3,16 +3,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
 
-#include "equidem/core/error.hpp"
+#include "equidem/contact/effects.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/clipped_area.hpp"
 #include "equidem/packing/measures.hpp"
+#include "equidem/statics/degrees_of_freedom.hpp"
 #include "equidem/statics/equilibrium.hpp"
 
 namespace equidem {
 namespace {
 
-/// The disc behind a wall that a disc touches in the wall.
+/// The centre behind a wall of the body that mirrors one at the wall.
 Vec2 mirrored(Vec2 centre, int wall, Vec2 box) {
   switch (wall) {
     case 0:
@@ -26,18 +31,76 @@ Vec2 mirrored(Vec2 centre, int wall, Vec2 box) {
   }
 }
 
-void add_contact(Assembly& assembly, const PackingContact& found, std::int32_t j, const SpringConstants& springs) {
-  Contact contact{.i = found.i, .j = j, .shift_x = found.shift_x, .shift_y = found.shift_y};
-  const double distance = norm(assembly.branch(contact));
-  const double ri = assembly.radii[static_cast<std::size_t>(contact.i)];
-  contact.lever_i = distance * ri / (ri + assembly.radii[static_cast<std::size_t>(j)]);
-  contact.lever_j = distance - contact.lever_i;
+/// Centre of mass of a body of the packing, m.
+Vec2 centre_of(const GrainPacking& packing, std::size_t body) {
+  if (packing.bonds.empty()) return packing.grains[body].position;
+  return 0.5 * (packing.grains[2 * body].position + packing.grains[2 * body + 1].position);
+}
+
+/// From the centre of its body to that of a grain.
+Vec2 place_in_body(const GrainPacking& packing, std::size_t grain) {
+  if (packing.bonds.empty()) return {};
+  return packing.grains[grain].position - centre_of(packing, packing.body_of(grain));
+}
+
+BodySection section_of(const GrainPacking& packing, std::size_t body) {
+  BodySection section;
+  const std::size_t grains = packing.bonds.empty() ? 1 : 2;
+  for (std::size_t k = grains * body; k < grains * (body + 1); ++k) {
+    const Grain& grain = packing.grains[k];
+    const double area = area_of(grain, packing.clumps);
+    const Vec2 place = place_in_body(packing, k);
+    section.area += area;
+    section.polar_moment += area * (grain.inertia.moment / grain.inertia.mass + dot(place, place));
+  }
+  return section;
+}
+
+void add_body(const GrainPacking& packing, std::size_t body, Vec2 centre, Assembly& assembly) {
+  assembly.centres.push_back(centre);
+  if (packing.shape == PackingShape::Kind::disc) {
+    assembly.radii.push_back(packing.radii[body]);
+    return;
+  }
+  assembly.sections.push_back(section_of(packing, body));
+  assembly.radii.push_back(std::sqrt(assembly.sections.back().area / std::numbers::pi));
+}
+
+/// The contacts of bodies instead of grains: i and j name bodies, arms begin at their centres.
+std::vector<PackingContact> contacts_of_bodies(const GrainPacking& packing) {
+  std::vector<PackingContact> contacts = contacts_of(packing);
+  for (PackingContact& contact : contacts) {
+    const auto i = static_cast<std::size_t>(contact.i);
+    contact.arm_i += place_in_body(packing, i);
+    contact.i = static_cast<std::int32_t>(packing.body_of(i));
+    if (contact.j >= 0) contact.j = static_cast<std::int32_t>(packing.body_of(static_cast<std::size_t>(contact.j)));
+  }
+  return contacts;
+}
+
+/// \param found between bodies of the assembly
+void add_contact(PackingShape::Kind shape, const PackingContact& found, const SpringConstants& springs,
+                 Assembly& assembly) {
+  Contact contact{.i = found.i, .j = found.j, .shift_x = found.shift_x, .shift_y = found.shift_y};
+  const Vec2 branch = assembly.branch(contact);
+  if (shape == PackingShape::Kind::disc) {
+    const double distance = norm(branch), ri = assembly.radii[static_cast<std::size_t>(contact.i)];
+    contact.lever_i = distance * ri / (ri + assembly.radii[static_cast<std::size_t>(contact.j)]);
+    contact.lever_j = distance - contact.lever_i;
+  } else {
+    const Vec2 n = found.normal, s = perpendicular(n), rest = branch - found.arm_i;
+    const double round_off = 1e-12 * (norm(found.arm_i) + norm(rest));
+    const auto offset = [&](Vec2 arm) { return std::abs(dot(arm, s)) > round_off ? dot(arm, s) : 0.0; };
+    contact.lever_i = dot(found.arm_i, n);
+    contact.lever_j = dot(rest, n);
+    assembly.contact_arms.push_back({n, offset(found.arm_i), offset(rest)});
+  }
   assembly.contacts.push_back(contact);
   assembly.contact_kN.push_back(springs.kN);
   assembly.contact_kT.push_back(springs.kT);
 }
 
-/// Force and moment that a disc lacks to be in balance.
+/// Force and moment that a body lacks to be in balance.
 struct Lack {
   Vec2 force;
   double moment = 0;
@@ -45,39 +108,36 @@ struct Lack {
 
 std::vector<Lack> lacks_of(const GrainPacking& packing, double gravity) {
   std::vector<Lack> lacks(packing.size());
-  for (std::size_t k = 0; k < lacks.size(); ++k) lacks[k].force.y = -packing.grains[k].inertia.mass * gravity;
+  for (std::size_t k = 0; k < packing.grains.size(); ++k)
+    lacks[packing.body_of(k)].force.y -= packing.grains[k].inertia.mass * gravity;
   for (const GrainContact& contact : packing.contacts) {
-    const auto i = static_cast<std::size_t>(contact.i);
     const Vec2 on_j = contact.normal_force * contact.normal + contact.tangential_force * perpendicular(contact.normal);
-    const double ri = packing.radii[i];
-    lacks[i].force -= on_j;
-    double lever = ri;
-    if (contact.j >= 0) {
-      const auto j = static_cast<std::size_t>(contact.j);
-      const double distance = norm(packing.grains[j].position - packing.grains[i].position);
-      lever = distance * ri / (ri + packing.radii[j]);
-      lacks[j].force += on_j;
-      lacks[j].moment -= (distance - lever) * contact.tangential_force;
-    }
-    lacks[i].moment -= lever * contact.tangential_force;
+    const auto push = [&](std::int32_t grain, Vec2 arm, Vec2 force) {
+      const auto k = static_cast<std::size_t>(grain);
+      Lack& lack = lacks[packing.body_of(k)];
+      lack.force += force;
+      lack.moment += cross(place_in_body(packing, k) + arm, force);
+    };
+    push(contact.i, contact.arm_i, -on_j);
+    if (contact.j >= 0) push(contact.j, contact.arm_j, on_j);
   }
   return lacks;
 }
 
-/// Which discs are left once those with fewer than two contacts are taken out, one after the other.
-std::vector<char> held_by_two(const std::vector<PackingContact>& contacts, std::size_t discs) {
-  std::vector<std::vector<std::int32_t>> partners(discs);
+/// Which bodies are left once those with fewer than two contacts are taken out, one after the other.
+std::vector<char> held_by_two(const std::vector<PackingContact>& contacts, std::size_t bodies) {
+  std::vector<std::vector<std::int32_t>> partners(bodies);
   for (const PackingContact& c : contacts) {
     partners[static_cast<std::size_t>(c.i)].push_back(c.j);
     if (c.j >= 0) partners[static_cast<std::size_t>(c.j)].push_back(c.i);
   }
-  std::vector<std::size_t> left(discs);
+  std::vector<std::size_t> left(bodies);
   std::vector<std::size_t> loose;
-  for (std::size_t k = 0; k < discs; ++k) {
+  for (std::size_t k = 0; k < bodies; ++k) {
     left[k] = partners[k].size();
     if (left[k] < 2) loose.push_back(k);
   }
-  std::vector<char> held(discs, 1);
+  std::vector<char> held(bodies, 1);
   while (!loose.empty()) {
     const std::size_t k = loose.back();
     loose.pop_back();
@@ -92,30 +152,18 @@ std::vector<char> held_by_two(const std::vector<PackingContact>& contacts, std::
 
 }  // namespace
 
-void check_network(const GrainPacking& packing) {
-  if (packing.shape == PackingShape::Kind::disc) return;
-  bad_input(format("contacts of {}s make no network for statics", noun_of(packing.shape)),
-            packing.shape == PackingShape::Kind::bonded_pair
-                ? "dashpots tie them, and at rest these carry nothing"
-                : "their contacts lie off the line of their centres, and statics knows contacts of discs only",
-            "Pack discs for homogenize, calibrate, stability and solve");
-}
-
 Assembly network_of(const GrainPacking& packing, const SpringConstants& springs) {
-  check_network(packing);
   Assembly assembly;
   assembly.kind = "packing";
-  for (const Grain& grain : packing.grains) assembly.centres.push_back(grain.position);
-  assembly.radii = packing.radii;
+  for (std::size_t k = 0; k < packing.size(); ++k) add_body(packing, k, centre_of(packing, k), assembly);
   if (packing.box.periodic()) assembly.period = packing.box.size;
-  for (const PackingContact& found : contacts_of(packing))
-    if (found.j >= 0) add_contact(assembly, found, found.j, springs);
+  for (const PackingContact& found : contacts_of_bodies(packing))
+    if (found.j >= 0) add_contact(packing.shape, found, springs, assembly);
   return assembly;
 }
 
 HeldNetwork held_network_of(const GrainPacking& packing, const SpringConstants& springs) {
-  check_network(packing);
-  const auto contacts = contacts_of(packing);
+  const auto contacts = contacts_of_bodies(packing);
   const std::vector<char> held = held_by_two(contacts, packing.size());
   HeldNetwork result;
   Assembly& assembly = result.assembly;
@@ -124,50 +172,57 @@ HeldNetwork held_network_of(const GrainPacking& packing, const SpringConstants& 
   for (std::size_t k = 0; k < packing.size(); ++k) {
     if (!held[k]) continue;
     number[k] = static_cast<std::int32_t>(assembly.size());
-    assembly.centres.push_back(packing.grains[k].position);
-    assembly.radii.push_back(packing.radii[k]);
-    result.discs.push_back(static_cast<std::int32_t>(k));
+    add_body(packing, k, centre_of(packing, k), assembly);
+    result.bodies.push_back(static_cast<std::int32_t>(k));
   }
   DiscGroup walls;
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t>
+      mirrors;  // of a body at a wall, which it may touch twice
   for (PackingContact found : contacts) {
     const auto i = static_cast<std::size_t>(found.i);
     if (!held[i] || (found.j >= 0 && !held[static_cast<std::size_t>(found.j)])) continue;
-    found.i = number[i];
     if (found.j >= 0) {
-      add_contact(assembly, found, number[static_cast<std::size_t>(found.j)], springs);
-      continue;
+      found.j = number[static_cast<std::size_t>(found.j)];
+    } else {
+      const auto [mirror, is_new] = mirrors.try_emplace({found.i, found.j}, static_cast<std::int32_t>(assembly.size()));
+      if (is_new) {
+        walls.discs.push_back(mirror->second);
+        add_body(packing, i, mirrored(centre_of(packing, i), ~found.j, packing.box.size), assembly);
+      }
+      found.j = mirror->second;
     }
-    walls.discs.push_back(static_cast<std::int32_t>(assembly.size()));
-    assembly.centres.push_back(mirrored(packing.grains[i].position, ~found.j, packing.box.size));
-    assembly.radii.push_back(packing.radii[i]);
-    add_contact(assembly, found, walls.discs.back(), springs);
+    found.i = number[i];
+    add_contact(packing.shape, found, springs, assembly);
   }
   if (!walls.discs.empty()) assembly.groups["walls"] = walls;
   return result;
 }
 
 RestConfirmation confirm_rest(const GrainPacking& packing, const SettlingOptions& options) {
-  check_network(packing);
   const std::vector<Lack> lacks = lacks_of(packing, options.gravity);
   HeldNetwork network = held_network_of(packing, options.springs);
+  Assembly& assembly = network.assembly;
   RestConfirmation result;
-  result.left_out = static_cast<std::int64_t>(packing.size() - network.discs.size());
+  result.left_out = static_cast<std::int64_t>(packing.size() - network.bodies.size());
   for (const GrainContact& contact : packing.contacts)
     result.mean_overlap += contact.overlap / static_cast<double>(packing.contacts.size());
+  const ContactSprings springs(options.springs);
+  const Effects effects = derive_effects(assembly, springs, Rotation::from_scene);
+  // Where no contact resists the rotation of a body, friction does not either: the moment it lacks is round-off.
+  const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, {});
+  const auto turns = [&](std::size_t k) {
+    return effects.rotation && unknowns.held[3 * k + 2] == DegreesOfFreedom::free;
+  };
   LoadCase loads;
-  for (std::size_t k = 0; k < network.discs.size(); ++k) {
-    const Lack& lack = lacks[static_cast<std::size_t>(network.discs[k])];
-    const std::string name = format("disc{}", k);
-    network.assembly.groups[name] = {{static_cast<std::int32_t>(k)}, {}};
-    loads.push_back({.group = name, .force = lack.force, .moment = lack.moment});
+  for (std::size_t k = 0; k < network.bodies.size(); ++k) {
+    const Lack& lack = lacks[static_cast<std::size_t>(network.bodies[k])];
+    const std::string name = format("body{}", k);
+    assembly.groups[name] = {{static_cast<std::int32_t>(k)}, {}};
+    loads.push_back({.group = name, .force = lack.force, .moment = turns(k) ? lack.moment : 0});
   }
-  // Without tangential springs nothing turns.
-  const bool turns = options.springs.kT > 0;
-  if (!turns)
-    for (Load& load : loads) load.moment = 0;
   const std::vector<Support> held{
-      {.group = "walls", .ux = 0.0, .uy = 0.0, .rotation = turns ? std::optional(0.0) : std::nullopt}};
-  const Equilibrium found = solve_equilibrium(network.assembly, ContactSprings(options.springs), held, loads);
+      {.group = "walls", .ux = 0.0, .uy = 0.0, .rotation = effects.rotation ? std::optional(0.0) : std::nullopt}};
+  const Equilibrium found = solve_equilibrium(assembly, springs, held, loads);
   for (const DiscMotion& motion : found.motions)
     result.largest_motion = std::max(result.largest_motion, norm(motion.u));
   result.residual = found.relative_residual;

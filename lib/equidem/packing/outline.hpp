@@ -60,6 +60,7 @@ struct Touch {
   double overlap = 0;  ///< m; negative: a gap
   Vec2 normal;         ///< unit, from i
   Vec2 arm_i, arm_j;   ///< from the centres to the contact point
+  double share = 1;  ///< of the overlap that lies in i, in proportion to the radii of (discs of the area of) the parts
 };
 
 /// Call body(touch) for all contacts of two bodies whose gap is smaller than `gap` >= 0.
@@ -77,12 +78,15 @@ void for_touches(const Outline& i, const Outline& j, Vec2 branch, double gap, co
       if (one.a == one.b && other.a == other.b) {
         const double distance = std::sqrt(square), overlap = one.a + other.a - distance;
         const Vec2 normal = distance > 0 ? way / distance : Vec2{1, 0};
-        body(Touch{overlap, normal, from + (one.a - overlap / 2) * normal, to - (other.a - overlap / 2) * normal});
+        body(Touch{overlap, normal, from + (one.a - overlap / 2) * normal, to - (other.a - overlap / 2) * normal,
+                   one.a / (one.a + other.a)});
         continue;
       }
       const EllipseContact found =
           contact_of_ellipses(one, other, way, {}, gap > 0 ? WhenApart::distance : WhenApart::only_that_it_is);
-      if (found.gap < gap) body(Touch{-found.gap, found.normal, from + found.arm_i, to + found.arm_j});
+      if (!(found.gap < gap)) continue;
+      const double size = std::sqrt(one.a * one.b), other_size = std::sqrt(other.a * other.b);
+      body(Touch{-found.gap, found.normal, from + found.arm_i, to + found.arm_j, size / (size + other_size)});
     }
   }
 }

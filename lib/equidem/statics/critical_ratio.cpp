@@ -45,8 +45,9 @@ class RatioPencil {
               const CriticalRatioOptions& options)
       : assembly_(assembly), springs_(springs), options_(options), graph_(assembly) {
     const ContactSprings one = with_ratio(assembly, springs, 1);
-    unknowns_ = number_unknowns(
-        assembly, one, derive_effects(one, options.rotation ? Rotation::free : Rotation::restrained), supports);
+    unknowns_ = number_unknowns(assembly, one,
+                                derive_effects(assembly, one, options.rotation ? Rotation::free : Rotation::restrained),
+                                supports);
     // A wave that changes sign from period to period is no rigid motion, but gears may still turn.
     if (!options.antiperiodic_x && !options.antiperiodic_y) hold_free_motions(assembly, graph_, one, unknowns_);
     symbolic_ = std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph_), graph_, unknowns_.per_disc));
@@ -119,12 +120,13 @@ class RatioPencil {
       if (!odd) continue;
       double* coupling = &matrix.coupling[c * b * b];
       for (int k = 0; k < b * b; ++k) coupling[k] = -coupling[k];
-      if (contact.i == contact.j) subtract_self_contact(contact, springs[c], matrix);
+      if (contact.i == contact.j) subtract_self_contact(c, springs[c], matrix);
     }
   }
   /// From (g_i + g_j)(g_i + g_j)^T to (g_i - g_j)(g_i - g_j)^T.
-  void subtract_self_contact(const Contact& contact, const SpringConstants& k, StiffnessMatrix& matrix) const {
-    const DeformationGradient g = deformation_gradient(frame_of(assembly_, contact), unknowns_.rotation_scale);
+  void subtract_self_contact(std::size_t index, const SpringConstants& k, StiffnessMatrix& matrix) const {
+    const Contact& contact = assembly_.contacts[index];
+    const DeformationGradient g = deformation_gradient(frame_of(assembly_, index), unknowns_.rotation_scale);
     const int b = matrix.block;
     double* diagonal = &matrix.diagonal[static_cast<std::size_t>(contact.i) * b * b];
     for (int r = 0; r < b; ++r) {
@@ -224,6 +226,11 @@ CriticalRatio find_critical_ratio(const Assembly& assembly, const ContactSprings
                                   std::span<const Support> supports, const CriticalRatioOptions& options) {
   check(options);
   equidem::check(assembly);
+  if (!on_lines_of_centres(assembly)) {
+    bad_input("the critical kT/kN is sought of contacts that lie off the lines of centres",
+              "there normal springs resist rotations too, so that the stiffness without them is not linear in kT/kN",
+              "Seek it of discs; judge other bodies by their mechanisms");
+  }
   RatioPencil pencil(assembly, springs, supports, options);
   CriticalRatio result;
   std::vector<double> x;

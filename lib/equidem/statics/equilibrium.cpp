@@ -62,9 +62,10 @@ void check_inert_loads(const Assembly& assembly, const DegreesOfFreedom& unknown
   if (unknowns.per_disc != 3 || unknowns.inert_rotations == 0) return;
   for (std::size_t d = 0; d < assembly.size(); ++d) {
     if (f[3 * d + 2] == 0 || unknowns.held[3 * d + 2] != DegreesOfFreedom::inert) continue;
-    bad_input(format("a moment acts on disc {}", d),
-              "none of its contacts has a tangential spring and a lever arm to resist it",
-              "Remove the moment, hold the rotation of the disc, or give a contact of it kT != 0");
+    bad_input(
+        format("a moment acts on disc {}", d),
+        "none of its contacts has a tangential spring and a lever arm, or lies off the line of centres, to resist it",
+        "Remove the moment, hold the rotation of the disc, or give a contact of it kT != 0");
   }
 }
 
@@ -83,7 +84,7 @@ struct EquilibriumSolver::Implementation {
       : assembly(assembly_in),
         springs(springs_in),
         options(options_in),
-        effects(derive_effects(springs_in, options_in.rotation)),
+        effects(derive_effects(assembly_in, springs_in, options_in.rotation)),
         solver(build(supports)) {}
 
   StiffnessSolver build(std::span<const Support> supports);
@@ -166,7 +167,7 @@ void EquilibriumSolver::Implementation::describe_state(std::span<const double> f
     const double moment = b == 3 ? reaction(2) * unknowns.rotation_scale : 0.0;
     result.reactions.push_back({static_cast<std::int32_t>(d), {reaction(0), reaction(1)}, moment});
   }
-  if (effects.tangential_springs && !effects.rotation) {
+  if (effects.restrained) {
     result.rotation_moments = contact_moments(assembly, result.contact_forces);
     for (double& moment : result.rotation_moments) moment = -moment;
   }
@@ -206,7 +207,7 @@ SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& spr
                              const EquilibriumOptions& options) {
   check(assembly);
   const ContactGraph graph(assembly);
-  const Effects effects = derive_effects(springs, options.rotation);
+  const Effects effects = derive_effects(assembly, springs, options.rotation);
   const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, supports);
   return estimate(analyze(dissect(assembly, graph), graph, unknowns.per_disc), unknowns, springs.any_negative());
 }

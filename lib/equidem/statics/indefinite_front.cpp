@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t block_columns = 48;
 
 /// A column of the front as the pivots so far have left it, rows `first` .. size.
-struct Column {
+struct FrontColumn {
   std::size_t index = 0;
   std::vector<double> values;  // by row; rows before `first` are not set
 };
@@ -47,7 +47,7 @@ class Elimination {
   double& scaled(std::size_t row, std::size_t pivot) { return scaled_[(pivot - block_) * n_ + row]; }
 
   /// Column j of the Schur complement: what is stored, less the pivots of this block.
-  void current_column(std::size_t j, Column& column) {
+  void current_column(std::size_t j, FrontColumn& column) {
     column.index = j;
     auto& v = column.values;
     for (std::size_t r = done_; r < j; ++r) v[r] = at(j, r);
@@ -60,7 +60,7 @@ class Elimination {
   }
 
   /// Largest entry outside the rows a and b, and the row of the largest among the candidates.
-  std::pair<double, std::size_t> largest(const Column& column, std::size_t a, std::size_t b) const {
+  std::pair<double, std::size_t> largest(const FrontColumn& column, std::size_t a, std::size_t b) const {
     double best = 0, best_candidate = -1;
     std::size_t row = n_;
     for (std::size_t r = done_; r < n_; ++r) {
@@ -108,13 +108,13 @@ class Elimination {
     for (std::size_t r = a + 1; r < b; ++r) std::swap(at(r, a), at(b, r));
     for (std::size_t r = b + 1; r < n_; ++r) std::swap(at(r, a), at(r, b));
     std::swap(at(a, a), at(b, b));
-    for (Column* column : {&one_, &two_}) {
+    for (FrontColumn* column : {&one_, &two_}) {
       std::swap(column->values[a], column->values[b]);
       if (column->index == a || column->index == b) column->index = a + b - column->index;
     }
   }
 
-  std::size_t take_one(const Column& column) {
+  std::size_t take_one(const FrontColumn& column) {
     exchange(done_, column.index);
     const double d = column.values[done_];
     for (std::size_t r = done_ + 1; r < n_; ++r) {
@@ -192,7 +192,7 @@ class Elimination {
   std::size_t done_ = 0;   // pivots so far
   std::size_t block_ = 0;  // first pivot of this block
   std::vector<double> scaled_, coefficients_;
-  Column one_, two_;
+  FrontColumn one_, two_;
   FrontPivots pivots_;
 };
 

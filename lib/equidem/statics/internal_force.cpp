@@ -19,13 +19,15 @@ DeformationOf<Extended> evaluate(const Contact& contact, const ContactFrame& fra
     return (static_cast<Extended>(motion.high[j + c]) - motion.high[i + c]) +
            (static_cast<Extended>(motion.low[j + c]) - motion.low[i + c]);
   };
-  Extended turn = 0;
+  Extended turn = 0, opening = 0;
   if (b == 3) {
     const Extended turn_i = static_cast<Extended>(motion.high[i + 2]) + motion.low[i + 2];
     const Extended turn_j = static_cast<Extended>(motion.high[j + 2]) + motion.low[j + 2];
     turn = (frame.lever_i * turn_i + frame.lever_j * turn_j) / unknowns.rotation_scale;
+    if (frame.offset_i != 0 || frame.offset_j != 0)
+      opening = (frame.offset_i * turn_i + frame.offset_j * turn_j) / unknowns.rotation_scale;
   }
-  return deformation(frame, difference(0), difference(1), turn);
+  return deformation(frame, difference(0), difference(1), turn, opening);
 }
 
 }  // namespace
@@ -45,7 +47,7 @@ void contact_forces_of(const Assembly& assembly, const ContactSprings& springs, 
   parallel_ranges(assembly.contacts.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       const Contact& contact = assembly.contacts[c];
-      const auto f = linear_spring_force(springs[c], evaluate(contact, frame_of(assembly, contact), unknowns, motion));
+      const auto f = linear_spring_force(springs[c], evaluate(contact, frame_of(assembly, c), unknowns, motion));
       forces[c] = {static_cast<double>(f.normal), static_cast<double>(f.tangential)};
     }
   });
@@ -56,7 +58,7 @@ void deformations_of(const SpringNetwork& network, const PreciseMotion& motion,
   parallel_ranges(network.assembly.contacts.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       const Contact& contact = network.assembly.contacts[c];
-      auto d = evaluate(contact, frame_of(network.assembly, contact), network.unknowns, motion);
+      auto d = evaluate(contact, frame_of(network.assembly, c), network.unknowns, motion);
       if (!imposed.empty()) d.normal += imposed[c].normal, d.tangential += imposed[c].tangential;
       deformations[c] = {static_cast<double>(d.normal), static_cast<double>(d.tangential)};
     }
@@ -73,7 +75,7 @@ void residual_force(const SpringNetwork& network, const PreciseMotion& motion,
       Extended x = 0, y = 0, moment = 0;
       for (const auto& edge : graph.of(d)) {
         const Contact& contact = assembly.contacts[edge.contact];
-        const ContactFrame frame = frame_of(assembly, contact);
+        const ContactFrame frame = frame_of(assembly, static_cast<std::size_t>(edge.contact));
         auto stretch_and_slip = evaluate(contact, frame, unknowns, motion);
         if (!imposed.empty()) {
           stretch_and_slip.normal += imposed[edge.contact].normal;
@@ -85,11 +87,11 @@ void residual_force(const SpringNetwork& network, const PreciseMotion& motion,
         const Extended fy = force.normal * n.y + force.tangential * n.x;
         if (static_cast<std::size_t>(contact.i) == d) {
           x += fx, y += fy;
-          moment += frame.lever_i * force.tangential;
+          moment += moment_on_i(frame, force);
         }
         if (static_cast<std::size_t>(contact.j) == d) {
           x -= fx, y -= fy;
-          moment += frame.lever_j * force.tangential;
+          moment += moment_on_j(frame, force);
         }
       }
       const auto keep = [&](std::size_t k, Extended value) {
@@ -113,14 +115,14 @@ void internal_force(const Assembly& assembly, const ContactGraph& graph, const D
       for (const auto& edge : graph.of(d)) {
         const Contact& contact = assembly.contacts[edge.contact];
         const ContactForce& f = forces[edge.contact];
-        const ContactFrame frame = frame_of(assembly, contact);
+        const ContactFrame frame = frame_of(assembly, static_cast<std::size_t>(edge.contact));
         if (static_cast<std::size_t>(contact.i) == d) {
           force += force_on_i(frame, f);
-          moment += frame.lever_i * f.tangential;
+          moment += moment_on_i(frame, f);
         }
         if (static_cast<std::size_t>(contact.j) == d) {
           force -= force_on_i(frame, f);
-          moment += frame.lever_j * f.tangential;
+          moment += moment_on_j(frame, f);
         }
       }
       result[d * b] = -force.x;
@@ -134,8 +136,9 @@ std::vector<double> contact_moments(const Assembly& assembly, std::span<const Co
   std::vector<double> moments(assembly.size(), 0.0);
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const Contact& contact = assembly.contacts[c];
-    moments[contact.i] += contact.lever_i * forces[c].tangential;
-    moments[contact.j] += contact.lever_j * forces[c].tangential;
+    const ContactFrame frame = frame_of(assembly, c);
+    moments[contact.i] += moment_on_i(frame, forces[c]);
+    moments[contact.j] += moment_on_j(frame, forces[c]);
   }
   return moments;
 }

@@ -55,7 +55,7 @@ void internal_force(const Assembly& assembly, const ContactGraph& graph, const D
 void residual_force(const SpringNetwork& network, const PreciseMotion& motion,
                     std::span<const ContactDeformation> imposed, std::span<const double> f, std::span<double> residual);
 
-/// Moment that contacts exert on each disc, N: sum of lever * tangential force.
+/// Moment that contacts exert on each disc about its centre, N.
 std::vector<double> contact_moments(const Assembly& assembly, std::span<const ContactForce> forces);
 
 }  // namespace equidem

@@ -41,7 +41,8 @@ struct Span {
 
 /// Whether the centres of a rigid group may turn with its discs: no slip where levers add up to their branch.
 bool turns_rigidly(const Assembly& assembly, const ContactSprings& springs, const Effects& effects) {
-  if (!effects.rotation) return true;  // it translates
+  if (!effects.rotation) return true;               // it translates
+  if (!assembly.contact_arms.empty()) return true;  // their arms meet
   for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
     const Contact& c = assembly.contacts[k];
     const double length = norm(assembly.branch(c));
@@ -100,6 +101,7 @@ class Pruning {
   /// rows allow two contacts at most.
   [[nodiscard]] bool carries_nothing(std::size_t disc) const {
     if (contacts_left_[disc] > 2 || is_held(disc)) return false;
+    if (!assembly_.contact_arms.empty()) return off_line_carries_nothing(disc);
     Vec2 normals[2];
     int count = 0;
     int tangential = 0;
@@ -108,10 +110,37 @@ class Pruning {
       if (static_cast<std::size_t>(edge.other) == disc) return false;  // a column (0, 0)
       const Contact& c = assembly_.contacts[edge.contact];
       const double lever = edge.other == c.j ? c.lever_i : c.lever_j;
-      normals[count++] = frame_of(assembly_, c).normal;
+      normals[count++] = frame_of(assembly_, static_cast<std::size_t>(edge.contact)).normal;
       if (springs_[edge.contact].kT != 0) tangential += rotation_ && lever > 0 ? 1 : 2;
     }
     return count < 2 || (tangential < 2 && std::abs(cross(normals[0], normals[1])) > round_off);
+  }
+
+  /// The same where the columns are (n, -offset) and (s, lever).
+  [[nodiscard]] bool off_line_carries_nothing(std::size_t disc) const {
+    struct Column {
+      Vec2 force;
+      double moment = 0;  ///< of the unit force, over the radius
+    };
+    Column columns[4];
+    int count = 0;
+    for (const auto& edge : graph_.of(disc)) {
+      if (!left(edge.other)) continue;
+      if (static_cast<std::size_t>(edge.other) == disc) return false;  // a column of zeros
+      const auto k = static_cast<std::size_t>(edge.contact);
+      const ContactFrame frame = frame_of(assembly_, k);
+      const bool is_i = static_cast<std::size_t>(assembly_.contacts[k].i) == disc;
+      const double radius = assembly_.radii[disc];
+      columns[count++] = {frame.normal, -(is_i ? frame.offset_i : frame.offset_j) / radius};
+      if (springs_[k].kT != 0) columns[count++] = {frame.tangent(), (is_i ? frame.lever_i : frame.lever_j) / radius};
+    }
+    if (count < 2) return true;
+    const auto& [a, b, c, d] = columns;
+    const double plane = cross(a.force, b.force);
+    if (!rotation_ || count > 3) return count == 2 && std::abs(plane) > round_off;
+    const Vec2 lever = b.moment * a.force - a.moment * b.force;
+    if (count == 2) return std::abs(plane) > round_off || norm(lever) > round_off;
+    return std::abs(plane * c.moment - cross(lever, c.force)) > round_off;
   }
 
   /// Whether there were any.
@@ -287,6 +316,8 @@ class Pruning {
     take(whole.radii, result.discs, rest.radii);
     take(whole.cell_areas, result.discs, rest.cell_areas);
     take(whole.facet_lengths, result.contacts, rest.facet_lengths);
+    take(whole.contact_arms, result.contacts, rest.contact_arms);
+    take(whole.sections, result.discs, rest.sections);
     take(whole.contact_kN, result.contacts, rest.contact_kN);
     take(whole.contact_kT, result.contacts, rest.contact_kT);
     for (const auto& [name, group] : whole.groups) {

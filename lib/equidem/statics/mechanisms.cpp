@@ -28,7 +28,7 @@ struct HeldSystem {
   HeldSystem(const Assembly& assembly, const ContactSprings& springs, Rotation rotation,
              std::span<const Support> supports)
       : graph(assembly),
-        unknowns(number_unknowns(assembly, springs, derive_effects(springs, rotation), supports)),
+        unknowns(number_unknowns(assembly, springs, derive_effects(assembly, springs, rotation), supports)),
         held(hold_free_motions(assembly, graph, springs, unknowns)),
         matrix(assemble_stiffness(assembly, graph, springs, unknowns)),
         symbolic(std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph), graph, unknowns.per_disc))) {
@@ -62,7 +62,8 @@ MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& 
   const HeldSystem system(assembly, positive, rotation, supports);
   MechanismReport report;
   report.gears = static_cast<std::int64_t>(system.held.gears.size());
-  report.others = system.factor->report().zero_pivots;
+  // No spring is negative: a negative pivot is the round-off of a zero.
+  report.others = system.factor->report().zero_pivots + system.factor->report().negative_pivots;
   const std::int64_t of_the_whole = !supports.empty() ? 0 : assembly.periodic() ? 2 : 3;
   report.rigid_motions = std::min(of_the_whole, system.held.rigid);
   report.free_pieces = system.held.rigid - report.rigid_motions;
@@ -86,7 +87,8 @@ MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& 
   }
   if (assembly.periodic() && supports.empty()) {
     const ContactSprings equal(SpringConstants{1, 1});  // what carries no load for want of slip joins all the same
-    report.unjoined = 2 - load_bearing_network(assembly, equal, derive_effects(equal, Rotation::restrained)).spanned;
+    report.unjoined =
+        2 - load_bearing_network(assembly, equal, derive_effects(assembly, equal, Rotation::restrained)).spanned;
     if (report.unjoined > 0) {
       report.sentences.push_back(
           report.unjoined == 1

@@ -111,10 +111,11 @@ class Description {
     double stretch = 0;
     double slip = 0;
     double scale = 0;
-    for (const Contact& c : assembly_.contacts) {
+    for (std::size_t k = 0; k < assembly_.contacts.size(); ++k) {
+      const Contact& c = assembly_.contacts[k];
       const DiscMotion i{u_[c.i], spin_[c.i] / assembly_.radii[c.i]};
       const DiscMotion j{u_[c.j], spin_[c.j] / assembly_.radii[c.j]};
-      const ContactDeformation d = deformation(frame_of(assembly_, c), i, j);
+      const ContactDeformation d = deformation(frame_of(assembly_, k), i, j);
       stretch += squared(d.normal);
       slip += squared(d.tangential);
       scale += weight_[c.i] + weight_[c.j];
@@ -126,11 +127,14 @@ class Description {
   [[nodiscard]] std::string describe_rotations() const {
     double slip = 0;
     double scale = 0;
-    for (const Contact& c : assembly_.contacts) {
-      const double i = c.lever_i * spin_[c.i] / assembly_.radii[c.i];
-      const double j = c.lever_j * spin_[c.j] / assembly_.radii[c.j];
-      slip += squared(i + j);
-      scale += squared(i) + squared(j);
+    for (std::size_t k = 0; k < assembly_.contacts.size(); ++k) {
+      const Contact& c = assembly_.contacts[k];
+      const ContactFrame frame = frame_of(assembly_, k);
+      const double theta_i = spin_[c.i] / assembly_.radii[c.i], theta_j = spin_[c.j] / assembly_.radii[c.j];
+      const ContactDeformation d = deformation(frame, {{}, theta_i}, {{}, theta_j});
+      slip += squared(d.tangential) + squared(d.normal);
+      scale += (squared(frame.lever_i) + squared(frame.offset_i)) * squared(theta_i) +
+               (squared(frame.lever_j) + squared(frame.offset_j)) * squared(theta_j);
     }
     const bool gears = slip <= negligible * scale;
     return format("a {} in place of {}{}", gears ? "counter-rotation" : "rotation", describe_moving(moving_.size()),
@@ -323,7 +327,7 @@ double elastic_energy(const Assembly& assembly, const ContactSprings& springs, s
   double energy = 0;
   for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
     const Contact& c = assembly.contacts[k];
-    energy += linear_spring_energy(springs[k], deformation(frame_of(assembly, c), motions[c.i], motions[c.j]));
+    energy += linear_spring_energy(springs[k], deformation(frame_of(assembly, k), motions[c.i], motions[c.j]));
   }
   return energy;
 }
@@ -334,8 +338,11 @@ double reference_energy(const Assembly& assembly, const ContactSprings& springs,
     const Contact& c = assembly.contacts[k];
     const DiscMotion& i = motions[c.i];
     const DiscMotion& j = motions[c.j];
-    energy += 0.5 * springs[k].kN * (dot(i.u, i.u) + dot(j.u, j.u)) +
-              0.5 * std::abs(springs[k].kT) * (squared(c.lever_i * i.theta) + squared(c.lever_j * j.theta));
+    const ContactFrame frame = frame_of(assembly, k);
+    energy +=
+        0.5 * springs[k].kN *
+            (dot(i.u, i.u) + dot(j.u, j.u) + squared(frame.offset_i * i.theta) + squared(frame.offset_j * j.theta)) +
+        0.5 * std::abs(springs[k].kT) * (squared(frame.lever_i * i.theta) + squared(frame.lever_j * j.theta));
   }
   return energy;
 }

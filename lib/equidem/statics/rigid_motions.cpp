@@ -5,9 +5,11 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
+#include "equidem/contact/frame.hpp"
 #include "equidem/statics/unwrapped_pieces.hpp"
 
 namespace equidem {
@@ -97,7 +99,11 @@ class Equations {
  public:
   Equations(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
             const DegreesOfFreedom& unknowns)
-      : assembly_(assembly), graph_(graph), springs_(springs), unknowns_(unknowns) {
+      : assembly_(assembly),
+        graph_(graph),
+        springs_(springs),
+        unknowns_(unknowns),
+        off_line_(!assembly.contact_arms.empty()) {
     assert(unknowns.held.size() == assembly.size() * unknowns.per_disc);
     measure_pieces();
     hold_translations();
@@ -107,7 +113,9 @@ class Equations {
       hold_rotations();
     } else {
       for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
-        if (springs[c].kT != 0) piece_of(assembly.contacts[c].i).equations.add({0, 0, 1});
+        const ContactFrame frame = frame_of(assembly, c);
+        if (turns_against(1, frame.offset_i + frame.offset_j, springs[c].kT))
+          piece_of(assembly.contacts[c].i).equations.add({0, 0, 1});
       }
     }
   }
@@ -162,6 +170,25 @@ class Equations {
     }
   }
 
+  /// What rotations of i and j do to the slip of a contact and, off the line of centres, to its stretch.
+  struct Row {
+    double i = 0, j = 0;
+    [[nodiscard]] bool joins() const { return i != 0 && j != 0; }
+  };
+  struct Rows {
+    std::array<Row, 2> row;
+    int count = 0;
+  };
+  [[nodiscard]] Rows rows_of(std::size_t contact) const {
+    Rows rows;
+    const Contact& c = assembly_.contacts[contact];
+    if (springs_[contact].kT != 0) rows.row[rows.count++] = {c.lever_i, c.lever_j};
+    if (!off_line_) return rows;
+    const ContactArms& arms = assembly_.contact_arms[contact];
+    if (arms.offset_i != 0 || arms.offset_j != 0) rows.row[rows.count++] = {arms.offset_i, arms.offset_j};
+    return rows;
+  }
+
   /// The coefficients of theta_i = alpha_i omega + beta_i gamma, breadth first so that rounding stays small.
   void follow_rolling() {
     alpha_.resize(assembly_.size());
@@ -179,12 +206,14 @@ class Equations {
         for (const auto& edge : graph_.of(i)) {
           const Contact& c = assembly_.contacts[edge.contact];
           const std::int32_t j = edge.other;
-          const bool rolls = springs_[edge.contact].kT != 0 && c.lever_i > 0 && c.lever_j > 0;
-          if (!rolls || component_[j] >= 0) continue;
-          const double here = c.i == i ? c.lever_i : c.lever_j;
-          const double there = c.i == i ? c.lever_j : c.lever_i;
+          if (component_[j] >= 0) continue;
+          const Rows rows = rows_of(static_cast<std::size_t>(edge.contact));
+          const auto row = std::find_if(rows.row.begin(), rows.row.begin() + rows.count, std::mem_fn(&Row::joins));
+          if (row == rows.row.begin() + rows.count) continue;
+          const double here = c.i == i ? row->i : row->j;
+          const double there = c.i == i ? row->j : row->i;
           component_[j] = number;
-          alpha_[j] = (norm(assembly_.branch(c)) - here * alpha_[i]) / there;
+          alpha_[j] = off_line_ ? 1 : (norm(assembly_.branch(c)) - here * alpha_[i]) / there;
           beta_[j] = -here * beta_[i] / there;
           reached.push_back(j);
         }
@@ -204,6 +233,10 @@ class Equations {
 
   /// No slip at any contact with a tangential spring.
   void close_rings() {
+    if (off_line_) {
+      close_rings_off_line();
+      return;
+    }
     const double closed = closing_tolerance();
     for (std::size_t k = 0; k < assembly_.contacts.size(); ++k) {
       if (springs_[k].kT == 0) continue;
@@ -224,6 +257,21 @@ class Equations {
       const double gamma = sum(c.lever_i * beta_[c.i], c.lever_j * beta_[c.j], 0);
       // A lever arm of zero leaves its disc out: only the other one has gamma in this equation.
       components_[component_[c.lever_i > 0 ? c.i : c.j]].equations.add({gamma / scale, omega / scale});
+    }
+  }
+
+  /// Neither slip nor stretch; arms that meet leave no term in omega.
+  void close_rings_off_line() {
+    for (std::size_t k = 0; k < assembly_.contacts.size(); ++k) {
+      const Contact& c = assembly_.contacts[k];
+      const Rows rows = rows_of(k);
+      for (int r = 0; r < rows.count; ++r) {
+        const double of_i = rows.row[r].i * beta_[c.i], of_j = rows.row[r].j * beta_[c.j];
+        const double scale = std::abs(of_i) + std::abs(of_j), gamma = of_i + of_j;
+        if (scale == 0) continue;
+        const bool closed = std::abs(gamma) <= tolerance * scale;
+        components_[component_[of_i != 0 ? c.i : c.j]].equations.add({closed ? 0.0 : gamma / scale, 0});
+      }
     }
   }
 
@@ -249,6 +297,7 @@ class Equations {
   const ContactGraph& graph_;
   const ContactSprings& springs_;
   const DegreesOfFreedom& unknowns_;
+  bool off_line_;  ///< contacts have arms, and their arms meet
   UnwrappedPieces unwrapped_;
   std::vector<Piece> pieces_;
   std::vector<RollingComponent> components_;

@@ -49,7 +49,7 @@ bool springs_cancel(const System& system, const std::vector<DiscMotion>& motions
   double sum = 0, size = 0;
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const Contact& contact = assembly.contacts[c];
-    const ContactDeformation d = deformation(frame_of(assembly, contact), motions[contact.i], motions[contact.j]);
+    const ContactDeformation d = deformation(frame_of(assembly, c), motions[contact.i], motions[contact.j]);
     const double normal = system.springs[c].kN * d.normal * d.normal;
     const double tangential = system.springs[c].kT * d.tangential * d.tangential;
     sum += normal + tangential;

@@ -10,7 +10,7 @@
 namespace equidem {
 namespace {
 
-constexpr std::size_t grain = 1 << 12;
+constexpr std::size_t discs_at_once = 1 << 12;
 
 /// The blocks of a disc and of the contacts that name it first: every block is written once, by one thread.
 template <int B>
@@ -21,7 +21,8 @@ void assemble_disc(const Assembly& assembly, const ContactGraph& graph, const Co
   for (const auto& edge : graph.of(d)) {
     const Contact& contact = assembly.contacts[edge.contact];
     const SpringConstants k = springs[edge.contact];
-    DeformationGradient g = deformation_gradient(frame_of(assembly, contact), unknowns.rotation_scale);
+    DeformationGradient g =
+        deformation_gradient(frame_of(assembly, static_cast<std::size_t>(edge.contact)), unknowns.rotation_scale);
     if (contact.i == contact.j) {  // both ends move alike
       for (int r = 0; r < 3; ++r) {
         g.normal_i[r] += g.normal_j[r];
@@ -54,7 +55,7 @@ template <int B>
 void assemble(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
               const DegreesOfFreedom& unknowns, StiffnessMatrix& matrix) {
   const double held_stiffness = springs.largest();
-  parallel_ranges(assembly.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(assembly.size(), discs_at_once, [&](std::size_t begin, std::size_t end) {
     for (std::size_t d = begin; d < end; ++d) {
       assemble_disc<B>(assembly, graph, springs, unknowns, held_stiffness, d, matrix);
     }
@@ -81,7 +82,7 @@ StiffnessMatrix assemble_stiffness(const Assembly& assembly, const ContactGraph&
 void multiply(const StiffnessMatrix& matrix, const Assembly& assembly, const ContactGraph& graph,
               std::span<const double> x, std::span<double> y) {
   const int b = matrix.block;
-  parallel_ranges(graph.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(graph.size(), discs_at_once, [&](std::size_t begin, std::size_t end) {
     for (std::size_t d = begin; d < end; ++d) {
       const double* diagonal = matrix.diagonal_block(d);
       for (int r = 0; r < b; ++r) {

@@ -38,9 +38,9 @@ BlochWaves::BlochWaves(PrimitiveCell cell, const std::vector<Inertia>& inertia, 
   std::vector<char> touches(cell_.size(), 0), turned(cell_.size(), 0);
   for (const CellContact& contact : cell_.contacts) {
     touches[contact.i] = touches[contact.j] = 1;
-    if (any_tangential_ && contact.springs.kT == 0) continue;
-    if (contact.frame.lever_i > 0) turned[contact.i] = 1;
-    if (contact.frame.lever_j > 0) turned[contact.j] = 1;
+    const double kT = any_tangential_ ? contact.springs.kT : 1;  // the critical ratio gives all of them one
+    if (turns_against(contact.frame.lever_i, contact.frame.offset_i, kT)) turned[contact.i] = 1;
+    if (turns_against(contact.frame.lever_j, contact.frame.offset_j, kT)) turned[contact.j] = 1;
   }
   for (std::size_t d = 0; d < cell_.size(); ++d) {
     const Inertia& body = inertia[cell_.discs[d]];

@@ -59,7 +59,8 @@ class BlochWaves {
   /// eliminated is S_N + r S_T, both positive semidefinite, and r_c = -1/lambda, S_T v = lambda S_N v for the largest lambda.
   /// 0 where normal springs do not resist a motion that tangential ones do; negative infinity where tangential springs
   /// resist no motion. Motions that neither resists (translation at q = 0, gears) are left out. Of the springs kT only is read
-  /// which are zero beside others that are not: those contacts have none for any r.
+  /// which are zero beside others that are not: those contacts have none for any r. Of contacts on the lines of centres only: elsewhere
+  /// normal springs resist rotations too, and the stiffness is not linear in r.
   [[nodiscard]] double critical_ratio(Vec2 q) const;
 
   /// The largest limit of critical_ratio(q) as q -> 0, over all directions. The limit is another one along each of them, and none

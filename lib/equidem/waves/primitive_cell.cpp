@@ -43,9 +43,13 @@ std::array<Vec2, 2> reduced(Vec2 a, Vec2 b) {
 struct Bond {
   std::int32_t other;
   Vec2 branch;  ///< from this disc
-  double own_lever, other_lever;
+  ContactFrame frame;
   SpringConstants springs;
 };
+
+ContactFrame seen_from_j(const ContactFrame& frame) {
+  return {-frame.normal, frame.lever_j, frame.lever_i, frame.offset_j, frame.offset_i};
+}
 
 /// Finds the disc at a place of a periodic assembly.
 class DiscFinder {
@@ -111,8 +115,9 @@ class TranslationGroup {
     for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
       const Contact& contact = assembly.contacts[c];
       const Vec2 l = assembly.branch(contact);
-      bonds_[contact.i].push_back({contact.j, l, contact.lever_i, contact.lever_j, springs[c]});
-      bonds_[contact.j].push_back({contact.i, -l, contact.lever_j, contact.lever_i, springs[c]});
+      const ContactFrame frame = frame_of(assembly, c);
+      bonds_[contact.i].push_back({contact.j, l, frame, springs[c]});
+      bonds_[contact.j].push_back({contact.i, -l, seen_from_j(frame), springs[c]});
     }
     std::iota(orbit_.begin(), orbit_.end(), 0);
     find();
@@ -136,11 +141,7 @@ class TranslationGroup {
     for (const std::int32_t d : cell.discs) {
       for (const Bond& bond : bonds_[d]) {
         if (!points_up(bond.branch)) continue;  // else it is seen from its other end
-        cell.contacts.push_back({index[d],
-                                 index[root(bond.other)],
-                                 bond.branch,
-                                 {bond.branch / norm(bond.branch), bond.own_lever, bond.other_lever},
-                                 bond.springs});
+        cell.contacts.push_back({index[d], index[root(bond.other)], bond.branch, bond.frame, bond.springs});
       }
     }
     const auto lattice = lattice_of(copies);
@@ -161,14 +162,25 @@ class TranslationGroup {
   }
   [[nodiscard]] bool points_up(Vec2 l) const { return std::abs(l.y) > tolerance * norm(l) ? l.y > 0 : l.x > 0; }
   [[nodiscard]] bool alike(double a, double b, double scale) const { return std::abs(a - b) <= 2 * tolerance * scale; }
+  [[nodiscard]] bool alike(const ContactFrame& a, const ContactFrame& b) const {
+    return alike(a.lever_i, b.lever_i, length_) && alike(a.lever_j, b.lever_j, length_) &&
+           alike(a.offset_i, b.offset_i, length_) && alike(a.offset_j, b.offset_j, length_) &&
+           (assembly_.contact_arms.empty() || norm(a.normal - b.normal) <= 2 * tolerance);
+  }
   [[nodiscard]] bool alike(const Bond& a, const Bond& b) const {
-    return norm(a.branch - b.branch) <= 2 * distance_ && alike(a.own_lever, b.own_lever, length_) &&
-           alike(a.other_lever, b.other_lever, length_) && alike(a.springs.kN, b.springs.kN, stiffness_) &&
-           alike(a.springs.kT, b.springs.kT, stiffness_);
+    return norm(a.branch - b.branch) <= 2 * distance_ && alike(a.frame, b.frame) &&
+           alike(a.springs.kN, b.springs.kN, stiffness_) && alike(a.springs.kT, b.springs.kT, stiffness_);
+  }
+  /// Of the same shape, as far as mass and moment of inertia know.
+  [[nodiscard]] bool alike_bodies(std::int32_t d, std::int32_t e) const {
+    if (!alike(assembly_.radii[d], assembly_.radii[e], length_)) return false;
+    if (assembly_.sections.empty()) return true;
+    const BodySection &of_d = assembly_.sections[d], &of_e = assembly_.sections[e];
+    return alike(of_d.area, of_e.area, of_d.area) && alike(of_d.polar_moment, of_e.polar_moment, of_d.polar_moment);
   }
   [[nodiscard]] bool alike(std::int32_t d, std::int32_t e) const {
     const auto &of_d = bonds_[d], &of_e = bonds_[e];
-    if (!alike(assembly_.radii[d], assembly_.radii[e], length_) || of_d.size() != of_e.size()) return false;
+    if (!alike_bodies(d, e) || of_d.size() != of_e.size()) return false;
     std::vector<char> used(of_e.size(), 0);
     return std::all_of(of_d.begin(), of_d.end(), [&](const Bond& bond) {
       for (std::size_t k = 0; k < of_e.size(); ++k) {
@@ -185,7 +197,7 @@ class TranslationGroup {
     double sum = assembly_.radii[d] / length_;
     for (const Bond& bond : bonds_[d]) {
       const Vec2 l = bond.branch;
-      sum += (norm(l) + 0.3 * (l.x * l.x - l.y * l.y) / norm(l) + 0.7 * bond.own_lever) / length_ +
+      sum += (norm(l) + 0.3 * (l.x * l.x - l.y * l.y) / norm(l) + 0.7 * bond.frame.lever_i) / length_ +
              (0.6 * bond.springs.kN + 0.9 * bond.springs.kT) / stiffness_;
     }
     return sum;
@@ -271,7 +283,7 @@ PrimitiveCell given_cell(const Assembly& assembly, const ContactSprings& springs
   cell.rotation_scale = assembly.mean_radius();
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const Contact& contact = assembly.contacts[c];
-    cell.contacts.push_back({contact.i, contact.j, assembly.branch(contact), frame_of(assembly, contact), springs[c]});
+    cell.contacts.push_back({contact.i, contact.j, assembly.branch(contact), frame_of(assembly, c), springs[c]});
   }
   return cell;
 }

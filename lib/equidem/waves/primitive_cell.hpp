@@ -3,6 +3,7 @@
 /// The smallest cell that repeats to a periodic assembly.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -19,7 +20,7 @@ struct CellContact {
   std::int32_t i = 0;  ///< index into PrimitiveCell::discs
   std::int32_t j = 0;
   Vec2 branch;         ///< m, from i to the image of j that it touches: all that a phase exp(i q.l) needs
-  ContactFrame frame;  ///< normal and levers
+  ContactFrame frame;  ///< normal, levers and offsets
   SpringConstants springs;
 };
 
@@ -32,6 +33,11 @@ struct PrimitiveCell {
   double rotation_scale = 1;  ///< a, m: the mean radius of the assembly
 
   [[nodiscard]] std::size_t size() const { return discs.size(); }
+  /// As on_lines_of_centres(Assembly).
+  [[nodiscard]] bool on_lines_of_centres() const {
+    return std::all_of(contacts.begin(), contacts.end(),
+                       [](const CellContact& c) { return c.frame.offset_i == 0 && c.frame.offset_j == 0; });
+  }
   [[nodiscard]] double area() const { return cross(period[0], period[1]); }
 };
 
@@ -39,7 +45,7 @@ struct PrimitiveCell {
 /// \throws Error (bad_input) where the assembly is not periodic
 PrimitiveCell given_cell(const Assembly& assembly, const ContactSprings& springs);
 
-/// The smallest cell: all translations that map centres, radii, contacts, levers and springs onto themselves to 1e-9 (of the
+/// The smallest cell: all translations that map centres, radii, sections, contacts, their places and springs onto themselves to 1e-9 (of the
 /// mean radius, of the largest spring) are found; one disc is left of a lattice however many the assembly has. The
 /// assembly itself where none maps it. Linear in the number of discs where none does, else n log n.
 /// \throws Error (bad_input) where the assembly is not periodic

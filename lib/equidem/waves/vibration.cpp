@@ -75,6 +75,18 @@ double element_bound(const Assembly& assembly, const ContactSprings& springs, co
       slip += z[contact.i] * contact.lever_i * contact.lever_i / i.moment +
               z[contact.j] * contact.lever_j * contact.lever_j / j.moment;
     }
+    const ContactFrame frame = frame_of(assembly, c);
+    if (rotation && (frame.offset_i != 0 || frame.offset_j != 0)) {
+      const double of_i = z[contact.i] / i.moment, of_j = z[contact.j] / j.moment;
+      const double stretch =
+          translation + of_i * frame.offset_i * frame.offset_i + of_j * frame.offset_j * frame.offset_j;
+      const double both = of_i * frame.offset_i * frame.lever_i + of_j * frame.offset_j * frame.lever_j;
+      const double kN = springs[c].kN, kT = std::max(springs[c].kT, 0.0);
+      const double middle = 0.5 * (kN * stretch + kT * slip);
+      bound = std::max(bound,
+                       middle + std::sqrt(std::max(0.0, middle * middle - kN * kT * (stretch * slip - both * both))));
+      continue;
+    }
     bound = std::max({bound, springs[c].kN * translation, springs[c].kT * slip});
   }
   return bound;
@@ -88,7 +100,7 @@ TimeStepRules time_step_rules(const Assembly& assembly, const ContactSprings& sp
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const Contact& contact = assembly.contacts[c];
     const SpringConstants k = springs[c];
-    const DeformationGradient g = deformation_gradient(frame_of(assembly, contact), scale);
+    const DeformationGradient g = deformation_gradient(frame_of(assembly, c), scale);
     for (std::size_t r = 0; r < 3; ++r) {
       diagonal[3 * contact.i + r] +=
           k.kN * g.normal_i[r] * g.normal_i[r] + k.kT * g.tangential_i[r] * g.tangential_i[r];

@@ -113,8 +113,10 @@ WaveSurvey survey_waves(const PrimitiveCell& cell, const std::vector<Inertia>& i
       std::any_of(cell.contacts.begin(), cell.contacts.end(), [](const CellContact& c) { return c.springs.kT != 0; });
   const bool any_negative =
       std::any_of(cell.contacts.begin(), cell.contacts.end(), [](const CellContact& c) { return c.springs.kT < 0; });
-  const BlochWaves in_motion(cell, inertia, turns && any_tangential), at_rest(cell, inertia, turns);
   WaveSurvey survey;
+  survey.ratio_sought = cell.on_lines_of_centres();
+  const bool turned = turns && (any_tangential || !survey.ratio_sought);
+  const BlochWaves in_motion(cell, inertia, turned), at_rest(cell, inertia, turns);
   survey.cell = cell;
   survey.zone = brillouin_zone(cell.period);
   survey.mass_per_area = in_motion.mass_per_area();
@@ -132,19 +134,21 @@ WaveSurvey survey_waves(const PrimitiveCell& cell, const std::vector<Inertia>& i
     progress.update(done);
     return found;
   };
-  survey.critical = over_zone([&](Vec2 q) { return critical_ratio_away_from_gamma(at_rest, survey.zone, q); }, 0.5);
-  add_long_waves(at_rest, survey.zone, survey.critical);
+  if (survey.ratio_sought) {
+    survey.critical = over_zone([&](Vec2 q) { return critical_ratio_away_from_gamma(at_rest, survey.zone, q); }, 0.5);
+    add_long_waves(at_rest, survey.zone, survey.critical);
+  }
   survey.highest = over_zone([&](Vec2 q) { return in_motion.squared_frequencies(q).back(); }, 0.7);
   if (any_negative) survey.growing = over_zone([&](Vec2 q) { return -in_motion.squared_frequencies(q).front(); }, 0.9);
-  survey.free_waves =
-      find_free_waves({with_unit_springs(cell), inertia, turns && any_tangential}, survey.zone, survey.grid);
+  survey.free_waves = find_free_waves({with_unit_springs(cell), inertia, turned}, survey.zone, survey.grid);
 
   survey.path = path_of(survey.zone, steps_of_segment(cell));
   parallel_tasks(survey.path.size(), [&](std::size_t k, int) {
     stop_if_interrupted();
     PathPoint& point = survey.path[k];
     point.squared_frequencies = in_motion.squared_frequencies(point.at.q);
-    point.critical_ratio = at_rest.critical_ratio(point.at.q);
+    point.critical_ratio =
+        survey.ratio_sought ? at_rest.critical_ratio(point.at.q) : std::numeric_limits<double>::quiet_NaN();
   });
   for (int k = 0; k < directions; ++k)
     survey.sound.push_back({k * std::numbers::pi / directions, in_motion.sound_speeds(direction(k))});

@@ -22,7 +22,7 @@ struct PathPoint {
   double along = 0;  ///< rad/m, length of the path up to here
   ZonePoint at;
   std::vector<double> squared_frequencies;  ///< (rad/s)², ascending
-  double critical_ratio = 0;
+  double critical_ratio = 0;                ///< NaN: not sought
 };
 
 /// Sound along one direction.
@@ -35,6 +35,7 @@ struct WaveSurvey {
   PrimitiveCell cell;
   BrillouinZone zone;
   double mass_per_area = 0;  ///< kg/m²
+  bool ratio_sought = true;  ///< false: contacts lie off the lines of centres, and no critical ratio was sought
   int grid = 0;              ///< wave vectors along each reciprocal vector
   ZoneMaximum critical;      ///< of r_c: the wave that loses its stiffness first as kT/kN falls from 0
   ZoneMaximum highest;       ///< of omega²

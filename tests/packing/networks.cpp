@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Packings of all shapes as networks of contacts with springs.
+#include <cmath>
+#include <numeric>
+
+#include "equidem/assembly/body_inertia.hpp"
+#include "equidem/homogenize/bounds.hpp"
+#include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/homogenize/elasticity_tensor.hpp"
+#include "equidem/packing/measures.hpp"
+#include "equidem/packing/network.hpp"
+#include "equidem/statics/equilibrium.hpp"
+
+#include "packing/packings.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+
+namespace {
+
+using Kind = PackingShape::Kind;
+constexpr SpringConstants usual{1e8, 5e7};
+
+std::vector<PackingShape> networked_shapes() {
+  return {{.kind = Kind::disc},
+          {.kind = Kind::ellipse, .aspect = 2},
+          {.kind = Kind::rigid_pair},
+          {.kind = Kind::clump, .discs = {{{0, 0}, 1}, {{1.5, 0}, 1}, {{0.7, 1.2}, 1}}}};
+}
+
+PackingOptions jammed(const PackingShape& shape, std::int64_t bodies) {
+  PackingOptions options = square_box(PackingMethod::growth, PackingBox::Sides::periodic, bodies, 0.5);
+  options.shape = shape;
+  const double side = std::sqrt(area_of(shape, options.radii) / 0.5);
+  options.box.size = {side, side};
+  options.as_dense_as_possible = true;
+  options.overlap = 1e-3;
+  return options;
+}
+
+double difference(const Matrix3& a, const Matrix3& b) {
+  return largest_entry(a + (-1.0) * b) / largest_entry(b);
+}
+
+}  // namespace
+
+// What statics sees at the contacts of bodies that lie is what dynamics left: nothing but round-off to move.
+TEST_CASE("settled_bodies_of_every_shape_are_confirmed_by_statics") {
+  const PackingShape shape = GENERATE(from_range(networked_shapes()));
+  PackingOptions options = falling_soil(40, 0.15);
+  options.shape = shape;
+  const GrainPacking packing = pack(options);
+  const SettlingReport& report = packing.settling;
+  const RestConfirmation rest = confirm_rest(packing, options.settling);
+  CAPTURE(to_string(shape.kind), report.unbalanced, report.time, rest.mean_overlap, rest.largest_motion, rest.share(),
+          rest.residual, rest.left_out);
+  CHECK(report.unbalanced <= 1e-6);
+  CHECK(rest.residual < 1e-12);
+  CHECK(rest.share() < 1e-3);
+  CHECK(rest.left_out < 4);
+
+  // A thousandth of its weight more on every body does move them.
+  GrainPacking heavier = packing;
+  for (Grain& grain : heavier.grains) grain.inertia.mass *= 1.001;
+  CHECK(confirm_rest(heavier, options.settling).share() > 10 * rest.share());
+
+  const HeldNetwork held = held_network_of(packing, options.settling.springs);
+  check(held.assembly);
+  CHECK(held.assembly.contact_arms.empty() == shape.is_disc());
+  CHECK(held.assembly.groups.at("walls").discs.size() + held.bodies.size() == held.assembly.size());
+}
+
+TEST_CASE("pairs_tied_by_dashpots_are_confirmed_as_rigid_ones") {
+  PackingOptions options = falling_soil(20, 0.12);
+  options.shape = {.kind = Kind::bonded_pair};
+  options.settling.rest = 1e-4;
+  options.settling.bond_share = 20;
+  const GrainPacking packing = pack(options);
+  const RestConfirmation rest = confirm_rest(packing, options.settling);
+  CAPTURE(packing.settling.unbalanced, rest.mean_overlap, rest.largest_motion, rest.share(), rest.residual);
+  CHECK(rest.residual < 1e-12);
+  CHECK(rest.share() < 0.1);
+  const Assembly network = network_of(packing, options.settling.springs);
+  REQUIRE(network.size() == packing.size());
+  const std::vector<Inertia> inertia = inertia_of(network, options.settling.density, Body::disc);
+  for (std::size_t k = 0; k < packing.size(); ++k) {
+    const Grain &a = packing.grains[2 * k], &b = packing.grains[2 * k + 1];
+    const Vec2 way = b.position - a.position;
+    CHECK(inertia[k].mass == Approx(a.inertia.mass + b.inertia.mass).epsilon(1e-12));
+    CHECK(inertia[k].moment ==
+          Approx(a.inertia.moment + b.inertia.moment + 0.5 * a.inertia.mass * dot(way, way)).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("networks_have_all_contacts_masses_and_areas_of_their_packing_and_moduli_below_their_bound") {
+  const PackingShape shape = GENERATE(from_range(networked_shapes()));
+  const PackingOptions options = jammed(shape, 80);
+  const GrainPacking packing = pack(options);
+  const Assembly assembly = network_of(packing, usual);
+  check(assembly);
+  REQUIRE(assembly.size() == packing.size());
+  CHECK(assembly.contacts.size() == contacts_of(packing).size());
+  CHECK(assembly.solid_fraction() == Approx(measure(packing).solid_fraction).epsilon(1e-10));
+  const std::vector<Inertia> inertia = inertia_of(assembly, options.settling.density, Body::disc);
+  for (std::size_t k = 0; k < packing.size(); ++k) {
+    CHECK(inertia[k].mass == Approx(packing.grains[k].inertia.mass).epsilon(1e-10));
+    CHECK(inertia[k].moment == Approx(packing.grains[k].inertia.moment).epsilon(1e-10));
+  }
+  const Matrix3 c = effective_stiffness(assembly, ContactSprings(usual)).stiffness,
+                voigt = voigt_stiffness(assembly, ContactSprings(usual));
+  const auto own = eigenstrains(c), below = eigenstrains(voigt + (-1.0) * c);
+  CAPTURE(to_string(shape.kind), assembly.contacts.size(), own.values[0], own.values[2], below.values[0]);
+  CHECK(own.values[0] > 0.05 * usual.kN);
+  CHECK(below.values[0] > 0);
+}
+
+TEST_CASE("round_ellipses_and_clumps_of_one_disc_have_the_moduli_of_discs") {
+  const GrainPacking packing = pack(jammed({}, 80));
+  const Assembly discs = network_of(packing, usual);
+  const ContactSprings springs(usual);
+  const Matrix3 expected = effective_stiffness(discs, springs).stiffness;
+  Bodies bodies{{}, packing.radii, std::vector<double>(packing.size(), 0.0)};
+  for (std::size_t k = 0; k < packing.size(); ++k) {
+    bodies.centres.push_back(packing.grains[k].position);
+    bodies.turns[k] = 0.013 * static_cast<double>(k);
+  }
+  const PackingShape shape = GENERATE(PackingShape{.kind = Kind::ellipse, .aspect = 1},
+                                      PackingShape{.kind = Kind::clump, .discs = {{{3, 1}, 2}}});
+  GrainPacking same;
+  same.box = packing.box;
+  make_grains(shape, bodies, 1, same);
+  const Assembly network = network_of(same, usual);
+  REQUIRE(network.contacts.size() == discs.contacts.size());
+  CHECK(on_lines_of_centres(network));
+  CAPTURE(to_string(shape.kind));
+  for (std::size_t c = 0; c < discs.contacts.size(); ++c)
+    CHECK(network.contacts[c].lever_i == Approx(discs.contacts[c].lever_i).epsilon(1e-12));
+  CHECK(difference(effective_stiffness(network, springs).stiffness, expected) < 1e-12);
+}
+
+TEST_CASE("clumps_that_touch_twice_have_a_spring_in_each_place") {
+  GrainPacking packing;
+  packing.box = {{10, 10}, PackingBox::Sides::walls};
+  // Two pairs lying on each other, side by side, the lower on the floor.
+  make_grains({.kind = Kind::rigid_pair}, {{{5, 1}, {5, 3}}, {1, 1}, {0, 0}}, 1, packing);
+  const Assembly free = network_of(packing, usual);
+  REQUIRE(free.contacts.size() == 2);
+  CHECK(free.contact_arms[0].offset_i + free.contact_arms[1].offset_i == Approx(0).margin(1e-14));
+  CHECK(std::abs(free.contact_arms[0].offset_i) == Approx(1));
+  CHECK(free.contacts[0].lever_i == Approx(1));
+  const HeldNetwork held = held_network_of(packing, usual);
+  REQUIRE(held.assembly.contacts.size() == 4);
+  CHECK(held.assembly.groups.at("walls").discs.size() == 1);
+  // Normal springs alone hold what rests in two places: statics has an answer, stiff against rocking as two springs two apart.
+  const std::vector<Support> walls{{.group = "walls", .ux = 0.0, .uy = 0.0, .rotation = 0.0}};
+  Assembly scene = held.assembly;
+  scene.groups["top"] = {{1}, {}};
+  const Equilibrium rocked =
+      solve_equilibrium(scene, ContactSprings(usual), walls, {{.group = "top", .force = {}, .moment = 1}});
+  CHECK(rocked.motions[1].theta == Approx(1 / usual.kN).epsilon(1e-9));
+}
