@@ -17,29 +17,19 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
 
+#include "contact/numbers.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;
+using namespace equidem::test;
 
 namespace {
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
-#ifdef __SIZEOF_FLOAT128__
-__extension__ using Quad = __float128;
-#else
-using Quad = long double;
-#endif
 
 Quad root(Quad x) {
   if (x <= 0) return 0;
   Quad r = std::sqrt(static_cast<long double>(x));
   for (int i = 0; i < 3; ++i) r = (r + x / r) / 2;
   return r;
-}
-
-double magnitude(double relative_size, Random& random) {
-  return std::pow(10.0, random.uniform(-relative_size, relative_size));
 }
 
 double energy(double depth, double closing, double a) {

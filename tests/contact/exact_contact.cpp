@@ -19,7 +19,7 @@ using namespace equidem;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// A pair that is stepped, with its energy and what went out of it.
 struct Pair {

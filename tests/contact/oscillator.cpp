@@ -10,17 +10,13 @@
 #include "equidem/contact/exact_contact.hpp"
 #include "equidem/core/random.hpp"
 
+#include "contact/numbers.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;
+using namespace equidem::test;
 
 namespace {
-
-#ifdef __SIZEOF_FLOAT128__
-__extension__ using Quad = __float128;
-#else
-using Quad = long double;
-#endif
 
 /// u, v, h, h1, impulse, moment, integral of u; dt = 1.
 constexpr int states = 7;

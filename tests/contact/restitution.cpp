@@ -14,15 +14,11 @@
 #include "equidem/core/error.hpp"
 
 #include "contact/integrated_impact.hpp"
+#include "contact/numbers.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;
-
-namespace {
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
-}  // namespace
+using namespace equidem::test;
 
 TEST_CASE("restitution_is_that_of_the_integrated_impact") {
   for (const ContactEnd end : {ContactEnd::at_zero_overlap, ContactEnd::at_zero_force}) {

@@ -9,17 +9,13 @@
 
 #include "equidem/core/random.hpp"
 
+#include "contact/numbers.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;
+using namespace equidem::test;
 
 namespace {
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
-double magnitude(double decades, Random& random) {
-  return std::pow(10.0, random.uniform(-decades, decades));
-}
 
 /// A contact, its state and what acts on it, of any size and sign.
 struct Trial {

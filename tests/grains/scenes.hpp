@@ -31,12 +31,15 @@ struct Stepping {
   NormalLaw law = NormalLaw::exact_flow;
   Scheme scheme = Scheme::semi_implicit_euler;
   [[nodiscard]] std::string name() const {
-    return to_string(law) + (scheme == Scheme::velocity_verlet ? ", velocity_verlet" : "");
+    return to_string(law) + (scheme == Scheme::velocity_verlet    ? ", velocity_verlet"
+                             : scheme == Scheme::corrected_verlet ? ", corrected_verlet"
+                                                                  : "");
   }
 };
 inline const std::vector<Stepping> all_steppings{
     {NormalLaw::linear_dashpot, Scheme::semi_implicit_euler}, {NormalLaw::linear_dashpot, Scheme::velocity_verlet},
-    {NormalLaw::hertz_dashpot, Scheme::semi_implicit_euler},  {NormalLaw::hertz_dashpot, Scheme::velocity_verlet},
+    {NormalLaw::linear_dashpot, Scheme::corrected_verlet},    {NormalLaw::hertz_dashpot, Scheme::semi_implicit_euler},
+    {NormalLaw::hertz_dashpot, Scheme::velocity_verlet},      {NormalLaw::hertz_dashpot, Scheme::corrected_verlet},
     {NormalLaw::five_case_map, Scheme::semi_implicit_euler},  {NormalLaw::energy_map, Scheme::semi_implicit_euler},
     {NormalLaw::exact_flow, Scheme::semi_implicit_euler}};
 /// Those that keep the balance of one contact to round-off.

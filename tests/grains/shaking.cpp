@@ -15,7 +15,7 @@ using namespace equidem::test;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double speed(const Schedule& s, double t, double h = 1e-6) {
   return (s.at(t + h) - s.at(t - h)) / (2 * h);

@@ -56,8 +56,11 @@ TEST_CASE("the_margin_changes_no_bit_of_ellipses_and_clumps") {
 
 TEST_CASE("ellipses_and_clumps_saved_at_any_step_go_on_with_the_same_bits") {
   const Stepping stepping = GENERATE(from_range(force_steppings));
-  CAPTURE(stepping.name());
-  check_resuming(mixed_box(stepping.law, 3, 3, 73), options_of(stepping, 0.01), 120);
+  const bool friction = GENERATE(true, false);
+  CAPTURE(stepping.name(), friction);
+  GrainScene scene = mixed_box(stepping.law, 3, 3, 73);
+  if (!friction) scene.pairs[0].friction = 0;
+  check_resuming(scene, options_of(stepping, 0.01), 120);
 }
 
 TEST_CASE("an_ellipse_slides_over_a_joint_of_segments_as_over_one") {

@@ -10,7 +10,7 @@ using namespace equidem::test;
 
 namespace {
 
-constexpr double radius = 0.02, gravity = 9.8;
+constexpr double stacked_radius = 0.02, gravity = 9.8;
 
 /// Height of the upper sphere over 2 r0 when it leaves the others, the real root of k³ + 3 k = sqrt(3), (29).
 double separation() {
@@ -35,7 +35,7 @@ double exact_time() {
     const double t = top - x * x;
     sum += 2 * std::sqrt((1 + t * t) / (1 - t * t));
   }
-  return std::sqrt(radius / gravity) * sum * end / n;
+  return std::sqrt(stacked_radius / gravity) * sum * end / n;
 }
 
 struct Errors {
@@ -48,9 +48,10 @@ Errors run(NormalLaw law, double step) {
   pair.dimensionless = law == NormalLaw::hertz_dashpot ? 4.62 : 0.1;
   pair.restitution = 0.7;
   std::vector<Grain> grains;
-  for (const Vec2 place : {Vec2{-radius, radius}, Vec2{radius, radius}, Vec2{0, (1 + std::sqrt(3.0)) * radius}}) {
-    grains.push_back(ball(place, radius));
-    grains.back().inertia = inertia_of(radius, 1000, Body::sphere);
+  for (const Vec2 place : {Vec2{-stacked_radius, stacked_radius}, Vec2{stacked_radius, stacked_radius},
+                           Vec2{0, (1 + std::sqrt(3.0)) * stacked_radius}}) {
+    grains.push_back(ball(place, stacked_radius));
+    grains.back().inertia = inertia_of(stacked_radius, 1000, Body::sphere);
   }
   GrainSimulation simulation(scene_of(grains, {line("floor", {0, 0}, {0, 1})}, pair, {0, -gravity}),
                              options_of(law, step));
@@ -61,7 +62,7 @@ Errors run(NormalLaw law, double step) {
       if (contact.i == 1 && contact.j == 2) parted = simulation.time();
     }
   }
-  const double velocity = simulation.grains()[1].velocity.x / std::sqrt(4 * gravity * radius);
+  const double velocity = simulation.grains()[1].velocity.x / std::sqrt(4 * gravity * stacked_radius);
   CHECK(simulation.grains()[0].velocity.x == Approx(-simulation.grains()[1].velocity.x).epsilon(1e-9));
   return {std::abs(velocity / exact_velocity() - 1), std::abs(parted / exact_time() - 1)};
 }

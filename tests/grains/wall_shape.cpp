@@ -19,7 +19,7 @@ using namespace equidem;
 namespace {
 
 using Shape = GrainWall::Shape;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 GrainWall line(Vec2 point, double angle) {
   return {.shape = Shape::line, .name = "w", .point = point, .normal = {std::cos(angle), std::sin(angle)}};

@@ -168,9 +168,12 @@ std::string describe_law(const GrainCase& resolved) {
       return name + ": linear spring and dashpot solved exactly within the step, all contacts together";
     case NormalLaw::linear_dashpot:
     case NormalLaw::hertz_dashpot:
-      return format(
-          "{}: {} spring and dashpot, {}", name, resolved.law == NormalLaw::linear_dashpot ? "linear" : "Hertz",
-          resolved.scheme == GrainOptions::Scheme::velocity_verlet ? "velocity Verlet" : "semi-implicit Euler");
+      return format("{}: {} spring and dashpot, {}", name,
+                    resolved.law == NormalLaw::linear_dashpot ? "linear" : "Hertz",
+                    resolved.scheme == GrainOptions::Scheme::semi_implicit_euler ? "semi-implicit Euler"
+                    : resolved.scheme == GrainOptions::Scheme::velocity_verlet
+                        ? "velocity Verlet"
+                        : "velocity Verlet, contacts that begin or end within a step corrected");
     case NormalLaw::five_case_map:
       return name + ": restitution at the first step of a contact, energy kept after it";
     case NormalLaw::energy_map:

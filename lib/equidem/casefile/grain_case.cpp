@@ -182,6 +182,7 @@ void read_run(const TomlValue& run, GrainCase& result) {
     fail_at(*scheme, "run.scheme", format("{} has a step of its own", to_string(result.law)),
             "scheme is for linear_dashpot and hertz_dashpot", "Remove it, or change collisions.law");
   if (scheme->text == "velocity_verlet") result.scheme = GrainOptions::Scheme::velocity_verlet;
+  if (scheme->text == "corrected_verlet") result.scheme = GrainOptions::Scheme::corrected_verlet;
 }
 
 }  // namespace

@@ -170,9 +170,11 @@ std::vector<KeySpec> keys_of_motion() {
        .name = "scheme",
        .type = choice,
        .fallback = none,
-       .choices = {"semi_implicit_euler", "velocity_verlet"},
-       .help = "of linear_dashpot and hertz_dashpot; semi_implicit_euler (default): gravity after the contact force; "
-               "velocity_verlet: dashpots with the velocities of the half step"},
+       .choices = {"semi_implicit_euler", "velocity_verlet", "corrected_verlet"},
+       .help =
+           "of linear_dashpot and hertz_dashpot; semi_implicit_euler (default): gravity after the contact force; "
+           "velocity_verlet: dashpots with the velocities of the half step; corrected_verlet: contacts that begin or "
+           "end within a step also push for their part of it only"},
       {.table = "run",
        .name = "gravity",
        .type = vector,

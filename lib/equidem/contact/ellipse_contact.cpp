@@ -34,10 +34,10 @@ struct Pair {
   const Ellipse& i;
   const Ellipse& j;
   Vec2 branch;
-  double near;  ///< within this angle of a maximum its place follows by Taylor's series, to round-off
+  double near;  ///< angle_of_arrival
 
   Pair(const Ellipse& first, const Ellipse& second, Vec2 branch_)
-      : i(first), j(second), branch(branch_), near(2e-5 * roundness(first) * roundness(second)) {}
+      : i(first), j(second), branch(branch_), near(angle_of_arrival(first, second)) {}
 
   /// Inlined, or the numbers would go through memory: a third of the time.
   [[nodiscard, gnu::always_inline]] Sample at(Vec2 n) const {
@@ -181,6 +181,10 @@ inline EllipseContact contact_at(const Pair& pair, const Sample& s) {
 }
 
 }  // namespace
+
+double angle_of_arrival(const Ellipse& i, const Ellipse& j) {
+  return 2e-5 * roundness(i) * roundness(j);
+}
 
 EllipseContact contact_of_ellipses(const Ellipse& i, const Ellipse& j, Vec2 branch, Vec2 last_normal,
                                    WhenApart when_apart) {

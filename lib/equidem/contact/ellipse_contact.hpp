@@ -47,6 +47,9 @@ struct EllipseContact {
 EllipseContact contact_of_ellipses(const Ellipse& i, const Ellipse& j, Vec2 branch, Vec2 last_normal = {},
                                    WhenApart when_apart = WhenApart::distance);
 
+/// Within this angle of a maximum its place follows by Taylor's series, to round-off.
+double angle_of_arrival(const Ellipse& i, const Ellipse& j);
+
 /// Ellipse i against the half-plane behind a line.
 /// \param to_line from the centre of the ellipse to any point of the line, m
 /// \param normal of the line, unit, towards the ellipse; that of the result is opposite. Never nested: gap is the distance of the

@@ -38,30 +38,18 @@ SlidingStep slide(const Sliding& law, double stretch, double friction, double ve
           .slides = true};
 }
 
-/// Losses at the mean velocity of the step instead of the one at its start.
-SlidingStep at_mean_velocity(SlidingStep result, double dashpot, const SlipChange& change, double step) {
-  const double way = (change.by_others + change.mobility * result.force) * step;
-  result.dashpot_loss += dashpot * way;
-  if (result.slides) result.slip_loss -= (result.force + dashpot) * way;
-  return result;
-}
-
 }  // namespace
 
-SlidingStep sliding_step(const Sliding& law, double stretch, double velocity, double normal_force, double step,
-                         const SlipChange& change) {
+SlidingStep sliding_step(const Sliding& law, double stretch, double velocity, double normal_force, double step) {
   const double yield = yield_of(law, normal_force);
   if (is_rigid(law)) {
     const double friction = velocity == 0 ? 0 : std::copysign(yield, velocity);
-    return at_mean_velocity(slide(law, 0, friction, velocity, step), 0, change, step);
+    return slide(law, 0, friction, velocity, step);
   }
   const double spring = law.stiffness * (stretch + velocity * step), dashpot = law.dashpot * velocity;
-  const bool whole = law.cap == FrictionCap::whole_force;
-  const double capped = whole ? spring + dashpot : spring;
-  if (std::abs(capped) <= yield)
-    return at_mean_velocity(stick(law, stretch, spring + dashpot, velocity, step), dashpot, change, step);
-  return at_mean_velocity(slide(law, stretch, std::copysign(yield, capped), velocity, step), whole ? 0 : dashpot,
-                          change, step);
+  const double capped = law.cap == FrictionCap::whole_force ? spring + dashpot : spring;
+  if (std::abs(capped) <= yield) return stick(law, stretch, spring + dashpot, velocity, step);
+  return slide(law, stretch, std::copysign(yield, capped), velocity, step);
 }
 
 SlidingStep sliding_step_midpoint(const Sliding& law, double stretch, double velocity, double mass, double normal_force,

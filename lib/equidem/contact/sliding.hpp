@@ -32,18 +32,10 @@ struct SlidingStep {
   bool slides = false;
 };
 
-/// By how much the mean velocity of a step differs from the one at its start.
-struct SlipChange {
-  double mobility = 0;   ///< dt/(2 m_t), times the force
-  double by_others = 0;  ///< half of what other forces add in the step, m/s
-};
-
 /// Explicit: force from the stretch at the end of the step with the velocity given (LAMMPS, YADE, Sukegawa (2.9)-(2.16)). The work of a
 /// spring that sticks exceeds the energy it stores by kT (v dt)²/2: the error of the integrator, counted nowhere. kT = c = 0: mu N
-/// even where that turns the slip round within the step; use the midpoint rule.
-/// \param change by which losses are counted at the mean velocity of the step: else they err in the first order of the step
-SlidingStep sliding_step(const Sliding& law, double stretch, double velocity, double normal_force, double step,
-                         const SlipChange& change = {});
+/// even where that turns the slip round within the step; use the midpoint rule. The losses are those at the velocity given.
+SlidingStep sliding_step(const Sliding& law, double stretch, double velocity, double normal_force, double step);
 
 /// Midpoint rule: force, stretch and velocity consistent over the step, so that sticking keeps energy and sliding only loses it.
 /// kT = c = 0: at most what stops the slip within the step, so that a slip that stops stays stopped; under a steady outside

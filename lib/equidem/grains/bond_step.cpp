@@ -241,11 +241,16 @@ void push_bonds(GrainSystem& system) {
            bond_inverse_masses(bond.frame, inverse_of(system.bodies[static_cast<std::size_t>(bond.i)]),
                                inverse_of(system.bodies[static_cast<std::size_t>(bond.j)])));
   }
-  system.lost.lost_bond += loss_of_bonds(system, 0.5);
+  system.lost.lost_bond += system.options.verlet() ? 0.5 * loss_of_bonds(system, 0.25) : loss_of_bonds(system, 0.5);
 }
 
-void count_half_a_kick(GrainSystem& system) {
-  system.lost.lost_bond = 0.5 * loss_of_bonds(system, 0.25);
+void count_opening_kick(GrainSystem& system) {
+  for (TiedPair& bond : system.bonds) {
+    const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
+    bond.frame = frame_of(system.motions[j].position - system.motions[i].position, bond.share);
+    bond.rate = rates_now(system, bond);
+  }
+  system.lost.lost_bond += 0.5 * loss_of_bonds(system, 0.25);
 }
 
 double elastic_of_bonds(const GrainSystem& system) {

@@ -22,9 +22,10 @@ struct TiedPair {
   BondModes dashpots;
   double share = 0;    ///< of lever i in the distance: r_i/(r_i + r_j)
   FiniteBond springs;  ///< between the discs as they are at the start
+  BondModes impulse;  ///< of the last step
   // in the step being made
   ContactFrame frame;
-  BondModes rate, gained, impulse;
+  BondModes rate, gained;
 };
 
 /// The bonds of a scene that has been put in order; sorted, so that the caller's order changes no bit.
@@ -40,8 +41,8 @@ inline bool are_tied(const std::vector<TiedPair>& bonds, std::size_t& next, std:
 /// \throws Error (computation_failed) where bonded discs have crept into one another until their centres all but meet
 void push_bonds(GrainSystem& system);
 
-/// Of what push_bonds gave at the start velocity_verlet takes half, at first.
-void count_half_a_kick(GrainSystem& system);
+/// The Verlet schemes: count what dashpots take in the half kick that opens a step; push_bonds counts that which closes one.
+void count_opening_kick(GrainSystem& system);
 
 /// Energy of the springs of bonds.
 double elastic_of_bonds(const GrainSystem& system);

@@ -107,9 +107,11 @@ void find_candidates(GrainSystem& system) {
     if (exact) system.exact_pairs.push_back(exact_pair_of(system, candidate));
   };
   std::size_t next_bond = 0;
+  const bool all_near = shapes ? system.near_parts.active && system.near.active : system.near.active;
   for (std::size_t i = 0; i < system.bodies.size(); ++i) {
-    for (std::int64_t p = list.begin[i]; !system.near.active && p < list.begin[i + 1]; ++p) {
+    for (std::int64_t p = list.begin[i]; !all_near && p < list.begin[i + 1]; ++p) {
       const std::int32_t j = list.partner[static_cast<std::size_t>(p)];
+      if (are_discs(system, static_cast<std::int32_t>(i), j) ? system.near.active : system.near_parts.active) continue;
       if (are_tied(system.bonds, next_bond, static_cast<std::int32_t>(i), j)) continue;
       if (!shapes) add(static_cast<std::int32_t>(i), j);
       if (!shapes) continue;
@@ -129,6 +131,7 @@ void find_candidates(GrainSystem& system) {
   cover_joints(system);
   system.near.outer = &list;
   if (system.near.active) find_near_pairs(system, std::sqrt(system.longest_way));
+  if (system.near_parts.active) find_near_parts(system, reach_of(system));
   system.moved = 0;
   ++system.counters.rebuilds;
 }
@@ -137,11 +140,12 @@ bool refresh_candidates(GrainSystem& system, double reach) {
   if (2 * (system.moved + reach) <= system.margin) {
     system.moved += reach;
     if (system.near.active) refresh_near_pairs(system, reach);
+    if (system.near_parts.active) refresh_near_parts(system, reach);
     return false;
   }
   system.margin = std::max(system.base_margin, 8 * reach);
   find_candidates(system);
-  system.moved = system.near.moved = reach;
+  system.moved = system.near.moved = system.near_parts.moved = reach;
   return true;
 }
 
@@ -172,11 +176,12 @@ void place_walls(GrainSystem& system) {
     const Vec2 here = {wall.move_x.at(now), wall.move_y.at(now)};
     const Vec2 there = {wall.move_x.at(next), wall.move_y.at(next)};
     const Vec2 velocity = (there - here) / system.dt();
-    system.walls[w] = {here, velocity, velocity};
-    if (system.options.scheme != GrainOptions::Scheme::velocity_verlet || system.step == 0) continue;
+    system.walls[w] = {here, velocity, velocity, velocity};
+    if (!system.options.verlet() || system.step == 0) continue;
     const double past = static_cast<double>(system.step - 1) * system.dt();
     const Vec2 before = {wall.move_x.at(past), wall.move_y.at(past)};
     system.walls[w].acting_velocity = (there - before) / (2 * system.dt());
+    system.walls[w].passed_velocity = (here - before) / system.dt();
   }
 }
 

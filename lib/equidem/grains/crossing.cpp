@@ -57,12 +57,11 @@ void check_discs(const GrainSystem& system, const Candidate& candidate, const Pa
   if (!seen && nearest < sum - 0.5 * small) refuse(system, candidate, way, 0.5 * small, "pass through");
 }
 
-void check_wall(const GrainSystem& system, std::size_t c) {
-  const Candidate& candidate = system.candidates[c];
+void check_wall(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
   const auto i = static_cast<std::size_t>(candidate.i);
   const auto w = static_cast<std::size_t>(~candidate.j);
   const WallPlace& place = system.walls[w];
-  const auto [start, end, radius_i, radius_j] = way_of_parts(system, c);
+  const auto [start, end, radius_i, radius_j] = way_of_parts(system, candidate, parts);
   const Vec2 before = start - place.displacement;
   const Vec2 after = end - place.displacement - system.dt() * place.velocity;
   if (passes_through(system.scene.walls[w], before, after)) {
@@ -71,6 +70,15 @@ void check_wall(const GrainSystem& system, std::size_t c) {
 }
 
 }  // namespace
+
+void check_parts(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
+  const PartWay way = way_of_parts(system, candidate, parts);
+  if (!has_ellipse(system, candidate, parts)) {
+    check_discs(system, candidate, way);
+  } else if (const char* happening = crossing_of_ellipses(system, candidate, parts)) {
+    refuse(system, candidate, way.after - way.before, 0.5 * std::min(way.radius_i, way.radius_j), happening);
+  }
+}
 
 void refuse_runaway(const GrainSystem& system, double reach) {
   if (std::isfinite(reach)) return;
@@ -90,14 +98,19 @@ void refuse_crossings(const GrainSystem& system, double reach) {
                 {system.motions[j].position - system.motions[i].position,
                  system.next[j].position - system.next[i].position, system.bodies[i].radius, system.bodies[j].radius});
   }
+  for (const NearParts::List& list : system.near_parts.lists) {
+    for (std::size_t p = 0; p < list.count; ++p) {
+      const auto [candidate, pair] = candidate_of(system, list, p);
+      check_parts(system, candidate, pair);
+    }
+  }
   for (std::size_t c = 0; c < system.candidates.size(); ++c) {
     const Candidate& candidate = system.candidates[c];
+    const PartPair parts = system.parts.empty() ? PartPair{} : system.part_pairs[c];
     if (candidate.j < 0) {
-      check_wall(system, c);
-    } else if (const PartWay way = way_of_parts(system, c); !has_ellipse(system, c)) {
-      check_discs(system, candidate, way);
-    } else if (const char* happening = crossing_of_ellipses(system, c)) {
-      refuse(system, candidate, way.after - way.before, 0.5 * std::min(way.radius_i, way.radius_j), happening);
+      check_wall(system, candidate, parts);
+    } else {
+      check_parts(system, candidate, parts);
     }
   }
 }

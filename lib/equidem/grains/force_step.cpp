@@ -6,6 +6,7 @@
 
 #include "equidem/grains/meeting.hpp"
 #include "equidem/grains/move_bodies.hpp"
+#include "equidem/grains/verlet_contact.hpp"
 
 namespace equidem {
 namespace {
@@ -34,7 +35,7 @@ void push(GrainSystem& system, const Candidate& candidate, const Meeting& meetin
     Push& on_j = system.pushes[static_cast<std::size_t>(candidate.j)];
     on_j.impulse += impulse;
     if constexpr (friction) on_j.torque -= meeting.lever_j * tangential;
-  } else {
+  } else if (!system.options.verlet()) {
     system.lost.work_of_walls -= dot(impulse, system.walls[static_cast<std::size_t>(~candidate.j)].acting_velocity);
   }
 }
@@ -70,17 +71,59 @@ double slide(GrainSystem& system, Candidate& candidate, const Meeting& meeting, 
   const double dt = system.dt();
   const double mass = tangential_mass(system, candidate, meeting);
   const double gain = gain_of_slip(system, candidate, meeting, mass);
-  SlidingStep step;
-  if (system.options.scheme == GrainOptions::Scheme::velocity_verlet) {
-    step =
-        sliding_step(candidate.sliding, candidate.stretch, velocity, normal_force, dt, {0.5 * dt / mass, 0.5 * gain});
-  } else {
-    step = sliding_step_midpoint(candidate.sliding, candidate.stretch, velocity + 0.5 * gain, mass, normal_force, dt);
-  }
+  const SlidingStep step =
+      sliding_step_midpoint(candidate.sliding, candidate.stretch, velocity + 0.5 * gain, mass, normal_force, dt);
   candidate.stretch = step.stretch;
   system.lost.lost_slip += step.slip_loss;
   system.lost.lost_tangential_dashpot += step.dashpot_loss;
   return step.force * dt;
+}
+
+TouchPlace place_of(const Meeting& meeting, bool wall) {
+  return {meeting.overlap, meeting.normal, meeting.lever_i * meeting.normal,
+          wall ? Vec2{} : -meeting.lever_j * meeting.normal};
+}
+
+/// The normal turns in a drift, and levers change: to the first order, as in the loop over near pairs; with walls the normal is known.
+ContactDrift drift_of(const GrainSystem& system, const Candidate& candidate, const Meeting& meeting) {
+  const double dt = system.dt();
+  const GrainMotion& motion = system.motions[static_cast<std::size_t>(candidate.i)];
+  if (candidate.j < 0) {
+    const Vec2 relative = system.walls[static_cast<std::size_t>(~candidate.j)].passed_velocity - motion.velocity;
+    const Vec2 before = candidate.steps > 0 ? candidate.normal : meeting.normal;
+    const Vec2 normal = 0.5 * (before + meeting.normal);
+    return {-dot(relative, normal), dot(relative, perpendicular(normal)) - motion.spin * meeting.lever_i,
+            candidate.overlap};
+  }
+  const GrainMotion& other = system.motions[static_cast<std::size_t>(candidate.j)];
+  const Vec2 relative = other.velocity - motion.velocity;
+  const double along = dot(relative, perpendicular(meeting.normal)), closing = -dot(relative, meeting.normal);
+  const double rims = motion.spin * meeting.lever_i + other.spin * meeting.lever_j;
+  const double half = 0.5 * dt / (meeting.lever_i + meeting.lever_j);
+  const double mean = closing + half * along * along;
+  return {mean, along - rims - half * closing * (along + rims), meeting.overlap - mean * dt};
+}
+
+/// By a Verlet scheme, when the pairs that are near have had their turn.
+template <NormalLaw law, bool friction>
+void collide_candidates_by_verlet(GrainSystem& system) {
+  for (Candidate& candidate : system.candidates) {
+    const Meeting meeting = meeting_of(system, candidate);
+    const TouchPlace place = place_of(meeting, candidate.j < 0);
+    if (!(meeting.overlap > 0)) {
+      if (candidate.touching) end_contact<law>(system, candidate, place, drift_of(system, candidate, meeting));
+      continue;
+    }
+    system.free_flight = false;
+    if (!candidate.touching) ++system.counters.contacts;
+    ++system.counters.evaluations;
+    system.deepest = std::max(system.deepest, meeting.overlap);
+    const Vec2 relative = relative_velocity(system, candidate);
+    const Vec2 impulse = step_contact<law, friction>(system, candidate, place, -dot(relative, meeting.normal),
+                                                     slip_velocity(system, candidate, meeting, relative),
+                                                     drift_of(system, candidate, meeting), candidate.sliding);
+    push<friction>(system, candidate, meeting, impulse, candidate.tangential_impulse);
+  }
 }
 
 template <NormalLaw law, bool friction>
@@ -91,9 +134,12 @@ void collide_by(GrainSystem& system) {
   system.free_flight = true;
   if (system.near.active) {
     system.near.loop(system);
-    if (friction && system.options.scheme == GrainOptions::Scheme::velocity_verlet) {
+    if (friction && system.options.verlet()) {
       for (std::size_t i = 0; i < system.bodies.size(); ++i) turn_rims(system.pushes[i], system.bodies[i]);
     }
+  }
+  if constexpr (!is_map(law)) {
+    if (system.options.verlet()) return collide_candidates_by_verlet<law, friction>(system);
   }
   const double dt = system.dt();
   const double length = system.length;
@@ -233,13 +279,14 @@ void kick_of_verlet(GrainSystem& system) {
   const Vec2 fall = system.dt() * system.scene.gravity;
   if (system.free_flight) {
     for (GrainMotion& motion : system.motions) motion.velocity += 0.5 * fall;
-    return;
+    return give_touch_impulses(system);
   }
   for (std::size_t i = 0; i < system.motions.size(); ++i) {
     const GrainBody& body = system.bodies[i];
     system.motions[i].velocity += 0.5 * (body.inverse_mass * system.pushes[i].impulse + fall);
     system.motions[i].spin += 0.5 * body.inverse_moment * system.pushes[i].torque;
   }
+  give_touch_impulses(system);
 }
 
 }  // namespace equidem

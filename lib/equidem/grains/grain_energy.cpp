@@ -48,20 +48,14 @@ std::pair<double, double> GrainSimulation::Implementation::elastic() const {
     const Candidate candidate = candidate_of(system, p);
     add(candidate, meeting_of(system, candidate).overlap);
   }
+  for (const NearParts::List& list : system.near_parts.lists) {
+    for (std::size_t p = 0; p < list.count; ++p) {
+      auto [candidate, pair] = candidate_of(system, list, p);
+      add(candidate, meeting_of_parts(system, candidate, pair).overlap);
+    }
+  }
   for (std::size_t c = 0; c < system.candidates.size(); ++c) add(system.candidates[c], overlap_of(system, c));
   return {normal, tangential};
-}
-
-/// Of the work of walls what velocity_verlet has counted already, but gives with the half kick that opens the next step.
-double GrainSimulation::Implementation::work_ahead() const {
-  double sum = 0;
-  for (const Candidate& candidate : system.candidates) {
-    if (candidate.j >= 0 || !candidate.touching) continue;
-    const Vec2 impulse =
-        candidate.impulse * candidate.normal + candidate.tangential_impulse * perpendicular(candidate.normal);
-    sum -= 0.5 * dot(impulse, system.walls[static_cast<std::size_t>(~candidate.j)].velocity);
-  }
-  return sum;
 }
 
 GrainLedger GrainSimulation::Implementation::energy() const {
@@ -71,7 +65,6 @@ GrainLedger GrainSimulation::Implementation::energy() const {
   ledger.elastic_bond = elastic_of_bonds(system);
   ledger.potential = potential() - potential_at_start;
   ledger.initial = energy_at_start;
-  if (verlet()) ledger.work_of_walls -= work_ahead();
   return ledger;
 }
 

@@ -177,8 +177,10 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
   }
   check_laws_of_shapes(scene, options);
   const bool own_step = is_map(options.law) || options.law == NormalLaw::exact_flow;
-  if (own_step && options.scheme == GrainOptions::Scheme::velocity_verlet) {
-    bad_input(format("velocity_verlet is asked for with the law \"{}\"", to_string(options.law)),
+  if (own_step && options.verlet()) {
+    bad_input(format("{} is asked for with the law \"{}\"",
+                     options.scheme == GrainOptions::Scheme::velocity_verlet ? "velocity_verlet" : "corrected_verlet",
+                     to_string(options.law)),
               "that law says itself how a step is made",
               "Leave the scheme out, or use linear_dashpot or hertz_dashpot");
   }

@@ -96,7 +96,9 @@ struct GrainOptions {
   enum class Scheme {
     semi_implicit_euler,  ///< v' = v + a(x, v) dt, x' = x + v' dt; gravity is added after the contact force (the paper's runs)
     velocity_verlet,  ///< half kick, drift, force with the velocities of the half step, half kick (LAMMPS)
+    corrected_verlet,  ///< the same; contacts that begin or end in the drift get what they push for their part of it (touch_instants.hpp)
   } scheme = Scheme::semi_implicit_euler;
+  [[nodiscard]] bool verlet() const { return scheme != Scheme::semi_implicit_euler; }
   double time_step = 0;         ///< s, > 0
   double reference_length = 0;  ///< d_c, m; 0: twice the largest radius, of ellipses the long half-axis
   double margin = 0;            ///< of the neighbour lists, m; 0: chosen from speeds and density

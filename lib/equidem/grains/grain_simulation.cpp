@@ -77,11 +77,14 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   find_strengths(system);
   place_walls(system);
   prepare_near_pairs(system);
-  system.base_margin = options.margin > 0 ? options.margin : (system.near.active ? 0.6 : 0.2) * smallest_size;
+  prepare_near_parts(system);
+  const bool listed_twice = system.parts.empty() ? system.near.active : system.near_parts.active;
+  system.base_margin = options.margin > 0 ? options.margin : (listed_twice ? 0.6 : 0.2) * smallest_size;
   system.margin = std::max(system.base_margin, 8 * fastest * options.time_step);
   system.joints = joints_of(system.scene.walls, joint_gap * system.smallest_radius);
   find_candidates(system);
   touch_near_pairs(system);
+  touch_near_parts(system);
   for (std::size_t c = 0; c < system.candidates.size(); ++c) {
     // bodies that overlap at the start touch
     Candidate& candidate = system.candidates[c];
@@ -91,8 +94,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   system.near.record = true;
   if (self.verlet()) {
     self.push();
-    count_half_a_kick(system);
-    system.lost.work_of_walls *= 0.5;
+    system.lost = {};  // there was no drift before the start
   }
   self.effects = effects_of(scene, options);
   self.potential_at_start = self.potential();
@@ -119,6 +121,7 @@ void GrainSimulation::Implementation::make_step() {
     flow(system);
   } else {
     if (verlet()) {
+      count_opening_kick(system);
       drift_of_verlet(system);
     } else {
       push();
@@ -218,6 +221,12 @@ std::vector<GrainContact> GrainSimulation::contacts() const {
     const Candidate candidate = candidate_of(system, p);
     add(candidate, arms_of_discs(system, candidate));
   }
+  for (const NearParts::List& list : system.near_parts.lists) {
+    for (std::size_t p = 0; p < list.count; ++p) {
+      const auto [candidate, pair] = candidate_of(system, list, p);
+      add(candidate, {pair.arm_i, pair.arm_j});
+    }
+  }
   for (std::size_t c = 0; c < system.candidates.size(); ++c) add(system.candidates[c], arms_of(system, c));
   std::stable_sort(contacts.begin(), contacts.end(), [](const GrainContact& a, const GrainContact& b) {
     return std::pair(a.i, a.j) < std::pair(b.i, b.j);
@@ -240,7 +249,7 @@ const Effects& GrainSimulation::effects() const {
 double GrainSimulation::bytes_per_grain() const {
   const GrainSystem& system = implementation_->system;
   const double bytes = static_cast<double>(
-      system.near.bytes() + system.bodies.capacity() * sizeof(GrainBody) + system.moments.capacity() * sizeof(Vec2) +
+      system.near.bytes() + system.near_parts.bytes() + system.bodies.capacity() * sizeof(GrainBody) + system.moments.capacity() * sizeof(Vec2) +
       2 * system.motions.capacity() * sizeof(GrainMotion) +
       (system.pushes.capacity() + system.pushes_before.capacity()) * sizeof(Push) +
       system.candidates.capacity() * sizeof(Candidate) + system.part_pairs.capacity() * sizeof(PartPair) +

@@ -20,13 +20,14 @@ struct GrainSimulation::Implementation {
   void make_step();
   /// What contacts and bonds give in the step.
   void push();
-  [[nodiscard]] bool verlet() const { return system.options.scheme == GrainOptions::Scheme::velocity_verlet; }
+  [[nodiscard]] bool verlet() const { return system.options.verlet(); }
   /// Whether a step needs the pushes of the one before.
-  [[nodiscard]] bool keeps_pushes() const { return verlet() || (collide && system.friction); }
+  [[nodiscard]] bool keeps_pushes() const {
+    return verlet() || (collide && (system.friction || system.near.active || system.near_parts.active));
+  }
   /// Of gravity, where the velocities are.
   [[nodiscard]] double potential() const;
   [[nodiscard]] double kinetic() const;
-  [[nodiscard]] double work_ahead() const;
   /// Normal and tangential springs as they stand.
   [[nodiscard]] std::pair<double, double> elastic() const;
   [[nodiscard]] GrainLedger energy() const;

@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t numbers_per_plain_contact = 13;
 constexpr std::size_t numbers_per_pair_of_parts = 6;
 constexpr std::size_t numbers_per_push = 3;
+constexpr std::size_t numbers_per_bond = 3;
 
 std::size_t numbers_per_contact_of(const GrainSystem& system) {
   return numbers_per_plain_contact + (system.parts.empty() ? 0 : numbers_per_pair_of_parts);
@@ -23,6 +24,22 @@ void append(std::vector<double>& numbers, const PartPair& pair) {
                               pair.arm_j.x, pair.arm_j.y}) {
     numbers.push_back(number);
   }
+}
+
+PartPair parts_of_discs(const GrainSystem& system, const Candidate& candidate) {
+  PartPair pair;
+  pair.i = system.first_part[static_cast<std::size_t>(candidate.i)];
+  pair.j = system.first_part[static_cast<std::size_t>(candidate.j)];
+  return pair;
+}
+
+PartPair pair_of(const double* numbers) {
+  PartPair pair;
+  pair.i = static_cast<std::int32_t>(numbers[0]);
+  pair.j = static_cast<std::int32_t>(numbers[1]);
+  pair.arm_i = {numbers[2], numbers[3]};
+  pair.arm_j = {numbers[4], numbers[5]};
+  return pair;
 }
 
 bool is_of(const double* numbers, const PartPair& pair) {
@@ -65,7 +82,18 @@ GrainState GrainSimulation::save() const {
   state.ledger = system.lost;
   state.counters = system.counters;
   for (std::size_t p = 0; p < system.near.count; ++p) {
-    if (system.near.touching(p)) append(state.contacts, candidate_of(system, p));
+    if (!system.near.touching(p)) continue;
+    const Candidate candidate = candidate_of(system, p);
+    append(state.contacts, candidate);
+    if (!system.parts.empty()) append(state.contacts, parts_of_discs(system, candidate));
+  }
+  for (const NearParts::List& list : system.near_parts.lists) {
+    for (std::size_t p = 0; p < list.count; ++p) {
+      if (!list.touching(p)) continue;
+      const auto [candidate, pair] = candidate_of(system, list, p);
+      append(state.contacts, candidate);
+      append(state.contacts, pair);
+    }
   }
   for (std::size_t c = 0; c < system.candidates.size(); ++c) {
     if (!system.candidates[c].touching) continue;
@@ -75,6 +103,12 @@ GrainState GrainSimulation::save() const {
   if (!implementation_->keeps_pushes()) return state;  // the others find all pushes of a step in that step
   for (const Push& push : system.pushes) {
     for (const double number : {push.impulse.x, push.impulse.y, push.torque}) {
+      state.sums.push_back(number);
+    }
+  }
+  if (!implementation_->verlet()) return state;
+  for (const TiedPair& bond : system.bonds) {
+    for (const double number : {bond.impulse.normal, bond.impulse.tangential, bond.impulse.rolling}) {
       state.sums.push_back(number);
     }
   }
@@ -90,8 +124,10 @@ void GrainSimulation::go_back_to(const GrainState& state) {
   GrainSystem& system = implementation_->system;
   const std::size_t numbers_per_contact = numbers_per_contact_of(system);
   const bool shapes = !system.parts.empty();
+  const std::size_t pushes = implementation_->keeps_pushes() ? numbers_per_push * system.motions.size() : 0;
+  const std::size_t bonds = implementation_->verlet() ? numbers_per_bond * system.bonds.size() : 0;
   if (state.grains.size() != system.motions.size() || state.contacts.size() % numbers_per_contact != 0 ||
-      state.sums.size() != (implementation_->keeps_pushes() ? numbers_per_push * system.motions.size() : 0)) {
+      state.sums.size() != pushes + bonds) {
     bad_input(format("the state is of {}", counted(static_cast<long long>(state.grains.size()), "grain")),
               format("the scene has {}", system.motions.size()), "Resume with the scene that the state was saved from");
   }
@@ -104,6 +140,10 @@ void GrainSimulation::go_back_to(const GrainState& state) {
     const double* numbers = state.sums.data() + numbers_per_push * k;
     system.pushes[k] = {{numbers[0], numbers[1]}, numbers[2]};
   }
+  for (std::size_t b = 0; b < bonds / numbers_per_bond; ++b) {
+    const double* numbers = state.sums.data() + pushes + numbers_per_bond * b;
+    system.bonds[b].impulse = {numbers[0], numbers[1], numbers[2]};
+  }
   system.free_flight = false;
   system.deepest = std::numeric_limits<double>::infinity();  // not known: verlet has to look
   place_walls(system);
@@ -112,19 +152,25 @@ void GrainSimulation::go_back_to(const GrainState& state) {
   system.exact_pairs.clear();
   system.part_pairs.clear();
   std::vector<Candidate> near;
+  std::vector<std::pair<Candidate, PartPair>> near_parts;
   std::vector<const double*> others;
   for (std::size_t at = 0; at < state.contacts.size(); at += numbers_per_contact) {
     Candidate contact;
     take(state.contacts.data() + at, contact);
-    if (system.near.active && contact.j >= 0)
+    const double* numbers = state.contacts.data() + at;
+    if (contact.j >= 0 && are_discs(system, contact.i, contact.j) && system.near.active) {
       near.push_back(contact);
-    else
-      others.push_back(state.contacts.data() + at);
+    } else if (contact.j >= 0 && !are_discs(system, contact.i, contact.j) && system.near_parts.active) {
+      near_parts.emplace_back(contact, pair_of(numbers + numbers_per_plain_contact));
+    } else {
+      others.push_back(numbers);
+    }
   }
   if (system.near.active) {
     load_pair_bodies(system);
     take_near_pairs(system, near);
   }
+  if (system.near_parts.active) take_near_parts(system, near_parts);
   find_candidates(system);
   std::size_t c = 0;
   for (const double* contact : others) {

@@ -12,7 +12,9 @@
 #include "equidem/grains/grain_scene.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/near_pairs.hpp"
+#include "equidem/grains/near_parts.hpp"
 #include "equidem/grains/neighbours.hpp"
+#include "equidem/grains/touch_instants.hpp"
 #include "equidem/grains/wall_joints.hpp"
 
 namespace equidem {
@@ -65,6 +67,7 @@ struct WallPlace {
   Vec2 velocity;  ///< mean over the step
   /// That contacts see and walls do work with: velocity_verlet, whose forces act half in the step before, the mean over both.
   Vec2 acting_velocity;
+  Vec2 passed_velocity;  ///< velocity_verlet: mean over the step before
 };
 
 struct GrainSystem {
@@ -86,19 +89,24 @@ struct GrainSystem {
   std::vector<WallPlace> walls;
   std::vector<WallJoints> joints;  ///< of each wall; empty where none join
   NearPairs near;
-  std::vector<Candidate> candidates;  ///< that are no near pairs; ordered by i, then j, walls last, then parts
-  std::vector<TiedPair> bonds;        ///< ordered by i, then j
+  NearParts near_parts;
+  std::vector<Candidate>
+      candidates;  ///< that are in none of the near lists; ordered by i, then j, walls last, then parts
+  std::vector<TouchImpulse> touch_impulses;  ///< of the step being made
+  std::vector<TiedPair> bonds;               ///< ordered by i, then j
   NeighbourFinder finder;
   std::vector<Circle> circles;         ///< bodies, for the finder
   std::vector<ExactPair> exact_pairs;  ///< exact_flow: one for each candidate
   // ellipses and clumps; all empty in scenes of discs alone
   std::vector<GrainPart> parts;          ///< of body k: from first_part[k] to first_part[k + 1]
   std::vector<std::int32_t> first_part;  ///< one more than bodies
-  std::vector<Vec2> axes;                ///< x-axis of each body where it is now
-  std::vector<PartPair> part_pairs;      ///< one for each candidate
-  double margin = 0, moved = 0;          ///< of the candidates; how far bodies may have moved since they were found, m
-  double base_margin = 0;                ///< while bodies are slow, m
-  std::vector<GrainMotion> next;         ///< after the step being made
+  std::vector<std::int32_t> body_of_part;
+  std::vector<std::int32_t> shaped;  ///< bodies that are no discs
+  std::vector<Vec2> axes;            ///< x-axis of each body where it is now
+  std::vector<PartPair> part_pairs;  ///< one for each candidate
+  double margin = 0, moved = 0;      ///< of the candidates; how far bodies may have moved since they were found, m
+  double base_margin = 0;            ///< while bodies are slow, m
+  std::vector<GrainMotion> next;     ///< after the step being made
 
   bool free_flight = false;    ///< all pushes are zero
   double longest_way = 0;      ///< of a body in the step being made, squared, m²

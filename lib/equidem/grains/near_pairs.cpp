@@ -10,6 +10,7 @@
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/meeting.hpp"
 #include "equidem/grains/move_bodies.hpp"
+#include "equidem/grains/near_parts.hpp"
 
 namespace equidem {
 namespace {
@@ -22,6 +23,21 @@ PairLaw law_of(const Candidate& candidate) {
   return {candidate.stiffness, candidate.attraction ? -std::numeric_limits<double>::infinity() : 0,
           candidate.sliding.coefficient, candidate.sliding.stiffness,
           candidate.sliding.cap == FrictionCap::spring_alone ? 1.0 : 0.0};
+}
+
+/// Of all kinds but those that are of walls alone.
+std::vector<const PairProperties*> pairs_of_grains(const GrainScene& scene) {
+  std::vector<bool> of_walls(static_cast<std::size_t>(scene.kinds)), met(of_walls);
+  for (const GrainWall& wall : scene.walls) of_walls[static_cast<std::size_t>(wall.kind)] = true;
+  for (const Grain& grain : scene.grains) met[static_cast<std::size_t>(grain.kind)] = true;
+  for (std::size_t k = 0; k < met.size(); ++k) met[k] = met[k] || !of_walls[k];
+  std::vector<const PairProperties*> pairs;
+  for (int a = 0; a < scene.kinds; ++a) {
+    for (int b = 0; b < scene.kinds; ++b) {
+      if (met[static_cast<std::size_t>(a)] && met[static_cast<std::size_t>(b)]) pairs.push_back(&scene.between(a, b));
+    }
+  }
+  return pairs;
 }
 
 /// The lists as they come to be, from lanes of the lists before and from new pairs.
@@ -161,33 +177,33 @@ std::size_t NearPairs::bytes() const {
          records.capacity() * sizeof(PairRecords);
 }
 
+bool go_by_eights(const GrainSystem& system) {
+  if (system.options.law != NormalLaw::linear_dashpot && system.options.law != NormalLaw::hertz_dashpot) return false;
+  const std::vector<const PairProperties*> pairs = pairs_of_grains(system.scene);
+  return std::none_of(pairs.begin(), pairs.end(), [](const PairProperties* pair) {
+    return pair->friction > 0 && !(pair->tangential_ratio > 0);  // slides always, by a law of its own
+  });
+}
+
+double margin_of_near_pairs(const GrainSystem& system, double reach) {
+  const double wanted = std::max(
+      {least_margin * system.smallest_radius, margin_of_mean * std::sqrt(reach * system.smallest_radius), 4 * reach});
+  return std::min(wanted, system.margin);
+}
+
 void prepare_near_pairs(GrainSystem& system) {
   NearPairs& near = system.near;
-  const GrainScene& scene = system.scene;
-  if (system.options.law != NormalLaw::linear_dashpot && system.options.law != NormalLaw::hertz_dashpot) return;
-  if (scene.grains.size() < 2) return;
-  if (!std::all_of(scene.grains.begin(), scene.grains.end(),
-                   [](const Grain& grain) { return grain.shape() == GrainShape::disc; })) {
-    return;
-  }
-  std::vector<bool> of_walls(static_cast<std::size_t>(scene.kinds)), met(of_walls);
-  for (const GrainWall& wall : scene.walls) of_walls[static_cast<std::size_t>(wall.kind)] = true;
-  for (const Grain& grain : scene.grains) met[static_cast<std::size_t>(grain.kind)] = true;
-  for (std::size_t k = 0; k < met.size(); ++k) met[k] = met[k] || !of_walls[k];  // all but what only walls are
-  const PairProperties* first = nullptr;
-  near.equal = true;
-  for (int a = 0; a < scene.kinds; ++a) {
-    for (int b = 0; b < scene.kinds; ++b) {
-      if (!met[static_cast<std::size_t>(a)] || !met[static_cast<std::size_t>(b)]) continue;
-      const PairProperties& pair = scene.between(a, b);
-      if (pair.friction > 0 && !(pair.tangential_ratio > 0)) return;  // slides always, by a law of its own
-      if (first == nullptr) first = &pair;
-      const bool plain =
-          pair.stiffness > 0 && (!system.friction || (pair.friction > 0 && pair.cap == FrictionCap::whole_force));
-      near.equal = near.equal && plain && pair == *first;
-    }
-  }
+  const std::vector<Grain>& grains = system.scene.grains;
+  const auto discs = std::count_if(grains.begin(), grains.end(),
+                                   [](const Grain& grain) { return grain.shape() == GrainShape::disc; });
+  if (discs < 2 || !go_by_eights(system)) return;
+  const std::vector<const PairProperties*> pairs = pairs_of_grains(system.scene);
   near.active = true;
+  near.equal = std::all_of(pairs.begin(), pairs.end(), [&](const PairProperties* pair) {
+    const bool plain =
+        pair->stiffness > 0 && (!system.friction || (pair->friction > 0 && pair->cap == FrictionCap::whole_force));
+    return plain && *pair == *pairs[0];
+  });
   if (near.equal) {
     Candidate candidate;
     candidate.j = 1;
@@ -202,11 +218,10 @@ void prepare_near_pairs(GrainSystem& system) {
 void find_near_pairs(GrainSystem& system, double reach) {
   const NeighbourList& list = *system.near.outer;
   NearPairs& near = system.near;
-  near.margin = std::max(
-      {least_margin * system.smallest_radius, margin_of_mean * std::sqrt(reach * system.smallest_radius), 4 * reach});
-  near.margin = std::min(near.margin, system.margin);
+  near.margin = margin_of_near_pairs(system, reach);
   near.moved = 0;
   PairLists lists(system);
+  const bool shapes = !system.parts.empty();
   std::size_t next_bond = 0;
   for (std::size_t i = 0; i < system.bodies.size(); ++i) {
     const Vec2 centre = system.motions[i].position;
@@ -214,6 +229,7 @@ void find_near_pairs(GrainSystem& system, double reach) {
     for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
       const std::int32_t partner = list.partner[static_cast<std::size_t>(p)];
       if (are_tied(system.bonds, next_bond, static_cast<std::int32_t>(i), partner)) continue;
+      if (shapes && !are_discs(system, static_cast<std::int32_t>(i), partner)) continue;
       const auto j = static_cast<std::size_t>(partner);
       const Vec2 branch = system.motions[j].position - centre;
       const double far = own + system.bodies[j].radius;
@@ -241,7 +257,7 @@ void load_pair_bodies(GrainSystem& system) {
 
 void touch_near_pairs(GrainSystem& system) {
   NearPairs& near = system.near;
-  const bool verlet = system.options.scheme == GrainOptions::Scheme::velocity_verlet;
+  const bool verlet = system.options.verlet();
   for (std::size_t p = 0; p < near.count; ++p) {
     const auto i = static_cast<std::size_t>(near.first(p)), j = static_cast<std::size_t>(near.second(p));
     const Vec2 branch = system.motions[j].position - system.motions[i].position;

@@ -95,8 +95,13 @@ struct NearPairs {
   }
 };
 
-/// Decide whether grains meet in the loop over near pairs, and choose it: discs, a law that gives a force, no contact that slides
-/// always.
+/// Whether contacts of grains can be computed several at a time: a law that gives a force, no contact that slides always.
+bool go_by_eights(const GrainSystem& system);
+
+/// Margin of lists within that of the neighbour finder, for bodies that move by about `reach` in a step.
+double margin_of_near_pairs(const GrainSystem& system, double reach);
+
+/// Decide whether discs meet in the loop over near pairs, and choose it.
 void prepare_near_pairs(GrainSystem& system);
 
 /// Find the pairs anew among those of the neighbour finder, for bodies that move by about `reach` in a step.

@@ -12,13 +12,12 @@ namespace {
 
 using namespace eight;
 
-enum class Slip { none, explicitly, midpoint };
-
 /// What a loop does, known where it is compiled.
 struct PairLoopKind {
   bool hertz = false;
-  Slip slip = Slip::none;
-  bool equal = false;  ///< one law for all pairs, where the dashpot rests while contacts slide
+  bool friction = false;
+  bool equal = false;   ///< one law for all pairs, where the dashpot rests while contacts slide
+  bool verlet = false;  ///< friction by the explicit step, else by the midpoint rule
 };
 
 struct LoopNumbers {
@@ -26,8 +25,49 @@ struct LoopNumbers {
   double tangential_compliance = 0;
   double dt = 0;
   std::int64_t now = 0;  ///< step before the one being made
+  bool corrected = false;
   bool record = false;
+  GrainSystem* system = nullptr;
 };
+
+/// What is known of a group in which contacts begin or end.
+struct TouchLanes {
+  Lanes nx, ny, distance, closing, deep, spring, impulse, dashpot, mass, least;
+  Lanes slip, tangential, tangential_dashpot, stored;
+  Choice begun, ended, slides;
+};
+
+[[gnu::noinline, gnu::cold]] void count_instants(GrainSystem& system, const PairGroup& group, const TouchLanes& lanes,
+                                                 bool hertz) {
+  for (int k = 0; k < 8; ++k) {
+    if (lanes.begun[k] == 0 && lanes.ended[k] == 0) continue;
+    TouchInstant contact;
+    contact.i = group.i[k];
+    contact.j = group.j[k];
+    contact.normal = {lanes.nx[k], lanes.ny[k]};
+    const double radius = system.bodies[static_cast<std::size_t>(contact.i)].radius;
+    const double lever = radius / group.reach[k] * lanes.distance[k];
+    contact.arm_i = lever * contact.normal;
+    contact.arm_j = (lever - lanes.distance[k]) * contact.normal;
+    contact.closing = lanes.closing[k];
+    contact.slip = lanes.slip[k];
+    contact.part = part_of_drift(lanes.deep[k], lanes.begun[k] != 0 ? contact.closing : -contact.closing, system.dt());
+    contact.spring = lanes.spring[k];
+    contact.dashpot = lanes.impulse[k] - lanes.spring[k];
+    contact.decay = lanes.dashpot[k] * lanes.mass[k] * system.dt();
+    if (hertz) contact.decay *= std::sqrt(std::sqrt(lanes.deep[k]));
+    contact.tangential = lanes.tangential[k];
+    contact.tangential_dashpot = lanes.tangential_dashpot[k];
+    contact.stored = lanes.stored[k];
+    contact.slides = lanes.slides[k] != 0;
+    contact.pulls = lanes.least[k] < 0;
+    if (lanes.begun[k] != 0) {
+      begin_within_drift(system, contact);
+    } else {
+      end_within_drift(system, contact);
+    }
+  }
+}
 
 struct Sums {
   Half
@@ -59,17 +99,21 @@ EQUIDEM_ALWAYS_INLINE Law law_of(const LoopNumbers& numbers, const PairLaws* law
 }
 
 /// sliding_step and sliding_step_midpoint for contacts that have a spring.
-/// \param velocity slip at the start of the step; middle: by the midpoint rule, with half of what others do to it, and velocity is that too
+/// \param velocity slip at the start of the step; by the midpoint rule with half of what others do to it
+/// \param mean_slip over the drift before, to count losses; the Verlet schemes
+/// \param before impulse on j in the last step; the Verlet schemes
 struct Tangent {
   Lanes force, stretch, slip_loss, dashpot_loss;
+  Choice slides;
 };
 
 template <PairLoopKind kind>
 EQUIDEM_ALWAYS_INLINE Tangent slide(const Law& law, const Lanes& dashpot, const Lanes& stretch, const Lanes& velocity,
-                                    const Lanes& middle, const Lanes& mobility, const Lanes& yield, double dt) {
+                                    const Lanes& mean_slip, const Lanes& mobility, const Lanes& before,
+                                    const Lanes& yield, double dt) {
   const Lanes spring = law.tangential_stiffness;
   Lanes resistance, mean = velocity;
-  if constexpr (kind.slip == Slip::midpoint) {
+  if constexpr (!kind.verlet) {
     const Lanes rate = spring * (dt / 2) + dashpot;
     resistance = (spring * stretch + rate * velocity) / (1 + mobility * rate);
   } else {
@@ -77,15 +121,15 @@ EQUIDEM_ALWAYS_INLINE Tangent slide(const Law& law, const Lanes& dashpot, const 
   }
   Lanes capped = resistance;
   if constexpr (!kind.equal) {
-    if constexpr (kind.slip == Slip::midpoint) mean = velocity - mobility * resistance;
+    if constexpr (!kind.verlet) mean = velocity - mobility * resistance;
     capped -= law.beyond_cap * dashpot * mean;
   }
   const Choice slides = negative(yield - magnitude(capped));
   const Lanes friction = choose(slides, with_sign(yield, capped), resistance);
   Lanes drag{}, force = friction;
-  if constexpr (kind.slip == Slip::midpoint) mean = velocity - mobility * friction;
+  if constexpr (!kind.verlet) mean = velocity - mobility * friction;
   if constexpr (!kind.equal) {
-    if constexpr (kind.slip == Slip::midpoint) {
+    if constexpr (!kind.verlet) {
       mean = choose(slides, mean / (1 + law.beyond_cap * mobility * dashpot), mean);
     }
     drag = only(slides, law.beyond_cap * dashpot * mean);
@@ -96,16 +140,20 @@ EQUIDEM_ALWAYS_INLINE Tangent slide(const Law& law, const Lanes& dashpot, const 
   Lanes end = choose(slides, smaller(larger(moved, -largest), largest), moved);
   if constexpr (!kind.equal) end = spring > 0 ? end : Lanes{};
   const Lanes released = 0.5 * spring * (stretch - end) * (stretch + end);
-  const Lanes dragged = choose(slides, drag, dashpot * mean);
-  if constexpr (kind.slip == Slip::explicitly) mean = middle - mobility * force;
-  return {force, end, only(slides, friction * mean * dt + released), dragged * mean * dt};
+  if constexpr (!kind.verlet) {
+    const Lanes dragged = choose(slides, drag, dashpot * mean);
+    return {force, end, only(slides, friction * mean * dt + released), dragged * mean * dt, slides};
+  }
+  // half of the kicks before and after the drift each, less what the spring has stored
+  const Lanes loss = 0.5 * mean_slip * (force * dt - before) + released;
+  const Lanes dragged = drag * mean_slip * dt;
+  return {force, end, only(slides, loss - dragged), choose(slides, dragged, only(negative(-dashpot), loss)), slides};
 }
 
 template <PairLoopKind kind>
 EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairBody* bodies, Push* pushes,
                                          PairGroup& group, PairSlips* slips, const PairLaws* laws, PairRecords* records,
                                          Sums& sums) {
-  constexpr bool friction = kind.slip != Slip::none;
   const double dt = numbers.dt;
   // differences j - i, sums of the speeds of the rims
   constexpr long long minus = std::numeric_limits<long long>::min();
@@ -128,7 +176,8 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairB
   const Choice touch = negative(zero - overlap) & ~negative(since - PairGroup::apart);
   const Choice alive = ~negative(since - (PairGroup::apart + 1));
   const Choice begun = touch & ~alive, ended = alive & ~touch;
-  if (any(touch ^ alive)) {
+  const bool changes = any(touch ^ alive);
+  if (changes) {
     since = choose(begun, Choice{} + numbers.now,
                    choose(ended, Choice{} + static_cast<long long>(PairGroup::apart), since));
     std::memcpy(group.since, &since, sizeof since);
@@ -156,28 +205,67 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairB
   }
   const Lanes force = only(touch, larger(elastic + drag, law.least));
   const Lanes impulse = force * dt;
-  // of the mean over the step the part of this contact is known, not only that of the last step
-  const Lanes mass = load(group.mass);
-  const Lanes mean_closing = 0.5 * mass * (load(group.impulse) - impulse) - (m[5] * nx + m[6] * ny);
+  const Lanes mass = load(group.mass), impulse_before = load(group.impulse);
   store(impulse, group.impulse);
-  const Lanes normal_loss = only(touch, (force - elastic) * mean_closing * dt);
+  const Lanes along = v * nx - u * ny;
+  Lanes mean_closing, deep_before, elastic_before, normal_loss;
+  if constexpr (kind.verlet) {
+    // over the drift, in which the normal turns; the dashpot gives half of the kicks before and after it each
+    mean_closing = closing + (0.5 * dt) * inverse * along * along;
+    deep_before = larger(overlap - mean_closing * dt, zero);
+    elastic_before = law.stiffness * deep_before;
+    if constexpr (kind.hertz) elastic_before *= square_root(deep_before);
+    normal_loss =
+        only(touch & alive, 0.5 * mean_closing * ((impulse_before - elastic_before * dt) + (force - elastic) * dt));
+  } else {
+    // of the mean over the step the part of this contact is known, not only that of the last step
+    mean_closing = 0.5 * mass * (impulse_before - impulse) - (m[5] * nx + m[6] * ny);
+    normal_loss = only(touch, (force - elastic) * mean_closing * dt);
+  }
   sums.deepest = larger(deep, sums.deepest);
+  Lanes slip{}, tangential_kick{}, sticking_dashpot{}, kept{};
+  Choice slides{};
   Lanes px = impulse * nx, py = impulse * ny;
   Half row[8];
-  if constexpr (friction) {
-    const Lanes stretch = load(slips->stretch);
-    const Lanes half = 0.5 * (mass + load(slips->turning) * square);
+  if constexpr (kind.friction) {
+    Lanes stretch = load(slips->stretch);
+    const Lanes impulse_along_before = load(slips->impulse);
     const Lanes share = distance / reach;
-    // without this contact's own part in it
-    const Lanes middle = (m[6] * nx - m[5] * ny) - share * m[7] - half * load(slips->impulse);
-    const Lanes velocity = kind.slip == Slip::midpoint ? middle : (v * nx - u * ny) - share * m[4];
+    Lanes velocity, mean_slip{}, half{};
+    if constexpr (kind.verlet) {
+      const Lanes rims = share * m[4];
+      velocity = along - rims;
+      mean_slip = velocity - ((0.5 * dt) * closing * inverse) * (along + rims);
+      if (changes && numbers.corrected) [[unlikely]] {
+        const Lanes way = mean_closing * dt;
+        const Lanes before_touch = only(begun & negative(overlap - way), 1 - overlap / way);
+        stretch -= before_touch * velocity * dt;
+      }
+    } else {
+      half = 0.5 * (mass + load(slips->turning) * square);
+      // without this contact's own part in it
+      velocity = (m[6] * nx - m[5] * ny) - share * m[7] - half * impulse_along_before;
+    }
     const Lanes yield = law.friction * larger(force, zero);
-    const Tangent tangent = slide<kind>(law, load(slips->dashpot), stretch, velocity, middle, dt * half, yield, dt);
+    const Lanes slip_dashpot = load(slips->dashpot);
+    const Tangent tangent =
+        slide<kind>(law, slip_dashpot, stretch, velocity, mean_slip, dt * half, impulse_along_before, yield, dt);
     const Lanes tangential = only(touch, -dt * tangent.force);
     store(only(touch, tangent.stretch), slips->stretch);
     store(tangential, slips->impulse);
-    const Lanes release = only(ended, 0.5 * law.tangential_stiffness * stretch * stretch);
-    rows_of(normal_loss, only(touch, tangent.slip_loss), only(touch, tangent.dashpot_loss), release, row);
+    Choice lasting = touch;
+    Lanes release{};
+    if constexpr (kind.verlet) {
+      lasting = touch & alive;
+      slip = mean_slip;
+      slides = tangent.slides;
+      tangential_kick = choose(begun, tangential, impulse_along_before);
+      sticking_dashpot = only(begun & ~slides, -dt * slip_dashpot * velocity);
+      kept = choose(begun, tangent.stretch, stretch);
+    } else {
+      release = only(ended, 0.5 * law.tangential_stiffness * stretch * stretch);
+    }
+    rows_of(normal_loss, only(lasting, tangent.slip_loss), only(lasting, tangent.dashpot_loss), release, row);
     for (const Half& lost : row) sums.lost += lost;
     px -= tangential * ny;
     py += tangential * nx;
@@ -185,6 +273,28 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairB
   } else {
     for (int k = 0; k < 8; ++k) sums.lost[0] += normal_loss[k];
     rows_of(px, py, zero, zero, row);
+  }
+  if constexpr (kind.verlet) {
+    if (changes) [[unlikely]] {
+      const TouchLanes instants{nx,
+                                ny,
+                                distance,
+                                mean_closing,
+                                choose(begun, deep, deep_before),
+                                choose(begun, elastic, elastic_before) * dt,
+                                choose(begun, impulse, impulse_before),
+                                dashpot,
+                                mass,
+                                law.least,
+                                slip,
+                                tangential_kick,
+                                sticking_dashpot,
+                                0.5 * law.tangential_stiffness * kept * kept,
+                                begun,
+                                ended,
+                                slides};
+      count_instants(*numbers.system, group, instants, kind.hertz);
+    }
   }
   if (numbers.record) {
     store(overlap, records->overlap);
@@ -196,7 +306,7 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairB
   const HalfChoice turned = {0, 0, 0, minus};
   for (int k = 0; k < 8; ++k) {
     subtract(&pushes[group.i[k]], row[k]);
-    if constexpr (friction) row[k] = reinterpret_cast<Half>(reinterpret_cast<HalfChoice>(row[k]) ^ turned);
+    if constexpr (kind.friction) row[k] = reinterpret_cast<Half>(reinterpret_cast<HalfChoice>(row[k]) ^ turned);
     add(&pushes[group.j[k]], row[k]);
   }
 }
@@ -204,17 +314,22 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairB
 template <PairLoopKind kind>
 EQUIDEM_ALWAYS_INLINE void collide_all(GrainSystem& system) {
   NearPairs& near = system.near;
-  const bool verlet = system.options.scheme == GrainOptions::Scheme::velocity_verlet;
-  const LoopNumbers numbers{near.law, 1 / near.law.tangential_stiffness, system.dt(), system.step - (verlet ? 1 : 0),
-                            near.record};
+  const bool verlet = system.options.verlet();
+  const LoopNumbers numbers{near.law,
+                            1 / near.law.tangential_stiffness,
+                            system.dt(),
+                            system.step - (verlet ? 1 : 0),
+                            system.options.scheme == GrainOptions::Scheme::corrected_verlet,
+                            near.record,
+                            &system};
   near.records.resize(near.record ? near.groups.size() : 0);
   Sums sums;
   const PairBody* bodies = near.bodies.data();
   Push* pushes = system.pushes.data();
   for (std::size_t g = 0; g < near.groups.size(); ++g) {
-    collide_group<kind>(
-        numbers, bodies, pushes, near.groups[g], kind.slip == Slip::none ? nullptr : near.slips.data() + g,
-        kind.equal ? nullptr : near.laws.data() + g, near.record ? near.records.data() + g : nullptr, sums);
+    collide_group<kind>(numbers, bodies, pushes, near.groups[g], kind.friction ? near.slips.data() + g : nullptr,
+                        kind.equal ? nullptr : near.laws.data() + g, near.record ? near.records.data() + g : nullptr,
+                        sums);
   }
   system.lost.lost_dashpot += sums.lost[0];
   system.lost.lost_slip += sums.lost[1];
@@ -259,10 +374,12 @@ NearPairs::Loop choose() {
 
 template <bool hertz, bool equal>
 NearPairs::Loop choose(const GrainSystem& system) {
-  if (!system.friction) return choose<PairLoopKind{hertz, Slip::none, equal}>();
-  const bool explicitly = system.options.scheme == GrainOptions::Scheme::velocity_verlet;
-  return explicitly ? choose<PairLoopKind{hertz, Slip::explicitly, equal}>()
-                    : choose<PairLoopKind{hertz, Slip::midpoint, equal}>();
+  if (system.options.verlet()) {
+    return system.friction ? choose<PairLoopKind{hertz, true, equal, true}>()
+                           : choose<PairLoopKind{hertz, false, equal, true}>();
+  }
+  return system.friction ? choose<PairLoopKind{hertz, true, equal, false}>()
+                         : choose<PairLoopKind{hertz, false, equal, false}>();
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ double move(GrainSystem& system) {
 }  // namespace
 
 void move_pair_bodies(GrainSystem& system) {
-  const bool turning = system.friction || !system.bonds.empty();
+  const bool turning = system.friction || !system.bonds.empty() || !system.parts.empty();
   system.longest_way = turning ? move<true>(system) : move<false>(system);
 }
 

@@ -39,38 +39,29 @@ Pose pose_at(const GrainSystem& system, std::int32_t body, std::int32_t part_ind
   return {part, motion.position + offset_of(part, axis), axis};
 }
 
-PartPair parts_of_candidate(const GrainSystem& system, std::size_t c) {
-  return system.parts.empty() ? PartPair{} : system.part_pairs[c];
-}
-
 }  // namespace
 
-PartWay way_of_parts(const GrainSystem& system, std::size_t c) {
-  const Candidate& candidate = system.candidates[c];
-  const PartPair parts = parts_of_candidate(system, c);
+PartWay way_of_parts(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
   const Pose start_i = pose_at(system, candidate.i, parts.i, 0), end_i = pose_at(system, candidate.i, parts.i, 1);
   if (candidate.j < 0) return {start_i.centre, end_i.centre, start_i.part.b, 0};
   const Pose start_j = pose_at(system, candidate.j, parts.j, 0), end_j = pose_at(system, candidate.j, parts.j, 1);
   return {start_j.centre - start_i.centre, end_j.centre - end_i.centre, start_i.part.b, start_j.part.b};
 }
 
-bool has_ellipse(const GrainSystem& system, std::size_t c) {
+bool has_ellipse(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
   if (system.parts.empty()) return false;
-  const PartPair& parts = system.part_pairs[c];
   if (!system.parts[static_cast<std::size_t>(parts.i)].is_round()) return true;
-  return system.candidates[c].j >= 0 && !system.parts[static_cast<std::size_t>(parts.j)].is_round();
+  return candidate.j >= 0 && !system.parts[static_cast<std::size_t>(parts.j)].is_round();
 }
 
-const char* crossing_of_ellipses(const GrainSystem& system, std::size_t c) {
-  const Candidate& candidate = system.candidates[c];
-  const PartPair& parts = system.part_pairs[c];
+const char* crossing_of_ellipses(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
   const auto contact_at = [&](double share) {
     const Pose i = pose_at(system, candidate.i, parts.i, share), j = pose_at(system, candidate.j, parts.j, share);
     return contact_of_ellipses(i.ellipse(), j.ellipse(), j.centre - i.centre);
   };
   const Pose i = pose_at(system, candidate.i, parts.i, 1), j = pose_at(system, candidate.j, parts.j, 1);
   const Vec2 branch = j.centre - i.centre;
-  const PartWay way = way_of_parts(system, c);
+  const PartWay way = way_of_parts(system, candidate, parts);
   const bool inside = holds(i.part, i.axis, branch) || holds(j.part, j.axis, branch);
   if (inside && norm(branch) < norm(way.before)) return "be pressed into";
   const EllipseContact before = contact_at(0), after = contact_at(1);
@@ -95,7 +86,7 @@ void refuse_bowls(const GrainSystem& system) {
   if (system.parts.empty()) return;
   for (std::size_t c = 0; c < system.candidates.size(); ++c) {
     const Candidate& candidate = system.candidates[c];
-    if (candidate.j >= 0 || !has_ellipse(system, c)) continue;
+    if (candidate.j >= 0 || !has_ellipse(system, candidate, system.part_pairs[c])) continue;
     const auto i = static_cast<std::size_t>(candidate.i), w = static_cast<std::size_t>(~candidate.j);
     const GrainWall& wall = system.scene.walls[w];
     if (wall.shape != GrainWall::Shape::arc) continue;

@@ -13,16 +13,16 @@ struct PartWay {
   double radius_i = 0, radius_j = 0;  ///< of the circles that they hold, m
 };
 
-PartWay way_of_parts(const GrainSystem& system, std::size_t candidate);
+PartWay way_of_parts(const GrainSystem& system, const Candidate& candidate, const PartPair& parts);
 
 /// Whether a part of a pair is an ellipse.
-bool has_ellipse(const GrainSystem& system, std::size_t candidate);
+bool has_ellipse(const GrainSystem& system, const Candidate& candidate, const PartPair& parts);
 
 /// What two ellipses would do in the step that they must not: one comes nearer with its centre in the other, the normal of an overlap turns
 /// round, an overlap of more than half the smaller short half-axis lies unseen between the two instants, or one of more than all of it comes
 /// from none.
 /// \return nullptr: nothing
-const char* crossing_of_ellipses(const GrainSystem& system, std::size_t candidate);
+const char* crossing_of_ellipses(const GrainSystem& system, const Candidate& candidate, const PartPair& parts);
 
 /// \throws Error (computation_failed) where the step leads an ellipse to the inside of an arc, within reach of it
 void refuse_bowls(const GrainSystem& system);

@@ -10,20 +10,6 @@
 namespace equidem {
 namespace {
 
-/// As long as the pair was not touching a step ago nothing of the past may enter: lists made anew would not know it.
-EllipseContact exact_contact(const Candidate& candidate, PartPair& pair, const Ellipse& i, const Ellipse& j,
-                             Vec2 branch) {
-  constexpr WhenApart quick = WhenApart::only_that_it_is;
-  if (candidate.touching) return contact_of_ellipses(i, j, branch, candidate.normal, quick);
-  if (pair.apart != Vec2{}) {
-    const double gap = separation_along(i, j, branch, pair.apart);
-    if (gap > 0) return {EllipseState::apart, gap, pair.apart, {}, {}};
-    const EllipseContact contact = contact_of_ellipses(i, j, branch, pair.apart, quick);
-    if (contact.gap > 0) return contact;
-  }
-  return contact_of_ellipses(i, j, branch, {}, quick);
-}
-
 PartMeeting meeting_of_grain_parts(const GrainSystem& system, const Candidate& candidate, PartPair& pair) {
   const auto i = static_cast<std::size_t>(candidate.i), j = static_cast<std::size_t>(candidate.j);
   const GrainPart& part_i = system.parts[static_cast<std::size_t>(pair.i)];
@@ -49,7 +35,8 @@ PartMeeting meeting_of_grain_parts(const GrainSystem& system, const Candidate& c
     if (!contact.is_contact()) return {};
     return {-contact.gap, contact.normal, to_i + contact.arm_i, to_j + contact.arm_j, 0, 0};
   }
-  const EllipseContact contact = exact_contact(candidate, pair, e_i, e_j, branch);
+  const EllipseContact contact =
+      contact_of_parts(e_i, e_j, branch, candidate.touching, candidate.touching ? candidate.normal : pair.apart);
   if (contact.gap > 0) {
     pair.apart = contact.normal;
     return {};
@@ -151,6 +138,19 @@ EllipseContact contact_by_enlarged_ellipse(const Ellipse& i, const Ellipse& j, V
   result.arm_i = contact.surface_point;
   result.arm_j = contact.surface_point - branch;
   return result;
+}
+
+/// As long as the pair was not touching a step ago nothing of the past may enter: lists made anew would not know it.
+EllipseContact contact_of_parts(const Ellipse& i, const Ellipse& j, Vec2 branch, bool touching, Vec2 normal) {
+  constexpr WhenApart quick = WhenApart::only_that_it_is;
+  if (touching) return contact_of_ellipses(i, j, branch, normal, quick);
+  if (normal != Vec2{}) {
+    const double gap = separation_along(i, j, branch, normal);
+    if (gap > 0) return {EllipseState::apart, gap, normal, {}, {}};
+    const EllipseContact contact = contact_of_ellipses(i, j, branch, normal, quick);
+    if (contact.gap > 0) return contact;
+  }
+  return contact_of_ellipses(i, j, branch, {}, quick);
 }
 
 PartMeeting meeting_of_parts(const GrainSystem& system, const Candidate& candidate, PartPair& pair) {

@@ -22,6 +22,11 @@ struct PartMeeting {
 ///        holds, where it was touching, and on nothing else of the past.
 PartMeeting meeting_of_parts(const GrainSystem& system, const Candidate& candidate, PartPair& pair);
 
+/// The exact contact of two parts of which one is an ellipse.
+/// \param normal of the last step where it was touching, else a direction along which they were apart, or {}: saves time and changes nothing
+/// \return where they are apart gap > 0 alone and a normal along which they are
+EllipseContact contact_of_parts(const Ellipse& i, const Ellipse& j, Vec2 branch, bool touching, Vec2 normal);
+
 /// The overlap of any candidate, parts or not, > 0 where it touches.
 double overlap_of(const GrainSystem& system, std::size_t candidate);
 

@@ -13,27 +13,20 @@ void place_parts(GrainSystem& system) {
   for (const Grain& grain : system.scene.grains) {
     system.first_part.push_back(static_cast<std::int32_t>(system.parts.size()));
     const std::vector<GrainPart> parts = parts_of(grain, system.scene.clumps);
+    const auto body = static_cast<std::int32_t>(system.first_part.size() - 1);
     system.parts.insert(system.parts.end(), parts.begin(), parts.end());
+    system.body_of_part.insert(system.body_of_part.end(), parts.size(), body);
+    if (grain.shape() != GrainShape::disc) system.shaped.push_back(body);
   }
   system.first_part.push_back(static_cast<std::int32_t>(system.parts.size()));
-  system.axes.resize(system.motions.size());
+  system.axes.resize(system.motions.size(), {1, 0});
   turn_axes(system);
-}
-
-void turn_axes(GrainSystem& system) {
-  for (std::size_t i = 0; i < system.axes.size(); ++i) {
-    if (system.scene.grains[i].shape() == GrainShape::disc) {
-      system.axes[i] = {1, 0};
-    } else {
-      system.axes[i] = axis_at(system.motions[i].angle);
-    }
-  }
 }
 
 double longest_turn(const GrainSystem& system) {
   double longest = 0;
-  for (std::size_t i = 0; i < system.axes.size(); ++i) {
-    if (system.scene.grains[i].shape() == GrainShape::disc) continue;
+  for (const std::int32_t body : system.shaped) {
+    const auto i = static_cast<std::size_t>(body);
     const double way = std::abs(system.next[i].angle - system.motions[i].angle) * system.bodies[i].radius;
     if (way > longest || way != way) longest = way;
     if (way != way) break;

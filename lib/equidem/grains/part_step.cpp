@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "equidem/grains/force_step.hpp"
+#include "equidem/grains/move_bodies.hpp"
 #include "equidem/grains/part_meeting.hpp"
+#include "equidem/grains/verlet_contact.hpp"
 
 namespace equidem {
 namespace {
@@ -80,24 +82,45 @@ struct Contact {
   return dot(gain, contact.tangent()) - contact.candidate.tangential_impulse / mass;
 }
 
+[[gnu::always_inline]] inline Sliding sliding_of(const Candidate& candidate, const PartPair& pair,
+                                                 const Contact& contact) {
+  Sliding law = candidate.sliding;
+  if (pair.tangential_damping > 0) law.dashpot = pair.tangential_damping * std::sqrt(tangential_mass(contact, 1));
+  return law;
+}
+
 /// Tangential impulse on j over the step, as of discs (force_step.cpp).
 [[gnu::always_inline]] inline double slide(GrainSystem& system, Candidate& candidate, const PartPair& pair,
                                            const Contact& contact, double velocity, double normal_force) {
   const double dt = system.dt();
-  Sliding law = candidate.sliding;
-  if (pair.tangential_damping > 0) law.dashpot = pair.tangential_damping * std::sqrt(tangential_mass(contact, 1));
   const double mass = tangential_mass(contact, 0);
   const double gain = gain_of_slip(system, contact, mass);
-  SlidingStep step;
-  if (system.options.scheme == GrainOptions::Scheme::velocity_verlet) {
-    step = sliding_step(law, candidate.stretch, velocity, normal_force, dt, {0.5 * dt / mass, 0.5 * gain});
-  } else {
-    step = sliding_step_midpoint(law, candidate.stretch, velocity + 0.5 * gain, mass, normal_force, dt);
-  }
+  const SlidingStep step = sliding_step_midpoint(sliding_of(candidate, pair, contact), candidate.stretch,
+                                                 velocity + 0.5 * gain, mass, normal_force, dt);
   candidate.stretch = step.stretch;
   system.lost.lost_slip += step.slip_loss;
   system.lost.lost_tangential_dashpot += step.dashpot_loss;
   return step.force * dt;
+}
+
+TouchPlace place_before(const Candidate& candidate, const PartPair& pair) {
+  return {candidate.overlap, candidate.normal, pair.arm_i, pair.arm_j};
+}
+
+/// By the places at both ends of the drift.
+ContactDrift drift_of(const GrainSystem& system, const Candidate& candidate, const TouchPlace& now,
+                      const TouchPlace& before) {
+  const auto at = [&](std::int32_t body, Vec2 arm) {
+    const GrainMotion& motion = system.motions[static_cast<std::size_t>(body)];
+    return motion.velocity + motion.spin * perpendicular(arm);
+  };
+  const auto relative = [&](const TouchPlace& place) {
+    return (candidate.j >= 0 ? at(candidate.j, place.arm_j) : passed_velocity(system, candidate)) -
+           at(candidate.i, place.arm_i);
+  };
+  const Vec2 here = relative(now), there = relative(before);
+  return {-0.5 * (dot(here, now.normal) + dot(there, before.normal)),
+          0.5 * (dot(here, perpendicular(now.normal)) + dot(there, perpendicular(before.normal))), before.overlap};
 }
 
 /// Give an impulse to j, its opposite to i; walls take it and do not move.
@@ -109,7 +132,7 @@ struct Contact {
     Push& on_j = system.pushes[contact.j()];
     on_j.impulse += impulse;
     on_j.torque += cross(contact.meeting.arm_j, impulse);
-  } else {
+  } else if (!system.options.verlet()) {
     system.lost.work_of_walls -=
         dot(impulse, system.walls[static_cast<std::size_t>(~contact.candidate.j)].acting_velocity);
   }
@@ -117,9 +140,18 @@ struct Contact {
 
 template <NormalLaw law, bool friction>
 void collide_parts(GrainSystem& system) {
+  load_part_bodies(system);
   if constexpr (friction) system.pushes_before.swap(system.pushes);
   if (friction || !system.free_flight) std::fill(system.pushes.begin(), system.pushes.end(), Push{});
   system.free_flight = true;
+  if (system.near.active) system.near.loop(system);
+  for (NearParts::List& list : system.near_parts.lists) {
+    if (list.count > 0) list.loop(system, list);
+  }
+  if (system.near.active && friction && system.options.verlet()) {
+    for (std::size_t i = 0; i < system.bodies.size(); ++i) turn_rims(system.pushes[i], system.bodies[i]);
+  }
+  const bool verlet = system.options.verlet();
   const double dt = system.dt();
   const double length = system.length;
   const double per_length = 1 / length, per_speed = dt / length, unit_speed = length / dt;
@@ -128,7 +160,13 @@ void collide_parts(GrainSystem& system) {
     PartPair& pair = system.part_pairs[c];
     const PartMeeting meeting = meeting_of_parts(system, candidate, pair);
     if (!(meeting.overlap > 0)) {
-      if (candidate.touching) let_go(system, candidate);
+      if (!candidate.touching) continue;
+      if (verlet) {
+        const TouchPlace place = place_before(candidate, pair);
+        end_contact<law>(system, candidate, place, drift_of(system, candidate, place, place));
+      } else {
+        let_go(system, candidate);
+      }
       continue;
     }
     system.free_flight = false;
@@ -136,6 +174,18 @@ void collide_parts(GrainSystem& system) {
     ++system.counters.evaluations;
     const Contact contact(system, candidate, meeting);
     const Vec2 relative = relative_velocity(system, contact);
+    if (verlet) {
+      const TouchPlace place{meeting.overlap, meeting.normal, meeting.arm_i, meeting.arm_j};
+      const ContactDrift drift =
+          drift_of(system, candidate, place, candidate.steps > 0 ? place_before(candidate, pair) : place);
+      pair.arm_i = meeting.arm_i;
+      pair.arm_j = meeting.arm_j;
+      system.deepest = std::max(system.deepest, meeting.overlap);
+      push(system, contact,
+           step_contact<law, friction>(system, candidate, place, -dot(relative, meeting.normal),
+                                       dot(relative, contact.tangent()), drift, sliding_of(candidate, pair, contact)));
+      continue;
+    }
     const double closing = -dot(relative, meeting.normal);
     const double depth = meeting.overlap * per_length, sigma = closing * per_speed;
     const auto normal_step = law == NormalLaw::hertz_dashpot ? hertz_dashpot_step : linear_dashpot_step;

@@ -169,9 +169,9 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
   check(options);
   const double step = chosen_step(scene, options);
   tie(scene, options.bond_share, step);
-  // Friction of the midpoint rule creeps under a steady force; that of velocity_verlet comes to rest.
+  // Friction of the midpoint rule creeps under a steady force; that of the Verlet schemes comes to rest.
   GrainSimulation simulation(scene, {.law = NormalLaw::linear_dashpot,
-                                     .scheme = GrainOptions::Scheme::velocity_verlet,
+                                     .scheme = GrainOptions::Scheme::corrected_verlet,
                                      .time_step = step,
                                      .reference_length = 0,
                                      .margin = 0});

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// One contact in a step of the Verlet schemes: what it pushes, and what it took in the drift before.
+///
+/// The kick J of an instant works half with the velocity of the drift before it and half with that of the drift after it: in a drift a
+/// contact takes 0.5 (J_before + J_now) times its speed, less what its springs have stored. Nothing is to be predicted.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/grains/grain_system.hpp"
+
+namespace equidem {
+
+/// Where two bodies touch. The arms lead from the centres of mass to the contact point; that of a wall is {}.
+struct TouchPlace {
+  double overlap = 0;
+  Vec2 normal, arm_i, arm_j;
+};
+
+/// How a contact moved in the drift before the instant, means over it, and its overlap at the start of it.
+struct ContactDrift {
+  double closing = 0, slip = 0;  ///< m/s
+  double overlap = 0;            ///< m
+};
+
+/// Impulse of the spring in a whole kick.
+template <NormalLaw law>
+[[gnu::always_inline]] inline double spring_impulse(const GrainSystem& system, const Candidate& candidate,
+                                                    double overlap) {
+  const double depth = std::max(overlap, 0.0) / system.length;
+  const double spring = candidate.a * depth * (law == NormalLaw::hertz_dashpot ? std::sqrt(depth) : 1.0);
+  return spring * candidate.reduced_mass * (system.length / system.dt());
+}
+
+inline Vec2 impulse_of(const Candidate& candidate) {
+  return candidate.impulse * candidate.normal + candidate.tangential_impulse * perpendicular(candidate.normal);
+}
+
+inline Vec2 passed_velocity(const GrainSystem& system, const Candidate& candidate) {
+  return candidate.j >= 0 ? Vec2{} : system.walls[static_cast<std::size_t>(~candidate.j)].passed_velocity;
+}
+
+/// The end of a contact; it is let go without a further loss.
+template <NormalLaw law>
+void end_contact(GrainSystem& system, Candidate& candidate, const TouchPlace& place, const ContactDrift& drift) {
+  TouchInstant end;
+  end.i = candidate.i;
+  end.j = candidate.j;
+  end.normal = place.normal;
+  end.arm_i = place.arm_i;
+  end.arm_j = place.arm_j;
+  end.closing = drift.closing;
+  end.slip = drift.slip;
+  end.part = part_of_drift(drift.overlap, -drift.closing, system.dt());
+  end.spring = spring_impulse<law>(system, candidate, drift.overlap);
+  end.dashpot = candidate.impulse - end.spring;
+  end.tangential = candidate.tangential_impulse;
+  end.stored = 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
+  end.pulls = candidate.attraction;
+  system.lost.work_of_walls -= 0.5 * dot(impulse_of(candidate), passed_velocity(system, candidate));
+  end_within_drift(system, end);
+  candidate.stretch = 0;
+  let_go(system, candidate);
+}
+
+/// A step of a contact: candidate remembers it.
+/// \param closing, slip that the law sees
+/// \return impulse on j
+template <NormalLaw law, bool friction>
+[[gnu::always_inline]] inline Vec2 step_contact(GrainSystem& system, Candidate& candidate, const TouchPlace& now,
+                                                double closing, double slip, const ContactDrift& drift,
+                                                const Sliding& sliding) {
+  const double dt = system.dt();
+  const bool begins = !candidate.touching;
+  const double depth = now.overlap / system.length, sigma = closing * dt / system.length;
+  const auto normal_step = law == NormalLaw::hertz_dashpot ? hertz_dashpot_step : linear_dashpot_step;
+  const ContactStep step = normal_step(depth, sigma, candidate.a, candidate.strength, candidate.attraction);
+  const double impulse = -step.change * candidate.reduced_mass * (system.length / dt);
+  const double spring = spring_impulse<law>(system, candidate, now.overlap);
+  const Vec2 pushed_before = begins ? Vec2{} : impulse_of(candidate);
+
+  const double part = begins ? part_of_drift(now.overlap, drift.closing, dt) : 1;
+  double tangential = 0;
+  SlidingStep slide;
+  const double stretch_before = candidate.stretch;
+  if constexpr (friction) {
+    if (sliding.coefficient > 0) {
+      if (begins && system.options.scheme == GrainOptions::Scheme::corrected_verlet) {
+        candidate.stretch -= (1 - part) * slip * dt;
+      }
+      slide = sliding_step(sliding, candidate.stretch, slip, std::max(impulse, 0.0) / dt, dt);
+      tangential = slide.force * dt;
+      candidate.stretch = slide.stretch;
+    }
+  }
+  if (begins) {
+    TouchInstant begin;
+    begin.i = candidate.i;
+    begin.j = candidate.j;
+    begin.normal = now.normal;
+    begin.arm_i = now.arm_i;
+    begin.arm_j = now.arm_j;
+    begin.closing = drift.closing;
+    begin.slip = drift.slip;
+    begin.part = part;
+    begin.spring = spring;
+    begin.dashpot = impulse - spring;
+    begin.decay = law == NormalLaw::hertz_dashpot ? candidate.strength * std::sqrt(candidate.a * std::sqrt(depth))
+                                                  : 2 * candidate.strength * std::sqrt(candidate.a);
+    begin.tangential = tangential;
+    begin.tangential_dashpot = slide.slides ? 0 : -sliding.dashpot * slip * dt;
+    begin.stored = 0.5 * sliding.stiffness * candidate.stretch * candidate.stretch;
+    begin.slides = slide.slides;
+    begin_within_drift(system, begin);
+  } else {
+    const double spring_before = spring_impulse<law>(system, candidate, drift.overlap);
+    system.lost.lost_dashpot += 0.5 * drift.closing * ((candidate.impulse - spring_before) + (impulse - spring));
+    if constexpr (friction) {
+      const double released =
+          0.5 * sliding.stiffness * (stretch_before - candidate.stretch) * (stretch_before + candidate.stretch);
+      const double taken = released - 0.5 * (candidate.tangential_impulse + tangential) * drift.slip;
+      if (slide.slides) {
+        const double drag = sliding.cap == FrictionCap::spring_alone ? sliding.dashpot * slip * drift.slip * dt : 0;
+        system.lost.lost_slip += taken - drag;
+        system.lost.lost_tangential_dashpot += drag;
+      } else if (sliding.dashpot > 0) {
+        system.lost.lost_tangential_dashpot += taken;
+      }
+    }
+  }
+  candidate.touching = true;
+  ++candidate.steps;
+  candidate.overlap = now.overlap;
+  candidate.closing = closing;
+  candidate.normal = now.normal;
+  candidate.impulse = impulse;
+  candidate.tangential_impulse = tangential;
+  const Vec2 on_j = impulse * now.normal + tangential * perpendicular(now.normal);
+  system.lost.work_of_walls -= 0.5 * dot(pushed_before + on_j, passed_velocity(system, candidate));
+  return on_j;
+}
+
+}  // namespace equidem

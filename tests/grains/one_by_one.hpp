@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Contacts computed one by one, to compare with those computed several at a time.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "grains/scenes.hpp"
+
+namespace equidem::test {
+
+/// The same scene with a kind that no body is of, and whose contacts slide always: with it contacts are computed one by one.
+inline GrainScene one_by_one(GrainScene scene) {
+  PairProperties sliding = scene.pairs[0];
+  sliding.friction = 0.1;
+  sliding.tangential_ratio = 0;
+  sliding.tangential_damping = 0;
+  const int kinds = scene.kinds;
+  std::vector<PairProperties> pairs;
+  for (int a = 0; a <= kinds; ++a) {
+    for (int b = 0; b <= kinds; ++b) pairs.push_back(a < kinds && b < kinds ? scene.between(a, b) : sliding);
+  }
+  scene.kinds = kinds + 1;
+  scene.pairs = pairs;
+  return scene;
+}
+
+inline double distance_of_motions(const GrainSimulation& a, const GrainSimulation& b) {
+  const std::vector<Grain> here = a.grains(), there = b.grains();
+  double largest = 0;
+  for (std::size_t k = 0; k < std::min(here.size(), there.size()); ++k) {
+    largest = std::max({largest, norm(here[k].position - there[k].position), norm(here[k].velocity - there[k].velocity),
+                        std::abs(here[k].spin - there[k].spin), std::abs(here[k].angle - there[k].angle)});
+  }
+  return largest;
+}
+
+}  // namespace equidem::test
