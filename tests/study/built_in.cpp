@@ -29,7 +29,7 @@ StudyResult values_alone(const Study& study) {
 }  // namespace
 
 TEST_CASE("observed_orders_are_those_of_theory") {
-  const std::string name = GENERATE("abe_lattice", "integrators", "ellipse_contact", "collision_laws");
+  const std::string name = GENERATE("abe_lattice", "integrators", "ellipse_contact", "collision_laws", "solvers");
   const Study study = built_in_study(name, true);
   const StudyResult result = values_alone(study);
   std::string told;

@@ -56,6 +56,18 @@ TEST_CASE("errors_refer_to_the_truth_that_is_asked_for") {
   CHECK(result.rows[0].errors[0] == Approx(1 - std::pow(2.0, -7 * order)));
 }
 
+TEST_CASE("a_resolution_that_only_measuring_tells_makes_an_order") {
+  Given given = converging(2, Truth::known);
+  given.study.quantities.push_back({.name = "reached", .fact = true, .resolution = true});
+  for (std::size_t k = 0; k < given.study.tasks.size(); ++k) {
+    given.samples.tasks[k].values.push_back(given.study.tasks[k].setting.resolution);
+    given.study.tasks[k].setting.resolution = NAN;
+  }
+  const StudyResult result = evaluate(given.study, given.samples);
+  REQUIRE(result.curves.size() == 1);
+  CHECK(result.curves[0].order->order == Approx(2).epsilon(1e-6));
+}
+
 TEST_CASE("an_order_that_is_not_that_of_theory_is_told") {
   Given given = converging(1, Truth::known);
   given.study.orders = {{.order = 2}};

@@ -27,7 +27,12 @@ JsonObject json_of(const AccuracySetting& setting) {
 }  // namespace
 
 void add_accuracy_option(CLI::App& command, std::optional<double>& accuracy, const std::string& what) {
-  command.add_option("--accuracy", accuracy, what)->check(CLI::Range(1e-15, 0.999))->type_name("X");
+  const auto wrong = [](const std::string& given) -> std::string {
+    double value = 0;
+    const bool right = CLI::detail::lexical_cast(given, value) && value >= 1e-15 && value < 1;
+    return right ? "" : format("'{}' is not a number of at least 1e-15 and below 1, such as 0.01", given);
+  };
+  command.add_option("--accuracy", accuracy, what)->check(wrong)->type_name("X");
 }
 
 void refuse_dry_run_with_accuracy(const CommonOptions& options, bool accuracy) {
@@ -41,6 +46,9 @@ std::string describe_accuracy(const ReachedAccuracy& reached) {
   std::string text = report_line("accuracy", format("asked {:.3g}, estimated to be reached {:.2g}: {}",
                                                     reached.requested, reached.estimated, reached.of));
   if (!reached.knob.empty()) text += report_line("", format("chosen: {}, {}", reached.knob, text_of(reached.value)));
+  if (!reached.pilots.empty())
+    text += report_line("", format("to choose it took {}: {:.2g} times the work of what was chosen, beside it",
+                                   reached.pilots, reached.pilots_factor));
   text += report_line(
       "", more.note.empty()
               ? format("ten times more accuracy ({:.3g}): about {:.3g} times the time, {}; {}", reached.requested / 10,
@@ -55,7 +63,8 @@ void add_accuracy(JsonObject& object, const ReachedAccuracy& reached) {
   ten.set("time_factor", more.time_factor).set("seconds", more.seconds).set("value", json_of(more.value));
   if (!more.note.empty()) ten.set("note", more.note);
   accuracy.set("requested", reached.requested).set("estimated", reached.estimated).set("of", reached.of);
-  accuracy.set("knob", reached.knob).set("value", json_of(reached.value)).set("ten_times_more", ten);
+  accuracy.set("knob", reached.knob).set("value", json_of(reached.value));
+  accuracy.set("pilots", reached.pilots).set("pilots_factor", reached.pilots_factor).set("ten_times_more", ten);
   object.set("accuracy", accuracy);
 }
 

@@ -20,9 +20,11 @@ using AccuracySetting = std::vector<std::pair<std::string, double>>;
 struct ReachedAccuracy {
   double requested = 0;
   double estimated = 0;
-  std::string of;         ///< what the numbers are errors of, and from what
-  std::string knob;       ///< what was chosen, in words; empty: there was nothing to choose
-  AccuracySetting value;  ///< what it was set to
+  std::string of;            ///< what the numbers are errors of, and from what
+  std::string knob;          ///< what was chosen, in words; empty: there was nothing to choose
+  AccuracySetting value;     ///< what it was set to
+  std::string pilots;        ///< what was computed to choose it, in words; empty: nothing
+  double pilots_factor = 0;  ///< their work, times that of what was chosen
   /// What a tenth of the error asked for would take.
   struct TenTimesMore {
     double time_factor = 1;  ///< times the time of what was chosen
@@ -39,7 +41,7 @@ void add_accuracy_option(CLI::App& command, std::optional<double>& accuracy, con
 void refuse_dry_run_with_accuracy(const CommonOptions& options, bool accuracy);
 
 std::string describe_accuracy(const ReachedAccuracy& reached);
-/// accuracy: {requested, estimated, of, knob, value, ten_times_more: {time_factor, seconds, value, note}}.
+/// accuracy: {requested, estimated, of, knob, value, pilots, pilots_factor, ten_times_more: {time_factor, seconds, value, note}}.
 void add_accuracy(JsonObject& object, const ReachedAccuracy& reached);
 
 }  // namespace equidem

@@ -39,7 +39,15 @@ ReachedAccuracy reached_by(const AccurateEnsemble& sampled, const EnsembleAccura
           sampled.chosen.samples, sampled.chosen.discs, 100 * wanted.confidence),
       .knob = "size and number of cells",
       .value = setting_of(sampled.chosen),
+      .pilots = {},
       .ten_times_more = {}};
+  for (const std::int64_t discs : sampled.plan.discs) {
+    if (discs == sampled.chosen.discs) continue;
+    const auto cells = std::count_if(sampled.samples.begin(), sampled.samples.end(),
+                                     [&](const EnsembleSample& sample) { return sample.discs == discs; });
+    reached.pilots += format("{}{} cells of {} discs", reached.pilots.empty() ? "" : ", ", cells, discs);
+  }
+  reached.pilots_factor = work_of(sampled) / sampled.chosen.work() - 1;
   auto& more = reached.ten_times_more;
   more.time_factor = sampled.ten_times_more.work() / sampled.chosen.work();
   more.seconds = seconds * sampled.ten_times_more.work() / work_of(sampled);

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "equidem/core/error.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/study/refinement.hpp"
 
 namespace equidem {
 namespace {
@@ -18,60 +18,67 @@ std::int64_t one_beyond_a_multiple_of_four(double n) {
   return 4 * std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil((n - 1) / 4 - 1e-9))) + 1;
 }
 
-struct Block {
-  std::int64_t rows = 0, columns = 0;
+double aspect_of(const Case& resolved) {
+  return static_cast<double>(resolved.assembly.lattice.columns) / resolved.assembly.lattice.rows;
+}
 
-  [[nodiscard]] std::vector<std::string> keys() const {
-    return {format("assembly.rows={}", rows), format("assembly.columns={}", columns)};
-  }
-  [[nodiscard]] AccuracySetting setting() const {
-    return {{"assembly.rows", static_cast<double>(rows)}, {"assembly.columns", static_cast<double>(columns)}};
-  }
-};
+RefinementOptions block_refinement(double aspect, double accuracy) {
+  return {.accuracy = accuracy,
+          .order = 1,
+          .first = one_beyond_a_multiple_of_four(std::max(9.0, 9 / aspect)),
+          .most = one_beyond_a_multiple_of_four(std::sqrt(most_discs / aspect)) - 4,
+          .unit = "rows",
+          .admissible = [](std::int64_t n) { return one_beyond_a_multiple_of_four(static_cast<double>(n)); }};
+}
+
+std::vector<double> values_of(const TensionResult& result) {
+  return {result.poisson_ratio, std::log(std::abs(result.stiffness_ratio))};
+}
 
 }  // namespace
 
-std::optional<ReachedAccuracy> choose_block(CommonOptions& options, double accuracy) {
-  const Case resolved = read_case(options);
+bool BlockSearch::serves(const Case& resolved) {
   const AssemblyKind kind = resolved.assembly.kind;
-  if (!resolved.test || (kind != AssemblyKind::hexagonal && kind != AssemblyKind::square)) return {};
-  const LatticeOptions& lattice = resolved.assembly.lattice;
-  const double aspect = static_cast<double>(lattice.columns) / lattice.rows;
-  const auto block_of = [&](std::int64_t rows) {
-    return Block{rows, one_beyond_a_multiple_of_four(std::round(aspect * static_cast<double>(rows)))};
-  };
-  double seconds = 0;  // of the last one
-  const auto evaluate = [&](std::int64_t rows) {
-    CommonOptions sized = options;
-    for (const std::string& key : block_of(rows).keys()) sized.set.push_back(key);
-    Stopwatch watch;
-    const Problem problem = build_problem(read_case(sized));
-    const EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, problem.options());
-    const SolvedCase solved = solve_case(problem, solver, problem.load_cases.front());
-    seconds = watch.lap();
-    return std::vector{solved.tension->poisson_ratio, std::log(std::abs(solved.tension->stiffness_ratio))};
-  };
-  const Refinement refined = refine_to(
-      evaluate, {.accuracy = accuracy,
-                 .order = 1,
-                 .first = one_beyond_a_multiple_of_four(std::max(9.0, 9 / aspect)),
-                 .most = one_beyond_a_multiple_of_four(std::sqrt(most_discs / aspect)) - 4,
-                 .admissible = [](std::int64_t n) { return one_beyond_a_multiple_of_four(static_cast<double>(n)); }});
-  const Block chosen = block_of(refined.level);
-  evaluate(refined.level);
-  for (const std::string& key : chosen.keys()) options.set.push_back(key);
-  const Block finer = block_of(one_beyond_a_multiple_of_four(static_cast<double>(refined.level_for(accuracy / 10))));
-  const double factor = std::pow(static_cast<double>(finer.rows) / static_cast<double>(refined.level), work_per_rows);
+  return resolved.test && (kind == AssemblyKind::hexagonal || kind == AssemblyKind::square);
+}
+
+BlockSearch::BlockSearch(const CommonOptions& options, const Case& resolved, double accuracy)
+    : options_(options),
+      accuracy_(accuracy),
+      aspect_(aspect_of(resolved)),
+      of_case_(format("{} x {}", resolved.assembly.lattice.columns, resolved.assembly.lattice.rows)),
+      search_([this](std::int64_t rows) { return solve_pilot(rows); }, block_refinement(aspect_, accuracy)) {}
+
+Case BlockSearch::propose() {
+  proposed_.push_back(search_.propose());
+  return case_of(proposed_.back());
+}
+
+bool BlockSearch::accepts(const TensionResult& result, double seconds) {
+  other_seconds_ += seconds_;
+  seconds_ = seconds;
+  return search_.accepts(proposed_.back(), values_of(result));
+}
+
+ReachedAccuracy BlockSearch::reached() const {
+  const std::int64_t rows = proposed_.back();
+  const Size finer =
+      size_of(one_beyond_a_multiple_of_four(static_cast<double>(search_.level_for(accuracy_ / 10, rows))));
+  const double factor = std::pow(static_cast<double>(finer.rows) / static_cast<double>(rows), work_per_rows);
+  const auto& pilots = search_.pilots();
   ReachedAccuracy reached{
-      .requested = accuracy,
-      .estimated = refined.estimated,
-      .of = format(
-          "nu, and 2G/((1-nu)kN) relative, of this block against the lattice without sides, extrapolated from {} "
-          "blocks of up to {} rows (errors fall as rows^-{:.2f})",
-          refined.levels.size(), *std::max_element(refined.levels.begin(), refined.levels.end()), refined.order),
-      .knob = format("the size of the block, {} x {} in the case", lattice.columns, lattice.rows),
-      .value = chosen.setting(),
-      .ten_times_more = {.time_factor = factor, .seconds = factor * seconds, .value = finer.setting(), .note = {}}};
+      .requested = accuracy_,
+      .estimated = search_.error(rows),
+      .of = format("nu, and 2G/((1-nu)kN) relative, of this block against the lattice without sides, extrapolated "
+                   "(errors fall as rows^-{:.2f})",
+                   search_.order()),
+      .knob = format("the size of the block, {} in the case", of_case_),
+      .value = setting_of(size_of(rows)),
+      .pilots =
+          format("{} of {} to {} rows", counted(std::ssize(pilots) + std::ssize(proposed_) - 1, "block"),
+                 *std::min_element(pilots.begin(), pilots.end()), *std::max_element(pilots.begin(), pilots.end())),
+      .pilots_factor = other_seconds_ / seconds_,
+      .ten_times_more = {.time_factor = factor, .seconds = factor * seconds_, .value = setting_of(finer), .note = {}}};
   if (static_cast<double>(finer.rows) * static_cast<double>(finer.columns) > most_discs) {
     reached.ten_times_more.note = format(
         "{} x {} discs, more than are tried; a periodic cell has no sides: 'equidem homogenize' gives both to "
@@ -79,6 +86,31 @@ std::optional<ReachedAccuracy> choose_block(CommonOptions& options, double accur
         finer.columns, finer.rows);
   }
   return reached;
+}
+
+BlockSearch::Size BlockSearch::size_of(std::int64_t rows) const {
+  return {rows, one_beyond_a_multiple_of_four(std::round(aspect_ * static_cast<double>(rows)))};
+}
+
+Case BlockSearch::case_of(std::int64_t rows) const {
+  const Size size = size_of(rows);
+  CommonOptions sized = options_;
+  sized.set.push_back(format("assembly.rows={}", size.rows));
+  sized.set.push_back(format("assembly.columns={}", size.columns));
+  return read_case(sized);
+}
+
+AccuracySetting BlockSearch::setting_of(const Size& size) {
+  return {{"assembly.rows", static_cast<double>(size.rows)}, {"assembly.columns", static_cast<double>(size.columns)}};
+}
+
+std::vector<double> BlockSearch::solve_pilot(std::int64_t rows) {
+  const Stopwatch watch;
+  const Problem problem = build_problem(case_of(rows));
+  const EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, problem.options());
+  const SolvedCase solved = solve_case(problem, solver, problem.load_cases.front());
+  other_seconds_ += watch.seconds();
+  return values_of(*solved.tension);
 }
 
 ReachedAccuracy solver_accuracy(double accuracy, double error_bound, double condition, double seconds) {
@@ -98,6 +130,8 @@ ReachedAccuracy solver_accuracy(double accuracy, double error_bound, double cond
           "not judged",
       .knob = {},
       .value = {},
+      .pilots = {},
+      .pilots_factor = 0,
       .ten_times_more = {.time_factor = 1, .seconds = seconds, .value = {}, .note = {}}};
   reached.ten_times_more.note = error_bound <= accuracy / 10
                                     ? "nothing: the direct solution has it already"

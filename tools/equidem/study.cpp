@@ -171,7 +171,7 @@ Run declare_study(CLI::App& command) {
       ->type_name("X");
   command
       .add_option("--budget", verb->options.budget,
-                  "seconds after which no further round begins, once there are --rounds of them")
+                  "seconds after which no round begins, once there are --rounds of them")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1e7))
       ->type_name("S");

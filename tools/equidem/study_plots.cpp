@@ -18,10 +18,10 @@ struct Look {
 };
 
 Look look_of(std::size_t k) {
-  constexpr Look looks[] = {{PlotColour::blue, Marker::circle, true},    {PlotColour::vermilion, Marker::square, true},
-                            {PlotColour::green, Marker::triangle, true}, {PlotColour::orange, Marker::diamond, true},
-                            {PlotColour::purple, Marker::circle, false}, {PlotColour::sky_blue, Marker::square, false},
-                            {PlotColour::black, Marker::triangle, false}};
+  constexpr Look looks[] = {{PlotColour::blue, Marker::circle, true},     {PlotColour::vermilion, Marker::square, true},
+                            {PlotColour::green, Marker::triangle, true},  {PlotColour::orange, Marker::diamond, true},
+                            {PlotColour::purple, Marker::circle, false},  {PlotColour::sky_blue, Marker::square, false},
+                            {PlotColour::black, Marker::triangle, false}, {PlotColour::black, Marker::diamond, true}};
   return looks[k % std::size(looks)];
 }
 

@@ -194,7 +194,7 @@ JsonObject study_json(const StudyReport& report, const std::string& text) {
     recommendations.push_back(std::move(one));
   }
   object.set("quantities", quantities).set("settings", rows).set("orders", curves).set("fronts", fronts);
-  object.set("advice", report.result.advice);
+  object.set("advice", report.result.advice).set("notes", report.study.notes);
   if (report.accuracy) object.set("accuracy", *report.accuracy).set("recommendations", recommendations);
   return object;
 }

@@ -16,15 +16,16 @@ namespace equidem {
 namespace {
 
 constexpr std::size_t judged = 3;  // K, G, nu in plane strain
-constexpr int pilot_cells = 16, fewest_cells = 8;
-constexpr std::int64_t pilot_ratio = 4;
+constexpr int small_pilots = 64, large_pilots = 8, fewest_cells = 8;
+constexpr std::int64_t pilot_ratio = 8;  // of the sizes of both
 constexpr double most_cells = 1e9;
 constexpr double aim = 0.98;  // of the accuracy asked for
 
 /// What the mean of cells misses of one quantity, in units of the accuracy's measure.
 struct Miss {
-  double scatter = 0;  ///< standard deviation of a cell of N times sqrt(N)
-  double drift = 0;    ///< a cell of N is off by drift/N
+  double scatter = 0;      ///< standard deviation of a cell of N times sqrt(N)
+  double drift = 0;        ///< a cell of N is off by drift/N
+  double drift_error = 0;  ///< standard error of the drift
 };
 using Misses = std::array<Miss, judged>;
 
@@ -45,6 +46,7 @@ Misses misses_of(const EnsembleStatistics& statistics) {
     misses[q].scatter = wider * d.amplitude * std::pow(n, 0.5 - d.exponent) / scale;
     // The square of a noisy number is too large by its variance.
     misses[q].drift = std::sqrt(std::max(0.0, d.drift * d.drift - d.drift_error * d.drift_error)) / scale;
+    misses[q].drift_error = d.drift_error / scale;
   }
   return misses;
 }
@@ -54,7 +56,8 @@ double doubt(const Misses& misses, double discs, double cells, double accuracy) 
   const auto above = [](double x) { return 0.5 * std::erfc(x / std::sqrt(2.0)); };
   double sum = 0;
   for (const Miss& miss : misses) {
-    const double drift = miss.drift / discs, scatter = miss.scatter / std::sqrt(discs * cells);
+    const double drift = miss.drift / discs;
+    const double scatter = std::hypot(miss.scatter / std::sqrt(discs * cells), miss.drift_error / discs);
     if (scatter > 0)
       sum += above((accuracy - drift) / scatter) + above((accuracy + drift) / scatter);
     else
@@ -67,7 +70,7 @@ double doubt(const Misses& misses, double discs, double cells, double accuracy) 
 double accuracy_of(const Misses& misses, double discs, double cells, double confidence) {
   double low = 0, high = 0;
   for (const Miss& miss : misses)
-    high = std::max(high, miss.drift / discs + 40 * miss.scatter / std::sqrt(discs * cells));
+    high = std::max(high, (miss.drift + 40 * miss.drift_error) / discs + 40 * miss.scatter / std::sqrt(discs * cells));
   while (high - low > 1e-6 * high) {
     const double middle = 0.5 * (low + high);
     (doubt(misses, discs, cells, middle) > 1 - confidence ? low : high) = middle;
@@ -191,8 +194,9 @@ AccurateEnsemble sample_to_accuracy(const CellSampler& sampler, const EnsembleAc
                                     const std::function<void(const std::vector<EnsembleSample>&)>& save) {
   assert(options.accuracy > 0 && options.smallest >= 3);
   Sampling sampling(sampler, options, save);
-  for (const std::int64_t discs : {options.smallest, pilot_ratio * options.smallest})
-    if (!sampling.sample({discs, pilot_cells})) return std::move(sampling.result());
+  for (const EnsembleSetting& pilots :
+       {EnsembleSetting{options.smallest, small_pilots}, EnsembleSetting{pilot_ratio * options.smallest, large_pilots}})
+    if (!sampling.sample(pilots)) return std::move(sampling.result());
   EnsembleSetting setting = cheapest(misses_of(sampling.result().statistics), options, aim * options.accuracy);
   for (;;) {
     if (setting.samples == 0 || setting.all_discs() > options.most_discs)

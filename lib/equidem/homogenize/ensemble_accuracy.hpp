@@ -42,7 +42,7 @@ struct AccurateEnsemble {
 
 /// Small cells of two sizes tell scatter and drift; the cheapest size and number follow from
 ///
-///   P(|normal(drift/N, amplitude N^-1/2 / sqrt(S))| > accuracy), summed over K, G and nu, <= 1 - confidence,
+///   P(|normal(drift/N, s)| > accuracy), summed over K, G and nu, <= 1 - confidence,   s² = amplitude²/(N S) + (error of drift)²/N²,
 ///
 /// at least eight cells; they are sampled, and more of them until their own scatter
 /// reaches the accuracy. The choice depends on the samples alone, not on the clock.

@@ -10,6 +10,7 @@ namespace {
 
 // Estimates in parts of the drawing area, for 900 x 650 pixels and the font of the script.
 constexpr double character_width = 0.0108;
+constexpr double legend_character_width = 0.0139;  // gnuplot keeps free more than it writes
 constexpr double character_height = 0.045;
 constexpr double label_width = 0.04;  // of a label turned by 90 degrees, with the gap to its line
 constexpr double legend_sample_width = 0.085;
@@ -128,7 +129,7 @@ std::string place_legend(const Plot& plot, const std::vector<Point>& obstacles) 
     ++entries;
     longest = std::max(longest, characters(series.label));
   }
-  const double width = legend_sample_width + character_width * static_cast<double>(longest) + 2 * gap;
+  const double width = legend_sample_width + legend_character_width * static_cast<double>(longest) + 2 * gap;
   const double height = character_height * (static_cast<double>(entries) + 0.6) + gap;
   const std::pair<const char*, Box> corners[] = {
       {"top right", {1 - width, 1, 1 - height, 1.1}},

@@ -197,6 +197,8 @@ StudyResult evaluate(const Study& study, const StudySamples& samples) {
                            .errors = {},
                            .assured = {},
                            .refusal = of_task.refusal});
+    for (std::size_t q = 0; q < of_task.values.size(); ++q)
+      if (study.quantities[q].resolution) result.rows.back().setting.resolution = of_task.values[q];
   }
   find_errors(study, result.rows);
   result.curves = curves_of(study, result.rows);

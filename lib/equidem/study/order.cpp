@@ -81,6 +81,8 @@ std::optional<ObservedOrder> observed_order(std::span<const Level> levels, doubl
       usable.push_back(level);
   }
   std::sort(usable.begin(), usable.end(), [](const Level& a, const Level& b) { return a.h > b.h; });
+  const auto same = [](const Level& a, const Level& b) { return a.h == b.h && a.error == b.error; };
+  usable.erase(std::unique(usable.begin(), usable.end(), same), usable.end());
   if (usable.size() < 2 || usable.front().h == usable.back().h) return {};
   std::vector<ObservedOrder> fits;  // of ever more levels
   for (std::size_t count = std::min<std::size_t>(usable.size(), 4); count <= usable.size(); ++count) {

@@ -31,7 +31,8 @@ struct ObservedOrder {
 /// Slope of log error over log h, least squares over the asymptotic range: at least four levels from the finest on (where there are so
 /// many), and as many coarser ones as leave the slope known within twice the narrowest of these intervals (Student's). Where errors do
 /// not scatter but bend, and the orders between neighbours settle, the last of these, uncertain by its last change. Errors at or
-/// below `floor`, where rounding takes over, are left out, and so is what is not finite. Empty below two levels.
+/// below `floor`, where rounding takes over, are left out, and so is what is not finite; the same level twice counts once. Empty below two
+/// levels.
 std::optional<ObservedOrder> observed_order(std::span<const Level> levels, double floor = 0);
 
 /// The limit h -> 0 of f(h) = limit + c h^order from two levels (Richardson 1911).

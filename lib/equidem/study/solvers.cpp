@@ -2,6 +2,7 @@
 /// \file
 /// One linear system, many ways: direct solvers with and without refinement, and relaxation to a tolerance.
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -80,14 +81,21 @@ struct LazyBlock {
   }
 };
 
-using Solve = std::function<std::vector<DiscMotion>(const Block&)>;
+struct Solved {
+  std::vector<DiscMotion> motions;
+  double unbalanced = std::numeric_limits<double>::quiet_NaN();  ///< relative force that relaxation leaves
+};
+using Solve = std::function<Solved(const Block&)>;
 
 StudyTask task_of(const std::shared_ptr<LazyBlock>& lazy, Setting setting, Solve solve) {
   return {std::move(setting), [lazy, solve = std::move(solve)] {
             const Block& block = lazy->get();
-            const auto motions = std::make_shared<std::vector<DiscMotion>>();
-            return Trial{.work = [=, &block] { *motions = solve(block); },
-                         .values = [=, &block] { return std::vector{block.error(*motions)}; }};
+            const auto solved = std::make_shared<Solved>();
+            return Trial{.work = [=, &block] { *solved = solve(block); },
+                         .values =
+                             [=, &block] {
+                               return std::vector{block.error(solved->motions), solved->unbalanced};
+                             }};
           }};
 }
 
@@ -95,41 +103,47 @@ StudyTask task_of(const std::shared_ptr<LazyBlock>& lazy, Setting setting, Solve
 
 Study solvers_study(bool quick) {
   Study study{.name = "solvers",
-              .title = "A hexagonal block in tension: error of the displacements",
+              .title = "A hexagonal block in tension",
               .quantities = {{.name = "displacements",
                               .label = "relative error of the displacements",
                               .source = "direct solution refined with the forces of contacts in twice the digits",
-                              .rounding = 1.1e-16}},
+                              .rounding = 1.1e-16},
+                             {.name = "unbalanced",
+                              .label = "relative unbalanced force that is left",
+                              .fact = true,
+                              .resolution = true}},
               .tasks = {}};
   for (const int rows : quick ? std::vector{15, 31} : std::vector{21, 61, 101}) {
     const auto lazy = std::make_shared<LazyBlock>(rows);
     const std::string problem = format("{} x {} discs", rows, rows);
     for (const SolverMethod method : {SolverMethod::multifrontal, SolverMethod::cholmod, SolverMethod::umfpack}) {
       for (const int refinements : {0, 4}) {
-        study.tasks.push_back(task_of(lazy,
-                                      {.problem = problem,
-                                       .method = to_string(method),
-                                       .values = {{"refinements", static_cast<double>(refinements)}}},
-                                      [=](const Block& block) { return block.solve(method, refinements); }));
+        study.tasks.push_back(
+            task_of(lazy,
+                    {.problem = problem,
+                     .method = to_string(method),
+                     .values = {{"refinements", static_cast<double>(refinements)}}},
+                    [=](const Block& block) { return Solved{.motions = block.solve(method, refinements)}; }));
       }
     }
-    for (int digits = 2; digits <= (quick ? 8 : 11); ++digits) {
+    for (int digits = 3; digits <= 12; ++digits) {
       const double tolerance = std::pow(10.0, -digits);
-      study.tasks.push_back(task_of(
-          lazy,
-          {.problem = problem, .method = "relaxation", .values = {{"tolerance", tolerance}}, .resolution = tolerance},
-          [=](const Block& block) {
-            RelaxationOptions options;
-            options.tolerance = tolerance;
-            return relax(block.scene, options).motions;
-          }));
+      study.tasks.push_back(task_of(lazy,
+                                    {.problem = problem, .method = "relaxation", .values = {{"tolerance", tolerance}}},
+                                    [=](const Block& block) {
+                                      RelaxationOptions options;
+                                      options.tolerance = tolerance;
+                                      const Relaxation rest = relax(block.scene, options);
+                                      return Solved{rest.motions, rest.relative_unbalanced};
+                                    }));
     }
   }
-  study.orders = {{.method = "relaxation",
-                   .order = 1,
-                   .why = "the error is K^-1 times the unbalanced force; the tolerance is looked at now and then only, "
-                          "so that several "
-                          "of them end in the same state"}};
+  study.orders = {
+      {.method = "relaxation", .order = 1, .why = "the error is K^-1 times the unbalanced force that is left"}};
+  study.notes = {
+      "The order of relaxation is that of the error over the unbalanced force that is left, not over the tolerance: a "
+      "look at it every 25 steps finds it up to 10,000 times smaller than at the last, so that several tolerances end "
+      "in the same state."};
   return study;
 }
 

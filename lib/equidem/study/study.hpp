@@ -39,6 +39,8 @@ struct Quantity {
   std::string label = {};  ///< of its axis: "error of Poisson's ratio"; facts: "bytes per disc"
   /// A fact has no truth: it is told beside the errors.
   bool fact = false;
+  /// A fact that is the resolution of its setting, which only measuring tells.
+  bool resolution = false;
   bool relative = false;    ///< errors are divided by the truth
   double truth = 0;         ///< Truth::known
   std::string source = {};  ///< of the truth: "closed form, Abe (1996), eq. (22)"
