@@ -24,6 +24,7 @@
 namespace equidem::sukegawa2010 {
 
 using Shape = PackingShape::Kind;
+using EllipseLaw = GrainOptions::EllipseLaw;
 
 // The tables of sections 8.2 to 8.4.
 constexpr double poisson_ratio = 0.25, shear_speed = 150, density = 2480;  ///< -, m/s, kg/m³
@@ -72,11 +73,15 @@ struct Fill {
   double step_share = 0.5;                   ///< of the limit of the two lightest bodies
   double bond_step = printed_step;           ///< s: dashpots of bonds C_n = m_r/bond_step, C_s = C_n/3
   FrictionCap cap = FrictionCap::whole_force;
+  EllipseLaw ellipse_law = EllipseLaw::exact;
   double row_share = 1;      ///< height of the rows of the start, of the thesis's
   std::string variant = {};  ///< in names; empty: as the thesis, but for the step
 
   [[nodiscard]] std::string name() const;  ///< "discs_1"
 };
+
+/// 5 s and 20 s at 10 Hz: the thesis does not say for how long it shakes.
+inline constexpr std::array<std::int64_t, 2> long_shakings{50, 200};
 
 /// A box filled, and shaken where there are cycles.
 struct Run {
@@ -172,6 +177,7 @@ struct Kind {
   Shape shape = Shape::disc;
   double gal = 400, frequency = 10;
   std::string variant = {};
+  std::int64_t cycles = 10;
 };
 struct Sample {
   std::vector<double> values;

@@ -45,13 +45,26 @@ const std::vector<OutcomeKey>& outcome_keys() {
 
 namespace {
 
+const char* name_of(EllipseLaw law) {
+  switch (law) {
+    case EllipseLaw::exact:
+      return "exact";
+    case EllipseLaw::enlarged_as_printed:
+      return "printed";
+    case EllipseLaw::enlarged_mended:
+      break;
+  }
+  return "mended";
+}
+
 /// All that a fill depends on: the name of the loop and the settings.
 std::string settings_of(const Fill& fill) {
   return format(
-      "{} columns {} rows {} seed {} softness {} damping {} friction {} step {} bonds {} rows {} cap {} version {}",
+      "{} columns {} rows {} seed {} softness {} damping {} friction {} step {} bonds {} rows {} cap {} ellipses {} "
+      "version {}",
       plural_of(fill.shape), fill.grid.columns, fill.grid.rows, fill.seed, fill.softness, fill.damping, fill.friction,
       fill.step_share, fill.bond_step, fill.row_share, fill.cap == FrictionCap::whole_force ? "whole" : "spring",
-      library_version());
+      name_of(fill.ellipse_law), library_version());
 }
 std::string settings_of(const Run& run) {
   std::string text = settings_of(run.fill);

@@ -84,8 +84,9 @@ std::string contact_margin(const Reproduction& result) {
 
 std::string variants(const Reproduction& result) {
   const std::vector<std::pair<Kind, const char*>> rows{
-      {{.variant = "small"}, "as above"},
-      {{.variant = "long"}, "shaken for 5 s, not 1 s"},
+      {{}, "as above"},
+      {{.cycles = long_shakings[0]}, "shaken for 5 s, not 1 s"},
+      {{.cycles = long_shakings[1]}, "shaken for 20 s"},
       {{.variant = "half_step"}, "half the step"},
       {{.variant = "soft"}, "springs nine times softer"},
       {{.variant = "less_damping"}, "h = 0.1"},
@@ -93,22 +94,32 @@ std::string variants(const Reproduction& result) {
       {{.variant = "low_drop"}, "rows 0.7 times as high at the start"},
       {{.variant = "smooth"}, "no friction between grains"},
       {{.variant = "rough"}, "friction 0.5"},
-      {{.shape = Shape::bonded_pair, .variant = "small"}, "bonded pairs"},
-      {{.shape = Shape::bonded_pair, .gal = 0, .variant = "small"}, "bonded pairs left standing for as long"},
+      {{.shape = Shape::ellipse}, "ellipses"},
+      {{.shape = Shape::ellipse, .variant = "printed_test"}, "ellipses found by (4.1)-(4.49) as printed"},
+      {{.shape = Shape::ellipse, .variant = "mended_test"}, "ellipses, that test mended"},
+      {{.shape = Shape::bonded_pair}, "bonded pairs"},
+      {{.shape = Shape::bonded_pair, .gal = 0}, "bonded pairs left standing for as long"},
       {{.shape = Shape::bonded_pair, .variant = "weak_bonds"}, "bonded pairs, C_n and C_s a tenth"}};
+  if (result.quick) return "";
+  const auto changed = [](double Outcome::*first, double Outcome::*last) {
+    return [first, last](const Outcome& o) { return o.*last - o.*first; };
+  };
+  const auto whole_change = changed(&Outcome::whole_before, &Outcome::whole);
+  const auto inner_change = changed(&Outcome::void_ratio_before, &Outcome::void_ratio);
   std::string text;
-  const std::vector<std::size_t> widths{40, 18, 18, 20, 8};
+  const std::vector<std::size_t> widths{43, 19, 19, 21, 19, 21, 7};
   for (const auto& [kind, name] : rows) {
-    const Sample start = sample_of(result, kind, before);
-    if (start.values.empty()) continue;
-    const Sample changes = sample_of(result, kind, [](const Outcome& o) { return o.void_ratio - o.void_ratio_before; });
-    text += row({name, spread(start, 4), spread(sample_of(result, kind, after), 4), spread(changes, 4),
-                 format("{}", start.values.size())},
-                widths);
+    const auto cell = [&, of = kind](const auto& value) { return spread(sample_of(result, of, value), 4); };
+    const std::size_t seeds = sample_of(result, kind, after).values.size();
+    if (seeds == 0) continue;
+    text += row(
+        {name, cell([](const Outcome& o) { return o.whole_before; }), cell([](const Outcome& o) { return o.whole; }),
+         cell(whole_change), cell(before), cell(inner_change), format("{}", seeds)},
+        widths);
   }
   if (text.empty()) return "";
-  return "What the void ratio depends on: one thing changed at a time in a box of 612 discs, 0.555 m wide\n" +
-         row({"", "before", "after", "change", "seeds"}, widths) + text + "\n";
+  return "What the void ratio depends on, one thing changed at a time: all between the walls, and away from them\n" +
+         row({"", "before", "after", "change", "away: before", "change", "seeds"}, widths) + text + "\n";
 }
 
 std::string shakings(const Reproduction& result) {
@@ -116,7 +127,6 @@ std::string shakings(const Reproduction& result) {
       "Shaken, one filling of each; settlement of the surface and of the centre of mass, roughness of the surface, its "
       "largest "
       "slope\n";
-  if (!result.quick) text += "Springs nine times softer (what that does: above) and a step three times as long.\n";
   const std::vector<std::size_t> widths{32, 9, 9, 10, 12, 12, 12, 12, 9, 9};
   text += row(
       {"", "e before", "e after", "change", "surface, mm", "centre, mm", "rough, mm", "after, mm", "slope", "thrown"},

@@ -31,7 +31,7 @@ Sample sample_of(const Reproduction& result, const Kind& kind, const std::functi
     const Fill& fill = done.run.fill;
     const Shaking& shaking = *done.run.shaking;
     if (fill.shape != kind.shape || fill.variant != kind.variant || shaking.gal != kind.gal ||
-        shaking.frequency != kind.frequency)
+        shaking.frequency != kind.frequency || shaking.cycles != kind.cycles)
       continue;
     const double number = value(done.outcome);
     if (std::isfinite(number)) sample.values.push_back(number);

@@ -86,8 +86,9 @@ double step_of(const GrainScene& scene, const Fill& fill) {
 
 GrainOptions options_of(const GrainScene& scene, const Fill& fill) {
   return {.law = NormalLaw::linear_dashpot,
-          .scheme = GrainOptions::Scheme::velocity_verlet,
-          .time_step = step_of(scene, fill)};
+          .scheme = GrainOptions::Scheme::corrected_verlet,
+          .time_step = step_of(scene, fill),
+          .ellipse_law = fill.ellipse_law};
 }
 
 }  // namespace equidem::sukegawa2010
