@@ -40,8 +40,8 @@ struct Block {
     }
     return 0.5 * (unstable + stable);
   }
-  /// Inertia of the dense stiffness, column by column from the contact law; held components left out.
-  [[nodiscard]] Inertia dense_inertia(double ratio) const {
+  /// Signs of the eigenvalues of the dense stiffness, column by column from the contact law; held components left out.
+  [[nodiscard]] Signs dense_signs(double ratio) const {
     const ContactSprings springs(SpringConstants{1, ratio});
     const ContactGraph graph(assembly);
     const DegreesOfFreedom unknowns =
@@ -60,7 +60,7 @@ struct Block {
       internal_force(assembly, graph, unknowns, forces, f);
       for (std::size_t r = 0; r < free.size(); ++r) k(r, c) = f[free[r]];
     }
-    return inertia_of(k, 1e-13);
+    return signs_of(k, 1e-13);
   }
 };
 
@@ -71,7 +71,7 @@ TEST_CASE("negative_pivots_are_the_negative_eigenvalues_of_the_dense_matrix") {
   std::int64_t before = 0;
   for (const double ratio : {-0.01, -0.05, -0.1, -0.2, -0.3, -0.33, -0.34, -0.36, -0.4, -0.5, -0.7, -0.9}) {
     const Equilibrium state = block.solved(ratio);
-    const Inertia dense = block.dense_inertia(ratio);
+    const Signs dense = block.dense_signs(ratio);
     CAPTURE(ratio, dense.negative, dense.zero, state.negative_pivots, state.unstable_modes, state.pivot_growth,
             state.relative_residual);
     CHECK(dense.zero == 0);

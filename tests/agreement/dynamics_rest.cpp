@@ -80,7 +80,7 @@ TEST_CASE("blocks_of_every_kind_relax_to_the_solution_of_their_matrix") {
 }
 
 TEST_CASE("every_held_scene_relaxes_under_prescribed_motions_and_loads") {
-  for (const test::Scene& held : held_scenes()) {
+  for (const HeldScene& held : held_scenes()) {
     const Assembly& assembly = held.assembly();
     if (held.springs.any_negative()) continue;
     std::vector<Support> supports = held.supports;

@@ -17,7 +17,7 @@ using namespace equidem::test;
 
 namespace {
 
-Equilibrium solved(const Scene& scene, SolverMethod method) {
+Equilibrium solved(const HeldScene& scene, SolverMethod method) {
   EquilibriumOptions options = scene.options;
   options.solver.method = method;
   return solve_equilibrium(scene.assembly(), scene.springs, scene.supports,
@@ -40,7 +40,7 @@ double difference(const Assembly& assembly, const Equilibrium& p, const Equilibr
 }  // namespace
 
 TEST_CASE("all_solvers_find_the_same_state_of_rest") {
-  for (const Scene& scene : held_scenes()) {
+  for (const HeldScene& scene : held_scenes()) {
     const Equilibrium ours = solved(scene, SolverMethod::multifrontal), lu = solved(scene, SolverMethod::umfpack);
     const double to_lu = difference(scene.assembly(), ours, lu);
     CAPTURE(scene.name, ours.solver, lu.solver, to_lu);

@@ -11,6 +11,7 @@
 
 #include "example.hpp"
 #include "support/catch.hpp"
+#include "wrong.hpp"
 
 using namespace equidem;
 using namespace equidem::test;
@@ -43,13 +44,6 @@ BadCase sampled(const std::string& what, const std::string& by, const std::strin
 BadCase overridden(const std::string& text, const std::string& assignment, const std::string& key,
                    std::vector<std::string> words) {
   return {text, {assignment}, {}, key, std::move(words)};
-}
-
-/// "a.toml:7", where that line begins with `line`.
-std::string place_of(const std::string& text, const std::string& line) {
-  const auto at = text.find(line);
-  if (at == std::string::npos) throw std::logic_error("no line begins with '" + line + "'");
-  return "a.toml:" + std::to_string(1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
 }
 
 std::vector<BadCase> bad_cases() {

@@ -36,14 +36,14 @@ law = "linear_dashpot"
 duration = 1.0
 )";
 
-GrainCase parsed(const std::string& more, const std::vector<std::string>& overrides = {}) {
+GrainCase parsed_bonds(const std::string& more, const std::vector<std::string>& overrides = {}) {
   return parse_grain_case(discs + more, "case.toml", ".", overrides);
 }
 
 }  // namespace
 
 TEST_CASE("bonds_take_what_they_do_not_say_from_the_common_table") {
-  const GrainCase made = parsed(R"([bonds]
+  const GrainCase made = parsed_bonds(R"([bonds]
 normal_dashpot = 20.0
 tangential_dashpot = 10.0
 [[bond]]
@@ -60,23 +60,23 @@ normal_spring = 3.0
   CHECK((second.normal_dashpot == 5 && second.tangential_dashpot == 10 && second.normal_spring == 3));
   CHECK(made.bonds.step == GrainOptions::BondStep::exact);
   CHECK(build_grain_scene(made, 1e-4).bonds.size() == 2);
-  CHECK(parsed("").bonds.bonds.empty());
+  CHECK(parsed_bonds("").bonds.bonds.empty());
 }
 
 TEST_CASE("an_automatic_step_keeps_to_half_the_limit_of_explicit_bonds") {
   const std::string bond = "[bonds]\nstep = \"explicit\"\n[[bond]]\ngrains = [0, 1]\n";
   const double mass = 1000 * 3.141592653589793 * 0.01, dashpot = 1e7;
-  const GrainCase made = parsed(bond + "normal_dashpot = 1e7\n");
+  const GrainCase made = parsed_bonds(bond + "normal_dashpot = 1e7\n");
   const GrainStep step = choose_grain_step(made);
   CAPTURE(step.step, step.bond_limit);
   CHECK(step.bond_limit == Approx(2 * (mass / 2) / dashpot));
   CHECK(step.step == 0.5 * step.bond_limit);
   // exact bonds leave the step to the contacts
-  const GrainStep free = choose_grain_step(parsed(bond + "normal_dashpot = 1e7\n", {"bonds.step=exact"}));
+  const GrainStep free = choose_grain_step(parsed_bonds(bond + "normal_dashpot = 1e7\n", {"bonds.step=exact"}));
   CHECK(free.bond_limit == 0);
   CHECK(free.step > 10 * step.step);
   CHECK_THROWS_WITH(
-      choose_grain_step(parsed(bond + "normal_dashpot = 1e7\n", {"run.time_step=4e-6"})),
+      choose_grain_step(parsed_bonds(bond + "normal_dashpot = 1e7\n", {"run.time_step=4e-6"})),
       Catch::Contains("run.time_step") && Catch::Contains("the limit of") && Catch::Contains("that the bonds impose"));
 }
 
@@ -85,11 +85,11 @@ TEST_CASE("a_file_of_bonds_ties_grains_by_number") {
   const std::string table = "[bonds]\nnormal_dashpot = 1.0\npath = \"" + path + "\"\n";
   const auto write = [&](const std::string& text) { std::ofstream(path) << text; };
   write("i,j,distance_drift\n0,1,0.5\n# none\n 1 , 2 ,0\n");
-  const GrainCase made = parsed(table);
+  const GrainCase made = parsed_bonds(table);
   REQUIRE(made.bonds.bonds.size() == 2);
   CHECK((made.bonds.bonds[1].i == 1 && made.bonds.bonds[1].j == 2 && made.bonds.bonds[1].normal_dashpot == 1));
   write("i,j,distance_drift,normal_spring,normal_dashpot\n0,1,0.5,7,3\n1,2,0,,\n");
-  const GrainCase own = parsed(table);
+  const GrainCase own = parsed_bonds(table);
   REQUIRE(own.bonds.bonds.size() == 2);
   CHECK((own.bonds.bonds[0].normal_dashpot == 3 && own.bonds.bonds[0].normal_spring == 7));
   CHECK((own.bonds.bonds[1].normal_dashpot == 1 && own.bonds.bonds[1].normal_spring == 0));
@@ -103,7 +103,7 @@ TEST_CASE("a_file_of_bonds_ties_grains_by_number") {
                                    std::pair{"i,j\n2,2\n", ":2: grain 2 is tied to itself"}}) {
     write(text);
     CAPTURE(text);
-    CHECK_THROWS_WITH(parsed(table), Catch::Contains(said));
+    CHECK_THROWS_WITH(parsed_bonds(table), Catch::Contains(said));
   }
   std::remove(path.c_str());
 }
@@ -117,8 +117,9 @@ TEST_CASE("bonds_that_a_case_cannot_mean_are_refused_with_their_line") {
         std::pair{"[[bond]]\ngrains = [1, 1]\nnormal_dashpot = 1.0\n", "grain 1 is tied to itself"},
         std::pair{"[[bond]]\ngrains = [0, 1]\nnormal_dashpot = -1.0\n", "-1.0 is out of range"}}) {
     CAPTURE(text);
-    CHECK_THROWS_WITH(parsed(text), Catch::Contains("case.toml:") && Catch::Contains(said));
+    CHECK_THROWS_WITH(parsed_bonds(text), Catch::Contains("case.toml:") && Catch::Contains(said));
   }
-  const GrainCase exact = parsed("[[bond]]\ngrains = [0, 1]\nnormal_dashpot = 1.0\n", {"collisions.law=exact_flow"});
+  const GrainCase exact =
+      parsed_bonds("[[bond]]\ngrains = [0, 1]\nnormal_dashpot = 1.0\n", {"collisions.law=exact_flow"});
   CHECK_THROWS_WITH(choose_grain_step(exact), Catch::Contains("collisions.law") && Catch::Contains("linear_dashpot"));
 }

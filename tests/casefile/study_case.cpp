@@ -23,7 +23,7 @@ key    = "assembly.rows, assembly.columns"
 values = [9, 17, 33]
 )";
 
-StudyCase parsed(const std::string& text) {
+StudyCase parsed_study(const std::string& text) {
   return parse_study_case(text, "study.toml", "cases");
 }
 
@@ -31,7 +31,7 @@ StudyCase parsed(const std::string& text) {
 
 TEST_CASE("a_study_file_tries_every_combination_of_its_values") {
   const StudyCase study =
-      parsed(head + rows + "[[vary]]\nkey = \"springs.kT\"\nvalues = [0.5, 1e8]\nrefines = \"not\"\n");
+      parsed_study(head + rows + "[[vary]]\nkey = \"springs.kT\"\nvalues = [0.5, 1e8]\nrefines = \"not\"\n");
   CHECK(study.case_file == "cases/block.toml");
   CHECK(study.truth == Truth::finest);
   const auto points = points_of(study);
@@ -44,8 +44,8 @@ TEST_CASE("a_study_file_tries_every_combination_of_its_values") {
 }
 
 TEST_CASE("smaller_values_may_be_the_finer_ones") {
-  const auto points =
-      points_of(parsed(head + "[[vary]]\nkey = \"run.time_step\"\nvalues = [0.1, 0.01]\nrefines = \"smaller\"\n"));
+  const auto points = points_of(
+      parsed_study(head + "[[vary]]\nkey = \"run.time_step\"\nvalues = [0.1, 0.01]\nrefines = \"smaller\"\n"));
   CHECK(points[1].setting.resolution == 0.01);
   CHECK(points[1].overrides.front() == "run.time_step=0.01");
 }
@@ -53,7 +53,7 @@ TEST_CASE("smaller_values_may_be_the_finer_ones") {
 TEST_CASE("study_files_that_cannot_be_carried_out_are_refused") {
   const auto refused = [](const std::string& text, const std::string& why) {
     CAPTURE(text);
-    CHECK_THROWS_WITH(parsed(text), Catch::Contains(why) && Catch::Contains("study.toml"));
+    CHECK_THROWS_WITH(parsed_study(text), Catch::Contains(why) && Catch::Contains("study.toml"));
   };
   refused(head, "nothing is varied");
   refused(head + "truth = \"richardson\"\n" + rows, "the order is missing");

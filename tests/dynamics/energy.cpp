@@ -46,7 +46,7 @@ double elastic_energy(const Scene& scene, const std::vector<DiscMotion>& u, Loop
   for (std::size_t c = 0; c < scene.assembly.contacts.size(); ++c) {
     const Contact& contact = scene.assembly.contacts[c];
     const SpringConstants k = scene.springs[c];
-    const ContactDeformation d = deformation(frame_of(scene.assembly, contact), u[contact.i], u[contact.j]);
+    const ContactDeformation d = deformation(frame_of(scene.assembly, c), u[contact.i], u[contact.j]);
     energy += motion == LoopKind::Motion::finite
                   ? bond_energy(bond_of(scene.assembly, contact, k), u[contact.i], u[contact.j])
                   : 0.5 * (k.kN * d.normal * d.normal + k.kT * d.tangential * d.tangential);

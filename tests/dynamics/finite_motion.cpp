@@ -86,7 +86,7 @@ std::vector<LoopScene> loop_scenes() {
 }
 
 /// The assembly turned about the origin by an angle, and every disc moved by some share of the mean radius and turned by some angle.
-std::vector<DiscMotion> random_motions(const Assembly& assembly, double angle, double size, bool rotation,
+std::vector<DiscMotion> turned_motions(const Assembly& assembly, double angle, double size, bool rotation,
                                        Random& random) {
   std::vector<DiscMotion> motions(assembly.size());
   const double c = std::cos(angle), s = std::sin(angle), a = assembly.mean_radius();
@@ -143,8 +143,8 @@ TEST_CASE("the_loop_for_finite_motions_sums_the_forces_of_the_plain_law") {
     // Sizes on either side of the bound between the short polynomials and the general formulas.
     for (const double size : {1e-7, 5e-3, 2e-2, 0.4}) {
       for (const double angle : {0.0, 0.2, -2.5, 44.0}) {
-        const std::vector<DiscMotion> motions = random_motions(scene.assembly, angle, size, rotation, random),
-                                      velocities = random_motions(scene.assembly, 0, 1, rotation, random);
+        const std::vector<DiscMotion> motions = turned_motions(scene.assembly, angle, size, rotation, random),
+                                      velocities = turned_motions(scene.assembly, 0, 1, rotation, random);
         loop.set_motions(motions);
         if (scene.kind.resistance == Resistance::dashpot) loop.set_dashpot_velocities(velocities);
         double force_size = 0, moment_size = 0;
@@ -170,7 +170,7 @@ TEST_CASE("a_turn_of_the_whole_assembly_loads_no_contact") {
     const bool rotation = scene.kind.springs == Springs::rotation;
     LoopByHand loop(scene.assembly, scene.springs, {1, 1}, scene.kind, dashpot_constants);
     for (const double angle : {0.1, -3.0, 1000.0}) {
-      loop.set_motions(random_motions(scene.assembly, angle, 0, rotation, random));
+      loop.set_motions(turned_motions(scene.assembly, angle, 0, rotation, random));
       // Positions are known to 1e-16 of their size, whole turns to 1e-16 of theirs.
       double reach = 0;
       for (const Vec2 x : scene.assembly.centres) reach = std::max(reach, norm(x));
@@ -197,7 +197,7 @@ TEST_CASE("finite_motions_differ_from_small_ones_by_the_square_of_their_size") {
       LoopByHand curved(scene.assembly, scene.springs, {1, 1}, finite),
           straight(scene.assembly, scene.springs, {1, 1}, small);
       const bool rotation = finite.springs == Springs::rotation;
-      const std::vector<DiscMotion> direction = random_motions(scene.assembly, 0, 1, rotation, random);
+      const std::vector<DiscMotion> direction = turned_motions(scene.assembly, 0, 1, rotation, random);
       const auto difference = [&](double size) {
         std::vector<DiscMotion> motions = direction;
         for (DiscMotion& motion : motions) motion = {size * motion.u, size * motion.theta};
@@ -224,10 +224,10 @@ TEST_CASE("contact_forces_of_finite_motions_keep_momentum_and_angular_momentum")
     const bool rotation = scene.kind.springs == Springs::rotation;
     LoopByHand loop(scene.assembly, scene.springs, {1, 1}, scene.kind, dashpot_constants);
     for (const double size : {1e-3, 0.3}) {
-      const std::vector<DiscMotion> motions = random_motions(scene.assembly, 1.2, size, rotation, random);
+      const std::vector<DiscMotion> motions = turned_motions(scene.assembly, 1.2, size, rotation, random);
       loop.set_motions(motions);
       if (scene.kind.resistance == Resistance::dashpot) {
-        loop.set_dashpot_velocities(random_motions(scene.assembly, 0, 1, rotation, random));
+        loop.set_dashpot_velocities(turned_motions(scene.assembly, 0, 1, rotation, random));
       }
       const std::vector<DiscMotion> forces = loop.forces();
       Vec2 sum;

@@ -16,7 +16,7 @@ using namespace equidem;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Schedule ramp(double value, double start, double end) {
   return {.kind = Schedule::Kind::ramp, .value = value, .start = start, .end = end};

@@ -74,7 +74,7 @@ Equilibrium state_of(const Problem& problem, Answer& answer) {
   return state;
 }
 
-std::string shown(double x) {
+std::string rounded(double x) {
   return format("{:.1e}", x);
 }
 
@@ -170,8 +170,8 @@ HardCase::~HardCase() {
          << '\n';
   };
   for (const auto& [task, a] : accuracies_) {
-    write({task, "error <= bound <= " + shown(a.promised),
-           format("error {}, bound {}, condition {}{}", shown(a.error), shown(a.bound), shown(a.condition),
+    write({task, "error <= bound <= " + rounded(a.promised),
+           format("error {}, bound {}, condition {}{}", rounded(a.error), rounded(a.bound), rounded(a.condition),
                   a.runs > 1 ? format(" (worst of {})", a.runs) : "")});
   }
   for (const Row& row : rows_) write(row);

@@ -35,6 +35,12 @@ struct Answer {
 /// Its refusal, if it is refused.
 Answer attempt(const std::function<void()>& call);
 
+/// kN = 1e9 Pa and kT = ratio kN, of every contact.
+inline ContactSprings springs_of(double ratio) {
+  return ContactSprings(SpringConstants{1e9, ratio * 1e9});
+}
+inline const ContactSprings usual_springs = springs_of(0.4);
+
 /// Assembly under supports and loads (no tractions), against quadruple precision.
 struct Problem {
   Assembly assembly;

@@ -16,11 +16,9 @@ using namespace equidem::test;
 
 namespace {
 
-const ContactSprings springs{SpringConstants{1e9, 0.4e9}};
-
 Problem pulled(Assembly block) {
   return {std::move(block),
-          springs,
+          usual_springs,
           {{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = {}}},
           {{.group = "right", .kind = LoadKind::per_disc, .force = {1000, 300}, .moment = 0.1}}};
 }
@@ -50,9 +48,10 @@ TEST_CASE("one_odd_ring_decides_whether_the_discs_of_a_square_lattice_turn_like_
 
   Assembly cell = square_lattice({.columns = 6, .rows = 6, .periodic = true});
   table.right("homogenize without",
-              homogenize(cell, springs, Rotation::from_scene, {{{1e9, 0, 0}, {0, 1e9, 0}, {0, 0, 0.2e9}}}), 1e-13);
+              homogenize(cell, usual_springs, Rotation::from_scene, {{{1e9, 0, 0}, {0, 1e9, 0}, {0, 0, 0.2e9}}}),
+              1e-13);
   close_odd_ring(cell, 6);
-  table.right("homogenize with", homogenize(cell, springs), 1e-12);
+  table.right("homogenize with", homogenize(cell, usual_springs), 1e-12);
 }
 
 TEST_CASE("a_single_chain_is_right_where_it_is_held_and_has_no_modulus") {
@@ -63,13 +62,14 @@ TEST_CASE("a_single_chain_is_right_where_it_is_held_and_has_no_modulus") {
   const auto hold = [](std::optional<double> rotation) {
     return std::vector<Support>{{.group = "first", .ux = 0.0, .uy = 0.0, .rotation = rotation}};
   };
-  table.refused("solve, rotations free", solve({chain, springs, hold({}), pull}), {"rotation about", "Hold"});
-  table.refused("solve, one rotation held", solve({chain, springs, hold(0.0), pull}), {"rotation about", "Hold"});
-  table.right("solve, rotations restrained", solve({chain, springs, hold({}), pull, Rotation::restrained}), 1e-12);
+  table.refused("solve, rotations free", solve({chain, usual_springs, hold({}), pull}), {"rotation about", "Hold"});
+  table.refused("solve, one rotation held", solve({chain, usual_springs, hold(0.0), pull}), {"rotation about", "Hold"});
+  table.right("solve, rotations restrained", solve({chain, usual_springs, hold({}), pull, Rotation::restrained}),
+              1e-12);
   Assembly periodic = square_lattice({.columns = 8, .rows = 1, .periodic = true});
   std::erase_if(periodic.contacts, [](const Contact& c) { return c.shift_y != 0; });
   periodic.facet_lengths.clear();
-  table.refused("homogenize", homogenize(periodic, springs), {"one direction only", "Add contacts"});
+  table.refused("homogenize", homogenize(periodic, usual_springs), {"one direction only", "Add contacts"});
 }
 
 TEST_CASE("a_rattler_inside_a_ring_is_named_or_left_out") {
@@ -81,8 +81,8 @@ TEST_CASE("a_rattler_inside_a_ring_is_named_or_left_out") {
     assembly.facet_lengths.clear();
   };
   remove(cell);
-  table.right("homogenize", homogenize(cell, springs), 1e-12);
-  const EffectiveStiffness result = effective_stiffness(cell, springs);
+  table.right("homogenize", homogenize(cell, usual_springs), 1e-12);
+  const EffectiveStiffness result = effective_stiffness(cell, usual_springs);
   CHECK(result.rattlers == 1);
   REQUIRE(result.removed.size() == 1);
   CHECK(result.removed[0].find("disc 14") != std::string::npos);
@@ -111,8 +111,8 @@ TEST_CASE("contacts_at_the_centre_of_a_disc_are_right") {
     problem.loads[0].moment = 0;
     table.right("solve", solve(problem), 1e-12);
     const Assembly cell = delaunay_assembly({.discs = 40, .periodic = true});
-    table.right("homogenize", homogenize(without_levers(cell, false), springs), 1e-12);
-    table.refused("homogenize, levers that do not add up", homogenize(without_levers(cell, true), springs),
+    table.right("homogenize", homogenize(without_levers(cell, false), usual_springs), 1e-12);
+    table.refused("homogenize, levers that do not add up", homogenize(without_levers(cell, true), usual_springs),
                   {"has the lever arms 0 and 0 m", "Correct the levers"});
   }
 }
@@ -136,6 +136,7 @@ TEST_CASE("a_train_of_gears_of_a_million_to_one_is_right") {
   const LoadCase twist{{.group = "last", .kind = LoadKind::total, .force = {}, .moment = 1e-3}};
   const Support pinned{.group = "all", .ux = 0.0, .uy = 0.0, .rotation = {}};
   const Support locked{.group = "first", .ux = {}, .uy = {}, .rotation = 0.0};
-  table.right("solve", solve({train, springs, {pinned, locked}, twist}), 1e-11);
-  table.refused("solve, none locked", solve({train, springs, {pinned}, twist}), {"gears", "Hold the rotation of one"});
+  table.right("solve", solve({train, usual_springs, {pinned, locked}, twist}), 1e-11);
+  table.refused("solve, none locked", solve({train, usual_springs, {pinned}, twist}),
+                {"gears", "Hold the rotation of one"});
 }

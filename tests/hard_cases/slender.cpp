@@ -30,14 +30,10 @@ Assembly strip(int columns, bool periodic = false) {
   return hexagonal_lattice({.columns = columns, .rows = 2, .radius = radius, .periodic = periodic});
 }
 
-ContactSprings springs(double ratio) {
-  return ContactSprings(SpringConstants{1e9, ratio * 1e9});
-}
-
 /// Clamped at its left end.
 Problem cantilever(int columns, double ratio, Vec2 force) {
   return {strip(columns),
-          springs(ratio),
+          springs_of(ratio),
           {{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = {}}},
           {{.group = "bottom_right", .kind = LoadKind::total, .force = force}}};
 }
@@ -62,7 +58,7 @@ void strip_cell(HardCase& table, int columns) {
   for (const double ratio : {0.5, 1e-8, -0.3}) {
     CAPTURE(columns, ratio);
     table.right(format("homogenize 2 x {}", columns),
-                homogenize(strip(columns, true), springs(ratio), Rotation::from_scene,
+                homogenize(strip(columns, true), springs_of(ratio), Rotation::from_scene,
                            isotropic_stiffness(root * 1e9, root / 2 * (1 + ratio) * 1e9)),
                 1e-13);
   }
@@ -148,7 +144,7 @@ TEST_CASE("every_section_of_a_strip_of_2_by_2000_carries_the_load_and_its_moment
       const Contact& contact = assembly.contacts[c];
       const Vec2 i = assembly.centres[contact.i], j = assembly.centres[contact.j];
       if ((i.x < cut) == (j.x < cut)) continue;
-      const ContactFrame frame = frame_of(assembly, contact);
+      const ContactFrame frame = frame_of(assembly, c);
       const Vec2 f = (i.x < cut ? 1.0 : -1.0) * force_on_i(frame, state.contact_forces[c]);
       sum += f;
       moment += cross(i + contact.lever_i * frame.normal - at, f);

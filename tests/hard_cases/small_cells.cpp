@@ -16,8 +16,6 @@ using namespace equidem::test;
 
 namespace {
 
-const ContactSprings springs{SpringConstants{1e9, 0.4e9}};
-
 double difference(const Matrix3& a, const Matrix3& b) {
   return largest_entry(a + (-1.0) * b) / largest_entry(b);
 }
@@ -65,7 +63,7 @@ TEST_CASE("a_disc_that_touches_its_images_along_one_direction_only_is_refused") 
   std::erase_if(cell.contacts, [](const Contact& c) { return c.shift_y != 0; });
   cell.facet_lengths.clear();
   REQUIRE(cell.contacts.size() == 1);
-  table.refused("homogenize", homogenize(cell, springs), {"one direction only", "Add contacts"});
+  table.refused("homogenize", homogenize(cell, usual_springs), {"one direction only", "Add contacts"});
 }
 
 TEST_CASE("two_discs_that_touch_twice_are_right_or_named") {
@@ -78,23 +76,23 @@ TEST_CASE("two_discs_that_touch_twice_are_right_or_named") {
   const std::vector<Support> held{{.group = "first", .ux = 0.0, .uy = 0.0, .rotation = 0.0},
                                   {.group = "last", .ux = {}, .uy = 0.0, .rotation = {}}};
   const LoadCase loads{{.group = "last", .kind = LoadKind::total, .force = {1000, 0}, .moment = 7}};
-  table.right("solve", solve({pair, springs, held, loads}), 1e-13);
-  const Equilibrium state = solve_equilibrium(pair, springs, held, loads);
+  table.right("solve", solve({pair, usual_springs, held, loads}), 1e-13);
+  const Equilibrium state = solve_equilibrium(pair, usual_springs, held, loads);
   CHECK(state.motions[1].u.x == Approx(1000 / 2e9).epsilon(1e-14));
   CHECK(state.motions[1].theta == Approx(7 / (2 * 0.4e9 * 0.25)).epsilon(1e-14));
 
   const std::vector<Support> pinned{{.group = "first", .ux = 0.0, .uy = 0.0, .rotation = {}},
                                     {.group = "last", .ux = {}, .uy = 0.0, .rotation = {}}};
-  table.refused("solve, rotations free", solve({pair, springs, pinned, loads}),
+  table.refused("solve, rotations free", solve({pair, usual_springs, pinned, loads}),
                 {"gears", "odd ring", "Hold the rotation"});
   pair.contacts[0].lever_i = 0.3, pair.contacts[0].lever_j = 0.7;  // turns 7:3 at one contact, 1:1 at the other
-  table.right("solve, levers that differ", solve({pair, springs, pinned, loads}), 1e-12);
+  table.right("solve, levers that differ", solve({pair, usual_springs, pinned, loads}), 1e-12);
 
   Assembly cell = delaunay_assembly({.discs = 2, .points = PointProcess::uniform, .seed = 4, .periodic = true});
   const Matrix3 once = effective_stiffness(cell, ContactSprings(SpringConstants{2e9, 0.8e9})).stiffness;
   const std::vector<Contact> contacts = cell.contacts;
   cell.contacts.insert(cell.contacts.end(), contacts.begin(), contacts.end());
   cell.facet_lengths.clear();
-  table.right("homogenize", homogenize(cell, springs), 1e-13);
-  CHECK(difference(effective_stiffness(cell, springs).stiffness, once) < 1e-14);
+  table.right("homogenize", homogenize(cell, usual_springs), 1e-13);
+  CHECK(difference(effective_stiffness(cell, usual_springs).stiffness, once) < 1e-14);
 }

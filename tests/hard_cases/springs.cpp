@@ -20,10 +20,6 @@ namespace {
 
 constexpr double kN = 1e9;
 
-ContactSprings springs(double ratio) {
-  return ContactSprings(SpringConstants{kN, ratio * kN});
-}
-
 Assembly hexagonal_cell() {
   return hexagonal_lattice({.columns = 4, .rows = 4, .periodic = true});
 }
@@ -68,10 +64,10 @@ TEST_CASE("tangential_springs_of_any_size_are_right") {
   for (int exponent = -8; exponent <= 8; ++exponent) {
     const double ratio = std::pow(10.0, exponent);
     CAPTURE(exponent);
-    table.right("solve", solve(pulled(hexagonal_lattice({.columns = 5, .rows = 6}), springs(ratio))), 1e-8);
-    table.right("solve", solve(pulled(delaunay_assembly({.discs = 60}), springs(ratio))), 1e-8);
-    table.right("homogenize", homogenize(hexagonal_cell(), springs(ratio)), 1e-13);
-    table.right("homogenize", homogenize(random_cell(1), springs(ratio)), 1e-13);
+    table.right("solve", solve(pulled(hexagonal_lattice({.columns = 5, .rows = 6}), springs_of(ratio))), 1e-8);
+    table.right("solve", solve(pulled(delaunay_assembly({.discs = 60}), springs_of(ratio))), 1e-8);
+    table.right("homogenize", homogenize(hexagonal_cell(), springs_of(ratio)), 1e-13);
+    table.right("homogenize", homogenize(random_cell(1), springs_of(ratio)), 1e-13);
   }
 }
 
@@ -80,8 +76,8 @@ TEST_CASE("small_negative_tangential_springs_are_right") {
                   .why = "K is indefinite by a hair: every rotation brings a small negative eigenvalue"});
   for (const double ratio : {-1e-2, -1e-4, -1e-6, -1e-8, -1e-10}) {
     CAPTURE(ratio);
-    table.right("solve", solve(pulled(hexagonal_lattice({.columns = 5, .rows = 6}), springs(ratio))), 1e-7);
-    table.right("homogenize", homogenize(random_cell(1), springs(ratio)), 1e-13);
+    table.right("solve", solve(pulled(hexagonal_lattice({.columns = 5, .rows = 6}), springs_of(ratio))), 1e-7);
+    table.right("homogenize", homogenize(random_cell(1), springs_of(ratio)), 1e-13);
   }
 }
 
@@ -90,30 +86,30 @@ TEST_CASE("a_millionth_from_the_limit_of_stability_the_answer_is_right_and_beyon
       {.name = "hexagonal cell near kT/kN = -1/3",
        .why = "at -1/3 three waves lose all stiffness; K is singular there and has more negative eigenvalues beyond"});
   const Assembly cell = hexagonal_cell();
-  const Answer above = homogenize(cell, springs(-1.0 / 3 + 1e-6));
+  const Answer above = homogenize(cell, springs_of(-1.0 / 3 + 1e-6));
   CHECK(above.unstable_modes == 0);
   table.right("homogenize at -1/3 + 1e-6", above, 1e-13);
-  const Answer below = homogenize(cell, springs(-1.0 / 3 - 1e-6));
+  const Answer below = homogenize(cell, springs_of(-1.0 / 3 - 1e-6));
   CHECK(below.unstable_modes == 3);
   table.note("homogenize at -1/3 - 1e-6", "reported unstable", format("{} unstable modes", below.unstable_modes));
-  table.refused("homogenize at -1/3", homogenize(cell, springs(-1.0 / 3)), {"limit of stability", "another kT/kN"});
+  table.refused("homogenize at -1/3", homogenize(cell, springs_of(-1.0 / 3)), {"limit of stability", "another kT/kN"});
 }
 
 TEST_CASE("free_edges_near_their_own_limit_of_stability_are_right_above_it_and_called_unstable_below") {
   HardCase table({.name = "a free block near its critical kT/kN",
                   .why = "an edge gives way before the bulk does, and K without rotations has long lost definiteness"});
   const Assembly block = hexagonal_lattice({.columns = 11, .rows = 11});
-  const Problem problem = pulled(block, springs(1));
+  const Problem problem = pulled(block, springs_of(1));
   const double limit = critical_ratio(block, problem.supports);
   CAPTURE(limit);
   CHECK(limit > -0.3);
   for (const double off : {1e-2, 1e-4, 1e-6}) {
     CAPTURE(off);
-    const Answer above = solve(pulled(block, springs(limit + off)));
+    const Answer above = solve(pulled(block, springs_of(limit + off)));
     CHECK(above.unstable_modes == 0);
     table.right("solve down to 1e-6 above", above, 1e-7);
   }
-  const Answer below = solve(pulled(block, springs(limit - 1e-6)));
+  const Answer below = solve(pulled(block, springs_of(limit - 1e-6)));
   CHECK(below.unstable_modes == 1);
   table.note("solve 1e-6 below", "reported unstable",
              format("{} unstable mode at {:.8f}", below.unstable_modes, limit - 1e-6));

@@ -21,7 +21,7 @@ using namespace equidem::test;
 
 namespace {
 
-LoadCase random_loads(const Scene& scene, bool moments, std::uint64_t seed) {
+LoadCase random_loads(const HeldScene& scene, bool moments, std::uint64_t seed) {
   Random random(seed);
   LoadCase loads;
   for (const char* group : {"a", "b"}) {
@@ -54,7 +54,7 @@ double work_scale(const Assembly& assembly, const LoadCase& loads, const Equilib
   return sum;
 }
 
-bool turns(const Scene& scene) {
+bool turns(const HeldScene& scene) {
   return derive_effects(scene.springs, scene.options.rotation).rotation;
 }
 
@@ -86,7 +86,7 @@ Balance balance_of(const Assembly& assembly, const LoadCase& loads, const Equili
 }  // namespace
 
 TEST_CASE("every_scene_is_solved_to_a_residual_of_1e_13") {
-  for (const Scene& scene : held_scenes()) {
+  for (const HeldScene& scene : held_scenes()) {
     const Equilibrium state = solve_equilibrium(scene.assembly(), scene.springs, scene.supports,
                                                 random_loads(scene, turns(scene), 1), scene.options);
     CAPTURE(scene.name, state.relative_residual, state.report());
@@ -95,7 +95,7 @@ TEST_CASE("every_scene_is_solved_to_a_residual_of_1e_13") {
 }
 
 TEST_CASE("reactions_balance_loads_and_moments") {
-  for (const Scene& scene : held_scenes()) {
+  for (const HeldScene& scene : held_scenes()) {
     const LoadCase loads = random_loads(scene, turns(scene), 2);
     const Equilibrium state = solve_equilibrium(scene.assembly(), scene.springs, scene.supports, loads, scene.options);
     const Balance balance = balance_of(scene.assembly(), loads, state);
@@ -108,7 +108,7 @@ TEST_CASE("reactions_balance_loads_and_moments") {
 }
 
 TEST_CASE("energy_is_half_the_work_of_the_loads") {
-  for (const Scene& scene : held_scenes()) {
+  for (const HeldScene& scene : held_scenes()) {
     const LoadCase loads = random_loads(scene, turns(scene), 3);
     const Equilibrium state = solve_equilibrium(scene.assembly(), scene.springs, scene.supports, loads, scene.options);
     const double half_work = 0.5 * work(scene.assembly(), loads, state);
@@ -123,7 +123,7 @@ TEST_CASE("energy_is_half_the_work_of_the_loads") {
 }
 
 TEST_CASE("two_load_cases_do_the_same_work_on_one_anothers_motions") {  // Betti
-  for (const Scene& scene : held_scenes()) {
+  for (const HeldScene& scene : held_scenes()) {
     const EquilibriumSolver solver(scene.assembly(), scene.springs, scene.supports, scene.options);
     const LoadCase first = random_loads(scene, turns(scene), 4), second = random_loads(scene, turns(scene), 5);
     const Equilibrium of_first = solver.solve(first), of_second = solver.solve(second);
@@ -136,7 +136,7 @@ TEST_CASE("two_load_cases_do_the_same_work_on_one_anothers_motions") {  // Betti
 }
 
 TEST_CASE("load_cases_superpose") {
-  for (const Scene& scene : held_scenes()) {
+  for (const HeldScene& scene : held_scenes()) {
     const EquilibriumSolver solver(scene.assembly(), scene.springs, scene.supports, scene.options);
     const LoadCase first = random_loads(scene, turns(scene), 6), second = random_loads(scene, turns(scene), 7);
     LoadCase both = first;

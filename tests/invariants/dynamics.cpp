@@ -78,7 +78,7 @@ TEST_CASE("what_is_at_rest_stays_at_rest") {
 }
 
 TEST_CASE("forces_of_small_motions_are_those_of_the_stiffness_matrix") {
-  for (const test::Scene& held : held_scenes()) {
+  for (const HeldScene& held : held_scenes()) {
     const Assembly& assembly = held.assembly();
     const equidem::Scene scene{
         .assembly = assembly, .springs = held.springs, .inertia = inertia_of(assembly.radii, 2000, Body::disc)};

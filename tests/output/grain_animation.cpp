@@ -17,14 +17,14 @@ using equidem::test::refusal_of;
 
 namespace {
 
-struct Scene {
+struct AnimatedScene {
   std::vector<Grain> grains;
   std::vector<Clump> clumps{{{{{-0.1, 0}, 0.1}, {{0.1, 0}, 0.15}}}};
   std::vector<GrainWall> walls;
   std::vector<int> groups{0, 1, 7};
   std::vector<GrainFrame> frames;
 
-  Scene() {
+  AnimatedScene() {
     grains.push_back({.position = {0.2, 0.3}, .radius = 0.1, .inertia = {1, 1}});
     grains.push_back({.position = {1.1, 0.4}, .radius = 0.3, .inertia = {1, 1}, .short_half_axis = 0.15});
     grains.push_back({.position = {0.5, 0.9}, .radius = 0.25, .inertia = {1, 1}, .clump = 0});
@@ -71,7 +71,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
-bool mentions(const Scene& scene, const std::string& words) {
+bool mentions(const AnimatedScene& scene, const std::string& words) {
   const auto refusal = refusal_of([&] { static_cast<void>(grain_animation_html(scene.animation(""))); });
   INFO(refusal.message);
   CHECK(refusal.kind == ErrorKind::bad_input);
@@ -81,7 +81,7 @@ bool mentions(const Scene& scene, const std::string& words) {
 }  // namespace
 
 TEST_CASE("an_animation_shows_every_body_where_it_is") {
-  const Scene scene;
+  const AnimatedScene scene;
   const std::string html = grain_animation_html(scene.animation("three bodies"));
   const double span = std::stod(value_of(html, "span", ","));
   const std::string low = value_of(html, "const low", "]");
@@ -103,7 +103,7 @@ TEST_CASE("an_animation_shows_every_body_where_it_is") {
 }
 
 TEST_CASE("an_animation_is_one_well_formed_page") {
-  const Scene scene;
+  const AnimatedScene scene;
   const std::string html = grain_animation_html(scene.animation("a < b & c > d"));
   CHECK(html.starts_with("<!DOCTYPE html>"));
   CHECK(html.ends_with("</html>\n"));
@@ -122,7 +122,7 @@ TEST_CASE("an_animation_is_one_well_formed_page") {
 }
 
 TEST_CASE("what_cannot_be_animated_is_refused") {
-  Scene scene;
+  AnimatedScene scene;
   SECTION("no frames") {
     scene.frames.clear();
     CHECK(mentions(scene, "no frames"));

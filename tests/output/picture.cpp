@@ -1,24 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/output/picture.hpp"
+
 #include <cmath>
 #include <numbers>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
-#include "equidem/output/picture.hpp"
 #include "equidem/output/scene.hpp"
 
+#include "output/png.hpp"
 #include "output/states.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;
 
 namespace {
-
-std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
-  std::uint32_t value = 0;
-  for (std::size_t k = 0; k < 4; ++k) value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
-  return value;
-}
 
 std::string as_byte(double component) {
   return std::to_string(std::lround(255 * component));
@@ -41,7 +37,7 @@ TEST_CASE("every_disc_has_the_colour_of_its_stress_at_its_displaced_place") {
   const int width = fine ? 900 : 500;
   const PictureOptions options{
       .title = "σ of discs", .colour = DiscColour::stress_xx, .force_chains = false, .width = width};
-  const Scene scene = plan_scene(state.view(), options);
+  const PictureScene scene = plan_scene(state.view(), options);
   REQUIRE(scene.as_image == fine);
   const TemporaryFolder folder;
   const PictureResult result = write_picture(folder.path(), "discs", state.view(), options, false);
@@ -83,7 +79,7 @@ TEST_CASE("the_largest_displacement_is_two_to_five_per_cent_of_the_size") {
   const double size_of_strain = GENERATE(1e-9, 3e-7, 4e-5, 1e-3);
   const MadeUpState state =
       made_up(hexagonal_lattice({.columns = 9, .rows = 9}), {size_of_strain, 0, 0, -0.3 * size_of_strain});
-  const Scene scene = plan_scene(state.view(), {});
+  const PictureScene scene = plan_scene(state.view(), {});
   double largest = 0, side = 0;
   for (std::size_t disc = 0; disc < state.assembly.size(); ++disc) {
     largest = std::max(largest, norm(scene.centres[disc] - state.assembly.centres[disc]));
@@ -99,7 +95,7 @@ TEST_CASE("the_largest_displacement_is_two_to_five_per_cent_of_the_size") {
 
 TEST_CASE("what_is_not_known_is_not_drawn") {
   const Assembly assembly = hexagonal_lattice({.columns = 3, .rows = 3});
-  const Scene scene = plan_scene({assembly}, {});
+  const PictureScene scene = plan_scene({assembly}, {});
   CHECK(scene.values.empty());
   CHECK_FALSE(scene.force_chains);
   CHECK(scene.displacement_scale == 1);

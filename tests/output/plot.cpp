@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/output/plot.hpp"
+
 #include <cmath>
 #include <cstdlib>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/output/gnuplot.hpp"
-#include "equidem/output/plot.hpp"
 #include "equidem/output/plot_layout.hpp"
 #include "equidem/output/plot_script.hpp"
 
+#include "output/png.hpp"
 #include "output/states.hpp"
 #include "support/catch.hpp"
 
@@ -44,12 +46,6 @@ bool gnuplot_is_missing(const PlotResult& result) {
   if (result.message.find("not installed") == std::string::npos) return false;
   WARN("not tested: gnuplot is missing");
   return true;
-}
-
-std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
-  std::uint32_t value = 0;
-  for (std::size_t k = 0; k < 4; ++k) value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
-  return value;
 }
 
 /// The environment variable PATH, changed for a while.

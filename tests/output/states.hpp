@@ -37,9 +37,10 @@ inline MadeUpState made_up(Assembly assembly, const Tensor2& gradient) {
     state.motions.push_back({gradient * state.assembly.centres[disc], 1e-4 * std::sin(k)});
     state.stresses.push_back({1e6 * std::cos(k), 3e5 * std::sin(k), 3e5 / k, -1e6 / k});
   }
-  for (const Contact& contact : state.assembly.contacts) {
+  for (std::size_t c = 0; c < state.assembly.contacts.size(); ++c) {
+    const Contact& contact = state.assembly.contacts[c];
     const ContactDeformation d =
-        deformation(frame_of(state.assembly, contact), state.motions[contact.i], state.motions[contact.j]);
+        deformation(frame_of(state.assembly, c), state.motions[contact.i], state.motions[contact.j]);
     state.forces.push_back(linear_spring_force({1e9, 3e8}, d));
   }
   return state;

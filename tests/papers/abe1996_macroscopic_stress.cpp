@@ -88,7 +88,7 @@ TEST_CASE("restrained_rotation_leaves_the_contact_forces_of_equation_54") {
     const auto forces = affine_contact_forces(assembly, ContactSprings(k), u, 0);
     double worst = 0;
     for (std::size_t c = 0; c < forces.size(); ++c) {
-      const ContactFrame frame = frame_of(assembly, assembly.contacts[c]);
+      const ContactFrame frame = frame_of(assembly, c);
       const double n[] = {frame.normal.x, frame.normal.y};
       double expected[] = {0, 0};
       for (int i = 0; i < 2; ++i)

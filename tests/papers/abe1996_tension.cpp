@@ -23,8 +23,8 @@ using std::numbers::sqrt3;
 
 namespace {
 
-constexpr double a = 0.005;
-constexpr double kN = 1e9;
+constexpr double disc_radius = 0.005;
+constexpr double stiffness = 1e9;
 constexpr double pull = 1e6;
 
 struct Run {
@@ -37,9 +37,9 @@ struct Run {
 Run run_tension(int columns, int rows, double ratio, GaugePlacement gauge = GaugePlacement::centre,
                 Rotation rotation = Rotation::from_scene) {
   Run run;
-  run.assembly = hexagonal_lattice({.columns = columns, .rows = rows, .radius = a, .periodic = false});
+  run.assembly = hexagonal_lattice({.columns = columns, .rows = rows, .radius = disc_radius, .periodic = false});
   const TensionTest test{.stress = pull, .gauge = gauge};
-  const ContactSprings springs(SpringConstants{kN, ratio * kN});
+  const ContactSprings springs(SpringConstants{stiffness, ratio * stiffness});
   run.setup = tension_setup(run.assembly, test);
   run.equilibrium = solve_equilibrium(run.assembly, springs, run.setup.supports, run.setup.loads,
                                       {.rotation = rotation, .solver = {}});
@@ -111,7 +111,7 @@ TEST_CASE("a_long_strip_bears_its_load_on_a_known_share_of_its_height") {
   const int rows = GENERATE(5, 6, 9);
   for (const double ratio : {0.1, 0.5, 1.0}) {
     const Run run = run_tension(20 * rows, rows, ratio);
-    const double height = sqrt3 * a * bearing_rows(rows, ratio);
+    const double height = sqrt3 * disc_radius * bearing_rows(rows, ratio);
     const double stiffness = run.result.stiffness_ratio * run.setup.height / height;
     CAPTURE(rows, ratio, run.result.poisson_ratio, stiffness, run.equilibrium.relative_residual);
     CHECK(run.result.poisson_ratio == Approx(poisson_ratio_of_ratio(ratio)).margin(1e-10));
@@ -125,10 +125,12 @@ TEST_CASE("stress_is_uniform_and_uniaxial_in_a_strip_away_from_its_ends") {
     const Run run = run_tension(columns, rows, ratio);
     const auto stresses = disc_stresses(run.assembly, run.equilibrium.contact_forces);
     const Tensor2 expected{pull * rows / bearing_rows(rows, ratio), 0, 0, 0};
-    const double middle = columns * a;
-    const auto near_middle = [&](std::size_t disc) { return std::abs(run.assembly.centres[disc].x - middle) < 10 * a; };
+    const double middle = columns * disc_radius;
+    const auto near_middle = [&](std::size_t disc) {
+      return std::abs(run.assembly.centres[disc].x - middle) < 10 * disc_radius;
+    };
     const double lowest = 1.01 * run.assembly.centres.front().y;
-    const double highest = run.assembly.centres.back().y - 0.01 * a;
+    const double highest = run.assembly.centres.back().y - 0.01 * disc_radius;
     double worst = 0;
     for (std::size_t disc = 0; disc < stresses.size(); ++disc) {
       const double y = run.assembly.centres[disc].y;

@@ -11,7 +11,7 @@ using namespace fujioka2005;
 
 namespace {
 
-constexpr double step = 1e-3;
+constexpr double rest_step = 1e-3;
 
 /// Means over the last steps.
 struct Late {
@@ -21,7 +21,7 @@ struct Late {
 
 Late settle(const PairProperties& pair, NormalLaw law, int balls, int steps) {
   const GrainScene scene = column(pair, balls);
-  GrainSimulation run = start(scene, law, step);
+  GrainSimulation run = start(scene, law, rest_step);
   run.advance(steps);
   constexpr int watched = 1000;
   Late late;
@@ -31,8 +31,8 @@ Late settle(const PairProperties& pair, NormalLaw law, int balls, int steps) {
     for (const Grain& grain : grains) late.speed += dot(grain.velocity, grain.velocity) / (watched * balls);
     late.overlap += (0.5 * diameter - grains[0].position.y) / watched;
   }
-  late.speed = std::sqrt(late.speed) / (gravity * step);
-  late.overlap *= pair.dimensionless / (balls * gravity * step * step);
+  late.speed = std::sqrt(late.speed) / (gravity * rest_step);
+  late.overlap *= pair.dimensionless / (balls * gravity * rest_step * rest_step);
   return late;
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("balls_that_lose_nothing_keep_their_energy_by_exact_flow_better_than_b
   // (kinetic + elastic + potential)/(its start), the potential over the floor
   const auto change = [](NormalLaw law) {
     const GrainScene scene = column(pair_of(law, 1), 5);
-    GrainSimulation run = start(scene, law, step);
+    GrainSimulation run = start(scene, law, rest_step);
     double start_height = 0;
     for (int k = 1; k <= 5; ++k) start_height += k * drop * diameter;
     const double start_energy = scene.grains[0].inertia.mass * gravity * start_height;

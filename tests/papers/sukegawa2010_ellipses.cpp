@@ -21,7 +21,7 @@ using namespace equidem;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 struct TwoEllipses {
   Ellipse i, j;

@@ -22,7 +22,7 @@
 namespace equidem {
 namespace {
 
-struct Options {
+struct CalibrateVerb {
   CommonOptions common;
   std::optional<std::filesystem::path> springs;  ///< where the springs file goes
 
@@ -34,7 +34,7 @@ struct Options {
 };
 
 /// Before the computation: all files can be written, each to a place of its own.
-void check_outputs(const Options& options) {
+void check_outputs(const CalibrateVerb& options) {
   const CommonOptions& common = options.common;
   const OutputPlan plan(common);
   plan.expect_json();
@@ -181,8 +181,8 @@ void add_calibrated(JsonObject& object, const Calibrated& c) {
   object.set("mean_field", guess);
 }
 
-int dry_run(const CommonOptions& options, const Problem& problem) {
-  const Effects effects = derive_effects(problem.springs.springs, problem.resolved.rotation);
+int dry_run_calibration(const CommonOptions& options, const Problem& problem) {
+  const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
   const SolveEstimate size = estimate_solve(problem.assembly, problem.springs.springs, {}, problem.options());
   const std::string report = describe_problem(problem, effects) +
                              report_line("factorizations",
@@ -205,7 +205,7 @@ int dry_run(const CommonOptions& options, const Problem& problem) {
 }
 
 /// The case with springs that are not known yet.
-Problem problem_of(Case resolved) {
+Problem problem_with_material(Case resolved) {
   if (!resolved.material) {
     throw Error(ErrorKind::bad_input, "there is no [material]", "calibration looks for the springs that stand for it",
                 "Replace the springs by [material] with the moduli wanted", resolved.document.where());
@@ -218,12 +218,12 @@ Problem problem_of(Case resolved) {
   return {std::move(resolved), std::move(assembly), std::move(unknown), {}, {}, {}, std::move(times)};
 }
 
-int calibrate(const Options& options) {
+int calibrate(const CalibrateVerb& options) {
   const CommonOptions& common = options.common;
   check_outputs(options);
-  Problem problem = problem_of(read_case(common));
+  Problem problem = problem_with_material(read_case(common));
   const Case& resolved = problem.resolved;
-  if (common.dry_run) return dry_run(common, problem);
+  if (common.dry_run) return dry_run_calibration(common, problem);
 
   Calibrated calibrated{.problem = problem,
                         .found = calibrate(problem.assembly, resolved.material->moduli, calibrate_options(resolved)),
@@ -243,7 +243,7 @@ int calibrate(const Options& options) {
   if (path) write_file(*path, file, common.overwrite);
   if (common.out) write_file(*common.out / "case.toml", to_toml(resolved, *common.out), common.overwrite);
 
-  const Effects effects = derive_effects(problem.springs.springs, resolved.rotation);
+  const Effects effects = derive_effects(problem.assembly, problem.springs.springs, resolved.rotation);
   std::string report = describe_problem(problem, effects) + describe_calibrated(calibrated);
   report += path ? report_line("springs file", path->string()) : "\nsprings file (--springs FILE writes it):\n" + file;
   JsonObject object;
@@ -258,7 +258,7 @@ int calibrate(const Options& options) {
 }  // namespace
 
 Run declare_calibrate(CLI::App& command) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CalibrateVerb>();
   add_common_options(command, options->common);
   command.add_option("--springs", options->springs, "write the springs to this file, for springs = \"FILE\"")
       ->type_name("FILE");

@@ -32,8 +32,7 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_option("CASE", options.case_file, "the case file (TOML); 'equidem help case' lists its keys")
       ->required()
       ->type_name("FILE");
-  command
-      .add_option("--set", options.set, "set a key of the case, as springs.kT=0.3e9; KEY=none takes it out; repeatable")
+  command.add_option("--set", options.set, "set a key of the case, as springs.kT=0.3e9; KEY=none: take it out")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
   command.add_option("--seed", options.seed, "short for --set assembly.seed=S")->type_name("S");

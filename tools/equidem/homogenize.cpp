@@ -30,7 +30,7 @@
 namespace equidem {
 namespace {
 
-struct Options {
+struct HomogenizeVerb {
   CommonOptions common;
   bool resume = false;
   std::optional<double> accuracy;
@@ -167,8 +167,7 @@ std::vector<ContactForce> state_forces(const Problem& problem, const Tensor2& gr
   std::vector<ContactForce> forces = affine_contact_forces(assembly, problem.springs.springs, gradient, 0);
   for (std::size_t c = 0; c < forces.size(); ++c) {
     const Contact& contact = assembly.contacts[c];
-    const ContactDeformation d =
-        deformation(frame_of(assembly, contact), fluctuations[contact.i], fluctuations[contact.j]);
+    const ContactDeformation d = deformation(frame_of(assembly, c), fluctuations[contact.i], fluctuations[contact.j]);
     const ContactForce f = linear_spring_force(problem.springs.springs[c], d);
     forces[c].normal += f.normal;
     forces[c].tangential += f.tangential;
@@ -218,8 +217,8 @@ void write_states(const CommonOptions& options, const Homogenized& homogenized) 
   }
 }
 
-int dry_run(const CommonOptions& options, const Problem& problem) {
-  const Effects effects = derive_effects(problem.springs.springs, problem.resolved.rotation);
+int dry_run_homogenization(const CommonOptions& options, const Problem& problem) {
+  const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
   const SolveEstimate size = estimate_solve(problem.assembly, problem.springs.springs, {}, problem.options());
   const auto boundaries = boundaries_of(problem);
   std::string names;
@@ -246,7 +245,7 @@ int dry_run(const CommonOptions& options, const Problem& problem) {
   return 0;
 }
 
-int homogenize(const Options& options) {
+int homogenize(const HomogenizeVerb& options) {
   const CommonOptions& common = options.common;
   Case resolved = read_case(common);
   refuse_dry_run_with_accuracy(common, options.accuracy.has_value());
@@ -263,7 +262,7 @@ int homogenize(const Options& options) {
   }
   check_outputs(common, resolved.output);
   const Problem problem = problem_of(std::move(resolved));
-  if (common.dry_run) return dry_run(common, problem);
+  if (common.dry_run) return dry_run_homogenization(common, problem);
 
   Homogenized homogenized = homogenize(problem);
   std::optional<ReachedAccuracy> reached;
@@ -301,19 +300,18 @@ int homogenize(const Options& options) {
 }  // namespace
 
 Run declare_homogenize(CLI::App& command) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<HomogenizeVerb>();
   add_common_options(command, options->common);
-  command.add_flag("--resume", options->resume,
-                   "with [ensemble]: keep the samples that lie in --out, compute the others");
+  command.add_flag("--resume", options->resume, "with [ensemble]: keep the samples in --out, compute the others");
   add_accuracy_option(
       command, options->accuracy,
-      "random cells: the size and number that tell the moduli to X; else: fail unless the error is below X");
+      "random cells: the size and number that tell the moduli to X;\nelse: fail unless the error is below X");
   command.footer(
       "Examples:\n"
       "  equidem homogenize data/cases/random_cell.toml\n"
       "  equidem homogenize data/cases/random_cell.toml --set effects.rotation=restrained\n"
       "  equidem homogenize data/cases/random_cell.toml --set springs.kT=0.2e9 --out result --json -\n"
-      "  equidem homogenize data/cases/random_cell.toml --accuracy 0.01     as many cells, as large as 1 % needs");
+      "  equidem homogenize data/cases/random_cell.toml --accuracy 0.01   as many cells as 1 % needs");
   return [options] { return homogenize(*options); };
 }
 

@@ -98,7 +98,7 @@ void add_homogenized(JsonObject& object, const Homogenized& h) {
   const EffectiveStiffness& r = h.result;
   add_problem(object, h.problem);
   object.set("boundary", to_string(r.boundary)).set("stiffness", rows_of(r.stiffness));
-  if (!r.effects.rotation && r.effects.tangential_springs && r.boundary != Boundary::traction) {
+  if (r.effects.restrained && r.boundary != Boundary::traction) {
     const DisplacementOperator seen = displacement_operator(r);
     JsonObject waves;
     add_moduli(waves, effective_moduli(isotropic_stiffness(seen.bulk_modulus_2d, seen.shear_modulus)));

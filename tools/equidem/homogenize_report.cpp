@@ -225,8 +225,7 @@ std::string describe_homogenized(const Homogenized& h) {
   append_moduli(out, h);
   append_fabric(out, h);
   append_table(out, h);
-  if (!r.effects.rotation && r.effects.tangential_springs && r.boundary != Boundary::traction)
-    append_restrained(out, r);
+  if (r.effects.restrained && r.boundary != Boundary::traction) append_restrained(out, r);
   out += format("\n{}", report_line("unknowns", format("{}, solver {}, factor {}", r.unknowns, r.solver,
                                                        readable_bytes(r.factor_bytes))));
   std::string stages;

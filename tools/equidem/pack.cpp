@@ -32,10 +32,8 @@ void check_outputs(const CommonOptions& common, const PackCase& resolved) {
   const OutputPlan plan(common);
   plan.expect_json();
   for (const char* name : {"result.json", "case.toml"}) plan.expect(name);
-  if (resolved.packing.shape.is_disc()) {
-    plan.expect("assembly.json");
-    if (!resolved.packing.box.periodic()) plan.expect("assembly_with_walls.json");
-  }
+  plan.expect("assembly.json");
+  if (!resolved.packing.box.periodic()) plan.expect("assembly_with_walls.json");
   if (resolved.csv) {
     plan.expect("grains.csv");
     if (resolved.packing.shape.kind == PackingShape::Kind::bonded_pair) plan.expect("bonds.csv");
@@ -64,12 +62,10 @@ void write_files(const CommonOptions& common, const PackCase& resolved, const Gr
     write_grain_csv(folder / "grains.csv", {packing.grains, packing.clumps, groups, densities}, common.overwrite);
     if (!packing.bonds.empty()) write_bond_csv(folder / "bonds.csv", packing.bonds, {}, common.overwrite);
   }
-  if (packing.shape == PackingShape::Kind::disc) {
-    write_assembly(folder / "assembly.json", network_of(packing, settling.springs), common.overwrite);
-    if (!packing.box.periodic()) {
-      const HeldNetwork held = held_network_of(packing, settling.springs);
-      if (!held.discs.empty()) write_assembly(folder / "assembly_with_walls.json", held.assembly, common.overwrite);
-    }
+  write_assembly(folder / "assembly.json", network_of(packing, settling.springs), common.overwrite);
+  if (!packing.box.periodic()) {
+    const HeldNetwork held = held_network_of(packing, settling.springs);
+    if (!held.bodies.empty()) write_assembly(folder / "assembly_with_walls.json", held.assembly, common.overwrite);
   }
   if (resolved.picture) {
     const std::vector<GrainWall> walls = walls_of(packing.box);
@@ -139,8 +135,12 @@ Run declare_pack(CLI::App& command) {
   add_common_options(command, *common);
   command.get_option("--seed")->description("short for --set packing.seed=S");
   command.footer(
+      "With --out: grains.csv for 'equidem run', and assembly.json, the contacts with their springs for homogenize,\n"
+      "stability, calibrate and solve; where walls hold the bodies also assembly_with_walls.json, whose group "
+      "\"walls\"\n"
+      "is to be held. A pair tied by dashpots counts there as one rigid body.\n"
       "Examples:\n"
-      "  equidem pack data/cases/pack_jammed.toml --out jammed      a cell for homogenize, stability, calibrate\n"
+      "  equidem pack data/cases/pack_jammed.toml --out jammed   a cell for homogenize, stability\n"
       "  equidem pack data/cases/pack_soil.toml --set packing.grains=300 --out soil      discs that fell\n"
       "  equidem pack data/cases/pack_ellipses.toml --out ellipses\n"
       "  equidem pack data/cases/pack_pairs.toml --set packing.shape.kind=bonded_pair --out pairs");

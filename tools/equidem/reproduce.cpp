@@ -256,26 +256,25 @@ Run declare_reproduce(CLI::App& command) {
   add("--columns", options->block.columns, "abe1996: discs in a long row of the block");
   add("--rows", options->block.rows, "abe1996: rows of the block");
   add("--gauge", options->gauge, "abe1996: where strains are read: centre, quarter or ends");
-  options->of_quick = command.add_flag("--quick", options->quick,
-                                       "all but abe1996: less of everything, seconds instead of minutes or hours");
+  options->of_quick =
+      command.add_flag("--quick", options->quick, "all but abe1996: less of everything, seconds instead of hours");
   command.footer(
       "abe1996: the tension test of Figs. 6 to 8, and the macroscopic stress of section 4.\n"
-      "abe1996_random: what the paper leaves open, the mean field (21), (22) and the correction (11) beside the exact\n"
-      "moduli of random assemblies, over disorder, kT/kN and weightings.\n"
-      "fujioka2005: Tables 1, 2 and Figs. 4 to 7, 10, 11 of normal contact in collisions, our law exact_flow beside "
-      "the\n"
-      "paper's, and what the paper does not try: coming to rest, time of computing for an accuracy.\n"
-      "sukegawa2010: chapter 8, a box of 3000 discs, ellipses or bonded pairs filled and shaken; void ratios over "
-      "seeds\n"
-      "beside the printed ones, surface, grains thrown, pictures, an animation; which shaking compacts best, and "
-      "whether\n"
+      "abe1996_random: what the paper leaves open, the mean field (21), (22) and the correction (11)\n"
+      "beside the exact moduli of random assemblies, over disorder, kT/kN and weightings.\n"
+      "fujioka2005: Tables 1, 2 and Figs. 4 to 7, 10, 11 of normal contact in collisions, our law\n"
+      "exact_flow beside the paper's, and what the paper does not try: coming to rest, time of computing\n"
+      "for an accuracy.\n"
+      "sukegawa2010: chapter 8, a box of 3000 discs, ellipses or bonded pairs filled and shaken; void\n"
+      "ratios over seeds beside the printed ones, surface, grains thrown, pictures, an animation; which\n"
+      "shaking compacts best, and whether "
       "the box resonates. Stopped, it goes on where it was when the same command is given again.\n\n"
       "Examples:\n"
-      "  equidem reproduce abe1996                          tables on the screen\n"
-      "  equidem reproduce abe1996 --out figures            and Figs. 7, 8, the error against size, a picture\n"
-      "  equidem reproduce abe1996_random --out figures     minutes; with --quick seconds\n"
-      "  equidem reproduce fujioka2005 --out figures        the same\n"
-      "  equidem reproduce sukegawa2010 --out box           an hour or more; with --quick a minute");
+      "  equidem reproduce abe1996                         tables on the screen\n"
+      "  equidem reproduce abe1996 --out figures           and Figs. 7, 8, the error against size\n"
+      "  equidem reproduce abe1996_random --out figures    minutes; with --quick seconds\n"
+      "  equidem reproduce fujioka2005 --out figures       the same\n"
+      "  equidem reproduce sukegawa2010 --out box          an hour or more; with --quick a minute");
   return [options] { return reproduce(*options); };
 }
 

@@ -27,13 +27,13 @@
 namespace equidem {
 namespace {
 
-struct Options {
+struct RunVerb {
   CommonOptions common;
   bool resume = false;
   std::optional<double> accuracy;
 };
 
-void check_outputs(const Options& options, const Case& resolved) {
+void check_outputs(const RunVerb& options, const Case& resolved) {
   const CommonOptions& common = options.common;
   if (options.resume && !common.out) {
     throw Error(ErrorKind::bad_input, "--resume without --out", "the checkpoint lies in that folder",
@@ -53,8 +53,8 @@ std::vector<ContactForce> forces_of(const Problem& problem, const std::vector<Di
   std::vector<ContactForce> forces(problem.assembly.contacts.size());
   for (std::size_t c = 0; c < forces.size(); ++c) {
     const Contact& contact = problem.assembly.contacts[c];
-    forces[c] = linear_spring_force(problem.springs.springs[c], deformation(frame_of(problem.assembly, contact),
-                                                                            motions[contact.i], motions[contact.j]));
+    forces[c] = linear_spring_force(problem.springs.springs[c],
+                                    deformation(frame_of(problem.assembly, c), motions[contact.i], motions[contact.j]));
   }
   return forces;
 }
@@ -92,7 +92,7 @@ int dry_run(const CommonOptions& common, const RunSetup& setup) {
   return 0;
 }
 
-int relax_to_rest(const Options& options, const RunSetup& setup) {
+int relax_to_rest(const RunVerb& options, const RunSetup& setup) {
   const CommonOptions& common = options.common;
   if (options.resume) {
     throw Error(ErrorKind::bad_input, "--resume of a run to rest", "it keeps no checkpoints: it ends where it ends",
@@ -113,25 +113,62 @@ int relax_to_rest(const Options& options, const RunSetup& setup) {
   return 0;
 }
 
-int run(Options options) {
-  CommonOptions& common = options.common;
+/// Makes all steps and delivers what came of them; false, and nothing delivered, where the step that the search proposed is too long.
+bool step_through(const RunVerb& options, const RunSetup& setup, StepSearch* search) {
+  const CommonOptions& common = options.common;
+  Simulation simulation(setup.simulation());
+  const RunResult result =
+      run_through(setup, simulation, {.folder = common.out, .overwrite = common.overwrite, .resume = options.resume});
+  if (search != nullptr && !search->accepts(simulation.motions(), result.seconds)) return false;
+  StageTimes times = setup.problem.times;
+  times.add("steps", result.seconds);
+  const bool overwrite = common.overwrite || options.resume;
+  if (common.out) {
+    Stopwatch watch;
+    write_state(common, setup, simulation.motions(), overwrite);
+    write_file(*common.out / "case.toml", to_toml(setup.problem.resolved, *common.out), overwrite);
+    write_energy_plot(*common.out, setup, result, overwrite);
+    times.add("files", watch.lap());
+  }
+  std::string report = describe_run_setup(setup, simulation) + describe_run(setup, simulation, result, times);
+  JsonObject object;
+  if (search != nullptr) report += describe_accuracy(search->reached());
+  add_common(object, "done", report, times, simulation.effects());
+  add_run(object, setup, simulation, result);
+  if (search != nullptr) add_accuracy(object, search->reached());
+  CommonOptions delivered = common;
+  delivered.overwrite = overwrite;
+  deliver(delivered, report, object);
+  if (common.out) say(common, format("written to {}", common.out->string()));
+  return true;
+}
+
+int run_to_accuracy(RunVerb options, double accuracy) {
+  if (options.resume)
+    bad_input("--resume and --accuracy exclude each other", "the step is that of the checkpoint",
+              "Leave one of them out");
+  check_outputs(options, read_case(options.common));
+  StepSearch search(options.common, accuracy);
+  while (!step_through(options, RunSetup(search.propose()), &search))
+    options.common.overwrite = true;  // what the step that was too long has left
+  return 0;
+}
+
+int run(const RunVerb& options) {
+  const CommonOptions& common = options.common;
   refuse_dry_run_with_accuracy(common, options.accuracy.has_value());
   if (describes_grains(common.case_file, common.set)) {
     if (options.accuracy) {
-      bad_input("--accuracy does not act on bodies that collide",
-                "their motions do not converge by one order with the step: impacts begin and end within it",
-                "'equidem study collision_laws' shows the error of each law against the step");
+      bad_input(
+          "--accuracy does not act on bodies that collide",
+          "their motions do not converge by one order with the step: impacts begin and end within it, and many of "
+          "them make the motion chaotic",
+          "Halve time_step and compare what is measured; 'equidem study collision_laws' shows the error of each "
+          "law against the step");
     }
     return run_grains(common, options.resume);
   }
-  std::optional<ReachedAccuracy> reached;
-  if (options.accuracy) {
-    if (options.resume)
-      bad_input("--resume and --accuracy exclude each other", "the step is that of the checkpoint",
-                "Leave one of them out");
-    check_outputs(options, read_case(common));
-    reached = choose_step(common, *options.accuracy);
-  }
+  if (options.accuracy) return run_to_accuracy(options, *options.accuracy);
   Case resolved = read_case(common);
   check_outputs(options, resolved);
   const bool goes_on = options.resume && resolved.run && resolved.run->duration;
@@ -139,47 +176,25 @@ int run(Options options) {
                        goes_on ? std::optional(kept_step(*common.out / "run.checkpoint.h5")) : std::nullopt);
   if (common.dry_run) return dry_run(common, setup);
   if (setup.run().until_rest) return relax_to_rest(options, setup);
-
-  Simulation simulation(setup.simulation());
-  const RunResult result =
-      run_through(setup, simulation, {.folder = common.out, .overwrite = common.overwrite, .resume = options.resume});
-  StageTimes times = setup.problem.times;
-  times.add("steps", result.seconds);
-  if (common.out) {
-    Stopwatch watch;
-    const bool overwrite = common.overwrite || options.resume;
-    write_state(common, setup, simulation.motions(), overwrite);
-    write_file(*common.out / "case.toml", to_toml(setup.problem.resolved, *common.out), overwrite);
-    write_energy_plot(*common.out, setup, result, overwrite);
-    times.add("files", watch.lap());
-  }
-  std::string report = describe_run_setup(setup, simulation) + describe_run(setup, simulation, result, times);
-  if (reached) report += describe_accuracy(*reached);
-  JsonObject object;
-  add_common(object, "done", report, times, simulation.effects());
-  add_run(object, setup, simulation, result);
-  if (reached) add_accuracy(object, *reached);
-  CommonOptions delivered = common;
-  delivered.overwrite = common.overwrite || options.resume;
-  deliver(delivered, report, object);
-  if (common.out) say(common, format("written to {}", common.out->string()));
+  step_through(options, setup, nullptr);
   return 0;
 }
 
 }  // namespace
 
 Run declare_run(CLI::App& command) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RunVerb>();
   add_common_options(command, options->common);
   command.add_flag("--resume", options->resume, "go on from the checkpoint in --out");
   add_accuracy_option(command, options->accuracy,
-                      "bonded discs: the time step that tells the displacements at the end to X");
+                      "bonded discs: the step that tells the displacements at the end to X");
   command.footer(
       "Examples:\n"
-      "  equidem run data/cases/run_tension.toml                    to rest: the answer of 'equidem solve'\n"
-      "  equidem run data/cases/run_pulse.toml --out result         frames for ParaView, histories, checkpoint\n"
+      "  equidem run data/cases/run_tension.toml                to rest: the answer of 'equidem solve'\n"
+      "  equidem run data/cases/run_pulse.toml --out result     frames for ParaView, histories, checkpoint\n"
       "  equidem run data/cases/run_pulse.toml --out result --resume --set run.duration=4e-3\n"
-      "  equidem run data/cases/grains_cradle.toml --out cradle     bodies that collide");
+      "  equidem run data/cases/run_pulse.toml --accuracy 0.01  the longest step that does\n"
+      "  equidem run data/cases/grains_cradle.toml --out cradle  bodies that collide");
   return [options] { return run(*options); };
 }
 

@@ -132,8 +132,8 @@ void add_problem(JsonObject& object, const Problem& problem) {
   }
 }
 
-int dry_run(const CommonOptions& options, const Problem& problem) {
-  const Effects effects = derive_effects(problem.springs.springs, problem.resolved.rotation);
+int dry_run_solution(const CommonOptions& options, const Problem& problem) {
+  const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
   StageTimes times = problem.times;
   Stopwatch watch;
   const SolveEstimate size =
@@ -162,18 +162,9 @@ ReachedAccuracy bound_of(const std::vector<SolvedCase>& results, double accuracy
   return solver_accuracy(accuracy, worst->equilibrium.error_bound, worst->equilibrium.condition, seconds);
 }
 
-int solve(CommonOptions options, const std::optional<double>& accuracy) {
-  refuse_dry_run_with_accuracy(options, accuracy.has_value());
-  std::optional<ReachedAccuracy> reached;
-  if (accuracy) {
-    check_outputs(options, read_case(options));
-    reached = choose_block(options, *accuracy);
-  }
-  Case resolved = read_case(options);
-  check_outputs(options, resolved);
-  const Problem problem = build_problem(std::move(resolved));
-  if (options.dry_run) return dry_run(options, problem);
-
+/// Solves and delivers; false, and nothing delivered, where the block that the search proposed is too small.
+bool solve_once(const CommonOptions& options, const Problem& problem, const std::optional<double>& accuracy,
+                BlockSearch* search) {
   EquilibriumOptions solver_options = problem.options();
   solver_options.error_bound = true;
   const EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, solver_options);
@@ -187,6 +178,13 @@ int solve(CommonOptions options, const std::optional<double>& accuracy) {
       if (first || stage == "solve" || stage == "refine") times.add(stage, seconds);
     }
   }
+  std::optional<ReachedAccuracy> reached;
+  if (search != nullptr) {
+    if (!search->accepts(*results.front().tension, times.total())) return false;
+    reached = search->reached();
+  } else if (accuracy) {
+    reached = bound_of(results, *accuracy, times.total());
+  }
   Stopwatch watch;
   if (options.out) {
     for (std::size_t k = 0; k < results.size(); ++k)
@@ -197,7 +195,6 @@ int solve(CommonOptions options, const std::optional<double>& accuracy) {
 
   const Effects& effects = solver.effects();
   std::string report = describe_problem(problem, effects) + describe_results(problem, results, times);
-  if (accuracy && !reached) reached = bound_of(results, *accuracy, times.total());
   if (reached) report += describe_accuracy(*reached);
   JsonObject object;
   add_common(object, results.front().status(), report, times, effects);
@@ -217,6 +214,22 @@ int solve(CommonOptions options, const std::optional<double>& accuracy) {
   if (reached) add_accuracy(object, *reached);
   deliver(options, report, object);
   if (options.out) say(options, format("written to {}", options.out->string()));
+  return true;
+}
+
+int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
+  refuse_dry_run_with_accuracy(options, accuracy.has_value());
+  Case resolved = read_case(options);
+  check_outputs(options, resolved);
+  if (accuracy && BlockSearch::serves(resolved)) {
+    BlockSearch search(options, resolved, *accuracy);
+    while (!solve_once(options, build_problem(search.propose()), accuracy, &search)) {
+    }
+    return 0;
+  }
+  const Problem problem = build_problem(std::move(resolved));
+  if (options.dry_run) return dry_run_solution(options, problem);
+  solve_once(options, problem, accuracy, nullptr);
   return 0;
 }
 
@@ -226,14 +239,15 @@ Run declare_solve(CLI::App& command) {
   const auto options = std::make_shared<CommonOptions>();
   const auto accuracy = std::make_shared<std::optional<double>>();
   add_common_options(command, *options);
-  add_accuracy_option(command, *accuracy,
-                      "tension test of a lattice: the size that tells nu to X; else: fail unless the error is below X");
+  add_accuracy_option(
+      command, *accuracy,
+      "tension test of a lattice: the size that tells nu to X;\nelse: fail unless the error is below X");
   command.footer(
       "Examples:\n"
       "  equidem solve data/cases/abe1996_fig6.toml\n"
       "  equidem solve data/cases/cantilever.toml --out result      tables, picture, files for ParaView\n"
       "  equidem solve data/cases/abe1996_fig6.toml --set springs.kT=0 --json -\n"
-      "  equidem solve data/cases/abe1996_fig6.toml --accuracy 1e-3    the size of the block that tells nu to 1e-3");
+      "  equidem solve data/cases/abe1996_fig6.toml --accuracy 1e-3    as large a block as nu to 1e-3 needs");
   return [options, accuracy] { return solve(*options, *accuracy); };
 }
 

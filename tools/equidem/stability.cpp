@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "equidem/assembly/body_inertia.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 
@@ -17,10 +18,10 @@
 namespace equidem {
 namespace {
 
-int dry_run(const CommonOptions& options, const Problem& problem) {
+int dry_run_survey(const CommonOptions& options, const Problem& problem) {
   const Assembly& assembly = problem.assembly;
   const ContactSprings& springs = problem.springs.springs;
-  const Effects effects = derive_effects(springs, problem.resolved.rotation);
+  const Effects effects = derive_effects(assembly, springs, problem.resolved.rotation);
   StageTimes times = problem.times;
   Stopwatch watch;
   const SolveEstimate size = estimate_solve(assembly, springs, problem.supports, problem.options());
@@ -35,7 +36,7 @@ int dry_run(const CommonOptions& options, const Problem& problem) {
                               counted(static_cast<std::int64_t>(cell.size()), "disc"))
                      : format("none: the smallest cell has {} discs, more than {}", cell.size(), most_discs_of_survey);
   }
-  const auto inertia = inertia_of(assembly.radii, density_of(problem.resolved), problem.resolved.assembly.body);
+  const auto inertia = inertia_of(assembly, density_of(problem.resolved), problem.resolved.assembly.body);
   check_magnitudes(assembly, springs, inertia);
   const double step = 2 / std::sqrt(element_bound(assembly, springs, inertia, effects.rotation));
   times.add("analysis", watch.lap());
@@ -68,7 +69,7 @@ int stability(const CommonOptions& options) {
   for (const char* name : {"result.json", "case.toml"}) plan.expect(name);
   for (const std::string& name : survey_files()) plan.expect(name);
   const Problem problem = stability_problem(resolved);
-  if (options.dry_run) return dry_run(options, problem);
+  if (options.dry_run) return dry_run_survey(options, problem);
   const Stability result = analyze_stability(problem);
   const std::string report = describe_stability(result);
   if (options.out) {
@@ -86,13 +87,12 @@ Run declare_stability(CLI::App& command) {
   const auto options = std::make_shared<CommonOptions>();
   add_common_options(command, *options);
   command.footer(
-      "A periodic assembly needs neither supports nor loads; a free one is judged with its [[support]] or [test], or "
-      "as a "
-      "free body.\n"
+      "A periodic assembly needs neither supports nor loads; a free one is judged with its [[support]]\n"
+      "or [test], or as a free body.\n"
       "Examples:\n"
-      "  equidem stability data/cases/abe1996_fig6.toml             free edges: stable down to kT/kN = -0.2650\n"
-      "  equidem stability cell.toml --out waves                    dispersion, critical kT/kN over the zone\n"
-      "  equidem stability cell.toml --set springs.kT=-0.1e9        stable in statics, but not in motion");
+      "  equidem stability data/cases/abe1996_fig6.toml         free edges: stable down to kT/kN = -0.2650\n"
+      "  equidem stability cell.toml --out waves                dispersion, critical kT/kN over the zone\n"
+      "  equidem stability cell.toml --set springs.kT=-0.1e9    stable in statics, but not in motion");
   return [options] { return stability(*options); };
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "equidem/assembly/body_inertia.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
@@ -36,14 +37,15 @@ CriticalMotion critical_of_survey(const WaveSurvey& survey) {
       "all waves of the infinite assembly: {} wave vectors, all points of symmetry, long waves (q -> 0) along all "
       "directions, and a climb from the best",
       survey.critical.on_grid.size());
-  if (critical.ratio <= -1) critical = {-std::numeric_limits<double>::infinity(), {}, {}, {}, critical.searched};
+  if (critical.ratio <= -1)
+    critical = {.ratio = -std::numeric_limits<double>::infinity(), .searched = critical.searched};
   return critical;
 }
 
 /// Motions that repeat with the cell, and those that change sign from one cell to the next.
 CriticalMotion critical_of_large_cell(const Problem& problem, bool rotation) {
   const Vec2 period = *problem.assembly.period;
-  CriticalMotion critical{-std::numeric_limits<double>::infinity(), {}, {}, {}, {}};
+  CriticalMotion critical{.ratio = -std::numeric_limits<double>::infinity()};
   const bool antiperiodic = problem.assembly.size() <= most_discs_of_antiperiodic;
   std::string searched;
   for (const auto& [x, y] :
@@ -75,6 +77,11 @@ CriticalMotion critical_of_large_cell(const Problem& problem, bool rotation) {
 
 CriticalMotion critical_of(const Stability& s, bool rotation) {
   const Problem& problem = s.problem;
+  if (!on_lines_of_centres(problem.assembly))
+    return {.sought = false,
+            .searched =
+                "contacts lie off the lines of centres, where normal springs resist rotations too, so that no "
+                "single kT/kN tells what gives way"};
   if (s.survey) return critical_of_survey(*s.survey);
   if (problem.assembly.periodic()) return critical_of_large_cell(problem, rotation);
   CriticalMotion critical;
@@ -116,7 +123,7 @@ double density_of(const Case& resolved) {
 
 std::string Stability::status() const {
   if (mechanisms.count() > 0 || (survey && !survey->free_waves.empty())) return "mechanism";
-  const bool below = ratio && *ratio < 0 && *ratio <= critical.ratio;
+  const bool below = critical.sought && ratio && *ratio < 0 && *ratio <= critical.ratio;
   return inertia.unstable_modes != 0 || below ? "unstable" : "stable";
 }
 
@@ -145,12 +152,12 @@ Stability analyze_stability(const Problem& problem) {
   if (assembly.contacts.empty())
     bad_input("no contact joins any disc", "nothing resists any motion", "Give the assembly contacts");
   const Rotation rotation = problem.resolved.rotation;
-  Stability s(problem, derive_effects(springs, rotation));
+  Stability s(problem, derive_effects(assembly, springs, rotation));
   s.times = problem.times;
   s.density = density_of(problem.resolved);
   s.density_assumed = !problem.resolved.assembly.density.has_value();
   s.ratio = common_ratio(problem);
-  const std::vector<Inertia> inertia = inertia_of(assembly.radii, s.density, problem.resolved.assembly.body);
+  const std::vector<Inertia> inertia = inertia_of(assembly, s.density, problem.resolved.assembly.body);
   check_magnitudes(assembly, springs, inertia);
 
   Stopwatch watch;

@@ -23,11 +23,12 @@ namespace equidem {
 
 /// The critical ratio and which motion loses its stiffness there.
 struct CriticalMotion {
-  double ratio = 0;                   ///< negative infinity: none down to kT = -kN
-  std::optional<ZonePoint> wave;      ///< of a periodic assembly
-  std::vector<ZonePoint> equivalent;  ///< all points of symmetry that reach it
-  std::string motion;                 ///< in words; empty where it is a wave
-  std::string searched;               ///< among which motions, for people
+  bool sought = true;                      ///< false: contacts lie off the lines of centres
+  double ratio = 0;                        ///< negative infinity: none down to kT = -kN
+  std::optional<ZonePoint> wave = {};      ///< of a periodic assembly
+  std::vector<ZonePoint> equivalent = {};  ///< all points of symmetry that reach it
+  std::string motion = {};                 ///< in words; empty where it is a wave
+  std::string searched = {};               ///< among which motions, for people
 };
 
 struct Stability {

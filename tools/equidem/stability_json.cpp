@@ -30,7 +30,11 @@ std::vector<double> components(Vec2 v) {
 
 void add_critical(JsonObject& object, const Stability& s) {
   const CriticalMotion& c = s.critical;
-  object.set("critical_ratio", c.ratio);
+  if (c.sought) {
+    object.set("critical_ratio", c.ratio);
+  } else {
+    object.set_null("critical_ratio");
+  }
   if (c.wave) {
     object.set("critical_wave_vector", components(c.wave->q));
     object.set("critical_wave_vector_name", c.wave->name);
@@ -48,7 +52,7 @@ void add_critical(JsonObject& object, const Stability& s) {
   object.set("critical_ratio_searched", c.searched);
   if (s.ratio) {
     object.set("ratio", *s.ratio);
-    object.set("ratio_margin", *s.ratio - c.ratio);
+    if (c.sought) object.set("ratio_margin", *s.ratio - c.ratio);
   } else {
     object.set_null("ratio");
   }
@@ -121,7 +125,7 @@ void add_waves(JsonObject& object, const Stability& s) {
   } else {
     object.set_null("rotational_gap");
   }
-  object.set("wave_vectors", s.survey->critical.on_grid.size());
+  object.set("wave_vectors", s.survey->highest.on_grid.size());
 }
 
 Table dispersion(const WaveSurvey& survey) {
@@ -137,7 +141,7 @@ Table dispersion(const WaveSurvey& survey) {
   Table table;
   table.add("point", names).add("path_rad_per_m", along).add("qx_rad_per_m", qx).add("qy_rad_per_m", qy);
   for (std::size_t b = 0; b < branches.size(); ++b) table.add(format("omega_{}_rad_per_s", b + 1), branches[b]);
-  table.add("critical_ratio", ratio);
+  if (survey.ratio_sought) table.add("critical_ratio", ratio);
   return table;
 }
 
@@ -250,7 +254,7 @@ std::vector<std::string> survey_files() {
 void write_survey(const std::filesystem::path& folder, const Stability& s, bool overwrite) {
   if (!s.survey) return;
   write_csv(folder / dispersion_table, dispersion(*s.survey), overwrite);
-  write_csv(folder / ratio_table, critical_over_zone(*s.survey), overwrite);
+  if (s.survey->ratio_sought) write_csv(folder / ratio_table, critical_over_zone(*s.survey), overwrite);
   write_plot(folder, dispersion_plot, plot_of_dispersion(s), overwrite);
   const auto& path = s.survey->path;
   if (std::any_of(path.begin(), path.end(), [](const PathPoint& p) { return std::isfinite(p.critical_ratio); }))

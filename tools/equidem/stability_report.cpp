@@ -78,6 +78,13 @@ void append_inertia(std::string& out, const Stability& s) {
 
 void append_critical(std::string& out, const Stability& s) {
   const CriticalMotion& c = s.critical;
+  if (!c.sought) {
+    out += report_line("critical kT/kN", "not sought: " + c.searched);
+    out += report_line("this case", s.status() == "stable"     ? "stable in statics"
+                                    : s.status() == "unstable" ? "UNSTABLE in statics"
+                                                               : "a mechanism: see above");
+    return;
+  }
   if (!std::isfinite(c.ratio)) {
     out += report_line("critical kT/kN", "none: stable in statics down to kT = -kN");
   } else {

@@ -35,15 +35,15 @@ struct SweepOptions {
   bool resume = false;
 };
 
-[[noreturn]] void usage_error(const std::string& problem, const std::string& why, const std::string& remedy) {
+[[noreturn]] void refuse_sweep(const std::string& problem, const std::string& why, const std::string& remedy) {
   bad_input(problem, why, remedy);
 }
 
 std::vector<double> values_of(const SweepOptions& options) {
   const bool range = options.from && options.to;
   if (range == !options.values.empty() || options.from.has_value() != options.to.has_value())
-    usage_error("the values of the sweep are not clear", "either a list or a range is needed",
-                "Give --values a,b,c or --from A --to B --steps N");
+    refuse_sweep("the values of the sweep are not clear", "either a list or a range is needed",
+                 "Give --values a,b,c or --from A --to B --steps N");
   std::vector<double> values = options.values;
   const int intervals = options.steps - 1;
   for (int k = 0; range && k < options.steps; ++k) {
@@ -56,7 +56,7 @@ std::vector<double> values_of(const SweepOptions& options) {
   }
   for (const double value : values)
     if (!std::isfinite(value))
-      usage_error(format("{} is among the values", value), "a sweep needs finite numbers", "Leave it out");
+      refuse_sweep(format("{} is among the values", value), "a sweep needs finite numbers", "Leave it out");
   return values;
 }
 
@@ -99,7 +99,7 @@ SweepPoint compute(const SweepOptions& options, const Case& base, double value, 
     common.set.push_back(override_of(options, base, value));
     const auto problem = build(read_case(common));
     if (problem->load_cases.size() > 1)
-      usage_error("the case has several load cases", "a sweep shows one", "Leave one [[load]] case in the file");
+      refuse_sweep("the case has several load cases", "a sweep shows one", "Leave one [[load]] case in the file");
     const EquilibriumSolver solver(problem->assembly, problem->springs.springs, problem->supports, problem->options());
     const SolvedCase result = solve_case(*problem, solver, problem->load_cases.front());
     effects = solver.effects();
@@ -128,7 +128,7 @@ SweepPoint compute(const SweepOptions& options, const Case& base, double value, 
 
 constexpr const char* table_name = "sweep.csv";
 constexpr const char* case_name = "case.toml";
-constexpr std::array plot_names{"poisson_ratio", "stiffness_ratio"};
+constexpr std::array curve_names{"poisson_ratio", "stiffness_ratio"};
 
 std::string axis_label(const std::string& key) {
   return key == "ratio" ? "kT/kN" : key;
@@ -143,9 +143,9 @@ std::string plot_curves(const SweepOptions& options, const Case& base, const std
     double SweepPoint::*theory;
   };
   const std::array curves{
-      Curve{plot_names[0], "Poisson's ratio (plane strain)", &SweepPoint::poisson_ratio,
+      Curve{curve_names[0], "Poisson's ratio (plane strain)", &SweepPoint::poisson_ratio,
             &SweepPoint::theory_poisson_ratio},
-      Curve{plot_names[1], "2G/((1 - nu) kN)", &SweepPoint::stiffness_ratio, &SweepPoint::theory_stiffness_ratio}};
+      Curve{curve_names[1], "2G/((1 - nu) kN)", &SweepPoint::stiffness_ratio, &SweepPoint::theory_stiffness_ratio}};
   std::vector<SweepPoint> ordered = points;
   std::stable_sort(ordered.begin(), ordered.end(),
                    [](const SweepPoint& a, const SweepPoint& b) { return a.value < b.value; });
@@ -188,7 +188,7 @@ std::string plot_curves(const SweepOptions& options, const Case& base, const std
 std::vector<SweepPoint> points_to_keep(const SweepOptions& options, const Case& base) {
   if (!options.resume) return {};
   if (!options.common.out)
-    usage_error("--resume has nothing to continue", "the points done lie in the folder of --out", "Add --out DIR");
+    refuse_sweep("--resume has nothing to continue", "the points done lie in the folder of --out", "Add --out DIR");
   const auto table = *options.common.out / table_name;
   if (!std::filesystem::exists(table)) return {};
   if (read_file(*options.common.out / case_name) != to_toml(base, *options.common.out)) {
@@ -204,7 +204,7 @@ void check_outputs(const SweepOptions& options) {
   common.overwrite = common.overwrite || options.resume;
   const OutputPlan plan(common);
   for (const char* name : {table_name, case_name, "result.json"}) plan.expect(name);
-  for (const char* name : plot_names)
+  for (const char* name : curve_names)
     for (const char* end : {".csv", ".gp", ".svg", ".png"}) plan.expect(std::string(name) + end);
   OutputPlan(options.common).expect_json();
 }
@@ -223,8 +223,8 @@ std::vector<SweepPoint> merged(std::vector<SweepPoint> points, const std::vector
 void check_key(const SweepOptions& options, const Case& base, double first) {
   if (options.key == "ratio") {
     if (!base.springs)
-      usage_error("--key ratio needs springs", "it changes kT at the kN of the case file",
-                  "Give [springs] in place of [material]");
+      refuse_sweep("--key ratio needs springs", "it changes kT at the kN of the case file",
+                   "Give [springs] in place of [material]");
     return;
   }
   if (is_known_key(options.key)) return;
@@ -235,7 +235,7 @@ void check_key(const SweepOptions& options, const Case& base, double first) {
 
 int dry_run(const SweepOptions& options, const Case& base, const std::vector<double>& values) {
   const Problem problem = build_problem(base);
-  const Effects effects = derive_effects(problem.springs.springs, problem.resolved.rotation);
+  const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
   const std::string report =
       format("{} of {}, each about as large as this one:\n\n", counted(static_cast<long long>(values.size()), "point"),
              options.key) +
@@ -291,7 +291,7 @@ Progressed compute_points(const SweepOptions& options, const Case& base, const s
 
 int sweep(const SweepOptions& options) {
   if (options.verb != "solve")
-    usage_error(format("--verb {} cannot be swept", options.verb), "this version sweeps solve", "Leave out --verb");
+    refuse_sweep(format("--verb {} cannot be swept", options.verb), "this version sweeps solve", "Leave out --verb");
   const std::vector<double> values = values_of(options);
   const Case base = read_case(options.common);
   check_key(options, base, values.front());
@@ -359,8 +359,8 @@ Run declare_sweep(CLI::App& command) {
       "Examples:\n"
       "  equidem sweep data/cases/abe1996_fig6.toml --key ratio --from 0 --to 1 --steps 11 --out curve\n"
       "  equidem sweep data/cases/abe1996_fig6.toml --key assembly.rows --values 5,11,21,41\n"
-      "A point that fails stays in the table with its reason. Ctrl-C keeps what is done; --resume "
-      "continues.");
+      "A point that fails stays in the table with its reason.\n"
+      "Ctrl-C keeps what is done; --resume continues.");
   return [options] { return sweep(*options); };
 }
 
