@@ -31,6 +31,8 @@ constexpr double fast_speed = 1e5;  ///< m/s, section 5.3
 // The paper prints no stiffness; Table 2 gives it away (dimensionless, held while the step changes).
 constexpr double of_springs = 0.10;
 constexpr double of_hertz = 4.62;
+// Which only exact_flow takes: w dt = 2 and 100.
+constexpr double stiff_for_x = 4, very_stiff_for_x = 1e4;
 
 /// A law with its stiffness.
 struct Variant {

@@ -11,7 +11,6 @@
 namespace equidem::fujioka2005 {
 namespace {
 
-constexpr double very_stiff = 1e4;
 constexpr int balls_of_table1 = 16;
 constexpr double never = std::numeric_limits<double>::infinity();
 
@@ -212,7 +211,7 @@ Table1 measure_table1(bool quick, Progress& progress) {
   table.rest_time = std::sqrt(2 * drop * diameter / gravity) * (1 + restitution) / (1 - restitution);
   constexpr int slices = 50;
   std::vector<GrainSimulation> runs;
-  for (const Variant& variant : variants(very_stiff)) {
+  for (const Variant& variant : variants(very_stiff_for_x)) {
     Table1Row row{.variant = variant, .step = variant.label == "X stiff" ? paper_step : table.step};
     row.evaluation_nanoseconds = never;
     row.gravity_first = gravity_first(variant, row.step, std::llround(table.duration / row.step));

@@ -8,7 +8,6 @@ namespace equidem::fujioka2005 {
 namespace {
 
 constexpr double radius = 0.5 * diameter;
-constexpr double very_stiff = 1e4;
 constexpr std::size_t impacts_shown = 20;
 
 double gap(const Grain& ball) {
@@ -70,7 +69,7 @@ Impacts watch_impacts(const Variant& variant, GrainScene scene, double dt, bool 
 
 std::vector<Table2Row> count_table2() {
   std::vector<Table2Row> rows;
-  for (const Variant& variant : variants(very_stiff)) {
+  for (const Variant& variant : variants(very_stiff_for_x)) {
     Table2Row row{.variant = variant};
     for (std::size_t k = 0; k < table2_steps.size(); ++k) {
       GrainSimulation run = start(column(variant, 1, drop), variant, table2_steps[k]);
@@ -89,7 +88,7 @@ std::vector<Table2Row> count_table2() {
 
 std::vector<Impacts> slow_impacts() {
   std::vector<Impacts> all;
-  for (const Variant& variant : variants(very_stiff)) {
+  for (const Variant& variant : variants(very_stiff_for_x)) {
     all.push_back(watch_impacts(variant, column(variant, 1, drop), paper_step, false, 8000));
   }
   return all;
@@ -97,7 +96,7 @@ std::vector<Impacts> slow_impacts() {
 
 std::vector<Impacts> fast_impacts() {
   std::vector<Impacts> all;
-  for (const Variant& variant : variants(very_stiff)) {
+  for (const Variant& variant : variants(very_stiff_for_x)) {
     GrainScene scene = column(variant, 1, drop);
     scene.grains[0].velocity.y = -fast_speed;
     all.push_back(watch_impacts(variant, scene, paper_step, true, 100000));

@@ -8,7 +8,6 @@
 namespace equidem::fujioka2005 {
 namespace {
 
-constexpr double stiff = 4;
 constexpr int traced = 400;
 
 /// The contacts of a column, the floor's first.
@@ -91,7 +90,7 @@ Rest settle(const Variant& variant, int balls, double duration, double e) {
 
 std::vector<Rest> come_to_rest(int balls, double duration, double e) {
   std::vector<Rest> all;
-  for (const Variant& variant : variants(stiff)) all.push_back(settle(variant, balls, duration, e));
+  for (const Variant& variant : variants(stiff_for_x)) all.push_back(settle(variant, balls, duration, e));
   return all;
 }
 

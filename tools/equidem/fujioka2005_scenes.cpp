@@ -19,8 +19,8 @@ GrainScene on_floor(const Variant& variant, double e) {
   return scene;
 }
 
-Grain ball_at(Vec2 position, double radius) {
-  return {.position = position, .radius = radius, .inertia = inertia_of(radius, density, Body::sphere)};
+Grain ball_at(Vec2 position, double a) {
+  return {.position = position, .radius = a, .inertia = inertia_of(a, density, Body::sphere)};
 }
 
 }  // namespace

@@ -11,7 +11,6 @@ namespace equidem::fujioka2005 {
 namespace {
 
 constexpr double watched = 1.3 * exact_parting;
-constexpr double stiff = 4;  // w dt = 2
 
 /// Steps over the whole range, `per_decade` a decade.
 std::vector<double> steps_of(bool quick) {
@@ -71,7 +70,7 @@ double seconds_of(const Variant& variant, double step) {
 Slide slide_with_closing_from_overlap(double step) {
   constexpr double r = stacked_radius;
   const double zeta = damping_ratio_of(restitution, ContactEnd::at_zero_overlap);
-  const Variant law = variants(stiff)[0];
+  const Variant law = variants(stiff_for_x)[0];
   Vec2 b{r, r}, vb{};
   double c = (1 + std::sqrt(3.0)) * r, vc = 0;
   double pair_before = 0, floor_before = 0;
@@ -122,7 +121,7 @@ double order(const std::vector<StackedPoint>& points, double StackedPoint::*erro
 std::vector<Stacked> slide_stacked(bool quick, Progress& progress) {
   const std::vector<double> steps = steps_of(quick);
   std::vector<Stacked> all;
-  const std::vector<Variant> laws = variants(stiff);
+  const std::vector<Variant> laws = variants(stiff_for_x);
   for (const Variant& variant : laws) {
     Stacked curve{.variant = variant, .label = variant.label, .points = {}};
     for (const double step : steps) {

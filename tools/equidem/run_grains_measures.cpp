@@ -16,8 +16,6 @@
 namespace equidem {
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-
 const std::vector<std::string>& columns_of_moments() {
   static const std::vector<std::string> columns{"step",
                                                 "time_s",
@@ -64,7 +62,7 @@ std::vector<std::vector<double>> rows_of(const std::filesystem::path& path, std:
       bad_input(format("a row of '{}' has {} cells", path.string(), cells[k].size()),
                 format("the table has {} columns", columns), "Start the run afresh");
     rows.emplace_back();
-    for (const std::string& cell : cells[k]) rows.back().push_back(csv_number(cell).value_or(unknown));
+    for (const std::string& cell : cells[k]) rows.back().push_back(csv_number(cell).value_or(not_measured));
   }
   return rows;
 }
@@ -153,7 +151,7 @@ void GrainMeasures::record(std::int64_t step, double time, const std::vector<Gra
   MeasuredMoment moment;
   moment.step = step;
   moment.time = time;
-  moment.void_ratio = moment.porosity = unknown;
+  moment.void_ratio = moment.porosity = not_measured;
   std::optional<Region> region;
   if (asked.region) {
     region = Region{asked.region->low + moved, asked.region->high + moved};

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,7 +19,10 @@
 
 namespace equidem {
 
-/// At one moment. Places go with the shaking box. NaN: cannot be measured.
+/// What cannot be measured at a moment is this.
+inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
+
+/// At one moment. Places go with the shaking box.
 struct MeasuredMoment {
   std::int64_t step = 0;
   double time = 0;  ///< s

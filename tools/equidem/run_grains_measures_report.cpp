@@ -19,8 +19,6 @@
 namespace equidem {
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-
 std::string shown(double value, const char* unit = "") {
   return std::isnan(value) ? "unknown" : format("{:.4g}{}", value, unit);
 }
@@ -51,7 +49,7 @@ double end_of_shaking(const GrainCase& resolved) {
 
 GrainMeasures::Sloshing GrainMeasures::sloshing() const {
   Sloshing result;
-  result.period = result.theory = unknown;
+  result.period = result.theory = not_measured;
   const double width = start_.inside.high.x - start_.inside.low.x;
   const double depth = before().surface.height - start_.inside.low.y, gravity = -resolved_.gravity.y;
   if (gravity > 0 && depth > 0 && width > 0) result.theory = sloshing_period(width, depth, gravity);
@@ -236,8 +234,8 @@ void write_probe_paths(const std::filesystem::path& folder, const GrainCase& res
     const auto column = static_cast<std::size_t>(at - names.begin());
     Series series{.label = probe.name, .colour = colours[plot.series.size()]};
     for (std::size_t k = 1; k < cells.size(); ++k) {
-      series.x.push_back(csv_number(cells[k].at(column)).value_or(unknown));
-      series.y.push_back(csv_number(cells[k].at(column + 1)).value_or(unknown));
+      series.x.push_back(csv_number(cells[k].at(column)).value_or(not_measured));
+      series.y.push_back(csv_number(cells[k].at(column + 1)).value_or(not_measured));
     }
     plot.series.push_back(std::move(series));
   }

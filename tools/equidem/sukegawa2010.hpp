@@ -140,6 +140,8 @@ std::vector<Run> plan(bool quick);
 double cost_of(const Run& run);
 
 std::string plural_of(Shape shape);
+/// A name of a file in words: '_' are spaces.
+std::string words(std::string name);
 /// The grain of the thesis's number 485, 500, ..., 2515, or of the same place in another grid.
 std::array<std::size_t, 9> followed(const StartGrid& grid, Shape shape);
 std::string label_of_followed(const StartGrid& grid, std::size_t k);

@@ -132,6 +132,11 @@ std::string plural_of(Shape shape) {
   return "clumps";
 }
 
+std::string words(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
 std::string Fill::name() const {
   return format("{}{}{}_{}", plural_of(shape), variant.empty() ? "" : "_", variant, seed);
 }

@@ -17,11 +17,6 @@ constexpr std::array colours{PlotColour::blue,     PlotColour::vermilion, PlotCo
                              PlotColour::sky_blue, PlotColour::yellow,    PlotColour::black};
 constexpr std::array markers{Marker::circle, Marker::square, Marker::triangle};
 
-std::string words(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
-
 Plot void_ratio_plot(const Reproduction& result) {
   Series before{
       .label = "computed before, each seed", .style = SeriesStyle::points, .colour = PlotColour::blue, .filled = false};

@@ -32,11 +32,6 @@ std::string row(const std::vector<std::string>& cells, const std::vector<std::si
   return text + "\n";
 }
 
-std::string words(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
-
 double before(const Outcome& o) {
   return o.void_ratio_before;
 }

@@ -252,8 +252,7 @@ class BoxRun {
 };
 
 std::string title_of(const Run& run, const std::string& when) {
-  std::string text = format("{}, seed {}", plural_of(run.fill.shape), run.fill.seed);
-  std::replace(text.begin(), text.end(), '_', ' ');
+  std::string text = format("{}, seed {}", words(plural_of(run.fill.shape)), run.fill.seed);
   if (run.shaking) text += format(", {:g} gal {:.3g} Hz", run.shaking->gal, run.shaking->frequency);
   return text + ": " + when;
 }
