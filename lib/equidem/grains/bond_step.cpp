@@ -9,12 +9,10 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
+#include "equidem/grains/move_bodies.hpp"
 
 namespace equidem {
 namespace {
-
-/// Centres nearer than this, of the sum of the radii, no longer say which way a bond lies.
-constexpr double nearest_centres = 1e-3;
 
 InverseInertia inverse_of(const Grain& grain) {
   return {1 / grain.inertia.mass, 1 / grain.inertia.moment};
@@ -33,8 +31,10 @@ double share_of(const Grain& i, const Grain& j) {
   return i.radius / (i.radius + j.radius);
 }
 
-bool has_springs(const TiedPair& bond) {
-  return bond.springs.springs.kN > 0 || bond.springs.springs.kT > 0;
+bool is_wide(const GrainSystem& system, const TiedPair& bond) {
+  const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
+  const double radii = system.bodies[i].radius + system.bodies[j].radius;
+  return norm(system.motions[j].position - system.motions[i].position) > nearest_centres_of_bonds * radii;
 }
 
 /// From the start to now.
@@ -48,8 +48,8 @@ BondMotion<double> motion_of(const GrainSystem& system, const TiedPair& bond) {
 /// Springs by where the discs are at the start of the step.
 void push_springs(GrainSystem& system) {
   const double dt = system.dt();
-  for (const TiedPair& bond : system.bonds) {
-    if (!has_springs(bond)) continue;
+  for (const std::size_t b : system.packed_bonds.sprung) {
+    const TiedPair& bond = system.bonds[b];
     const BondForces<double> force = bond_forces(bond.springs, motion_of(system, bond));
     Push& on_i = system.pushes[static_cast<std::size_t>(bond.i)];
     Push& on_j = system.pushes[static_cast<std::size_t>(bond.j)];
@@ -121,7 +121,8 @@ void resist_explicitly(GrainSystem& system, TiedPair& bond, const BondModes& inv
 /// What the motion loses: impulses times the rates when a share of all pushes has acted.
 double loss_of_bonds(const GrainSystem& system, double share) {
   double sum = 0;
-  for (const TiedPair& bond : system.bonds) {
+  for (const std::size_t b : system.packed_bonds.one_by_one) {
+    const TiedPair& bond = system.bonds[b];
     const BondModes gained = gain_by_pushes(system, bond);
     const BondModes &v = bond.rate, &given = bond.impulse;
     sum -= given.normal * (v.normal + share * gained.normal) +
@@ -169,7 +170,7 @@ void check_bond(const GrainScene& scene, const GrainBond& bond) {
   }
   const Grain &i = scene.grains[bond.i], &j = scene.grains[bond.j];
   const double distance = norm(j.position - i.position);
-  if (!(distance > nearest_centres * (i.radius + j.radius))) {
+  if (!(distance > nearest_centres_of_bonds * (i.radius + j.radius))) {
     bad_input(format("the centres of the bonded grains {} and {} are {:.3g} m apart", bond.i, bond.j, distance),
               "a bond lies along the line between them", "Move them apart");
   }
@@ -219,24 +220,38 @@ void tie_bonds(GrainSystem& system, const GrainScene& scene) {
             [](const TiedPair& a, const TiedPair& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
 }
 
+void refuse_crept_bonds(const GrainSystem& system) {
+  for (const TiedPair& bond : system.bonds) {
+    if (is_wide(system, bond)) continue;
+    computation_failed(
+        format("step {}: the centres of the bonded grains {} and {} have crept together", system.step,
+               system.grain_of[static_cast<std::size_t>(bond.i)], system.grain_of[static_cast<std::size_t>(bond.j)]),
+        "dashpots alone give way to a steady force, N/C_n, and bonded discs do not collide",
+        "Use larger dashpots, give normal_spring, or tie the discs as a clump");
+  }
+}
+
 void push_bonds(GrainSystem& system) {
   system.free_flight = false;
   push_springs(system);
-  for (TiedPair& bond : system.bonds) {
+  push_packed_bonds(system);
+  const bool turns_rims = system.near.active && system.friction;
+  for (const std::size_t b : system.packed_bonds.one_by_one) {
+    TiedPair& bond = system.bonds[b];
     const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
     const Vec2 branch = system.motions[j].position - system.motions[i].position;
-    if (!(norm(branch) > nearest_centres * (system.bodies[i].radius + system.bodies[j].radius))) {
-      computation_failed(format("step {}: the centres of the bonded grains {} and {} have crept together", system.step,
-                                system.grain_of[i], system.grain_of[j]),
-                         "dashpots alone give way to a steady force, N/C_n, and bonded discs do not collide",
-                         "Use larger dashpots, give normal_spring, or tie the discs as a clump");
+    if (!is_wide(system, bond)) refuse_crept_bonds(system);
+    if (turns_rims) {  // what others do to the spin is asked for
+      turn_rims(system.pushes[i], system.bodies[i]);
+      turn_rims(system.pushes[j], system.bodies[j]);
     }
     bond.frame = frame_of(branch, bond.share);
     bond.rate = rates_now(system, bond);
     bond.gained = gain_by_pushes(system, bond);
   }
   const auto resist = system.options.bond_step == GrainOptions::BondStep::exact ? resist_exactly : resist_explicitly;
-  for (TiedPair& bond : system.bonds) {
+  for (const std::size_t b : system.packed_bonds.one_by_one) {
+    TiedPair& bond = system.bonds[b];
     resist(system, bond,
            bond_inverse_masses(bond.frame, inverse_of(system.bodies[static_cast<std::size_t>(bond.i)]),
                                inverse_of(system.bodies[static_cast<std::size_t>(bond.j)])));
@@ -245,7 +260,9 @@ void push_bonds(GrainSystem& system) {
 }
 
 void count_opening_kick(GrainSystem& system) {
-  for (TiedPair& bond : system.bonds) {
+  count_opening_kick_of_packed_bonds(system);
+  for (const std::size_t b : system.packed_bonds.one_by_one) {
+    TiedPair& bond = system.bonds[b];
     const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
     bond.frame = frame_of(system.motions[j].position - system.motions[i].position, bond.share);
     bond.rate = rates_now(system, bond);
@@ -256,7 +273,7 @@ void count_opening_kick(GrainSystem& system) {
 double elastic_of_bonds(const GrainSystem& system) {
   double sum = 0;
   for (const TiedPair& bond : system.bonds) {
-    if (has_springs(bond)) sum += bond_energy(bond.springs, motion_of(system, bond));
+    if (bond.has_springs()) sum += bond_energy(bond.springs, motion_of(system, bond));
   }
   return sum;
 }

@@ -22,14 +22,24 @@ struct TiedPair {
   BondModes dashpots;
   double share = 0;    ///< of lever i in the distance: r_i/(r_i + r_j)
   FiniteBond springs;  ///< between the discs as they are at the start
+  std::int32_t packed =
+      -1;             ///< place among those that go by eights (bond_loop.hpp), which keep the impulse; -1: not packed
   BondModes impulse;  ///< of the last step
   // in the step being made
   ContactFrame frame;
   BondModes rate, gained;
+
+  [[nodiscard]] bool has_springs() const { return springs.springs.kN > 0 || springs.springs.kT > 0; }
 };
 
 /// The bonds of a scene that has been put in order; sorted, so that the caller's order changes no bit.
 void tie_bonds(GrainSystem& system, const GrainScene& scene);
+
+/// Centres nearer than this, of the sum of the radii, no longer say which way a bond lies.
+constexpr double nearest_centres_of_bonds = 1e-3;
+
+/// \throws Error (computation_failed) that tells of the first bond whose discs are so near
+void refuse_crept_bonds(const GrainSystem& system);
 
 /// Whether two bodies i < j are bonded; `next` goes on from call to call while pairs are asked for in ascending order.
 inline bool are_tied(const std::vector<TiedPair>& bonds, std::size_t& next, std::int32_t i, std::int32_t j) {

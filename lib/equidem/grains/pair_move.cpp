@@ -53,6 +53,7 @@ double move(GrainSystem& system) {
       pushes[i].rim = 0;
       const double turn = body.inverse_moment * torque;
       spin += turn;
+      seen.rim_speed = spin * body.radius;
       seen.middle_rim_speed = (spin + 0.5 * turn) * body.radius;
     }
     after.spin = spin;
