@@ -311,13 +311,13 @@ TEST_CASE("contacts_off_the_line_of_centres_survive_a_file_bit_for_bit_and_what_
   const std::string contacts = R"("contacts": [[0, 1, 0, 0], [1, 0, 0, 0]], )";
   const std::string arms = R"("levers": [[1.25, 0.75], [1.5, 0.5]], "normals": [[1, 0], [-1, 0]], )";
   const std::string offsets = R"("offsets": [[0.7, -0.2], [1.1, -0.6]])";
-  const std::string sections = R"(, "sections": [[3, 1.5], [3.1, 1.7]])";
+  const std::string sections = R"(, "sections": [[3.141592653589793, 1.6], [3.1415926, 1.7]])";
   const Assembly assembly = read_text(head + contacts + arms + offsets + sections + "}");
   REQUIRE(assembly.contact_arms.size() == 2);
   CHECK(assembly.contact_arms[1].normal == Vec2{-1, 0});
   CHECK(assembly.contact_arms[0].offset_j == -0.2);
   CHECK(assembly.sections[1].polar_moment == 1.7);
-  CHECK(assembly.solid_fraction() == Approx(6.1 / assembly.area()).epsilon(1e-15));
+  CHECK(assembly.solid_fraction() == Approx((3.141592653589793 + 3.1415926) / assembly.area()).epsilon(1e-15));
 
   Assembly odd = assembly;
   odd.centres[1] = {2 + 1.0 / 3, 0.5 - 1e-17};

@@ -230,7 +230,7 @@ TEST_CASE("bodies_that_carry_nothing_off_the_line_of_centres_are_left_out_withou
   const auto add_body = [&](Vec2 centre) {
     assembly.centres.push_back(centre);
     assembly.radii.push_back(1);
-    assembly.sections.push_back({3, 1.5});
+    assembly.sections.push_back({std::numbers::pi, 2});
     assembly.cell_areas.push_back(0);
     return static_cast<std::int32_t>(assembly.size() - 1);
   };

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "equidem/assembly/body_inertia.hpp"
+#include "equidem/core/error.hpp"
 #include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
@@ -137,6 +138,27 @@ TEST_CASE("round_ellipses_and_clumps_of_one_disc_have_the_moduli_of_discs") {
   for (std::size_t c = 0; c < discs.contacts.size(); ++c)
     CHECK(network.contacts[c].lever_i == Approx(discs.contacts[c].lever_i).epsilon(1e-12));
   CHECK(difference(effective_stiffness(network, springs).stiffness, expected) < 1e-12);
+}
+
+// Jammed ellipses have fewer contacts than their motions need (Donev et al. 2007, Phys. Rev. E 75, 051304): without friction they are
+// floppy, or a hair's breadth from it.
+TEST_CASE("jammed_ellipses_without_friction_have_no_modulus_and_no_support_is_asked_of_their_cell") {
+  for (const double size : {1.0, 1e-4, 1e5}) {
+    PackingOptions options = jammed({.kind = Kind::ellipse, .aspect = 2}, 30);
+    options.box.size *= size;
+    for (double& radius : options.radii) radius *= size;
+    const Assembly assembly = network_of(pack(options), usual);
+    REQUIRE(2 * assembly.contacts.size() < 6 * assembly.size());
+    std::string remedy = "none";
+    try {
+      effective_stiffness(assembly, ContactSprings(SpringConstants{usual.kN, 0}));
+    } catch (const Error& error) {
+      remedy = error.remedy();
+    }
+    CAPTURE(size, remedy);
+    CHECK_THAT(remedy,
+               Catch::Contains("contacts") && Catch::Contains("tangential springs") && !Catch::Contains("support"));
+  }
 }
 
 TEST_CASE("clumps_that_touch_twice_have_a_spring_in_each_place") {

@@ -257,6 +257,25 @@ TEST_CASE("needles_and_single_bodies_are_packed_and_what_cannot_be_is_refused") 
   CHECK_THROWS_AS(packing_shape_from("elipse"), Error);
 }
 
+// Their images across the period are no partners: a body that reached its own would pass through it unseen.
+TEST_CASE("no_body_grows_through_its_own_image") {
+  for (const PackingShape& shape : shapes()) {
+    for (const std::int64_t bodies : {1, 2}) {
+      PackingOptions options = box_of(PackingMethod::growth, PackingBox::Sides::periodic, shape, bodies, 0.05);
+      options.as_dense_as_possible = true;
+      options.overlap = 1e-3;
+      INFO(bodies << " of " << to_string(shape.kind) << " of aspect " << shape.aspect);
+      try {
+        const GrainPacking packing = pack(options);
+        CHECK(area_of_grains(packing) < packing.box.area());
+        for (const double radius : packing.radii) CHECK(2 * unit_body_of(shape).reach * radius <= packing.box.size.x);
+      } catch (const Error& error) {
+        CHECK_THAT(error.problem(), Catch::Contains("wider than the period"));
+      }
+    }
+  }
+}
+
 TEST_CASE("ellipses_touch_once_pairs_and_clumps_as_often_as_they_do") {
   GrainPacking packing;
   packing.box = {{10, 10}, PackingBox::Sides::walls};

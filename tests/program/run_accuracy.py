@@ -84,6 +84,18 @@ class Accuracy(ProgramTest):
         self.check_error(equidem("run", CASES / "run_tension.toml", "--accuracy", "0.1"), 2, "until_rest")
         self.check_error(equidem("run", CASES / "grains_cradle.toml", "--accuracy", "0.1"), 2, "collide")
 
+    def test_what_is_more_accurate_than_asked_is_not_to_be_made_coarser_for_ten_times_more(self):
+        for arguments in (("solve", TENSION, "--set", "springs.kT=0", "--accuracy", "0.1"),
+                          ("homogenize", CELL, "--accuracy", "0.9"),
+                          ("run", str(CASES / "run_pulse.toml"), "--set", "assembly.columns=21", "--set", "assembly.rows=5",
+                           "--set", "run.duration=4e-4", "--accuracy", "0.9")):
+            accuracy = self.ask(*arguments)[1]
+            more = accuracy["ten_times_more"]
+            self.assertLessEqual(accuracy["estimated"], 0.1 * accuracy["requested"])
+            self.assertIn("has it already", more["note"])
+            self.assertEqual(more["value"], accuracy["value"])
+            self.assertEqual(more["time_factor"], 1)
+
     def test_assembly_that_is_given_is_known_to_its_bound(self):
         for arguments in (("solve", CANTILEVER), ("homogenize", str(CASES / "hexagonal_cell.toml"))):
             accuracy = self.ask(*arguments, "--accuracy", "1e-9")[1]

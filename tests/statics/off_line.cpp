@@ -2,6 +2,7 @@
 /// \file
 /// Statics of bodies that touch off the lines of their centres.
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "equidem/assembly/delaunay.hpp"
@@ -117,7 +118,7 @@ TEST_CASE("moving_and_turning_all_bodies_together_costs_nothing_off_the_line_of_
 // Motions without energy: rigid ones, gears, rotations that nothing resists and all others are told apart, and none is missed.
 TEST_CASE("mechanisms_off_the_line_of_centres_are_as_many_as_the_energy_leaves") {
   int with_gears = 0, with_others = 0;
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 160; ++seed) {
     Random random(seed);
     Assembly assembly = random_bodies(seed, seed % 2 == 0, 12);
     // Many contacts go, and many of the rest lie on the line of centres.
@@ -229,4 +230,19 @@ TEST_CASE("what_contacts_off_the_line_of_centres_cannot_be_is_refused") {
   wrong = assembly;
   wrong.sections[2].polar_moment = 0;
   CHECK_THROWS_WITH(check(wrong), Catch::Contains("body 2"));
+  wrong = assembly;
+  const double area = wrong.sections[2].area, disc = area * area / (2 * std::numbers::pi);
+  wrong.sections[2].polar_moment = disc;
+  CHECK_NOTHROW(check(wrong));
+  wrong.sections[2].polar_moment = 0.99 * disc;
+  CHECK_THROWS_WITH(check(wrong), Catch::Contains("body 2") && Catch::Contains("smaller one than the disc"));
+  wrong = assembly;
+  wrong.radii[2] *= 1.01;
+  CHECK_THROWS_WITH(check(wrong), Catch::Contains("body 2") && Catch::Contains("disc of equal area"));
+  wrong = assembly;
+  wrong.contact_arms[3].offset_i = 1e80, wrong.contact_arms[3].offset_j = -1e80;
+  CHECK_THROWS_WITH(check(wrong), Catch::Contains("contact 3") && Catch::Contains("offset"));
+  wrong = assembly;
+  wrong.contacts[3].lever_i = 1e80, wrong.contacts[3].lever_j = -1e80;
+  CHECK_THROWS_WITH(check(wrong), Catch::Contains("contact 3") && Catch::Contains("lever arm"));
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -36,8 +37,8 @@ inline Assembly off_line(const Assembly& discs, std::uint64_t seed, int again = 
   bodies.contacts.clear();
   bodies.facet_lengths.clear();
   for (const double r : bodies.radii) {
-    const double area = random.uniform(1, 3) * r * r;
-    bodies.sections.push_back({area, area * r * r * random.uniform(0.2, 0.9)});
+    const double area = std::numbers::pi * r * r, longer = random.uniform(1, 3);
+    bodies.sections.push_back({area, area * r * r * longer * random.uniform(0.5, 0.9)});
   }
   for (const Contact& contact : discs.contacts) {
     const Vec2 l = discs.branch(contact);

@@ -96,7 +96,7 @@ TEST_CASE("a_cell_of_bodies_is_found_in_its_repetitions_with_the_same_waves") {
   }
   // A body that is only a little heavier is another one.
   Assembly other = twice;
-  other.sections[2].area *= 1.001;
+  other.sections[2].polar_moment *= 1.001;
   CHECK(primitive_cell(other, springs).size() == twice.size());
 }
 

@@ -34,6 +34,9 @@ struct ReachedAccuracy {
   } ten_times_more;
 };
 
+/// The note where what was chosen is ten times as accurate as asked.
+inline constexpr const char* has_it_already = "nothing: what was chosen has it already";
+
 /// --accuracy X, 0 < X < 1. \param what it does
 void add_accuracy_option(CLI::App& command, std::optional<double>& accuracy, const std::string& what);
 

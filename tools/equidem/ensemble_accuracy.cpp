@@ -52,6 +52,7 @@ ReachedAccuracy reached_by(const AccurateEnsemble& sampled, const EnsembleAccura
   more.time_factor = sampled.ten_times_more.work() / sampled.chosen.work();
   more.seconds = seconds * sampled.ten_times_more.work() / work_of(sampled);
   more.value = setting_of(sampled.ten_times_more);
+  if (sampled.estimated <= wanted.accuracy / 10) more.note = has_it_already;
   if (sampled.ten_times_more.samples == 0) more.note = "cannot be had: cells of any size are off by more";
   if (sampled.ten_times_more.all_discs() > wanted.most_discs)
     more.note = format("cannot be had: it takes {:.2g} discs in all", sampled.ten_times_more.all_discs());

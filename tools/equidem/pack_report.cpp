@@ -68,11 +68,13 @@ std::string describe_packing(const PackCase& resolved, const GrainPacking& packi
   out += report_line("overlap", format("at most {:.3g} of the smaller radius", measures.largest_overlap));
   if (rest) {
     const SettlingReport& settling = packing.settling;
-    out += report_line("rest",
-                       format("after {:.4g} s in {} steps of {:.4g} s; unbalanced force {:.2g} of the mean contact "
-                              "force, of one {} {:.2g}",
-                              settling.time, grouped(settling.steps), settling.time_step, settling.unbalanced, noun,
-                              settling.largest_unbalanced));
+    out += report_line(
+        "rest",
+        format(
+            "after {:.4g} s in {} steps of {:.4g} s by corrected_verlet; unbalanced force {:.2g} of the mean contact "
+            "force, of one {} {:.2g}",
+            settling.time, grouped(settling.steps), settling.time_step, settling.unbalanced, noun,
+            settling.largest_unbalanced));
     out += report_line(
         "", rest->confirmation
                 ? format("statics on the same contacts would move nothing further than {:.2g} of the mean overlap",

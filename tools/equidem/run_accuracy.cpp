@@ -80,7 +80,9 @@ bool StepSearch::accepts(const std::vector<DiscMotion>& motions, double seconds)
 }
 
 ReachedAccuracy StepSearch::reached() const {
-  const std::int64_t steps = runs_.back(), finer = search_.level_for(accuracy_ / 10, steps);
+  const std::int64_t steps = runs_.back();
+  const bool enough = search_.error(steps) <= accuracy_ / 10;
+  const std::int64_t finer = enough ? steps : search_.level_for(accuracy_ / 10, steps);
   std::vector<std::int64_t> others = search_.pilots();
   others.insert(others.end(), runs_.begin(), std::prev(runs_.end()));
   double all = 0;
@@ -90,17 +92,19 @@ ReachedAccuracy StepSearch::reached() const {
     list += format("{}{}", k == 0 ? "" : k + 1 < others.size() ? ", " : " and ", others[k]);
   }
   const double factor = static_cast<double>(finer) / static_cast<double>(steps);
-  return {
-      .requested = accuracy_,
-      .estimated = search_.error(steps),
-      .of = format("displacements at the end of the run, over the largest of them, against those of a step of 0, "
-                   "extrapolated (errors fall as steps^-{:.2f})",
-                   search_.order()),
-      .knob = format("the time step, {:.6g} s in the case", case_step_),
-      .value = setting_of(steps),
-      .pilots = format("runs of {} steps", list),
-      .pilots_factor = all / static_cast<double>(steps),
-      .ten_times_more = {.time_factor = factor, .seconds = factor * seconds_, .value = setting_of(finer), .note = {}}};
+  return {.requested = accuracy_,
+          .estimated = search_.error(steps),
+          .of = format("displacements at the end of the run, over the largest of them, against those of a step of 0, "
+                       "extrapolated (errors fall as steps^-{:.2f})",
+                       search_.order()),
+          .knob = format("the time step, {:.6g} s in the case", case_step_),
+          .value = setting_of(steps),
+          .pilots = format("runs of {} steps", list),
+          .pilots_factor = all / static_cast<double>(steps),
+          .ten_times_more = {.time_factor = factor,
+                             .seconds = factor * seconds_,
+                             .value = setting_of(finer),
+                             .note = enough ? has_it_already : ""}};
 }
 
 Case StepSearch::case_of(std::int64_t steps) const {

@@ -62,8 +62,9 @@ bool BlockSearch::accepts(const TensionResult& result, double seconds) {
 
 ReachedAccuracy BlockSearch::reached() const {
   const std::int64_t rows = proposed_.back();
-  const Size finer =
-      size_of(one_beyond_a_multiple_of_four(static_cast<double>(search_.level_for(accuracy_ / 10, rows))));
+  const bool enough = search_.error(rows) <= accuracy_ / 10;
+  const Size finer = size_of(
+      enough ? rows : one_beyond_a_multiple_of_four(static_cast<double>(search_.level_for(accuracy_ / 10, rows))));
   const double factor = std::pow(static_cast<double>(finer.rows) / static_cast<double>(rows), work_per_rows);
   const auto& pilots = search_.pilots();
   ReachedAccuracy reached{
@@ -78,7 +79,10 @@ ReachedAccuracy BlockSearch::reached() const {
           format("{} of {} to {} rows", counted(std::ssize(pilots) + std::ssize(proposed_) - 1, "block"),
                  *std::min_element(pilots.begin(), pilots.end()), *std::max_element(pilots.begin(), pilots.end())),
       .pilots_factor = other_seconds_ / seconds_,
-      .ten_times_more = {.time_factor = factor, .seconds = factor * seconds_, .value = setting_of(finer), .note = {}}};
+      .ten_times_more = {.time_factor = factor,
+                         .seconds = factor * seconds_,
+                         .value = setting_of(finer),
+                         .note = enough ? has_it_already : ""}};
   if (static_cast<double>(finer.rows) * static_cast<double>(finer.columns) > most_discs) {
     reached.ten_times_more.note = format(
         "{} x {} discs, more than are tried; a periodic cell has no sides: 'equidem homogenize' gives both to "

@@ -95,6 +95,10 @@ void check_contact(const Assembly& assembly, std::size_t index) {
       bad_input(format("{}, has the lever arm {}", described(c, index), lever),
                 on_line ? "lever arms must be finite and not negative" : "lever arms must be finite", "Correct it");
     }
+    if (std::abs(lever) > longest_length) {
+      bad_input(format("{}, has the lever arm {} m", described(c, index), lever),
+                format("lever arms may be {} m long at most", longest_length), "Correct it");
+    }
   }
 }
 
@@ -105,6 +109,11 @@ void check_arms(const Assembly& assembly, std::size_t index) {
   if (!(std::abs(norm(given.normal) - 1) <= close)) {
     bad_input(format("{}, has the normal ({}, {})", described(c, index), given.normal.x, given.normal.y),
               "its length must be 1", "Divide it by its length");
+  }
+  for (const double offset : {given.offset_i, given.offset_j}) {
+    if (std::abs(offset) <= longest_length) continue;
+    bad_input(format("{}, has the offset {} m", described(c, index), offset),
+              format("offsets must be finite and at most {} m", longest_length), "Correct it");
   }
   const Vec2 l = assembly.branch(c);
   const Vec2 arms =
@@ -122,9 +131,23 @@ void check_bodies(const Assembly& assembly) {
   check_count("sections", assembly.sections.size(), "bodies", assembly.size());
   for (std::size_t d = 0; d < assembly.size(); ++d) {
     const BodySection& section = assembly.sections[d];
-    if (section.area > 0 && section.polar_moment > 0 && std::isfinite(section.area + section.polar_moment)) continue;
-    bad_input(format("body {} has the area {} m² and the polar moment {} m⁴", d, section.area, section.polar_moment),
-              "both must be positive and finite", "Correct its section");
+    if (!(section.area > 0 && section.polar_moment > 0 && std::isfinite(section.area + section.polar_moment))) {
+      bad_input(format("body {} has the area {} m² and the polar moment {} m⁴", d, section.area, section.polar_moment),
+                "both must be positive and finite", "Correct its section");
+    }
+    constexpr double close = 1e-6;
+    const double least = section.area * section.area / (2 * std::numbers::pi);
+    if (section.polar_moment < (1 - close) * least) {
+      bad_input(format("body {} has the area {} m² and the polar moment {} m⁴", d, section.area, section.polar_moment),
+                format("no section of that area has a smaller one than the disc, {:.9g} m⁴", least),
+                "Correct its section: the moment is about its own centre");
+    }
+    const double radius = std::sqrt(section.area / std::numbers::pi);
+    if (std::abs(assembly.radii[d] - radius) > close * radius) {
+      bad_input(format("body {} has the radius {} m and the area {} m²", d, assembly.radii[d], section.area),
+                format("a body with a section has the radius of the disc of equal area, {:.9g} m", radius),
+                "Correct one of the two");
+    }
   }
 }
 

@@ -176,6 +176,10 @@ SpringRelation spring_relation(const Case& resolved, const Assembly& assembly) {
 BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
   const bool own = !assembly.contact_kN.empty();
   if (!resolved.springs && !resolved.material && !own) {
+    if (assembly.contacts.empty()) {
+      fail(resolved.where("assembly.path"), "the assembly has no contacts", "nothing resists its deformation",
+           "Give it contacts");
+    }
     fail(resolved.where("assembly.path"), "the springs are missing",
          resolved.assembly.own_springs
              ? "neither the case file nor the assembly file gives any"
@@ -188,7 +192,7 @@ BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
       return {contact_springs(assembly, resolved.springs.value_or(SpringConstants{}), resolved.weighting),
               {},
               resolved.springs || resolved.material
-                  ? "springs of the assembly file; those of the case file are not used"
+                  ? "springs of the assembly file; those of the case file are not used (own_springs = false: they are)"
                   : "springs of the assembly file"};
     }
     Packing packing = Packing::isotropic;

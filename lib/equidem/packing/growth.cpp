@@ -25,6 +25,7 @@ class Growth {
   PushingReport grow_to(double solid_fraction, const PushingOptions& pushing) {
     const double scale = std::sqrt(solid_fraction / full_);
     for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_.radii[k] = scale * options_.radii[k];
+    refuse_wider_than_period();
     const PushingReport report = push_apart(options_.box, shape_, pushing, finder_, bodies_);
     work_ += report.evaluations;
     return report;
@@ -40,6 +41,16 @@ class Growth {
   }
 
  private:
+  /// Such a body would overlap its own images, which are no partners.
+  void refuse_wider_than_period() const {
+    const double width = 2 * shape_.reach * *std::max_element(bodies_.radii.begin(), bodies_.radii.end());
+    const double period = std::min(options_.box.size.x, options_.box.size.y);
+    if (!options_.box.periodic() || width <= period) return;
+    computation_failed(
+        format("the largest {} grows wider than the period of {:.4g} m", noun_of(options_.shape.kind), period),
+        "it would meet itself across the sides", "Take more of them, or a squarer box");
+  }
+
   /// Discs find their way apart from anywhere.
   void scatter() {
     Random random(options_.seed);

@@ -77,7 +77,9 @@ bool springs_cancel(const System& system, const std::vector<DiscMotion>& motions
   }
   computation_failed("the assembly is too soft for the digits of a double",
                      format("a motion resists no more than round-off does: {}", motion),
-                     "Hold that motion by a support; a slender assembly needs to be held in more places");
+                     system.k.assembly.periodic()
+                         ? "Give it more contacts, or larger tangential springs (kT)"
+                         : "Hold that motion by a support; a slender assembly needs to be held in more places");
 }
 
 /// K is singular where the softest motion that elimination met costs, or with kT < 0 yields, no more energy than its
