@@ -7,48 +7,17 @@
 #include <cmath>
 #include <numbers>
 
-#include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 
-#include "contact/ellipse_oracle.hpp"
+#include "contact/ellipse_pairs.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;
+using namespace equidem::test;
 
 namespace {
 
 using std::numbers::pi;
-
-struct TwoEllipses {
-  Ellipse i, j;
-  Vec2 branch;
-
-  [[nodiscard]] double size() const { return std::max(i.a, j.a); }
-  [[nodiscard]] EllipseContact contact(Vec2 last_normal = {}) const {
-    return contact_of_ellipses(i, j, branch, last_normal);
-  }
-};
-
-Vec2 random_direction(Random& random) {
-  const double angle = random.uniform(0, 2 * pi);
-  return {std::cos(angle), std::sin(angle)};
-}
-
-Ellipse random_ellipse(Random& random, double most_aspect) {
-  const double size = std::exp(random.uniform(-0.7, 0.7)),
-               root = std::exp(random.uniform(0, std::log(most_aspect) / 2));
-  return {size * root, size / root, random_direction(random)};
-}
-
-/// From concentric to well apart.
-TwoEllipses random_pair(Random& random, double most_aspect) {
-  const Ellipse i = random_ellipse(random, most_aspect), j = random_ellipse(random, most_aspect);
-  return {i, j, random.uniform(0, 1.2) * (i.a + j.a) * random_direction(random)};
-}
-
-double off(oracle::Point a, Vec2 b) {
-  return static_cast<double>(std::hypot(a.x - b.x, a.y - b.y));
-}
 
 bool all_finite(const EllipseContact& c) {
   return std::isfinite(c.gap + c.normal.x + c.normal.y + c.arm_i.x + c.arm_i.y + c.arm_j.x + c.arm_j.y);

@@ -55,7 +55,8 @@ TEST_CASE("an_ellipse_of_aspect_one_moves_as_the_disc") {
     const double difference = largest_difference(expected, simulation);
     CAPTURE(stepping.name(), less, difference);
     CHECK(simulation.counters().contacts == expected.counters().contacts);
-    CHECK(difference < 1e-10);
+    // corrected_verlet: discs find the instant of touching to one order of the step more
+    CHECK(difference < (stepping.scheme == Scheme::corrected_verlet ? 1e-3 : 1e-10));
   }
 }
 
@@ -127,7 +128,7 @@ TEST_CASE("the_ledger_of_an_elastic_ellipse_closes_with_the_order_of_the_integra
   }
   const double order = std::log2(errors.front() / errors.back()) / 2;
   CAPTURE(stepping.name(), on_floor, errors, order);
-  const bool second = stepping.scheme == Scheme::velocity_verlet;
+  const bool second = stepping.scheme != Scheme::semi_implicit_euler;
   CHECK(errors.back() < (second ? 1e-4 : 1e-2));
   CHECK(order > (second ? 1.7 : 0.85));
 }

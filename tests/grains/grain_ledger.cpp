@@ -167,9 +167,38 @@ TEST_CASE("a_contact_that_begins_within_a_step_gets_its_part_of_it_from_correcte
       CHECK(plain[2] == Approx(share * std::pow(std::numbers::pi * 0.005, 2) / 6).epsilon(0.25));
     }
   } else {
+    // what a dashpot changes between both ways through a spring that stiffens is of the second order
     if (restitution < 1) CHECK(corrected[2] < plain[2]);
-    CHECK(corrected[2] < corrected[0] / 9);
+    CHECK(corrected[2] < corrected[0] / (restitution < 1 ? 9 : 20));
+    if (restitution == 1) CHECK(corrected[2] < plain[2] / 50);
   }
+}
+
+TEST_CASE("corrected_verlet_moves_as_velocity_verlet_where_no_contact_begins_or_ends") {
+  // discs at rest on a floor that shakes them
+  const auto law = GENERATE(NormalLaw::linear_dashpot, NormalLaw::hertz_dashpot);
+  GrainScene scene = busy_box(law, 4, 3, 11);
+  scene.pairs[0].restitution = 0.2;
+  scene.walls[0].move_x = {Schedule::Kind::sine, 0.0005, 0, 0, 1};
+  scene.walls[0].move_y = {Schedule::Kind::sine, -0.0003, 0, 0, 1.5};
+  const GrainOptions options = options_of({law, Scheme::velocity_verlet}, 0.002);
+  GrainSimulation plain(scene, options), corrected(scene, options_of({law, Scheme::corrected_verlet}, 0.002));
+  plain.advance(30000);
+  corrected.restore(plain.save());
+  REQUIRE(bits_of(corrected) == bits_of(plain));
+  const std::int64_t begun = plain.counters().contacts;
+  const std::size_t touching = plain.contacts().size();
+  const double kinetic = plain.energy().kinetic;
+  for (int k = 0; k < 500; ++k) {
+    plain.advance(1);
+    corrected.advance(1);
+    CAPTURE(to_string(law), k, touching, kinetic, plain.energy().kinetic);
+    REQUIRE(plain.contacts().size() == touching);
+    REQUIRE(plain.counters().contacts == begun);
+    REQUIRE(bits_of(corrected) == bits_of(plain));
+  }
+  CHECK(touching > 12);
+  CHECK(kinetic > 1e-9);
 }
 
 TEST_CASE("friction_leaves_an_error_of_the_second_order_of_the_step") {

@@ -10,10 +10,7 @@
 namespace equidem::test {
 
 /// Laws and schemes that ellipses and clumps can have.
-inline const std::vector<Stepping> force_steppings{{NormalLaw::linear_dashpot, Scheme::semi_implicit_euler},
-                                                   {NormalLaw::linear_dashpot, Scheme::velocity_verlet},
-                                                   {NormalLaw::hertz_dashpot, Scheme::semi_implicit_euler},
-                                                   {NormalLaw::hertz_dashpot, Scheme::velocity_verlet}};
+inline const std::vector<Stepping> force_steppings(all_steppings.begin(), all_steppings.begin() + 6);
 
 /// Of mass 1.
 inline Grain oval(Vec2 position, double a, double b, double angle = 0, Vec2 velocity = {}) {

@@ -171,10 +171,10 @@ std::vector<KeySpec> keys_of_motion() {
        .type = choice,
        .fallback = none,
        .choices = {"semi_implicit_euler", "velocity_verlet", "corrected_verlet"},
-       .help =
-           "of linear_dashpot and hertz_dashpot; semi_implicit_euler (default): gravity after the contact force; "
-           "velocity_verlet: dashpots with the velocities of the half step; corrected_verlet: contacts that begin or "
-           "end within a step also push for their part of it only"},
+       .help = "of linear_dashpot and hertz_dashpot; semi_implicit_euler (default): first order, contacts that stick "
+               "do not creep; velocity_verlet: second order, as LAMMPS steps; corrected_verlet: the same motion, but "
+               "contacts that begin or end within a step push for their part of it only: for impacts, and where the "
+               "balance of energy counts"},
       {.table = "run",
        .name = "gravity",
        .type = vector,

@@ -13,10 +13,6 @@ double yield_of(const Sliding& law, double normal_force) {
   return law.coefficient * std::max(normal_force, 0.0);
 }
 
-bool is_rigid(const Sliding& law) {
-  return law.stiffness == 0 && law.dashpot == 0;
-}
-
 SlidingStep stick(const Sliding& law, double stretch, double resistance, double velocity, double step) {
   return {.force = -resistance,
           .stretch = law.stiffness > 0 ? stretch + velocity * step : 0,

@@ -23,6 +23,11 @@ struct Sliding {
   FrictionCap cap = FrictionCap::whole_force;
 };
 
+/// Neither spring nor dashpot.
+inline bool is_rigid(const Sliding& law) {
+  return law.stiffness == 0 && law.dashpot == 0;
+}
+
 struct SlidingStep {
   double force =
       0;  ///< mean over the step, on the body whose slip velocity is given: negative where it resists a positive velocity

@@ -119,9 +119,13 @@ void collide_candidates_by_verlet(GrainSystem& system) {
     ++system.counters.evaluations;
     system.deepest = std::max(system.deepest, meeting.overlap);
     const Vec2 relative = relative_velocity(system, candidate);
+    const auto others = [&] {
+      const double mass = tangential_mass(system, candidate, meeting);
+      return SlipByOthers{gain_of_slip(system, candidate, meeting, mass), mass};
+    };
     const Vec2 impulse = step_contact<law, friction>(system, candidate, place, -dot(relative, meeting.normal),
                                                      slip_velocity(system, candidate, meeting, relative),
-                                                     drift_of(system, candidate, meeting), candidate.sliding);
+                                                     drift_of(system, candidate, meeting), candidate.sliding, others);
     push<friction>(system, candidate, meeting, impulse, candidate.tangential_impulse);
   }
 }

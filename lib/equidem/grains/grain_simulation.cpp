@@ -77,6 +77,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   find_strengths(system);
   place_walls(system);
   prepare_near_pairs(system);
+  pack_bonds(system);
   prepare_near_parts(system);
   const bool listed_twice = system.parts.empty() ? system.near.active : system.near_parts.active;
   system.base_margin = options.margin > 0 ? options.margin : (listed_twice ? 0.6 : 0.2) * smallest_size;
@@ -108,11 +109,7 @@ GrainSimulation& GrainSimulation::operator=(GrainSimulation&&) noexcept = defaul
 
 void GrainSimulation::Implementation::push() {
   collide(system);
-  if (system.bonds.empty()) return;
-  if (system.near.active && system.friction) {  // bonds ask what others do to the spin
-    for (std::size_t i = 0; i < system.bodies.size(); ++i) turn_rims(system.pushes[i], system.bodies[i]);
-  }
-  push_bonds(system);
+  if (!system.bonds.empty()) push_bonds(system);
 }
 
 void GrainSimulation::Implementation::make_step() {
@@ -254,7 +251,7 @@ double GrainSimulation::bytes_per_grain() const {
       (system.pushes.capacity() + system.pushes_before.capacity()) * sizeof(Push) +
       system.candidates.capacity() * sizeof(Candidate) + system.part_pairs.capacity() * sizeof(PartPair) +
       system.parts.capacity() * sizeof(GrainPart) + system.axes.capacity() * sizeof(Vec2) +
-      system.bonds.capacity() * sizeof(TiedPair) + system.exact_pairs.capacity() * sizeof(ExactPair) +
+      system.bonds.capacity() * sizeof(TiedPair) + system.packed_bonds.bytes() + system.exact_pairs.capacity() * sizeof(ExactPair) +
       system.scene.grains.capacity() * sizeof(Grain));
   return bytes / static_cast<double>(system.bodies.size());
 }

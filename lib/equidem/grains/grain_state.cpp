@@ -108,7 +108,8 @@ GrainState GrainSimulation::save() const {
   }
   if (!implementation_->verlet()) return state;
   for (const TiedPair& bond : system.bonds) {
-    for (const double number : {bond.impulse.normal, bond.impulse.tangential, bond.impulse.rolling}) {
+    const BondModes impulse = last_impulse(system, bond);
+    for (const double number : {impulse.normal, impulse.tangential, impulse.rolling}) {
       state.sums.push_back(number);
     }
   }
@@ -142,7 +143,7 @@ void GrainSimulation::go_back_to(const GrainState& state) {
   }
   for (std::size_t b = 0; b < bonds / numbers_per_bond; ++b) {
     const double* numbers = state.sums.data() + pushes + numbers_per_bond * b;
-    system.bonds[b].impulse = {numbers[0], numbers[1], numbers[2]};
+    take_last_impulse(system, system.bonds[b], {numbers[0], numbers[1], numbers[2]});
   }
   system.free_flight = false;
   system.deepest = std::numeric_limits<double>::infinity();  // not known: verlet has to look

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "equidem/contact/exact_contact.hpp"
+#include "equidem/grains/bond_loop.hpp"
 #include "equidem/grains/bond_step.hpp"
 #include "equidem/grains/grain_parts.hpp"
 #include "equidem/grains/grain_scene.hpp"
@@ -94,6 +95,7 @@ struct GrainSystem {
       candidates;  ///< that are in none of the near lists; ordered by i, then j, walls last, then parts
   std::vector<TouchImpulse> touch_impulses;  ///< of the step being made
   std::vector<TiedPair> bonds;               ///< ordered by i, then j
+  PackedBonds packed_bonds;
   NeighbourFinder finder;
   std::vector<Circle> circles;         ///< bodies, for the finder
   std::vector<ExactPair> exact_pairs;  ///< exact_flow: one for each candidate

@@ -15,7 +15,7 @@
 namespace equidem {
 namespace {
 
-/// Margin of the pairs: of the smallest radius; and a multiple of the mean of that and the way in a step, where pairs too many cost as
+/// Margin of the pairs: of the smallest body; and a multiple of the mean of that and the way in a step, where pairs too many cost as
 /// much as lists found anew.
 constexpr double least_margin = 0.02, margin_of_mean = 2.5;
 
@@ -185,17 +185,16 @@ bool go_by_eights(const GrainSystem& system) {
   });
 }
 
-double margin_of_near_pairs(const GrainSystem& system, double reach) {
-  const double wanted = std::max(
-      {least_margin * system.smallest_radius, margin_of_mean * std::sqrt(reach * system.smallest_radius), 4 * reach});
+double margin_of_near_pairs(const GrainSystem& system, double size, double reach) {
+  const double wanted = std::max({least_margin * size, margin_of_mean * std::sqrt(reach * size), 4 * reach});
   return std::min(wanted, system.margin);
 }
 
 void prepare_near_pairs(GrainSystem& system) {
   NearPairs& near = system.near;
   const std::vector<Grain>& grains = system.scene.grains;
-  const auto discs = std::count_if(grains.begin(), grains.end(),
-                                   [](const Grain& grain) { return grain.shape() == GrainShape::disc; });
+  const auto discs =
+      std::count_if(grains.begin(), grains.end(), [](const Grain& grain) { return grain.shape() == GrainShape::disc; });
   if (discs < 2 || !go_by_eights(system)) return;
   const std::vector<const PairProperties*> pairs = pairs_of_grains(system.scene);
   near.active = true;
@@ -218,7 +217,7 @@ void prepare_near_pairs(GrainSystem& system) {
 void find_near_pairs(GrainSystem& system, double reach) {
   const NeighbourList& list = *system.near.outer;
   NearPairs& near = system.near;
-  near.margin = margin_of_near_pairs(system, reach);
+  near.margin = margin_of_near_pairs(system, system.smallest_radius, reach);
   near.moved = 0;
   PairLists lists(system);
   const bool shapes = !system.parts.empty();

@@ -98,8 +98,8 @@ struct NearPairs {
 /// Whether contacts of grains can be computed several at a time: a law that gives a force, no contact that slides always.
 bool go_by_eights(const GrainSystem& system);
 
-/// Margin of lists within that of the neighbour finder, for bodies that move by about `reach` in a step.
-double margin_of_near_pairs(const GrainSystem& system, double reach);
+/// Margin of lists within that of the neighbour finder, for bodies of a size (of discs the radius) that move by about `reach` in a step.
+double margin_of_near_pairs(const GrainSystem& system, double size, double reach);
 
 /// Decide whether discs meet in the loop over near pairs, and choose it.
 void prepare_near_pairs(GrainSystem& system);

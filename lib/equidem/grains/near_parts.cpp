@@ -30,11 +30,24 @@ class NewList {
       if (old().since[lane()] > PairGroup::apart) keep();
     }
   }
-  /// Go on to a pair. \return whether the list before has it; then it is kept where it is near or touching.
-  bool go_on_with(std::int32_t i, std::int32_t j, bool near) {
+  /// Go on to a pair; it is kept where it touches. \return whether it does
+  bool keep_contact(std::int32_t i, std::int32_t j) {
     keep_contacts_before(i, j);
-    if (at_ == count_ || old().i[lane()] != i || old().j[lane()] != j) return false;
-    if (near || old().since[lane()] > PairGroup::apart) keep();
+    listed_ = at_ < count_ && old().i[lane()] == i && old().j[lane()] == j;
+    if (!listed_ || old().since[lane()] <= PairGroup::apart) return false;
+    keep();
+    ++at_;
+    return true;
+  }
+  /// Of the pair gone on to, which is apart: a direction along which it was, or {}.
+  [[nodiscard]] Vec2 apart() const {
+    if (!listed_) return {};
+    return {old().numbers[PartGroup::normal_x][lane()], old().numbers[PartGroup::normal_y][lane()]};
+  }
+  /// Whether it was listed; then it is kept where it is near.
+  bool leave(bool near) {
+    if (!listed_) return false;
+    if (near) keep();
     ++at_;
     return true;
   }
@@ -106,26 +119,48 @@ class NewList {
   NearParts::List& list_;
   LaneVector<PartGroup> old_;
   std::size_t count_, at_ = 0;
+  bool listed_ = false;
 };
 
-struct Nearness {
-  bool near = false;
-  Vec2 apart = {};
+/// A direction along which ellipses are apart by some distance, m.
+struct Apart {
+  double gap = -std::numeric_limits<double>::infinity();
+  Vec2 normal = {};
 };
 
-Nearness nearness_of(const GrainSystem& system, std::size_t i, const GrainPart& part_i, std::size_t j,
-                     const GrainPart& part_j) {
+/// The best of the axes of both, towards j: what a box round each says.
+Apart apart_along_axes(const Ellipse& i, const Ellipse& j, Vec2 branch) {
+  Apart best;
+  const double c = dot(i.axis, j.axis), s = cross(i.axis, j.axis);
+  const double cc = c * c, ss = s * s;
+  const auto look = [&](double way, Vec2 axis, double own, double a, double b, double along, double across) {
+    const double gap = std::abs(way) - own - std::sqrt(a * a * along + b * b * across);
+    if (gap > best.gap) best = {gap, way < 0 ? -axis : axis};
+  };
+  look(cross(i.axis, branch), perpendicular(i.axis), i.b, j.a, j.b, ss, cc);
+  look(cross(j.axis, branch), perpendicular(j.axis), j.b, i.a, i.b, ss, cc);
+  look(dot(i.axis, branch), i.axis, i.a, j.a, j.b, cc, ss);
+  look(dot(j.axis, branch), j.axis, j.a, i.a, i.b, cc, ss);
+  return best;
+}
+
+/// Whether two parts are nearer than the margin.
+/// \param[in,out] apart a direction along which they were apart, or {}
+bool are_near(const GrainSystem& system, std::size_t i, const GrainPart& part_i, std::size_t j, const GrainPart& part_j,
+              Vec2& apart) {
   const double margin = system.near_parts.margin;
   const Vec2 branch = system.motions[j].position - system.motions[i].position +
                       (offset_of(part_j, system.axes[j]) - offset_of(part_i, system.axes[i]));
   const double reach = part_i.a + part_j.a + margin;
-  if (!(dot(branch, branch) <= reach * reach)) return {};
-  if (part_i.is_round() && part_j.is_round()) return {true};
+  if (!(dot(branch, branch) <= reach * reach)) return false;
+  if (part_i.is_round() && part_j.is_round()) return true;
   const Ellipse of_i{part_i.a, part_i.b, system.axes[i]}, of_j{part_j.a, part_j.b, system.axes[j]};
-  const EllipseContact quick = contact_of_ellipses(of_i, of_j, branch, {}, WhenApart::only_that_it_is);
-  if (quick.gap > margin) return {};
-  const EllipseContact contact = contact_of_ellipses(of_i, of_j, branch, quick.normal);
-  return {contact.gap <= margin, contact.normal};
+  if (apart != Vec2{} && separation_along(of_i, of_j, branch, apart) > margin) return false;
+  const Apart boxes = apart_along_axes(of_i, of_j, branch);
+  if (boxes.gap > margin) return false;
+  const EllipseContact contact = contact_of_ellipses(of_i, of_j, branch, apart != Vec2{} ? apart : boxes.normal);
+  apart = contact.normal;
+  return contact.gap <= margin;
 }
 
 void find_met_parts(GrainSystem& system) {
@@ -166,32 +201,38 @@ bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
 void prepare_near_parts(GrainSystem& system) {
   if (system.parts.empty() || system.bodies.size() < 2 || !go_by_eights(system)) return;
   if (system.options.ellipse_law != GrainOptions::EllipseLaw::exact) return;
-  if (system.options.verlet()) return;
   NearParts& near = system.near_parts;
   near.active = true;
   near.lists[0].loop = near_part_loop(system, true);
   near.lists[1].loop = near_part_loop(system, false);
   near.bodies.resize(system.parts.size());
+  near.size = std::numeric_limits<double>::infinity();
+  for (const GrainPart& part : system.parts) near.size = std::min(near.size, part.size);
 }
 
 void find_near_parts(GrainSystem& system, double reach) {
   const NeighbourList& neighbours = *system.near.outer;
   NearParts& near = system.near_parts;
-  near.margin = margin_of_near_pairs(system, reach);
+  near.margin = margin_of_near_pairs(system, near.size, reach);
   near.moved = 0;
   std::array<NewList, 2> lists{NewList(system, near.lists[0]), NewList(system, near.lists[1])};
   for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+    const auto body = static_cast<std::int32_t>(i);
+    const bool disc = are_discs(system, body, body);
     for (std::int32_t p = system.first_part[i]; p < system.first_part[i + 1]; ++p) {
       const GrainPart& part_i = system.parts[static_cast<std::size_t>(p)];
       for (std::int64_t n = neighbours.begin[i]; n < neighbours.begin[i + 1]; ++n) {
         const std::int32_t partner = neighbours.partner[static_cast<std::size_t>(n)];
-        if (are_discs(system, static_cast<std::int32_t>(i), partner)) continue;
+        if (disc && are_discs(system, body, partner)) continue;
         const auto j = static_cast<std::size_t>(partner);
         for (std::int32_t q = system.first_part[j]; q < system.first_part[j + 1]; ++q) {
           const GrainPart& part_j = system.parts[static_cast<std::size_t>(q)];
           NewList& list = lists[list_of(part_i, part_j)];
-          const auto [is_near, apart] = nearness_of(system, i, part_i, j, part_j);
-          if (!list.go_on_with(p, q, is_near) && is_near) list.add(p, q, apart);
+          if (list.keep_contact(p, q)) continue;
+          Vec2 apart = list.apart();
+          const bool is_near = are_near(system, i, part_i, j, part_j, apart);
+          if (list.leave(is_near) || !is_near) continue;
+          list.add(p, q, apart);
         }
       }
     }

@@ -85,6 +85,7 @@ struct NearParts {
   std::array<List, 2> lists;      ///< round parts, ellipses
   LaneVector<PartBody> bodies;    ///< one for each part
   std::vector<std::int32_t> met;  ///< parts that are in the lists
+  double size = 0;                ///< smallest GrainPart::size, m
   double margin = 0, moved = 0;   ///< of the lists, m
 
   [[nodiscard]] std::size_t bytes() const;

@@ -6,6 +6,8 @@
 
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/pair_lanes.hpp"
+#include "equidem/grains/slide_lanes.hpp"
+#include "equidem/grains/touch_lanes.hpp"
 
 namespace equidem {
 namespace {
@@ -30,45 +32,6 @@ struct LoopNumbers {
   GrainSystem* system = nullptr;
 };
 
-/// What is known of a group in which contacts begin or end.
-struct TouchLanes {
-  Lanes nx, ny, distance, closing, deep, spring, impulse, dashpot, mass, least;
-  Lanes slip, tangential, tangential_dashpot, stored;
-  Choice begun, ended, slides;
-};
-
-[[gnu::noinline, gnu::cold]] void count_instants(GrainSystem& system, const PairGroup& group, const TouchLanes& lanes,
-                                                 bool hertz) {
-  for (int k = 0; k < 8; ++k) {
-    if (lanes.begun[k] == 0 && lanes.ended[k] == 0) continue;
-    TouchInstant contact;
-    contact.i = group.i[k];
-    contact.j = group.j[k];
-    contact.normal = {lanes.nx[k], lanes.ny[k]};
-    const double radius = system.bodies[static_cast<std::size_t>(contact.i)].radius;
-    const double lever = radius / group.reach[k] * lanes.distance[k];
-    contact.arm_i = lever * contact.normal;
-    contact.arm_j = (lever - lanes.distance[k]) * contact.normal;
-    contact.closing = lanes.closing[k];
-    contact.slip = lanes.slip[k];
-    contact.part = part_of_drift(lanes.deep[k], lanes.begun[k] != 0 ? contact.closing : -contact.closing, system.dt());
-    contact.spring = lanes.spring[k];
-    contact.dashpot = lanes.impulse[k] - lanes.spring[k];
-    contact.decay = lanes.dashpot[k] * lanes.mass[k] * system.dt();
-    if (hertz) contact.decay *= std::sqrt(std::sqrt(lanes.deep[k]));
-    contact.tangential = lanes.tangential[k];
-    contact.tangential_dashpot = lanes.tangential_dashpot[k];
-    contact.stored = lanes.stored[k];
-    contact.slides = lanes.slides[k] != 0;
-    contact.pulls = lanes.least[k] < 0;
-    if (lanes.begun[k] != 0) {
-      begin_within_drift(system, contact);
-    } else {
-      end_within_drift(system, contact);
-    }
-  }
-}
-
 struct Sums {
   Half
       lost{};  // normal dashpot, slip, tangential dashpot, release: one contact after another, so that pairs apart change no bit
@@ -76,12 +39,8 @@ struct Sums {
   Choice evaluations{}, begun{};
 };
 
-struct Law {
-  Lanes stiffness, least, friction, tangential_stiffness, beyond_cap, tangential_compliance;
-};
-
 template <PairLoopKind kind>
-EQUIDEM_ALWAYS_INLINE Law law_of(const LoopNumbers& numbers, const PairLaws* laws) {
+EQUIDEM_ALWAYS_INLINE LawLanes law_of(const LoopNumbers& numbers, const PairLaws* laws) {
   if constexpr (kind.equal) {
     const PairLaw& law = numbers.law;
     return {all(law.stiffness),
@@ -96,58 +55,6 @@ EQUIDEM_ALWAYS_INLINE Law law_of(const LoopNumbers& numbers, const PairLaws* law
             load(laws->friction),   spring,
             load(laws->beyond_cap), 1 / (spring > 0 ? spring : all(1))};
   }
-}
-
-/// sliding_step and sliding_step_midpoint for contacts that have a spring.
-/// \param velocity slip at the start of the step; by the midpoint rule with half of what others do to it
-/// \param mean_slip over the drift before, to count losses; the Verlet schemes
-/// \param before impulse on j in the last step; the Verlet schemes
-struct Tangent {
-  Lanes force, stretch, slip_loss, dashpot_loss;
-  Choice slides;
-};
-
-template <PairLoopKind kind>
-EQUIDEM_ALWAYS_INLINE Tangent slide(const Law& law, const Lanes& dashpot, const Lanes& stretch, const Lanes& velocity,
-                                    const Lanes& mean_slip, const Lanes& mobility, const Lanes& before,
-                                    const Lanes& yield, double dt) {
-  const Lanes spring = law.tangential_stiffness;
-  Lanes resistance, mean = velocity;
-  if constexpr (!kind.verlet) {
-    const Lanes rate = spring * (dt / 2) + dashpot;
-    resistance = (spring * stretch + rate * velocity) / (1 + mobility * rate);
-  } else {
-    resistance = spring * (stretch + velocity * dt) + dashpot * velocity;
-  }
-  Lanes capped = resistance;
-  if constexpr (!kind.equal) {
-    if constexpr (!kind.verlet) mean = velocity - mobility * resistance;
-    capped -= law.beyond_cap * dashpot * mean;
-  }
-  const Choice slides = negative(yield - magnitude(capped));
-  const Lanes friction = choose(slides, with_sign(yield, capped), resistance);
-  Lanes drag{}, force = friction;
-  if constexpr (!kind.verlet) mean = velocity - mobility * friction;
-  if constexpr (!kind.equal) {
-    if constexpr (!kind.verlet) {
-      mean = choose(slides, mean / (1 + law.beyond_cap * mobility * dashpot), mean);
-    }
-    drag = only(slides, law.beyond_cap * dashpot * mean);
-    force += drag;
-  }
-  const Lanes moved = stretch + mean * dt;
-  const Lanes largest = yield * law.tangential_compliance;
-  Lanes end = choose(slides, smaller(larger(moved, -largest), largest), moved);
-  if constexpr (!kind.equal) end = spring > 0 ? end : Lanes{};
-  const Lanes released = 0.5 * spring * (stretch - end) * (stretch + end);
-  if constexpr (!kind.verlet) {
-    const Lanes dragged = choose(slides, drag, dashpot * mean);
-    return {force, end, only(slides, friction * mean * dt + released), dragged * mean * dt, slides};
-  }
-  // half of the kicks before and after the drift each, less what the spring has stored
-  const Lanes loss = 0.5 * mean_slip * (force * dt - before) + released;
-  const Lanes dragged = drag * mean_slip * dt;
-  return {force, end, only(slides, loss - dragged), choose(slides, dragged, only(negative(-dashpot), loss)), slides};
 }
 
 template <PairLoopKind kind>
@@ -191,7 +98,7 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairB
   const Lanes inverse = distance * (1 / square);  // the division need not wait for the root
   const Lanes nx = distinct ? bx * inverse : all(1), ny = distinct ? by * inverse : zero;
   const Lanes closing = -(u * nx + v * ny);
-  const Law law = law_of<kind>(numbers, laws);
+  const LawLanes law = law_of<kind>(numbers, laws);
   const Lanes dashpot = load(group.dashpot);
   const Lanes deep = only(touch, overlap);
   Lanes elastic, drag;
@@ -248,8 +155,8 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairB
     }
     const Lanes yield = law.friction * larger(force, zero);
     const Lanes slip_dashpot = load(slips->dashpot);
-    const Tangent tangent =
-        slide<kind>(law, slip_dashpot, stretch, velocity, mean_slip, dt * half, impulse_along_before, yield, dt);
+    const Tangent tangent = slide<kind.verlet, kind.equal>(law, slip_dashpot, stretch, velocity, mean_slip, dt * half,
+                                                           impulse_along_before, yield, dt);
     const Lanes tangential = only(touch, -dt * tangent.force);
     store(only(touch, tangent.stretch), slips->stretch);
     store(tangential, slips->impulse);
@@ -276,24 +183,32 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairB
   }
   if constexpr (kind.verlet) {
     if (changes) [[unlikely]] {
-      const TouchLanes instants{nx,
-                                ny,
-                                distance,
-                                mean_closing,
-                                choose(begun, deep, deep_before),
-                                choose(begun, elastic, elastic_before) * dt,
-                                choose(begun, impulse, impulse_before),
-                                dashpot,
-                                mass,
-                                law.least,
-                                slip,
-                                tangential_kick,
-                                sticking_dashpot,
-                                0.5 * law.tangential_stiffness * kept * kept,
-                                begun,
-                                ended,
-                                slides};
-      count_instants(*numbers.system, group, instants, kind.hertz);
+      Lanes lever;
+      for (int k = 0; k < 8; ++k) lever[k] = numbers.system->bodies[static_cast<std::size_t>(group.i[k])].radius;
+      lever = lever / reach * distance;
+      const Lanes other = lever - distance;
+      count_instants(*numbers.system, {begun,
+                                       ended,
+                                       slides,
+                                       group.i,
+                                       group.j,
+                                       nx,
+                                       ny,
+                                       lever * nx,
+                                       lever * ny,
+                                       other * nx,
+                                       other * ny,
+                                       mean_closing,
+                                       slip,
+                                       choose(begun, deep, deep_before),
+                                       choose(begun, elastic, elastic_before) * dt,
+                                       choose(begun, impulse, impulse_before),
+                                       dashpot,
+                                       mass,
+                                       law.least,
+                                       tangential_kick,
+                                       sticking_dashpot,
+                                       0.5 * law.tangential_stiffness * kept * kept});
     }
   }
   if (numbers.record) {

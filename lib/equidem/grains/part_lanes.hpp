@@ -108,6 +108,13 @@ EQUIDEM_ALWAYS_INLINE Vectors support_points(const Supports& s, const Vectors& n
          (s.slope + turn * (s.radius + half * s.radius_slope)) * perpendicular(n);
 }
 
+/// Where f' - bend t - (R_i' + R_j') t²/2 = 0.
+/// \param first f'/bend
+EQUIDEM_ALWAYS_INLINE Lanes turn_to_top(const Lanes& first, const Supports& i, const Supports& j,
+                                        const Lanes& per_bend) {
+  return first - 0.5 * first * first * (i.radius_slope + j.radius_slope) * per_bend;
+}
+
 /// What lanes for which Newton's way is not short and certain are computed from, and what comes out.
 struct HardLanes {
   Standing standing;
@@ -174,12 +181,12 @@ EQUIDEM_ALWAYS_INLINE Meetings meetings_of_ellipses(PartGroup& group, const Part
       hard |= ~done;
       break;
     }
-    // what is done stays
-    const Lanes length = 1 - square * (0.5 - 0.375 * square);
-    n = choose(done, n, length * (n + first * perpendicular(n)));
+    // what is done stays; a step is of the third order
+    const Lanes turn = turn_to_top(first, of_i, of_j, per_bend), turned = turn * turn;
+    const Lanes length = 1 - turned * (0.5 - 0.375 * turned);
+    n = choose(done, n, length * (n + turn * perpendicular(n)));
   }
-  // where f' - bend t - (R_i' + R_j') t²/2 = 0
-  const Lanes turn = first - 0.5 * first * first * (of_i.radius_slope + of_j.radius_slope) * per_bend;
+  const Lanes turn = turn_to_top(first, of_i, of_j, per_bend);
   Meetings result;
   gap = choose(apart, gap, gap + 0.5 * first * slope);
   Vectors normal = choose(apart, n, (1 - 0.5 * turn * turn) * n + turn * perpendicular(n));

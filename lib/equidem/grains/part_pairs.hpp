@@ -20,7 +20,7 @@ double longest_turn(const GrainSystem& system);
 
 /// Pairs of parts that come nearer than the margin, in their order.
 std::vector<PartPair> near_parts(const GrainSystem& system, std::size_t i, std::size_t j);
-/// The same of a body and a wall; of ellipses by their circle.
+/// The same of a body and a wall; of ellipses at a segment or an arc by their circle.
 std::vector<PartPair> near_parts_of_wall(const GrainSystem& system, std::size_t i, std::size_t wall);
 
 }  // namespace equidem

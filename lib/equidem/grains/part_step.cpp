@@ -181,9 +181,14 @@ void collide_parts(GrainSystem& system) {
       pair.arm_i = meeting.arm_i;
       pair.arm_j = meeting.arm_j;
       system.deepest = std::max(system.deepest, meeting.overlap);
+      const auto others = [&] {
+        const double mass = tangential_mass(contact, 0);
+        return SlipByOthers{gain_of_slip(system, contact, mass), mass};
+      };
       push(system, contact,
            step_contact<law, friction>(system, candidate, place, -dot(relative, meeting.normal),
-                                       dot(relative, contact.tangent()), drift, sliding_of(candidate, pair, contact)));
+                                       dot(relative, contact.tangent()), drift, sliding_of(candidate, pair, contact),
+                                       others));
       continue;
     }
     const double closing = -dot(relative, meeting.normal);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/grains/touch_instants.hpp"
 
+#include <cmath>
+
 #include "equidem/grains/grain_system.hpp"
 
 namespace equidem {
@@ -11,9 +13,20 @@ struct Shares {
   double spring = 0, dashpot = 0;
 };
 
+/// -zeta(-p, part)/part^p, by Euler and Maclaurin from part + 1 on: what the sum of x^p over part, part + 1, ... lacks at its start of the
+/// integral from 0. By this the trapezoidal rule errs where a force begins or ends.
+/// \param now, next part^p and (part + 1)^p
+double beyond_sum(double part, double power, double now, double next) {
+  return (((1 + part) / (power + 1) - 0.5 + power / (12 * (1 + part))) * next - now) / now;
+}
+
+/// From its first instant on the trapezoidal rule is exact for the linear spring; for that of Hertz its error there goes with the part.
 Shares shares_of(const GrainSystem& system, double part) {
-  const bool hertz = system.options.law == NormalLaw::hertz_dashpot;
-  return hertz ? Shares{part / 2.5, part / 1.25} : Shares{part / 2, part};
+  if (system.options.law != NormalLaw::hertz_dashpot) return {part / 2, part};
+  const double seen = std::max(part, 1e-12);  // an overlap of round-off
+  const double now = std::sqrt(seen), next = std::sqrt(1 + seen);
+  return {0.5 + beyond_sum(seen, 1.5, seen * now, (1 + seen) * next),
+          0.5 + beyond_sum(seen, 0.25, std::sqrt(now), std::sqrt(next))};
 }
 
 bool corrects(const GrainSystem& system) {
@@ -39,6 +52,23 @@ Vec2 relative_velocity(const GrainSystem& system, const TouchImpulse& impulse) {
   const Vec2 other = impulse.j >= 0 ? at(impulse.j, impulse.arm_j)
                                     : system.walls[static_cast<std::size_t>(~impulse.j)].passed_velocity;
   return other - at(impulse.i, impulse.arm_i);
+}
+
+/// In the part of the drift in which the contact lasts: its spring slackens by the slip, friction bounds it as the normal force falls.
+/// \param given, normal impulses along the normal, in the last whole kick and in the part
+double last_tangential(const GrainSystem& system, const TouchInstant& contact, double given, double normal) {
+  Candidate candidate;
+  candidate.i = contact.i;
+  candidate.j = contact.j;
+  const double friction = system.properties(candidate).friction;
+  const double bound = friction * std::max(given, 0.0), kick = std::abs(contact.tangential);
+  const double beyond_cap = contact.part * std::max(kick - bound, 0.0);
+  const double most = (given > 0 ? friction * std::max(normal, 0.0) : 0) + beyond_cap;
+  const bool slides = kick >= bound * (1 - 1e-9) && contact.tangential * contact.slip <= 0;
+  if (slides) return std::copysign(most, contact.tangential);
+  const double slack = contact.stored > 0 ? contact.tangential * contact.slip * contact.part / (2 * contact.stored) : 0;
+  const double held = contact.tangential * contact.part * (1 - 0.5 * slack);
+  return std::clamp(held, -most, most);
 }
 
 }  // namespace
@@ -73,12 +103,12 @@ void end_within_drift(GrainSystem& system, const TouchInstant& contact) {
   GrainLedger& lost = system.lost;
   const Shares share = shares_of(system, contact.part);
   const double given = contact.spring + contact.dashpot;
-  double true_one = share.spring * contact.spring + share.dashpot * contact.dashpot;
+  double true_one = given != 0 ? share.spring * contact.spring + share.dashpot * contact.dashpot : 0;
   if (!contact.pulls) true_one = std::max(true_one, 0.0);
   TouchImpulse impulse = impulse_on(contact);
   impulse.spring = (share.spring - 0.5) * contact.spring;
   impulse.dashpot = true_one - 0.5 * given - impulse.spring;
-  impulse.tangential = 0.5 * (contact.part - 1) * contact.tangential;
+  impulse.tangential = last_tangential(system, contact, given, true_one) - 0.5 * contact.tangential;
   impulse.taken = &GrainLedger::lost_release;
   lost.lost_dashpot += 0.5 * contact.dashpot * contact.closing;
   lost.lost_release += contact.stored - 0.5 * contact.tangential * contact.slip;

@@ -25,6 +25,11 @@ struct ContactDrift {
   double overlap = 0;            ///< m
 };
 
+/// What all but the contact itself add to its slip in a step, m/s, and the tangential mass, kg.
+struct SlipByOthers {
+  double gain = 0, mass = 0;
+};
+
 /// Impulse of the spring in a whole kick.
 template <NormalLaw law>
 [[gnu::always_inline]] inline double spring_impulse(const GrainSystem& system, const Candidate& candidate,
@@ -67,11 +72,12 @@ void end_contact(GrainSystem& system, Candidate& candidate, const TouchPlace& pl
 
 /// A step of a contact: candidate remembers it.
 /// \param closing, slip that the law sees
+/// \param others gives SlipByOthers: friction without a spring halts a slip, and does not turn it round
 /// \return impulse on j
-template <NormalLaw law, bool friction>
+template <NormalLaw law, bool friction, class Others>
 [[gnu::always_inline]] inline Vec2 step_contact(GrainSystem& system, Candidate& candidate, const TouchPlace& now,
                                                 double closing, double slip, const ContactDrift& drift,
-                                                const Sliding& sliding) {
+                                                const Sliding& sliding, const Others& others) {
   const double dt = system.dt();
   const bool begins = !candidate.touching;
   const double depth = now.overlap / system.length, sigma = closing * dt / system.length;
@@ -90,7 +96,13 @@ template <NormalLaw law, bool friction>
       if (begins && system.options.scheme == GrainOptions::Scheme::corrected_verlet) {
         candidate.stretch -= (1 - part) * slip * dt;
       }
-      slide = sliding_step(sliding, candidate.stretch, slip, std::max(impulse, 0.0) / dt, dt);
+      const double normal_force = std::max(impulse, 0.0) / dt;
+      if (is_rigid(sliding)) {
+        const SlipByOthers by_others = others();
+        slide = sliding_step_midpoint(sliding, 0, slip + by_others.gain, by_others.mass, normal_force, dt);
+      } else {
+        slide = sliding_step(sliding, candidate.stretch, slip, normal_force, dt);
+      }
       tangential = slide.force * dt;
       candidate.stretch = slide.stretch;
     }

@@ -21,6 +21,9 @@
 namespace equidem::bench {
 namespace {
 
+constexpr double contact_stiffness = 1e5;
+constexpr double pair_radius = 0.5 / std::numbers::sqrt2;  ///< of each disc of a pair
+
 struct Request {
   int side = 32, rounds = 7;
   std::string file;
@@ -29,8 +32,10 @@ struct Request {
 /// All of the area of a disc of the radius 0.5 m.
 struct Shape {
   std::string label;
-  double aspect = 1;  ///< 0: disc, < 0: rigid pair, else the long half-axis over the short one
+  double aspect = 1;  ///< 0: disc, < 0: pair of discs, else the long half-axis over the short one
   GrainOptions::EllipseLaw law = GrainOptions::EllipseLaw::exact;
+  bool bonded = false;  ///< a pair that dashpots tie, two grains
+  GrainOptions::BondStep bond_step = GrainOptions::BondStep::exact;
 };
 
 std::vector<Shape> shapes() {
@@ -42,7 +47,9 @@ std::vector<Shape> shapes() {
           {"ellipse, aspect 5", 5},
           {"ellipse, aspect 20", 20},
           {"ellipse, aspect 2, enlarged, mended", 2, Law::enlarged_mended},
-          {"rigid pair of discs", -1}};
+          {"rigid pair of discs", -1},
+          {"bonded pair of discs", -1, Law::exact, true},
+          {"bonded pair of discs, explicit", -1, Law::exact, true, GrainOptions::BondStep::explicit_euler}};
 }
 
 GrainWall line(const char* name, Vec2 point, Vec2 normal) {
@@ -51,6 +58,18 @@ GrainWall line(const char* name, Vec2 point, Vec2 normal) {
   wall.point = point;
   wall.normal = normal;
   return wall;
+}
+
+/// The step is half the limit of these dashpots where they are explicit; C_s in the ratio of the masses that they move.
+GrainBond dashpots_between(std::size_t i, std::size_t j, const Grain& disc, double step) {
+  GrainBond bond{.i = i, .j = j};
+  bond.normal_dashpot = 0.5 * disc.inertia.mass / step;
+  bond.tangential_dashpot = bond.normal_dashpot / 3;
+  return bond;
+}
+
+double step_of(const Grain& grain) {
+  return 0.1 * std::sqrt(grain.inertia.mass / contact_stiffness);
 }
 
 /// Grains on a wide grid, turned at random, over a floor between two walls; the contact properties are those of sand.
@@ -63,26 +82,36 @@ GrainScene grains_to_fall(const Shape& shape, int side) {
     grain.radius = 0.5 * std::sqrt(shape.aspect);
     grain.short_half_axis = 0.5 / std::sqrt(shape.aspect);
     grain.inertia = inertia_of_ellipse(grain.radius, grain.short_half_axis, 1);
+  } else if (shape.bonded) {
+    grain.radius = pair_radius;
+    grain.inertia = inertia_of(pair_radius, 1, Body::disc);
   } else if (shape.aspect < 0) {
-    const double radius = 0.5 / std::numbers::sqrt2;
+    const double radius = pair_radius;
     scene.clumps = {centred_clump({{{-radius, 0}, radius}, {{radius, 0}, radius}})};
     grain.clump = 0;
     grain.radius = radius_of(scene.clumps[0]);
     grain.inertia = inertia_of_clump(scene.clumps[0], 1);
   }
   Random random(1);
-  const double spacing = 2.05 * grain.radius;
+  const double spacing = 2.05 * (shape.bonded ? 2 * pair_radius : grain.radius);
   for (int k = 0; k < side * side; ++k) {
     grain.position = {(k % side + 0.5) * spacing, (std::floor(k / side) + 0.5) * spacing};
     grain.velocity = {random.uniform(-0.3, 0.3), 0};
     grain.angle = random.uniform(0, 2 * std::numbers::pi);
     scene.grains.push_back(grain);
+    if (!shape.bonded) continue;
+    const Vec2 arm = pair_radius * Vec2{std::cos(grain.angle), std::sin(grain.angle)};
+    scene.grains.back().position -= arm;
+    grain.position += arm;
+    scene.grains.push_back(grain);
+    const std::size_t j = scene.grains.size() - 1;
+    scene.bonds.push_back(dashpots_between(j - 1, j, grain, step_of(grain)));
   }
   scene.gravity = {0, -1};
   scene.walls = {line("floor", {0, 0}, {0, 1}), line("left", {0, 0}, {1, 0}),
                  line("right", {side * spacing, 0}, {-1, 0})};
   PairProperties pair;
-  pair.stiffness = 1e5;
+  pair.stiffness = contact_stiffness;
   pair.restitution = 0.3;
   pair.friction = 0.17;
   pair.tangential_ratio = 1.0 / 3;
@@ -96,9 +125,10 @@ GrainSimulation settled(const Shape& shape, int side) {
   options.law = NormalLaw::linear_dashpot;
   options.ellipse_law = shape.law;
   const GrainScene scene = grains_to_fall(shape, side);
-  options.time_step = 0.1 * std::sqrt(scene.grains[0].inertia.mass / 1e5);
+  options.bond_step = shape.bond_step;
+  options.time_step = step_of(scene.grains[0]);
   GrainSimulation simulation(scene, options);
-  const double height = side * 2 * scene.grains[0].radius;
+  const double height = side * 2 * scene.grains[0].radius * (shape.bonded ? 2 : 1);
   simulation.advance(static_cast<std::int64_t>(3 * std::sqrt(height) / options.time_step));
   return simulation;
 }
@@ -114,7 +144,7 @@ equidem {0}, compiler {1}, `bench_shapes --side {2} --rounds {3}`. {4} grains of
 friction, tangential springs and dashpots; the law linear_dashpot by semi-implicit Euler. One thread, processor time; medians (smallest ..
 largest) of {3} rounds in which all take turns. Everything that a step does is counted: contacts, grains that are near but apart, motion,
 lists. A contact is one that touches. Discs, round parts and ellipses go through loops over eight pairs at once, the enlarged ellipse
-contact by contact.
+contact by contact. A bonded pair counts as one grain: two discs and the dashpots between them.
 
 | shape | contacts per grain | ns per grain and step | over a disc | ns per contact | over a disc contact | bytes per grain |
 |---|---|---|---|---|---|---|
@@ -148,7 +178,7 @@ void run(const Request& request) {
     const Range over = scaled(over_disc, contacts[0] / contacts[k]);
     report += format("| {} | {:.2f} | {} | {} | {} | {} | {:.0f} |\n", entries[k].label, contacts[k],
                      text(each, "{:.0f}"), text(over_disc, "{:.2f}"), text(scaled(each, 1 / contacts[k]), "{:.0f}"),
-                     text(over, "{:.2f}"), simulations[k].bytes_per_grain());
+                     text(over, "{:.2f}"), simulations[k].bytes_per_grain() * (shapes()[k].bonded ? 2 : 1));
   }
   std::printf("%s", report.c_str());
   if (request.file.empty()) return;
