@@ -90,8 +90,9 @@ std::string variants(const Reproduction& result) {
       {{.variant = "smooth"}, "no friction between grains"},
       {{.variant = "rough"}, "friction 0.5"},
       {{.shape = Shape::ellipse}, "ellipses"},
-      {{.shape = Shape::ellipse, .variant = "printed_test"}, "ellipses found by (4.1)-(4.49) as printed"},
-      {{.shape = Shape::ellipse, .variant = "mended_test"}, "ellipses, that test mended"},
+      {{.shape = Shape::ellipse, .variant = "small"}, "612 ellipses, springs nine times softer"},
+      {{.shape = Shape::ellipse, .variant = "printed_test"}, "those, found by (4.1)-(4.49) as printed"},
+      {{.shape = Shape::ellipse, .variant = "mended_test"}, "those, found by that test mended"},
       {{.shape = Shape::bonded_pair}, "bonded pairs"},
       {{.shape = Shape::bonded_pair, .gal = 0}, "bonded pairs left standing for as long"},
       {{.shape = Shape::bonded_pair, .variant = "weak_bonds"}, "bonded pairs, C_n and C_s a tenth"}};
@@ -253,8 +254,8 @@ std::string report(const Reproduction& result) {
       "cm, ellipses\n"
       "of the same areas, Vs = {:g} m/s, nu = {:g}, {:g} kg/m³, h = 1, friction {:g}, with walls {:g}. Contacts are "
       "those of\n"
-      "(2.26), (2.27) with friction capping the whole tangential force; ellipses touch exactly; the loop is velocity "
-      "Verlet\n"
+      "(2.26), (2.27) with friction capping the whole tangential force; ellipses touch exactly; the loop is "
+      "corrected_verlet\n"
       "at half the limit of a contact of the two lightest bodies. They fall, come to rest, are shaken by a cos(2 pi f "
       "t) along x\n"
       "for a second and at least two cycles (the thesis does not say how long), and come to rest again.\n",
