@@ -2,9 +2,11 @@
 """The built program, for the tests that drive it: run_VERB.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import json
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 PROGRAM = sys.argv.pop(1)
@@ -41,6 +43,24 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
         for word in words:
             self.assertIn(word, done.stderr)
+
+    def interrupt(self, *arguments, when=lambda seconds: True):
+        """Started, sent SIGINT once when(seconds since its start) holds, ended with 130; (stdout, stderr)."""
+        running = subprocess.Popen([PROGRAM, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        try:
+            start = time.monotonic()
+            while not when(time.monotonic() - start) and time.monotonic() - start < 60:
+                self.assertIsNone(running.poll())
+                time.sleep(0.05)
+            self.assertIsNone(running.poll())
+            running.send_signal(signal.SIGINT)
+            stdout, stderr = running.communicate(timeout=60)
+        finally:
+            if running.poll() is None:
+                running.kill()
+                running.communicate()
+        self.assertEqual(running.returncode, 130, stderr)
+        return stdout, stderr
 
     def check_done(self, done):
         self.assertEqual(done.returncode, 0, done.stderr)

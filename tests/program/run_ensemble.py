@@ -4,13 +4,10 @@
 import csv
 import math
 import pathlib
-import signal
 import statistics
-import subprocess
-import time
 import unittest
 
-from program import CASES, PROGRAM, ProgramTest, equidem, parse_json
+from program import CASES, ProgramTest, equidem, parse_json
 
 ENSEMBLE = str(CASES / "ensemble.toml")
 SMALL = ("--set", "ensemble.discs=[20, 60]", "--set", "ensemble.samples=6")
@@ -77,20 +74,8 @@ class Ensemble(ProgramTest):
         out, whole = self.folder / "out", self.folder / "whole"
         # What the user may ask more of on --resume: samples.
         command = ["homogenize", ENSEMBLE, "--set", "ensemble.discs=[30]"]
-        running = subprocess.Popen([PROGRAM, *command, "--set", "ensemble.samples=1000000", "--out", str(out)],
-                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        try:
-            deadline = time.monotonic() + 60
-            while not (out / "samples.csv").exists() and time.monotonic() < deadline:
-                self.assertIsNone(running.poll())
-                time.sleep(0.05)
-            running.send_signal(signal.SIGINT)
-            stdout, stderr = running.communicate(timeout=60)
-        finally:
-            if running.poll() is None:
-                running.kill()
-                running.communicate()
-        self.assertEqual(running.returncode, 130, stderr)
+        stdout, stderr = self.interrupt(*command, "--set", "ensemble.samples=1000000", "--out", out,
+                                        when=lambda _: (out / "samples.csv").exists())
         self.assertIn("INCOMPLETE", stdout)
         self.assertIn("--resume", stderr)
         done = rows(out / "samples.csv")

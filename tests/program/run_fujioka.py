@@ -2,12 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """equidem reproduce fujioka2005, as a user does: run_fujioka.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import csv
-import signal
-import subprocess
-import time
 import unittest
 
-from program import PROGRAM, ProgramTest, equidem, parse_json
+from program import ProgramTest, equidem, parse_json
 
 FIGURES = ("figure4", "figure5", "figure6", "figure7", "figure10", "figure11", "stacked_cost", "ball_cost", "rest",
            "column", "lossless")
@@ -69,18 +66,7 @@ class Fujioka2005(ProgramTest):
         self.check_error(equidem("reproduce", "fujioka2006"), 2, "fujioka2005")
 
     def test_interrupted_it_stops_soon(self):
-        running = subprocess.Popen([PROGRAM, "reproduce", "fujioka2005"], stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, text=True)
-        try:
-            time.sleep(1)
-            self.assertIsNone(running.poll())
-            running.send_signal(signal.SIGINT)
-            stdout, stderr = running.communicate(timeout=60)
-        finally:
-            if running.poll() is None:
-                running.kill()
-                running.communicate()
-        self.assertEqual(running.returncode, 130, stderr)
+        stdout, _ = self.interrupt("reproduce", "fujioka2005", when=lambda seconds: seconds > 1)
         self.assertEqual(stdout, "")
 
 

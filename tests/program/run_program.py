@@ -5,12 +5,9 @@ import csv
 import math
 import os
 import pathlib
-import signal
-import subprocess
-import time
 import unittest
 
-from program import CASES, PROGRAM, TENSION, ProgramTest, equidem, parse_json
+from program import CASES, TENSION, ProgramTest, equidem, parse_json
 
 
 class Usage(ProgramTest):
@@ -262,21 +259,8 @@ class Sweep(ProgramTest):
 
     def test_interrupted_it_keeps_what_is_done_and_resume_completes_it(self):
         out = self.folder / "out"
-        command = [PROGRAM, "sweep", TENSION, "--key", "springs.kT", "--from", "0", "--to", "1e9", "--steps", "1000000",
-                   "--out", str(out)]
-        running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        try:
-            deadline = time.monotonic() + 60
-            while not (out / "sweep.csv").exists() and time.monotonic() < deadline:
-                self.assertIsNone(running.poll())
-                time.sleep(0.05)
-            running.send_signal(signal.SIGINT)
-            stdout, stderr = running.communicate(timeout=60)
-        finally:
-            if running.poll() is None:
-                running.kill()
-                running.communicate()
-        self.assertEqual(running.returncode, 130, stderr)
+        stdout, stderr = self.interrupt("sweep", TENSION, "--key", "springs.kT", "--from", 0, "--to", "1e9", "--steps", 1000000,
+                                        "--out", out, when=lambda _: (out / "sweep.csv").exists())
         self.assertIn("INCOMPLETE", stdout)
         self.assertIn("--resume", stderr)
         done = self.rows(out)

@@ -3,12 +3,9 @@
 """equidem reproduce sukegawa2010, as a user does: run_reproduce_sukegawa.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import csv
 import json
-import signal
-import subprocess
-import time
 import unittest
 
-from program import PROGRAM, ProgramTest, equidem, parse_json
+from program import ProgramTest, equidem, parse_json
 
 SHAPES = ("discs", "ellipses", "bonded_pairs", "rigid_pairs")
 
@@ -70,18 +67,7 @@ class Sukegawa2010(ProgramTest):
 
     def test_interrupted_it_stops_soon_and_can_go_on(self):
         out = self.folder / "out"
-        running = subprocess.Popen([PROGRAM, "reproduce", "sukegawa2010", "--out", str(out), "--quiet"],
-                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        try:
-            time.sleep(2)
-            self.assertIsNone(running.poll())
-            running.send_signal(signal.SIGINT)
-            stdout, stderr = running.communicate(timeout=60)
-        finally:
-            if running.poll() is None:
-                running.kill()
-                running.communicate()
-        self.assertEqual(running.returncode, 130, stderr)
+        stdout, stderr = self.interrupt("reproduce", "sukegawa2010", "--out", out, "--quiet", when=lambda seconds: seconds > 2)
         self.assertEqual(stdout, "")
         self.assertIn("same command again", stderr)
 

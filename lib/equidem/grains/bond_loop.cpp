@@ -191,9 +191,7 @@ __attribute__((target("avx2,avx512f,avx512vl,avx512dq,prefer-vector-width=512"))
 template <BondTask task>
 void work(GrainSystem& system) {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq")) {
-    return work_by_eights<task>(system);
-  }
+  if (has_512_bits()) return work_by_eights<task>(system);
   if (__builtin_cpu_supports("avx2")) return work_by_fours<task>(system);
 #endif
   work_plain<task>(system);

@@ -246,13 +246,13 @@ const Effects& GrainSimulation::effects() const {
 double GrainSimulation::bytes_per_grain() const {
   const GrainSystem& system = implementation_->system;
   const double bytes = static_cast<double>(
-      system.near.bytes() + system.near_parts.bytes() + system.bodies.capacity() * sizeof(GrainBody) + system.moments.capacity() * sizeof(Vec2) +
-      2 * system.motions.capacity() * sizeof(GrainMotion) +
+      system.near.bytes() + system.near_parts.bytes() + system.bodies.capacity() * sizeof(GrainBody) +
+      system.moments.capacity() * sizeof(Vec2) + 2 * system.motions.capacity() * sizeof(GrainMotion) +
       (system.pushes.capacity() + system.pushes_before.capacity()) * sizeof(Push) +
       system.candidates.capacity() * sizeof(Candidate) + system.part_pairs.capacity() * sizeof(PartPair) +
       system.parts.capacity() * sizeof(GrainPart) + system.axes.capacity() * sizeof(Vec2) +
-      system.bonds.capacity() * sizeof(TiedPair) + system.packed_bonds.bytes() + system.exact_pairs.capacity() * sizeof(ExactPair) +
-      system.scene.grains.capacity() * sizeof(Grain));
+      system.bonds.capacity() * sizeof(TiedPair) + system.packed_bonds.bytes() +
+      system.exact_pairs.capacity() * sizeof(ExactPair) + system.scene.grains.capacity() * sizeof(Grain));
   return bytes / static_cast<double>(system.bodies.size());
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "equidem/grains/grain_system.hpp"
+#include "equidem/grains/lane_sums.hpp"
 #include "equidem/grains/pair_lanes.hpp"
 #include "equidem/grains/slide_lanes.hpp"
 #include "equidem/grains/touch_lanes.hpp"
@@ -32,13 +33,6 @@ struct LoopNumbers {
   GrainSystem* system = nullptr;
 };
 
-struct Sums {
-  Half
-      lost{};  // normal dashpot, slip, tangential dashpot, release: one contact after another, so that pairs apart change no bit
-  Lanes deepest{};
-  Choice evaluations{}, begun{};
-};
-
 template <PairLoopKind kind>
 EQUIDEM_ALWAYS_INLINE LawLanes law_of(const LoopNumbers& numbers, const PairLaws* laws) {
   if constexpr (kind.equal) {
@@ -60,7 +54,7 @@ EQUIDEM_ALWAYS_INLINE LawLanes law_of(const LoopNumbers& numbers, const PairLaws
 template <PairLoopKind kind>
 EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairBody* bodies, Push* pushes,
                                          PairGroup& group, PairSlips* slips, const PairLaws* laws, PairRecords* records,
-                                         Sums& sums) {
+                                         LaneSums& sums) {
   const double dt = numbers.dt;
   // differences j - i, sums of the speeds of the rims
   constexpr long long minus = std::numeric_limits<long long>::min();
@@ -238,7 +232,7 @@ EQUIDEM_ALWAYS_INLINE void collide_all(GrainSystem& system) {
                             near.record,
                             &system};
   near.records.resize(near.record ? near.groups.size() : 0);
-  Sums sums;
+  LaneSums sums;
   const PairBody* bodies = near.bodies.data();
   Push* pushes = system.pushes.data();
   for (std::size_t g = 0; g < near.groups.size(); ++g) {
@@ -246,16 +240,7 @@ EQUIDEM_ALWAYS_INLINE void collide_all(GrainSystem& system) {
                         kind.equal ? nullptr : near.laws.data() + g, near.record ? near.records.data() + g : nullptr,
                         sums);
   }
-  system.lost.lost_dashpot += sums.lost[0];
-  system.lost.lost_slip += sums.lost[1];
-  system.lost.lost_tangential_dashpot += sums.lost[2];
-  system.lost.lost_release += sums.lost[3];
-  for (int k = 0; k < 8; ++k) {
-    system.counters.evaluations += sums.evaluations[k];
-    system.counters.contacts += sums.begun[k];
-    if (sums.evaluations[k] > 0) system.free_flight = false;
-    system.deepest = std::max(system.deepest, sums.deepest[k]);
-  }
+  add(sums, system);
 }
 
 template <PairLoopKind kind>
@@ -279,9 +264,7 @@ __attribute__((target("avx2,avx512f,avx512vl,avx512dq,prefer-vector-width=512"))
 template <PairLoopKind kind>
 NearPairs::Loop choose() {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq")) {
-    return collide_by_eights<kind>;
-  }
+  if (has_512_bits()) return collide_by_eights<kind>;
   if (__builtin_cpu_supports("avx2")) return collide_by_fours<kind>;
 #endif
   return collide_plain<kind>;

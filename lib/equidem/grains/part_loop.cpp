@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "equidem/grains/grain_system.hpp"
+#include "equidem/grains/lane_sums.hpp"
 #include "equidem/grains/part_lanes.hpp"
 #include "equidem/grains/slide_lanes.hpp"
 #include "equidem/grains/touch_lanes.hpp"
@@ -25,12 +26,6 @@ struct LoopNumbers {
   GrainSystem* system = nullptr;
 };
 
-struct Sums {
-  Half lost{};  ///< normal dashpot, slip, tangential dashpot, release: one contact after another
-  Lanes deepest{};
-  Choice evaluations{}, begun{};
-};
-
 EQUIDEM_ALWAYS_INLINE Lanes closing_of(const Standing& s, const Vectors& n, const Vectors& arm_i,
                                        const Vectors& arm_j) {
   return -(dot(s.velocity, n) + (s.spin_j * cross(arm_j, n) - s.spin_i * cross(arm_i, n)));
@@ -48,7 +43,8 @@ EQUIDEM_ALWAYS_INLINE LawLanes law_of(const PartGroup& group) {
 
 template <PartLoopKind kind>
 EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PartBody* bodies,
-                                         const std::int32_t* body_of_part, Push* pushes, PartGroup& group, Sums& sums) {
+                                         const std::int32_t* body_of_part, Push* pushes, PartGroup& group,
+                                         LaneSums& sums) {
   const double dt = numbers.dt;
   Choice since;
   std::memcpy(&since, group.since, sizeof since);
@@ -228,21 +224,12 @@ EQUIDEM_ALWAYS_INLINE void collide_all(GrainSystem& system, NearParts::List& lis
                             system.options.scheme == GrainOptions::Scheme::corrected_verlet,
                             system.near.record,
                             &system};
-  Sums sums;
+  LaneSums sums;
   for (PartGroup& group : list.groups) {
     collide_group<kind>(numbers, system.near_parts.bodies.data(), system.body_of_part.data(), system.pushes.data(),
                         group, sums);
   }
-  system.lost.lost_dashpot += sums.lost[0];
-  system.lost.lost_slip += sums.lost[1];
-  system.lost.lost_tangential_dashpot += sums.lost[2];
-  system.lost.lost_release += sums.lost[3];
-  for (int k = 0; k < 8; ++k) {
-    system.counters.evaluations += sums.evaluations[k];
-    system.counters.contacts += sums.begun[k];
-    if (sums.evaluations[k] > 0) system.free_flight = false;
-    system.deepest = std::max(system.deepest, sums.deepest[k]);
-  }
+  add(sums, system);
 }
 
 template <PartLoopKind kind>
@@ -266,9 +253,7 @@ __attribute__((target("avx2,avx512f,avx512vl,avx512dq,prefer-vector-width=512"))
 template <PartLoopKind kind>
 NearParts::List::Loop choose_loop() {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq")) {
-    return collide_by_eights<kind>;
-  }
+  if (has_512_bits()) return collide_by_eights<kind>;
   if (__builtin_cpu_supports("avx2")) return collide_by_fours<kind>;
 #endif
   return collide_plain<kind>;
