@@ -306,6 +306,25 @@ TEST_CASE("a_file_cut_off_anywhere_is_refused") {
   }
 }
 
+TEST_CASE("the_cells_of_a_free_assembly_fill_the_box_that_its_file_gives") {
+  const std::string head = R"({"schema": "equidem-assembly/1", "discs": [[0, 0, 1], [2, 0, 1], [1, 1.7, 1]])";
+  const std::string box = R"(, "box": [[-0.5, -0.25], [2.5, 2]])";
+  const Assembly assembly = read_text(head + box + "}");
+  CHECK(assembly.area() == Approx(3 * 2.25).epsilon(1e-14));
+  double bottom = 0;
+  for (const double length : group(assembly, "bottom").tributary_lengths) bottom += length;
+  CHECK(bottom == Approx(3).epsilon(1e-14));
+  const TemporaryFolder folder;
+  write_assembly(folder / "boxed.json", assembly, false);
+  CHECK(read_assembly(folder / "boxed.json").cell_areas == assembly.cell_areas);
+
+  CHECK_THAT(refusal(head + box + R"(, "cell": [4, 4]})"), Catch::Contains("beside a period"));
+  CHECK_THAT(refusal(head + R"(, "box": [[2.5, 2], [-0.5, -0.25]]})"), Catch::Contains("-3 m wide"));
+  CHECK_THAT(refusal(head + R"(, "box": [[0, -0.25], [1.5, 2]]})"), Catch::Contains("centre of disc 1"));
+  CHECK_THAT(refusal(head + R"(, "box": [0, 0, 3, 3]})"), Catch::Contains("[x, y], [x, y]"));
+  CHECK_THAT(refusal(head + R"(, "box": [[0, 0], 3]})"), Catch::Contains("box[1]"));
+}
+
 TEST_CASE("contacts_off_the_line_of_centres_survive_a_file_bit_for_bit_and_what_is_amiss_is_named") {
   const std::string head = R"({"schema": "equidem-assembly/1", "discs": [[0, 0, 1], [2, 0.5, 1]], )";
   const std::string contacts = R"("contacts": [[0, 1, 0, 0], [1, 0, 0, 0]], )";

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Packings of all shapes as networks of contacts with springs.
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "equidem/assembly/body_inertia.hpp"
+#include "equidem/assembly/delaunay.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/packing/measures.hpp"
 #include "equidem/packing/network.hpp"
+#include "equidem/packing/outline.hpp"
 #include "equidem/statics/equilibrium.hpp"
 
 #include "packing/packings.hpp"
@@ -114,6 +118,36 @@ TEST_CASE("networks_have_all_contacts_masses_and_areas_of_their_packing_and_modu
   CAPTURE(to_string(shape.kind), assembly.contacts.size(), own.values[0], own.values[2], below.values[0]);
   CHECK(own.values[0] > 0.05 * usual.kN);
   CHECK(below.values[0] > 0);
+}
+
+// The cells of a free sample fill the rectangle about the bodies as they lie, not one about discs of their area.
+TEST_CASE("a_free_sample_takes_the_rectangle_about_its_bodies") {
+  const PackingShape shape = GENERATE(from_range(networked_shapes()), PackingShape{.kind = Kind::bonded_pair});
+  PackingOptions options = square_box(PackingMethod::rejection, PackingBox::Sides::walls, 30, 0.3);
+  options.shape = shape;
+  const double side = std::sqrt(area_of(shape, options.radii) / 0.3);
+  options.box.size = {side, side};
+  const GrainPacking packing = pack(options);
+  Assembly assembly = network_of(packing, usual);
+  measure_cells(assembly);
+  // By places on the outlines, one by one; between two of them an arc rises by at most 1/2 (pi/n)² of its half-axis.
+  constexpr int places = 2000;
+  Vec2 low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
+  for (const Grain& grain : packing.grains) {
+    const Outline outline = outline_of(grain, packing.clumps);
+    for (std::size_t p = 0; p < outline.parts(); ++p) {
+      const Ellipse part = outline.part(p);
+      for (int k = 0; k < places; ++k) {
+        const double angle = 2 * std::numbers::pi * k / places;
+        const Vec2 x = grain.position + outline.offset(p) + part.a * std::cos(angle) * part.axis +
+                       part.b * std::sin(angle) * perpendicular(part.axis);
+        low = {std::min(low.x, x.x), std::min(low.y, x.y)}, high = {std::max(high.x, x.x), std::max(high.y, x.y)};
+      }
+    }
+  }
+  CAPTURE(to_string(shape.kind), low.x, low.y, high.x, high.y);
+  CHECK(assembly.area() == Approx((high.x - low.x) * (high.y - low.y)).epsilon(1e-5));
+  CHECK(assembly.box.has_value() == (shape.kind != Kind::disc));
 }
 
 TEST_CASE("round_ellipses_and_clumps_of_one_disc_have_the_moduli_of_discs") {

@@ -119,10 +119,10 @@ std::string describe_problem(const Problem& problem, const Effects& effects) {
   if (a.periodic() || !a.cell_areas.empty())
     out += report_line("", format("area {:.6g} m², solid fraction {:.6g}{}", a.area(), a.solid_fraction(),
                                   a.periodic() ? ", periodic" : ""));
-  if (!a.periodic() && !a.cell_areas.empty() && !a.sections.empty()) {
+  if (!a.periodic() && !a.box && !a.cell_areas.empty() && !a.sections.empty()) {
     out += report_line("",
-                       "The area is that of the rectangle around the discs of equal area: the outlines of the "
-                       "bodies are not known, nor is the box they were packed in.");
+                       "The area is that of the rectangle around the discs of equal area: the file gives no \"box\", "
+                       "and the outlines of the bodies are not known.");
   }
   out += report_line("springs", problem.springs.report);
   std::string active;

@@ -246,6 +246,28 @@ std::string length_limits() {
                 longest_length);
 }
 
+namespace {
+
+void check_box(const Assembly& assembly) {
+  if (!assembly.box) return;
+  const auto& [low, high] = *assembly.box;
+  const std::string box = format("the box from ({:g}, {:g}) to ({:g}, {:g}) m", low.x, low.y, high.x, high.y);
+  if (assembly.period)
+    bad_input(box + " stands beside a period", "a periodic cell fills its period", "Remove one of the two");
+  if (!(measurable(high.x - low.x) && measurable(high.y - low.y))) {
+    bad_input(format("{} is {:g} m wide and {:g} m high", box, high.x - low.x, high.y - low.y), length_limits(),
+              "Give its lower left corner, then its upper right one");
+  }
+  for (std::size_t d = 0; d < assembly.size(); ++d) {
+    const Vec2 x = assembly.centres[d];
+    if (x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y) continue;
+    bad_input(format("the centre of disc {}, ({:g}, {:g}) m, lies outside {}", d, x.x, x.y, box),
+              "the cells of all discs fill the box", "Correct the box, or remove it");
+  }
+}
+
+}  // namespace
+
 void check(const Assembly& assembly) {
   if (assembly.period && !(finite(*assembly.period) && assembly.period->x > 0 && assembly.period->y > 0)) {
     bad_input(format("the period is ({}, {}) m", assembly.period->x, assembly.period->y),
@@ -256,6 +278,7 @@ void check(const Assembly& assembly) {
               "Choose other units");
   }
   check_discs(assembly);
+  check_box(assembly);
   check_bodies(assembly);
   check_contacts(assembly);
   for (const auto& [name, discs] : assembly.groups) check_group(assembly, name, discs);

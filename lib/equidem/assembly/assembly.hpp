@@ -43,6 +43,11 @@ struct BodySection {
   double polar_moment = 0;  ///< m⁴: the integral of r² over the area, about its own centre
 };
 
+struct Rectangle {
+  Vec2 low;   ///< m
+  Vec2 high;  ///< m
+};
+
 /// Discs chosen by name, for supports and loads. On the sides of a free assembly every disc also stands for a stretch
 /// of the side, over which a traction is spread.
 struct DiscGroup {
@@ -58,6 +63,7 @@ struct Assembly {
   std::vector<double> radii;  ///< m
   std::vector<Contact> contacts;
   std::optional<Vec2> period;         ///< (Lx, Ly) in m of a periodic cell; none: free boundary
+  std::optional<Rectangle> box;       ///< free: what the cells fill; none: the smallest rectangle that holds all discs
   std::vector<double> cell_areas;     ///< m², the Voronoi (power) cell of each disc, clipped to the sides where free
   std::vector<double> facet_lengths;  ///< m, per contact: the edge its two cells share; empty where unknown
   std::vector<ContactArms> contact_arms;    ///< per contact; empty: all lie on the lines of centres, n = l/|l|

@@ -26,9 +26,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* schema = "equidem-assembly/1";
-const std::vector<std::string> known_keys = {"schema", "title",   "cell",    "discs",   "sections", "contacts",
-                                             "levers", "normals", "offsets", "springs", "groups"};
+const std::vector<std::string> known_keys = {"schema",   "title",  "cell",    "box",     "discs",   "sections",
+                                             "contacts", "levers", "normals", "offsets", "springs", "groups"};
 
 const char* kind_of(const Json& value) {
   switch (value.type()) {
@@ -119,10 +118,10 @@ void read_pairs(const Json& file, const char* key, const char* names, const char
 void check_keys(const Json& file) {
   if (!file.is_object()) wrong_kind(file, "an object with the keys schema, discs, ...", "");
   const auto found = file.find("schema");
-  if (found == file.end() || *found != schema) {
+  if (found == file.end() || *found != assembly_schema) {
     refuse(found == file.end() ? std::string("the key 'schema' is missing") : format("the schema is {}", found->dump()),
-           format("an assembly file says \"schema\": \"{}\"", schema), "Add or correct it, if this is an assembly file",
-           "schema");
+           format("an assembly file says \"schema\": \"{}\"", assembly_schema),
+           "Add or correct it, if this is an assembly file", "schema");
   }
   for (const auto& [key, value] : file.items()) {
     if (std::find(known_keys.begin(), known_keys.end(), key) != known_keys.end()) continue;
@@ -141,6 +140,15 @@ void read_discs(const Json& file, Assembly& assembly) {
   if (file.contains("cell") && !file["cell"].is_null()) {
     const Json& cell = row(file["cell"], 2, "Lx, Ly", "cell");
     assembly.period = Vec2{number(cell[0], "cell[0]"), number(cell[1], "cell[1]")};
+  }
+  if (file.contains("box")) {
+    const Json& corners = row(file["box"], 2, "[x, y], [x, y]", "box");
+    const auto corner = [&](std::size_t k) {
+      const std::string entry = format("box[{}]", k);
+      const Json& place = row(corners[k], 2, "x, y", entry);
+      return Vec2{number(place[0], entry), number(place[1], entry)};
+    };
+    assembly.box = Rectangle{.low = corner(0), .high = corner(1)};
   }
   const Json& discs = list(file["discs"], "discs");
   for (std::size_t k = 0; k < discs.size(); ++k) {
@@ -310,74 +318,6 @@ Assembly assembly_of(const Json& file) {
   return assembly;
 }
 
-/// The shortest text that reads back to the same bits; the sign of -0 needs a point, or it reads as a whole number.
-std::string shortest(double value) {
-  return value == 0 && std::signbit(value) ? "-0.0" : format("{}", value);
-}
-
-/// "key": [one per line].
-template <typename Entry>
-void append_list(std::string& text, const char* key, std::size_t count, const Entry& entry) {
-  text += format(",\n\"{}\": [", key);
-  for (std::size_t k = 0; k < count; ++k) text += (k == 0 ? "\n" : ",\n") + entry(k);
-  text += "]";
-}
-std::string pair_of(double first, double second) {
-  return format("[{}, {}]", shortest(first), shortest(second));
-}
-
-template <typename Values, typename Write>
-std::string joined(const Values& values, const Write& write) {
-  std::string text = "[";
-  for (const auto& value : values) text += (text.size() > 1 ? ", " : "") + write(value);
-  return text + "]";
-}
-
-std::string text_of(const Assembly& assembly) {
-  std::string text = format("{{\"schema\": \"{}\"", schema);
-  text += ",\n\"title\": " + Json(assembly.kind).dump();
-  text += assembly.period ? format(",\n\"cell\": [{}, {}]", shortest(assembly.period->x), shortest(assembly.period->y))
-                          : ",\n\"cell\": null";
-  append_list(text, "discs", assembly.size(), [&](std::size_t k) {
-    return format("[{}, {}, {}]", shortest(assembly.centres[k].x), shortest(assembly.centres[k].y),
-                  shortest(assembly.radii[k]));
-  });
-  if (!assembly.sections.empty()) {
-    append_list(text, "sections", assembly.size(),
-                [&](std::size_t k) { return pair_of(assembly.sections[k].area, assembly.sections[k].polar_moment); });
-  }
-  const auto& contacts = assembly.contacts;
-  append_list(text, "contacts", contacts.size(), [&](std::size_t k) {
-    return format("[{}, {}, {}, {}]", contacts[k].i, contacts[k].j, contacts[k].shift_x, contacts[k].shift_y);
-  });
-  append_list(text, "levers", contacts.size(),
-              [&](std::size_t k) { return pair_of(contacts[k].lever_i, contacts[k].lever_j); });
-  const auto& arms = assembly.contact_arms;
-  if (!arms.empty()) {
-    append_list(text, "normals", contacts.size(),
-                [&](std::size_t k) { return pair_of(arms[k].normal.x, arms[k].normal.y); });
-    append_list(text, "offsets", contacts.size(),
-                [&](std::size_t k) { return pair_of(arms[k].offset_i, arms[k].offset_j); });
-  }
-  if (!assembly.contact_kN.empty()) {
-    append_list(text, "springs", contacts.size(),
-                [&](std::size_t k) { return pair_of(assembly.contact_kN[k], assembly.contact_kT[k]); });
-  }
-  if (!assembly.groups.empty()) {
-    std::string separator = ",\n\"groups\": {\n";
-    for (const auto& [name, members] : assembly.groups) {
-      const std::string discs = joined(members.discs, [](std::int32_t disc) { return format("{}", disc); });
-      text += separator + Json(name).dump() + ": ";
-      text += members.tributary_lengths.empty() ? discs
-                                                : format("{{\"discs\": {}, \"tributary_lengths\": {}}}", discs,
-                                                         joined(members.tributary_lengths, shortest));
-      separator = ",\n";
-    }
-    text += "}";
-  }
-  return text + "}\n";
-}
-
 }  // namespace
 
 Assembly read_assembly(const std::filesystem::path& path) {
@@ -389,12 +329,6 @@ Assembly read_assembly(const std::filesystem::path& path) {
     const std::string where = error.where().empty() ? path.string() : path.string() + ": " + error.where();
     throw Error(error.kind(), error.problem(), error.why(), error.remedy(), where);
   }
-}
-
-void write_assembly(const std::filesystem::path& path, const Assembly& assembly, bool overwrite) {
-  check_writable(path, overwrite);
-  check(assembly);
-  write_file(path, text_of(assembly), overwrite);
 }
 
 }  // namespace equidem

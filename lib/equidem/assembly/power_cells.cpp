@@ -228,6 +228,9 @@ PowerCells free_cells(const Assembly& assembly, const Rectangle& domain) {
 
 }  // namespace
 
+namespace {
+
+/// The smallest that holds all discs.
 Rectangle bounding_rectangle(const Assembly& assembly) {
   Rectangle box{.low = {infinity, infinity}, .high = {-infinity, -infinity}};
   for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
@@ -239,10 +242,13 @@ Rectangle bounding_rectangle(const Assembly& assembly) {
   return box;
 }
 
+}  // namespace
+
 PowerCells power_cells(const Assembly& assembly, const std::optional<Rectangle>& domain) {
   assert(assembly.size() > 0 && assembly.radii.size() == assembly.size());
   PowerCells cells = assembly.periodic() ? periodic_cells(assembly)
-                                         : free_cells(assembly, domain ? *domain : bounding_rectangle(assembly));
+                     : domain            ? free_cells(assembly, *domain)
+                              : free_cells(assembly, assembly.box ? *assembly.box : bounding_rectangle(assembly));
   // Rounding may leave an empty cell a shade below nothing.
   for (double& area : cells.areas) area = std::max(area, 0.0);
   return cells;

@@ -14,15 +14,6 @@
 
 namespace equidem {
 
-/// The region that the cells of a free assembly fill.
-struct Rectangle {
-  Vec2 low;   ///< m
-  Vec2 high;  ///< m
-};
-
-/// The smallest rectangle that holds all discs.
-Rectangle bounding_rectangle(const Assembly& assembly);
-
 /// The power diagram of discs, the power of a place x being |x - centre|² - radius².
 struct PowerCells {
   std::vector<Contact> neighbours;         ///< pairs of cells that share a facet, ascending by i, then j, then
@@ -34,8 +25,8 @@ struct PowerCells {
   bool collinear = false;                  ///< all centres lie on one line
 };
 
-/// Cells of a periodic assembly, or of a free one in its bounding rectangle or the given one, which must hold all
-/// centres. Facets shorter than 1e-9 of the distance of the centres are left out: they are corners where more than
+/// Cells of a periodic assembly, or of a free one in the given rectangle, which must hold all centres: without one in that of
+/// the assembly, else in the smallest that holds all discs. Facets shorter than 1e-9 of the distance of the centres are left out: they are corners where more than
 /// three cells meet.
 ///
 /// A periodic diagram is that of the cell and of as many images around it as it takes to prove that none further away

@@ -11,6 +11,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/grains/clipped_area.hpp"
 #include "equidem/packing/measures.hpp"
+#include "equidem/packing/outline.hpp"
 #include "equidem/statics/degrees_of_freedom.hpp"
 #include "equidem/statics/equilibrium.hpp"
 
@@ -64,6 +65,19 @@ void add_body(const GrainPacking& packing, std::size_t body, Vec2 centre, Assemb
   }
   assembly.sections.push_back(section_of(packing, body));
   assembly.radii.push_back(std::sqrt(assembly.sections.back().area / std::numbers::pi));
+}
+
+/// The smallest rectangle that holds all bodies.
+Rectangle outline_of_all(const GrainPacking& packing) {
+  Rectangle box{.low = {INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY}};
+  for (const Grain& grain : packing.grains) {
+    const Outline outline = outline_of(grain, packing.clumps);
+    const auto reach = [&](Vec2 direction) { return reach_along(outline, direction); };
+    const Vec2 x = grain.position;
+    box.low = {std::min(box.low.x, x.x - reach({-1, 0})), std::min(box.low.y, x.y - reach({0, -1}))};
+    box.high = {std::max(box.high.x, x.x + reach({1, 0})), std::max(box.high.y, x.y + reach({0, 1}))};
+  }
+  return box;
 }
 
 /// The contacts of bodies instead of grains: i and j name bodies, arms begin at their centres.
@@ -156,7 +170,11 @@ Assembly network_of(const GrainPacking& packing, const SpringConstants& springs)
   Assembly assembly;
   assembly.kind = "packing";
   for (std::size_t k = 0; k < packing.size(); ++k) add_body(packing, k, centre_of(packing, k), assembly);
-  if (packing.box.periodic()) assembly.period = packing.box.size;
+  if (packing.box.periodic()) {
+    assembly.period = packing.box.size;
+  } else if (packing.shape != PackingShape::Kind::disc) {
+    assembly.box = outline_of_all(packing);
+  }
   for (const PackingContact& found : contacts_of_bodies(packing))
     if (found.j >= 0) add_contact(packing.shape, found, springs, assembly);
   return assembly;

@@ -294,6 +294,7 @@ class Pruning {
     Assembly& rest = result.assembly;
     rest.kind = whole.kind;
     rest.period = whole.period;
+    rest.box = whole.box;
     std::vector<std::int32_t> number(whole.size(), -1);
     for (std::size_t d = 0; d < whole.size(); ++d) {
       if (!left(d)) continue;

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "equidem/assembly/files.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+/// The shortest text that reads back to the same bits; the sign of -0 needs a point, or it reads as a whole number.
+std::string shortest(double value) {
+  return value == 0 && std::signbit(value) ? "-0.0" : format("{}", value);
+}
+
+/// "key": [one per line].
+template <typename Entry>
+void append_list(std::string& text, const char* key, std::size_t count, const Entry& entry) {
+  text += format(",\n\"{}\": [", key);
+  for (std::size_t k = 0; k < count; ++k) text += (k == 0 ? "\n" : ",\n") + entry(k);
+  text += "]";
+}
+std::string pair_of(double first, double second) {
+  return format("[{}, {}]", shortest(first), shortest(second));
+}
+
+template <typename Values, typename Write>
+std::string joined(const Values& values, const Write& write) {
+  std::string text = "[";
+  for (const auto& value : values) text += (text.size() > 1 ? ", " : "") + write(value);
+  return text + "]";
+}
+
+std::string text_of(const Assembly& assembly) {
+  std::string text = format("{{\"schema\": \"{}\"", assembly_schema);
+  text += ",\n\"title\": " + nlohmann::json(assembly.kind).dump();
+  text += assembly.period ? format(",\n\"cell\": [{}, {}]", shortest(assembly.period->x), shortest(assembly.period->y))
+                          : ",\n\"cell\": null";
+  if (assembly.box) {
+    text += format(",\n\"box\": [{}, {}]", pair_of(assembly.box->low.x, assembly.box->low.y),
+                   pair_of(assembly.box->high.x, assembly.box->high.y));
+  }
+  append_list(text, "discs", assembly.size(), [&](std::size_t k) {
+    return format("[{}, {}, {}]", shortest(assembly.centres[k].x), shortest(assembly.centres[k].y),
+                  shortest(assembly.radii[k]));
+  });
+  if (!assembly.sections.empty()) {
+    append_list(text, "sections", assembly.size(),
+                [&](std::size_t k) { return pair_of(assembly.sections[k].area, assembly.sections[k].polar_moment); });
+  }
+  const auto& contacts = assembly.contacts;
+  append_list(text, "contacts", contacts.size(), [&](std::size_t k) {
+    return format("[{}, {}, {}, {}]", contacts[k].i, contacts[k].j, contacts[k].shift_x, contacts[k].shift_y);
+  });
+  append_list(text, "levers", contacts.size(),
+              [&](std::size_t k) { return pair_of(contacts[k].lever_i, contacts[k].lever_j); });
+  const auto& arms = assembly.contact_arms;
+  if (!arms.empty()) {
+    append_list(text, "normals", contacts.size(),
+                [&](std::size_t k) { return pair_of(arms[k].normal.x, arms[k].normal.y); });
+    append_list(text, "offsets", contacts.size(),
+                [&](std::size_t k) { return pair_of(arms[k].offset_i, arms[k].offset_j); });
+  }
+  if (!assembly.contact_kN.empty()) {
+    append_list(text, "springs", contacts.size(),
+                [&](std::size_t k) { return pair_of(assembly.contact_kN[k], assembly.contact_kT[k]); });
+  }
+  if (!assembly.groups.empty()) {
+    std::string separator = ",\n\"groups\": {\n";
+    for (const auto& [name, members] : assembly.groups) {
+      const std::string discs = joined(members.discs, [](std::int32_t disc) { return format("{}", disc); });
+      text += separator + nlohmann::json(name).dump() + ": ";
+      text += members.tributary_lengths.empty() ? discs
+                                                : format("{{\"discs\": {}, \"tributary_lengths\": {}}}", discs,
+                                                         joined(members.tributary_lengths, shortest));
+      separator = ",\n";
+    }
+    text += "}";
+  }
+  return text + "}\n";
+}
+
+}  // namespace
+
+void write_assembly(const std::filesystem::path& path, const Assembly& assembly, bool overwrite) {
+  check_writable(path, overwrite);
+  check(assembly);
+  write_file(path, text_of(assembly), overwrite);
+}
+
+}  // namespace equidem
