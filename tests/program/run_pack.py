@@ -158,7 +158,6 @@ class Shapes(PackTest):
         self.check_error(equidem("pack", ELLIPSES, "--set", "packing.shape.kind=clump"), 2, "aspect", "clump")
         self.check_error(equidem("pack", ELLIPSES, "--set", "packing.shape.kind=clump", "--set",
                                  "packing.shape.aspect=none"), 2, "discs")
-        self.check_error(equidem("pack", ELLIPSES, "--set", "packing.method=insertion"), 2, "insertion")
         self.check_error(equidem("pack", PAIRS, "--set", "settling.gravity=0"), 2, "gravity")
 
 

@@ -19,8 +19,9 @@ std::vector<KeySpec> keys_of_packing() {
        .choices = {"rejection", "local_moves", "insertion", "growth", "falling"},
        .help =
            "rejection: places at random, up to about 0.5; local_moves: overlapping bodies moved at random, to 0.78; "
-           "insertion: "
-           "discs into gaps, to 0.7; growth: bodies grow and push each other apart, to jamming; falling: under "
+           "insertion: into gaps, beside two others, discs to 0.7, others to 0.6; growth: bodies grow and push each "
+           "other apart, to "
+           "jamming; falling: under "
            "gravity, "
            "to rest"},
       {.table = "packing",

@@ -26,15 +26,34 @@ std::optional<Vec2> tangent_place(Vec2 a, Vec2 way, double from_a, double from_b
   return a + along * unit + (left ? across : -across) * perpendicular(unit);
 }
 
-/// Tries gaps beside discs that lie already.
+/// How far from the centre of a, along a unit vector, that of b lies when it comes from far away and first touches a. The gap between
+/// convex parts is a convex function of the way, so that Newton's method comes nearer from outside and never passes.
+double touching_distance(const Outline& a, const Outline& b, double far, Vec2 along) {
+  double way = far;
+  for (int k = 0; k < 60; ++k) {
+    double next = 0;
+    for_touches(a, b, way * along, INFINITY, [&](const Touch& touch) {
+      const double approach = dot(touch.normal, along);
+      if (approach > 0) next = std::max(next, way + touch.overlap / approach);
+    });
+    if (way - next <= 0.1 * rounding * far) break;
+    way = next;
+  }
+  return way;
+}
+
+/// Tries gaps beside bodies that lie already.
 class Inserter {
  public:
   explicit Inserter(const PackingOptions& options)
-      : box_(options.box), placed_(options.box, unit_body_of(options.shape), options.radii), random_(options.seed) {}
+      : options_(options),
+        box_(options.box),
+        placed_(options.box, unit_body_of(options.shape), options.radii),
+        random_(options.seed) {}
 
   [[nodiscard]] const PlacedBodies& placed() const { return placed_; }
 
-  /// Anywhere at first, so that the box fills evenly; then beside a disc.
+  /// Anywhere at first, so that the box fills evenly; then beside a body.
   bool insert(double radius, std::int64_t attempt) {
     constexpr std::int64_t anywhere_first = 30;
     if (attempt < anywhere_first || placed_.bodies().size() == 0) return add(anywhere(radius), radius);
@@ -42,7 +61,8 @@ class Inserter {
       for (std::size_t k = 0; k < placed_.bodies().size(); ++k) open_.push_back({static_cast<std::int32_t>(k), 0});
     }
     const auto pick = static_cast<std::size_t>(random_.below(open_.size()));
-    if (add(beside(static_cast<std::size_t>(open_[pick].disc), radius), radius)) return true;
+    const auto beside = static_cast<std::size_t>(open_[pick].body);
+    if (add(options_.shape.is_disc() ? between(beside, radius) : around(beside, radius), radius)) return true;
     constexpr int enough = 12;
     if (++open_[pick].failures == enough) {
       open_[pick] = open_.back();
@@ -52,28 +72,62 @@ class Inserter {
   }
 
  private:
-  /// A disc beside which there may still be a gap.
+  /// A body beside which there may still be a gap.
   struct Open {
-    std::int32_t disc = 0;
+    std::int32_t body = 0;
     int failures = 0;
   };
-  static constexpr Vec2 nowhere = {INFINITY, INFINITY};
+  static constexpr Placement nowhere{.place = {INFINITY, INFINITY}};
 
-  bool add(Vec2 place, double radius) {
-    if (!std::isfinite(place.x) || !placed_.has_room(place, radius, 0, rounding * radius)) return false;
+  bool add(const Placement& at, double radius) {
+    if (!std::isfinite(at.place.x) || !placed_.has_room(at.place, radius, at.turns, rounding * radius)) return false;
     open_.push_back({static_cast<std::int32_t>(placed_.bodies().size()), 0});
-    placed_.add(place, radius, 0);
+    placed_.add(at.place, radius, at.turns);
     return true;
   }
 
-  Vec2 anywhere(double radius) {
+  Placement anywhere(double radius) {
+    if (!options_.shape.is_disc()) return placement_at_random(options_, placed_.shape(), radius, random_);
     const double margin = box_.periodic() ? 0 : radius;
     const double x = random_.uniform(margin, box_.size.x - margin);
-    return {x, random_.uniform(margin, box_.size.y - margin)};
+    return {.place = {x, random_.uniform(margin, box_.size.y - margin)}};
+  }
+
+  /// Where a body, turned at random, touches body a and the first other one, or wall, that it meets on its way around a.
+  Placement around(std::size_t a, double radius) {
+    constexpr int directions = 16, halvings = 32;
+    const double turns = random_.uniform(), start = random_.uniform(),
+                 step = (random_.below(2) == 0 ? 1.0 : -1.0) / directions;
+    const Outline fixed = outline_of(placed_.shape(), placed_.radius(a), placed_.turns(a));
+    const Outline moved = outline_of(placed_.shape(), radius, turns);
+    const double far = placed_.shape().reach * (placed_.radius(a) + radius);
+    const auto at = [&](double direction) {
+      const Vec2 along = axis_of_turns(direction);
+      return placed_.wrapped(placed_.centre(a) + touching_distance(fixed, moved, far, along) * along);
+    };
+    const auto room_at = [&](double direction) {
+      return placed_.has_room(at(direction), radius, turns, rounding * radius);
+    };
+    double last = start;
+    const bool room_first = room_at(start);
+    for (int k = 1; k <= directions; ++k) {
+      const double next = start + k * step;
+      if (room_at(next) == room_first) {
+        last = next;
+        continue;
+      }
+      double open = room_first ? last : next, taken = room_first ? next : last;
+      for (int h = 0; h < halvings; ++h) {
+        const double middle = 0.5 * (open + taken);
+        (room_at(middle) ? open : taken) = middle;
+      }
+      return {.place = at(open), .turns = turns};
+    }
+    return nowhere;
   }
 
   /// A place where the disc touches disc a and one that it reaches from there, or a wall.
-  Vec2 beside(std::size_t a, double radius) {
+  Placement between(std::size_t a, double radius) {
     const Vec2 centre = placed_.centre(a);
     const double from_a = (placed_.radius(a) + radius) * (1 + 0.5 * rounding);
     partners_.clear();
@@ -91,21 +145,22 @@ class Inserter {
       const auto b = static_cast<std::size_t>(partners_[pick]);
       const double from_b = (placed_.radius(b) + radius) * (1 + 0.5 * rounding);
       const auto place = tangent_place(centre, placed_.branch(centre, placed_.centre(b)), from_a, from_b, left);
-      return place ? placed_.wrapped(*place) : nowhere;
+      return place ? Placement{.place = placed_.wrapped(*place)} : nowhere;
     }
     return at_wall(static_cast<int>(pick - partners_.size()), centre, from_a, radius, left);
   }
 
-  [[nodiscard]] Vec2 at_wall(int wall, Vec2 centre, double from_a, double radius, bool left) const {
+  [[nodiscard]] Placement at_wall(int wall, Vec2 centre, double from_a, double radius, bool left) const {
     const bool vertical = wall < 2;
     const double length = vertical ? box_.size.x : box_.size.y;
     const double at = wall % 2 == 0 ? radius : length - radius;
     const double across = at - (vertical ? centre.x : centre.y);
     if (std::abs(across) > from_a) return nowhere;
     const double along = std::sqrt(from_a * from_a - across * across) * (left ? 1 : -1);
-    return vertical ? Vec2{at, centre.y + along} : Vec2{centre.x + along, at};
+    return {.place = vertical ? Vec2{at, centre.y + along} : Vec2{centre.x + along, at}};
   }
 
+  const PackingOptions& options_;
   PackingBox box_;
   PlacedBodies placed_;
   Random random_;
@@ -130,10 +185,11 @@ void fill_by_insertion(const PackingOptions& options, GrainPacking& packing) {
     if (found) continue;
     packing.complete = false;
     if (options.as_dense_as_possible) continue;
-    computation_failed(format("{} of {} discs found a gap, {:.4g} of the box", k, radii.size(),
-                              area_of(options.shape, inserter.placed().bodies().radii) / options.box.area()),
-                       format("for the next one {} gaps were all too small", options.attempts),
-                       "Ask for less, for more attempts, or use growth");
+    computation_failed(
+        format("{} of {} {}s found a gap, {:.4g} of the box", k, radii.size(), noun_of(options.shape.kind),
+               area_of(options.shape, inserter.placed().bodies().radii) / options.box.area()),
+        format("for the next one {} gaps were all too small", options.attempts),
+        "Ask for less, for more attempts, or use growth");
   }
   make_grains(options.shape, inserter.placed().bodies(), options.settling.density, packing);
 }

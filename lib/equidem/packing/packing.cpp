@@ -17,11 +17,11 @@ namespace equidem {
 namespace {
 
 constexpr std::array table{
-    PackingMethodEntry{PackingMethod::rejection, "rejection", "attempts", false, fill_by_rejection},
-    PackingMethodEntry{PackingMethod::local_moves, "local_moves", "sweeps", false, fill_by_local_moves},
-    PackingMethodEntry{PackingMethod::insertion, "insertion", "attempts", true, fill_by_insertion},
-    PackingMethodEntry{PackingMethod::growth, "growth", "evaluations of all overlaps", false, fill_by_growth},
-    PackingMethodEntry{PackingMethod::falling, "falling", "time steps, relaxation included", false, fill_by_falling},
+    PackingMethodEntry{PackingMethod::rejection, "rejection", "attempts", fill_by_rejection},
+    PackingMethodEntry{PackingMethod::local_moves, "local_moves", "sweeps", fill_by_local_moves},
+    PackingMethodEntry{PackingMethod::insertion, "insertion", "attempts", fill_by_insertion},
+    PackingMethodEntry{PackingMethod::growth, "growth", "evaluations of all overlaps", fill_by_growth},
+    PackingMethodEntry{PackingMethod::falling, "falling", "time steps, relaxation included", fill_by_falling},
 };
 
 const PackingMethodEntry& entry_of(PackingMethod method) {
@@ -36,10 +36,6 @@ void check(const PackingOptions& options) {
   const bool falls = options.method == PackingMethod::falling;
   const UnitBody shape = unit_body_of(options.shape);
   const std::string noun = noun_of(options.shape.kind);
-  if (entry_of(options.method).discs_only && !options.shape.is_disc()) {
-    bad_input(format("{}s shall be packed by {}", noun, to_string(options.method)),
-              "it finds the gaps where a disc touches two others", "Take another method, growth for dense ones");
-  }
   if (options.radii.empty()) bad_input("there are no bodies to pack", "the box would stay empty", "Give their number");
   const PackingBox& box = options.box;
   if (!positive(box.size.x) || (!falls && !positive(box.size.y))) {

@@ -80,13 +80,12 @@ struct PackingMethodEntry {
   PackingMethod method;
   const char* name;
   const char* unit_of_work;
-  bool discs_only;
   void (*fill)(const PackingOptions& options, GrainPacking& packing);  ///< grains, clumps, bonds, radii
 };
 std::span<const PackingMethodEntry> packing_methods();
 
 /// Same options, same packing, whatever the number of threads.
-/// \throws Error (bad_input): no bodies, a shape that is none (unit_body_of) or that the method cannot pack, a box or radii that are not
+/// \throws Error (bad_input): no bodies, a shape that is none (unit_body_of), a box or radii that are not
 ///         positive, bodies wider than the box, more area than the box has, falling into a box without an open top and the
 ///         reverse; (computation_failed): the bodies do not fit, naming how dense they came to lie, and as settle
 GrainPacking pack(const PackingOptions& options);
