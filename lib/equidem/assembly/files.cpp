@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "equidem/assembly/delaunay.hpp"
+#include "equidem/assembly/file_text.hpp"
 #include "equidem/assembly/repeated_contact.hpp"
 #include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
@@ -319,6 +320,10 @@ Assembly assembly_of(const Json& file) {
 }
 
 }  // namespace
+
+std::string quoted_json(const std::string& text) {
+  return Json(text).dump();
+}
 
 Assembly read_assembly(const std::filesystem::path& path) {
   const std::string text = read_file(path);

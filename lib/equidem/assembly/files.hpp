@@ -9,8 +9,6 @@
 
 namespace equidem {
 
-inline constexpr const char* assembly_schema = "equidem-assembly/1";
-
 /// Read an assembly. `contacts` missing: touching discs (gap at most 1e-9 of the smaller radius). The contact point
 /// is the midpoint of the branch unless "levers": [[r_i, r_j], ...] says otherwise (see Contact); off the line of centres "normals":
 /// [[n_x, n_y], ...] and "offsets": [[o_i, o_j], ...] say where with them (see ContactArms); "springs": [[kN, kT], ...] per contact;

@@ -3,8 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
+#include "equidem/assembly/file_text.hpp"
 #include "equidem/assembly/files.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
@@ -37,7 +36,7 @@ std::string joined(const Values& values, const Write& write) {
 
 std::string text_of(const Assembly& assembly) {
   std::string text = format("{{\"schema\": \"{}\"", assembly_schema);
-  text += ",\n\"title\": " + nlohmann::json(assembly.kind).dump();
+  text += ",\n\"title\": " + quoted_json(assembly.kind);
   text += assembly.period ? format(",\n\"cell\": [{}, {}]", shortest(assembly.period->x), shortest(assembly.period->y))
                           : ",\n\"cell\": null";
   if (assembly.box) {
@@ -73,7 +72,7 @@ std::string text_of(const Assembly& assembly) {
     std::string separator = ",\n\"groups\": {\n";
     for (const auto& [name, members] : assembly.groups) {
       const std::string discs = joined(members.discs, [](std::int32_t disc) { return format("{}", disc); });
-      text += separator + nlohmann::json(name).dump() + ": ";
+      text += separator + quoted_json(name) + ": ";
       text += members.tributary_lengths.empty() ? discs
                                                 : format("{{\"discs\": {}, \"tributary_lengths\": {}}}", discs,
                                                          joined(members.tributary_lengths, shortest));
