@@ -79,13 +79,12 @@ TEST_CASE("settled_bodies_of_every_shape_are_confirmed_by_statics") {
 TEST_CASE("pairs_tied_by_dashpots_are_confirmed_as_rigid_ones") {
   PackingOptions options = falling_soil(20, 0.12);
   options.shape = {.kind = Kind::bonded_pair};
-  options.settling.rest = 1e-4;
-  options.settling.bond_share = 20;
   const GrainPacking packing = pack(options);
   const RestConfirmation rest = confirm_rest(packing, options.settling);
   CAPTURE(packing.settling.unbalanced, rest.mean_overlap, rest.largest_motion, rest.share(), rest.residual);
+  CHECK(packing.settling.unbalanced <= 1e-6);
   CHECK(rest.residual < 1e-12);
-  CHECK(rest.share() < 0.1);
+  CHECK(rest.share() < 1e-3);
   const Assembly network = network_of(packing, options.settling.springs);
   REQUIRE(network.size() == packing.size());
   const std::vector<Inertia> inertia = inertia_of(network, options.settling.density, Body::disc);

@@ -221,11 +221,10 @@ std::vector<KeySpec> keys_of_packing() {
       {.table = "settling",
        .name = "bond_share",
        .type = number,
-       .fallback = "0.5",
+       .fallback = "2.0e4",
        .range = Range::positive(),
-       .help =
-           "dashpots of bonded pairs, of what an explicit step bears: C_n = share m/dt, C_s = a third of that; larger "
-           "ones let the pairs creep less"},
+       .help = "dashpots of bonded pairs, of what an explicit step bears: C_n = share m/dt, C_s = a third of that; the "
+               "pairs creep, and below 1e3 they hardly come to rest"},
       {.table = "output", .name = "csv", .type = flag, .fallback = "true", .help = "grains.csv, for [grains] path"},
       {.table = "output", .name = "picture", .type = flag, .fallback = "true"},
   };

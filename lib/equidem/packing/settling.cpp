@@ -216,7 +216,8 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
   computation_failed(format("after {:.4g} s the bodies are not at rest", simulation.time()),
                      format("the mean unbalanced force is {:.2g} of the mean contact force, {:.2g} was wanted",
                             report.unbalanced, options.rest),
-                     "Give them longer, more friction or damping, or take a shorter step");
+                     scene.bonds.empty() ? "Give them longer, more friction or damping, or take a shorter step"
+                                         : "Let the bonds creep less (a larger bond_share), or give them longer");
 }
 
 }  // namespace equidem

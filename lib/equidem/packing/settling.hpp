@@ -27,8 +27,9 @@ struct SettlingOptions {
   /// bodies and denser than what falls.
   bool relax_first = false;
   /// Dashpots of bonded pairs, as shares of what a step by the velocities at its start bears: C_n = share 2 m_n/dt, C_s = share 2 m_s/dt
-  /// with m_n = m/2, m_s = m/6. What they carry makes them creep, the less the larger they are.
-  double bond_share = 0.5;
+  /// with m_n = m/2, m_s = m/6. What they carry makes them creep, the less the larger they are: far more than an explicit step bears,
+  /// or the bodies never come to rest.
+  double bond_share = 2e4;
 };
 
 struct SettlingReport {
