@@ -75,7 +75,7 @@ DrivenDiscs::DrivenDiscs(const Scene& scene, const DiscLayout& layout, const Loo
     }
   }
   for (std::size_t disc = 0; !walls_.empty() && disc < scene.assembly.size(); ++disc) {
-    disc_of(static_cast<std::int32_t>(disc)).meets_walls = true;
+    disc_of(static_cast<std::int32_t>(disc));
   }
   // std::map keeps places, and so strips, in order.
   const auto strips = static_cast<std::size_t>(layout.strips());
@@ -88,7 +88,9 @@ DrivenDiscs::DrivenDiscs(const Scene& scene, const DiscLayout& layout, const Loo
       strip_first_[++strip] = static_cast<std::int32_t>(discs_.size());
     }
     discs_.push_back(disc);
+    places_.push_back({disc.centre, disc.radius, place, disc.loads > 0 || disc.any_held()});
   }
+  acting_.resize(strips);
   while (strip < strips) strip_first_[++strip] = static_cast<std::int32_t>(discs_.size());
 }
 
@@ -145,6 +147,14 @@ std::span<const DrivenDiscs::WallMotion> DrivenDiscs::move_walls(std::int32_t st
   return {motions, walls_.size()};
 }
 
+bool DrivenDiscs::touches_wall(const Place& disc, Vec2 u, std::span<const WallMotion> motions) const {
+  for (std::size_t k = 0; k < walls_.size(); ++k) {
+    const double gap = dot(walls_[k].normal, disc.centre + u - walls_[k].point) - motions[k].moved - disc.radius;
+    if (!(gap >= 0)) return true;
+  }
+  return false;
+}
+
 DrivenDiscs::Push DrivenDiscs::push_of_walls(const Disc& disc, Vec2 u, std::span<const WallMotion> motions) const {
   Push push;
   for (std::size_t k = 0; k < walls_.size(); ++k) {
@@ -153,13 +163,20 @@ DrivenDiscs::Push DrivenDiscs::push_of_walls(const Disc& disc, Vec2 u, std::span
     if (gap >= 0) continue;
     push.force -= wall.kN * gap * wall.normal;
     push.work -= wall.kN * gap * motions[k].way;
-    push.any = true;
   }
   return push;
 }
 
-void DrivenDiscs::before(std::int32_t strip, const LoopData& data) {
+void DrivenDiscs::before(std::int32_t strip, const LoopData& data, int parity, double time) {
+  const std::span<const WallMotion> walls = move_walls(strip, time, time);
+  std::vector<std::int32_t>& acting = acting_[strip];
+  acting.clear();
   for (std::int32_t k = strip_first_[strip]; k < strip_first_[strip + 1]; ++k) {
+    const Place& place = places_[k];
+    const double* u = data.motion[parity] + static_cast<std::ptrdiff_t>(place.place) * width_;
+    if (place.always || touches_wall(place, {u[0], u[1]}, walls)) acting.push_back(k);
+  }
+  for (const std::int32_t k : acting) {
     Disc& disc = discs_[k];
     const double* velocity =
         data.velocity + static_cast<std::ptrdiff_t>(disc.place / 4) * 4 * unknowns_ + disc.place % 4;
@@ -172,8 +189,7 @@ void DrivenDiscs::before(std::int32_t strip, const LoopData& data) {
 // support's.
 void DrivenDiscs::after(std::int32_t strip, const LoopData& data, const Stage& stage, int parity, double time,
                         double time_after, Dissipation& dissipation) {
-  const std::int32_t first = strip_first_[strip], last = strip_first_[strip + 1];
-  if (first == last) return;
+  if (acting_[strip].empty()) return;
   DrivingWork& work = work_[strip];
   const double over_kick = stage.kick != 0 ? 1 / stage.kick : 0.0,
                over_drift = stage.drift != 0 ? 1 / stage.drift : 0.0;
@@ -181,7 +197,7 @@ void DrivenDiscs::after(std::int32_t strip, const LoopData& data, const Stage& s
   const std::span<const WallMotion> walls = move_walls(strip, time, time_after);
   ValuesAt factors(schedules_, time);
   ValuesAt held[] = {{schedules_, time_after}, {schedules_, time_after}, {schedules_, time_after}};
-  for (std::int32_t k = first; k < last; ++k) {
+  for (const std::int32_t k : acting_[strip]) {
     const Disc& disc = discs_[k];
     const double* u = data.motion[parity] + static_cast<std::ptrdiff_t>(disc.place) * width_;
     double* u_after = data.motion[1 - parity] + static_cast<std::ptrdiff_t>(disc.place) * width_;
@@ -191,13 +207,10 @@ void DrivenDiscs::after(std::int32_t strip, const LoopData& data, const Stage& s
       const double factor = factors.of(loads_[l].schedule);
       for (int c = 0; c < 3; ++c) load[c] += loads_[l].force[c] * factor;
     }
-    if (disc.meets_walls) {
-      const Push push = push_of_walls(disc, {u[0], u[1]}, walls);
-      wall[0] = push.force.x;
-      wall[1] = push.force.y;
-      work.walls += push.work;
-      if (!push.any && disc.loads == 0 && !disc.any_held()) continue;
-    }
+    const Push push = push_of_walls(disc, {u[0], u[1]}, walls);
+    wall[0] = push.force.x;
+    wall[1] = push.force.y;
+    work.walls += push.work;
     for (int c = 0; c < unknowns_; ++c) {
       const double v = disc.before[c], with_loop = velocity[4 * c], force = load[c] + wall[c];
       double v_after = with_loop + stage.kick * force * disc.inverse_inertia[c];

@@ -26,14 +26,17 @@ class DrivenDiscs {
   /// \throws Error (bad_input) on a group that does not exist or is empty, a motion prescribed twice, a load that is not finite
   DrivenDiscs(const Scene& scene, const DiscLayout& layout, const LoopKind& kind);
 
-  /// Keep the velocities that the loop will overwrite.
-  void before(std::int32_t strip, const LoopData& data);
-  /// Add forces, prescribe motions, sum up work, and correct what the loop counted as dissipated on these discs. `time` is that of the motions read, `time_after` that of those written.
+  /// See which discs are acted upon, and keep the velocities of these that the loop will overwrite. `time` is that of the motions read.
+  void before(std::int32_t strip, const LoopData& data, int parity, double time);
+  /// Add forces, prescribe motions, sum up work, and correct what the loop counted as dissipated on the discs that before() has found.
+  /// `time_after` is that of the motions written.
   void after(std::int32_t strip, const LoopData& data, const Stage& stage, int parity, double time, double time_after,
              Dissipation& dissipation);
 
   [[nodiscard]] bool any() const { return !discs_.empty(); }
-  [[nodiscard]] std::size_t bytes() const { return discs_.size() * sizeof(Disc) + loads_.size() * sizeof(DiscLoad); }
+  [[nodiscard]] std::size_t bytes() const {
+    return discs_.size() * (sizeof(Disc) + sizeof(Place)) + loads_.size() * sizeof(DiscLoad);
+  }
   /// Prescribed components at the start.
   void prescribe(double* motion, double time) const;
   [[nodiscard]] DrivingWork work() const;
@@ -49,9 +52,15 @@ class DrivenDiscs {
     double radius = 0;
     std::int32_t held[3] = {-1, -1, -1};  // schedule of each component
     std::int32_t first_load = 0, loads = 0;
-    bool meets_walls = false;
     double before[3] = {0, 0, 0};  // velocities
     [[nodiscard]] bool any_held() const { return held[0] >= 0 || held[1] >= 0 || held[2] >= 0; }
+  };
+  /// What tells whether a wall touches a disc, next to each other for all: most are far from every wall.
+  struct Place {
+    Vec2 centre;
+    double radius = 0;
+    std::int32_t place = 0;
+    bool always = false;  ///< acted upon, walls or not
   };
   struct DiscLoad {
     double force[3] = {0, 0, 0};  // N/m, N/m, N
@@ -72,14 +81,16 @@ class DrivenDiscs {
   struct Push {
     Vec2 force;
     double work = 0;
-    bool any = false;
   };
+  [[nodiscard]] bool touches_wall(const Place& disc, Vec2 u, std::span<const WallMotion> motions) const;
   [[nodiscard]] Push push_of_walls(const Disc& disc, Vec2 u, std::span<const WallMotion> motions) const;
 
   int unknowns_ = 2, width_ = 2;
   bool local_ = false;
-  std::vector<Disc> discs_;  // by strip
+  std::vector<Disc> discs_;    // by strip
+  std::vector<Place> places_;  // of discs_
   std::vector<std::int32_t> strip_first_;
+  std::vector<std::vector<std::int32_t>> acting_;  // discs_ that are acted upon in this stage, by strip
   std::vector<DiscLoad> loads_;
   std::vector<Schedule> schedules_;
   std::vector<Wall> walls_;

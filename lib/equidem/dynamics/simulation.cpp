@@ -135,7 +135,7 @@ void Simulation::Implementation::start() {
 
 void Simulation::Implementation::do_strip(std::int32_t strip, const Stage& stage, int from, double time,
                                           double time_after) {
-  driven.before(strip, data);
+  driven.before(strip, data, from, time);
   step_function(data, stage, from, bodies.layout().strip_first[strip], bodies.layout().strip_first[strip + 1],
                 dissipation[strip]);
   driven.after(strip, data, stage, from, time, time_after, dissipation[strip]);

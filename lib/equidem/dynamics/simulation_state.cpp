@@ -43,7 +43,7 @@ Simulation::Implementation::Trial Simulation::Implementation::try_stage(const St
   std::vector<Dissipation> taken(strips);
   parallel_tasks(strips, [&](std::size_t task, int) {
     const auto strip = static_cast<std::int32_t>(task);
-    if (driven_too) acting.before(strip, copy);
+    if (driven_too) acting.before(strip, copy, 0, time_at(steps));
     step_function(copy, stage, 0, bodies.layout().strip_first[strip], bodies.layout().strip_first[strip + 1],
                   taken[task]);
     if (!driven_too) return;
