@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/output/grain_animation.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -44,7 +46,13 @@ struct AnimatedScene {
   }
 
   GrainAnimation animation(const std::string& title) const {
-    return {.title = title, .shapes = grains, .clumps = clumps, .groups = groups, .walls = walls, .frames = frames};
+    return {.title = title,
+            .caption = "colours < 3",
+            .shapes = grains,
+            .clumps = clumps,
+            .groups = groups,
+            .walls = walls,
+            .frames = frames};
   }
 };
 
@@ -55,6 +63,12 @@ std::string value_of(const std::string& html, const std::string& name, const std
   REQUIRE(from != std::string::npos);
   const auto begin = from + start.size();
   return html.substr(begin, html.find_first_of(stops, begin) - begin);
+}
+
+/// Of a list the first two.
+std::array<double, 2> pair_of(const std::string& html, const std::string& name) {
+  const std::string values = value_of(html, name, "]");
+  return {std::stod(values.substr(values.rfind('[') + 1)), std::stod(values.substr(values.find(',') + 1))};
 }
 
 double number(const std::string& text, std::size_t at) {
@@ -81,11 +95,12 @@ bool mentions(const AnimatedScene& scene, const std::string& words) {
 }  // namespace
 
 TEST_CASE("an_animation_shows_every_body_where_it_is") {
-  const AnimatedScene scene;
+  AnimatedScene scene;
+  const double thrown = GENERATE(0.0, 40.0, -40.0);
+  scene.frames[3].places[0] += GENERATE(Vec2{0, 1}, Vec2{1, 0}) * thrown;
   const std::string html = grain_animation_html(scene.animation("three bodies"));
   const double span = std::stod(value_of(html, "span", ","));
-  const std::string low = value_of(html, "const low", "]");
-  const double left = std::stod(low.substr(1)), bottom = std::stod(low.substr(low.find(',') + 1));
+  const auto [left, bottom] = pair_of(html, "const low");
   std::string frames = html.substr(html.find("const frames"));
   for (const GrainFrame& frame : scene.frames) {
     const auto from = frames.find('\'') + 1;
@@ -93,7 +108,7 @@ TEST_CASE("an_animation_shows_every_body_where_it_is") {
     frames = frames.substr(from + text.size() + 1);
     REQUIRE(text.size() == 6 * scene.grains.size());
     for (std::size_t g = 0; g < scene.grains.size(); ++g) {
-      CAPTURE(frame.time, g, span);
+      CAPTURE(thrown, frame.time, g, span);
       CHECK(left + number(text, 6 * g) / 4095 * span == Approx(frame.places[g].x).margin(0.6 * span / 4095));
       CHECK(bottom + number(text, 6 * g + 2) / 4095 * span == Approx(frame.places[g].y).margin(0.6 * span / 4095));
       const double turned = number(text, 6 * g + 4) / 4096 - frame.angles[g] / (2 * std::numbers::pi);
@@ -102,12 +117,38 @@ TEST_CASE("an_animation_shows_every_body_where_it_is") {
   }
 }
 
+TEST_CASE("the_view_of_an_animation_holds_its_walls") {
+  AnimatedScene scene;
+  const double far = GENERATE(0.0, -1e4);  // where on its line a wall is given
+  scene.walls[0].point.x = far;
+  GrainWall& arc = scene.walls[1];
+  arc.radius = GENERATE(1.0, 6.0);
+  arc.to = 3;
+  arc.move_y = {.kind = Schedule::Kind::sine, .value = 0.5, .frequency = 2.5};  // at 0.1 s farthest up
+  const std::string html = grain_animation_html(scene.animation("three bodies"));
+  const auto [left, bottom] = pair_of(html, "const low");
+  const auto [width, height] = pair_of(html, "size");
+  const auto [from, floor] = pair_of(html, "const walls");
+  const std::string rest = value_of(html, "const walls", "]");
+  const double to = std::stod(rest.substr(rest.find(',', rest.find(',') + 1) + 1));
+  CAPTURE(far, arc.radius, left, bottom, width, height, from, to, floor);
+  CHECK(std::max(from, to) > left + width);
+  CHECK(std::min(from, to) < left);
+  CHECK(floor == 0);
+  CHECK(left < arc.radius * std::cos(3.0));
+  CHECK(left + width > arc.radius);
+  CHECK(bottom + height > arc.radius + 0.5);
+  CHECK(width > 0.49 * height);
+  CHECK(height > 0.24 * width);
+}
+
 TEST_CASE("an_animation_is_one_well_formed_page") {
   const AnimatedScene scene;
   const std::string html = grain_animation_html(scene.animation("a < b & c > d"));
   CHECK(html.starts_with("<!DOCTYPE html>"));
   CHECK(html.ends_with("</html>\n"));
   CHECK(count_of(html, "a &lt; b &amp; c &gt; d") == 2);
+  CHECK(count_of(html, "colours &lt; 3") == 1);
   for (const char* tag : {"html", "head", "body", "title", "script", "canvas", "button", "span", "p", "h1", "style"}) {
     CAPTURE(tag);
     const std::string name = tag;

@@ -82,6 +82,7 @@ if m:
         faults.append("branch_length is not the length of the branch")
     compare("displacement of the ends", array(data.GetPointData(), "displacement"),
             displacement[np.column_stack([i, j]).ravel()])
+    compare("radius of the ends", array(data.GetPointData(), "radius"), np.zeros(2 * m))
 
 reader = vtkXMLMultiBlockDataReader()
 reader.SetFileName(os.path.join(folder, f"{name}.vtm"))

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/output/vtk.hpp"
+
 #include "equidem/core/file.hpp"
 #include "equidem/output/csv.hpp"
-#include "equidem/output/vtk.hpp"
 
 #include "output/states.hpp"
 #include "support/catch.hpp"
@@ -50,5 +51,5 @@ TEST_CASE("vtk_files_are_as_long_as_they_say") {
   };
   // One length (8 bytes) per array, then its numbers.
   CHECK(appended("block_discs.vtp") == 12 * 8 + 8 * n * (3 + 3 + 8 + 2));
-  CHECK(appended("block_contacts.vtp") == 9 * 8 + 8 * m * (6 + 6 + 3 + 3) + 2 * 4 * m);
+  CHECK(appended("block_contacts.vtp") == 10 * 8 + 8 * m * (6 + 6 + 3 + 3 + 2) + 2 * 4 * m);
 }

@@ -67,7 +67,10 @@ inline Decay decay(double x) {
   if (x > 40) return {0, 1 / x};
   int doublings = 0;
   double y = x;
-  for (; y > 0.5; y *= 0.5) ++doublings;
+  while (y > 0.5) {
+    y *= 0.5;
+    ++doublings;
+  }
   double mean = 1;
 #pragma GCC unroll 14
   for (int k = 15; k >= 2; --k) mean = 1 - y * (1.0 / k) * mean;

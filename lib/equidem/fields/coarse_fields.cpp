@@ -25,8 +25,9 @@ std::optional<std::size_t> cell_at(const CoarseGrid& grid, Vec2 place) {
 void add_crossings(double from, double way, double low, double width, std::size_t lines, std::vector<double>& shares) {
   if (way == 0) return;
   const double a = (std::min(from, from + way) - low) / width, b = (std::max(from, from + way) - low) / width;
-  const double last = static_cast<double>(lines);
-  for (double k = std::max(0.0, std::ceil(a)); k <= std::min(last, b); k += 1) {
+  const double first = std::max(0.0, std::ceil(a)), last = std::min(static_cast<double>(lines), b);
+  for (std::size_t n = 0; first + static_cast<double>(n) <= last; ++n) {
+    const double k = first + static_cast<double>(n);
     const double share = (low + k * width - from) / way;
     if (share > 0 && share < 1) shares.push_back(share);
   }
@@ -36,8 +37,8 @@ void add_crossings(double from, double way, double low, double width, std::size_
 
 Region CoarseGrid::cell(std::size_t k) const {
   const Vec2 size = cell_size();
-  const Vec2 low =
-      region.low + Vec2{size.x * static_cast<double>(k % columns), size.y * static_cast<double>(k / columns)};
+  const std::size_t column = k % columns, row = k / columns;
+  const Vec2 low = region.low + Vec2{size.x * static_cast<double>(column), size.y * static_cast<double>(row)};
   return {low, low + size};
 }
 
@@ -101,7 +102,7 @@ CoarseFields coarse_fields(std::span<const Grain> grains, std::span<const Clump>
       momenta[*cell] += grain.inertia.mass * grain.velocity;
     }
     const auto span_of = [&](double centre, double low, double width, std::size_t count) {
-      const double last = static_cast<double>(count);
+      const auto last = static_cast<double>(count);
       return std::pair(
           static_cast<std::size_t>(std::clamp(std::floor((centre - grain.radius - low) / width), 0.0, last)),
           static_cast<std::size_t>(std::clamp(std::ceil((centre + grain.radius - low) / width), 0.0, last)));

@@ -86,9 +86,11 @@ SpectralPeak spectral_peak(std::span<const double> times, std::span<const double
               format("the history lasts {:.4g} s and has {} moments", fit.duration(), times.size()),
               "Look longer or more often, or widen the bounds");
   std::vector<double> frequencies, explained;
-  for (double f = low; f <= high; f += step) {
+  double f = low;
+  while (f <= high) {
     frequencies.push_back(f);
     explained.push_back(fit.at(f).explained);
+    f += step;
   }
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   const auto at = static_cast<std::size_t>(std::max_element(explained.begin(), explained.end()) - explained.begin());

@@ -179,7 +179,8 @@ void check_bond(const GrainScene& scene, const GrainBond& bond) {
 /// \throws Error where two grains are bonded twice
 void check_twice(const std::vector<GrainBond>& bonds) {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  for (const GrainBond& bond : bonds) pairs.push_back(std::minmax(bond.i, bond.j));
+  pairs.reserve(bonds.size());
+  for (const GrainBond& bond : bonds) pairs.emplace_back(std::minmax(bond.i, bond.j));
   std::sort(pairs.begin(), pairs.end());
   const auto twice = std::adjacent_find(pairs.begin(), pairs.end());
   if (twice == pairs.end()) return;

@@ -35,6 +35,8 @@ class NeighbourFinder {
  public:
   NeighbourFinder();
   ~NeighbourFinder();
+  NeighbourFinder(const NeighbourFinder&) = delete;
+  NeighbourFinder& operator=(const NeighbourFinder&) = delete;
   NeighbourFinder(NeighbourFinder&&) noexcept;
   NeighbourFinder& operator=(NeighbourFinder&&) noexcept;
 

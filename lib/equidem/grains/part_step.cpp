@@ -22,11 +22,8 @@ struct Contact {
   const GrainBody& body_i;
   const GrainBody* body_j;
 
-  Contact(const GrainSystem& system, const Candidate& candidate_, const PartMeeting& meeting_)
-      : candidate(candidate_),
-        meeting(meeting_),
-        body_i(system.bodies[i()]),
-        body_j(candidate_.j >= 0 ? &system.bodies[j()] : nullptr) {}
+  Contact(const GrainSystem& system, const Candidate& of, const PartMeeting& met)
+      : candidate(of), meeting(met), body_i(system.bodies[i()]), body_j(of.j >= 0 ? &system.bodies[j()] : nullptr) {}
 
   [[nodiscard]] std::size_t i() const { return static_cast<std::size_t>(candidate.i); }
   [[nodiscard]] std::size_t j() const { return static_cast<std::size_t>(candidate.j); }

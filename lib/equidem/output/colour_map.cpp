@@ -51,7 +51,7 @@ Oklab along(const std::array<Oklab, n>& points, double t) {
 
 /// The value below which the given share of sorted numbers lies.
 double quantile(std::vector<double>& values, double share) {
-  const auto index = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  const auto index = static_cast<std::size_t>(std::llround(share * static_cast<double>(values.size() - 1)));
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(index), values.end());
   return values[index];
 }
@@ -117,6 +117,12 @@ std::vector<double> nice_ticks(double low, double high, int wanted) {
   const double slack = 1e-9 * (high - low);
   for (double k = std::ceil((low - slack) / step); k * step <= high + slack; ++k) ticks.push_back(k * step);
   return ticks;
+}
+
+double scale_bar_length(double wanted) {
+  const double power = std::pow(10.0, std::floor(std::log10(wanted)));
+  const double lead = wanted / power;
+  return power * (lead >= 5 ? 5 : lead >= 2 ? 2 : 1);
 }
 
 UnitPrefix unit_prefix(double largest) {

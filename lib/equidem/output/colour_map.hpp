@@ -48,6 +48,9 @@ ColourScale colour_scale(std::span<const double> values);
 /// Multiples of a step 1, 2 or 5 times a power of ten within [low, high], about `wanted` of them; low <= high.
 std::vector<double> nice_ticks(double low, double high, int wanted = 5);
 
+/// The longest of 1, 2 or 5 times a power of ten that is no longer than wanted; wanted > 0.
+double scale_bar_length(double wanted);
+
 /// A factor of a unit and its prefix: {1e-6, "M"} for numbers of some million.
 struct UnitPrefix {
   double factor = 1;

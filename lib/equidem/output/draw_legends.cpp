@@ -61,10 +61,7 @@ void draw_colour_bar(Canvas& canvas, const PictureScene& scene) {
 
 void draw_scale_bar(Canvas& canvas, const PictureScene& scene, double left, double y) {
   const PageFrame& frame = scene.frame;
-  const double wanted = 0.2 * frame.room.x / frame.scale;  // m
-  const double power = std::pow(10.0, std::floor(std::log10(wanted)));
-  const double lead = wanted / power;
-  const double length = power * (lead >= 5 ? 5 : lead >= 2 ? 2 : 1);
+  const double length = scale_bar_length(0.2 * frame.room.x / frame.scale);  // m
   const double right = left + length * frame.scale;
   canvas.line({left, y}, {right, y}, 1.4, ink);
   for (const double x : {left, right}) canvas.line({x, y - 5}, {x, y + 5}, 1.4, ink);

@@ -23,6 +23,7 @@ GrainFrame frame_of(std::span<const Grain> grains, double time);
 
 struct GrainAnimation {
   std::string title = {};
+  std::string caption = {};            ///< a line under the picture, such as what the colours mean
   std::span<const Grain> shapes = {};  ///< their places are not looked at
   std::span<const Clump> clumps = {};
   std::span<const int> groups = {};  ///< of each grain: its colour; empty: all alike
@@ -31,7 +32,8 @@ struct GrainAnimation {
   double speed = 1;  ///< of the picture, in seconds of motion per second
 };
 
-/// The file; places are rounded to 1/4095 of the view, angles to 1/4096 of a turn: 6 bytes for a body in a frame.
+/// The file. The view holds all bodies, segments and arcs at all times; of a line what crosses it. Places are rounded to 1/4095 of the
+/// view, angles to 1/4096 of a turn: 6 bytes for a body in a frame.
 /// \throws Error (bad_input) without grains or frames, on frames of another number of bodies, on places that are not finite
 std::string grain_animation_html(const GrainAnimation& animation);
 

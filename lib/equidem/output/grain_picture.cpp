@@ -270,10 +270,7 @@ void draw_paths(Canvas& canvas, const PageFrame& frame, const GrainPicture& pict
 
 void draw_legend(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
   if (!picture.title.empty()) canvas.text(picture.title, {margin, 38}, title_size, TextAnchor::left, ink, true);
-  const double wanted = 0.2 * frame.room.x / frame.scale;  // m
-  const double power = std::pow(10.0, std::floor(std::log10(wanted)));
-  const double lead = wanted / power;
-  const double length = power * (lead >= 5 ? 5 : lead >= 2 ? 2 : 1);
+  const double length = scale_bar_length(0.2 * frame.room.x / frame.scale);  // m
   const double y = frame.height - 50.0, right = margin + length * frame.scale;
   canvas.line({margin, y}, {right, y}, 1.4, ink);
   for (const double x : {margin, right}) canvas.line({x, y - 5}, {x, y + 5}, 1.4, ink);

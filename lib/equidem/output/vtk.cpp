@@ -134,6 +134,7 @@ std::string contacts_text(const AssemblyState& state) {
     data.declare<double>("CellData", name, m, 1, [value](std::size_t contact, int) { return value(contact); });
   };
 
+  data.declare<double>("PointData", "radius", 2 * m, 1, [](std::size_t, int) { return 0.0; });
   if (!state.motions.empty()) {
     data.declare<double>("PointData", "displacement", 2 * m, 3, [&, end_of](std::size_t point, int c) {
       return component_of(state.motions[end_of(point)].u, c);

@@ -18,7 +18,7 @@ namespace equidem {
 ///             Gaussian.
 ///   contacts  one line each along its branch vector from the centre of i, also where that leads through the period: i, j,
 ///             branch_length, normal_force (tension positive), tangential_force; and at its ends the displacement of i
-///             and j, so that "Warp By Vector" bends both files alike.
+///             and j and a radius of zero, so that "Warp By Vector" bends both files alike and Glyph draws circles of discs only.
 /// \return the three paths, the index first
 /// \throws Error (bad_input) as write_file does, before anything is written where one of the three exists
 std::vector<std::filesystem::path> write_vtk(const std::filesystem::path& folder, const std::string& name,

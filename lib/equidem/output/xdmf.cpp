@@ -23,9 +23,10 @@ std::string slab(const XdmfSource& source, const std::string& name, std::uint64_
         "Dimensions=\"3 2\">{1} 0 1 1 1 {0}</DataItem>{2}</DataItem>",
         n, frame, array(source, name, format("{} {}", source.room, n)));
   }
+  // ParaView keeps the points of a frame under what it finds first in here, and reports an error where that is an element.
   return format(
-      "<DataItem ItemType=\"HyperSlab\" Dimensions=\"{0} 3\"><DataItem Format=\"XML\" NumberType=\"Int\" "
-      "Dimensions=\"3 3\">{1} 0 0 1 1 1 1 {0} 3</DataItem>{2}</DataItem>",
+      "<DataItem ItemType=\"HyperSlab\" Dimensions=\"{0} 3\"><!--frame {1}-->"
+      "<DataItem Format=\"XML\" NumberType=\"Int\" Dimensions=\"3 3\">{1} 0 0 1 1 1 1 {0} 3</DataItem>{2}</DataItem>",
       n, frame, array(source, name, format("{} {} 3", source.room, n)));
 }
 
