@@ -71,6 +71,7 @@ struct Fill {
   double damping = 1;                        ///< h of (2.27)
   double friction = sukegawa2010::friction;  ///< between grains
   double step_share = 0.5;                   ///< of the limit of the two lightest bodies
+  std::optional<double> step = {};           ///< s, in place of a share of it
   double bond_step = printed_step;           ///< s: dashpots of bonds C_n = m_r/bond_step, C_s = C_n/3
   FrictionCap cap = FrictionCap::whole_force;
   EllipseLaw ellipse_law = EllipseLaw::exact;
@@ -148,7 +149,7 @@ std::string label_of_followed(const StartGrid& grid, std::size_t k);
 
 /// Bodies in the places of the start, in a box.
 GrainScene start_of(const Fill& fill);
-/// Step of the loop, s: step_share of the limit of a contact of the two lightest bodies.
+/// Step of the loop, s: the one given, else step_share of the limit of a contact of the two lightest bodies.
 double step_of(const GrainScene& scene, const Fill& fill);
 GrainOptions options_of(const GrainScene& scene, const Fill& fill);
 

@@ -63,8 +63,8 @@ std::string settings_of(const Fill& fill) {
       "{} columns {} rows {} seed {} softness {} damping {} friction {} step {} bonds {} rows {} cap {} ellipses {} "
       "version {}",
       plural_of(fill.shape), fill.grid.columns, fill.grid.rows, fill.seed, fill.softness, fill.damping, fill.friction,
-      fill.step_share, fill.bond_step, fill.row_share, fill.cap == FrictionCap::whole_force ? "whole" : "spring",
-      name_of(fill.ellipse_law), library_version());
+      fill.step ? format("{} s", *fill.step) : format("{}", fill.step_share), fill.bond_step, fill.row_share,
+      fill.cap == FrictionCap::whole_force ? "whole" : "spring", name_of(fill.ellipse_law), library_version());
 }
 std::string settings_of(const Run& run) {
   std::string text = settings_of(run.fill);

@@ -178,6 +178,34 @@ void add_histories(const Reproduction& result, const std::filesystem::path& fold
   }
 }
 
+/// Discs shaken by 400 gal, 10 Hz for long, under either cap of friction.
+Plot compaction_over_time(const Reproduction& result, const std::filesystem::path& folder) {
+  Plot plot{.title = "Discs shaken by 400 gal, 10 Hz for 20 s",
+            .x = {.label = "time of shaking, s"},
+            .y = {.label = "void ratio between the walls"}};
+  for (const Done& done : result.runs) {
+    const Run& run = done.run;
+    const auto path = folder / "runs" / (run.name() + ".csv");
+    const bool printed_cap = run.fill.variant == "printed_cap";
+    if (run.fill.shape != Shape::disc || run.fill.seed != 1 || run.shaking->cycles != long_shakings[1] ||
+        !(run.fill.variant.empty() || printed_cap) || !std::filesystem::exists(path))
+      continue;
+    const Columns columns{csv_cells(read_file(path))};
+    plot.series.push_back(
+        {.label = printed_cap ? "friction caps the spring alone (2.16)" : "friction caps spring and dashpot",
+         .x = columns.of("time_s"),
+         .y = columns.of("whole_void_ratio"),
+         .style = SeriesStyle::line,
+         .colour = printed_cap ? PlotColour::vermilion : PlotColour::blue});
+  }
+  if (plot.series.empty() || plot.series.front().x.empty()) return {};
+  const double end = plot.series.front().x.back();
+  for (const auto& [e, label] :
+       {std::pair{printed_void_ratios[0].before, "printed, before"}, {printed_void_ratios[0].after, "printed, after"}})
+    plot.series.push_back({.label = label, .x = {0, end}, .y = {e, e}, .style = SeriesStyle::dashed_line});
+  return plot;
+}
+
 bool has_points(const Plot& plot) {
   return std::any_of(plot.series.begin(), plot.series.end(), [](const Series& series) {
     return std::any_of(series.y.begin(), series.y.end(), [](double y) { return std::isfinite(y); });
@@ -227,7 +255,10 @@ std::vector<std::pair<std::string, Plot>> plots(const Reproduction& result,
     add("thrown", "grains thrown while shaken", "grains", [](const Outcome& o) { return o.thrown; });
   }
   all.emplace_back("resonance", resonance_plot(result));
-  if (folder) add_histories(result, *folder, all);
+  if (folder) {
+    all.emplace_back("compaction_over_time", compaction_over_time(result, *folder));
+    add_histories(result, *folder, all);
+  }
   std::erase_if(all, [](const auto& named) { return !has_points(named.second); });
   return all;
 }

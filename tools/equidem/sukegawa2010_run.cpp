@@ -178,6 +178,7 @@ class BoxRun {
     if (!files_.folder || !run_.animated) return;
     write_grain_animation(*files_.folder / (name + ".html"),
                           {.title = title,
+                           .caption = "Colours: five layers of the grid that the box was filled from.",
                            .shapes = scene_.grains,
                            .clumps = scene_.clumps,
                            .groups = layers_,
@@ -212,6 +213,7 @@ class BoxRun {
     std::vector<std::pair<std::string, double>> row{
         {"time_s", time},
         {"void_ratio", last_.void_ratio},
+        {"whole_void_ratio", last_.whole},
         {"centre_x_m", last_.centre.x},
         {"centre_y_m", last_.centre.y},
         {"slope", last_.surface.slope},

@@ -67,6 +67,7 @@ GrainScene start_of(const Fill& fill) {
 }
 
 double step_of(const GrainScene& scene, const Fill& fill) {
+  if (fill.step) return *fill.step;
   const SpringConstants springs = material_of(fill).springs;
   double limit = INFINITY;
   for (const Grain& grain : scene.grains) {
