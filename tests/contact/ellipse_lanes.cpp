@@ -28,8 +28,9 @@ struct EightPairs {
     group.i[k] = 2 * k;
     group.j[k] = 2 * k + 1;
     group.since[k] = 0;
-    bodies[2 * at].axis = pair.i.axis;
-    bodies[2 * at + 1].axis = pair.j.axis;
+    const auto turned_of = [](const Ellipse& ellipse) { return ellipse.a > ellipse.b ? ellipse.axis : Vec2{}; };
+    bodies[2 * at].turned = turned_of(pair.i);
+    bodies[2 * at + 1].turned = turned_of(pair.j);
     bodies[2 * at + 1].centre = pair.branch;
     const Vec2 n{static_cast<double>(found.n.x), static_cast<double>(found.n.y)};
     const Vec2 last = std::cos(turned) * n + std::sin(turned) * perpendicular(n);
@@ -65,9 +66,9 @@ TEST_CASE("closest_points_of_eight_pairs_of_ellipses_are_exact") {
       eight.set(k++, pair, truth, std::pow(10, random.uniform(-9, -2)) * (random.uniform(0, 1) < 0.5 ? 1 : -1));
     }
     const PartGroup before = eight.group;
-    const eight::Standing standing = eight::standing_of(eight.bodies.data(), eight.group);
+    const eight::Standing standing = eight::standing_of<false>(eight.bodies.data(), eight.group);
     const eight::Choice all = ~eight::Choice{};
-    const eight::Meetings found = eight::meetings_of_ellipses(eight.group, eight.bodies.data(), standing, all, all);
+    const eight::Meetings found = eight::meetings_of_ellipses(eight.group, standing, all, all);
     for (int k = 0; k < 8; ++k, ++count) {
       const auto at = static_cast<std::size_t>(k);
       const TwoEllipses& pair = eight.pairs[at];

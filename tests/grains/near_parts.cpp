@@ -64,6 +64,39 @@ TEST_CASE("contacts_of_parts_by_eights_are_contacts_one_by_one") {
   CHECK(eights.bytes_per_grain() != singles.bytes_per_grain());  // otherwise it is one loop twice
 }
 
+TEST_CASE("contacts_of_needles_are_those_that_brute_force_finds") {
+  const double margin = GENERATE(0.0, 1e-6, 2.0);
+  GrainOptions options = options_of({NormalLaw::linear_dashpot, Scheme::velocity_verlet}, 3e-4);
+  options.margin = margin;
+  GrainSimulation simulation(flying_needles(24, 31), options);
+  std::size_t found = 0;
+  for (int k = 0; k < 400; ++k) {
+    simulation.advance(20);
+    std::vector<std::pair<int, int>> expected, listed;
+    const std::vector<Grain> grains = simulation.grains();
+    const auto shape = [](const Grain& grain) {
+      return Ellipse{grain.radius, grain.short_half_axis, axis_at(grain.angle)};
+    };
+    for (std::size_t i = 0; i < grains.size(); ++i) {
+      for (std::size_t j = i + 1; j < grains.size(); ++j) {
+        const Vec2 branch = grains[j].position - grains[i].position;
+        if (contact_of_ellipses(shape(grains[i]), shape(grains[j]), branch).gap < 0) expected.emplace_back(i, j);
+      }
+    }
+    for (const GrainContact& contact : simulation.contacts()) {
+      if (contact.j >= 0) listed.emplace_back(std::minmax(contact.i, contact.j));
+    }
+    std::sort(listed.begin(), listed.end());
+    CAPTURE(margin, k, expected.size(), listed.size());
+    REQUIRE(listed == expected);
+    found += expected.size();
+  }
+  CAPTURE(margin, simulation.counters().contacts, simulation.counters().rebuilds);
+  CHECK(found > 20);
+  CHECK(simulation.counters().contacts > 50);
+  CHECK(simulation.counters().rebuilds > 2);
+}
+
 TEST_CASE("the_ledger_of_a_fill_of_ellipses_closes") {
   // The springs of a body may be many: a twentieth of 1/w for one of them.
   GrainScene scene =

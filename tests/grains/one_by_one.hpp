@@ -11,16 +11,20 @@
 
 namespace equidem::test {
 
-/// The same scene with a kind that no body is of, and whose contacts slide always: with it contacts are computed one by one.
+/// The same scene with a kind that no body is of, whose contacts slide always with each other and have springs with the rest: with both
+/// in a scene contacts are computed one by one.
 inline GrainScene one_by_one(GrainScene scene) {
-  PairProperties sliding = scene.pairs[0];
-  sliding.friction = 0.1;
+  PairProperties sprung = scene.pairs[0], sliding = scene.pairs[0];
+  sprung.friction = sliding.friction = 0.1;
+  sprung.tangential_ratio = 0.5;
   sliding.tangential_ratio = 0;
   sliding.tangential_damping = 0;
   const int kinds = scene.kinds;
   std::vector<PairProperties> pairs;
   for (int a = 0; a <= kinds; ++a) {
-    for (int b = 0; b <= kinds; ++b) pairs.push_back(a < kinds && b < kinds ? scene.between(a, b) : sliding);
+    for (int b = 0; b <= kinds; ++b) {
+      pairs.push_back(a < kinds && b < kinds ? scene.between(a, b) : a == b ? sliding : sprung);
+    }
   }
   scene.kinds = kinds + 1;
   scene.pairs = pairs;

@@ -3,7 +3,12 @@
 /// Small scenes with ellipses and clumps.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/contact/ellipse_contact.hpp"
 #include "equidem/grains/clump.hpp"
+#include "equidem/grains/grain_parts.hpp"
 
 #include "grains/scenes.hpp"
 
@@ -70,6 +75,30 @@ inline std::vector<Grain> mixed_grains(GrainScene& scene, int columns, int rows,
 inline GrainScene mixed_box(NormalLaw law, int columns, int rows, std::uint64_t seed) {
   GrainScene scene = busy_box(law, columns, rows, seed);
   scene.grains = mixed_grains(scene, columns, rows, seed);
+  return scene;
+}
+
+/// Ellipses of equal area and aspects from 1 to 30, apart from one another, that fly and spin in a box.
+inline GrainScene flying_needles(int count, std::uint64_t seed) {
+  const double side = 12;
+  GrainScene scene = scene_of({},
+                              {line("floor", {0, 0}, {0, 1}), line("left", {0, 0}, {1, 0}),
+                               line("right", {side, 0}, {-1, 0}), line("lid", {0, side}, {0, -1})},
+                              {.stiffness = 1e4, .restitution = 0.8, .friction = 0.3, .tangential_ratio = 0.5});
+  Random random(seed);
+  while (static_cast<int>(scene.grains.size()) < count) {
+    const double root = std::pow(30, random.uniform(0, 0.5)), a = 0.5 * root, b = 0.5 / root;
+    Grain grain = oval({random.uniform(a, side - a), random.uniform(a, side - a)}, a, b, random.uniform(-3, 3),
+                       {random.uniform(-1, 1), random.uniform(-1, 1)});
+    grain.spin = random.uniform(-3, 3);
+    const bool free = std::all_of(scene.grains.begin(), scene.grains.end(), [&](const Grain& other) {
+      const Vec2 branch = other.position - grain.position;
+      return contact_of_ellipses({a, b, axis_at(grain.angle)},
+                                 {other.radius, other.short_half_axis, axis_at(other.angle)}, branch)
+                 .gap > 0.01;
+    });
+    if (free) scene.grains.push_back(grain);
+  }
   return scene;
 }
 

@@ -38,18 +38,19 @@ TEST_CASE("the_order_of_bodies_clumps_and_their_discs_changes_no_bit") {
 
 TEST_CASE("the_margin_changes_no_bit_of_ellipses_and_clumps") {
   const Stepping stepping = GENERATE(from_range(force_steppings));
-  const GrainScene scene = mixed_box(stepping.law, 4, 4, 72);
+  const bool needles = GENERATE(false, true);
+  const GrainScene scene = needles ? flying_needles(24, 33) : mixed_box(stepping.law, 4, 4, 72);
   const auto run = [&](double margin) {
-    GrainOptions options = options_of(stepping, 0.004);
+    GrainOptions options = options_of(stepping, needles ? 1e-3 : 0.004);
     options.margin = margin;
     GrainSimulation simulation(scene, options);
-    simulation.advance(400);
-    CHECK(simulation.counters().contacts > 20);
+    simulation.advance(needles ? 1200 : 400);
+    CHECK(simulation.counters().contacts > 10);
     return bits_of(simulation);
   };
   const Bits chosen = run(0);
   for (const double margin : {1e-6, 0.01, 0.3, 10.0}) {
-    CAPTURE(stepping.name(), margin);
+    CAPTURE(stepping.name(), needles, margin);
     CHECK(run(margin) == chosen);
   }
 }

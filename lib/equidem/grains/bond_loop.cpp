@@ -7,7 +7,6 @@
 #include <cstddef>
 
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/move_bodies.hpp"
 #include "equidem/grains/pair_lanes.hpp"
 
 namespace equidem {
@@ -17,7 +16,7 @@ using namespace eight;
 
 static_assert(sizeof(Push) == sizeof(Half));
 
-enum class BondTask { resist_exactly, resist_explicitly, count_opening_kick };
+enum class BondTask { resist_exactly, resist_explicitly };
 
 /// Four columns of eight rows.
 EQUIDEM_ALWAYS_INLINE void columns_of(const Half (&row)[8], Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
@@ -66,50 +65,42 @@ struct BondLanes {
   Lanes normal_rate, tangential_rate, normal_gain, tangential_gain;
 };
 
-/// Position, velocity and speed of the rim of a body: as the loop over near pairs has them.
-struct SeenRows {
-  const PairBody* bodies;
-  EQUIDEM_ALWAYS_INLINE void read(std::int32_t body, Lanes& row) const { row = load(&bodies[body].position.x); }
-};
-/// Of motions, of which those of a Verlet scheme have had a kick since.
-struct MotionRows {
-  const GrainMotion* motions;
-  const GrainBody* bodies;
-  EQUIDEM_ALWAYS_INLINE void read(std::int32_t body, Lanes& row) const {
-    const GrainMotion& motion = motions[body];
-    Half place_and_velocity;
-    std::memcpy(&place_and_velocity, &motion, sizeof place_and_velocity);
-    const Half rim = {motion.spin * bodies[body].radius, 0, 0, 0};
-    row = __builtin_shufflevector(place_and_velocity, rim, 0, 1, 2, 3, 4, 5, 6, 7);
-  }
+/// What the pushes as they stand add to the rates of bond k: along x, along y, to the speed of the rims by torques and by pushes along them.
+EQUIDEM_ALWAYS_INLINE Half gain_by_pushes(const BondGroup& group, const Push* pushes, int k) {
+  Half push_i, push_j, gain_i, gain_j;
+  std::memcpy(&push_i, &pushes[group.i[k]], sizeof push_i);
+  std::memcpy(&push_j, &pushes[group.j[k]], sizeof push_j);
+  std::memcpy(&gain_i, group.gain_i[k], sizeof gain_i);
+  std::memcpy(&gain_j, group.gain_j[k], sizeof gain_j);
+  return push_i * gain_i + push_j * gain_j;
+}
+
+struct BondFrames {
+  Lanes nx, ny, share;
 };
 
-template <class Rows>
-EQUIDEM_ALWAYS_INLINE BondLanes look_at(const BondGroup& group, const Push* pushes, const Rows& rows) {
+EQUIDEM_ALWAYS_INLINE BondFrames frames_of(const BondGroup& group, const Lanes& bx, const Lanes& by) {
+  const Lanes square = bx * bx + by * by;
+  const Lanes distance = square_root(square), inverse = distance * (1 / square);
+  return {bx * inverse, by * inverse, distance * load(group.per_reach)};
+}
+
+EQUIDEM_ALWAYS_INLINE BondLanes look_at(const BondGroup& group, const Push* pushes, const PairBody* bodies) {
   // differences j - i, sums of the speeds of the rims
   constexpr long long minus = std::numeric_limits<long long>::min();
   const Choice difference = {minus, minus, minus, minus, 0, 0, 0, 0};
   Lanes m[8];
   Half row[8];
   for (int k = 0; k < 8; ++k) {
-    Lanes of_i;
-    rows.read(group.i[k], of_i);
-    rows.read(group.j[k], m[k]);
-    m[k] += reinterpret_cast<Lanes>(reinterpret_cast<Choice>(of_i) ^ difference);
-    Half push_i, push_j, gain_i, gain_j;
-    std::memcpy(&push_i, &pushes[group.i[k]], sizeof push_i);
-    std::memcpy(&push_j, &pushes[group.j[k]], sizeof push_j);
-    std::memcpy(&gain_i, group.gain_i[k], sizeof gain_i);
-    std::memcpy(&gain_j, group.gain_j[k], sizeof gain_j);
-    row[k] = push_i * gain_i + push_j * gain_j;
+    const Lanes of_i = load(&bodies[group.i[k]].position.x), of_j = load(&bodies[group.j[k]].position.x);
+    m[k] = of_j + reinterpret_cast<Lanes>(reinterpret_cast<Choice>(of_i) ^ difference);
+    row[k] = gain_by_pushes(group, pushes, k);
   }
   transpose(m);
-  const Lanes &bx = m[0], &by = m[1], &u = m[2], &v = m[3], &rims = m[4];
+  const Lanes &u = m[2], &v = m[3], &rims = m[4];
   Lanes gx, gy, by_torque, by_rim;
   columns_of(row, gx, gy, by_torque, by_rim);
-  const Lanes square = bx * bx + by * by;
-  const Lanes distance = square_root(square), inverse = distance * (1 / square);
-  const Lanes nx = bx * inverse, ny = by * inverse, share = distance * load(group.per_reach);
+  const auto [nx, ny, share] = frames_of(group, m[0], m[1]);
   return {nx,
           ny,
           share,
@@ -119,46 +110,73 @@ EQUIDEM_ALWAYS_INLINE BondLanes look_at(const BondGroup& group, const Push* push
           gy * nx - gx * ny - share * (by_torque + by_rim)};
 }
 
-template <BondTask task>
-EQUIDEM_ALWAYS_INLINE void work_on_all(GrainSystem& system) {
-  const PairBody* seen = system.near.bodies.data();
+/// In the half kick that opens a step of a Verlet scheme, at the mean rates of which a quarter of all pushes has acted.
+EQUIDEM_ALWAYS_INLINE void count_all_opening_kicks(GrainSystem& system) {
   const GrainMotion* motions = system.motions.data();
   const GrainBody* bodies = system.bodies.data();
+  const Push* pushes = system.pushes.data();
+  Lanes lost{};
+  for (const BondGroup& group : system.packed_bonds.groups) {
+    Lanes m[8];
+    for (int k = 0; k < 8; ++k) {
+      const std::int32_t i = group.i[k], j = group.j[k];
+      Half of_i, of_j;  // position and velocity
+      std::memcpy(&of_i, &motions[i], sizeof of_i);
+      std::memcpy(&of_j, &motions[j], sizeof of_j);
+      const Half rims = {0, 0, motions[i].spin * bodies[i].radius + motions[j].spin * bodies[j].radius, 0};
+      m[k] =
+          __builtin_shufflevector(of_j - of_i, rims + 0.25 * gain_by_pushes(group, pushes, k), 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+    transpose(m);
+    const auto [nx, ny, share] = frames_of(group, m[0], m[1]);
+    const Lanes u = m[2] + m[4], v = m[3] + m[5];
+    lost -= load(group.normal_impulse) * (u * nx + v * ny) +
+            load(group.tangential_impulse) * (v * nx - u * ny - share * (m[6] + m[7]));
+  }
+  double sum = 0;
+  for (int k = 0; k < 8; ++k) sum += lost[k];
+  system.lost.lost_bond += 0.5 * sum;
+}
+
+template <BondTask task>
+EQUIDEM_ALWAYS_INLINE void resist(GrainSystem& system) {
+  const PairBody* seen = system.near.bodies.data();
   Push* pushes = system.pushes.data();
-  const Lanes half = all(system.options.verlet() ? 0.25 : 0.5);  // share of all pushes of a step that has acted
+  const bool verlet = system.options.verlet();
+  const Lanes half = all(verlet ? 0.25 : 0.5);  // share of all pushes of a step that has acted
   Lanes lost{}, nearest = all(1);
   for (BondGroup& group : system.packed_bonds.groups) {
-    if constexpr (task == BondTask::count_opening_kick) {
-      const BondLanes bond = look_at(group, pushes, MotionRows{motions, bodies});
-      lost -= load(group.normal_impulse) * (bond.normal_rate + half * bond.normal_gain) +
-              load(group.tangential_impulse) * (bond.tangential_rate + half * bond.tangential_gain);
+    const BondLanes bond = look_at(group, pushes, seen);
+    nearest = smaller(bond.share, nearest);
+    const Lanes mass = load(group.mass), tangential_dashpot = load(group.tangential);
+    const Lanes tangential_mass = mass + bond.share * bond.share * load(group.turning);
+    Lanes normal = -load(group.normal) * bond.normal_rate, tangential;
+    if constexpr (task == BondTask::resist_exactly) {
+      const Lanes mean = mean_of_decay(tangential_dashpot * tangential_mass);
+      normal -= load(group.normal_gain) * bond.normal_gain;
+      tangential =
+          -(tangential_dashpot * mean) * bond.tangential_rate - (1 - mean) / tangential_mass * bond.tangential_gain;
     } else {
-      const BondLanes bond = look_at(group, pushes, SeenRows{seen});
-      nearest = smaller(bond.share, nearest);
-      const Lanes mass = load(group.mass), tangential_dashpot = load(group.tangential);
-      const Lanes tangential_mass = mass + bond.share * bond.share * load(group.turning);
-      Lanes normal = -load(group.normal) * bond.normal_rate, tangential;
-      if constexpr (task == BondTask::resist_exactly) {
-        const Lanes mean = mean_of_decay(tangential_dashpot * tangential_mass);
-        normal -= load(group.normal_gain) * bond.normal_gain;
-        tangential =
-            -(tangential_dashpot * mean) * bond.tangential_rate - (1 - mean) / tangential_mass * bond.tangential_gain;
-      } else {
-        tangential = -tangential_dashpot * bond.tangential_rate;
-      }
-      store(normal, group.normal_impulse);
-      store(tangential, group.tangential_impulse);
-      lost -= normal * (bond.normal_rate + half * (bond.normal_gain + mass * normal)) +
-              tangential * (bond.tangential_rate + half * (bond.tangential_gain + tangential_mass * tangential));
-      Half row[8];
-      rows_of(normal * bond.nx - tangential * bond.ny, normal * bond.ny + tangential * bond.nx, Lanes{},
-              bond.share * tangential, row);
-      // of both bodies the rim is pushed the same way round, and its lever is the radius
-      const HalfChoice turned = {0, 0, 0, std::numeric_limits<long long>::min()};
-      for (int k = 0; k < 8; ++k) {
-        subtract(&pushes[group.i[k]], row[k]);
-        add(&pushes[group.j[k]], reinterpret_cast<Half>(reinterpret_cast<HalfChoice>(row[k]) ^ turned));
-      }
+      tangential = -tangential_dashpot * bond.tangential_rate;
+    }
+    store(normal, group.normal_impulse);
+    store(tangential, group.tangential_impulse);
+    lost -= normal * (bond.normal_rate + half * (bond.normal_gain + mass * normal)) +
+            tangential * (bond.tangential_rate + half * (bond.tangential_gain + tangential_mass * tangential));
+    // of both bodies the rim is pushed the same way round, and its lever is the radius
+    const Lanes x = normal * bond.nx - tangential * bond.ny, y = normal * bond.ny + tangential * bond.nx;
+    const Lanes rim = bond.share * tangential;
+    Half on_i[8], on_j[8];
+    if (verlet) {
+      rows_of(x, y, rim * load(group.radius_i), Lanes{}, on_i);
+      rows_of(x, y, rim * -load(group.radius_j), Lanes{}, on_j);
+    } else {  // the move of bodies turns rims
+      rows_of(x, y, Lanes{}, rim, on_i);
+      rows_of(x, y, Lanes{}, -rim, on_j);
+    }
+    for (int k = 0; k < 8; ++k) {
+      subtract(&pushes[group.i[k]], on_i[k]);
+      add(&pushes[group.j[k]], on_j[k]);
     }
   }
   double sum = 0, least = 1;
@@ -166,35 +184,45 @@ EQUIDEM_ALWAYS_INLINE void work_on_all(GrainSystem& system) {
     sum += lost[k];
     least = std::min(least, nearest[k]);
   }
-  system.lost.lost_bond += system.options.verlet() ? 0.5 * sum : sum;
+  system.lost.lost_bond += verlet ? 0.5 * sum : sum;
   if (least <= nearest_centres_of_bonds) refuse_crept_bonds(system);
 }
 
 template <BondTask task>
-void work_plain(GrainSystem& system) {
-  work_on_all<task>(system);
+void resist_plain(GrainSystem& system) {
+  resist<task>(system);
+}
+void count_plain(GrainSystem& system) {
+  count_all_opening_kicks(system);
 }
 
 #if defined(__x86_64__)
 /// No products and sums fused: the same bits on every machine.
+#define EQUIDEM_BY_FOURS __attribute__((target("avx2")))
+#define EQUIDEM_BY_EIGHTS __attribute__((target("avx2,avx512f,avx512vl,avx512dq,prefer-vector-width=512")))
 template <BondTask task>
-__attribute__((target("avx2"))) void work_by_fours(GrainSystem& system) {
-  work_on_all<task>(system);
+EQUIDEM_BY_FOURS void resist_by_fours(GrainSystem& system) {
+  resist<task>(system);
 }
 template <BondTask task>
-__attribute__((target("avx2,avx512f,avx512vl,avx512dq,prefer-vector-width=512"))) void work_by_eights(
-    GrainSystem& system) {
-  work_on_all<task>(system);
+EQUIDEM_BY_EIGHTS void resist_by_eights(GrainSystem& system) {
+  resist<task>(system);
+}
+EQUIDEM_BY_FOURS void count_by_fours(GrainSystem& system) {
+  count_all_opening_kicks(system);
+}
+EQUIDEM_BY_EIGHTS void count_by_eights(GrainSystem& system) {
+  count_all_opening_kicks(system);
 }
 #endif
 
 template <BondTask task>
-void work(GrainSystem& system) {
+void push_by(GrainSystem& system) {
 #if defined(__x86_64__)
-  if (has_512_bits()) return work_by_eights<task>(system);
-  if (__builtin_cpu_supports("avx2")) return work_by_fours<task>(system);
+  if (has_512_bits()) return resist_by_eights<task>(system);
+  if (__builtin_cpu_supports("avx2")) return resist_by_fours<task>(system);
 #endif
-  work_plain<task>(system);
+  resist_plain<task>(system);
 }
 
 void put_row(const GrainBody& body, double sign, BondGroup::Row& row) {
@@ -216,6 +244,8 @@ void put(const GrainSystem& system, const TiedPair& bond, BondGroup& group, std:
     group.j[k] = bond.j;
     put_row(i, -1, group.gain_i[k]);
     put_row(j, 1, group.gain_j[k]);
+    group.radius_i[k] = i.radius;
+    group.radius_j[k] = j.radius;
     group.per_reach[k] = 1 / (i.radius + j.radius);
     group.mass[k] = inverse_mass;
     group.turning[k] = i.radius * i.radius * i.inverse_moment + j.radius * j.radius * j.inverse_moment;
@@ -254,22 +284,19 @@ void pack_bonds(GrainSystem& system) {
 void push_packed_bonds(GrainSystem& system) {
   if (system.packed_bonds.groups.empty()) return;
   if (system.options.bond_step == GrainOptions::BondStep::exact) {
-    work<BondTask::resist_exactly>(system);
+    push_by<BondTask::resist_exactly>(system);
   } else {
-    work<BondTask::resist_explicitly>(system);
-  }
-  if (!system.options.verlet()) return;  // the move of bodies turns rims
-  for (const BondGroup& group : system.packed_bonds.groups) {
-    for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
-      for (const std::int32_t body : {group.i[k], group.j[k]}) {
-        turn_rims(system.pushes[static_cast<std::size_t>(body)], system.bodies[static_cast<std::size_t>(body)]);
-      }
-    }
+    push_by<BondTask::resist_explicitly>(system);
   }
 }
 
 void count_opening_kick_of_packed_bonds(GrainSystem& system) {
-  if (!system.packed_bonds.groups.empty()) work<BondTask::count_opening_kick>(system);
+  if (system.packed_bonds.groups.empty()) return;
+#if defined(__x86_64__)
+  if (has_512_bits()) return count_by_eights(system);
+  if (__builtin_cpu_supports("avx2")) return count_by_fours(system);
+#endif
+  count_plain(system);
 }
 
 BondModes last_impulse(const GrainSystem& system, const TiedPair& bond) {

@@ -25,12 +25,13 @@ struct alignas(64) BondGroup {
   alignas(
       32) Row gain_i[lanes_of_pairs];  ///< velocity: of the opposite sign, so that the sum is the gain of j against i
   Row gain_j[lanes_of_pairs];
-  PairLanes per_reach;    ///< 1/(r_i + r_j), 1/m
-  PairLanes mass;         ///< 1/m_n, 1/kg
-  PairLanes turning;      ///< r_i²/I_i + r_j²/I_j, 1/kg
-  PairLanes normal;       ///< impulse per rate: C_n dt times Decay::mean, or C_n dt by the explicit step, kg
-  PairLanes normal_gain;  ///< impulse per gain by steady forces: (1 - Decay::mean) m_n, kg
-  PairLanes tangential;   ///< C_s dt, kg
+  PairLanes radius_i, radius_j;  ///< m
+  PairLanes per_reach;           ///< 1/(r_i + r_j), 1/m
+  PairLanes mass;                ///< 1/m_n, 1/kg
+  PairLanes turning;             ///< r_i²/I_i + r_j²/I_j, 1/kg
+  PairLanes normal;              ///< impulse per rate: C_n dt times Decay::mean, or C_n dt by the explicit step, kg
+  PairLanes normal_gain;         ///< impulse per gain by steady forces: (1 - Decay::mean) m_n, kg
+  PairLanes tangential;          ///< C_s dt, kg
   // of the last step, N s
   PairLanes normal_impulse, tangential_impulse;
 };

@@ -3,7 +3,6 @@
 #include <tuple>
 
 #include "equidem/grains/grain_simulation_implementation.hpp"
-#include "equidem/grains/meeting.hpp"
 #include "equidem/grains/part_meeting.hpp"
 
 namespace equidem {
@@ -32,9 +31,8 @@ double GrainSimulation::Implementation::kinetic() const {
 std::pair<double, double> GrainSimulation::Implementation::elastic() const {
   // a map or exact_flow counts the spring from its first step on; a force is there wherever bodies overlap
   const bool holds_from_first_step = !collide || is_map(system.options.law);
-  double normal = 0;
-  double tangential = 0;
-  const auto add = [&](const Candidate& candidate, double overlap) {
+  auto [normal, tangential] = elastic_of_near_pairs(system);
+  const auto add = [&, &normal = normal, &tangential = tangential](const Candidate& candidate, double overlap) {
     tangential += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
     if (holds_from_first_step && (!candidate.touching || candidate.parted)) return;
     if (!(overlap > 0)) return;
@@ -44,10 +42,6 @@ std::pair<double, double> GrainSimulation::Implementation::elastic() const {
       normal += 0.5 * candidate.stiffness * overlap * overlap;
     }
   };
-  for (std::size_t p = 0; p < system.near.count; ++p) {
-    const Candidate candidate = candidate_of(system, p);
-    add(candidate, meeting_of(system, candidate).overlap);
-  }
   for (const NearParts::List& list : system.near_parts.lists) {
     for (std::size_t p = 0; p < list.count; ++p) {
       auto [candidate, pair] = candidate_of(system, list, p);

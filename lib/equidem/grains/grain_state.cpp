@@ -47,13 +47,11 @@ bool is_of(const double* numbers, const PartPair& pair) {
 }
 
 void append(std::vector<double>& numbers, const Candidate& candidate) {
-  for (const double number :
-       {static_cast<double>(candidate.i), static_cast<double>(candidate.j), static_cast<double>(candidate.steps),
-        static_cast<double>(candidate.mode), candidate.stretch, candidate.overlap, candidate.closing,
-        candidate.normal.x, candidate.normal.y, candidate.impulse, candidate.moment, candidate.tangential_impulse,
-        candidate.parted ? 1.0 : 0.0}) {
-    numbers.push_back(number);
-  }
+  numbers.insert(numbers.end(),
+                 {static_cast<double>(candidate.i), static_cast<double>(candidate.j),
+                  static_cast<double>(candidate.steps), static_cast<double>(candidate.mode), candidate.stretch,
+                  candidate.overlap, candidate.closing, candidate.normal.x, candidate.normal.y, candidate.impulse,
+                  candidate.moment, candidate.tangential_impulse, candidate.parted ? 1.0 : 0.0});
 }
 
 void take(const double* numbers, Candidate& candidate) {

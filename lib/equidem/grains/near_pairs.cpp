@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 #include <utility>
 
@@ -38,6 +37,23 @@ std::vector<const PairProperties*> pairs_of_grains(const GrainScene& scene) {
     }
   }
   return pairs;
+}
+
+bool gives_force(const GrainSystem& system) {
+  return system.options.law == NormalLaw::linear_dashpot || system.options.law == NormalLaw::hertz_dashpot;
+}
+
+/// Which pairs of grains with friction there are.
+struct Rubbing {
+  bool with_springs = false, without_springs = false;
+};
+
+Rubbing rubbing_of(const GrainScene& scene) {
+  Rubbing found;
+  for (const PairProperties* pair : pairs_of_grains(scene)) {
+    if (pair->friction > 0) (pair->tangential_ratio > 0 ? found.with_springs : found.without_springs) = true;
+  }
+  return found;
 }
 
 /// The lists as they come to be, from lanes of the lists before and from new pairs.
@@ -134,30 +150,29 @@ class PairLists {
   }
 
   void keep() {
-    const std::size_t from = lane(), to = make_room(old().i[from], old().j[from]);
-    near_.groups.back().since[to] = old().since[from];
-    copy(old(), from, near_.groups.back(), to,
-         {&PairGroup::reach, &PairGroup::dashpot, &PairGroup::mass, &PairGroup::impulse});
+    const PairGroup& before = old();
+    const std::size_t g = at_ / lanes_of_pairs, from = lane(), to = make_room(before.i[from], before.j[from]);
+    PairGroup& group = near_.groups.back();
+    group.since[to] = before.since[from];
+    copy(before, from, group, to, &PairGroup::reach, &PairGroup::dashpot, &PairGroup::mass, &PairGroup::impulse);
     if (system_.friction) {
-      copy(slips_[at_ / lanes_of_pairs], from, near_.slips.back(), to,
-           {&PairSlips::turning, &PairSlips::dashpot, &PairSlips::stretch, &PairSlips::impulse});
+      copy(slips_[g], from, near_.slips.back(), to, &PairSlips::turning, &PairSlips::dashpot, &PairSlips::stretch,
+           &PairSlips::impulse);
     }
     if (!near_.equal) {
-      copy(laws_[at_ / lanes_of_pairs], from, near_.laws.back(), to,
-           {&PairLaws::stiffness, &PairLaws::least, &PairLaws::friction, &PairLaws::tangential_stiffness,
-            &PairLaws::beyond_cap});
+      copy(laws_[g], from, near_.laws.back(), to, &PairLaws::stiffness, &PairLaws::least, &PairLaws::friction,
+           &PairLaws::tangential_stiffness, &PairLaws::beyond_cap);
     }
     if (!records_.empty()) {
-      copy(records_[at_ / lanes_of_pairs], from, near_.records.back(), to,
-           {&PairRecords::overlap, &PairRecords::closing, &PairRecords::normal_x, &PairRecords::normal_y});
+      copy(records_[g], from, near_.records.back(), to, &PairRecords::overlap, &PairRecords::closing,
+           &PairRecords::normal_x, &PairRecords::normal_y);
     }
   }
 
-  /// The lanes of a column that all of them have.
-  template <class Group>
-  static void copy(const Group& group, std::size_t from, Group& to_group, std::size_t to,
-                   std::initializer_list<PairLanes Group::*> columns) {
-    for (PairLanes Group::*column : columns) (to_group.*column)[to] = (group.*column)[from];
+  /// A lane of columns that both have.
+  template <class Group, class... Column>
+  static void copy(const Group& group, std::size_t from, Group& to_group, std::size_t to, Column... columns) {
+    (((to_group.*columns)[to] = (group.*columns)[from]), ...);
   }
 
   GrainSystem& system_;
@@ -178,11 +193,7 @@ std::size_t NearPairs::bytes() const {
 }
 
 bool go_by_eights(const GrainSystem& system) {
-  if (system.options.law != NormalLaw::linear_dashpot && system.options.law != NormalLaw::hertz_dashpot) return false;
-  const std::vector<const PairProperties*> pairs = pairs_of_grains(system.scene);
-  return std::none_of(pairs.begin(), pairs.end(), [](const PairProperties* pair) {
-    return pair->friction > 0 && !(pair->tangential_ratio > 0);  // slides always, by a law of its own
-  });
+  return gives_force(system) && !rubbing_of(system.scene).without_springs;
 }
 
 double margin_of_near_pairs(const GrainSystem& system, double size, double reach) {
@@ -195,7 +206,10 @@ void prepare_near_pairs(GrainSystem& system) {
   const std::vector<Grain>& grains = system.scene.grains;
   const auto discs =
       std::count_if(grains.begin(), grains.end(), [](const Grain& grain) { return grain.shape() == GrainShape::disc; });
-  if (discs < 2 || !go_by_eights(system)) return;
+  if (discs < 2 || !gives_force(system)) return;
+  const Rubbing rubbing = rubbing_of(system.scene);
+  if (rubbing.without_springs && (rubbing.with_springs || !system.parts.empty())) return;
+  near.rigid = rubbing.without_springs;
   const std::vector<const PairProperties*> pairs = pairs_of_grains(system.scene);
   near.active = true;
   near.equal = std::all_of(pairs.begin(), pairs.end(), [&](const PairProperties* pair) {
@@ -272,7 +286,6 @@ Candidate candidate_of(const GrainSystem& system, std::size_t p) {
   Candidate candidate;
   candidate.i = near.first(p);
   candidate.j = near.second(p);
-  set_constants(system, candidate);
   candidate.touching = near.touching(p);
   if (!candidate.touching) return candidate;
   candidate.steps = system.step - near.groups[g].since[k];
@@ -288,6 +301,26 @@ Candidate candidate_of(const GrainSystem& system, std::size_t p) {
     candidate.normal = {records.normal_x[k], records.normal_y[k]};
   }
   return candidate;
+}
+
+std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system) {
+  const NearPairs& near = system.near;
+  const bool hertz = system.options.law == NormalLaw::hertz_dashpot;
+  double normal = 0, tangential = 0;
+  for (std::size_t p = 0; p < near.count; ++p) {
+    const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
+    if (system.friction) {
+      const double spring = near.equal ? near.law.tangential_stiffness : near.laws[g].tangential_stiffness[k];
+      tangential += 0.5 * spring * near.slips[g].stretch[k] * near.slips[g].stretch[k];
+    }
+    const Vec2 branch = system.motions[static_cast<std::size_t>(near.second(p))].position -
+                        system.motions[static_cast<std::size_t>(near.first(p))].position;
+    const double overlap = near.groups[g].reach[k] - norm(branch);
+    if (!(overlap > 0)) continue;
+    const double stiffness = near.equal ? near.law.stiffness : near.laws[g].stiffness[k];
+    normal += (hertz ? 0.4 * std::sqrt(overlap) : 0.5) * stiffness * overlap * overlap;
+  }
+  return {normal, tangential};
 }
 
 void take_near_pairs(GrainSystem& system, const std::vector<Candidate>& contacts) {

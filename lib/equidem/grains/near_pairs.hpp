@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "equidem/core/vector.hpp"
@@ -75,6 +76,7 @@ struct NearPairs {
 
   bool active = false;  ///< the scene has such pairs
   bool equal = false;   ///< one law for all pairs
+  bool rigid = false;   ///< friction, none with a tangential spring
   bool record = false;  ///< the step being made is one that contacts() will be asked about
   PairLaw law;          ///< where equal
   Loop loop = nullptr;
@@ -95,7 +97,7 @@ struct NearPairs {
   }
 };
 
-/// Whether contacts of grains can be computed several at a time: a law that gives a force, no contact that slides always.
+/// Whether contacts of parts can be computed several at a time: a law that gives a force, no contact that slides always.
 bool go_by_eights(const GrainSystem& system);
 
 /// Margin of lists within that of the neighbour finder, for bodies of a size (of discs the radius) that move by about `reach` in a step.
@@ -119,8 +121,11 @@ void touch_near_pairs(GrainSystem& system);
 /// system.next as move_by_euler(), and what the loop reads of bodies for the next step.
 void move_pair_bodies(GrainSystem& system);
 
-/// A pair with all that its contact remembers.
+/// A pair with all that its contact remembers; without what does not change.
 Candidate candidate_of(const GrainSystem& system, std::size_t p);
+
+/// What normal and tangential springs of the pairs hold as the bodies stand, J.
+std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system);
 
 /// Take over contacts of a saved state, ordered by (i, j), in place of what pairs there are.
 void take_near_pairs(GrainSystem& system, const std::vector<Candidate>& contacts);

@@ -144,23 +144,29 @@ Apart apart_along_axes(const Ellipse& i, const Ellipse& j, Vec2 branch) {
   return best;
 }
 
-/// Whether two parts are nearer than the margin.
+/// How far two parts are apart, or a bound of it that is enough; below 0: the overlap.
 /// \param[in,out] apart a direction along which they were apart, or {}
-bool are_near(const GrainSystem& system, std::size_t i, const GrainPart& part_i, std::size_t j, const GrainPart& part_j,
-              Vec2& apart) {
-  const double margin = system.near_parts.margin;
+double gap_of(const GrainSystem& system, std::int32_t p, std::int32_t q, double enough, Vec2& apart) {
+  const GrainPart &part_i = system.parts[static_cast<std::size_t>(p)],
+                  &part_j = system.parts[static_cast<std::size_t>(q)];
+  const auto i = static_cast<std::size_t>(system.body_of_part[static_cast<std::size_t>(p)]);
+  const auto j = static_cast<std::size_t>(system.body_of_part[static_cast<std::size_t>(q)]);
   const Vec2 branch = system.motions[j].position - system.motions[i].position +
                       (offset_of(part_j, system.axes[j]) - offset_of(part_i, system.axes[i]));
-  const double reach = part_i.a + part_j.a + margin;
-  if (!(dot(branch, branch) <= reach * reach)) return false;
-  if (part_i.is_round() && part_j.is_round()) return true;
+  if (part_i.is_round() && part_j.is_round()) return norm(branch) - (part_i.a + part_j.a);
   const Ellipse of_i{part_i.a, part_i.b, system.axes[i]}, of_j{part_j.a, part_j.b, system.axes[j]};
-  if (apart != Vec2{} && separation_along(of_i, of_j, branch, apart) > margin) return false;
+  if (apart != Vec2{}) {
+    const double along = separation_along(of_i, of_j, branch, apart);
+    if (along > enough) return along;
+  }
   const Apart boxes = apart_along_axes(of_i, of_j, branch);
-  if (boxes.gap > margin) return false;
+  if (boxes.gap > enough) {
+    apart = boxes.normal;
+    return boxes.gap;
+  }
   const EllipseContact contact = contact_of_ellipses(of_i, of_j, branch, apart != Vec2{} ? apart : boxes.normal);
   apart = contact.normal;
-  return contact.gap <= margin;
+  return contact.gap;
 }
 
 void find_met_parts(GrainSystem& system) {
@@ -179,14 +185,62 @@ void find_met_parts(GrainSystem& system) {
   }
 }
 
-std::size_t list_of(const GrainPart& part_i, const GrainPart& part_j) {
-  return part_i.is_round() && part_j.is_round() ? 0 : 1;
+std::size_t list_of(const GrainSystem& system, std::int32_t p, std::int32_t q) {
+  const bool round =
+      system.parts[static_cast<std::size_t>(p)].is_round() && system.parts[static_cast<std::size_t>(q)].is_round();
+  return round ? 0 : 1;
+}
+
+/// All but pairs of whole discs.
+void find_close_parts(GrainSystem& system) {
+  const NeighbourList& neighbours = *system.near.outer;
+  NearParts& near = system.near_parts;
+  near.close.clear();
+  near.travelled = near.moved = 0;
+  for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+    const auto body = static_cast<std::int32_t>(i);
+    const bool disc = are_discs(system, body, body);
+    for (std::int32_t p = system.first_part[i]; p < system.first_part[i + 1]; ++p) {
+      for (std::int64_t n = neighbours.begin[i]; n < neighbours.begin[i + 1]; ++n) {
+        const std::int32_t partner = neighbours.partner[static_cast<std::size_t>(n)];
+        if (disc && are_discs(system, body, partner)) continue;
+        const auto j = static_cast<std::size_t>(partner);
+        for (std::int32_t q = system.first_part[j]; q < system.first_part[j + 1]; ++q) {
+          NearParts::Close pair{p, q, 0, {}};
+          pair.clear = gap_of(system, p, q, system.margin, pair.apart);
+          if (pair.clear <= system.margin) near.close.push_back(pair);
+        }
+      }
+    }
+  }
+}
+
+/// Those of the close parts that are nearer than the margin.
+void find_nearest_parts(GrainSystem& system, double reach) {
+  NearParts& near = system.near_parts;
+  near.margin = margin_of_near_pairs(system, near.size, reach);
+  near.travelled += near.moved;
+  near.moved = 0;
+  std::array<NewList, 2> lists{NewList(system, near.lists[0]), NewList(system, near.lists[1])};
+  for (NearParts::Close& pair : near.close) {
+    if (pair.clear - 2 * near.travelled > near.margin) continue;
+    NewList& list = lists[list_of(system, pair.i, pair.j)];
+    if (list.keep_contact(pair.i, pair.j)) continue;
+    if (list.apart() != Vec2{}) pair.apart = list.apart();
+    const double gap = gap_of(system, pair.i, pair.j, near.margin, pair.apart);
+    pair.clear = gap + 2 * near.travelled;
+    const bool is_near = gap <= near.margin;
+    if (!list.leave(is_near) && is_near) list.add(pair.i, pair.j, pair.apart);
+  }
+  for (NewList& list : lists) list.keep_contacts_before(std::numeric_limits<std::int32_t>::max(), 0);
+  find_met_parts(system);
 }
 
 }  // namespace
 
 std::size_t NearParts::bytes() const {
-  std::size_t sum = bodies.capacity() * sizeof(PartBody) + met.capacity() * sizeof(std::int32_t);
+  std::size_t sum =
+      bodies.capacity() * sizeof(PartBody) + met.capacity() * sizeof(std::int32_t) + close.capacity() * sizeof(Close);
   for (const List& list : lists) sum += list.groups.capacity() * sizeof(PartGroup);
   return sum;
 }
@@ -211,39 +265,13 @@ void prepare_near_parts(GrainSystem& system) {
 }
 
 void find_near_parts(GrainSystem& system, double reach) {
-  const NeighbourList& neighbours = *system.near.outer;
-  NearParts& near = system.near_parts;
-  near.margin = margin_of_near_pairs(system, near.size, reach);
-  near.moved = 0;
-  std::array<NewList, 2> lists{NewList(system, near.lists[0]), NewList(system, near.lists[1])};
-  for (std::size_t i = 0; i < system.bodies.size(); ++i) {
-    const auto body = static_cast<std::int32_t>(i);
-    const bool disc = are_discs(system, body, body);
-    for (std::int32_t p = system.first_part[i]; p < system.first_part[i + 1]; ++p) {
-      const GrainPart& part_i = system.parts[static_cast<std::size_t>(p)];
-      for (std::int64_t n = neighbours.begin[i]; n < neighbours.begin[i + 1]; ++n) {
-        const std::int32_t partner = neighbours.partner[static_cast<std::size_t>(n)];
-        if (disc && are_discs(system, body, partner)) continue;
-        const auto j = static_cast<std::size_t>(partner);
-        for (std::int32_t q = system.first_part[j]; q < system.first_part[j + 1]; ++q) {
-          const GrainPart& part_j = system.parts[static_cast<std::size_t>(q)];
-          NewList& list = lists[list_of(part_i, part_j)];
-          if (list.keep_contact(p, q)) continue;
-          Vec2 apart = list.apart();
-          const bool is_near = are_near(system, i, part_i, j, part_j, apart);
-          if (list.leave(is_near) || !is_near) continue;
-          list.add(p, q, apart);
-        }
-      }
-    }
-  }
-  for (NewList& list : lists) list.keep_contacts_before(std::numeric_limits<std::int32_t>::max(), 0);
-  find_met_parts(system);
+  find_close_parts(system);
+  find_nearest_parts(system, reach);
 }
 
 void refresh_near_parts(GrainSystem& system, double reach) {
   NearParts& near = system.near_parts;
-  if (2 * (near.moved + reach) > near.margin) find_near_parts(system, reach);
+  if (2 * (near.moved + reach) > near.margin) find_nearest_parts(system, reach);
   near.moved += reach;
 }
 
@@ -252,11 +280,11 @@ void load_part_bodies(GrainSystem& system) {
     const auto k = static_cast<std::size_t>(p), b = static_cast<std::size_t>(system.body_of_part[k]);
     const GrainMotion& motion = system.motions[b];
     const GrainBody& body = system.bodies[b];
+    const GrainPart& part = system.parts[k];
     const Push& push = system.pushes[b];
     PartBody& seen = system.near_parts.bodies[k];
-    seen.axis = system.axes[b];
-    seen.offset = offset_of(system.parts[k], seen.axis);
-    seen.centre = motion.position + seen.offset;
+    seen.turned = part.is_round() ? offset_of(part, system.axes[b]) : system.axes[b];
+    seen.centre = part.is_round() ? motion.position + seen.turned : motion.position;
     seen.velocity = motion.velocity;
     seen.middle_velocity = motion.velocity + (0.5 * body.inverse_mass) * push.impulse;
     seen.spin = motion.spin;
@@ -313,8 +341,7 @@ void take_near_parts(GrainSystem& system, std::span<const std::pair<Candidate, P
   for (NearParts::List& list : lists) list.count = 0;
   std::array<NewList, 2> taken{NewList(system, lists[0]), NewList(system, lists[1])};
   for (const auto& [contact, pair] : contacts) {
-    const std::size_t l =
-        list_of(system.parts[static_cast<std::size_t>(pair.i)], system.parts[static_cast<std::size_t>(pair.j)]);
+    const std::size_t l = list_of(system, pair.i, pair.j);
     taken[l].add(pair.i, pair.j, contact.normal);
     PartGroup& group = lists[l].groups.back();
     const std::size_t k = (lists[l].count - 1) % lanes_of_pairs;

@@ -3,7 +3,9 @@
 /// Pairs of parts of which not both are whole discs: those that touch or nearly touch, packed by eights for the loops over them.
 ///
 /// One list for each shape of pair: round parts (of clumps, and discs that meet them), and pairs with an ellipse; empty where the scene
-/// has none. As the near pairs of discs they are lists within that of the neighbour finder, found anew more often.
+/// has none. As the near pairs of discs they are lists within that of the neighbour finder, found anew more often. The circles round needles
+/// overlap those of many others: between the two stand the close parts, by boxes round both, each looked at again only when bodies have
+/// moved by what lay between them.
 #pragma once
 
 #include <array>
@@ -24,8 +26,8 @@ struct alignas(64) PartBody {
   /// Centre of the part, velocity of the body, and that with half of what its contacts did in the last step.
   Vec2 centre, velocity, middle_velocity, unused = {};
   double spin = 0, middle_spin = 0;
-  Vec2 axis, offset;  ///< of the body; from its centre of mass to the centre of the part, m
-  Vec2 unused_too = {};
+  Vec2
+      turned;  ///< of an ellipse the axis; of what is round, whose axis does not matter, the offset of the centre from that of the body, m
 };
 
 /// Eight pairs of parts, i < j.
@@ -81,12 +83,21 @@ struct NearParts {
     }
   };
 
+  /// Two parts that may come to touch while the list of the neighbour finder lasts.
+  struct Close {
+    std::int32_t i = 0, j = 0;
+    double clear = 0;  ///< they are apart by at least this less twice `travelled`, m
+    Vec2 apart;        ///< a direction along which they were apart, or {}
+  };
+
   bool active = false;            ///< the scene has such pairs
   std::array<List, 2> lists;      ///< round parts, ellipses
+  std::vector<Close> close;       ///< ordered by i, then j
   LaneVector<PartBody> bodies;    ///< one for each part
   std::vector<std::int32_t> met;  ///< parts that are in the lists
   double size = 0;                ///< smallest GrainPart::size, m
   double margin = 0, moved = 0;   ///< of the lists, m
+  double travelled = 0;  ///< way of any point since the close parts were found until the lists were, at most, m
 
   [[nodiscard]] std::size_t bytes() const;
 };
@@ -94,7 +105,7 @@ struct NearParts {
 /// Decide whether parts meet in the loops over near parts: a law that gives a force, the exact contact, no contact that slides always.
 void prepare_near_parts(GrainSystem& system);
 
-/// Find the pairs anew among those of the neighbour finder, for bodies that move by about `reach` in a step.
+/// Find the close parts and the pairs anew among those of the neighbour finder, for bodies that move by about `reach` in a step.
 void find_near_parts(GrainSystem& system, double reach);
 
 /// See to it that they hold all that may touch while no point of a body moves further than `reach` from where it is.

@@ -73,10 +73,14 @@ EQUIDEM_ALWAYS_INLINE Lanes choose(const Choice& bits, const Lanes& a, const Lan
 EQUIDEM_ALWAYS_INLINE Lanes only(const Choice& bits, const Lanes& a) {
   return reinterpret_cast<Lanes>(bits & reinterpret_cast<Choice>(a));
 }
-EQUIDEM_ALWAYS_INLINE bool any(const Choice& choice) {
+/// Those that any lane has.
+EQUIDEM_ALWAYS_INLINE long long bits_of_all(const Choice& choice) {
   const HalfChoice half =
       __builtin_shufflevector(choice, choice, 0, 1, 2, 3) | __builtin_shufflevector(choice, choice, 4, 5, 6, 7);
-  return ((half[0] | half[1]) | (half[2] | half[3])) != 0;
+  return (half[0] | half[1]) | (half[2] | half[3]);
+}
+EQUIDEM_ALWAYS_INLINE bool any(const Choice& choice) {
+  return bits_of_all(choice) != 0;
 }
 
 EQUIDEM_ALWAYS_INLINE Lanes even_of(const Lanes& a, const Lanes& b) {

@@ -15,17 +15,22 @@ namespace {
 
 using namespace eight;
 
+constexpr Lanes all_one = {1, 1, 1, 1, 1, 1, 1, 1};
+/// So many go through each part of the work before the next begins: a processor sees several of them at a time, and does not wait for the
+/// roots and quotients of one.
+constexpr std::size_t groups_at_once = 8;
+
 /// What a loop does, known where it is compiled.
 struct PairLoopKind {
   bool hertz = false;
   bool friction = false;
   bool equal = false;   ///< one law for all pairs, where the dashpot rests while contacts slide
   bool verlet = false;  ///< friction by the explicit step, else by the midpoint rule
+  bool rigid = false;   ///< friction without springs
 };
 
 struct LoopNumbers {
-  PairLaw law;
-  double tangential_compliance = 0;
+  LawLanes law;  ///< where equal; made once, as compilers make eight instructions of each
   double dt = 0;
   std::int64_t now = 0;  ///< step before the one being made
   bool corrected = false;
@@ -36,13 +41,7 @@ struct LoopNumbers {
 template <PairLoopKind kind>
 EQUIDEM_ALWAYS_INLINE LawLanes law_of(const LoopNumbers& numbers, const PairLaws* laws) {
   if constexpr (kind.equal) {
-    const PairLaw& law = numbers.law;
-    return {all(law.stiffness),
-            all(law.least),
-            all(law.friction),
-            all(law.tangential_stiffness),
-            Lanes{},
-            all(numbers.tangential_compliance)};
+    return numbers.law;
   } else {
     const Lanes spring = load(laws->tangential_stiffness);
     return {load(laws->stiffness),  load(laws->least),
@@ -51,11 +50,23 @@ EQUIDEM_ALWAYS_INLINE LawLanes law_of(const LoopNumbers& numbers, const PairLaws
   }
 }
 
+/// How eight pairs stand and move: from i to j, along the normal and across it.
+struct Geometry {
+  Lanes square, distance, share, overlap, nx, ny, closing;
+  Lanes inverse, along, rims;  ///< Verlet schemes; 1/distance
+  /// With half of what the last step did; of the slip all but the rims.
+  Lanes middle_closing, middle_slip, middle_rims;
+};
+
+/// What the contacts of a group give.
+struct Outcome {
+  Lanes px, py, rim;  ///< impulse on j
+  Lanes normal_loss, slip_loss, dashpot_loss, release;
+  bool any;
+};
+
 template <PairLoopKind kind>
-EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairBody* bodies, Push* pushes,
-                                         PairGroup& group, PairSlips* slips, const PairLaws* laws, PairRecords* records,
-                                         LaneSums& sums) {
-  const double dt = numbers.dt;
+EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const PairGroup& group, Geometry& found) {
   // differences j - i, sums of the speeds of the rims
   constexpr long long minus = std::numeric_limits<long long>::min();
   const Choice difference = {minus, minus, minus, minus, 0, minus, minus, 0};
@@ -67,31 +78,60 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairB
   }
   transpose(m);
   const Lanes &bx = m[0], &by = m[1], &u = m[2], &v = m[3];
-  const Lanes reach = load(group.reach);
   const Lanes square = bx * bx + by * by;
   const Lanes distance = square_root(square);
-  const Lanes overlap = reach - distance;
+  const Choice distinct = square > 0;
+  const Lanes reach = load(group.reach);
+  const Lanes quotient = 1 / (distinct ? distance * reach : all_one);
+  const Lanes inverse = reach * quotient;
+  const Lanes nx = distinct ? bx * inverse : all_one, ny = distinct ? by * inverse : Lanes{};
+  found.square = square;
+  found.distance = distance;
+  if constexpr (kind.verlet) found.inverse = inverse;
+  if constexpr (kind.friction) found.share = square * quotient;
+  found.overlap = reach - distance;
+  found.nx = nx;
+  found.ny = ny;
+  found.closing = -(u * nx + v * ny);
+  if constexpr (kind.verlet) {
+    found.along = v * nx - u * ny;
+    if constexpr (kind.friction) found.rims = m[4];
+  } else {
+    found.middle_closing = -(m[5] * nx + m[6] * ny);
+  }
+  if constexpr (kind.friction && (kind.rigid || !kind.verlet)) {
+    found.middle_slip = m[6] * nx - m[5] * ny;
+    found.middle_rims = m[7];
+  }
+}
+
+template <PairLoopKind kind>
+EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers& numbers, const Geometry& geometry, PairGroup& group,
+                                   PairSlips* slips, const PairLaws* laws, PairRecords* records, LaneSums& sums,
+                                   Outcome& outcome) {
+  const double dt = numbers.dt;
+  const Lanes &square = geometry.square, &inverse = geometry.inverse, &overlap = geometry.overlap, &nx = geometry.nx,
+              &ny = geometry.ny, &closing = geometry.closing;
   Choice since;
   std::memcpy(&since, group.since, sizeof since);
   const Lanes zero{};
   const Choice touch = negative(zero - overlap) & ~negative(since - PairGroup::apart);
   const Choice alive = ~negative(since - (PairGroup::apart + 1));
   const Choice begun = touch & ~alive, ended = alive & ~touch;
-  const bool changes = any(touch ^ alive);
+  const long long which = bits_of_all((touch & 1) | ((touch ^ alive) & 2));
+  const bool changes = (which & 2) != 0;
   if (changes) {
     since = choose(begun, Choice{} + numbers.now,
                    choose(ended, Choice{} + static_cast<long long>(PairGroup::apart), since));
     std::memcpy(group.since, &since, sizeof since);
     sums.begun -= begun;
-  } else if (!any(touch)) {
+  } else if (which == 0) {
+    outcome.any = false;
     return;
   }
+  outcome.any = true;
   sums.evaluations -= touch;
 
-  const Choice distinct = square > 0;
-  const Lanes inverse = distance * (1 / square);  // the division need not wait for the root
-  const Lanes nx = distinct ? bx * inverse : all(1), ny = distinct ? by * inverse : zero;
-  const Lanes closing = -(u * nx + v * ny);
   const LawLanes law = law_of<kind>(numbers, laws);
   const Lanes dashpot = load(group.dashpot);
   const Lanes deep = only(touch, overlap);
@@ -108,11 +148,10 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairB
   const Lanes impulse = force * dt;
   const Lanes mass = load(group.mass), impulse_before = load(group.impulse);
   store(impulse, group.impulse);
-  const Lanes along = v * nx - u * ny;
   Lanes mean_closing, deep_before, elastic_before, normal_loss;
   if constexpr (kind.verlet) {
     // over the drift, in which the normal turns; the dashpot gives half of the kicks before and after it each
-    mean_closing = closing + (0.5 * dt) * inverse * along * along;
+    mean_closing = closing + (0.5 * dt) * inverse * geometry.along * geometry.along;
     deep_before = larger(overlap - mean_closing * dt, zero);
     elastic_before = law.stiffness * deep_before;
     if constexpr (kind.hertz) elastic_before *= square_root(deep_before);
@@ -120,39 +159,48 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairB
         only(touch & alive, 0.5 * mean_closing * ((impulse_before - elastic_before * dt) + (force - elastic) * dt));
   } else {
     // of the mean over the step the part of this contact is known, not only that of the last step
-    mean_closing = 0.5 * mass * (impulse_before - impulse) - (m[5] * nx + m[6] * ny);
+    mean_closing = 0.5 * mass * (impulse_before - impulse) + geometry.middle_closing;
     normal_loss = only(touch, (force - elastic) * mean_closing * dt);
   }
   sums.deepest = larger(deep, sums.deepest);
   Lanes slip{}, tangential_kick{}, sticking_dashpot{}, kept{};
   Choice slides{};
   Lanes px = impulse * nx, py = impulse * ny;
-  Half row[8];
   if constexpr (kind.friction) {
-    Lanes stretch = load(slips->stretch);
+    Lanes stretch{}, slip_dashpot{};
+    if constexpr (!kind.rigid) {
+      stretch = load(slips->stretch);
+      slip_dashpot = load(slips->dashpot);
+    }
     const Lanes impulse_along_before = load(slips->impulse);
-    const Lanes share = distance / reach;
+    const Lanes& share = geometry.share;
     Lanes velocity, mean_slip{}, half{};
+    if constexpr (kind.rigid || !kind.verlet) {
+      half = 0.5 * (mass + load(slips->turning) * square);
+      // without this contact's own part in it
+      velocity = geometry.middle_slip - share * geometry.middle_rims - half * impulse_along_before;
+    }
     if constexpr (kind.verlet) {
-      const Lanes rims = share * m[4];
-      velocity = along - rims;
-      mean_slip = velocity - ((0.5 * dt) * closing * inverse) * (along + rims);
-      if (changes && numbers.corrected) [[unlikely]] {
+      const Lanes rims = share * geometry.rims;
+      const Lanes now = geometry.along - rims;
+      velocity = kind.rigid ? 2 * velocity - now : now;
+      mean_slip = now - ((0.5 * dt) * closing * inverse) * (geometry.along + rims);
+      if (!kind.rigid && changes && numbers.corrected) [[unlikely]] {
         const Lanes way = mean_closing * dt;
         const Lanes before_touch = only(begun & negative(overlap - way), 1 - overlap / way);
         stretch -= before_touch * velocity * dt;
       }
-    } else {
-      half = 0.5 * (mass + load(slips->turning) * square);
-      // without this contact's own part in it
-      velocity = (m[6] * nx - m[5] * ny) - share * m[7] - half * impulse_along_before;
     }
     const Lanes yield = law.friction * larger(force, zero);
-    const Lanes slip_dashpot = load(slips->dashpot);
-    const Tangent tangent = slide<kind.verlet, kind.equal>(law, slip_dashpot, stretch, velocity, mean_slip, dt * half,
-                                                           impulse_along_before, yield, dt);
+    Tangent tangent;
+    if constexpr (kind.rigid) {
+      tangent = slide_without_spring<kind.verlet>(law, velocity, mean_slip, dt * half, impulse_along_before, yield, dt);
+    } else {
+      tangent = slide<kind.verlet, kind.equal>(law, slip_dashpot, stretch, velocity, mean_slip, dt * half,
+                                               impulse_along_before, yield, dt);
+    }
     const Lanes tangential = only(touch, -dt * tangent.force);
-    store(only(touch, tangent.stretch), slips->stretch);
+    if constexpr (!kind.rigid) store(only(touch, tangent.stretch), slips->stretch);
     store(tangential, slips->impulse);
     Choice lasting = touch;
     Lanes release{};
@@ -166,21 +214,22 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairB
     } else {
       release = only(ended, 0.5 * law.tangential_stiffness * stretch * stretch);
     }
-    rows_of(normal_loss, only(lasting, tangent.slip_loss), only(lasting, tangent.dashpot_loss), release, row);
-    for (const Half& lost : row) sums.lost += lost;
+    outcome.slip_loss = only(lasting, tangent.slip_loss);
+    outcome.dashpot_loss = only(lasting, tangent.dashpot_loss);
+    outcome.release = release;
     px -= tangential * ny;
     py += tangential * nx;
-    rows_of(px, py, zero, share * tangential, row);
-  } else {
-    for (int k = 0; k < 8; ++k) sums.lost[0] += normal_loss[k];
-    rows_of(px, py, zero, zero, row);
+    outcome.rim = share * tangential;
   }
+  outcome.normal_loss = normal_loss;
+  outcome.px = px;
+  outcome.py = py;
   if constexpr (kind.verlet) {
     if (changes) [[unlikely]] {
       Lanes lever;
       for (int k = 0; k < 8; ++k) lever[k] = numbers.system->bodies[static_cast<std::size_t>(group.i[k])].radius;
-      lever = lever / reach * distance;
-      const Lanes other = lever - distance;
+      lever = lever / load(group.reach) * geometry.distance;
+      const Lanes other = lever - geometry.distance;
       count_instants(*numbers.system, {begun,
                                        ended,
                                        slides,
@@ -211,6 +260,21 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PairB
     store(nx, records->normal_x);
     store(ny, records->normal_y);
   }
+}
+
+template <PairLoopKind kind>
+EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome& outcome, Push* pushes, LaneSums& sums) {
+  constexpr long long minus = std::numeric_limits<long long>::min();
+  if (!outcome.any) return;
+  Half row[8];
+  if constexpr (kind.friction) {
+    rows_of(outcome.normal_loss, outcome.slip_loss, outcome.dashpot_loss, outcome.release, row);
+    for (const Half& lost : row) sums.lost += lost;
+    rows_of(outcome.px, outcome.py, Lanes{}, outcome.rim, row);
+  } else {
+    for (int k = 0; k < 8; ++k) sums.lost[0] += outcome.normal_loss[k];
+    rows_of(outcome.px, outcome.py, Lanes{}, Lanes{}, row);
+  }
   // of both bodies the rim is pushed the same way round, and its lever is the radius
   const HalfChoice turned = {0, 0, 0, minus};
   for (int k = 0; k < 8; ++k) {
@@ -224,8 +288,9 @@ template <PairLoopKind kind>
 EQUIDEM_ALWAYS_INLINE void collide_all(GrainSystem& system) {
   NearPairs& near = system.near;
   const bool verlet = system.options.verlet();
-  const LoopNumbers numbers{near.law,
-                            1 / near.law.tangential_stiffness,
+  const PairLaw& law = near.law;
+  const LoopNumbers numbers{{all(law.stiffness), all(law.least), all(law.friction), all(law.tangential_stiffness),
+                             Lanes{}, all(1 / law.tangential_stiffness)},
                             system.dt(),
                             system.step - (verlet ? 1 : 0),
                             system.options.scheme == GrainOptions::Scheme::corrected_verlet,
@@ -235,10 +300,22 @@ EQUIDEM_ALWAYS_INLINE void collide_all(GrainSystem& system) {
   LaneSums sums;
   const PairBody* bodies = near.bodies.data();
   Push* pushes = system.pushes.data();
-  for (std::size_t g = 0; g < near.groups.size(); ++g) {
-    collide_group<kind>(numbers, bodies, pushes, near.groups[g], kind.friction ? near.slips.data() + g : nullptr,
-                        kind.equal ? nullptr : near.laws.data() + g, near.record ? near.records.data() + g : nullptr,
-                        sums);
+  Geometry geometry[groups_at_once];
+  Outcome outcome[groups_at_once];
+  const std::size_t count = near.groups.size();
+  PairGroup* groups = near.groups.data();
+  PairSlips* slips = near.slips.data();
+  const PairLaws* laws = near.laws.data();
+  PairRecords* records = near.records.data();
+  for (std::size_t first = 0; first < count; first += groups_at_once) {
+    const std::size_t here = std::min(groups_at_once, count - first);
+    for (std::size_t g = 0; g < here; ++g) measure<kind>(bodies, groups[first + g], geometry[g]);
+    for (std::size_t g = 0; g < here; ++g) {
+      respond<kind>(numbers, geometry[g], groups[first + g], kind.friction ? slips + (first + g) : nullptr,
+                    kind.equal ? nullptr : laws + (first + g), near.record ? records + (first + g) : nullptr, sums,
+                    outcome[g]);
+    }
+    for (std::size_t g = 0; g < here; ++g) give<kind>(groups[first + g], outcome[g], pushes, sums);
   }
   add(sums, system);
 }
@@ -272,6 +349,10 @@ NearPairs::Loop choose() {
 
 template <bool hertz, bool equal>
 NearPairs::Loop choose(const GrainSystem& system) {
+  if (system.near.rigid) {
+    return system.options.verlet() ? choose<PairLoopKind{hertz, true, equal, true, true}>()
+                                   : choose<PairLoopKind{hertz, true, equal, false, true}>();
+  }
   if (system.options.verlet()) {
     return system.friction ? choose<PairLoopKind{hertz, true, equal, true}>()
                            : choose<PairLoopKind{hertz, false, equal, true}>();

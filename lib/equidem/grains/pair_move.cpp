@@ -13,10 +13,13 @@ using eight::Pair;
 /// Two numbers anywhere: copied byte by byte they would go through general registers.
 using PairAnywhere = double __attribute__((vector_size(16), aligned(8), may_alias));
 
-EQUIDEM_ALWAYS_INLINE Pair load_pair(const Vec2& from) {
+template <class Number>
+EQUIDEM_ALWAYS_INLINE Pair load_pair(const Number& from) {
   return *reinterpret_cast<const PairAnywhere*>(&from);
 }
-EQUIDEM_ALWAYS_INLINE void store_pair(const Pair& pair, Vec2& to) {
+/// The number at `to` and the one behind it.
+template <class Number>
+EQUIDEM_ALWAYS_INLINE void store_pair(const Pair& pair, Number& to) {
   *reinterpret_cast<PairAnywhere*>(&to) = pair;
 }
 
@@ -49,15 +52,13 @@ double move(GrainSystem& system) {
     if constexpr (turning) {
       // near pairs gave forces along the rim
       const double torque = pushes[i].torque + body.radius * pushes[i].rim;
-      pushes[i].torque = torque;
-      pushes[i].rim = 0;
+      store_pair(Pair{torque, 0}, pushes[i].torque);
       const double turn = body.inverse_moment * torque;
       spin += turn;
       seen.rim_speed = spin * body.radius;
       seen.middle_rim_speed = (spin + 0.5 * turn) * body.radius;
     }
-    after.spin = spin;
-    after.angle = before.angle + dt * spin;
+    store_pair(Pair{spin, before.angle + dt * spin}, after.spin);
     const Pair way = moved - position, square = way * way;
     const double length = square[0] + square[1];
     longest = longest > length ? longest : length;

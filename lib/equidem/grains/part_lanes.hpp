@@ -43,19 +43,35 @@ struct Standing {
   Vectors axis_i, axis_j, offset_i, offset_j;
 };
 
+/// \tparam round no ellipse is among them
+template <bool round>
 EQUIDEM_ALWAYS_INLINE Standing standing_of(const PartBody* bodies, const PartGroup& group) {
-  Lanes way[8], of_i[8], of_j[8];
+  Lanes way[8], own[8];
   for (int k = 0; k < 8; ++k) {
     const PartBody &i = bodies[group.i[k]], &j = bodies[group.j[k]];
     way[k] = load(&j.centre.x) - load(&i.centre.x);
-    of_i[k] = load(&i.spin);
-    of_j[k] = load(&j.spin);
+    Half of_i, of_j;
+    std::memcpy(&of_i, &i.spin, sizeof of_i);
+    std::memcpy(&of_j, &j.spin, sizeof of_j);
+    own[k] = __builtin_shufflevector(of_i, of_j, 0, 1, 2, 3, 4, 5, 6, 7);
   }
   transpose(way);
-  transpose(of_i);
-  transpose(of_j);
-  return {{way[0], way[1]},   {way[2], way[3]},   {way[4], way[5]},   of_i[0],           of_j[0], of_i[1], of_j[1],
-          {of_i[2], of_i[3]}, {of_j[2], of_j[3]}, {of_i[4], of_i[5]}, {of_j[4], of_j[5]}};
+  transpose(own);
+  Standing s{{way[0], way[1]}, {way[2], way[3]}, {way[4], way[5]}, own[0], own[4], own[1], own[5], {}, {},
+             {own[2], own[3]}, {own[6], own[7]}};
+  if constexpr (!round) {
+    const auto is_ellipse = [&](PartGroup::Column a, PartGroup::Column b) {
+      return negative(load(group.numbers[b]) - load(group.numbers[a]));
+    };
+    const Choice ellipse_i = is_ellipse(PartGroup::a_i, PartGroup::b_i);
+    const Choice ellipse_j = is_ellipse(PartGroup::a_j, PartGroup::b_j);
+    const Vectors any_axis{all(1), Lanes{}}, none{Lanes{}, Lanes{}};
+    s.axis_i = choose(ellipse_i, s.offset_i, any_axis);
+    s.axis_j = choose(ellipse_j, s.offset_j, any_axis);
+    s.offset_i = choose(ellipse_i, none, s.offset_i);
+    s.offset_j = choose(ellipse_j, none, s.offset_j);
+  }
+  return s;
 }
 
 /// PartMeeting, and which lanes touch.
@@ -121,17 +137,15 @@ struct HardLanes {
   PairLanes gap, normal_x, normal_y, arm_i_x, arm_i_y, arm_j_x, arm_j_y;
 };
 
-[[gnu::noinline, gnu::cold]] inline void meet_one_by_one(const PartGroup& group, const PartBody* bodies,
-                                                         const Choice& hard, HardLanes& lanes) {
+[[gnu::noinline, gnu::cold]] inline void meet_one_by_one(const PartGroup& group, const Choice& hard, HardLanes& lanes) {
   for (int k = 0; k < 8; ++k) {
     if (hard[k] == 0) continue;
     const auto number = [&](PartGroup::Column column) { return group.numbers[column][k]; };
-    const PartBody &i = bodies[group.i[k]], &j = bodies[group.j[k]];
-    const EllipseContact contact =
-        contact_of_parts({number(PartGroup::a_i), number(PartGroup::b_i), i.axis},
-                         {number(PartGroup::a_j), number(PartGroup::b_j), j.axis},
-                         {lanes.standing.branch.x[k], lanes.standing.branch.y[k]}, group.since[k] > PairGroup::apart,
-                         {number(PartGroup::normal_x), number(PartGroup::normal_y)});
+    const auto vector = [&](const Vectors& vectors) { return Vec2{vectors.x[k], vectors.y[k]}; };
+    const EllipseContact contact = contact_of_parts(
+        {number(PartGroup::a_i), number(PartGroup::b_i), vector(lanes.standing.axis_i)},
+        {number(PartGroup::a_j), number(PartGroup::b_j), vector(lanes.standing.axis_j)}, vector(lanes.standing.branch),
+        group.since[k] > PairGroup::apart, {number(PartGroup::normal_x), number(PartGroup::normal_y)});
     lanes.gap[k] = contact.gap;
     lanes.normal_x[k] = contact.normal.x;
     lanes.normal_y[k] = contact.normal.y;
@@ -144,8 +158,8 @@ struct HardLanes {
 
 /// contact_of_parts(): from the last normal, by Newton's way where it is short and certain to lead to the highest maximum. What comes out in
 /// a lane depends on that lane alone.
-EQUIDEM_ALWAYS_INLINE Meetings meetings_of_ellipses(PartGroup& group, const PartBody* bodies, const Standing& s,
-                                                    const Choice& used, const Choice& alive) {
+EQUIDEM_ALWAYS_INLINE Meetings meetings_of_ellipses(PartGroup& group, const Standing& s, const Choice& used,
+                                                    const Choice& alive) {
   constexpr int most_steps = 3;
   const Lanes a_i = load(group.numbers[PartGroup::a_i]), b_i = load(group.numbers[PartGroup::b_i]);
   const Lanes a_j = load(group.numbers[PartGroup::a_j]), b_j = load(group.numbers[PartGroup::b_j]);
@@ -201,7 +215,7 @@ EQUIDEM_ALWAYS_INLINE Meetings meetings_of_ellipses(PartGroup& group, const Part
     store(to_i.y, lanes.arm_i_y);
     store(to_j.x, lanes.arm_j_x);
     store(to_j.y, lanes.arm_j_y);
-    meet_one_by_one(group, bodies, hard, lanes);
+    meet_one_by_one(group, hard, lanes);
     gap = load(lanes.gap);
     normal = {load(lanes.normal_x), load(lanes.normal_y)};
     to_i = {load(lanes.arm_i_x), load(lanes.arm_i_y)};

@@ -49,13 +49,13 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PartB
   Choice since;
   std::memcpy(&since, group.since, sizeof since);
   const Choice used = ~negative(since - PairGroup::apart), alive = ~negative(since - (PairGroup::apart + 1));
-  const Standing s = standing_of(bodies, group);
+  const Standing s = standing_of<kind.round>(bodies, group);
   const Vectors normal_before{load(group.numbers[PartGroup::normal_x]), load(group.numbers[PartGroup::normal_y])};
   Meetings at;
   if constexpr (kind.round) {
     at = meetings_of_round_parts(group, s, used);
   } else {
-    at = meetings_of_ellipses(group, bodies, s, used, alive);
+    at = meetings_of_ellipses(group, s, used, alive);
   }
   const Choice touch = at.touch, begun = touch & ~alive, ended = alive & ~touch;
   const bool changes = any(touch ^ alive);

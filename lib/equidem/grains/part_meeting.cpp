@@ -86,11 +86,21 @@ EllipseContact contact_with_wall(const GrainSystem& system, std::int32_t grain, 
   return contact_with_arc(system, grain, ellipse, wall, displacement);
 }
 
+/// Surely, without a root.
+bool is_clear_of_line(const GrainSystem& system, std::size_t i, const GrainPart& part, std::size_t w) {
+  const GrainWall& wall = system.scene.walls[w];
+  if (wall.shape != GrainWall::Shape::line) return false;
+  const double height = dot(system.motions[i].position - (wall.point + system.walls[w].displacement), wall.normal);
+  const double x = part.a * dot(system.axes[i], wall.normal), y = part.b * cross(system.axes[i], wall.normal);
+  return height > 0 && height * height * (1 - 1e-9) > x * x + y * y;
+}
+
 PartMeeting meeting_of_part_with_wall(const GrainSystem& system, const Candidate& candidate, const PartPair& pair) {
   if (candidate.covered) return {};
   const auto i = static_cast<std::size_t>(candidate.i), w = static_cast<std::size_t>(~candidate.j);
   const GrainPart& part = system.parts[static_cast<std::size_t>(pair.i)];
   if (!part.is_round()) {
+    if (is_clear_of_line(system, i, part, w)) return {};
     const EllipseContact contact =
         contact_with_wall(system, candidate.i, part, ~candidate.j, candidate.touching ? candidate.normal : Vec2{});
     if (contact.gap >= 0) return {};

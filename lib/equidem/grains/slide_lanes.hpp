@@ -30,7 +30,7 @@ EQUIDEM_ALWAYS_INLINE Tangent slide(const LawLanes& law, const Lanes& dashpot, c
   Lanes resistance, mean = velocity;
   if constexpr (!verlet) {
     const Lanes rate = spring * (dt / 2) + dashpot;
-    resistance = (spring * stretch + rate * velocity) / (1 + mobility * rate);
+    resistance = (spring * stretch + rate * velocity) * (1 / (1 + mobility * rate));
   } else {
     resistance = spring * (stretch + velocity * dt) + dashpot * velocity;
   }
@@ -63,6 +63,17 @@ EQUIDEM_ALWAYS_INLINE Tangent slide(const LawLanes& law, const Lanes& dashpot, c
   const Lanes loss = 0.5 * mean_slip * (force * dt - before) + released;
   const Lanes dragged = drag * mean_slip * dt;
   return {force, end, only(slides, loss - dragged), choose(slides, dragged, only(negative(-dashpot), loss)), slides};
+}
+
+/// The same for contacts that have no spring: what halts the slip within the step, at most what friction carries.
+/// \param velocity,mobility as by the midpoint rule, in every scheme
+template <bool verlet>
+EQUIDEM_ALWAYS_INLINE Tangent slide_without_spring(const LawLanes& law, const Lanes& velocity, const Lanes& mean_slip,
+                                                   const Lanes& mobility, const Lanes& before, const Lanes& yield,
+                                                   double dt) {
+  const Lanes force = smaller(larger(velocity / (2 * mobility), -yield), yield);
+  const Lanes loss = verlet ? 0.5 * mean_slip * (force * dt - before) : force * (velocity - mobility * force) * dt;
+  return {force, Lanes{}, loss, Lanes{}, negative(-law.friction)};
 }
 
 }  // namespace equidem::eight
