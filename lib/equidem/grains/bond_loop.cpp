@@ -8,6 +8,7 @@
 
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/pair_lanes.hpp"
+#include "equidem/grains/vector_width.hpp"
 
 namespace equidem {
 namespace {
@@ -219,8 +220,8 @@ EQUIDEM_BY_EIGHTS void count_by_eights(GrainSystem& system) {
 template <BondTask task>
 void push_by(GrainSystem& system) {
 #if defined(__x86_64__)
-  if (has_512_bits()) return resist_by_eights<task>(system);
-  if (__builtin_cpu_supports("avx2")) return resist_by_fours<task>(system);
+  if (vector_width() == VectorWidth::bits_512) return resist_by_eights<task>(system);
+  if (vector_width() == VectorWidth::bits_256) return resist_by_fours<task>(system);
 #endif
   resist_plain<task>(system);
 }
@@ -293,8 +294,8 @@ void push_packed_bonds(GrainSystem& system) {
 void count_opening_kick_of_packed_bonds(GrainSystem& system) {
   if (system.packed_bonds.groups.empty()) return;
 #if defined(__x86_64__)
-  if (has_512_bits()) return count_by_eights(system);
-  if (__builtin_cpu_supports("avx2")) return count_by_fours(system);
+  if (vector_width() == VectorWidth::bits_512) return count_by_eights(system);
+  if (vector_width() == VectorWidth::bits_256) return count_by_fours(system);
 #endif
   count_plain(system);
 }

@@ -18,13 +18,6 @@ using Pair = double __attribute__((vector_size(16)));
 
 #define EQUIDEM_ALWAYS_INLINE inline __attribute__((always_inline))
 
-#if defined(__x86_64__)
-/// Whether the processor has what the loops on 512 bits are compiled for.
-inline bool has_512_bits() {
-  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq");
-}
-#endif
-
 EQUIDEM_ALWAYS_INLINE Lanes load(const double* from) {
   Lanes lanes;
   std::memcpy(&lanes, from, sizeof lanes);

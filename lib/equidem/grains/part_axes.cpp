@@ -7,6 +7,7 @@
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/pair_lanes.hpp"
 #include "equidem/grains/part_pairs.hpp"
+#include "equidem/grains/vector_width.hpp"
 
 namespace equidem {
 namespace {
@@ -72,10 +73,8 @@ __attribute__((target("avx2,avx512f,avx512vl,avx512dq,prefer-vector-width=512"))
 
 void turn_axes(GrainSystem& system) {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq")) {
-    return turn_by_eights(system);
-  }
-  if (__builtin_cpu_supports("avx2")) return turn_by_fours(system);
+  if (vector_width() == VectorWidth::bits_512) return turn_by_eights(system);
+  if (vector_width() == VectorWidth::bits_256) return turn_by_fours(system);
 #endif
   turn_plain(system);
 }

@@ -9,6 +9,7 @@
 #include "equidem/grains/part_lanes.hpp"
 #include "equidem/grains/slide_lanes.hpp"
 #include "equidem/grains/touch_lanes.hpp"
+#include "equidem/grains/vector_width.hpp"
 
 namespace equidem {
 namespace {
@@ -253,8 +254,8 @@ __attribute__((target("avx2,avx512f,avx512vl,avx512dq,prefer-vector-width=512"))
 template <PartLoopKind kind>
 NearParts::List::Loop choose_loop() {
 #if defined(__x86_64__)
-  if (has_512_bits()) return collide_by_eights<kind>;
-  if (__builtin_cpu_supports("avx2")) return collide_by_fours<kind>;
+  if (vector_width() == VectorWidth::bits_512) return collide_by_eights<kind>;
+  if (vector_width() == VectorWidth::bits_256) return collide_by_fours<kind>;
 #endif
   return collide_plain<kind>;
 }

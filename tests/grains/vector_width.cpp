@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Processors with wide vectors and without give the same bits.
+#include "equidem/grains/vector_width.hpp"
+
+#include "grains/bonded_scenes.hpp"
+#include "grains/shapes.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+/// Neighbours of a busy box tied two by two.
+GrainScene busy_pairs(NormalLaw law) {
+  GrainScene scene = busy_box(law, 8, 6, 31);
+  for (std::size_t k = 0; k + 1 < scene.grains.size(); k += 2) {
+    GrainBond bond{.normal_dashpot = 300, .tangential_dashpot = 200};
+    bond.i = k, bond.j = k + 1;
+    scene.bonds.push_back(bond);
+  }
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("every_width_of_vectors_gives_the_same_bits") {
+  const Stepping stepping = GENERATE(from_range(force_steppings));
+  struct Case {
+    const char* name;
+    GrainScene scene;
+    double step;
+  };
+  std::vector<Case> cases{{"discs", busy_box(stepping.law, 8, 6, 31), 0.004},
+                          {"ellipses, clumps and discs", mixed_box(stepping.law, 4, 4, 72), 0.004},
+                          {"needles", flying_needles(24, 33), 1e-3}};
+  cases.push_back(cases.front());
+  cases.back().name = "discs that slide";
+  for (PairProperties& pair : cases.back().scene.pairs) pair.tangential_ratio = pair.tangential_damping = 0;
+  if (stepping.law == NormalLaw::linear_dashpot) cases.push_back({"bonded pairs", busy_pairs(stepping.law), 0.004});
+  for (const Case& each : cases) {
+    const auto run = [&](VectorWidth widest) {
+      allow_vectors_up_to(widest);
+      GrainSimulation simulation(each.scene, options_of(stepping, each.step));
+      simulation.advance(600);
+      CAPTURE(each.name, stepping.name());
+      CHECK(simulation.counters().contacts > 10);
+      allow_vectors_up_to(VectorWidth::bits_512);
+      return bits_of(simulation);
+    };
+    const Bits narrow = run(VectorWidth::bits_128);
+    CAPTURE(each.name, stepping.name(), static_cast<int>(vector_width()));
+    CHECK(run(VectorWidth::bits_256) == narrow);
+    CHECK(run(VectorWidth::bits_512) == narrow);
+  }
+}
