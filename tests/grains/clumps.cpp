@@ -17,7 +17,7 @@ TEST_CASE("the_inertia_of_a_clump_is_that_of_the_area_it_covers") {
   CHECK(of_pair.moment == Approx(2 * 1.5 * mass).epsilon(1e-14));
   CHECK(radius_of(pair) == Approx(2).epsilon(1e-14));
   // Overlapping ones: counting points of a fine grid.
-  const Clump clump = centred_clump({{{0, 0}, 1}, {{0.9, 0.2}, 0.7}, {{0.1, 1.1}, 0.5}, {{0.1, 0.1}, 0.2}});
+  const Clump clump = centred_clump({{{0, 0}, 1}, {{0.9, 0.2}, 0.7}, {{0.1, 1.1}, 0.5}, {{0.75, -0.3}, 0.35}});
   const Inertia found = inertia_of_clump(clump, 3);
   const double h = 0.002;
   double area = 0, polar = 0;
@@ -38,6 +38,11 @@ TEST_CASE("the_inertia_of_a_clump_is_that_of_the_area_it_covers") {
   CHECK(found.mass == Approx(3 * area).epsilon(1e-4));
   CHECK(found.moment == Approx(3 * polar).epsilon(1e-4));
   CHECK(norm(first) < 1e-3);
+}
+
+TEST_CASE("a_disc_of_a_clump_within_another_is_refused") {
+  const Clump::Disc inner = GENERATE(Clump::Disc{{0.1, 0.1}, 0.2}, Clump::Disc{{0, 0}, 1});
+  CHECK_THROWS_WITH(centred_clump({{{0, 0}, 1}, {{1.5, 0}, 1}, inner}), Catch::Contains("lies within disc"));
 }
 
 TEST_CASE("a_clump_of_one_disc_moves_as_the_disc") {

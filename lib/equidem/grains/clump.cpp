@@ -19,6 +19,14 @@ Clump centred_clump(std::vector<Clump::Disc> discs) {
         format("a disc of a clump has the radius {} m and is at ({}, {}) m", disc.radius, disc.offset.x, disc.offset.y),
         "it would touch nothing", "Give a radius > 0 and finite numbers");
   }
+  for (std::size_t p = 0; p < discs.size(); ++p) {
+    for (std::size_t q = 0; q < discs.size(); ++q) {
+      if (p == q || norm(discs[p].offset - discs[q].offset) + discs[p].radius > discs[q].radius) continue;
+      bad_input(format("disc {} of a clump lies within disc {}", p, q),
+                "it adds nothing to the body, and where the two meet others contacts would count twice",
+                "Leave it out");
+    }
+  }
   const Vec2 centre = union_of(discs).centre;
   for (Clump::Disc& disc : discs) disc.offset -= centre;
   return {std::move(discs)};
