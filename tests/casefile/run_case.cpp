@@ -154,7 +154,7 @@ TEST_CASE("a_table_may_lie_in_a_file_beside_the_case") {
   for (const Bad& bad : {
            Bad{"", "a.toml:", "has no points"},
            Bad{"time,value\n", "a.toml:", "has no points"},
-           Bad{"t,v\n0,0\n", "shaking.csv:1: ", "not a time and a value"},
+           Bad{"t,v\n0,0\n", "shaking.csv:1: ", "the first row may be time,value"},
            Bad{"0,0\ntime,value\n", "shaking.csv:2: ", "not a time and a value"},
            Bad{"0,0\n0.2\n", "shaking.csv:2: ", "not a time and a value"},
            Bad{"0,0\n0.2,1,2\n", "shaking.csv:2: ", "not a time and a value"},

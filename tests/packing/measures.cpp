@@ -48,7 +48,8 @@ TEST_CASE("clipped_areas_of_special_places_are_exact") {
 }
 
 TEST_CASE("regions_that_tile_the_box_hold_all_discs_between_them") {
-  const GrainPacking packing = pack(square_box(PackingMethod::growth, PackingBox::Sides::walls, 300, 0.8));
+  const auto sides = GENERATE(PackingBox::Sides::walls, PackingBox::Sides::periodic);
+  const GrainPacking packing = pack(square_box(PackingMethod::growth, sides, 300, 0.8));
   const Vec2 size = packing.box.size;
   const double x = 0.37 * size.x, y = 0.61 * size.y;
   double covered = 0;
@@ -56,6 +57,14 @@ TEST_CASE("regions_that_tile_the_box_hold_all_discs_between_them") {
        {Region{{0, 0}, {x, y}}, Region{{x, 0}, {size.x, y}}, Region{{0, y}, {x, size.y}}, Region{{x, y}, size}})
     covered += measure(packing, region).solid_fraction * region.area();
   CHECK(covered == Approx(area_of_discs(packing.radii)).epsilon(1e-12));
+}
+
+TEST_CASE("a_region_without_bodies_or_out_of_a_periodic_box_is_refused") {
+  const auto sides = GENERATE(PackingBox::Sides::walls, PackingBox::Sides::periodic);
+  const GrainPacking packing = packing_of({{4, 2}, sides}, {{0.5, 0.5}}, {0.5});
+  CHECK_NOTHROW(measure(packing, Region{{0, 0}, {1, 1}}));
+  CHECK_THROWS_AS(measure(packing, Region{{1.5, 0}, {2, 1}}), Error);
+  CHECK_THROWS_AS(measure(packing, Region{{8, 8}, {9, 9}}), Error);
 }
 
 TEST_CASE("contacts_rattlers_and_void_ratio_of_a_row_of_discs_are_counted_by_hand") {

@@ -152,3 +152,27 @@ TEST_CASE("one_disc_is_packed_by_every_method") {
     CHECK(largest_overlap(packing) < 1e-4);
   }
 }
+
+// The centre of a clump is known to rounding only; what is nearly round is turned by next to nothing.
+TEST_CASE("bodies_that_are_round_or_nearly_so_jam_like_discs") {
+  using Kind = PackingShape::Kind;
+  const PackingShape shapes[] = {{},
+                                 {.kind = Kind::clump, .discs = {{{0, 0}, 1}}},
+                                 {.kind = Kind::clump, .discs = {{{5, 5}, 1}}},
+                                 {.kind = Kind::ellipse, .aspect = 1},
+                                 {.kind = Kind::ellipse, .aspect = 1 + 1e-10},
+                                 {.kind = Kind::ellipse, .aspect = 1.00001}};
+  for (const PackingShape& shape : shapes) {
+    for (const PackingBox::Sides sides : closed) {
+      PackingOptions options = square_box(PackingMethod::growth, sides, 40, 0.5);
+      options.shape = shape;
+      options.as_dense_as_possible = true;
+      options.overlap = 1e-3;
+      const PackingMeasures measures = measure(pack(options), Region{{0, 0}, options.box.size});
+      CAPTURE(to_string(shape.kind), shape.aspect, measures.solid_fraction, measures.coordination);
+      CHECK(measures.solid_fraction > 0.77);
+      CHECK(measures.solid_fraction < 0.86);
+      CHECK(measures.coordination < 4.5);
+    }
+  }
+}

@@ -174,7 +174,9 @@ class CommandLine(PackTest):
         self.check_error(equidem("pack", JAMMED, "--set", "packing.method=grow"), 2, "growth")
         self.check_error(equidem("pack", JAMMED, "--set", "packing.solid_fraction=0.5"), 2, "Remove one")
         crowded = ("--set", "packing.solid_fraction=0.95", "--set", "packing.box=none", "--set", "packing.grains=30")
-        self.check_error(equidem("pack", JAMMED, *crowded), 1, "jam")
+        self.check_error(equidem("pack", JAMMED, *crowded), 1, "pack_jammed.toml", "packing.method", "jam")
+        self.check_error(equidem("pack", JAMMED, "--set", "packing.grains=20", "--set", "packing.region=[0.7, 0, 0.8, 1]"), 2,
+                         "packing.region", "out of the periodic box")
         _, out = self.pack(JAMMED, "--set", "packing.grains=20")
         self.check_error(equidem("pack", JAMMED, "--out", out), 2, "exists")
 

@@ -81,8 +81,11 @@ std::string listed(const std::vector<std::string>& words) {
   return list;
 }
 
+/// Without what would break the line or the terminal: words of a file may hold any bytes.
 std::string one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
+  const auto is_control = [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; };
+  std::replace_if(text.begin(), text.end(), is_control, '?');
   return text;
 }
 

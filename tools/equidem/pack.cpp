@@ -105,15 +105,29 @@ std::optional<ConfirmedRest> confirmed(const PackCase& resolved, const GrainPack
   return rest;
 }
 
+/// What cannot be packed or measured is told with the line of that key.
+template <typename Task>
+auto located(const PackCase& resolved, const char* key, const Task& task) {
+  try {
+    return task();
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    const TomlValue& packing = *resolved.document.find("packing");
+    const TomlValue* value = packing.find(key);
+    throw error.at(value != nullptr ? format("{}: packing.{}", value->where(), key)
+                                    : format("{}: packing", packing.where()));
+  }
+}
+
 int run(const CommonOptions& common) {
   const PackCase resolved = read(common);
   check_outputs(common, resolved);
   if (common.dry_run) return dry_run(common, resolved);
   StageTimes times;
   Stopwatch watch;
-  const GrainPacking packing = pack(resolved.packing);
+  const GrainPacking packing = located(resolved, "method", [&] { return pack(resolved.packing); });
   times.add("packing", watch.lap());
-  const PackingMeasures measures = measure(packing, resolved.region);
+  const PackingMeasures measures = located(resolved, "region", [&] { return measure(packing, resolved.region); });
   times.add("measures", watch.lap());
   const std::optional<ConfirmedRest> rest = confirmed(resolved, packing);
   times.add("statics", watch.lap());

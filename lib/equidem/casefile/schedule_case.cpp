@@ -93,7 +93,8 @@ void read_points(const fs::path& path, Schedule& table, std::string_view column)
     double time = 0, value = 0;
     if (!read_number(left, time) || !read_number(right, value)) {
       throw Error(ErrorKind::bad_input, "this row is not a time and a value", "two numbers with a comma are needed",
-                  "Write it like 0.5,1.0", format("{}:{}", path.string(), line));
+                  format("Write it like 0.5,1.0; the first row may be time,{}", column),
+                  format("{}:{}", path.string(), line));
     }
     if (!table.times.empty() && time <= table.times.back()) {
       throw Error(ErrorKind::bad_input, format("the time {} s comes after {} s", time, table.times.back()),

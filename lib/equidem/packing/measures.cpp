@@ -119,18 +119,50 @@ Region measured_region(const GrainPacking& packing) {
   return large ? region : whole;
 }
 
-PackingMeasures measure(const GrainPacking& packing, std::optional<Region> region) {
-  PackingMeasures result;
-  result.region = region ? *region : measured_region(packing);
-  const Vec2 sides = result.region.high - result.region.low;
+namespace {
+
+/// Of the bodies, m²; where the box is periodic also of what reaches in across its sides.
+double covered_area(const GrainPacking& packing, const Region& region) {
+  const int images = packing.box.periodic() ? 1 : 0;
+  double covered = 0;
+  for (int y = -images; y <= images; ++y) {
+    for (int x = -images; x <= images; ++x) {
+      const Vec2 shift = {x * packing.box.size.x, y * packing.box.size.y};
+      const Region seen = {region.low - shift, region.high - shift};
+      for (const Grain& grain : packing.grains) covered += clipped_area(grain, packing.clumps, seen);
+    }
+  }
+  return covered;
+}
+
+/// \throws Error (bad_input) where nothing can be measured
+void check_region(const GrainPacking& packing, const Region& region) {
+  const Vec2 size = packing.box.size, sides = region.high - region.low;
   if (!(sides.x > 0 && sides.y > 0)) {
     bad_input(format("the region measured is {} m wide and {} m high", sides.x, sides.y), "it has no area",
               "Give its lower left corner first");
   }
+  const bool inside = region.low.x >= 0 && region.low.y >= 0 && region.high.x <= size.x && region.high.y <= size.y;
+  if (packing.box.periodic() && !inside) {
+    bad_input("the region measured reaches out of the periodic box",
+              format("the box is {:.6g} m by {:.6g} m, from the origin", size.x, size.y), "Give one within it");
+  }
+}
+
+}  // namespace
+
+PackingMeasures measure(const GrainPacking& packing, std::optional<Region> region) {
+  PackingMeasures result;
+  result.region = region ? *region : measured_region(packing);
+  check_region(packing, result.region);
   double covered = 0;
-  for (const Grain& grain : packing.grains) {
-    covered += packing.box.periodic() && !region ? area_of(grain, packing.clumps)
-                                                 : clipped_area(grain, packing.clumps, result.region);
+  if (packing.box.periodic() && !region) {
+    for (const Grain& grain : packing.grains) covered += area_of(grain, packing.clumps);
+  } else {
+    covered = covered_area(packing, result.region);
+  }
+  if (region && !(covered > 0)) {
+    bad_input("no body reaches into the region measured", "it has no void ratio", "Give one that holds some bodies");
   }
   result.solid_fraction = covered / result.region.area();
   result.porosity = 1 - result.solid_fraction;

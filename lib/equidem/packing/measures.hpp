@@ -45,7 +45,7 @@ struct PackingMeasures {
 Region measured_region(const GrainPacking& packing);
 
 /// \param region none: measured_region
-/// \throws Error (bad_input) on a region without area
+/// \throws Error (bad_input) on a region without area, without any body, or out of a periodic box
 PackingMeasures measure(const GrainPacking& packing, std::optional<Region> region = {});
 
 }  // namespace equidem

@@ -123,7 +123,7 @@ class Pushed {
 
   void evaluate() {
     forces.force = weights_;
-    forces.turning.assign(turns() ? weights_.size() : 0, 0);
+    forces.turning.assign(is_disc() ? 0 : weights_.size(), 0);
     forces.sum = forces.largest = 0;
     forces.contacts = 0;
     if (is_disc()) {

@@ -31,6 +31,13 @@ const Name& name_of(Kind kind) {
   return *std::find_if(names.begin(), names.end(), [&](const Name& name) { return name.kind == kind; });
 }
 
+/// By it moments are divided while bodies are pushed apart. What is nearly round would be turned far by its small moments, so that it
+/// never came to rest; what is round but for rounding of its centre does not turn.
+double lever_of(double arm, double reach) {
+  constexpr double rounding = 1e-12, shortest = 0.1;
+  return arm <= rounding * reach ? 0 : std::max(arm, shortest * reach);
+}
+
 UnitBody unit_ellipse(double aspect) {
   constexpr double longest = 1000;
   if (!(aspect >= 1 && aspect <= longest)) {
@@ -38,7 +45,12 @@ UnitBody unit_ellipse(double aspect) {
               format("it is the long half-axis over the short one, from 1 to {}", longest), "Correct it");
   }
   const double a = std::sqrt(aspect), b = 1 / a;
-  return {.a = a, .b = b, .reach = a, .lever = a - b, .area = std::numbers::pi, .gyration = 0.25 * (a * a + b * b)};
+  return {.a = a,
+          .b = b,
+          .reach = a,
+          .lever = lever_of(a - b, a),
+          .area = std::numbers::pi,
+          .gyration = 0.25 * (a * a + b * b)};
 }
 
 UnitBody unit_clump(std::vector<Clump::Disc> discs, double area) {
@@ -53,6 +65,7 @@ UnitBody unit_clump(std::vector<Clump::Disc> discs, double area) {
     body.reach = std::max(body.reach, norm(disc.offset) + disc.radius);
     body.lever = std::max(body.lever, norm(disc.offset));
   }
+  body.lever = lever_of(body.lever, body.reach);
   return body;
 }
 

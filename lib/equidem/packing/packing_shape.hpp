@@ -38,7 +38,8 @@ struct UnitBody {
   double a = 1, b = 1;                  ///< half-axes of a disc or an ellipse
   std::vector<Clump::Disc> discs = {};  ///< pairs and clumps: instead
   double reach = 1;                     ///< radius of the circle round the centre that holds it
-  double lever = 0;     ///< the longest arm of a force along the normal: 0 of a disc, which it never turns
+  /// The longest arm of a force along the normal, a tenth of the reach at least: 0 of a disc, which it never turns.
+  double lever = 0;
   double area = 0;      ///< times r²
   double gyration = 0;  ///< I/m, times r²
 };
