@@ -236,6 +236,36 @@ class Refusals(GrainTest):
         self.check_error(done, 1, "case.toml", "times the energy", "shorter time_step")
         self.assertFalse((out / "result.json").exists())
 
+    def test_maps_say_that_beds_are_not_for_them(self):
+        column = BALL
+        for old, new in (("restitution = 0.6\nstiffness = 1.0e6\nclosing_speed = 1.0", "restitution = 0.5\ncontact_duration = 1e-3"),
+                         ("velocity = [0.0, -1.0]\n", ""), ("0.02]", "0.01]"),
+                         ("duration = 0.03", "duration = 0.5\ngravity = [0.0, -9.8]")):
+            column = column.replace(old, new)
+        column += "".join(f"[[grain]]\nposition = [0.0, {0.02 * n + 0.01}]\nradius = 0.01\n" for n in range(1, 6))
+        for law, doubtful in (("exact_flow", False), ("linear_dashpot", False), ("five_case_map", True), ("energy_map", True)):
+            with self.subTest(law=law):
+                text = equidem("run", self.write(column.replace("[collisions]", f'[collisions]\nlaw = "{law}"'))).stdout
+                self.assertEqual(doubtful, "two by two" in text, text)
+                self.assertEqual(doubtful, "came from nothing" in " ".join(text.split()), text)
+        self.assertNotIn("two by two", equidem("run", DROP, "--set", "run.duration=0.1").stdout)
+
+    def test_slip_that_is_counted_too_large_is_told(self):
+        three = BALL.split("[[grain]]")[0].replace("sphere", "disc") + "".join(
+            f"[[grain]]\nposition = [{x}, {y}]\nradius = 0.01\n" for x, y in ((0.01, 0.01), (0.03, 0.01), (0.02, 0.01 + 0.01 * math.sqrt(3))))
+        three += ('[collisions]\nlaw = "linear_dashpot"\nrestitution = 0.3\ncontact_duration = 1e-3\nfriction = 0.3\n'
+                  'tangential_ratio = 0.0\n')
+        for name, point, normal in (("floor", "[0, 0]", "[0, 1]"), ("left", "[0, 0]", "[1, 0]"), ("right", "[0.04, 0]", "[-1, 0]")):
+            three += f'[[wall]]\nname = "{name}"\npoint = {point}\nnormal = {normal}\n'
+        case = self.write(three + "[run]\nduration = 0.3\ngravity = [0.0, -9.8]\n")
+        self.assertIn("take velocity_verlet", " ".join(equidem("run", case).stdout.split()))
+        self.assertNotIn("that is much", equidem("run", case, "--set", "run.scheme=velocity_verlet").stdout)
+
+    def test_bytes_of_a_file_do_not_reach_the_terminal_raw(self):
+        self.write("x,y,radius\n0,0.02,\x1b[31m\x07\n", "grains.csv")
+        done = equidem("run", self.write(BALL.replace("density", 'path = "grains.csv"\ndensity', 1)))
+        self.check_error(done, 2, "grains.csv:2", "?[31m?")
+
     def test_a_grain_in_a_wrong_place_is_told_with_its_line(self):
         self.check_error(equidem("run", self.write(BALL.replace("[0.0, 0.02]", "[0.0, -0.02]"))), 2,
                          "case.toml:5: grain", "behind")

@@ -183,6 +183,34 @@ std::string describe_law(const GrainCase& resolved) {
   return name;
 }
 
+/// A map turns the approach of two bodies round as if nothing else acted on them: summed at one body, that is too much.
+std::string describe_limit_of_maps(const GrainCase& resolved) {
+  if (!is_map(resolved.law) || resolved.grains.size() + resolved.walls.size() <= 2) return "";
+  return report_line(
+      "",
+      "for bodies that meet two by two: each contact is taken as if nothing else acted on its bodies, and where they "
+      "press on one another energy comes and goes; for beds exact_flow or linear_dashpot");
+}
+
+/// Where a balance that lacks much comes from, and what to do.
+std::string advice_on_balance(const GrainSetup& setup, const GrainSimulation& simulation, const GrainLedger& ledger) {
+  const GrainCase& resolved = setup.resolved;
+  if (is_map(resolved.law)) {
+    return format(
+        "{:.3g} {} {}, as this law takes each contact as if nothing else acted on its bodies; take exact_flow or "
+        "linear_dashpot where they press on one another",
+        std::abs(ledger.error()), energy_unit(resolved.body),
+        ledger.error() > 0 ? "came from nothing" : "vanished uncounted");
+  }
+  const bool euler =
+      resolved.law != NormalLaw::exact_flow && resolved.scheme == GrainOptions::Scheme::semi_implicit_euler;
+  if (euler && !simulation.effects().tangential_springs && ledger.lost_slip > std::abs(ledger.error())) {
+    return "contacts without tangential springs that nearly stick count too large a loss by slip in "
+           "semi_implicit_euler; take velocity_verlet, or a tangential_ratio above 0";
+  }
+  return "compare with a shorter step before trusting the motion";
+}
+
 std::string describe_step(const GrainSetup& setup) {
   const GrainStep& step = setup.step;
   std::string out = report_line("time step", format("{:.6g} s{}", step.step, step.automatic ? ", automatic" : ""));
@@ -233,7 +261,7 @@ std::string describe_grains(const GrainSetup& setup, const GrainSimulation& simu
   out += report_line("effects", active);
   for (const Effects::Entry& entry : simulation.effects().entries)
     if (!entry.active) out += report_line("", format("no {}: {}", entry.name, entry.why));
-  out += report_line("law", describe_law(resolved));
+  out += report_line("law", describe_law(resolved)) + describe_limit_of_maps(resolved);
   out += describe_pairs(resolved) + describe_shaking(resolved) + describe_step(setup) + describe_bonds(setup) +
          describe_output(setup);
   return out + report_line("memory", format("{:.0f} bytes a grain in the loop", simulation.bytes_per_grain()));
@@ -267,7 +295,7 @@ std::string describe_grain_run(const GrainSetup& setup, const GrainSimulation& s
   out += report_line("", lost.empty() ? "nothing lost" : format("lost {:.6g}: {}", l.lost(), lost));
   out += report_line("balance", format("lacks {:.1e} of the largest term", relative_error(l)));
   if (std::abs(relative_error(l)) > balance_to_doubt)
-    out += report_line("", "that is much: compare with a shorter step before trusting the motion");
+    out += report_line("", "that is much: " + advice_on_balance(setup, simulation, l));
   if (counters.doubtful > 0)
     out += report_line(
         "", format("of all evaluations {} were of contacts pressed together in a step that may feed their vibration: "
