@@ -99,8 +99,8 @@ std::vector<Run> plan(bool quick) {
   for (const double gal : {1200, 800, 400}) runs.push_back(shaken({}, gal, 5));
   Fill pairs{.shape = Shape::bonded_pair};
   runs.push_back(shaken(pairs, 0, 10));
-  pairs.bond_step *= 10;
-  pairs.variant = "weak_bonds";
+  pairs.bond_step /= 10;
+  pairs.variant = "strong_bonds";
   runs.push_back(shaken(pairs, 400, 10));
   long_shaken({}, 1);
   long_shaken(as_printed(Shape::disc), 1);

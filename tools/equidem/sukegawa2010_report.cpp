@@ -101,7 +101,7 @@ std::string variants(const Reproduction& result) {
       {{.shape = Shape::bonded_pair, .variant = "printed_cap", .cycles = long_shakings[0]},
        "bonded pairs, (2.16), 5 s"},
       {{.shape = Shape::bonded_pair, .gal = 0}, "bonded pairs left standing for as long"},
-      {{.shape = Shape::bonded_pair, .variant = "weak_bonds"}, "bonded pairs, C_n and C_s a tenth"}};
+      {{.shape = Shape::bonded_pair, .variant = "strong_bonds"}, "bonded pairs, C_n and C_s tenfold"}};
   if (result.quick) return "";
   const auto changed = [](double Outcome::*first, double Outcome::*last) {
     return [first, last](const Outcome& o) { return o.*last - o.*first; };
