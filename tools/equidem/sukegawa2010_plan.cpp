@@ -105,10 +105,10 @@ std::vector<Run> plan(bool quick) {
   long_shaken({}, 1);
   long_shaken(as_printed(Shape::disc), 1);
   runs.push_back(shaken({.step = printed_step, .variant = "printed_step"}, 400, 10));
-  // The printed test goes contact by contact, twenty times as slowly: fewer and softer grains.
+  // The thesis's test goes contact by contact, twenty times as slowly: fewer and softer grains. As printed it overlooks overlaps until
+  // grains are pressed into each other, which stops the fall: only mended.
   for (const auto& [law, name] :
-       {std::pair{EllipseLaw::exact, "small"}, std::pair{EllipseLaw::enlarged_as_printed, "printed_test"},
-        std::pair{EllipseLaw::enlarged_mended, "mended_test"}}) {
+       {std::pair{EllipseLaw::exact, "small"}, std::pair{EllipseLaw::enlarged_mended, "mended_test"}}) {
     runs.push_back(shaken({.shape = Shape::ellipse,
                            .grid = {.columns = 18, .rows = 34},
                            .softness = 9,
