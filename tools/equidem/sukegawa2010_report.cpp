@@ -221,7 +221,7 @@ std::string bonds(const Reproduction& result) {
   for (const Done& done : result.runs) {
     if (done.run.fill.shape != Shape::bonded_pair || !std::isfinite(done.outcome.creep)) continue;
     text += row({words(done.run.name()), format("{:.3g}", done.outcome.creep), format("{:.3g}", done.outcome.roll)},
-                {44, 14, 14});
+                {54, 14, 14});
   }
   if (text.empty()) return "";
   return format(
@@ -230,7 +230,7 @@ std::string bonds(const Reproduction& result) {
              "rad, since the start. C_n = m_r/dt with the printed dt = {:g} s, C_s a third, whatever the step of the "
              "loop.\n",
              printed_step) +
-         row({"", "distance", "roll"}, {44, 14, 14}) + text + "\n";
+         row({"", "distance", "roll"}, {54, 14, 14}) + text + "\n";
 }
 
 std::string numerics(const Reproduction& result) {
