@@ -45,6 +45,8 @@ double touching_distance(const Outline& a, const Outline& b, double far, Vec2 al
 /// Tries gaps beside bodies that lie already.
 class Inserter {
  public:
+  static constexpr std::int64_t anywhere_first = 30;  ///< places for each body
+
   explicit Inserter(const PackingOptions& options)
       : options_(options),
         box_(options.box),
@@ -54,10 +56,12 @@ class Inserter {
   [[nodiscard]] const PlacedBodies& placed() const { return placed_; }
 
   /// Anywhere at first, so that the box fills evenly; then beside a body.
+  /// \param attempt from 0 for each body
   bool insert(double radius, std::int64_t attempt) {
-    constexpr std::int64_t anywhere_first = 30;
     if (attempt < anywhere_first || placed_.bodies().size() == 0) return add(anywhere(radius), radius);
+    if (attempt == anywhere_first) passes_ = 0;
     if (open_.empty()) {
+      ++passes_;
       for (std::size_t k = 0; k < placed_.bodies().size(); ++k) open_.push_back({static_cast<std::int32_t>(k), 0});
     }
     const auto pick = static_cast<std::size_t>(random_.below(open_.size()));
@@ -70,6 +74,9 @@ class Inserter {
     }
     return false;
   }
+
+  /// Whether places beside every body were tried in vain: of shapes other than discs, whose places are not to be had for little.
+  [[nodiscard]] bool hopeless() const { return !options_.shape.is_disc() && passes_ > 1; }
 
  private:
   /// A body beside which there may still be a gap.
@@ -166,6 +173,7 @@ class Inserter {
   Random random_;
   std::vector<std::int32_t> partners_;
   std::vector<Open> open_;
+  int passes_ = 0;  ///< over all bodies, for the one to be inserted
 };
 
 }  // namespace
@@ -178,7 +186,9 @@ void fill_by_insertion(const PackingOptions& options, GrainPacking& packing) {
   for (std::size_t k = 0; k < radii.size(); ++k) {
     if (k % 64 == 0) progress.update(static_cast<double>(k) / static_cast<double>(radii.size()));
     bool found = false;
-    for (std::int64_t attempt = 0; attempt < options.attempts && !found; ++attempt) {
+    std::int64_t attempt = 0;
+    for (; attempt < options.attempts && !found && (attempt <= Inserter::anywhere_first || !inserter.hopeless());
+         ++attempt) {
       ++packing.work;
       found = inserter.insert(radii[k], attempt);
     }
@@ -188,7 +198,7 @@ void fill_by_insertion(const PackingOptions& options, GrainPacking& packing) {
     computation_failed(
         format("{} of {} {}s found a gap, {:.4g} of the box", k, radii.size(), noun_of(options.shape.kind),
                area_of(options.shape, inserter.placed().bodies().radii) / options.box.area()),
-        format("for the next one {} gaps were all too small", options.attempts),
+        format("for the next one {} gaps were all too small", attempt),
         "Ask for less, for more attempts, or use growth");
   }
   make_grains(options.shape, inserter.placed().bodies(), options.settling.density, packing);
