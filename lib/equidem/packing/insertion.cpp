@@ -48,10 +48,7 @@ class Inserter {
   static constexpr std::int64_t anywhere_first = 30;  ///< places for each body
 
   explicit Inserter(const PackingOptions& options)
-      : options_(options),
-        box_(options.box),
-        placed_(options.box, unit_body_of(options.shape), options.radii),
-        random_(options.seed) {}
+      : options_(options), placed_(options.box, unit_body_of(options.shape), options.radii), random_(options.seed) {}
 
   [[nodiscard]] const PlacedBodies& placed() const { return placed_; }
 
@@ -95,9 +92,9 @@ class Inserter {
 
   Placement anywhere(double radius) {
     if (!options_.shape.is_disc()) return placement_at_random(options_, placed_.shape(), radius, random_);
-    const double margin = box_.periodic() ? 0 : radius;
-    const double x = random_.uniform(margin, box_.size.x - margin);
-    return {.place = {x, random_.uniform(margin, box_.size.y - margin)}};
+    const double margin = options_.box.periodic() ? 0 : radius;
+    const double x = random_.uniform(margin, options_.box.size.x - margin);
+    return {.place = {x, random_.uniform(margin, options_.box.size.y - margin)}};
   }
 
   /// Where a body, turned at random, touches body a and the first other one, or wall, that it meets on its way around a.
@@ -144,7 +141,7 @@ class Inserter {
         partners_.push_back(other);
       return false;
     });
-    const std::uint64_t walls = box_.periodic() ? 0 : 4;
+    const std::uint64_t walls = options_.box.periodic() ? 0 : 4;
     if (partners_.empty() && walls == 0) return nowhere;
     const std::uint64_t pick = random_.below(partners_.size() + walls);
     const bool left = random_.below(2) == 0;
@@ -159,7 +156,7 @@ class Inserter {
 
   [[nodiscard]] Placement at_wall(int wall, Vec2 centre, double from_a, double radius, bool left) const {
     const bool vertical = wall < 2;
-    const double length = vertical ? box_.size.x : box_.size.y;
+    const double length = vertical ? options_.box.size.x : options_.box.size.y;
     const double at = wall % 2 == 0 ? radius : length - radius;
     const double across = at - (vertical ? centre.x : centre.y);
     if (std::abs(across) > from_a) return nowhere;
@@ -168,7 +165,6 @@ class Inserter {
   }
 
   const PackingOptions& options_;
-  PackingBox box_;
   PlacedBodies placed_;
   Random random_;
   std::vector<std::int32_t> partners_;
