@@ -38,7 +38,7 @@ TEST_CASE("an_automatic_step_follows_strong_dashpots") {
   for (const char* law : {"linear_dashpot", "hertz_dashpot"}) {
     for (const double restitution : {0.1, 0.01, 0.001}) {
       const GrainCase given =
-          case_of(ball_with(format("law = \"{}\"\nrestitution = {}\nstiffness = 1.0e6\nclosing_speed = 1.0\n"
+          case_of(ball_with(fmt::format("law = \"{}\"\nrestitution = {}\nstiffness = 1.0e6\nclosing_speed = 1.0\n"
                                    "contact_end = \"zero_force\"",
                                    law, restitution)));
       const GrainStep step = choose_grain_step(given);
@@ -66,7 +66,7 @@ TEST_CASE("a_step_that_makes_hertz_contacts_gain_energy_is_refused") {
 TEST_CASE("friction_of_the_maps_is_slip_unless_a_spring_is_asked_for") {
   for (const char* law : {"five_case_map", "energy_map", "exact_flow", "linear_dashpot"}) {
     CAPTURE(law);
-    const std::string contact = format("law = \"{}\"\nrestitution = 0.9\nstiffness = 1.0e6\nfriction = 0.3", law);
+    const std::string contact = fmt::format("law = \"{}\"\nrestitution = 0.9\nstiffness = 1.0e6\nfriction = 0.3", law);
     const double usual = std::string(law).ends_with("map") ? 0 : 2.0 / 7;
     CHECK(case_of(ball_with(contact)).between(0, 1).properties.tangential_ratio == usual);
     CHECK(case_of(ball_with(contact + "\ntangential_ratio = 0.5")).between(0, 1).properties.tangential_ratio == 0.5);
@@ -75,7 +75,7 @@ TEST_CASE("friction_of_the_maps_is_slip_unless_a_spring_is_asked_for") {
 
 TEST_CASE("restitutions_that_no_dashpot_resolves_are_refused_with_ways_out") {
   for (const char* restitution : {"0.0", "1e-300", "1e-13"}) {
-    const std::string sentence = sentence_of(ball_with(format("restitution = {}\nstiffness = 1.0e6", restitution)));
+    const std::string sentence = sentence_of(ball_with(fmt::format("restitution = {}\nstiffness = 1.0e6", restitution)));
     CAPTURE(sentence);
     CHECK(sentence.find("contact_end = \"zero_overlap\"") != std::string::npos);
     CHECK(sentence.find("energy_map") != std::string::npos);

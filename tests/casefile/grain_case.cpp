@@ -92,7 +92,7 @@ TEST_CASE("a_duration_and_an_overlap_are_those_of_the_contact") {
   const double e = GENERATE(1.0, 0.8, 0.3);
   const std::string law = GENERATE("linear_dashpot", "energy_map");
   CAPTURE(e, law);
-  const std::vector<std::string> common{"collisions.law=" + law, format("collisions.restitution={}", e),
+  const std::vector<std::string> common{"collisions.law=" + law, fmt::format("collisions.restitution={}", e),
                                         "collisions.friction=0"};
   std::string text = grain_case;
   text.erase(text.find("stiffness = 1.0e5\n"), 18);

@@ -137,7 +137,7 @@ TEST_CASE("ellipses_meet_by_the_test_asked_for") {
   CHECK(grains(soil).ellipse_law == exact);
   for (const auto& [word, law] :
        {std::pair{"exact", exact}, {"enlarged", enlarged_mended}, {"enlarged_as_printed", enlarged_as_printed}}) {
-    const GrainCase c = grains(soil, {format("collisions.ellipse_contact={}", word)});
+    const GrainCase c = grains(soil, {fmt::format("collisions.ellipse_contact={}", word)});
     CAPTURE(word);
     CHECK(grain_options(c, 1e-6).ellipse_law == law);
   }

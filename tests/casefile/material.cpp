@@ -42,15 +42,15 @@ TEST_CASE("the_four_ways_to_give_a_material_mean_the_same") {
   CAPTURE(plane, nu);
   const double K = m.bulk_modulus_2d(), G = m.shear_modulus;
   const std::vector<std::string> ways = {
-      format("shear_modulus = {}\npoisson_ratio = {}\n", G, nu),
-      format("young_modulus = {}\npoisson_ratio = {}\n", m.young_modulus(), nu),
-      format("bulk_modulus_2d = {}\nshear_modulus = {}\n", K, G),
+      fmt::format("shear_modulus = {}\npoisson_ratio = {}\n", G, nu),
+      fmt::format("young_modulus = {}\npoisson_ratio = {}\n", m.young_modulus(), nu),
+      fmt::format("bulk_modulus_2d = {}\nshear_modulus = {}\n", K, G),
       // lambda + 2G = K + G = gamma Vp², G = gamma Vs²
-      format("p_wave_speed = {}\ns_wave_speed = {}\n", std::sqrt((K + G) / density), std::sqrt(G / density)),
+      fmt::format("p_wave_speed = {}\ns_wave_speed = {}\n", std::sqrt((K + G) / density), std::sqrt(G / density)),
   };
   for (const std::string& way : ways) {
     CAPTURE(way);
-    const Case c = parsed(block_of(way + format("density = {}\nplane = \"{}\"\n", density, plane)));
+    const Case c = parsed(block_of(way + fmt::format("density = {}\nplane = \"{}\"\n", density, plane)));
     REQUIRE(c.material);
     CHECK(c.material->moduli.plane == m.plane);
     CHECK(c.material->moduli.shear_modulus == Approx(G).epsilon(1e-14));
@@ -73,7 +73,7 @@ TEST_CASE("disc_and_bulk_density_differ_by_the_solid_fraction") {
 
   CHECK(disc_density(parsed(block_of(material), {"assembly.density=2000"}), assembly) == 2000.0);
   const auto both = [&](double rho) {
-    return building_error_of(parsed(block_of(material + "density = 1800.0\n"), {format("assembly.density={}", rho)}));
+    return building_error_of(parsed(block_of(material + "density = 1800.0\n"), {fmt::format("assembly.density={}", rho)}));
   };
   CHECK(both(1800 / phi).empty());
   CHECK(both(1800 / phi * (1 + 5e-7)).empty());

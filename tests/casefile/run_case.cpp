@@ -101,7 +101,7 @@ TEST_CASE("motions_and_loads_are_what_they_are_in_statics_times_their_schedule")
 TEST_CASE("a_wall_keeps_its_direction_whatever_the_length_of_its_normal") {
   for (const char* normal : {"[0.6, -0.8]", "[6e-9, -8e-9]", "[6e9, -8e9]", "[3, -4]"}) {
     CAPTURE(normal);
-    const Case c = parsed(motion_case, {format("wall.1.normal={}", normal)});
+    const Case c = parsed(motion_case, {fmt::format("wall.1.normal={}", normal)});
     CHECK(c.run->walls[1].normal.x == Approx(0.6).epsilon(1e-15));
     CHECK(c.run->walls[1].normal.y == Approx(-0.8).epsilon(1e-15));
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The exact contact of ellipses.
-#include "equidem/contact/ellipse_contact.hpp"
+#include "equidem/contact/shapes/ellipse_contact.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -59,7 +59,7 @@ TEST_CASE("closest_points_of_ellipses_are_exact") {
     if (!all_finite(contact)) FAIL_CHECK("not finite");
   }
   INFO(
-      format("100000 pairs, {} apart, {} deeper than the sharpest radii, {} with two normals: gap {:.1e}, points "
+      fmt::format("100000 pairs, {} apart, {} deeper than the sharpest radii, {} with two normals: gap {:.1e}, points "
              "{:.1e} apart, "
              "{:.1e} times their sensitivity overlapping",
              apart, deep, ties, worst_gap, worst_apart, worst_point));
@@ -295,7 +295,7 @@ TEST_CASE("an_ellipse_meets_a_segment_at_its_side_or_end") {
     CHECK(contact.gap > best - 1e-14 * norm(middle));
     CHECK(contact.gap < best + 1e-3 * (norm(half) + norm(middle) + i.a));  // half the way between two directions
   }
-  INFO(format("{} sides, {} ends, {} overlaps", sides, ends, overlaps));
+  INFO(fmt::format("{} sides, {} ends, {} overlaps", sides, ends, overlaps));
   CHECK(std::min(sides, ends) > 300);
   CHECK(overlaps > 300);
 }

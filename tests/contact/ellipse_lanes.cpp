@@ -4,7 +4,7 @@
 // Vectors are passed between inlined functions only: no call depends on how.
 #pragma GCC diagnostic ignored "-Wpsabi"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/part_lanes.hpp"
+#include "equidem/grains/kernels/part_lanes.hpp"
 
 #include "contact/ellipse_pairs.hpp"
 #include "support/catch.hpp"
@@ -93,7 +93,7 @@ TEST_CASE("closest_points_of_eight_pairs_of_ellipses_are_exact") {
       if (!(turn <= 1e-12)) FAIL_CHECK("normal off by " << turn);
     }
   }
-  INFO(format("{} contacts, {} with other bits than one by one: gap {:.1e}, points {:.1e}, normals {:.1e}", count,
+  INFO(fmt::format("{} contacts, {} with other bits than one by one: gap {:.1e}, points {:.1e}, normals {:.1e}", count,
               by_lanes, worst_gap, worst_point, worst_normal));
   CHECK(worst_gap < 1e-13);
   CHECK(by_lanes > count / 10);  // otherwise it is the function for single ones

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "equidem/contact/ellipse.hpp"
+#include "equidem/contact/shapes/ellipse.hpp"
 
 namespace equidem::oracle {
 

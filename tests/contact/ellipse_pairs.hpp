@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "equidem/contact/ellipse_contact.hpp"
+#include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/core/random.hpp"
 
 #include "contact/ellipse_oracle.hpp"

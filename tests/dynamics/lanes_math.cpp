@@ -3,7 +3,7 @@
 /// Root, angles and the short series of the loop against the standard library.
 #pragma GCC diagnostic ignored "-Wpsabi"  // nothing here crosses from one object file to another
 
-#include "equidem/dynamics/lanes_math.hpp"
+#include "equidem/dynamics/kernels/lanes_math.hpp"
 
 #include <algorithm>
 #include <array>

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "equidem/core/random.hpp"
-#include "equidem/grains/grain_scene.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem::test {
 

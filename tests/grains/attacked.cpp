@@ -3,7 +3,7 @@
 /// What a hostile user found.
 #include <cmath>
 
-#include "equidem/grains/wall_joints.hpp"
+#include "equidem/grains/scene/wall_joints.hpp"
 
 #include "grains/scenes.hpp"
 #include "support/catch.hpp"

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "equidem/contact/viscous_bond.hpp"
-#include "equidem/grains/bond_step.hpp"
+#include "equidem/grains/contacts/bond_step.hpp"
 
 #include "grains/bonded_scenes.hpp"
 #include "support/catch.hpp"

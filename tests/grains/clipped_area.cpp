@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/grains/clipped_area.hpp"
+#include "equidem/grains/scene/clipped_area.hpp"
 
 #include <algorithm>
 #include <cmath>

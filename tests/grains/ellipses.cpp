@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Ellipses that meet, rebound, rest and rock.
-#include "equidem/contact/enlarged_ellipse.hpp"
-#include "equidem/grains/part_meeting.hpp"
+#include "equidem/contact/shapes/enlarged_ellipse.hpp"
+#include "equidem/grains/contacts/part_meeting.hpp"
 
 #include "grains/shapes.hpp"
 #include "support/catch.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/grains/neighbours.hpp"
+#include "equidem/grains/neighbours/neighbours.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/grains/shaking.hpp"
+#include "equidem/grains/scene/shaking.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "equidem/contact/ellipse_contact.hpp"
-#include "equidem/grains/clump.hpp"
-#include "equidem/grains/grain_parts.hpp"
+#include "equidem/contact/shapes/ellipse_contact.hpp"
+#include "equidem/grains/scene/clump.hpp"
+#include "equidem/grains/scene/grain_parts.hpp"
 
 #include "grains/scenes.hpp"
 

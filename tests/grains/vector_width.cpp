@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Processors with wide vectors and without give the same bits.
-#include "equidem/grains/vector_width.hpp"
+#include "equidem/grains/kernels/vector_width.hpp"
 
 #include "grains/bonded_scenes.hpp"
 #include "grains/shapes.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/grains/wall_shape.hpp"
+#include "equidem/grains/scene/wall_shape.hpp"
 
 #include <algorithm>
 #include <array>

@@ -117,7 +117,7 @@ inline std::vector<GrainWall> closed_box(double width, double height) {
 }
 
 inline std::string digits(double x) {
-  return format("{:.1e}", x);
+  return fmt::format("{:.1e}", x);
 }
 
 }  // namespace equidem::test

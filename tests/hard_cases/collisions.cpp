@@ -17,7 +17,7 @@ using namespace equidem::test;
 namespace {
 
 std::string shown(double x) {
-  return format("{:.1e}", x);
+  return fmt::format("{:.1e}", x);
 }
 
 double momentum(const std::vector<Grain>& grains) {
@@ -79,14 +79,14 @@ TEST_CASE("newtons_cradle_keeps_energy_and_momentum") {
     CHECK(fine.velocities.back() > 0.85);
     CHECK(fine.velocities.back() < 0.95);
     CHECK(fine.velocities.front() < -0.1);
-    table.note(format("{} balls, exact_flow, w dt = 0.22", n), "velocities 2e-5, energy 1e-6, momentum 1e-13",
-               format("velocities {}, energy {}; first ball {:.4f}, last {:.4f}", shown(off[2]), shown(energy[2]),
+    table.note(fmt::format("{} balls, exact_flow, w dt = 0.22", n), "velocities 2e-5, energy 1e-6, momentum 1e-13",
+               fmt::format("velocities {}, energy {}; first ball {:.4f}, last {:.4f}", shown(off[2]), shown(energy[2]),
                       fine.velocities.front(), fine.velocities.back()));
     const Cradle map = swing(n, NormalLaw::energy_map, 0.05);
     CHECK(std::abs(map.momentum) < 1e-13);
     CHECK(map.energy > 0.01);
-    table.note(format("{} balls, energy_map, w dt = 0.22", n), "none: it keeps the energy of two bodies only",
-               format("energy {:+.1e}", map.energy));
+    table.note(fmt::format("{} balls, energy_map, w dt = 0.22", n), "none: it keeps the energy of two bodies only",
+               fmt::format("energy {:+.1e}", map.energy));
   }
 }
 
@@ -149,7 +149,7 @@ TEST_CASE("perfectly_plastic_and_perfectly_elastic_impacts_are_exact") {
       CHECK(std::abs(parting - e) < 1e-14);
       CHECK(std::abs(momentum(after) - 1) < 1e-14);
       CHECK(std::abs(simulation.energy().error()) < 1e-14);
-      table.note(format("{}, e = {}", to_string(law), e), "1e-14", shown(std::abs(parting - e)));
+      table.note(fmt::format("{}, e = {}", to_string(law), e), "1e-14", shown(std::abs(parting - e)));
     }
   }
   const GrainScene scene = scene_of({ball({0, 0}, 1)}, {}, one_second(NormalLaw::exact_flow, 0));
@@ -187,8 +187,8 @@ TEST_CASE("steps_that_close_a_radius_and_contacts_within_a_step_are_exact") {
     }
     CAPTURE(to_string(law), refused, runs);
     CHECK(refused < runs / 4);
-    table.note(format("{}, closing up to 0.99 radii a step, a = 2", to_string(law)), "restitution to 1e-13, or refused",
-               format("{}, {} of {} refused", shown(worst), refused, runs));
+    table.note(fmt::format("{}, closing up to 0.99 radii a step, a = 2", to_string(law)), "restitution to 1e-13, or refused",
+               fmt::format("{}, {} of {} refused", shown(worst), refused, runs));
   }
   double worst = 0;
   for (const double ratio : {10.0, 100.0, 1000.0}) {  // step over contact
@@ -294,7 +294,7 @@ TEST_CASE("billiards_in_a_box_keep_their_energy") {
   CHECK(errors[0] < 0.01);
   CHECK(errors[2] < errors[0] / 16);
   table.note("9 discs, 100 s, exact_flow, w dt = 0.9, 0.45, 0.22", "energy, second order or better",
-             format("{}, {}, {}", shown(errors[0]), shown(errors[1]), shown(errors[2])));
+             fmt::format("{}, {}, {}", shown(errors[0]), shown(errors[1]), shown(errors[2])));
   const double bounded = largest_energy_error(billiards(NormalLaw::exact_flow, 0.005, 1), 100000);
   CAPTURE(bounded);
   CHECK(bounded < 1e-3);

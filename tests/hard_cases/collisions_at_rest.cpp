@@ -42,7 +42,7 @@ Unrest rest(GrainSimulation& simulation, std::int64_t steps) {
 }
 
 std::string shown(const Unrest& unrest) {
-  return format("creep {:.1e}, heat {:.1e}", unrest.creep, unrest.heat);
+  return fmt::format("creep {:.1e}, heat {:.1e}", unrest.creep, unrest.heat);
 }
 
 /// Where each spring carries what lies above it: mass 1, radius 1, g = 1.
@@ -70,7 +70,7 @@ void stand(HardCase& table, NormalLaw law, double restitution, double step, std:
   CHECK(unrest.creep < 1e-8);
   CHECK(unrest.heat < 1e-16);
   CHECK(unrest.error < 1e-9);
-  table.note(format("{}, e = {}, w dt = {:.2f}, {} steps", to_string(law), restitution, step * std::sqrt(2 * stiffness),
+  table.note(fmt::format("{}, e = {}, w dt = {:.2f}, {} steps", to_string(law), restitution, step * std::sqrt(2 * stiffness),
                     steps),
              "creep 1e-8 of the overlap, heat 1e-16 of the elastic energy", shown(unrest));
 }
@@ -91,7 +91,7 @@ TEST_CASE("a_column_of_100_discs_neither_creeps_nor_warms_up") {
   const double heat = map.energy().kinetic / elastic;
   CAPTURE(heat);
   CHECK(heat > 1e-4);
-  table.note("energy_map, e = 0.9, w dt = 0.14, 1000 steps", "none: made for two bodies", format("heat {:.1e}", heat));
+  table.note("energy_map, e = 0.9, w dt = 0.14, 1000 steps", "none: made for two bodies", fmt::format("heat {:.1e}", heat));
 }
 
 TEST_CASE("a_column_stands_for_a_million_steps", "[.large]") {
@@ -141,7 +141,7 @@ TEST_CASE("a_disc_wedged_between_two_walls_rests_and_rebounds") {
   CHECK(errors[0] < 1e-5);
   CHECK(errors[2] < 1e-7);
   table.note("falling in, e = 1, 100 s, exact_flow, w dt = 0.63, 0.31, 0.16", "energy to 1e-5, 1e-7 at the last",
-             format("{:.1e}, {:.1e}, {:.1e}", errors[0], errors[1], errors[2]));
+             fmt::format("{:.1e}, {:.1e}, {:.1e}", errors[0], errors[1], errors[2]));
 }
 
 TEST_CASE("a_heap_comes_to_rest_and_stays") {

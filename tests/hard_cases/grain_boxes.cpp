@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "equidem/grains/bond_step.hpp"
-#include "equidem/grains/shaking.hpp"
+#include "equidem/grains/contacts/bond_step.hpp"
+#include "equidem/grains/scene/shaking.hpp"
 #include "equidem/packing/packing.hpp"
 
 #include "hard_cases/bodies.hpp"
@@ -87,7 +87,7 @@ TEST_CASE("a_grain_in_a_closing_wedge_is_shot_out_with_the_work_of_the_walls") {
     CHECK(errors[2] < errors[0] / 3);
     table.note("shot out of a wedge, " + name_of(kind),
                "energy to 2e-4 of the work of the walls, falling with the step",
-               format("{}, {}, {}", digits(errors[0]), digits(errors[1]), digits(errors[2])));
+               fmt::format("{}, {}, {}", digits(errors[0]), digits(errors[1]), digits(errors[2])));
   }
 }
 
@@ -140,7 +140,7 @@ TEST_CASE("a_box_filled_past_its_volume_balances_or_is_refused") {
     CHECK(overlap > 0.02);
     table.note("pressed to 1.05 times its area, " + name_of(kind),
                "forces in balance and equal to stiffness times overlap, 1e-6; energy to 1e-4",
-               format("balance {}, overlaps {}, energy {}; largest overlap {:.3f} of the circle's radius", digits(lack),
+               fmt::format("balance {}, overlaps {}, energy {}; largest overlap {:.3f} of the circle's radius", digits(lack),
                       digits(off / floor), digits(balance.energy), overlap / 0.49));
     // and on
     GrainScene thrice = scene;
@@ -186,11 +186,11 @@ TEST_CASE("bonds_past_their_step_limit_are_refused_with_the_limit") {
     CAPTURE(most);
     CHECK(most <= 1 + 1e-3);
     table.note(
-        format("{}, step 0.999 of the limit, 2e4 steps", tie.name),
+        fmt::format("{}, step 0.999 of the limit, 2e4 steps", tie.name),
         "the limit that theory gives, to 1e-14; energy gained below 1e-3",
-        format("limit off by {}, most energy {:.6f} of the first", digits(std::abs(limit / tie.limit - 1)), most));
+        fmt::format("limit off by {}, most energy {:.6f} of the first", digits(std::abs(limit / tie.limit - 1)), most));
     options.time_step = 1.001 * limit;
-    table.refused(format("{}, step 1.001 of the limit", tie.name), attempt([&] { GrainSimulation(scene, options); }),
+    table.refused(fmt::format("{}, step 1.001 of the limit", tie.name), attempt([&] { GrainSimulation(scene, options); }),
                   {"1.001 times the limit of", "that the bonds impose", "Stay below it"});
   }
   // without dashpots in the limit: exact ones of any size, whatever the step
@@ -202,7 +202,7 @@ TEST_CASE("bonds_past_their_step_limit_are_refused_with_the_limit") {
   CHECK(left < 1);
   CHECK(balance.momentum < 1e-13);
   table.note("exact dashpots, 1e9 times the limit of explicit ones", "no energy gained, momentum to 1e-13",
-             format("energy left {:.3f}, momentum {}", left, digits(balance.momentum)));
+             fmt::format("energy left {:.3f}, momentum {}", left, digits(balance.momentum)));
 }
 
 TEST_CASE("a_box_shaken_at_100_g_keeps_its_grains_and_its_ledger") {
@@ -240,6 +240,6 @@ TEST_CASE("a_box_shaken_at_100_g_keeps_its_grains_and_its_ledger") {
     table.note(
         "12 at 5 Hz, 10 cycles, friction 0.4, " + name_of(kind),
         "all stay inside; energy to 2e-3 of the work of the walls at the shortest step",
-        format("energy {}, {}, {}; {} contacts", digits(errors[0]), digits(errors[1]), digits(errors[2]), contacts));
+        fmt::format("energy {}, {}, {}; {} contacts", digits(errors[0]), digits(errors[1]), digits(errors[2]), contacts));
   }
 }

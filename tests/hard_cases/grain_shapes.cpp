@@ -64,7 +64,7 @@ TEST_CASE("needles_keep_momentum_and_energy") {
   CHECK(errors[2] < errors[0] / 8);
   table.note("16 that fly at each other, e = 1, w dt = 0.2, 0.1, 0.05",
              "momentum 1e-13, angular momentum 1e-12, energy 1e-3 at the last and of the second order",
-             format("momentum {}, angular {}, energy {}, {}, {}", digits(balance.momentum), digits(balance.angular),
+             fmt::format("momentum {}, angular {}, energy {}, {}, {}", digits(balance.momentum), digits(balance.angular),
                     digits(errors[0]), digits(errors[1]), digits(errors[2])));
 }
 
@@ -99,7 +99,7 @@ TEST_CASE("a_needle_rests_on_two_pegs_by_its_tip_and_its_side") {
     CHECK(off < 1e-9);
   }
   table.note("at rest on two pegs, under a tip, a side, both", "forces and moments in balance to 1e-9, overlaps too",
-             format("balance {}, overlaps {}", digits(lack), digits(off)));
+             fmt::format("balance {}, overlaps {}", digits(lack), digits(off)));
 }
 
 TEST_CASE("equal_ellipses_in_line_stay_in_line") {
@@ -127,7 +127,7 @@ TEST_CASE("equal_ellipses_in_line_stay_in_line") {
   CHECK(restitution < 2e-3);
   CHECK(turn == 0);
   table.note("impact, tip on tip and side on side, e = 0.5 and 1", "restitution to 2e-3, no spin at all",
-             format("restitution {}, spin {}", digits(restitution), digits(turn)));
+             fmt::format("restitution {}, spin {}", digits(restitution), digits(turn)));
 
   for (const double angle : {0.0, 0.3}) {
     const GrainScene scene = flat_column(10, 1e4, angle);
@@ -146,10 +146,10 @@ TEST_CASE("equal_ellipses_in_line_stay_in_line") {
     CAPTURE(angle, off, lack);
     CHECK(lack < 1e-9);
     CHECK(off < (angle == 0 ? 1e-300 : 1e-9));
-    table.note(format("column of 10 flat on one another, at {} rad, 10 s", angle),
+    table.note(fmt::format("column of 10 flat on one another, at {} rad, 10 s", angle),
                angle == 0 ? "overlaps and forces to 1e-9 of what they carry, not a bit to the side"
                           : "the same, to the side 1e-9",
-               format("overlaps {}, to the side {}", digits(lack), digits(off)));
+               fmt::format("overlaps {}, to the side {}", digits(lack), digits(off)));
   }
 }
 
@@ -204,7 +204,7 @@ TEST_CASE("small_bodies_meet_one_a_hundred_times_as_large") {
     CHECK(balance.angular < 1e-12);
     CHECK(balance.energy < 1e-4);
     table.note("24 thrown on one, " + name_of(kind), "energy to 1e-4, momentum to 1e-13, angular momentum to 1e-12",
-               format("energy {}, momentum {}, angular {}", digits(balance.energy), digits(balance.momentum),
+               fmt::format("energy {}, momentum {}, angular {}", digits(balance.energy), digits(balance.momentum),
                       digits(balance.angular)));
   }
   // a small disc in the hollow of two large ones: normals all but level, each carries half the weight
@@ -228,5 +228,5 @@ TEST_CASE("small_bodies_meet_one_a_hundred_times_as_large") {
   CHECK(off < 1e-6);
   table.note("a small disc in the hollow of two large ones",
              "forces in balance to 1e-9, overlaps those of them to 1e-6",
-             format("balance {}, overlaps {}", digits(lack), digits(off)));
+             fmt::format("balance {}, overlaps {}", digits(lack), digits(off)));
 }

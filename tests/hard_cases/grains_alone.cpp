@@ -48,7 +48,7 @@ TEST_CASE("without_gravity_bodies_keep_their_momenta_and_rest_stays_rest") {
     CHECK(same);
     table.note("16 fly at each other, one rests far away, " + name_of(kind),
                "momenta to 1e-12, energy to 2e-3; what rests keeps its bits",
-               format("momentum {}, angular {}, energy {}; {}", digits(balance.momentum), digits(balance.angular),
+               fmt::format("momentum {}, angular {}, energy {}; {}", digits(balance.momentum), digits(balance.angular),
                       digits(balance.energy), same ? "the same bits" : "other bits"));
   }
   // a million steps of free flight
@@ -64,7 +64,7 @@ TEST_CASE("without_gravity_bodies_keep_their_momenta_and_rest_stays_rest") {
   CHECK(out.velocity == scene.grains[0].velocity);
   CHECK(out.spin == scene.grains[0].spin);
   table.note("an ellipse flies 1e6 steps", "place and angle to 1e-10, velocities to the bit",
-             format("place {}, angle {}", digits(off), digits(turned)));
+             fmt::format("place {}, angle {}", digits(off), digits(turned)));
   PackingOptions options;
   options.method = PackingMethod::falling;
   options.box = {{5, 0}, PackingBox::Sides::open_top};
@@ -92,7 +92,7 @@ TEST_CASE("one_grain_falls_rebounds_and_rests") {
     CHECK(errors[2] < 1e-3);
     CHECK(errors[2] < errors[0] / 2.5);
     table.note("bouncing for 10 s, e = 1, " + name_of(kind), "energy to 1e-3, falling with the step",
-               format("{}, {}, {}", digits(errors[0]), digits(errors[1]), digits(errors[2])));
+               fmt::format("{}, {}, {}", digits(errors[0]), digits(errors[1]), digits(errors[2])));
 
     GrainScene scene = scene_of({}, {line("floor", {0, 0}, {0, 1})}, {.stiffness = 1e4, .restitution = 0.1}, {0, -1});
     add_body(scene, kind, {0, 1}, 1, kind == BodyKind::clump ? -2.356 : 0);

@@ -54,7 +54,7 @@ void solve_integers(HardCase& table, int n) {
   for (std::size_t k = 0; k < force.size(); ++k) {
     if (held[k / 3] != 0 || force[k] == 0) continue;
     const double value = k % 3 == 2 ? 0.5 * force[k] : force[k];  // moments over a
-    const std::string name = format("{} {}", k % 3, value);
+    const std::string name = fmt::format("{} {}", k % 3, value);
     DiscGroup& discs = assembly.groups[name];
     if (discs.discs.empty()) {
       problem.loads.push_back({.group = name,
@@ -64,7 +64,7 @@ void solve_integers(HardCase& table, int n) {
     }
     discs.discs.push_back(static_cast<std::int32_t>(k / 3));
   }
-  table.right(format("solve {} discs", assembly.size()), solve(problem, exact), 1e-11);
+  table.right(fmt::format("solve {} discs", assembly.size()), solve(problem, exact), 1e-11);
 }
 
 /// The cell, its coordinates rounded to a grid on which all images are exact, m times along x and y.
@@ -99,7 +99,7 @@ void homogenize_repeated(HardCase& table, int m) {
   for (Contact& c : cell.contacts) c.lever_i = c.lever_j = 0.5 * norm(cell.branch(c));
   const ContactSprings springs(SpringConstants{1e9, 0.3e9});
   const Assembly large = repeated(cell, m);
-  table.right(format("homogenize {} discs", large.size()),
+  table.right(fmt::format("homogenize {} discs", large.size()),
               homogenize(large, springs, Rotation::from_scene, exact_stiffness(cell, springs, Rotation::from_scene)),
               1e-12);
 }

@@ -11,7 +11,7 @@
 
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
-#include "equidem/statics/degrees_of_freedom.hpp"
+#include "equidem/statics/number_unknowns.hpp"
 
 #include "hard_cases/oracle.hpp"
 #include "support/catch.hpp"
@@ -75,7 +75,7 @@ Equilibrium state_of(const Problem& problem, Answer& answer) {
 }
 
 std::string rounded(double x) {
-  return format("{:.1e}", x);
+  return fmt::format("{:.1e}", x);
 }
 
 }  // namespace
@@ -171,8 +171,8 @@ HardCase::~HardCase() {
   };
   for (const auto& [task, a] : accuracies_) {
     write({task, "error <= bound <= " + rounded(a.promised),
-           format("error {}, bound {}, condition {}{}", rounded(a.error), rounded(a.bound), rounded(a.condition),
-                  a.runs > 1 ? format(" (worst of {})", a.runs) : "")});
+           fmt::format("error {}, bound {}, condition {}{}", rounded(a.error), rounded(a.bound), rounded(a.condition),
+                  a.runs > 1 ? fmt::format(" (worst of {})", a.runs) : "")});
   }
   for (const Row& row : rows_) write(row);
 }

@@ -49,7 +49,7 @@ Problem on_a_rail(int columns, double ratio) {
 void strip_on_a_rail(HardCase& table, int columns) {
   for (const double ratio : {0.5, -0.05}) {
     CAPTURE(columns, ratio);
-    table.right(format("solve 2 x {}, bottom on a rail", columns), solve(on_a_rail(columns, ratio)), 1e-9);
+    table.right(fmt::format("solve 2 x {}, bottom on a rail", columns), solve(on_a_rail(columns, ratio)), 1e-9);
   }
 }
 
@@ -57,7 +57,7 @@ void strip_cell(HardCase& table, int columns) {
   const double root = 0.86602540378443865;
   for (const double ratio : {0.5, 1e-8, -0.3}) {
     CAPTURE(columns, ratio);
-    table.right(format("homogenize 2 x {}", columns),
+    table.right(fmt::format("homogenize 2 x {}", columns),
                 homogenize(strip(columns, true), springs_of(ratio), Rotation::from_scene,
                            isotropic_stiffness(root * 1e9, root / 2 * (1 + ratio) * 1e9)),
                 1e-13);
@@ -89,7 +89,7 @@ TEST_CASE("the_longest_strips_are_right_or_called_too_soft", "[.large]") {
   }
   for (const double ratio : {0.0, -0.05}) {
     CAPTURE(ratio);
-    table.refused(format("solve 2 x 100000, clamped at one end, kT/kN = {}", ratio),
+    table.refused(fmt::format("solve 2 x 100000, clamped at one end, kT/kN = {}", ratio),
                   solve(cantilever(100000, ratio, {1000, 0})), {"digits of a double", "more places"});
   }
   strip_on_a_rail(table, 100000);
@@ -124,7 +124,7 @@ TEST_CASE("a_chain_of_2000_springs_of_all_sizes_stretches_by_the_sum_of_its_flex
   CHECK(off < 1e-13);
   CHECK(state.motions.back().u.x == Approx(flexibility).epsilon(1e-12));
   CHECK(state.motions.back().u.y == Approx(0.5 * flexibility / 0.3).epsilon(1e-12));
-  table.note("solve", "every contact carries the load to 1e-13", format("{:.1e}", off));
+  table.note("solve", "every contact carries the load to 1e-13", fmt::format("{:.1e}", off));
 }
 
 TEST_CASE("every_section_of_a_strip_of_2_by_2000_carries_the_load_and_its_moment") {

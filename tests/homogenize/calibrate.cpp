@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/homogenize/calibrate.hpp"
+#include "equidem/homogenize/calibrate/calibrate.hpp"
 
 #include <algorithm>
 #include <cmath>

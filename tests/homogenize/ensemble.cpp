@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Sampling loses nothing and changes no bit; statistics of cells whose true moduli are known.
-#include "equidem/homogenize/ensemble.hpp"
+#include "equidem/homogenize/ensemble/ensemble.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -15,7 +15,7 @@
 #include "equidem/core/random.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
-#include "equidem/homogenize/ensemble_statistics.hpp"
+#include "equidem/homogenize/ensemble/ensemble_statistics.hpp"
 
 #include "support/catch.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The accuracy asked of an ensemble is kept, at little more than the least cost, on cells whose true moduli are known.
-#include "equidem/homogenize/ensemble_accuracy.hpp"
+#include "equidem/homogenize/ensemble/ensemble_accuracy.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/homogenize/ratio_search.hpp"
+#include "equidem/homogenize/calibrate/ratio_search.hpp"
 
 #include <algorithm>
 #include <cmath>

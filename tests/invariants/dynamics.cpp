@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "equidem/statics/internal_force.hpp"
-#include "equidem/statics/stiffness_matrix.hpp"
+#include "equidem/statics/assemble_stiffness.hpp"
 
 #include "dynamics/moving_scenes.hpp"
 #include "support/assemblies.hpp"

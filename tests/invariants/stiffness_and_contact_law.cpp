@@ -14,7 +14,7 @@
 #include "equidem/core/random.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/motion_description.hpp"
-#include "equidem/statics/stiffness_matrix.hpp"
+#include "equidem/statics/assemble_stiffness.hpp"
 
 #include "support/assemblies.hpp"
 #include "support/catch.hpp"

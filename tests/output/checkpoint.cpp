@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/output/checkpoint.hpp"
+#include "equidem/output/files/checkpoint.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -8,8 +8,8 @@
 
 #include "equidem/core/file.hpp"
 #include "equidem/core/random.hpp"
-#include "equidem/output/energy_terms.hpp"
-#include "equidem/output/open_file.hpp"
+#include "equidem/output/files/energy_terms.hpp"
+#include "equidem/output/files/open_file.hpp"
 
 #include "output/runs.hpp"
 #include "output/states.hpp"
@@ -135,7 +135,7 @@ TEST_CASE("a_truncated_checkpoint_is_refused") {
     CAPTURE(size, refusal.message);
     REQUIRE(refusal.kind == ErrorKind::bad_input);
     if (size >= 512) {
-      REQUIRE(refusal.says(format("it is truncated: {} bytes are left of {}", size, whole)));
+      REQUIRE(refusal.says(fmt::format("it is truncated: {} bytes are left of {}", size, whole)));
     } else {
       REQUIRE(refusal.says("cannot go on from '"));
     }

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "equidem/core/random.hpp"
-#include "equidem/output/colour_map.hpp"
+#include "equidem/output/pictures/colour_map.hpp"
 
 #include "support/catch.hpp"
 

@@ -8,7 +8,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/random.hpp"
-#include "equidem/output/csv.hpp"
+#include "equidem/output/files/csv.hpp"
 
 #include "output/states.hpp"
 #include "support/catch.hpp"

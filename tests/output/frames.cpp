@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/output/frames.hpp"
+#include "equidem/output/files/frames.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "equidem/core/file.hpp"
 #include "equidem/core/random.hpp"
-#include "equidem/output/csv.hpp"
+#include "equidem/output/files/csv.hpp"
 
 #include "output/runs.hpp"
 #include "output/states.hpp"
@@ -103,8 +103,8 @@ TEST_CASE("frames_read_back_by_other_readers_to_the_same_bits") {
     for (const std::int64_t step : {0, 10, 20, 35, 40}) {
       append(writer, assembly, step);
       const auto motions = motions_at(step, assembly.size()), velocities = velocities_at(step, assembly.size());
-      write_disc_csv(folder / format("motion_{}.csv", step), {assembly, motions}, false);
-      write_disc_csv(folder / format("velocity_{}.csv", step), {assembly, velocities}, false);
+      write_disc_csv(folder / fmt::format("motion_{}.csv", step), {assembly, motions}, false);
+      write_disc_csv(folder / fmt::format("velocity_{}.csv", step), {assembly, velocities}, false);
     }
     if (finished) writer.finish();
     write_contact_csv(folder / "contacts.csv", {assembly}, false);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/output/grain_animation.hpp"
+#include "equidem/output/pictures/grain_animation.hpp"
 
 #include <algorithm>
 #include <array>

@@ -5,12 +5,12 @@
 
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/frames.hpp"
-#include "equidem/output/grain_checkpoint.hpp"
-#include "equidem/output/grain_picture.hpp"
-#include "equidem/output/grain_tables.hpp"
-#include "equidem/output/growing_csv.hpp"
-#include "equidem/output/hdf5.hpp"
+#include "equidem/output/files/frames.hpp"
+#include "equidem/output/files/grain_checkpoint.hpp"
+#include "equidem/output/pictures/grain_picture.hpp"
+#include "equidem/output/files/grain_tables.hpp"
+#include "equidem/output/files/growing_csv.hpp"
+#include "equidem/output/files/hdf5.hpp"
 
 #include "output/runs.hpp"
 #include "output/states.hpp"
@@ -122,7 +122,7 @@ TEST_CASE("frames_of_travelling_bodies_hold_their_places") {
   // ParaView 5.11 takes frames whose points begin alike for the same points, and reports an error where they begin with an element.
   const auto beginning = [&](int frame) {
     const std::string start = "<Geometry GeometryType=\"XYZ\"><DataItem ItemType=\"HyperSlab\" Dimensions=\"3 3\">";
-    return index.find(format("{}<!--frame {}-->", start, frame));
+    return index.find(fmt::format("{}<!--frame {}-->", start, frame));
   };
   CHECK(beginning(0) < beginning(1));
   CHECK(beginning(1) != std::string::npos);

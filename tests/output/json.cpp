@@ -8,7 +8,7 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/json.hpp"
+#include "equidem/output/files/json.hpp"
 
 #include "output/states.hpp"
 #include "support/catch.hpp"
@@ -19,7 +19,7 @@ namespace {
 
 /// The text that stands behind "key": up to the end of its line, without a comma.
 std::string value_of(const std::string& json, const std::string& key) {
-  const std::string name = format("\"{}\": ", key);
+  const std::string name = fmt::format("\"{}\": ", key);
   const std::size_t start = json.find(name);
   if (start == std::string::npos) return "(missing)";
   const std::size_t from = start + name.size();
@@ -143,6 +143,6 @@ TEST_CASE("solve_json_has_the_promised_keys") {
   CHECK(value_of(text, "stress") == "[1000000, 0, 0]");
   CHECK(value_of(text, "placement") == "\"quarter\"");
   CHECK(value_of(text, "horizontal") == "[3, 9]");
-  CHECK(value_of(text, "version") == format("\"{}\"", library_version()));
+  CHECK(value_of(text, "version") == fmt::format("\"{}\"", library_version()));
   CHECK(is_json(text));
 }

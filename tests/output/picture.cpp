@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/output/picture.hpp"
+#include "equidem/output/pictures/picture.hpp"
 
 #include <cmath>
 #include <numbers>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
-#include "equidem/output/scene.hpp"
+#include "equidem/output/pictures/scene.hpp"
 
 #include "output/png.hpp"
 #include "output/states.hpp"

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/output/plot.hpp"
+#include "equidem/output/plots/plot.hpp"
 
 #include <cmath>
 #include <cstdlib>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
-#include "equidem/output/gnuplot.hpp"
-#include "equidem/output/plot_layout.hpp"
-#include "equidem/output/plot_script.hpp"
+#include "equidem/output/plots/gnuplot.hpp"
+#include "equidem/output/plots/plot_layout.hpp"
+#include "equidem/output/plots/plot_script.hpp"
 
 #include "output/png.hpp"
 #include "output/states.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/output/probes.hpp"
+#include "equidem/output/files/probes.hpp"
 
 #include <charconv>
 #include <sstream>
@@ -7,7 +7,7 @@
 
 #include "equidem/core/file.hpp"
 #include "equidem/core/random.hpp"
-#include "equidem/output/energy_terms.hpp"
+#include "equidem/output/files/energy_terms.hpp"
 
 #include "output/runs.hpp"
 #include "output/states.hpp"
@@ -134,7 +134,7 @@ TEST_CASE("histories_of_a_resumed_run_are_those_of_an_uninterrupted_one") {
     }
     if (round > 0) {  // killed while it wrote: cut anywhere behind the checkpoint
       const std::string text = read_file(path);
-      const std::size_t safe = text.find(format("\n{},", checkpoint + 1)) + 1;
+      const std::size_t safe = text.find(fmt::format("\n{},", checkpoint + 1)) + 1;
       std::filesystem::resize_file(path, safe + random.below(text.size() - safe));
     }
     ProbeWriter writer(path, probes, discs, {.continue_after = checkpoint});

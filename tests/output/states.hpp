@@ -15,7 +15,7 @@
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/state.hpp"
+#include "equidem/output/files/state.hpp"
 
 namespace equidem {
 
@@ -78,9 +78,9 @@ class TemporaryFolder {
 /// Run a script of this folder with Python; its complaints appear in the log of the test.
 /// \return its exit code
 inline int run_python(const std::string& script, const std::vector<std::string>& arguments) {
-  std::string command = format("'{}' '{}/tests/output/{}'", EQUIDEM_PYTHON, EQUIDEM_SOURCE_DIR, script);
-  for (const std::string& argument : arguments) command += format(" '{}'", argument);
-  const int status = std::system(format("{} 1>&2", command).c_str());
+  std::string command = fmt::format("'{}' '{}/tests/output/{}'", EQUIDEM_PYTHON, EQUIDEM_SOURCE_DIR, script);
+  for (const std::string& argument : arguments) command += fmt::format(" '{}'", argument);
+  const int status = std::system(fmt::format("{} 1>&2", command).c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 

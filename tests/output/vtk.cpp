@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/output/vtk.hpp"
+#include "equidem/output/files/vtk.hpp"
 
 #include "equidem/core/file.hpp"
-#include "equidem/output/csv.hpp"
+#include "equidem/output/files/csv.hpp"
 
 #include "output/states.hpp"
 #include "support/catch.hpp"

@@ -8,7 +8,7 @@
 
 #include "equidem/fields/spectrum.hpp"
 #include "equidem/grains/grain_simulation.hpp"
-#include "equidem/grains/shaking.hpp"
+#include "equidem/grains/scene/shaking.hpp"
 #include "equidem/material/wave_speed_springs.hpp"
 #include "equidem/packing/packing.hpp"
 #include "equidem/packing/size_distribution.hpp"

@@ -10,8 +10,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "equidem/contact/ellipse_contact.hpp"
-#include "equidem/contact/enlarged_ellipse.hpp"
+#include "equidem/contact/shapes/ellipse_contact.hpp"
+#include "equidem/contact/shapes/enlarged_ellipse.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 
@@ -132,7 +132,7 @@ TEST_CASE("sukegawa_2010_contacts_are_missed_but_never_invented") {
   std::string table = "aspect | missed at a depth up to 1, 5, 10, 20 % of the mean radius | deepest missed\n";
   Random random(1);
   for (const double aspect : {1.0, 1.2, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0}) {
-    table += format("{:6.1f} |", aspect);
+    table += fmt::format("{:6.1f} |", aspect);
     double deepest = 0;
     std::vector<double> shares;
     for (const double depth : {0.01, 0.05, 0.1, 0.2}) {
@@ -152,9 +152,9 @@ TEST_CASE("sukegawa_2010_contacts_are_missed_but_never_invented") {
         CHECK(enlarged_ellipse_contact(pair.i, pair.j, pair.branch, AngleReading::printed).judgement > 0);
       }
       shares.push_back(static_cast<double>(missed) / pairs);
-      table += format(" {:5.1f} %", 100 * shares.back());
+      table += fmt::format(" {:5.1f} %", 100 * shares.back());
     }
-    table += format(" | {:.3f}\n", deepest);
+    table += fmt::format(" | {:.3f}\n", deepest);
     INFO(table);
     if (aspect == 1) CHECK(deepest == 0);
     if (aspect > 1) CHECK(shares.front() > 0);
@@ -178,7 +178,7 @@ TEST_CASE("sukegawa_2010_normals_at_first_touch") {
       of_mended.push_back(off(AngleReading::mended));
     }
     const Spread printed = spread_of(of_printed), mended = spread_of(of_mended);
-    table += format("{:6.1f} | {:5.1f} {:5.1f} {:5.1f} | {:5.1f} {:5.1f} {:5.1f}\n", aspect, printed.mean,
+    table += fmt::format("{:6.1f} | {:5.1f} {:5.1f} {:5.1f} | {:5.1f} {:5.1f} {:5.1f}\n", aspect, printed.mean,
                     printed.most_of_all, printed.largest, mended.mean, mended.most_of_all, mended.largest);
     INFO(table);
     CHECK(printed.mean > mended.mean + 10);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/statics/degrees_of_freedom.hpp"
+#include "equidem/statics/number_unknowns.hpp"
 
 #include <cmath>
 #include <cstdint>

@@ -137,7 +137,7 @@ TEST_CASE("uniform_strain_of_the_rim_is_uniform_strain_inside_a_hexagonal_lattic
   std::vector<Support> supports;
   for (std::size_t d = 0; d < block.size(); ++d) {
     if (neighbours[d] == 6) continue;
-    const std::string name = format("rim {}", d);
+    const std::string name = fmt::format("rim {}", d);
     block.groups[name].discs = {static_cast<std::int32_t>(d)};
     const Vec2 u = gradient * block.centres[d];
     supports.push_back({.group = name, .ux = u.x, .uy = u.y, .rotation = {}});
@@ -211,7 +211,7 @@ TEST_CASE("a_moment_on_an_inert_disc_is_refused_unless_a_support_takes_it") {
 
   const Refusal refusal = refusal_of([&] { static_cast<void>(solve_equilibrium(fan, springs, supports, {moment})); });
   CAPTURE(refusal.message);
-  CHECK(refusal.says(format("a moment acts on disc {}", last)));
+  CHECK(refusal.says(fmt::format("a moment acts on disc {}", last)));
   CHECK(refusal.says("tangential spring"));
 
   // Another inert disc, so that there are some although the loaded one is held.
@@ -248,7 +248,7 @@ TEST_CASE("a_moment_on_a_disc_whose_contacts_have_no_lever_is_refused") {
                                         {{.group = "last", .kind = LoadKind::per_disc, .force = {}, .moment = 2.0}}));
   });
   CAPTURE(refusal.message);
-  CHECK(refusal.says(format("a moment acts on disc {}", last)));
+  CHECK(refusal.says(fmt::format("a moment acts on disc {}", last)));
 }
 
 TEST_CASE("the_estimate_is_what_the_solve_then_reports") {
@@ -283,7 +283,7 @@ TEST_CASE("too_little_memory_is_told_before_it_is_used") {
   CHECK(refusal.says(readable_bytes(estimate.peak_bytes)));
   CHECK(refusal.says(readable_bytes(12345)));
   CHECK(refusal.says("memory_limit"));
-  CHECK(refusal.says(format("{} unknowns", estimate.unknowns)));
+  CHECK(refusal.says(fmt::format("{} unknowns", estimate.unknowns)));
   options.solver.memory_limit = 0.99 * estimate.peak_bytes;
   CHECK(!refusal_of([&] { EquilibriumSolver(block, springs, supports, options); }).message.empty());
   options.solver.memory_limit = 1.01 * estimate.peak_bytes;

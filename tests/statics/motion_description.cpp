@@ -12,7 +12,7 @@
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/statics/stiffness_matrix.hpp"
+#include "equidem/statics/assemble_stiffness.hpp"
 
 #include "support/catch.hpp"
 
@@ -148,7 +148,7 @@ TEST_CASE("rigid_motions_are_named") {
   check_says(assembly, rigid_motion(assembly, {0.6, 0.8}, 0, {}), {"translation along (0.6, 0.8)"});
   const Vec2 point = GENERATE(Vec2{0, 0}, Vec2{0.025, 0.0433}, Vec2{-0.3, 0.1});
   check_says(assembly, rigid_motion(assembly, {}, 0.1, point),
-             {format("rigid rotation about ({:.6g}, {:.6g}) of all", point.x, point.y)});
+             {fmt::format("rigid rotation about ({:.6g}, {:.6g}) of all", point.x, point.y)});
   std::vector<DiscMotion> rolling = rigid_motion(assembly, {}, 0.1, point);
   for (DiscMotion& m : rolling) m.theta *= 2;
   check_says(assembly, rolling, {"rigid rotation about (", "rolling"});
@@ -240,7 +240,7 @@ TEST_CASE("mechanisms_of_periodic_cells_are_named") {
     const Assembly assembly = cell_of_squares(size);
     std::vector<DiscMotion> motions(assembly.size());
     for (int d = 0; d < size; ++d) motions[d].u = {1, 0};
-    check_mechanism(assembly, 0, motions, {format("a rigid translation along x of {} of {} discs", size, size * size)});
+    check_mechanism(assembly, 0, motions, {fmt::format("a rigid translation along x of {} of {} discs", size, size * size)});
     if (size == 2) return;
     for (int d = 3 * size; d < 4 * size; ++d) motions[d].u = {-0.3, 0};
     check_mechanism(assembly, 0, motions,
@@ -264,7 +264,7 @@ TEST_CASE("mechanisms_of_periodic_cells_are_named") {
       ++ring;
     }
     REQUIRE(ring == 6);
-    check_mechanism(assembly, 0, motions, {"a rigid rotation about (", format("of 6 of {} discs", assembly.size())});
+    check_mechanism(assembly, 0, motions, {"a rigid rotation about (", fmt::format("of 6 of {} discs", assembly.size())});
   }
   SECTION("the shear of a honeycomb") {
     // The branches b from the one disc of a cell to the other, 2a (1, 0) and a (-1, +-sqrt3), keep their length where

@@ -9,7 +9,7 @@
 
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/statics/equilibrium.hpp"
-#include "equidem/statics/linear_solver.hpp"
+#include "equidem/linear/linear_solver.hpp"
 
 #include "support/assemblies.hpp"
 #include "support/catch.hpp"

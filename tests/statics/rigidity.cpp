@@ -93,7 +93,7 @@ Assembly ring(int count) {
 }
 
 std::string at(Vec2 x) {
-  return format("({:.6g}, {:.6g})", x.x, x.y);
+  return fmt::format("({:.6g}, {:.6g})", x.x, x.y);
 }
 
 void check_says(const std::string& sentence, const std::vector<std::string>& words) {
@@ -127,11 +127,11 @@ TEST_CASE("assemblies_without_neighbours_are_refused") {
       scene.hold(k, {0, 1, 2});
     }
     const int first = static_cast<int>(scene.assembly.size()) - 4;
-    check_says(scene.refusal(), {"4 discs have no contacts", format("disc {} at (10.5, ", first), "..."});
+    check_says(scene.refusal(), {"4 discs have no contacts", fmt::format("disc {} at (10.5, ", first), "..."});
     CHECK(scene.report().discs_without_contacts == 4);
     CHECK(scene.report().free_rigid_motions == 8);
     scene.hold(first, {0, 1}).hold(first + 1, {0, 1}).hold(first + 2, {0, 1}).hold(first + 3, {0});
-    check_says(scene.refusal(), {format("disc {} at (13.5, ", first + 3), "not held in both directions", "Hold it"});
+    check_says(scene.refusal(), {fmt::format("disc {} at (13.5, ", first + 3), "not held in both directions", "Hold it"});
     CHECK(scene.hold(first + 3, {1}).refusal().empty());
   }
 }

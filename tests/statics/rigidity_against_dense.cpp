@@ -12,7 +12,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/statics/rigidity.hpp"
-#include "equidem/statics/stiffness_matrix.hpp"
+#include "equidem/statics/assemble_stiffness.hpp"
 
 #include "support/catch.hpp"
 

@@ -35,7 +35,7 @@ TEST_CASE("observed_orders_are_those_of_theory") {
   std::string told;
   for (const StudyCurve& curve : result.curves) {
     if (!curve.order || !curve.expected) continue;
-    told += format("{}, {}, {}: {:.3f} ± {:.2g} over {} levels, theory {:g}\n", curve.problem, curve.method,
+    told += fmt::format("{}, {}, {}: {:.3f} ± {:.2g} over {} levels, theory {:g}\n", curve.problem, curve.method,
                    study.quantities[curve.quantity].name, curve.order->order, curve.order->uncertainty,
                    curve.order->levels, curve.expected->order);
   }

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
-#include "equidem/statics/stiffness_matrix.hpp"
+#include "equidem/statics/assemble_stiffness.hpp"
 
 namespace equidem::test {
 

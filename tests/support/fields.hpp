@@ -16,7 +16,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/threads.hpp"
-#include "equidem/statics/degrees_of_freedom.hpp"
+#include "equidem/statics/number_unknowns.hpp"
 
 #include "support/catch.hpp"
 

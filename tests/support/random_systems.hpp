@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "equidem/core/random.hpp"
-#include "equidem/statics/contact_graph.hpp"
-#include "equidem/statics/front.hpp"
-#include "equidem/statics/nested_dissection.hpp"
-#include "equidem/statics/stiffness_matrix.hpp"
-#include "equidem/statics/symbolic_factor.hpp"
+#include "equidem/linear/contact_graph.hpp"
+#include "equidem/linear/multifrontal/front.hpp"
+#include "equidem/linear/ordering/nested_dissection.hpp"
+#include "equidem/statics/assemble_stiffness.hpp"
+#include "equidem/linear/ordering/symbolic_factor.hpp"
 
 #include "support/dense_oracle.hpp"
 

@@ -45,7 +45,7 @@ struct Printed {
 };
 
 std::string apart(std::int64_t step, double value, double printed) {
-  return format("step {}: {:.17g}, LAMMPS {:.17g}, apart by {:.2g}\n", step, value, printed, value - printed);
+  return fmt::format("step {}: {:.17g}, LAMMPS {:.17g}, apart by {:.2g}\n", step, value, printed, value - printed);
 }
 
 /// Two spheres that meet head on in x: the state of the second.
@@ -125,7 +125,7 @@ TEST_CASE(
     }
   }
   const GrainLedger ledger = simulation.energy();
-  INFO(format("energy: {:.3g} of what there was", ledger.error() / ledger.initial));
+  INFO(fmt::format("energy: {:.3g} of what there was", ledger.error() / ledger.initial));
   CHECK(std::abs(ledger.error()) < 5e-4 * ledger.initial);  // analytic_tol of the file
 }
 
@@ -212,7 +212,7 @@ void graze(const Grazing& asked) {
     const double given = asked.tolerance * std::abs(asked.velocity.x);
     INFO(apart(at, now.velocity.y, printed.velocity.y)
          << apart(at, now.velocity.x, printed.velocity.x) << apart(at, -now.spin, printed.spin)
-         << format("mu |N| while attracted gives {:.3g} m/s", more));
+         << fmt::format("mu |N| while attracted gives {:.3g} m/s", more));
     CHECK(std::abs(now.velocity.y - printed.velocity.y) < 1e-13);
     CHECK(slowed > own - given);
     CHECK(slowed < own + more + given);

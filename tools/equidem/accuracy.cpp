@@ -7,14 +7,14 @@
 #include "equidem/core/text.hpp"
 #include "equidem/study/evaluate.hpp"
 
-#include "report.hpp"
+#include "solve/report.hpp"
 
 namespace equidem {
 namespace {
 
 std::string text_of(const AccuracySetting& setting) {
   std::string text;
-  for (const auto& [key, value] : setting) text += format("{}{} = {:.6g}", text.empty() ? "" : ", ", key, value);
+  for (const auto& [key, value] : setting) text += fmt::format("{}{} = {:.6g}", text.empty() ? "" : ", ", key, value);
   return text;
 }
 
@@ -30,7 +30,7 @@ void add_accuracy_option(CLI::App& command, std::optional<double>& accuracy, con
   const auto wrong = [](const std::string& given) -> std::string {
     double value = 0;
     const bool right = CLI::detail::lexical_cast(given, value) && value >= 1e-15 && value < 1;
-    return right ? "" : format("'{}' is not a number of at least 1e-15 and below 1, such as 0.01", given);
+    return right ? "" : fmt::format("'{}' is not a number of at least 1e-15 and below 1, such as 0.01", given);
   };
   command.add_option("--accuracy", accuracy, what)->check(wrong)->type_name("X");
 }
@@ -43,17 +43,17 @@ void refuse_dry_run_with_accuracy(const CommonOptions& options, bool accuracy) {
 
 std::string describe_accuracy(const ReachedAccuracy& reached) {
   const auto& more = reached.ten_times_more;
-  std::string text = report_line("accuracy", format("asked {:.3g}, estimated to be reached {:.2g}: {}",
+  std::string text = report_line("accuracy", fmt::format("asked {:.3g}, estimated to be reached {:.2g}: {}",
                                                     reached.requested, reached.estimated, reached.of));
-  if (!reached.knob.empty()) text += report_line("", format("chosen: {}, {}", reached.knob, text_of(reached.value)));
+  if (!reached.knob.empty()) text += report_line("", fmt::format("chosen: {}, {}", reached.knob, text_of(reached.value)));
   if (!reached.pilots.empty())
-    text += report_line("", format("to choose it took {}: {:.2g} times the work of what was chosen, beside it",
+    text += report_line("", fmt::format("to choose it took {}: {:.2g} times the work of what was chosen, beside it",
                                    reached.pilots, reached.pilots_factor));
   text += report_line(
       "", more.note.empty()
-              ? format("ten times more accuracy ({:.3g}): about {:.3g} times the time, {}; {}", reached.requested / 10,
+              ? fmt::format("ten times more accuracy ({:.3g}): about {:.3g} times the time, {}; {}", reached.requested / 10,
                        more.time_factor, readable_seconds(more.seconds), text_of(more.value))
-              : format("ten times more accuracy ({:.3g}): {}", reached.requested / 10, more.note));
+              : fmt::format("ten times more accuracy ({:.3g}): {}", reached.requested / 10, more.note));
   return text;
 }
 

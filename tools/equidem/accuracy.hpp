@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "equidem/output/json.hpp"
+#include "equidem/output/files/json.hpp"
 
 #include "command.hpp"
 

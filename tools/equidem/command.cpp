@@ -44,7 +44,7 @@ Case read_case(const CommonOptions& options) {
   if (options.threads > 0) set_thread_count(options.threads);
   set_progress_shown(!options.quiet);
   std::vector<std::string> overrides = options.set;
-  if (options.seed) overrides.push_back(format("assembly.seed={}", *options.seed));
+  if (options.seed) overrides.push_back(fmt::format("assembly.seed={}", *options.seed));
   return read_case(options.case_file, overrides);
 }
 
@@ -55,7 +55,7 @@ void OutputPlan::expect(const std::string& name) const {
 void OutputPlan::expect_file(const std::filesystem::path& path) const {
   const auto folder = path.parent_path();
   if (!folder.empty() && !std::filesystem::exists(folder)) {
-    bad_input(format("cannot write '{}'", path.string()), format("there is no folder '{}'", folder.string()),
+    bad_input(fmt::format("cannot write '{}'", path.string()), fmt::format("there is no folder '{}'", folder.string()),
               "Make it, or correct the name");
   }
   check_writable(path, options_.overwrite);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "equidem/casefile/case.hpp"
-#include "equidem/output/json.hpp"
+#include "equidem/output/files/json.hpp"
 
 namespace CLI {
 class App;

@@ -23,7 +23,7 @@ std::string processor_name() {
 }  // namespace
 
 std::string Machine::text() const {
-  return format("{}, {}; equidem {}, {}, compiler {}", processor.empty() ? "unknown processor" : processor,
+  return fmt::format("{}, {}; equidem {}, {}, compiler {}", processor.empty() ? "unknown processor" : processor,
                 counted(cores, "core"), version, build, compiler);
 }
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "equidem/output/json.hpp"
+#include "equidem/output/files/json.hpp"
 
 namespace equidem {
 

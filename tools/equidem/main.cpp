@@ -17,7 +17,7 @@
 #include "equidem/core/nearest.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/json.hpp"
+#include "equidem/output/files/json.hpp"
 
 #include "verbs.hpp"
 
@@ -45,7 +45,7 @@ class HelpText : public CLI::Formatter {
   std::string make_usage(const CLI::App* command, std::string) const override {
     if (command->get_parent() == nullptr) return "Usage: equidem VERB CASE.toml [OPTIONS]\n";
     const auto takes = [&](const char* what) { return command->get_option_no_throw(what) != nullptr; };
-    return format("Usage: equidem {} {} [OPTIONS]\n", command->get_name(),
+    return fmt::format("Usage: equidem {} {} [OPTIONS]\n", command->get_name(),
                   takes("CASE")    ? "CASE.toml"
                   : takes("STUDY") ? "NAME|FILE.toml"
                                    : "PAPER");
@@ -63,7 +63,7 @@ std::string version_text() {
 #else
   const char* optimized = "not optimized";
 #endif
-  return format("equidem {}\n{}, {}, compiler {}\nCLI11 {}, fmt {}.{}.{}, {}\n", library_version(), optimized,
+  return fmt::format("equidem {}\n{}, {}, compiler {}\nCLI11 {}, fmt {}.{}.{}, {}\n", library_version(), optimized,
                 assertions, __VERSION__, CLI11_VERSION, FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100,
                 toml_parser());
 }
@@ -95,22 +95,22 @@ int usage_error(const std::string& problem, const std::string& why, const std::s
 
 /// What the command line library says, as a sentence of ours.
 int parse_failure(const CLI::App& verb, const CLI::ParseError& error) {
-  const std::string help = format("'equidem {} --help' lists its options", verb.get_name());
+  const std::string help = fmt::format("'equidem {} --help' lists its options", verb.get_name());
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     std::vector<std::string> options;
     for (const CLI::Option* option : verb.get_options()) options.push_back(option->get_name());
     for (const std::string& extra : verb.remaining()) {
       if (extra == "--accuracy" || extra.starts_with("--accuracy=")) {
-        return usage_error(format("'equidem {}' takes no --accuracy", verb.get_name()),
+        return usage_error(fmt::format("'equidem {}' takes no --accuracy", verb.get_name()),
                            "it has no setting that could be chosen for one",
                            "solve, homogenize, run and study do; 'equidem study --list' shows what accuracy costs");
       }
       if (extra.starts_with("-")) {
         const auto meant = nearest(extra, options);
-        return usage_error(format("unknown option '{}'", extra), "",
-                           meant ? format("Did you mean '{}'?", *meant) : help);
+        return usage_error(fmt::format("unknown option '{}'", extra), "",
+                           meant ? fmt::format("Did you mean '{}'?", *meant) : help);
       }
-      return usage_error(format("'{}' is one argument too many", extra), "a verb takes one case file", help);
+      return usage_error(fmt::format("'{}' is one argument too many", extra), "a verb takes one case file", help);
     }
   }
   std::string problem = one_line(error.what());
@@ -134,8 +134,8 @@ int show_help(const CLI::App& program, const std::vector<std::string>& arguments
     auto topics = verb_names();
     topics.back() = "case";
     const auto meant = nearest(arguments[1], topics);
-    usage_error(format("there is no help on '{}'", arguments[1]), "",
-                meant ? format("Did you mean '{}'?", *meant) : format("There is help on {}", listed(topics)));
+    usage_error(fmt::format("there is no help on '{}'", arguments[1]), "",
+                meant ? fmt::format("Did you mean '{}'?", *meant) : fmt::format("There is help on {}", listed(topics)));
   }
   std::fputs(program.help().c_str(), stdout);
   return 0;
@@ -157,14 +157,14 @@ int run(const std::vector<std::string>& arguments) {
   }
   if (!arguments.empty() && arguments[0] == "help") return show_help(program, arguments);
   if (arguments.empty())
-    usage_error("a verb is missing", format("the verbs are {}", listed(verb_names())),
+    usage_error("a verb is missing", fmt::format("the verbs are {}", listed(verb_names())),
                 "'equidem --help' shows examples");
   const bool is_verb =
       std::any_of(verbs.begin(), verbs.end(), [&](const Verb& verb) { return arguments[0] == verb.name; });
   if (!arguments[0].starts_with("-") && !is_verb) {
     const auto meant = nearest(arguments[0], verb_names());
-    usage_error(format("unknown verb '{}'", arguments[0]), format("the verbs are {}", listed(verb_names())),
-                meant ? format("Did you mean '{}'?", *meant) : "'equidem --help' shows examples");
+    usage_error(fmt::format("unknown verb '{}'", arguments[0]), fmt::format("the verbs are {}", listed(verb_names())),
+                meant ? fmt::format("Did you mean '{}'?", *meant) : "'equidem --help' shows examples");
   }
 
   std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
@@ -184,7 +184,7 @@ int run(const std::vector<std::string>& arguments) {
   } catch (const CLI::ParseError& error) {
     for (const CLI::App* command : commands)
       if (arguments[0] == command->get_name()) return parse_failure(*command, error);
-    return usage_error(format("unknown option '{}'", arguments[0]), "", "'equidem --help' shows examples");
+    return usage_error(fmt::format("unknown option '{}'", arguments[0]), "", "'equidem --help' shows examples");
   }
   for (std::size_t k = 0; k < commands.size(); ++k)
     if (commands[k]->parsed()) return runs[k]();
@@ -221,6 +221,6 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return fail("there is too little memory. Make the assembly smaller; --dry-run says what it needs.", 1);
   } catch (const std::exception& error) {
-    return fail(format("this is a defect of equidem: {}. Please report it with the case file.", error.what()), 1);
+    return fail(fmt::format("this is a defect of equidem: {}. Please report it with the case file.", error.what()), 1);
   }
 }

@@ -15,15 +15,15 @@
 #include "equidem/core/threads.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/material/spring_relations.hpp"
-#include "equidem/output/picture.hpp"
-#include "equidem/output/plot.hpp"
-#include "equidem/output/vtk.hpp"
+#include "equidem/output/pictures/picture.hpp"
+#include "equidem/output/plots/plot.hpp"
+#include "equidem/output/files/vtk.hpp"
 
-#include "abe1996.hpp"
+#include "abe1996/abe1996.hpp"
 #include "command.hpp"
-#include "fujioka2005.hpp"
-#include "mean_field.hpp"
-#include "sukegawa2010.hpp"
+#include "fujioka2005/fujioka2005.hpp"
+#include "abe1996_random/mean_field.hpp"
+#include "sukegawa2010/sukegawa2010.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
@@ -78,13 +78,13 @@ Plot figure7(const abe1996::Reproduction& result) {
     series.x.push_back(p.ratio);
     series.y.push_back(p.poisson_ratio);
   }
-  Plot plot{.title = format("Abe (1996), Fig. 7: {} rows of {} and {} discs", result.block.rows, result.block.columns,
+  Plot plot{.title = fmt::format("Abe (1996), Fig. 7: {} rows of {} and {} discs", result.block.rows, result.block.columns,
                             result.block.columns - 1),
             .x = {.label = "kT/kN", .min = -1, .max = 1},
             .y = {.label = "Poisson's ratio (plane strain)", .min = -0.2, .max = 0.8}};
   plot.series = {theory_line(-1, 1, poisson_ratio_of_ratio, "eq. (22): (1 - kT/kN)/4"), stable, unstable};
   plot.vertical_lines = {{result.lattice_limit, "infinite lattice: -1/3", PlotColour::black},
-                         {result.block_limit, format("this block: {:.4f}", result.block_limit), PlotColour::vermilion}};
+                         {result.block_limit, fmt::format("this block: {:.4f}", result.block_limit), PlotColour::vermilion}};
   return plot;
 }
 
@@ -95,7 +95,7 @@ Plot figure8(const abe1996::Reproduction& result) {
     computed.x.push_back(p.ratio);
     computed.y.push_back(p.stiffness_ratio);
   }
-  Plot plot{.title = format("Abe (1996), Fig. 8: {} rows of {} and {} discs", result.block.rows, result.block.columns,
+  Plot plot{.title = fmt::format("Abe (1996), Fig. 8: {} rows of {} and {} discs", result.block.rows, result.block.columns,
                             result.block.columns - 1),
             .x = {.label = "kT/kN", .min = 0, .max = 1},
             .y = {.label = "2G/((1 - nu) kN)", .min = 1, .max = 2}};
@@ -111,10 +111,10 @@ Plot error_by_size(const abe1996::Reproduction& result) {
   std::size_t colour = 0;
   for (const auto& convergence : result.convergence) {
     if (convergence.ratio == 0) continue;  // exact: round-off has no place on this plot
-    Series nu{.label = format("nu, kT/kN = {}", convergence.ratio),
+    Series nu{.label = fmt::format("nu, kT/kN = {}", convergence.ratio),
               .style = SeriesStyle::line_with_points,
               .colour = colours[colour]};
-    Series stiffness{.label = format("(36), kT/kN = {}", convergence.ratio),
+    Series stiffness{.label = fmt::format("(36), kT/kN = {}", convergence.ratio),
                      .style = SeriesStyle::line_with_points,
                      .colour = colours[colour],
                      .marker = Marker::square,
@@ -149,7 +149,7 @@ void show_block(const ReproduceOptions& options) {
   const AssemblyState state{
       .assembly = assembly, .motions = rest.motions, .contact_forces = rest.contact_forces, .stresses = stresses};
   write_vtk(*options.common.out, "tension", state, options.common.overwrite);
-  PictureOptions picture{.title = format("Abe (1996), Fig. 6: tension of {} rows, kT/kN = {}", block.rows, shown_ratio),
+  PictureOptions picture{.title = fmt::format("Abe (1996), Fig. 6: tension of {} rows, kT/kN = {}", block.rows, shown_ratio),
                          .colour = DiscColour::stress_xx};
   write_picture(*options.common.out, "tension", state, picture, options.common.overwrite);
 }
@@ -193,7 +193,7 @@ JsonObject as_json(const abe1996::Reproduction& result, const std::string& text)
 
 void refuse_foreign(const CLI::Option* option, const ReproduceOptions& options) {
   if (option->count() == 0) return;
-  bad_input(format("{} does not belong to {}", option->get_name(), options.paper), "it would change nothing",
+  bad_input(fmt::format("{} does not belong to {}", option->get_name(), options.paper), "it would change nothing",
             "Leave it out");
 }
 
@@ -216,7 +216,7 @@ int reproduce_block(const ReproduceOptions& given) {
     write_file(folder / "report.txt", text, options.common.overwrite);
   }
   deliver(options.common, text, as_json(result, text));
-  if (options.common.out) say(options.common, format("written to {}", options.common.out->string()));
+  if (options.common.out) say(options.common, fmt::format("written to {}", options.common.out->string()));
   return 0;
 }
 
@@ -237,7 +237,7 @@ int reproduce(const ReproduceOptions& options) {
     for (const CLI::Option* option : options.of_block) refuse_foreign(option, options);
     return paper.reproduce(options.common, options.quick);
   }
-  bad_input(format("there is no reproduction of '{}'", options.paper),
+  bad_input(fmt::format("there is no reproduction of '{}'", options.paper),
             "those known are abe1996, abe1996_random, fujioka2005 and sukegawa2010",
             "Write 'equidem reproduce abe1996'");
 }

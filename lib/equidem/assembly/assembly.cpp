@@ -19,15 +19,15 @@ bool finite(Vec2 v) {
 
 /// "contact 7, of discs 3 and 4"; where they touch across the period, with the shift.
 std::string described(const Contact& c, std::size_t index) {
-  if (c.shift_x == 0 && c.shift_y == 0) return format("contact {}, of discs {} and {}", index, c.i, c.j);
-  return format("contact {}, of disc {} and the image of disc {} shifted by ({}, {}) periods", index, c.i, c.j,
+  if (c.shift_x == 0 && c.shift_y == 0) return fmt::format("contact {}, of discs {} and {}", index, c.i, c.j);
+  return fmt::format("contact {}, of disc {} and the image of disc {} shifted by ({}, {}) periods", index, c.i, c.j,
                 c.shift_x, c.shift_y);
 }
 
 void check_count(const char* what, std::size_t count, const char* per, std::size_t expected) {
   if (count == expected) return;
-  bad_input(format("{} {} are given for {} {}", count, what, expected, per), "there must be one for each",
-            format("Give {} {}, or none", expected, what));
+  bad_input(fmt::format("{} {} are given for {} {}", count, what, expected, per), "there must be one for each",
+            fmt::format("Give {} {}, or none", expected, what));
 }
 
 void check_discs(const Assembly& assembly) {
@@ -37,26 +37,26 @@ void check_discs(const Assembly& assembly) {
   for (std::size_t d = 0; d < n; ++d) {
     const auto [x, y] = assembly.centres[d];
     if (!finite(assembly.centres[d])) {
-      bad_input(format("disc {} has its centre at ({}, {})", d, x, y), "centres must be finite",
+      bad_input(fmt::format("disc {} has its centre at ({}, {})", d, x, y), "centres must be finite",
                 "Correct its coordinates");
     }
     if (std::max(std::abs(x), std::abs(y)) > longest_length) {
-      bad_input(format("disc {} has its centre at ({}, {})", d, x, y),
-                format("centres must lie within {} m of the origin", longest_length), "Choose other units");
+      bad_input(fmt::format("disc {} has its centre at ({}, {})", d, x, y),
+                fmt::format("centres must lie within {} m of the origin", longest_length), "Choose other units");
     }
     if (!(assembly.radii[d] > 0) || !std::isfinite(assembly.radii[d])) {
-      bad_input(format("disc {} has the radius {}", d, assembly.radii[d]), "radii must be positive and finite",
+      bad_input(fmt::format("disc {} has the radius {}", d, assembly.radii[d]), "radii must be positive and finite",
                 "Correct it");
     }
     if (!measurable(assembly.radii[d])) {
-      bad_input(format("disc {} has the radius {} m", d, assembly.radii[d]), length_limits(), "Choose other units");
+      bad_input(fmt::format("disc {} has the radius {} m", d, assembly.radii[d]), length_limits(), "Choose other units");
     }
   }
   if (assembly.cell_areas.empty()) return;
   check_count("cell areas", assembly.cell_areas.size(), "discs", n);
   for (std::size_t d = 0; d < n; ++d) {
     if (!(assembly.cell_areas[d] >= 0) || !std::isfinite(assembly.cell_areas[d])) {
-      bad_input(format("disc {} has the cell area {}", d, assembly.cell_areas[d]),
+      bad_input(fmt::format("disc {} has the cell area {}", d, assembly.cell_areas[d]),
                 "cell areas must be finite and not negative", "Measure the cells anew");
     }
   }
@@ -67,37 +67,37 @@ void check_contact(const Assembly& assembly, std::size_t index) {
   const auto n = static_cast<std::int64_t>(assembly.size());
   for (const std::int32_t disc : {c.i, c.j}) {
     if (disc < 0 || disc >= n) {
-      bad_input(format("contact {} names disc {}", index, disc), format("the discs are numbered from 0 to {}", n - 1),
+      bad_input(fmt::format("contact {} names disc {}", index, disc), fmt::format("the discs are numbered from 0 to {}", n - 1),
                 "Correct the contact or add the disc");
     }
   }
   const bool shifted = c.shift_x != 0 || c.shift_y != 0;
   if (shifted && !assembly.periodic()) {
-    bad_input(format("{}, reaches across a period", described(c, index)), "the assembly has no period",
+    bad_input(fmt::format("{}, reaches across a period", described(c, index)), "the assembly has no period",
               "Give the cell its period, or set the shift of the contact to 0");
   }
   if (c.i == c.j && !shifted) {
-    bad_input(format("contact {} joins disc {} to itself", index, c.i),
+    bad_input(fmt::format("contact {} joins disc {} to itself", index, c.i),
               "a disc can only touch another disc or its own image across a period",
               "Remove the contact or give it a shift");
   }
   const Vec2 l = assembly.branch(c);
   if (!finite(l) || (l.x == 0 && l.y == 0)) {
-    bad_input(format("{}, spans the branch ({}, {})", described(c, index), l.x, l.y),
+    bad_input(fmt::format("{}, spans the branch ({}, {})", described(c, index), l.x, l.y),
               "its length must be finite and positive, or it has no direction", "Move one of the discs");
   }
   if (!measurable(norm(l))) {
-    bad_input(format("{}, is {} m long", described(c, index), norm(l)), length_limits(), "Choose other units");
+    bad_input(fmt::format("{}, is {} m long", described(c, index), norm(l)), length_limits(), "Choose other units");
   }
   for (const double lever : {c.lever_i, c.lever_j}) {
     const bool on_line = assembly.contact_arms.empty();
     if ((on_line && !(lever >= 0)) || !std::isfinite(lever)) {
-      bad_input(format("{}, has the lever arm {}", described(c, index), lever),
+      bad_input(fmt::format("{}, has the lever arm {}", described(c, index), lever),
                 on_line ? "lever arms must be finite and not negative" : "lever arms must be finite", "Correct it");
     }
     if (std::abs(lever) > longest_length) {
-      bad_input(format("{}, has the lever arm {} m", described(c, index), lever),
-                format("lever arms may be {} m long at most", longest_length), "Correct it");
+      bad_input(fmt::format("{}, has the lever arm {} m", described(c, index), lever),
+                fmt::format("lever arms may be {} m long at most", longest_length), "Correct it");
     }
   }
 }
@@ -107,13 +107,13 @@ void check_arms(const Assembly& assembly, std::size_t index) {
   const ContactArms& given = assembly.contact_arms[index];
   constexpr double close = 1e-9, rounding = 8 * std::numeric_limits<double>::epsilon();  // of lengths, of coordinates
   if (!(std::abs(norm(given.normal) - 1) <= close)) {
-    bad_input(format("{}, has the normal ({}, {})", described(c, index), given.normal.x, given.normal.y),
+    bad_input(fmt::format("{}, has the normal ({}, {})", described(c, index), given.normal.x, given.normal.y),
               "its length must be 1", "Divide it by its length");
   }
   for (const double offset : {given.offset_i, given.offset_j}) {
     if (std::abs(offset) <= longest_length) continue;
-    bad_input(format("{}, has the offset {} m", described(c, index), offset),
-              format("offsets must be finite and at most {} m", longest_length), "Correct it");
+    bad_input(fmt::format("{}, has the offset {} m", described(c, index), offset),
+              fmt::format("offsets must be finite and at most {} m", longest_length), "Correct it");
   }
   const Vec2 l = assembly.branch(c);
   const Vec2 arms =
@@ -121,7 +121,7 @@ void check_arms(const Assembly& assembly, std::size_t index) {
   const double coordinates = norm(assembly.centres[c.i]) + norm(assembly.centres[c.i] + l);
   const double reach = std::abs(c.lever_i) + std::abs(c.lever_j) + std::abs(given.offset_i) + std::abs(given.offset_j);
   if (norm(arms - l) <= close * std::max(norm(l), reach) + rounding * coordinates) return;
-  bad_input(format("{}, has arms that are {:.6g} m apart at their ends", described(c, index), norm(arms - l)),
+  bad_input(fmt::format("{}, has arms that are {:.6g} m apart at their ends", described(c, index), norm(arms - l)),
             "levers along the normal and offsets across it must lead from both centres to the same point",
             "Give the contact point with all its digits");
 }
@@ -132,20 +132,20 @@ void check_bodies(const Assembly& assembly) {
   for (std::size_t d = 0; d < assembly.size(); ++d) {
     const BodySection& section = assembly.sections[d];
     if (!(section.area > 0 && section.polar_moment > 0 && std::isfinite(section.area + section.polar_moment))) {
-      bad_input(format("body {} has the area {} m² and the polar moment {} m⁴", d, section.area, section.polar_moment),
+      bad_input(fmt::format("body {} has the area {} m² and the polar moment {} m⁴", d, section.area, section.polar_moment),
                 "both must be positive and finite", "Correct its section");
     }
     constexpr double close = 1e-6;
     const double least = section.area * section.area / (2 * std::numbers::pi);
     if (section.polar_moment < (1 - close) * least) {
-      bad_input(format("body {} has the area {} m² and the polar moment {} m⁴", d, section.area, section.polar_moment),
-                format("no section of that area has a smaller one than the disc, {:.9g} m⁴", least),
+      bad_input(fmt::format("body {} has the area {} m² and the polar moment {} m⁴", d, section.area, section.polar_moment),
+                fmt::format("no section of that area has a smaller one than the disc, {:.9g} m⁴", least),
                 "Correct its section: the moment is about its own centre");
     }
     const double radius = std::sqrt(section.area / std::numbers::pi);
     if (std::abs(assembly.radii[d] - radius) > close * radius) {
-      bad_input(format("body {} has the radius {} m and the area {} m²", d, assembly.radii[d], section.area),
-                format("a body with a section has the radius of the disc of equal area, {:.9g} m", radius),
+      bad_input(fmt::format("body {} has the radius {} m and the area {} m²", d, assembly.radii[d], section.area),
+                fmt::format("a body with a section has the radius of the disc of equal area, {:.9g} m", radius),
                 "Correct one of the two");
     }
   }
@@ -162,7 +162,7 @@ void check_contacts(const Assembly& assembly) {
     check_count("facet lengths", assembly.facet_lengths.size(), "contacts", m);
     for (std::size_t c = 0; c < m; ++c) {
       if (!(assembly.facet_lengths[c] >= 0) || !std::isfinite(assembly.facet_lengths[c])) {
-        bad_input(format("{}, has the facet length {}", described(assembly.contacts[c], c), assembly.facet_lengths[c]),
+        bad_input(fmt::format("{}, has the facet length {}", described(assembly.contacts[c], c), assembly.facet_lengths[c]),
                   "facet lengths must be finite and not negative", "Measure the cells anew");
       }
     }
@@ -172,11 +172,11 @@ void check_contacts(const Assembly& assembly) {
   check_count("tangential springs", assembly.contact_kT.size(), "contacts", m);
   for (std::size_t c = 0; c < m; ++c) {
     if (!(assembly.contact_kN[c] > 0) || !std::isfinite(assembly.contact_kN[c])) {
-      bad_input(format("{}, has kN = {} Pa", described(assembly.contacts[c], c), assembly.contact_kN[c]),
+      bad_input(fmt::format("{}, has kN = {} Pa", described(assembly.contacts[c], c), assembly.contact_kN[c]),
                 "a normal spring must be positive and finite", "Correct it or remove the contact");
     }
     if (!std::isfinite(assembly.contact_kT[c])) {
-      bad_input(format("{}, has kT = {} Pa", described(assembly.contacts[c], c), assembly.contact_kT[c]),
+      bad_input(fmt::format("{}, has kT = {} Pa", described(assembly.contacts[c], c), assembly.contact_kT[c]),
                 "a tangential spring must be finite", "Correct it");
     }
   }
@@ -186,21 +186,21 @@ void check_group(const Assembly& assembly, const std::string& name, const DiscGr
   const auto n = static_cast<std::int64_t>(assembly.size());
   for (std::size_t k = 0; k < discs.discs.size(); ++k) {
     if (discs.discs[k] < 0 || discs.discs[k] >= n) {
-      bad_input(format("group '{}' names disc {}", name, discs.discs[k]),
-                format("the discs are numbered from 0 to {}", n - 1), "Correct the group or add the disc");
+      bad_input(fmt::format("group '{}' names disc {}", name, discs.discs[k]),
+                fmt::format("the discs are numbered from 0 to {}", n - 1), "Correct the group or add the disc");
     }
     if (k > 0 && discs.discs[k] <= discs.discs[k - 1]) {
-      bad_input(format("group '{}' names disc {} after disc {}", name, discs.discs[k], discs.discs[k - 1]),
+      bad_input(fmt::format("group '{}' names disc {} after disc {}", name, discs.discs[k], discs.discs[k - 1]),
                 "the discs of a group must ascend, each once", "Sort them and drop repetitions");
     }
   }
   if (discs.tributary_lengths.empty()) return;
-  check_count(format("tributary lengths of group '{}'", name).c_str(), discs.tributary_lengths.size(), "discs of it",
+  check_count(fmt::format("tributary lengths of group '{}'", name).c_str(), discs.tributary_lengths.size(), "discs of it",
               discs.discs.size());
   for (std::size_t k = 0; k < discs.discs.size(); ++k) {
     if (!(discs.tributary_lengths[k] >= 0) || !std::isfinite(discs.tributary_lengths[k])) {
       bad_input(
-          format("disc {} of group '{}' has the tributary length {}", discs.discs[k], name, discs.tributary_lengths[k]),
+          fmt::format("disc {} of group '{}' has the tributary length {}", discs.discs[k], name, discs.tributary_lengths[k]),
           "tributary lengths must be finite and not negative", "Correct it");
     }
   }
@@ -242,7 +242,7 @@ bool on_lines_of_centres(const Assembly& assembly) {
 }
 
 std::string length_limits() {
-  return format("it must lie between {} and {} m, or squares of areas leave the range of a double", shortest_length,
+  return fmt::format("it must lie between {} and {} m, or squares of areas leave the range of a double", shortest_length,
                 longest_length);
 }
 
@@ -251,17 +251,17 @@ namespace {
 void check_box(const Assembly& assembly) {
   if (!assembly.box) return;
   const auto& [low, high] = *assembly.box;
-  const std::string box = format("the box from ({:g}, {:g}) to ({:g}, {:g}) m", low.x, low.y, high.x, high.y);
+  const std::string box = fmt::format("the box from ({:g}, {:g}) to ({:g}, {:g}) m", low.x, low.y, high.x, high.y);
   if (assembly.period)
     bad_input(box + " stands beside a period", "a periodic cell fills its period", "Remove one of the two");
   if (!(measurable(high.x - low.x) && measurable(high.y - low.y))) {
-    bad_input(format("{} is {:g} m wide and {:g} m high", box, high.x - low.x, high.y - low.y), length_limits(),
+    bad_input(fmt::format("{} is {:g} m wide and {:g} m high", box, high.x - low.x, high.y - low.y), length_limits(),
               "Give its lower left corner, then its upper right one");
   }
   for (std::size_t d = 0; d < assembly.size(); ++d) {
     const Vec2 x = assembly.centres[d];
     if (x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y) continue;
-    bad_input(format("the centre of disc {}, ({:g}, {:g}) m, lies outside {}", d, x.x, x.y, box),
+    bad_input(fmt::format("the centre of disc {}, ({:g}, {:g}) m, lies outside {}", d, x.x, x.y, box),
               "the cells of all discs fill the box", "Correct the box, or remove it");
   }
 }
@@ -270,11 +270,11 @@ void check_box(const Assembly& assembly) {
 
 void check(const Assembly& assembly) {
   if (assembly.period && !(finite(*assembly.period) && assembly.period->x > 0 && assembly.period->y > 0)) {
-    bad_input(format("the period is ({}, {}) m", assembly.period->x, assembly.period->y),
+    bad_input(fmt::format("the period is ({}, {}) m", assembly.period->x, assembly.period->y),
               "both lengths of a periodic cell must be positive and finite", "Correct the cell");
   }
   if (assembly.period && !(measurable(assembly.period->x) && measurable(assembly.period->y))) {
-    bad_input(format("the period is ({}, {}) m", assembly.period->x, assembly.period->y), length_limits(),
+    bad_input(fmt::format("the period is ({}, {}) m", assembly.period->x, assembly.period->y), length_limits(),
               "Choose other units");
   }
   check_discs(assembly);
@@ -289,7 +289,7 @@ const DiscGroup& group(const Assembly& assembly, const std::string& name) {
   if (found != assembly.groups.end()) return found->second;
   std::string names;
   for (const auto& [known, discs] : assembly.groups) names += (names.empty() ? "" : ", ") + known;
-  bad_input(format("the assembly has no group '{}'", name),
+  bad_input(fmt::format("the assembly has no group '{}'", name),
             names.empty() ? std::string("it has no groups at all") : "its groups are " + names,
             assembly.periodic() ? "Name one of them; a periodic cell has no sides of its own" : "Name one of them");
 }

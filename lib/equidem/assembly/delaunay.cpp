@@ -21,28 +21,28 @@ void check(const DelaunayOptions& options) {
   const std::int64_t least = options.periodic ? 1 : 3;
   constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max() / 2;
   if (options.discs < least || options.discs > most) {
-    bad_input(format("discs = {}", options.discs),
-              format("a {} triangulation needs {} to {} discs", options.periodic ? "periodic" : "free", least, most),
+    bad_input(fmt::format("discs = {}", options.discs),
+              fmt::format("a {} triangulation needs {} to {} discs", options.periodic ? "periodic" : "free", least, most),
               "Correct the count");
   }
   if (!(options.disorder >= 0 && options.disorder < 0.5)) {
-    bad_input(format("disorder = {}", options.disorder), "it must lie in [0, 0.5), or neighbours could change places",
+    bad_input(fmt::format("disorder = {}", options.disorder), "it must lie in [0, 0.5), or neighbours could change places",
               "Correct it, or ask for poisson_disc points");
   }
   const RadiusDistribution& radii = options.radii;
   if (!(radii.smallest > 0) || !std::isfinite(radii.smallest)) {
-    bad_input(format("the smallest radius is {} m", radii.smallest), "radii must be positive and finite", "Correct it");
+    bad_input(fmt::format("the smallest radius is {} m", radii.smallest), "radii must be positive and finite", "Correct it");
   }
   if (!(radii.largest >= radii.smallest) || !std::isfinite(radii.largest)) {
-    bad_input(format("the largest radius is {} m", radii.largest),
-              format("it must be finite and at least the smallest, {} m", radii.smallest), "Correct it");
+    bad_input(fmt::format("the largest radius is {} m", radii.largest),
+              fmt::format("it must be finite and at least the smallest, {} m", radii.smallest), "Correct it");
   }
   for (const double radius : {radii.smallest, radii.largest}) {
     if (!measurable(radius))
-      bad_input(format("the radius of a disc is {} m", radius), length_limits(), "Choose other units");
+      bad_input(fmt::format("the radius of a disc is {} m", radius), length_limits(), "Choose other units");
   }
   if (!(options.aspect >= 1e-3 && options.aspect <= 1e3)) {
-    bad_input(format("aspect = {}", options.aspect), "width over height must lie in [0.001, 1000]", "Correct it");
+    bad_input(fmt::format("aspect = {}", options.aspect), "width over height must lie in [0.001, 1000]", "Correct it");
   }
 }
 
@@ -118,7 +118,7 @@ std::size_t drop_loose_discs(Assembly& assembly, const PowerCells& cells) {
   };
   const std::size_t one = furthest(assembly.centres[0]);
   const std::size_t other = furthest(assembly.centres[one]);
-  bad_input(format("all {} discs lie on the line through discs {} and {}", assembly.size(), std::min(one, other),
+  bad_input(fmt::format("all {} discs lie on the line through discs {} and {}", assembly.size(), std::min(one, other),
                    std::max(one, other)),
             "points on one line have no triangles", "Move some of them, or list the contacts");
 }
@@ -152,7 +152,7 @@ void triangulate(Assembly& assembly) {
   assembly.cell_areas.clear();
   check(assembly);
   if (!assembly.periodic() && assembly.size() < 3) {
-    bad_input(format("{} cannot be triangulated", counted(static_cast<long long>(assembly.size()), "disc")),
+    bad_input(fmt::format("{} cannot be triangulated", counted(static_cast<long long>(assembly.size()), "disc")),
               "a triangulation needs three or more", "Add discs, or list the contacts");
   }
   PowerCells cells = power_cells(assembly);

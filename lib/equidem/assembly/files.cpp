@@ -53,7 +53,7 @@ const char* kind_of(const Json& value) {
 }
 
 [[noreturn]] void wrong_kind(const Json& value, const std::string& expected, const std::string& entry) {
-  refuse(format("{} stands where {} is expected", kind_of(value), expected), "", "Correct the entry", entry);
+  refuse(fmt::format("{} stands where {} is expected", kind_of(value), expected), "", "Correct the entry", entry);
 }
 
 double number(const Json& value, const std::string& entry) {
@@ -66,7 +66,7 @@ double number(const Json& value, const std::string& entry) {
 std::int32_t integer(const Json& value, const std::string& entry) {
   if (!value.is_number_integer()) {
     if (value.is_number()) {
-      refuse(format("{} stands where a whole number is expected", value.dump()), "", "Correct the entry", entry);
+      refuse(fmt::format("{} stands where a whole number is expected", value.dump()), "", "Correct the entry", entry);
     }
     wrong_kind(value, "a whole number", entry);
   }
@@ -74,8 +74,8 @@ std::int32_t integer(const Json& value, const std::string& entry) {
                                                : value.get<std::int64_t>() >= std::numeric_limits<std::int32_t>::min();
   if (!fits) {
     refuse(
-        format("{} is out of range", value.dump()),
-        format("discs and shifts are whole numbers of a magnitude up to {}", std::numeric_limits<std::int32_t>::max()),
+        fmt::format("{} is out of range", value.dump()),
+        fmt::format("discs and shifts are whole numbers of a magnitude up to {}", std::numeric_limits<std::int32_t>::max()),
         "Correct the entry", entry);
   }
   return value.get<std::int32_t>();
@@ -90,15 +90,15 @@ const Json& list(const Json& value, const std::string& entry) {
 const Json& row(const Json& value, std::size_t count, const char* names, const std::string& entry) {
   list(value, entry);
   if (value.size() == count) return value;
-  refuse(format("{} {} where {} are expected", counted(static_cast<long long>(value.size()), "number"),
+  refuse(fmt::format("{} {} where {} are expected", counted(static_cast<long long>(value.size()), "number"),
                 value.size() == 1 ? "stands" : "stand", count),
-         format("an entry is [{}]", names), "Correct the entry", entry);
+         fmt::format("an entry is [{}]", names), "Correct the entry", entry);
 }
 
 const Json& list_per(const char* what, const Json& value, std::size_t count, const std::string& entry) {
   list(value, entry);
   if (value.size() == count) return value;
-  refuse(format("{} for {}", counted(static_cast<long long>(value.size()), "entry", "entries"),
+  refuse(fmt::format("{} for {}", counted(static_cast<long long>(value.size()), "entry", "entries"),
                 counted(static_cast<long long>(count), what)),
          "there must be one for each", "Correct the list or remove it", entry);
 }
@@ -110,7 +110,7 @@ void read_pairs(const Json& file, const char* key, const char* names, const char
   if (!file.contains(key)) return;
   const Json& pairs = list_per(what, file[key], count, key);
   for (std::size_t k = 0; k < count; ++k) {
-    const std::string entry = format("{}[{}]", key, k);
+    const std::string entry = fmt::format("{}[{}]", key, k);
     const Json& pair = row(pairs[k], 2, names, entry);
     take(k, number(pair[0], entry), number(pair[1], entry));
   }
@@ -120,15 +120,15 @@ void check_keys(const Json& file) {
   if (!file.is_object()) wrong_kind(file, "an object with the keys schema, discs, ...", "");
   const auto found = file.find("schema");
   if (found == file.end() || *found != assembly_schema) {
-    refuse(found == file.end() ? std::string("the key 'schema' is missing") : format("the schema is {}", found->dump()),
-           format("an assembly file says \"schema\": \"{}\"", assembly_schema),
+    refuse(found == file.end() ? std::string("the key 'schema' is missing") : fmt::format("the schema is {}", found->dump()),
+           fmt::format("an assembly file says \"schema\": \"{}\"", assembly_schema),
            "Add or correct it, if this is an assembly file", "schema");
   }
   for (const auto& [key, value] : file.items()) {
     if (std::find(known_keys.begin(), known_keys.end(), key) != known_keys.end()) continue;
     const auto meant = nearest(key, known_keys);
-    refuse(format("there is no key '{}'", key), "an assembly file is read strictly",
-           meant ? format("Did you mean '{}'?", *meant) : "Remove it", key);
+    refuse(fmt::format("there is no key '{}'", key), "an assembly file is read strictly",
+           meant ? fmt::format("Did you mean '{}'?", *meant) : "Remove it", key);
   }
   if (!file.contains("discs")) {
     refuse("the key 'discs' is missing", "an assembly is made of discs", "Add \"discs\": [[x, y, radius], ...]",
@@ -145,7 +145,7 @@ void read_discs(const Json& file, Assembly& assembly) {
   if (file.contains("box")) {
     const Json& corners = row(file["box"], 2, "[x, y], [x, y]", "box");
     const auto corner = [&](std::size_t k) {
-      const std::string entry = format("box[{}]", k);
+      const std::string entry = fmt::format("box[{}]", k);
       const Json& place = row(corners[k], 2, "x, y", entry);
       return Vec2{number(place[0], entry), number(place[1], entry)};
     };
@@ -153,7 +153,7 @@ void read_discs(const Json& file, Assembly& assembly) {
   }
   const Json& discs = list(file["discs"], "discs");
   for (std::size_t k = 0; k < discs.size(); ++k) {
-    const std::string entry = format("discs[{}]", k);
+    const std::string entry = fmt::format("discs[{}]", k);
     const Json& disc = row(discs[k], 3, "x, y, radius", entry);
     assembly.centres.push_back({number(disc[0], entry), number(disc[1], entry)});
     assembly.radii.push_back(number(disc[2], entry));
@@ -169,16 +169,16 @@ void refuse_repeated(const Assembly& assembly) {
   if (!twice) return;
   const auto& [first, second] = *twice;
   const Contact& c = assembly.contacts[first];
-  refuse(format("contacts {} and {} are the same, of discs {} and {}", first, second, std::min(c.i, c.j),
+  refuse(fmt::format("contacts {} and {} are the same, of discs {} and {}", first, second, std::min(c.i, c.j),
                 std::max(c.i, c.j)),
-         "its springs would count twice", "Remove one of them", format("contacts[{}]", second));
+         "its springs would count twice", "Remove one of them", fmt::format("contacts[{}]", second));
 }
 
 void read_contacts(const Json& file, Assembly& assembly) {
   if (!file.contains("contacts")) {
     for (const char* key : {"levers", "normals", "offsets", "springs"}) {
       if (!file.contains(key)) continue;
-      refuse(format("there are {} but no contacts", key), "they are given in the order of the contacts",
+      refuse(fmt::format("there are {} but no contacts", key), "they are given in the order of the contacts",
              "Add \"contacts\"", key);
     }
     if (file.contains("sections")) {
@@ -191,7 +191,7 @@ void read_contacts(const Json& file, Assembly& assembly) {
   }
   const Json& contacts = list(file["contacts"], "contacts");
   for (std::size_t k = 0; k < contacts.size(); ++k) {
-    const std::string entry = format("contacts[{}]", k);
+    const std::string entry = fmt::format("contacts[{}]", k);
     const Json& contact = row(contacts[k], 4, "i, j, shift x, shift y", entry);
     assembly.contacts.push_back({.i = integer(contact[0], entry),
                                  .j = integer(contact[1], entry),
@@ -214,9 +214,9 @@ void read_levers_and_springs(const Json& file, Assembly& assembly) {
   if (file.contains("normals") || file.contains("offsets")) {
     for (const char* key : {"levers", "normals", "offsets"}) {
       if (file.contains(key)) continue;
-      refuse(format("the key '{}' is missing", key),
+      refuse(fmt::format("the key '{}' is missing", key),
              "off the line of centres a contact has a normal, levers along it and offsets across it",
-             format("Add \"{}\"", key), key);
+             fmt::format("Add \"{}\"", key), key);
     }
     assembly.contact_arms.resize(contacts);
   }
@@ -244,7 +244,7 @@ DiscGroup read_group(const Json& value, const std::string& entry) {
         lengths = &part;
         continue;
       }
-      refuse(format("there is no key '{}' in a group", key), "its keys are 'discs' and 'tributary_lengths'",
+      refuse(fmt::format("there is no key '{}' in a group", key), "its keys are 'discs' and 'tributary_lengths'",
              "Correct or remove it", entry);
     }
     if (!value.contains("discs")) refuse("the key 'discs' is missing", "", "Add the list of discs", entry);
@@ -252,13 +252,13 @@ DiscGroup read_group(const Json& value, const std::string& entry) {
   }
   list(*discs, entry);
   if (lengths != nullptr && list(*lengths, entry).size() != discs->size()) {
-    refuse(format("{} for {}", counted(static_cast<long long>(lengths->size()), "tributary length"),
+    refuse(fmt::format("{} for {}", counted(static_cast<long long>(lengths->size()), "tributary length"),
                   counted(static_cast<long long>(discs->size()), "disc")),
            "there must be one for each", "Correct the list or remove it", entry);
   }
   std::vector<std::pair<std::int32_t, double>> members;
   for (std::size_t k = 0; k < discs->size(); ++k) {
-    const std::string member = format("{}[{}]", entry, k);
+    const std::string member = fmt::format("{}[{}]", entry, k);
     members.emplace_back(integer((*discs)[k], member), lengths != nullptr ? number((*lengths)[k], member) : 0);
   }
   std::sort(members.begin(), members.end());
@@ -280,7 +280,7 @@ Json parse(const std::string& text) {
     if (event == Json::parse_event_t::object_end) keys.pop_back();
     if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second) {
       const auto key = parsed.get<std::string>();
-      refuse(format("the key '{}' is there twice", key), "one of the two would be dropped", "Remove one", key);
+      refuse(fmt::format("the key '{}' is there twice", key), "one of the two would be dropped", "Remove one", key);
     }
     return true;
   };
@@ -293,9 +293,9 @@ Json parse(const std::string& text) {
     const std::size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
     const bool truncated = error.byte > text.size() || text.empty();
     refuse(truncated ? "the file ends in the middle of an entry" : "this is not JSON",
-           format("reading stopped at byte {} of {}", byte, text.size()),
+           fmt::format("reading stopped at byte {} of {}", byte, text.size()),
            truncated ? "Get the whole file: it was cut off" : "Correct the text there",
-           format("line {}, column {}", line, std::max<std::size_t>(byte, line_start + 1) - line_start));
+           fmt::format("line {}, column {}", line, std::max<std::size_t>(byte, line_start + 1) - line_start));
   } catch (const Json::exception&) {
     refuse("a number is too large for a double", "the largest is 1.8e308", "Correct it", "");
   }
@@ -311,7 +311,7 @@ Assembly assembly_of(const Json& file) {
   if (file.contains("groups")) {
     if (!file["groups"].is_object()) wrong_kind(file["groups"], "an object of groups", "groups");
     for (const auto& [name, value] : file["groups"].items()) {
-      assembly.groups[name] = read_group(value, format("groups.{}", name));
+      assembly.groups[name] = read_group(value, fmt::format("groups.{}", name));
     }
   }
   check(assembly);

@@ -23,19 +23,19 @@ struct RowPattern {
 
 void check(const LatticeOptions& o, bool staggered) {
   if (o.columns < 1) {
-    bad_input(format("columns = {}", o.columns), "a row of a lattice has at least one disc", "Ask for 1 or more");
+    bad_input(fmt::format("columns = {}", o.columns), "a row of a lattice has at least one disc", "Ask for 1 or more");
   }
   if (o.rows < 1) {
-    bad_input(format("rows = {}", o.rows), "a lattice has at least one row", "Ask for 1 or more");
+    bad_input(fmt::format("rows = {}", o.rows), "a lattice has at least one row", "Ask for 1 or more");
   }
   if (!(o.radius > 0) || !std::isfinite(o.radius)) {
-    bad_input(format("radius = {} m", o.radius), "a radius must be positive and finite", "Correct it");
+    bad_input(fmt::format("radius = {} m", o.radius), "a radius must be positive and finite", "Correct it");
   }
-  if (!measurable(o.radius)) bad_input(format("radius = {} m", o.radius), length_limits(), "Choose other units");
+  if (!measurable(o.radius)) bad_input(fmt::format("radius = {} m", o.radius), length_limits(), "Choose other units");
   if (staggered && o.periodic && o.rows % 2 != 0) {
-    bad_input(format("rows = {} in a periodic hexagonal lattice", o.rows),
+    bad_input(fmt::format("rows = {} in a periodic hexagonal lattice", o.rows),
               "rows are shifted by turns, so that only an even number of them repeats",
-              format("Ask for {} or {}", o.rows > 1 ? o.rows - 1 : 2, o.rows > 1 ? o.rows + 1 : 4));
+              fmt::format("Ask for {} or {}", o.rows > 1 ? o.rows - 1 : 2, o.rows > 1 ? o.rows + 1 : 4));
   }
   if (staggered && !o.periodic && o.columns == 1 && o.rows > 1) {
     bad_input("columns = 1 in a free hexagonal lattice",
@@ -44,8 +44,8 @@ void check(const LatticeOptions& o, bool staggered) {
   }
   const std::int64_t discs = std::int64_t{o.columns} * o.rows;
   if (discs > std::numeric_limits<std::int32_t>::max()) {
-    bad_input(format("{} columns and {} rows make {} discs", o.columns, o.rows, discs),
-              format("at most {} can be numbered", std::numeric_limits<std::int32_t>::max()), "Ask for fewer");
+    bad_input(fmt::format("{} columns and {} rows make {} discs", o.columns, o.rows, discs),
+              fmt::format("at most {} can be numbered", std::numeric_limits<std::int32_t>::max()), "Ask for fewer");
   }
 }
 

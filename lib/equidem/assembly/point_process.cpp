@@ -55,7 +55,7 @@ PointProcess point_process_from(const std::string& name) {
        {PointProcess::poisson_disc, PointProcess::perturbed_hexagonal, PointProcess::uniform}) {
     if (name == to_string(process)) return process;
   }
-  bad_input(format("there are no points of the kind '{}'", name),
+  bad_input(fmt::format("there are no points of the kind '{}'", name),
             "the kinds are poisson_disc, perturbed_hexagonal and random", "Choose one of them");
 }
 

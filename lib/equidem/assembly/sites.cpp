@@ -22,7 +22,7 @@ constexpr double most_images = 4e6;
 std::int32_t periods_below(double x, double period, std::size_t disc) {
   const double periods = std::floor(x / period);
   if (std::abs(periods) > 1e9) {
-    bad_input(format("disc {} lies {} periods away from the periodic cell", disc, periods),
+    bad_input(fmt::format("disc {} lies {} periods away from the periodic cell", disc, periods),
               "its place within the cell is lost to rounding", "Give it a centre near the cell");
   }
   return static_cast<std::int32_t>(periods);
@@ -61,7 +61,7 @@ void Sites::surround() {
   const auto n = static_cast<double>(discs_);
   const double expected = n * ((period_.x + 2 * margin_) / period_.x * ((period_.y + 2 * margin_) / period_.y) - 1);
   if (expected > most_images_per_disc * n + most_images) {
-    bad_input(format("the periodic cell of {} m by {} m needs more than {:.3g} images around it to find the "
+    bad_input(fmt::format("the periodic cell of {} m by {} m needs more than {:.3g} images around it to find the "
                      "neighbours of "
                      "its {}",
                      period_.x, period_.y, most_images_per_disc * n + most_images, counted(discs_, "disc")),
@@ -94,7 +94,7 @@ void Sites::sort() {
     const std::int32_t a = image(order_[k - 1]).disc;
     const std::int32_t b = image(order_[k]).disc;
     if (a == b || positions_[order_[k - 1]] != positions_[order_[k]]) continue;
-    bad_input(format("discs {} and {} have the same centre, ({}, {}) m", std::min(a, b), std::max(a, b),
+    bad_input(fmt::format("discs {} and {} have the same centre, ({}, {}) m", std::min(a, b), std::max(a, b),
                      positions_[a].x, positions_[a].y),
               "no direction joins them, and their cells cannot be told apart", "Move or remove one of them");
   }

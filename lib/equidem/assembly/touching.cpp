@@ -31,7 +31,7 @@ class Grid {
     if (assembly.period) {
       const double narrow = std::min(assembly.period->x, assembly.period->y);
       if (reach > most_periods * narrow) {
-        bad_input(format("the largest disc, of diameter {:.6g} m, spans more than {} periods of {:.6g} m", reach,
+        bad_input(fmt::format("the largest disc, of diameter {:.6g} m, spans more than {} periods of {:.6g} m", reach,
                          most_periods, narrow),
                   "it would touch itself that many times", "Correct the radii or the cell");
       }

@@ -13,18 +13,18 @@ namespace {
 
 /// The shortest text that reads back to the same bits; the sign of -0 needs a point, or it reads as a whole number.
 std::string shortest(double value) {
-  return value == 0 && std::signbit(value) ? "-0.0" : format("{}", value);
+  return value == 0 && std::signbit(value) ? "-0.0" : fmt::format("{}", value);
 }
 
 /// "key": [one per line].
 template <typename Entry>
 void append_list(std::string& text, const char* key, std::size_t count, const Entry& entry) {
-  text += format(",\n\"{}\": [", key);
+  text += fmt::format(",\n\"{}\": [", key);
   for (std::size_t k = 0; k < count; ++k) text += (k == 0 ? "\n" : ",\n") + entry(k);
   text += "]";
 }
 std::string pair_of(double first, double second) {
-  return format("[{}, {}]", shortest(first), shortest(second));
+  return fmt::format("[{}, {}]", shortest(first), shortest(second));
 }
 
 template <typename Values, typename Write>
@@ -35,16 +35,16 @@ std::string joined(const Values& values, const Write& write) {
 }
 
 std::string text_of(const Assembly& assembly) {
-  std::string text = format("{{\"schema\": \"{}\"", assembly_schema);
+  std::string text = fmt::format("{{\"schema\": \"{}\"", assembly_schema);
   text += ",\n\"title\": " + quoted_json(assembly.kind);
-  text += assembly.period ? format(",\n\"cell\": [{}, {}]", shortest(assembly.period->x), shortest(assembly.period->y))
+  text += assembly.period ? fmt::format(",\n\"cell\": [{}, {}]", shortest(assembly.period->x), shortest(assembly.period->y))
                           : ",\n\"cell\": null";
   if (assembly.box) {
-    text += format(",\n\"box\": [{}, {}]", pair_of(assembly.box->low.x, assembly.box->low.y),
+    text += fmt::format(",\n\"box\": [{}, {}]", pair_of(assembly.box->low.x, assembly.box->low.y),
                    pair_of(assembly.box->high.x, assembly.box->high.y));
   }
   append_list(text, "discs", assembly.size(), [&](std::size_t k) {
-    return format("[{}, {}, {}]", shortest(assembly.centres[k].x), shortest(assembly.centres[k].y),
+    return fmt::format("[{}, {}, {}]", shortest(assembly.centres[k].x), shortest(assembly.centres[k].y),
                   shortest(assembly.radii[k]));
   });
   if (!assembly.sections.empty()) {
@@ -53,7 +53,7 @@ std::string text_of(const Assembly& assembly) {
   }
   const auto& contacts = assembly.contacts;
   append_list(text, "contacts", contacts.size(), [&](std::size_t k) {
-    return format("[{}, {}, {}, {}]", contacts[k].i, contacts[k].j, contacts[k].shift_x, contacts[k].shift_y);
+    return fmt::format("[{}, {}, {}, {}]", contacts[k].i, contacts[k].j, contacts[k].shift_x, contacts[k].shift_y);
   });
   append_list(text, "levers", contacts.size(),
               [&](std::size_t k) { return pair_of(contacts[k].lever_i, contacts[k].lever_j); });
@@ -71,10 +71,10 @@ std::string text_of(const Assembly& assembly) {
   if (!assembly.groups.empty()) {
     std::string separator = ",\n\"groups\": {\n";
     for (const auto& [name, members] : assembly.groups) {
-      const std::string discs = joined(members.discs, [](std::int32_t disc) { return format("{}", disc); });
+      const std::string discs = joined(members.discs, [](std::int32_t disc) { return fmt::format("{}", disc); });
       text += separator + quoted_json(name) + ": ";
       text += members.tributary_lengths.empty() ? discs
-                                                : format("{{\"discs\": {}, \"tributary_lengths\": {}}}", discs,
+                                                : fmt::format("{{\"discs\": {}, \"tributary_lengths\": {}}}", discs,
                                                          joined(members.tributary_lengths, shortest));
       separator = ",\n";
     }

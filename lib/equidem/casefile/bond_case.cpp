@@ -64,12 +64,12 @@ class Pairs {
     };
     for (const std::int64_t grain : {i, j})
       if (grain < 0 || static_cast<std::size_t>(grain) >= grains_)
-        fail(format("there is no grain {}", grain), format("they are counted 0 to {}", grains_ - 1),
+        fail(fmt::format("there is no grain {}", grain), fmt::format("they are counted 0 to {}", grains_ - 1),
              "Correct the number");
-    if (i == j) fail(format("grain {} is tied to itself", i), "a bond ties two", "Name two grains");
+    if (i == j) fail(fmt::format("grain {} is tied to itself", i), "a bond ties two", "Name two grains");
     const auto [before, fresh] = places_.try_emplace(std::minmax(i, j), where);
     if (!fresh)
-      fail(format("grains {} and {} are tied twice", i, j), "the first time at " + before->second,
+      fail(fmt::format("grains {} and {} are tied twice", i, j), "the first time at " + before->second,
            "Remove one of them");
     bond.i = static_cast<std::size_t>(i);
     bond.j = static_cast<std::size_t>(j);
@@ -113,7 +113,7 @@ void read_file_of_bonds(const fs::path& path, const GrainBond& common, Pairs& pa
     std::string_view row = trimmed(rest.substr(0, end));
     rest.remove_prefix(std::min(end + 1, rest.size()));
     if (row.empty() || row.front() == '#') continue;
-    const std::string where = format("{}:{}", path.string(), line);
+    const std::string where = fmt::format("{}:{}", path.string(), line);
     const std::string_view left = next_cell(row), right = next_cell(row);
     if (std::exchange(heading, false)) {
       if (left != "i" || right != "j")
@@ -126,7 +126,7 @@ void read_file_of_bonds(const fs::path& path, const GrainBond& common, Pairs& pa
     for (const auto& [cell, number] : {std::pair{left, &grains[0]}, std::pair{right, &grains[1]}}) {
       const auto [stop, problem] = std::from_chars(cell.data(), cell.data() + cell.size(), *number);
       if (problem == std::errc() && stop == cell.data() + cell.size()) continue;
-      throw Error(ErrorKind::bad_input, format("'{}' is no number of a grain", cell), "grains are counted 0, 1, 2, ...",
+      throw Error(ErrorKind::bad_input, fmt::format("'{}' is no number of a grain", cell), "grains are counted 0, 1, 2, ...",
                   "Correct it", where);
     }
     GrainBond bond = common;
@@ -136,7 +136,7 @@ void read_file_of_bonds(const fs::path& path, const GrainBond& common, Pairs& pa
       double& value = bond.*strength->value;
       const auto [stop, problem] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
       if (problem == std::errc() && stop == cell.data() + cell.size() && std::isfinite(value) && value >= 0) continue;
-      throw Error(ErrorKind::bad_input, format("'{}' is no {}", cell, strength->key), "a number >= 0 is needed",
+      throw Error(ErrorKind::bad_input, fmt::format("'{}' is no {}", cell, strength->key), "a number >= 0 is needed",
                   "Correct it", where);
     }
     if (!ties(bond)) throw Error(ErrorKind::bad_input, "the bond has no dashpot", no_strength, give_strength, where);
@@ -204,7 +204,7 @@ BondCase read_bonds(TomlValue& root, const fs::path& folder, std::size_t grains)
       try {
         read_file_of_bonds(file, common, pairs, result);
       } catch (const Error& error) {
-        throw error.at(format("{}: bonds.path", path->where()));
+        throw error.at(fmt::format("{}: bonds.path", path->where()));
       }
       path->text = file.string();
     } else if (repeated(root, "bond").empty()) {
@@ -215,11 +215,11 @@ BondCase read_bonds(TomlValue& root, const fs::path& folder, std::size_t grains)
     const TomlValue& two = *table.find("grains");
     if (two.items.size() != 2)
       fail_at(two, "bond.grains",
-              format("{} are {}", two.shown(), counted(static_cast<long long>(two.items.size()), "grain")),
+              fmt::format("{} are {}", two.shown(), counted(static_cast<long long>(two.items.size()), "grain")),
               "a bond ties two", "Write it like grains = [0, 1]");
     const GrainBond bond = strengths_of(table, common);
     if (!ties(bond)) fail_at(table, "bond", "the bond has no dashpot", no_strength, give_strength);
-    pairs.add(bond, two.items[0].integer, two.items[1].integer, format("{}: bond.grains", two.where()), result);
+    pairs.add(bond, two.items[0].integer, two.items[1].integer, fmt::format("{}: bond.grains", two.where()), result);
   }
   return result;
 }

@@ -8,7 +8,7 @@
 
 #include "equidem/casefile/keys.hpp"
 #include "equidem/casefile/toml.hpp"
-#include "equidem/grains/grain_scene.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem {
 

@@ -39,8 +39,8 @@ DiscGroup discs_of(const GroupCase& wanted, const Assembly& assembly, const std:
   DiscGroup result;
   for (const std::int32_t disc : wanted.discs) {
     if (disc >= count) {
-      fail(where, format("group '{}' names disc {}", wanted.name, disc),
-           format("the assembly has {}, numbered from 0", counted(count, "disc")), "Correct the list");
+      fail(where, fmt::format("group '{}' names disc {}", wanted.name, disc),
+           fmt::format("the assembly has {}, numbered from 0", counted(count, "disc")), "Correct the list");
     }
     result.discs.push_back(disc);
   }
@@ -57,8 +57,8 @@ DiscGroup discs_of(const GroupCase& wanted, const Assembly& assembly, const std:
     if (x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y) result.discs.push_back(disc);
   }
   if (result.discs.empty()) {
-    fail(where, format("no disc has its centre in the box of group '{}'", wanted.name),
-         format("the centres lie in [{:.6g}, {:.6g}, {:.6g}, {:.6g}]", least.x, least.y, most.x, most.y),
+    fail(where, fmt::format("no disc has its centre in the box of group '{}'", wanted.name),
+         fmt::format("the centres lie in [{:.6g}, {:.6g}, {:.6g}, {:.6g}]", least.x, least.y, most.x, most.y),
          "Move or widen the box");
   }
   return result;
@@ -67,9 +67,9 @@ DiscGroup discs_of(const GroupCase& wanted, const Assembly& assembly, const std:
 void add_groups(Assembly& assembly, const Case& resolved) {
   for (std::size_t k = 0; k < resolved.groups.size(); ++k) {
     const GroupCase& wanted = resolved.groups[k];
-    const std::string where = resolved.where(format("group.{}.{}", k, wanted.box_low ? "box" : "discs"));
+    const std::string where = resolved.where(fmt::format("group.{}.{}", k, wanted.box_low ? "box" : "discs"));
     if (assembly.groups.contains(wanted.name)) {
-      fail(resolved.where(format("group.{}.name", k)), format("the assembly has a group '{}' of its own", wanted.name),
+      fail(resolved.where(fmt::format("group.{}.name", k)), fmt::format("the assembly has a group '{}' of its own", wanted.name),
            "a name means one group", "Choose another name");
     }
     assembly.groups[wanted.name] = discs_of(wanted, assembly, where);
@@ -81,11 +81,11 @@ void check_group_names(const Assembly& assembly, const Case& resolved) {
   for (const char* table : {"support", "load", "velocity", "probe"}) {
     const TomlValue* list = resolved.document.find(table);
     for (std::size_t k = 0; list != nullptr && k < list->items.size(); ++k) {
-      const std::string where = resolved.where(format("{}.{}.group", table, k));
+      const std::string where = resolved.where(fmt::format("{}.{}.group", table, k));
       const std::string& name = list->items[k].find("group")->text;
       try {
         if (group(assembly, name).discs.empty())
-          bad_input(format("group '{}' holds no disc", name), format("the {} would do nothing", table),
+          bad_input(fmt::format("group '{}' holds no disc", name), fmt::format("the {} would do nothing", table),
                     "Choose another group");
       } catch (const Error& error) {
         throw error.at(where);
@@ -97,7 +97,7 @@ void check_group_names(const Assembly& assembly, const Case& resolved) {
 SpringConstants springs_of_material(const Case& resolved, const Assembly& assembly, Packing& packing) {
   const MaterialCase& material = *resolved.material;
   if (resolved.weighting != SpringWeighting::uniform && resolved.assembly.kind == AssemblyKind::square) {
-    bad_input(format("the weighting is \"{}\" on the square lattice", to_string(resolved.weighting)),
+    bad_input(fmt::format("the weighting is \"{}\" on the square lattice", to_string(resolved.weighting)),
               "its relation to moduli (Abe 1996, eq. 31) is for equal springs", "Use weighting = \"uniform\"");
   }
   const SpringRelation relation = spring_relation(resolved, assembly);
@@ -107,13 +107,13 @@ SpringConstants springs_of_material(const Case& resolved, const Assembly& assemb
 }
 
 std::string described(const SpringConstants& springs, SpringWeighting weighting) {
-  return format("kN = {:.6g} Pa, kT = {:.6g} Pa (kT/kN = {:.6g}), weighting {}", springs.kN, springs.kT,
+  return fmt::format("kN = {:.6g} Pa, kT = {:.6g} Pa (kT/kN = {:.6g}), weighting {}", springs.kN, springs.kT,
                 springs.ratio(), to_string(weighting));
 }
 
 std::string described(const MaterialCase& material, const SpringConstants& springs, SpringWeighting weighting,
                       Packing packing) {
-  return format("G = {:.6g} Pa, nu = {:.6g} (plane {}) gives {}. The relation {}", material.moduli.shear_modulus,
+  return fmt::format("G = {:.6g} Pa, nu = {:.6g} (plane {}) gives {}. The relation {}", material.moduli.shear_modulus,
                 material.moduli.poisson_ratio, to_string(material.moduli.plane), described(springs, weighting),
                 validity(packing));
 }
@@ -151,8 +151,8 @@ std::optional<double> disc_density(const Case& resolved, const Assembly& assembl
   if (!rho) return gamma / phi;
   constexpr double tolerance = 1e-6;
   if (std::abs(gamma - *rho * phi) <= tolerance * gamma) return rho;
-  fail(where, format("density = {:.9g} kg/m³ contradicts the density of the discs", gamma),
-       format("discs of {:.9g} kg/m³ that fill {:.6g} of the area make {:.9g} kg/m³", *rho, phi, *rho * phi),
+  fail(where, fmt::format("density = {:.9g} kg/m³ contradicts the density of the discs", gamma),
+       fmt::format("discs of {:.9g} kg/m³ that fill {:.6g} of the area make {:.9g} kg/m³", *rho, phi, *rho * phi),
        "Remove one of the two");
 }
 

@@ -35,10 +35,10 @@ void check_supports(const Case& resolved, const Assembly& assembly, const std::v
       for (const std::int32_t disc : group(assembly, supports[k].group).discs) {
         const auto [earlier, is_new] = prescribed.emplace(disc, k);
         if (is_new || supports[earlier->second].*component.motion == motion) continue;
-        fail(resolved.where(format("support.{}.{}", k, component.name)),
-             format("the support of '{}' prescribes {} of disc {} a second time", supports[k].group, component.name,
+        fail(resolved.where(fmt::format("support.{}.{}", k, component.name)),
+             fmt::format("the support of '{}' prescribes {} of disc {} a second time", supports[k].group, component.name,
                     disc),
-             format("that of '{}' gives it another motion", supports[earlier->second].group),
+             fmt::format("that of '{}' gives it another motion", supports[earlier->second].group),
              "Prescribe each component of a disc once");
       }
     }
@@ -52,8 +52,8 @@ void check_velocities(const Case& resolved, const Assembly& assembly) {
     for (const std::int32_t disc : group(assembly, velocities[k].group).discs) {
       const auto [earlier, is_new] = given.emplace(disc, k);
       if (is_new) continue;
-      fail(resolved.where(format("velocity.{}.group", k)), format("disc {} has two velocities at the start", disc),
-           format("it is in '{}' and in '{}'", velocities[earlier->second].group, velocities[k].group),
+      fail(resolved.where(fmt::format("velocity.{}.group", k)), fmt::format("disc {} has two velocities at the start", disc),
+           fmt::format("it is in '{}' and in '{}'", velocities[earlier->second].group, velocities[k].group),
            "Choose groups that share no disc");
     }
   }
@@ -74,8 +74,8 @@ void check_velocities_count(const Case& resolved, const Scene& scene) {
   const bool turns = derive_effects(scene.assembly, scene.springs, resolved.rotation).rotation;
   for (std::size_t k = 0; k < velocities.size(); ++k) {
     if (velocities[k].spin != 0 && !turns) {
-      fail(resolved.where(format("velocity.{}.spin", k)),
-           format("'{}' has a spin at the start, and rotations are no unknowns of this scene", velocities[k].group),
+      fail(resolved.where(fmt::format("velocity.{}.spin", k)),
+           fmt::format("'{}' has a spin at the start, and rotations are no unknowns of this scene", velocities[k].group),
            scene.springs.any_tangential() ? "they are restrained" : "kT = 0 everywhere: the spin would change nothing",
            "Remove the spin");
     }
@@ -87,10 +87,10 @@ void check_velocities_count(const Case& resolved, const Scene& scene) {
         if (!(support.*component.motion)) continue;
         for (const std::int32_t disc : group(scene.assembly, support.group).discs) {
           if (!discs.contains(disc)) continue;
-          fail(resolved.where(format("velocity.{}.{}", k, component.key)),
-               format("disc {} of '{}' has a velocity at the start, and its {} is prescribed", disc,
+          fail(resolved.where(fmt::format("velocity.{}.{}", k, component.key)),
+               fmt::format("disc {} of '{}' has a velocity at the start, and its {} is prescribed", disc,
                       velocities[k].group, component.name),
-               format("the support of '{}' says how it moves", support.group),
+               fmt::format("the support of '{}' says how it moves", support.group),
                "Choose a group without held discs, or release them");
         }
       }
@@ -103,7 +103,7 @@ void check_walls_of(const Case& resolved, const Assembly& assembly) {
     try {
       check_wall(resolved.run->walls, k, assembly);
     } catch (const Error& error) {
-      throw error.at(resolved.where(format("wall.{}", k)));
+      throw error.at(resolved.where(fmt::format("wall.{}", k)));
     }
   }
 }
@@ -127,7 +127,7 @@ void add_test(const Case& resolved, const Assembly& assembly, Scene& scene) {
 
 Scene build_scene(const Case& resolved, const Assembly& assembly, const ContactSprings& springs) {
   if (!resolved.run) {
-    fail(format("{}: run", resolved.document.where()), "missing table", "it says how long the run is",
+    fail(fmt::format("{}: run", resolved.document.where()), "missing table", "it says how long the run is",
          "Add [run] with duration = ... in s, or until_rest = 1e-10");
   }
   const std::optional<double> density = disc_density(resolved, assembly);

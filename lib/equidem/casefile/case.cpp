@@ -57,7 +57,7 @@ AssemblyCase read_assembly_table(TomlValue& table, const fs::path& folder) {
     options.radii = {number(*radii, "smallest"), number(*radii, "largest")};
     if (options.radii.smallest > options.radii.largest) {
       fail_at(*radii, "assembly.radii",
-              format("smallest = {} is larger than largest = {}", options.radii.smallest, options.radii.largest), "",
+              fmt::format("smallest = {} is larger than largest = {}", options.radii.smallest, options.radii.largest), "",
               "Exchange them");
     }
   }
@@ -69,7 +69,7 @@ GroupCase read_group(const TomlValue& table) {
   const TomlValue* discs = table.find("discs");
   const TomlValue* box = table.find("box");
   if ((discs == nullptr) == (box == nullptr)) {
-    fail_at(box != nullptr ? *box : table, format("group '{}'", result.name),
+    fail_at(box != nullptr ? *box : table, fmt::format("group '{}'", result.name),
             box != nullptr ? "discs and box are both given" : "it has neither discs nor box",
             "a group is a list of discs, or the discs in a box", "Give one of the two");
   }
@@ -80,7 +80,7 @@ GroupCase read_group(const TomlValue& table) {
   result.box_low = Vec2{box->items[0].real, box->items[1].real};
   result.box_high = Vec2{box->items[2].real, box->items[3].real};
   if (result.box_low->x >= result.box_high->x || result.box_low->y >= result.box_high->y) {
-    fail_at(*box, "group.box", format("the box {} is empty", box->shown()), "it is [x_min, y_min, x_max, y_max]",
+    fail_at(*box, "group.box", fmt::format("the box {} is empty", box->shown()), "it is [x_min, y_min, x_max, y_max]",
             "Put the smaller numbers first");
   }
   return result;
@@ -97,7 +97,7 @@ Support read_support(const TomlValue& table) {
                  .uy = held(table.find("uy")),
                  .rotation = held(table.find("rotation"))};
   if (!result.ux && !result.uy && !result.rotation) {
-    fail_at(table, "support", format("the support of '{}' holds nothing", result.group),
+    fail_at(table, "support", fmt::format("the support of '{}' holds nothing", result.group),
             "ux, uy and rotation are all left out", "Add one, such as uy = true");
   }
   return result;
@@ -114,7 +114,7 @@ Load read_load(const TomlValue& table) {
   const TomlValue* force = table.find("force");
   const TomlValue* moment = table.find("moment");
   if (force == nullptr && moment == nullptr)
-    fail_at(table, "load", format("the load on '{}' has neither force nor moment", result.group), "it would do nothing",
+    fail_at(table, "load", fmt::format("the load on '{}' has neither force nor moment", result.group), "it would do nothing",
             "Add one, such as force = [1.0e3, 0.0]");
   if (moment != nullptr && result.kind == LoadKind::traction)
     fail_at(*moment, "load.moment", "a traction has no moment", "it is a force per area of a side",
@@ -153,7 +153,7 @@ void resolve_springs_file(TomlValue& root, const fs::path& folder) {
   try {
     document = parse_toml(read_file(path), path.string());
   } catch (const Error& error) {
-    throw error.at(format("{}: springs", named->where()));
+    throw error.at(fmt::format("{}: springs", named->where()));
   }
   check_and_complete(document, springs_file_spec());
   *named = *document.find("springs");
@@ -196,13 +196,13 @@ void check_contradictions(const TomlValue& root, const AssemblyCase& assembly) {
   if (const TomlValue* ensemble = root.find("ensemble");
       ensemble != nullptr && assembly.kind != AssemblyKind::delaunay) {
     fail_at(*ensemble, "ensemble", "an ensemble needs random assemblies",
-            format("kind = \"{}\" makes the same one every time", text(*root.find("assembly"), "kind")),
+            fmt::format("kind = \"{}\" makes the same one every time", text(*root.find("assembly"), "kind")),
             "Set kind = \"delaunay\", or remove [ensemble]");
   }
   const TomlValue* test = root.find("test");
   for (const char* other : {"support", "load"}) {
     if (test == nullptr || repeated(root, other).empty()) continue;
-    fail_at(repeated(root, other).front(), other, format("[test] and [[{}]] are both given", other),
+    fail_at(repeated(root, other).front(), other, fmt::format("[test] and [[{}]] are both given", other),
             "the test brings its own supports and loads", "Remove one of them");
   }
   if (test != nullptr && (assembly.lattice.periodic || assembly.delaunay.periodic)) {
@@ -214,7 +214,7 @@ void check_contradictions(const TomlValue& root, const AssemblyCase& assembly) {
 }  // namespace
 
 std::string Case::where(std::string_view key) const {
-  return format("{}: {}", value_at(document, key).where(), key);
+  return fmt::format("{}: {}", value_at(document, key).where(), key);
 }
 
 Case parse_case(std::string_view content, const std::string& name, const fs::path& folder,

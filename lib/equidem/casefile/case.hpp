@@ -22,7 +22,7 @@
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/homogenize/tension_test.hpp"
 #include "equidem/material/inertia.hpp"
-#include "equidem/statics/linear_solver.hpp"
+#include "equidem/linear/linear_solver.hpp"
 #include "equidem/statics/supports.hpp"
 
 namespace equidem {

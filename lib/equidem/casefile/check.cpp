@@ -41,8 +41,8 @@ class Checker {
       const std::string leaf = dot == std::string::npos ? name : name.substr(dot + 1);
       if (parent == nullptr || parent->find(leaf) != nullptr) continue;
       if (table.required) {
-        throw Error(ErrorKind::bad_input, "missing table", format("it describes {}", table.help),
-                    format("Add [{}]", table.name), format("{}: [{}]", root_.where(), table.name));
+        throw Error(ErrorKind::bad_input, "missing table", fmt::format("it describes {}", table.help),
+                    fmt::format("Add [{}]", table.name), fmt::format("{}: [{}]", root_.where(), table.name));
       }
       if (table.completed) {
         TomlValue added;
@@ -69,17 +69,17 @@ class Checker {
 
   [[noreturn]] void fail(const TomlValue& at, const std::string& key, const std::string& problem,
                          const std::string& why, const std::string& remedy) const {
-    throw Error(ErrorKind::bad_input, problem, why, remedy, format("{}: {}", at.where(), key));
+    throw Error(ErrorKind::bad_input, problem, why, remedy, fmt::format("{}: {}", at.where(), key));
   }
 
   void check_schema() const {
     const TomlValue* schema = root_.find("schema");
-    const std::string remedy = format("Write schema = \"{}\" at the top of the file", spec_.schema);
+    const std::string remedy = fmt::format("Write schema = \"{}\" at the top of the file", spec_.schema);
     if (schema == nullptr)
-      fail(root_, "schema", "missing key", format("every {} names the rules it follows", spec_.noun), remedy);
+      fail(root_, "schema", "missing key", fmt::format("every {} names the rules it follows", spec_.noun), remedy);
     if (schema->type == TomlValue::Type::text && schema->text == spec_.schema) return;
-    fail(*schema, "schema", format("{} is not the schema of a {}", schema->shown(), spec_.noun),
-         format("this program reads \"{}\"", spec_.schema), remedy);
+    fail(*schema, "schema", fmt::format("{} is not the schema of a {}", schema->shown(), spec_.noun),
+         fmt::format("this program reads \"{}\"", spec_.schema), remedy);
   }
 
   /// The word on which other keys of the table depend, such as the kind of assembly; checked first.
@@ -91,7 +91,7 @@ class Checker {
         return value->text;
       }
       if (key->is_required()) fail_missing(path, table, *key);
-      return parse_toml(format("value = {}", key->fallback), "").find("value")->text;
+      return parse_toml(fmt::format("value = {}", key->fallback), "").find("value")->text;
     }
     return {};
   }
@@ -102,15 +102,15 @@ class Checker {
   }
 
   [[noreturn]] void fail_missing(const std::string& path, const TomlValue& table, const KeySpec& key) const {
-    const std::string why = format("{} is needed", expected(key));
+    const std::string why = fmt::format("{} is needed", expected(key));
     fail(table, joined(path, key.name), "missing key", why,
-         path.empty() ? format("Add {} = ... at the top of the file", key.name)
-                      : format("Add {} = ... to {}", key.name, bracketed(path)));
+         path.empty() ? fmt::format("Add {} = ... at the top of the file", key.name)
+                      : fmt::format("Add {} = ... to {}", key.name, bracketed(path)));
   }
 
   [[nodiscard]] std::string bracketed(const std::string& path) const {
     const TableSpec* table = table_spec(path);
-    return table != nullptr && table->repeated ? format("[[{}]]", path) : format("[{}]", path);
+    return table != nullptr && table->repeated ? fmt::format("[[{}]]", path) : fmt::format("[{}]", path);
   }
 
   [[noreturn]] void fail_unknown(const std::string& path, const TomlValue& table, const std::string& name,
@@ -126,37 +126,37 @@ class Checker {
       const bool directly_below = full.starts_with(prefix) && full.find('.', prefix.size()) == std::string::npos;
       if (directly_below && !contains(here, full.substr(prefix.size()))) here.push_back(full.substr(prefix.size()));
     }
-    std::string remedy = format("Known here: {}", listed(here));
+    std::string remedy = fmt::format("Known here: {}", listed(here));
     if (const auto meant = nearest(name, here)) {
-      remedy = format("Did you mean '{}'?", *meant);
+      remedy = fmt::format("Did you mean '{}'?", *meant);
     } else {
       for (const KeySpec& key : spec_.keys) {
         if (name != key.name) continue;
         remedy = *key.table == '\0' ? "It belongs at the top of the file, before the first [table]"
-                                    : format("It belongs to {}", bracketed(key.table));
+                                    : fmt::format("It belongs to {}", bracketed(key.table));
         break;
       }
     }
     const bool as_table = value.is_table() || (value.is_array() && !value.items.empty() && value.items[0].is_table());
-    fail(value, joined(path, name), as_table ? "unknown table" : "unknown key", format("the {} is strict", spec_.noun),
+    fail(value, joined(path, name), as_table ? "unknown table" : "unknown key", fmt::format("the {} is strict", spec_.noun),
          remedy);
   }
 
   void check_inner_table(const std::string& path, const TomlValue& outer, TomlValue& value, const TableSpec& spec) {
     const std::string full = spec.name;
     if (!applies(path, outer, spec.when_key, spec.when)) {
-      fail(value, full, "this table does not apply here", format("it is for {} = {}", spec.when_key, listed(spec.when)),
+      fail(value, full, "this table does not apply here", fmt::format("it is for {} = {}", spec.when_key, listed(spec.when)),
            "Remove it");
     }
     if (spec.repeated) {
       if (!value.is_array()) {
-        fail(value, full, format("this is {}", value.is_table() ? "a single table" : value.type_name()),
-             "there may be several, each with its own heading", format("Write [[{}]] above each", full));
+        fail(value, full, fmt::format("this is {}", value.is_table() ? "a single table" : value.type_name()),
+             "there may be several, each with its own heading", fmt::format("Write [[{}]] above each", full));
       }
       for (TomlValue& item : value.items) {
         if (!item.is_table())
-          fail(item, full, format("{} is {}", item.shown(), item.type_name()), "a table is needed",
-               format("Write [[{}]] and its keys below", full));
+          fail(item, full, fmt::format("{} is {}", item.shown(), item.type_name()), "a table is needed",
+               fmt::format("Write [[{}]] and its keys below", full));
         check_table(full, item);
       }
       return;
@@ -164,8 +164,8 @@ class Checker {
     if (!value.is_table()) {
       const bool heading = value.is_array() && !value.items.empty() && value.items[0].is_table();
       fail(value, full,
-           heading ? format("[[{}]] is a list of tables", full) : format("{} is {}", value.shown(), value.type_name()),
-           "one table is needed", format("Write [{}] and its keys below", full));
+           heading ? fmt::format("[[{}]] is a list of tables", full) : fmt::format("{} is {}", value.shown(), value.type_name()),
+           "one table is needed", fmt::format("Write [{}] and its keys below", full));
     }
     check_table(full, value);
   }
@@ -194,10 +194,10 @@ class Checker {
     for (const KeySpec* key : keys) kinds.insert(kinds.end(), key->when.begin(), key->when.end());
     const std::string selecting = keys.front()->when_key;
     const std::string chosen = selector(path, table, selecting);
-    const std::string problem = chosen.empty() ? format("this key does not apply here")
-                                               : format("this key does not apply to {} = \"{}\"", selecting, chosen);
-    fail(value, joined(path, name), problem, format("it is for {}", listed(kinds)),
-         format("Remove it, or change {}", selecting));
+    const std::string problem = chosen.empty() ? fmt::format("this key does not apply here")
+                                               : fmt::format("this key does not apply to {} = \"{}\"", selecting, chosen);
+    fail(value, joined(path, name), problem, fmt::format("it is for {}", listed(kinds)),
+         fmt::format("Remove it, or change {}", selecting));
   }
 
   void complete(const std::string& path, TomlValue& table) {
@@ -205,7 +205,7 @@ class Checker {
       if (path != key.table || table.find(key.name) != nullptr) continue;
       if (!(key.is_required() || key.has_default()) || !applies(path, table, key.when_key, key.when)) continue;
       if (key.is_required()) fail_missing(path, table, key);
-      TomlValue value = *parse_toml(format("value = {}", key.fallback), "").find("value");
+      TomlValue value = *parse_toml(fmt::format("value = {}", key.fallback), "").find("value");
       value.source = table.source;
       value.line = table.line;
       table.entries.emplace_back(key.name, std::move(value));

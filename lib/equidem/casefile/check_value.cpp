@@ -18,18 +18,18 @@ using Type = TomlValue::Type;
 
 std::string quoted_list(const std::vector<std::string>& words) {
   std::string list;
-  for (const std::string& word : words) list += format("{}\"{}\"", list.empty() ? "" : ", ", word);
+  for (const std::string& word : words) list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", word);
   return list;
 }
 
 std::string full_name(const KeySpec& key) {
-  return *key.table == '\0' ? key.name : format("{}.{}", key.table, key.name);
+  return *key.table == '\0' ? key.name : fmt::format("{}.{}", key.table, key.name);
 }
 
 [[noreturn]] void fail(const TomlValue& value, const KeySpec& key, const std::string& problem,
                        const std::string& remedy) {
-  throw Error(ErrorKind::bad_input, problem, format("{} is {}", key.name, expected(key)), remedy,
-              format("{}: {}", value.where(), full_name(key)));
+  throw Error(ErrorKind::bad_input, problem, fmt::format("{} is {}", key.name, expected(key)), remedy,
+              fmt::format("{}: {}", value.where(), full_name(key)));
 }
 
 bool reads_as_number(const std::string& text) {
@@ -44,7 +44,7 @@ std::string example(const KeySpec& key) {
     case KeyType::text:
       return "\"...\"";
     case KeyType::choice:
-      return format("\"{}\"", key.choices.front());
+      return fmt::format("\"{}\"", key.choices.front());
     case KeyType::path:
       return "\"FILE\"";
     case KeyType::flag:
@@ -68,7 +68,7 @@ std::string example(const KeySpec& key) {
     case KeyType::numbers:
       return "[0.0, 0.5, 1.0]";
     case KeyType::words:
-      return format("[\"{}\"]", key.choices.front());
+      return fmt::format("[\"{}\"]", key.choices.front());
     case KeyType::held:
       return "0.001";
     case KeyType::bytes:
@@ -78,31 +78,31 @@ std::string example(const KeySpec& key) {
 }
 
 [[noreturn]] void fail_type(const TomlValue& value, const KeySpec& key) {
-  std::string remedy = format("Write it like {} = {}", key.name, example(key));
+  std::string remedy = fmt::format("Write it like {} = {}", key.name, example(key));
   if (value.type == Type::text &&
       (key.type == KeyType::number || key.type == KeyType::number_or_auto || key.type == KeyType::whole) &&
       reads_as_number(value.text))
-    remedy = format("Leave out the quotes: {} = {}", key.name, value.text);
+    remedy = fmt::format("Leave out the quotes: {} = {}", key.name, value.text);
   if (value.type == Type::real && key.type == KeyType::whole && value.real == std::floor(value.real) &&
       std::abs(value.real) < 1e15)
-    remedy = format("Write {} = {:.0f}", key.name, value.real);
-  fail(value, key, format("{} is {}", value.shown(), value.type_name()), remedy);
+    remedy = fmt::format("Write {} = {:.0f}", key.name, value.real);
+  fail(value, key, fmt::format("{} is {}", value.shown(), value.type_name()), remedy);
 }
 
 void check_number(const TomlValue& value, const KeySpec& key) {
   if (!value.is_number()) fail_type(value, key);
   if (!std::isfinite(value.real))
-    fail(value, key, format("{} is not a finite number", value.shown()), "Give a finite one");
+    fail(value, key, fmt::format("{} is not a finite number", value.shown()), "Give a finite one");
   if (!key.range.contains(value.real))
-    fail(value, key, format("{} is out of range", value.shown()), format("Give a number {}", key.range.text()));
+    fail(value, key, fmt::format("{} is out of range", value.shown()), fmt::format("Give a number {}", key.range.text()));
 }
 
 void check_numbers(const TomlValue& value, const KeySpec& key, std::size_t count) {
   if (!value.is_array()) fail_type(value, key);
   if (value.items.size() != count) {
     fail(value, key,
-         format("{} has {}", value.shown(), counted(static_cast<long long>(value.items.size()), "entry", "entries")),
-         format("Give {} of them", count));
+         fmt::format("{} has {}", value.shown(), counted(static_cast<long long>(value.items.size()), "entry", "entries")),
+         fmt::format("Give {} of them", count));
   }
   for (const TomlValue& item : value.items) check_number(item, key);
 }
@@ -112,7 +112,7 @@ void check_discs(const TomlValue& value, const KeySpec& key) {
   if (value.items.empty()) fail(value, key, "the list is empty", "Name at least one disc");
   for (const TomlValue& item : value.items) {
     if (item.type != Type::integer || item.integer < 0 || item.integer > INT32_MAX)
-      fail(item, key, format("{} is no number of a disc", item.shown()), "Discs are counted 0, 1, 2, ...");
+      fail(item, key, fmt::format("{} is no number of a disc", item.shown()), "Discs are counted 0, 1, 2, ...");
   }
 }
 
@@ -120,7 +120,7 @@ void check_discs(const TomlValue& value, const KeySpec& key) {
 void check_list(const TomlValue& value, const KeySpec& key) {
   if (!value.is_array()) fail_type(value, key);
   if (value.items.empty())
-    fail(value, key, "the list is empty", format("Write it like {} = {}", key.name, example(key)));
+    fail(value, key, "the list is empty", fmt::format("Write it like {} = {}", key.name, example(key)));
 }
 
 void check_circles(const TomlValue& value, const KeySpec& key) {
@@ -129,7 +129,7 @@ void check_circles(const TomlValue& value, const KeySpec& key) {
     if (!item.is_array()) fail_type(value, key);
     check_numbers(item, key, 3);
     if (!(item.items[2].real > 0))
-      fail(item.items[2], key, format("the radius {} is out of range", item.items[2].shown()), "Give a number > 0");
+      fail(item.items[2], key, fmt::format("the radius {} is out of range", item.items[2].shown()), "Give a number > 0");
   }
 }
 
@@ -140,7 +140,7 @@ void check_sizes(const TomlValue& value, const KeySpec& key) {
     if (item.type != Type::integer) fail_type(item, key);
     check_number(item, key);
     if (k > 0 && item.integer <= value.items[k - 1].integer) {
-      fail(item, key, format("{} comes after {}", item.integer, value.items[k - 1].integer),
+      fail(item, key, fmt::format("{} comes after {}", item.integer, value.items[k - 1].integer),
            "Write each number once, the smallest first");
     }
   }
@@ -150,13 +150,13 @@ void check_choice(const TomlValue& value, const KeySpec& key) {
   if (value.type != Type::text) fail_type(value, key);
   if (std::find(key.choices.begin(), key.choices.end(), value.text) != key.choices.end()) return;
   if (std::find(key.later.begin(), key.later.end(), value.text) != key.later.end()) {
-    fail(value, key, format("{} arrives with a later version", value.shown()),
+    fail(value, key, fmt::format("{} arrives with a later version", value.shown()),
          "Choose another, or make the assembly elsewhere and read it with kind = \"file\"");
   }
   const auto meant = nearest(value.text, key.choices);
   fail(value, key,
-       format("{} is {} {}", value.shown(), key.type == KeyType::words ? "none of the" : "no known", key.name),
-       meant ? format("Did you mean \"{}\"?", *meant) : "Choose one of these");
+       fmt::format("{} is {} {}", value.shown(), key.type == KeyType::words ? "none of the" : "no known", key.name),
+       meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Choose one of these");
 }
 
 void check_words(const TomlValue& value, const KeySpec& key) {
@@ -165,20 +165,20 @@ void check_words(const TomlValue& value, const KeySpec& key) {
     check_choice(value.items[k], key);
     for (std::size_t earlier = 0; earlier < k; ++earlier)
       if (value.items[earlier].text == value.items[k].text)
-        fail(value.items[k], key, format("{} is there twice", value.items[k].shown()), "Write each word once");
+        fail(value.items[k], key, fmt::format("{} is there twice", value.items[k].shown()), "Write each word once");
   }
 }
 
 }  // namespace
 
 std::string expected(const KeySpec& key) {
-  const std::string unit = *key.unit == '\0' ? "" : format(" in {}", key.unit);
-  const std::string range = key.range.text().empty() ? "" : format(", {}", key.range.text());
+  const std::string unit = *key.unit == '\0' ? "" : fmt::format(" in {}", key.unit);
+  const std::string range = key.range.text().empty() ? "" : fmt::format(", {}", key.range.text());
   switch (key.type) {
     case KeyType::text:
       return "text in quotes";
     case KeyType::choice:
-      return key.choices.size() == 1 ? quoted_list(key.choices) : format("one of {}", quoted_list(key.choices));
+      return key.choices.size() == 1 ? quoted_list(key.choices) : fmt::format("one of {}", quoted_list(key.choices));
     case KeyType::path:
       return "the name of a file, in quotes";
     case KeyType::flag:
@@ -273,14 +273,14 @@ void check_value(const TomlValue& value, const KeySpec& key) {
     case KeyType::held:
       if (value.type == Type::boolean) {
         if (value.boolean) return;
-        fail(value, key, "false says nothing", format("Leave {} out where it is free", key.name));
+        fail(value, key, "false says nothing", fmt::format("Leave {} out where it is free", key.name));
       }
       return check_number(value, key);
     case KeyType::bytes: {
       const auto bytes = bytes_of(value);
       if (!bytes) fail_type(value, key);
       if (!key.range.contains(*bytes))
-        fail(value, key, format("{} is out of range", value.shown()), format("Give a number {}", key.range.text()));
+        fail(value, key, fmt::format("{} is out of range", value.shown()), fmt::format("Give a number {}", key.range.text()));
       return;
     }
   }

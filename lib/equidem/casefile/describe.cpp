@@ -48,22 +48,22 @@ void append_key(std::string& out, const KeySpec& key) {
   const std::string name = key.name;
   const std::size_t begin = out.size();
   const std::string need = key.is_required()   ? "required"
-                           : key.has_default() ? format("default {}", key.fallback)
+                           : key.has_default() ? fmt::format("default {}", key.fallback)
                                                : "optional";
-  append_wrapped(out, format("{}; {}", expected(key), need), indent);
+  append_wrapped(out, fmt::format("{}; {}", expected(key), need), indent);
   if (name.size() > name_width) {
     out.insert(begin, "  " + name + "\n");
   } else {
     out.replace(begin + 2, name.size(), name);
   }
   std::string help = key.help;
-  if (*key.when_key != '\0') help = format("({} = {}) {}", key.when_key, joined(key.when), help);
+  if (*key.when_key != '\0') help = fmt::format("({} = {}) {}", key.when_key, joined(key.when), help);
   if (!help.empty()) append_wrapped(out, help, indent);
 }
 
 void append_table(std::string& out, const FileSpec& spec, const TableSpec& table) {
-  const std::string heading = table.repeated ? format("[[{}]]", table.name) : format("[{}]", table.name);
-  out += format("\n{}  {}{}\n", heading, table.help, table.required ? "; required" : "");
+  const std::string heading = table.repeated ? fmt::format("[[{}]]", table.name) : fmt::format("[{}]", table.name);
+  out += fmt::format("\n{}  {}{}\n", heading, table.help, table.required ? "; required" : "");
   for (const KeySpec& key : spec.keys)
     if (std::string_view(key.table) == table.name) append_key(out, key);
 }

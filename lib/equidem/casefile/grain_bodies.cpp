@@ -88,7 +88,7 @@ class GrainFile {
 
  private:
   [[noreturn]] void fail(const std::string& problem, const std::string& why, const std::string& remedy) const {
-    throw Error(ErrorKind::bad_input, problem, why, remedy, format("{}:{}", path_.string(), line_));
+    throw Error(ErrorKind::bad_input, problem, why, remedy, fmt::format("{}:{}", path_.string(), line_));
   }
 
   void read_heading(std::string_view row) {
@@ -101,20 +101,20 @@ class GrainFile {
       if (column == columns) {
         const std::size_t bare = column_of(cells[c].substr(0, cells[c].find('_')));
         if (bare != columns)
-          fail(format("the column '{}' is in a unit of its own", cells[c]),
-               "lengths are in m, times in s, angles in rad", format("Convert it, and name it '{}'", names[bare]));
+          fail(fmt::format("the column '{}' is in a unit of its own", cells[c]),
+               "lengths are in m, times in s, angles in rad", fmt::format("Convert it, and name it '{}'", names[bare]));
         const auto meant = nearest(cells[c], std::vector<std::string>(names.begin(), names.end()));
-        fail(format("'{}' is no column of grains", cells[c]),
+        fail(fmt::format("'{}' is no column of grains", cells[c]),
              "they are x, y, radius, short_half_axis, vx, vy, spin, angle, density, discs, group",
-             meant ? format("Did you mean '{}'?", *meant) : "Name the columns in the first row");
+             meant ? fmt::format("Did you mean '{}'?", *meant) : "Name the columns in the first row");
       }
       std::size_t& at = at_[column];
-      if (at != width_) fail(format("the column '{}' is there twice", names[column]), "", "Keep one");
+      if (at != width_) fail(fmt::format("the column '{}' is there twice", names[column]), "", "Keep one");
       at = c;
     }
     for (const Column needed : {x, y, radius}) {
       if (at_[needed] != width_ || (needed == radius && at_[discs] != width_)) continue;
-      fail(format("the column '{}' is missing", names[needed]), "every grain has a place and a size", "Add it");
+      fail(fmt::format("the column '{}' is missing", names[needed]), "every grain has a place and a size", "Add it");
     }
   }
 
@@ -125,7 +125,7 @@ class GrainFile {
     double value = 0;
     const auto [end, problem] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
     if (problem != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
-      fail(format("'{}' is no {}", cell, names[column]), "a finite number is needed", "Correct it");
+      fail(fmt::format("'{}' is no {}", cell, names[column]), "a finite number is needed", "Correct it");
     return value;
   }
 
@@ -138,8 +138,8 @@ class GrainFile {
                   GrainBodies& bodies) const {
     const auto cells = cells_of(row);
     if (cells.size() != width_)
-      fail(format("the row has {}", counted(static_cast<long long>(cells.size()), "cell")),
-           format("the first row names {}", counted(static_cast<long long>(width_), "column")), "Correct it");
+      fail(fmt::format("the row has {}", counted(static_cast<long long>(cells.size()), "cell")),
+           fmt::format("the first row names {}", counted(static_cast<long long>(width_), "column")), "Correct it");
     Grain grain;
     grain.position = {number(cells, x, 0), number(cells, y, 0)};
     grain.velocity = {number(cells, vx, 0), number(cells, vy, 0)};
@@ -147,14 +147,14 @@ class GrainFile {
     grain.angle = number(cells, angle, 0);
     const double own = number(cells, density, common_density.value_or(0));
     if (!(own > 0)) {
-      if (at_[density] != width_) fail(format("the density {} is not positive", own), "", "Correct it");
+      if (at_[density] != width_) fail(fmt::format("the density {} is not positive", own), "", "Correct it");
       fail("the density of the grains is missing", "motion needs their mass",
            "Add density = ... in kg/m³ to [grains], or a column of that name");
     }
     try {
       read_shape(cells, own, shapes, grain);
     } catch (const Error& error) {
-      throw error.at(format("{}:{}", path_.string(), line_));
+      throw error.at(fmt::format("{}:{}", path_.string(), line_));
     }
     bodies.grains.push_back(grain);
     bodies.densities.push_back(own);
@@ -178,7 +178,7 @@ class GrainFile {
     constexpr double tolerance = 1e-9;
     const double size = number(cells, radius, 0);
     if (std::abs(size - grain.radius) > tolerance * grain.radius) {
-      fail(format("the radius is {} m, and the discs reach {} m from their mass centre", size, grain.radius),
+      fail(fmt::format("the radius is {} m, and the discs reach {} m from their mass centre", size, grain.radius),
            "that is the radius of a clump", "Correct one of them, or leave the radius empty");
     }
   }
@@ -187,7 +187,7 @@ class GrainFile {
     if (at_[group] == width_ || cells[at_[group]].empty()) return "grains";
     const std::string_view name = cells[at_[group]];
     if (!is_plain_name(name))
-      fail(format("'{}' cannot name a group", name), "it stands in tables", "Use letters, digits, '_' and '-' only");
+      fail(fmt::format("'{}' cannot name a group", name), "it stands in tables", "Use letters, digits, '_' and '-' only");
     if (name == "walls")
       fail("a group of grains is called 'walls'", "the name stands for all walls", "Name it otherwise");
     return std::string(name);
@@ -207,7 +207,7 @@ void read_shape(const TomlValue& table, double density, GrainShapes& shapes, Gra
     const TomlValue* value = table.find(name);
     if (value == nullptr) continue;
     if (given != nullptr)
-      fail_at(*value, format("grain.{}", name), format("{} and {} are both given", key, name),
+      fail_at(*value, fmt::format("grain.{}", name), fmt::format("{} and {} are both given", key, name),
               "a body has one shape: radius is for a disc, half_axes for an ellipse, discs for a clump",
               "Remove one of them");
     given = value;
@@ -225,7 +225,7 @@ void read_shape(const TomlValue& table, double density, GrainShapes& shapes, Gra
       discs_given.push_back({{disc.items[0].real, disc.items[1].real}, disc.items[2].real});
     shapes.make_clump(grain, std::move(discs_given), density);
   } catch (const Error& error) {
-    throw error.at(format("{}: grain.{}", given->where(), key));
+    throw error.at(fmt::format("{}: grain.{}", given->where(), key));
   }
 }
 
@@ -263,7 +263,7 @@ GrainBodies read_bodies(TomlValue& root, const fs::path& folder) {
     try {
       GrainFile(file).read(density, shapes, bodies);
     } catch (const Error& error) {
-      throw error.at(format("{}: grains.path", path->where()));
+      throw error.at(fmt::format("{}: grains.path", path->where()));
     }
     path->text = bodies.file = file.string();
   }

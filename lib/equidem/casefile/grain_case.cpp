@@ -31,15 +31,15 @@ void check_letters(const TomlValue& root) {
   for (const NormalLaw meant : {NormalLaw::linear_dashpot, NormalLaw::hertz_dashpot, NormalLaw::five_case_map,
                                 NormalLaw::energy_map, NormalLaw::exact_flow})
     if (law->text == letter_of(meant))
-      fail_at(*law, "collisions.law", format("{} is the letter of a law", law->shown()), "laws go by their names here",
-              format("Write law = \"{}\"", to_string(meant)));
+      fail_at(*law, "collisions.law", fmt::format("{} is the letter of a law", law->shown()), "laws go by their names here",
+              fmt::format("Write law = \"{}\"", to_string(meant)));
 }
 
 Vec2 direction(const TomlValue& table, const char* key, const std::string& use) {
   const Vec2 given = vector(table, key);
   const double length = std::hypot(given.x, given.y);
   if (length == 0)
-    fail_at(*table.find(key), format("wall.{}", key), format("the {} of wall '{}' is zero", key, text(table, "name")),
+    fail_at(*table.find(key), fmt::format("wall.{}", key), fmt::format("the {} of wall '{}' is zero", key, text(table, "name")),
             use, "Give a direction, such as [0.0, 1.0]");
   return given / length;
 }
@@ -52,13 +52,13 @@ void read_motion(const TomlValue& table, std::span<const NamedSchedule> schedule
     const TomlValue* lonely = displacement != nullptr ? displacement : schedule != nullptr ? schedule : along;
     if (lonely == nullptr) return;
     fail_at(*lonely, "wall",
-            format("wall '{}' has no {}", wall.name, displacement == nullptr ? "displacement" : "schedule"),
+            fmt::format("wall '{}' has no {}", wall.name, displacement == nullptr ? "displacement" : "schedule"),
             "a wall moves by its displacement times a schedule",
             displacement == nullptr ? "Add displacement = ... in m"
                                     : "Add schedule = \"NAME\" and a [[schedule]] of that name");
   }
   if (along == nullptr && wall.shape != GrainWall::Shape::line)
-    fail_at(*displacement, "wall.displacement", format("wall '{}' has no direction", wall.name),
+    fail_at(*displacement, "wall.displacement", fmt::format("wall '{}' has no direction", wall.name),
             "only a line moves along its normal by itself", "Add direction = [..., ...]");
   const Vec2 unit = along == nullptr ? wall.normal : direction(table, "direction", "it says where the wall moves");
   wall.move_x = scheduled(table, "wall", displacement->real * unit.x, schedules);
@@ -90,7 +90,7 @@ GrainWall read_wall(const TomlValue& table, std::span<const NamedSchedule> sched
   try {
     check(wall);
   } catch (const Error& error) {
-    throw error.at(format("{}: wall.{}", table.find(culprit)->where(), culprit));
+    throw error.at(fmt::format("{}: wall.{}", table.find(culprit)->where(), culprit));
   }
   read_motion(table, schedules, wall);
   return wall;
@@ -104,7 +104,7 @@ void check_names_of_kinds(const TomlValue& root, const std::vector<std::string>&
     if (name.text == reserved)
       fail_at(name, "wall.name", "a wall is called 'walls'", "the name stands for all of them", "Name it otherwise");
     if (std::find(groups.begin(), groups.end(), name.text) != groups.end())
-      fail_at(name, "wall.name", format("a wall and a group of grains are both called '{}'", name.text),
+      fail_at(name, "wall.name", fmt::format("a wall and a group of grains are both called '{}'", name.text),
               "[[collisions.pair]] chooses them by name", "Rename one of them");
   }
   for (const TomlValue& grain : repeated(root, "grain"))
@@ -126,8 +126,8 @@ GrainProbe read_probe(const TomlValue& table, const std::vector<std::string>& gr
   if (grains != nullptr) {
     for (const TomlValue& item : grains->items) {
       if (static_cast<std::size_t>(item.integer) >= groups.size())
-        fail_at(item, "probe.grains", format("there is no grain {}", item.integer),
-                format("they are counted 0 to {}", groups.size() - 1), "Correct the number");
+        fail_at(item, "probe.grains", fmt::format("there is no grain {}", item.integer),
+                fmt::format("they are counted 0 to {}", groups.size() - 1), "Correct the number");
       probe.grains.push_back(static_cast<std::int32_t>(item.integer));
     }
     return probe;
@@ -136,8 +136,8 @@ GrainProbe read_probe(const TomlValue& table, const std::vector<std::string>& gr
     if (groups[g] == group->text) probe.grains.push_back(static_cast<std::int32_t>(g));
   if (probe.grains.empty()) {
     const auto meant = nearest(group->text, groups);
-    fail_at(*group, "probe.group", format("there are no grains of the group {}", group->shown()), "",
-            meant ? format("Did you mean \"{}\"?", *meant) : "Name a group of [[grain]]");
+    fail_at(*group, "probe.group", fmt::format("there are no grains of the group {}", group->shown()), "",
+            meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Name a group of [[grain]]");
   }
   return probe;
 }
@@ -173,13 +173,13 @@ void read_run(const TomlValue& run, GrainCase& result) {
               "each says how long a step is", "Remove one of them");
     if (step.real > result.duration)
       fail_at(step, "run.time_step",
-              format("time_step = {} s is longer than the run of {} s", step.real, result.duration),
+              fmt::format("time_step = {} s is longer than the run of {} s", step.real, result.duration),
               "a run makes at least one step", "Shorten the step");
   }
   const TomlValue* scheme = run.find("scheme");
   if (scheme == nullptr) return;
   if (is_map(result.law) || result.law == NormalLaw::exact_flow)
-    fail_at(*scheme, "run.scheme", format("{} has a step of its own", to_string(result.law)),
+    fail_at(*scheme, "run.scheme", fmt::format("{} has a step of its own", to_string(result.law)),
             "scheme is for linear_dashpot and hertz_dashpot", "Remove it, or change collisions.law");
   if (scheme->text == "velocity_verlet") result.scheme = GrainOptions::Scheme::velocity_verlet;
   if (scheme->text == "corrected_verlet") result.scheme = GrainOptions::Scheme::corrected_verlet;
@@ -188,12 +188,12 @@ void read_run(const TomlValue& run, GrainCase& result) {
 }  // namespace
 
 std::string GrainCase::where(std::string_view key) const {
-  return format("{}: {}", value_at(document, key).where(), key);
+  return fmt::format("{}: {}", value_at(document, key).where(), key);
 }
 
 std::string GrainCase::where_grain(std::size_t grain) const {
-  if (grain < grain_lines.size()) return format("{}:{}", grain_file, grain_lines[grain]);
-  return format("{}: grain", repeated(document, "grain")[grain - grain_lines.size()].where());
+  if (grain < grain_lines.size()) return fmt::format("{}:{}", grain_file, grain_lines[grain]);
+  return fmt::format("{}: grain", repeated(document, "grain")[grain - grain_lines.size()].where());
 }
 
 bool describes_grains(const fs::path& path, std::span<const std::string> overrides) {

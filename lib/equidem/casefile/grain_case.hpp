@@ -16,7 +16,7 @@
 #include "equidem/casefile/measure_case.hpp"
 #include "equidem/casefile/shaking_case.hpp"
 #include "equidem/casefile/toml.hpp"
-#include "equidem/grains/grain_scene.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem {
 

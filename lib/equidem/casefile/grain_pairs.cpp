@@ -58,7 +58,7 @@ void check_damping(const TomlValue& table, const std::string& key, NormalLaw law
     fail_at(damping, key + ".damping", "restitution and damping are both given", "each says how strong the dashpot is",
             "Remove one of them");
   if (law != NormalLaw::exact_flow && law != NormalLaw::linear_dashpot)
-    fail_at(damping, key + ".damping", format("{} has no use for damping", to_string(law)),
+    fail_at(damping, key + ".damping", fmt::format("{} has no use for damping", to_string(law)),
             "it is h of the dashpots 2 h sqrt(m k) of linear springs",
             "Give restitution, or the law exact_flow or linear_dashpot");
 }
@@ -83,13 +83,13 @@ Terms with(Terms terms, const TomlValue& table, const std::string& key, NormalLa
     const TomlValue* found = table.find(way);
     if (found == nullptr) continue;
     if (earlier != nullptr)
-      fail_at(*found, format("{}.{}", key, way), format("{} and {} are both given", terms.by, way),
+      fail_at(*found, fmt::format("{}.{}", key, way), fmt::format("{} and {} are both given", terms.by, way),
               "each says how stiff a contact is", "Remove one of them");
     earlier = terms.stiffness = found;
     terms.by = way;
   }
   if (const TomlValue* end = table.find("contact_end"); end != nullptr && !has_end(law))
-    fail_at(*end, key + ".contact_end", format("{} has no use for contact_end", to_string(law)), "it has no dashpot",
+    fail_at(*end, key + ".contact_end", fmt::format("{} has no use for contact_end", to_string(law)), "it has no dashpot",
             "Remove it");
   if (table.find("damping") != nullptr) check_damping(table, key, law);
   if (const TomlValue* duration = table.find("contact_duration");
@@ -108,15 +108,15 @@ void check_springs_of_moduli(const TomlValue& table, const GrainCase& result) {
     if (poisson == nullptr) return;
     const bool hertz = result.law == NormalLaw::hertz_dashpot;
     fail_at(*poisson, "collisions.poisson_ratio",
-            format("poisson_ratio is given without {}", hertz ? "young_modulus" : "shear_wave_speed"),
+            fmt::format("poisson_ratio is given without {}", hertz ? "young_modulus" : "shear_wave_speed"),
             "both make the stiffness of a contact",
             hertz ? "Add young_modulus = ... in Pa" : "Add shear_wave_speed = ... in m/s");
   }
   const TomlValue& given = young != nullptr ? *young : *shear;
   const char* name = young != nullptr ? "young_modulus" : "shear_wave_speed";
-  const std::string key = format("collisions.{}", name);
+  const std::string key = fmt::format("collisions.{}", name);
   if (poisson == nullptr)
-    fail_at(given, key, format("{} is given without poisson_ratio", name), "both make the stiffness of a contact",
+    fail_at(given, key, fmt::format("{} is given without poisson_ratio", name), "both make the stiffness of a contact",
             "Add poisson_ratio = ...");
   if (young != nullptr) {
     if (result.body == Body::disc)
@@ -135,7 +135,7 @@ void check_springs_of_moduli(const TomlValue& table, const GrainCase& result) {
             "each says how stiff the tangential spring is", "Remove one of them");
   const auto [least, most] = std::ranges::minmax(result.densities);
   if (least < most)
-    fail_at(given, key, format("the grains have densities from {} to {} kg/m³", least, most),
+    fail_at(given, key, fmt::format("the grains have densities from {} to {} kg/m³", least, most),
             "springs of wave speeds belong to one density",
             "Give one density, or stiffness and tangential_ratio for each pair");
 }
@@ -173,9 +173,9 @@ void check_restitution(const Terms& terms, NormalLaw law, const PairProperties& 
   if (is_map(law) || pair.end == ContactEnd::at_zero_overlap || pair.restitution >= least) return;
   assert(terms.damping == nullptr);
   fail_at(*terms.restitution, terms.key + ".restitution",
-          format("restitution = {} of contacts that end at zero force", terms.restitution->shown()),
+          fmt::format("restitution = {} of contacts that end at zero force", terms.restitution->shown()),
           "it would need an infinite dashpot, or one too strong for numbers to resolve",
-          format("Give {} or more, or contact_end = \"zero_overlap\", or the law energy_map", least));
+          fmt::format("Give {} or more, or contact_end = \"zero_overlap\", or the law energy_map", least));
 }
 
 void set_stiffness(const Terms& terms, const GrainCase& result, const Meeting& meeting, PairCase& pair) {
@@ -191,8 +191,8 @@ void set_stiffness(const Terms& terms, const GrainCase& result, const Meeting& m
     const double zeta = damping_ratio(result.law, properties);
     if (zeta >= 1)
       fail_at(*terms.stiffness, terms.key + ".contact_duration",
-              format("with restitution {} the contact never comes back to zero overlap", properties.restitution),
-              format("its damping ratio is {:.4g}, 1 or more", zeta), "Give stiffness instead");
+              fmt::format("with restitution {} the contact never comes back to zero overlap", properties.restitution),
+              fmt::format("its damping ratio is {:.4g}, 1 or more", zeta), "Give stiffness instead");
   } else if (by == "largest_overlap") {
     if (terms.closing_speed == nullptr)
       fail_at(*terms.stiffness, terms.key + ".largest_overlap", "largest_overlap is given without closing_speed",
@@ -261,17 +261,17 @@ std::vector<Override> read_overrides(const TomlValue& collisions, const std::vec
       if (is_in(choices, value.text)) return value.text;
       const auto meant = nearest(value.text, choices);
       std::string list;
-      for (const std::string& choice : choices) list += format("{}'{}'", list.empty() ? "" : ", ", choice);
-      fail_at(value, format("collisions.pair.{}", key),
-              format("{} is no group of grains{}", value.shown(), walls_too ? " and no wall" : ""),
-              format("there are {}", list), meant ? format("Did you mean \"{}\"?", *meant) : "Name one of them");
+      for (const std::string& choice : choices) list += fmt::format("{}'{}'", list.empty() ? "" : ", ", choice);
+      fail_at(value, fmt::format("collisions.pair.{}", key),
+              fmt::format("{} is no group of grains{}", value.shown(), walls_too ? " and no wall" : ""),
+              fmt::format("there are {}", list), meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Name one of them");
     };
     const std::string first = known("group", false), second = known("with", true);
     if (is_in(wall_names, second) && !is_in(walls, second)) walls.push_back(second);
     for (const Override& earlier : overrides) {
       if (std::minmax(earlier.first, earlier.second) != std::minmax(first, second)) continue;
-      fail_at(table, "collisions.pair", format("'{}' and '{}' are a pair twice", first, second),
-              format("the other is at {}", earlier.table->where()), "Keep one of them");
+      fail_at(table, "collisions.pair", fmt::format("'{}' and '{}' are a pair twice", first, second),
+              fmt::format("the other is at {}", earlier.table->where()), "Keep one of them");
     }
     overrides.push_back({first, second, &table});
   }
@@ -296,7 +296,7 @@ void read_collisions(const TomlValue& root, const std::vector<std::string>& grou
       radii.push_back(radius);
       if (result.kinds.size() > most_kinds) {
         fail_at(table, by_radius ? "collisions.young_modulus" : "grain.group",
-                format("there are more than {} {}", most_kinds, by_radius ? "different radii" : "groups"),
+                fmt::format("there are more than {} {}", most_kinds, by_radius ? "different radii" : "groups"),
                 "a table of all pairs of them would grow large",
                 by_radius ? "Give stiffness instead, or fewer radii" : "Put grains that meet alike into one group");
       }

@@ -9,21 +9,21 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/clump.hpp"
+#include "equidem/grains/scene/clump.hpp"
 
 namespace equidem {
 namespace {
 
 void check_length(const char* what, double length) {
   if (length > 0 && std::isfinite(length)) return;
-  bad_input(format("the {} {} m is not positive", what, length), "a body has a size", "Give a number > 0");
+  bad_input(fmt::format("the {} {} m is not positive", what, length), "a body has a size", "Give a number > 0");
 }
 
 }  // namespace
 
 void GrainShapes::check_body(const char* shape) const {
   if (body_ == Body::disc) return;
-  bad_input(format("{} among spheres", shape), "ellipses and clumps are cylinders, their mass is per metre of depth",
+  bad_input(fmt::format("{} among spheres", shape), "ellipses and clumps are cylinders, their mass is per metre of depth",
             "Write body = \"disc\" in [grains]");
 }
 
@@ -38,7 +38,7 @@ void GrainShapes::make_ellipse(Grain& grain, double long_half_axis, double short
   check_length("long half-axis", long_half_axis);
   check_length("short half-axis", short_half_axis);
   if (short_half_axis > long_half_axis) {
-    bad_input(format("the short half-axis {} m is longer than the long one, {} m", short_half_axis, long_half_axis),
+    bad_input(fmt::format("the short half-axis {} m is longer than the long one, {} m", short_half_axis, long_half_axis),
               "at angle 0 the long one lies along x", "Exchange them, and add a quarter turn (1.5708) to the angle");
   }
   grain.radius = long_half_axis;
@@ -67,7 +67,7 @@ void GrainShapes::make_clump(Grain& grain, std::vector<Clump::Disc> discs, doubl
 
 std::vector<Clump::Disc> clump_from(std::string_view text) {
   const auto fail = [&] {
-    bad_input(format("'{}' are no discs of a clump", text), "three numbers for each, x y r in m, and ; between them",
+    bad_input(fmt::format("'{}' are no discs of a clump", text), "three numbers for each, x y r in m, and ; between them",
               "Write it like 0 0 0.01; 0.015 0 0.01");
   };
   std::vector<Clump::Disc> discs;

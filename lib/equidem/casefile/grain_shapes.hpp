@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "equidem/grains/grain_scene.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/material/inertia.hpp"
 
 namespace equidem {

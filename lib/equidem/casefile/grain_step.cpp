@@ -11,7 +11,7 @@
 #include "equidem/contact/collision_stiffness.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/bond_step.hpp"
+#include "equidem/grains/contacts/bond_step.hpp"
 
 namespace equidem {
 namespace {
@@ -148,7 +148,7 @@ GrainStep choose_grain_step(const GrainCase& resolved) {
   }
   if (!resolved.bonds.bonds.empty()) limit_by_bonds(resolved, result);
   result.contact = shortest.duration;
-  result.between = format("{} and {}", resolved.kinds[static_cast<std::size_t>(shortest.a)],
+  result.between = fmt::format("{} and {}", resolved.kinds[static_cast<std::size_t>(shortest.a)],
                           resolved.kinds[static_cast<std::size_t>(shortest.b)]);
   result.omega_step = shortest.omega * result.step;
   // hertz_dashpot: the dashpot 2 zeta sqrt(5/4 m k) d^(1/4) over the critical one of the tangent stiffness 3/2 k d^(1/2)
@@ -158,10 +158,10 @@ GrainStep choose_grain_step(const GrainCase& resolved) {
   if (is_map(resolved.law)) result.limit = 1;
   if (has_limit && result.omega_step > result.limit) {
     throw Error(ErrorKind::bad_input,
-                format("the step of {:.6g} s is {:.4g} times the limit of stability of a contact of {}", result.step,
+                fmt::format("the step of {:.6g} s is {:.4g} times the limit of stability of a contact of {}", result.step,
                        result.omega_step / result.limit, result.between),
                 "contacts would gain energy without end",
-                format("Stay below {:.6g} s, or take softer contacts or the law exact_flow",
+                fmt::format("Stay below {:.6g} s, or take softer contacts or the law exact_flow",
                        result.step * result.limit / result.omega_step),
                 resolved.where("run.time_step"));
   }
@@ -173,8 +173,8 @@ std::int64_t count_steps(const GrainCase& resolved, double step) {
   const double steps = std::ceil(resolved.duration / step * (1 - 1e-12));
   if (steps <= most) return std::llround(steps);
   throw Error(ErrorKind::bad_input,
-              format("{:.3g} s in steps of {:.3g} s are {:.3g} steps", resolved.duration, step, steps),
-              format("no run makes more than {:.0e}", most), "Shorten the duration, or take a longer step",
+              fmt::format("{:.3g} s in steps of {:.3g} s are {:.3g} steps", resolved.duration, step, steps),
+              fmt::format("no run makes more than {:.0e}", most), "Shorten the duration, or take a longer step",
               resolved.where("run.duration"));
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "equidem/casefile/grain_case.hpp"
-#include "equidem/grains/grain_scene.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem {
 

@@ -29,15 +29,15 @@ bool Range::contains(double value) const {
 std::string Range::text() const {
   const auto shown = [](double value) {
     const bool short_whole = std::abs(value) < 1e7 && value == std::floor(value);
-    return short_whole ? format("{:.0f}", value) : format("{:g}", value);
+    return short_whole ? fmt::format("{:.0f}", value) : fmt::format("{:g}", value);
   };
   if (zero_excluded) return "not 0";
   if (low == -infinity && high == infinity) return {};
-  if (high == infinity) return format("{} {}", low_open ? ">" : ">=", shown(low));
-  if (low == -infinity) return format("{} {}", high_open ? "<" : "<=", shown(high));
-  if (low_open && high_open) return format("between {} and {}", shown(low), shown(high));
-  if (!low_open && !high_open) return format("from {} to {}", shown(low), shown(high));
-  return format("{} {} and {} {}", low_open ? ">" : ">=", shown(low), high_open ? "<" : "<=", shown(high));
+  if (high == infinity) return fmt::format("{} {}", low_open ? ">" : ">=", shown(low));
+  if (low == -infinity) return fmt::format("{} {}", high_open ? "<" : "<=", shown(high));
+  if (low_open && high_open) return fmt::format("between {} and {}", shown(low), shown(high));
+  if (!low_open && !high_open) return fmt::format("from {} to {}", shown(low), shown(high));
+  return fmt::format("{} {} and {} {}", low_open ? ">" : ">=", shown(low), high_open ? "<" : "<=", shown(high));
 }
 
 const FileSpec& case_file_spec() {

@@ -57,12 +57,12 @@ Words given_in(const TomlValue& table) {
   const Words& meant = *std::min_element(sets.begin(), sets.end(),
                                          [&](const Words& a, const Words& b) { return distance(a) < distance(b); });
   const Words missing = without(meant, given), surplus = without(given, meant);
-  std::string why = missing.empty() ? "" : format("{} {} missing", listed(missing), missing.size() == 1 ? "is" : "are");
+  std::string why = missing.empty() ? "" : fmt::format("{} {} missing", listed(missing), missing.size() == 1 ? "is" : "are");
   if (!surplus.empty())
-    why += format("{}{} {} too much", why.empty() ? "" : ", ", listed(surplus), surplus.size() == 1 ? "is" : "are");
+    why += fmt::format("{}{} {} too much", why.empty() ? "" : ", ", listed(surplus), surplus.size() == 1 ? "is" : "are");
   const TomlValue& at = surplus.empty() ? table : *table.find(surplus.front());
   fail_at(at, surplus.empty() ? "material" : "material." + surplus.front(),
-          format("{} {} not describe an isotropic continuum", listed(given), given.size() == 1 ? "alone does" : "do"),
+          fmt::format("{} {} not describe an isotropic continuum", listed(given), given.size() == 1 ? "alone does" : "do"),
           why, remedy);
 }
 
@@ -72,7 +72,7 @@ ElasticModuli moduli_from_waves(const TomlValue& table, Plane plane) {
   const double density = number(table, "density");
   if (s >= p) {
     fail_at(*table.find("s_wave_speed"), "material.s_wave_speed",
-            format("s_wave_speed = {} is not below p_wave_speed = {}", s, p),
+            fmt::format("s_wave_speed = {} is not below p_wave_speed = {}", s, p),
             "K = density (Vp² - Vs²) must be positive for the body to be stable", "Correct the speeds");
   }
   return moduli_from_bulk(density * (p - s) * (p + s), density * s * s, plane);
@@ -104,7 +104,7 @@ MaterialCase read_material(const TomlValue& table) {
     }
     check(result.moduli);
   } catch (const Error& error) {
-    throw error.at(format("{}: material", table.where()));
+    throw error.at(fmt::format("{}: material", table.where()));
   }
   if (const TomlValue* density = table.find("density")) result.density = density->real;
   result.static_only = flag(table, "static_only");

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "equidem/casefile/keys.hpp"
-#include "equidem/grains/clipped_area.hpp"
+#include "equidem/grains/scene/clipped_area.hpp"
 #include "equidem/material/inertia.hpp"
 
 namespace equidem {

@@ -54,7 +54,7 @@ TomlValue value_from(const std::string& text, const std::string& source) {
       word.text = text;
       return word;
     }
-    throw Error(ErrorKind::bad_input, format("'{}' is no TOML value", text), error.why(),
+    throw Error(ErrorKind::bad_input, fmt::format("'{}' is no TOML value", text), error.why(),
                 "Write a number, true, false, [list] or text", source);
   }
   if (parsed.entries.size() != 1) {
@@ -73,14 +73,14 @@ void remove(TomlValue& parent, const std::string& segment, const std::string& so
   }
   const std::size_t removed = std::erase_if(parent.entries, [&](const auto& entry) { return entry.first == segment; });
   if (removed > 0) return;
-  throw Error(ErrorKind::bad_input, format("there is no '{}' to take out", segment),
+  throw Error(ErrorKind::bad_input, fmt::format("there is no '{}' to take out", segment),
               "'none' takes out a key of the case file", "Check its name", source);
 }
 
 }  // namespace
 
 void apply_override(TomlValue& root, const std::string& assignment, const std::string& option) {
-  std::string shown = format("{} {}", option, assignment);
+  std::string shown = fmt::format("{} {}", option, assignment);
   std::replace(shown.begin(), shown.end(), '\n', ' ');
   const auto source = std::make_shared<const std::string>(std::move(shown));
   const std::size_t equals = assignment.find('=');
@@ -106,8 +106,8 @@ void apply_override(TomlValue& root, const std::string& assignment, const std::s
     if (at->is_array()) {
       const auto index = index_of(segment);
       if (!index || *index >= at->items.size()) {
-        throw Error(ErrorKind::bad_input, format("there is no entry '{}'", segment),
-                    format("the case file has {} of them, counted from 0", at->items.size()), "Name one that exists",
+        throw Error(ErrorKind::bad_input, fmt::format("there is no entry '{}'", segment),
+                    fmt::format("the case file has {} of them, counted from 0", at->items.size()), "Name one that exists",
                     *source);
       }
       next = &at->items[*index];
@@ -120,8 +120,8 @@ void apply_override(TomlValue& root, const std::string& assignment, const std::s
         next = &at->entries.back().second;
       }
     } else {
-      throw Error(ErrorKind::bad_input, format("there is nothing below '{}'", segments[k - 1]),
-                  format("in the case file it is {}", at->shown()), "Set the key itself, or change the file", *source);
+      throw Error(ErrorKind::bad_input, fmt::format("there is nothing below '{}'", segments[k - 1]),
+                  fmt::format("in the case file it is {}", at->shown()), "Set the key itself, or change the file", *source);
     }
     at = next;
   }
@@ -134,7 +134,7 @@ bool is_known_key(std::string_view path) {
     if (!index_of(segment)) without_indices += (without_indices.empty() ? "" : ".") + segment;
   const auto& keys = case_file_spec().keys;
   return std::any_of(keys.begin(), keys.end(), [&](const KeySpec& key) {
-    return without_indices == (*key.table == '\0' ? std::string(key.name) : format("{}.{}", key.table, key.name));
+    return without_indices == (*key.table == '\0' ? std::string(key.name) : fmt::format("{}.{}", key.table, key.name));
   });
 }
 

@@ -24,7 +24,7 @@ SizeDistribution read_sizes(TomlValue& table, const fs::path& folder) {
     sizes.largest = number(table, "largest");
     if (sizes.largest < sizes.smallest) {
       fail_at(*table.find("largest"), "packing.radii.largest",
-              format("the largest radius {} m is below the smallest, {} m", sizes.largest, sizes.smallest), "",
+              fmt::format("the largest radius {} m is below the smallest, {} m", sizes.largest, sizes.smallest), "",
               "Exchange them");
     }
   } else if (kind == "log_normal") {
@@ -38,7 +38,7 @@ SizeDistribution read_sizes(TomlValue& table, const fs::path& folder) {
     try {
       sizes.sieves = read_sieve_curve(file);
     } catch (const Error& error) {
-      throw error.at(format("{}: packing.radii.path", path.where()));
+      throw error.at(fmt::format("{}: packing.radii.path", path.where()));
     }
     path.text = file.string();
   }
@@ -104,7 +104,7 @@ void read_amount(const TomlValue& table, const SizeDistribution& sizes, PackingO
   } else {
     const double wanted = std::round(fraction->real * options.box.area() / mean_area);
     if (!(wanted >= 1 && wanted <= 1e7))
-      fail_at(*box, "packing.box", format("{:.3g} bodies would fill the box", wanted), "they are 1 to 1e7",
+      fail_at(*box, "packing.box", fmt::format("{:.3g} bodies would fill the box", wanted), "they are 1 to 1e7",
               "Change the box or the radii");
     count = static_cast<std::int64_t>(wanted);
   }

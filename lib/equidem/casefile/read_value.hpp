@@ -19,7 +19,7 @@ namespace equidem {
 /// Throw an Error (bad_input) that names the line of a value, and the key.
 [[noreturn]] inline void fail_at(const TomlValue& at, const std::string& key, const std::string& problem,
                                  const std::string& why, const std::string& remedy) {
-  throw Error(ErrorKind::bad_input, problem, why, remedy, format("{}: {}", at.where(), key));
+  throw Error(ErrorKind::bad_input, problem, why, remedy, fmt::format("{}: {}", at.where(), key));
 }
 
 /// The entry must exist and have the type: check_and_complete has seen to it.

@@ -18,7 +18,7 @@ TimeStepOptions read_time_step(const TomlValue& run, const std::optional<double>
   if (!step.is_number()) return result;
   result.step = step.real;
   if (duration && step.real > *duration) {
-    fail_at(step, "run.time_step", format("time_step = {} s is longer than the run of {} s", step.real, *duration),
+    fail_at(step, "run.time_step", fmt::format("time_step = {} s is longer than the run of {} s", step.real, *duration),
             "a run makes at least one step", "Shorten the step");
   }
   return result;
@@ -42,12 +42,12 @@ Wall read_wall(const TomlValue& table, std::span<const NamedSchedule> schedules)
   const Vec2 normal = vector(table, "normal");
   const double length = std::hypot(normal.x, normal.y);
   if (length == 0) {
-    fail_at(*table.find("normal"), "wall.normal", format("the normal of wall '{}' is zero", text(table, "name")),
+    fail_at(*table.find("normal"), "wall.normal", fmt::format("the normal of wall '{}' is zero", text(table, "name")),
             "it says on which side the discs are", "Give a direction, such as [0.0, 1.0]");
   }
   const TomlValue* schedule = table.find("schedule");
   if (schedule != nullptr && table.find("displacement") == nullptr) {
-    fail_at(*schedule, "wall.schedule", format("wall '{}' has a schedule and no displacement", text(table, "name")),
+    fail_at(*schedule, "wall.schedule", fmt::format("wall '{}' has a schedule and no displacement", text(table, "name")),
             "it would not move", "Add displacement = ... in m");
   }
   return {.name = text(table, "name"),
@@ -86,7 +86,7 @@ void check_one_load_case(const std::vector<TomlValue>& tables) {
     const std::string& name = text(table, "case");
     if (name.empty()) continue;
     if (earlier != nullptr && *earlier != name) {
-      fail_at(*table.find("case"), "load.case", format("[run] has the load cases '{}' and '{}'", *earlier, name),
+      fail_at(*table.find("case"), "load.case", fmt::format("[run] has the load cases '{}' and '{}'", *earlier, name),
               "a run is one motion, in which all loads act", "Keep one, or remove [run]");
     }
     earlier = &name;
@@ -97,7 +97,7 @@ void check_one_load_case(const std::vector<TomlValue>& tables) {
 void check_no_run_needed(const TomlValue& root) {
   for (const char* list : {"wall", "velocity", "probe"}) {
     if (repeated(root, list).empty()) continue;
-    fail_at(repeated(root, list).front(), list, format("[[{}]] is given and [run] is not", list),
+    fail_at(repeated(root, list).front(), list, fmt::format("[[{}]] is given and [run] is not", list),
             "it belongs to motion in time", "Add [run] with a duration, or remove it");
   }
 }

@@ -32,7 +32,7 @@ void read_table(TomlValue& table, const fs::path& folder, Schedule& result) {
   const TomlValue* values = table.find("values");
   const bool lists = times != nullptr && values != nullptr;
   if (lists == (path != nullptr) || (times != nullptr) != (values != nullptr)) {
-    fail_at(table, "schedule", format("the points of '{}' are not given once", text(table, "name")),
+    fail_at(table, "schedule", fmt::format("the points of '{}' are not given once", text(table, "name")),
             "a table is times and values, or a file", "Give times = [...] and values = [...], or path = \"FILE\"");
   }
   if (path != nullptr) {
@@ -40,7 +40,7 @@ void read_table(TomlValue& table, const fs::path& folder, Schedule& result) {
     try {
       read_points(file, result, "value");
     } catch (const Error& error) {
-      throw error.at(format("{}: schedule.path", path->where()));
+      throw error.at(fmt::format("{}: schedule.path", path->where()));
     }
     path->text = file.string();
     return;
@@ -66,7 +66,7 @@ Schedule read_schedule(TomlValue& table, const fs::path& folder) {
   try {
     check(result);
   } catch (const Error& error) {
-    throw error.at(format("{}: schedule.{}", table.find(culprit)->where(), culprit));
+    throw error.at(fmt::format("{}: schedule.{}", table.find(culprit)->where(), culprit));
   }
   return result;
 }
@@ -93,19 +93,19 @@ void read_points(const fs::path& path, Schedule& table, std::string_view column)
     double time = 0, value = 0;
     if (!read_number(left, time) || !read_number(right, value)) {
       throw Error(ErrorKind::bad_input, "this row is not a time and a value", "two numbers with a comma are needed",
-                  format("Write it like 0.5,1.0; the first row may be time,{}", column),
-                  format("{}:{}", path.string(), line));
+                  fmt::format("Write it like 0.5,1.0; the first row may be time,{}", column),
+                  fmt::format("{}:{}", path.string(), line));
     }
     if (!table.times.empty() && time <= table.times.back()) {
-      throw Error(ErrorKind::bad_input, format("the time {} s comes after {} s", time, table.times.back()),
+      throw Error(ErrorKind::bad_input, fmt::format("the time {} s comes after {} s", time, table.times.back()),
                   "times ascend, and a value cannot jump", "Order the rows and leave out repeated times",
-                  format("{}:{}", path.string(), line));
+                  fmt::format("{}:{}", path.string(), line));
     }
     table.times.push_back(time);
     table.values.push_back(value);
   }
   if (table.times.empty())
-    bad_input(format("'{}' has no points", path.string()), "a table needs at least one", "Add rows like 0.5,1.0");
+    bad_input(fmt::format("'{}' has no points", path.string()), "a table needs at least one", "Add rows like 0.5,1.0");
 }
 
 std::vector<NamedSchedule> read_schedules(TomlValue& root, const fs::path& folder) {
@@ -125,10 +125,10 @@ Schedule scheduled(const TomlValue& table, const std::string& key, double value,
     names.push_back(known.name);
   }
   const auto meant = nearest(wanted->text, names);
-  fail_at(*wanted, key + ".schedule", format("there is no schedule {}", wanted->shown()),
+  fail_at(*wanted, key + ".schedule", fmt::format("there is no schedule {}", wanted->shown()),
           schedules.empty() ? "the case has no [[schedule]]"
-                            : format("the case has {}", counted(static_cast<long long>(names.size()), "other")),
-          meant ? format("Did you mean \"{}\"?", *meant) : "Add a [[schedule]] of that name, or correct it");
+                            : fmt::format("the case has {}", counted(static_cast<long long>(names.size()), "other")),
+          meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Add a [[schedule]] of that name, or correct it");
 }
 
 }  // namespace equidem

@@ -21,7 +21,7 @@ double unit_of(const TomlValue& table) {
 /// A key that has no meaning beside the others.
 void refuse_beside(const TomlValue& table, const char* key, const std::string& why) {
   if (const TomlValue* value = table.find(key))
-    fail_at(*value, format("shaking.{}", key), format("{} does not apply", key), why, "Remove it");
+    fail_at(*value, fmt::format("shaking.{}", key), fmt::format("{} does not apply", key), why, "Remove it");
 }
 
 std::int64_t count_cycles(const TomlValue& table, double frequency, double start, double run_duration) {
@@ -35,11 +35,11 @@ std::int64_t count_cycles(const TomlValue& table, double frequency, double start
   const double whole = std::round(periods);
   if (duration != nullptr && (whole < 1 || std::abs(periods - whole) > 1e-6 * whole))
     fail_at(
-        *duration, "shaking.duration", format("{} s are {:.6g} cycles of {} Hz", duration->real, periods, frequency),
-        "only whole cycles end at rest", format("Make it {:.6g} s, or give cycles", std::max(1.0, whole) / frequency));
+        *duration, "shaking.duration", fmt::format("{} s are {:.6g} cycles of {} Hz", duration->real, periods, frequency),
+        "only whole cycles end at rest", fmt::format("Make it {:.6g} s, or give cycles", std::max(1.0, whole) / frequency));
   constexpr double most = 1e12;
   if (!(periods < most))
-    fail_at(*table.find("frequency"), "shaking.frequency", format("the box would shake {:.3g} times", periods),
+    fail_at(*table.find("frequency"), "shaking.frequency", fmt::format("the box would shake {:.3g} times", periods),
             "the run has fewer steps than that", "Lower it, or give cycles");
   // On beyond the end of the run, which may cut a cycle short.
   return static_cast<std::int64_t>(duration != nullptr ? whole : std::max(1.0, std::ceil(periods - 1e-9 * whole)));
@@ -52,19 +52,19 @@ void read_harmonic(const TomlValue& table, double run_duration, ShakingCase& sha
   const TomlValue* frequency = table.find("frequency");
   if (acceleration == nullptr || frequency == nullptr) {
     const char* missing = acceleration == nullptr ? "acceleration" : "frequency";
-    fail_at(table, "shaking", format("it is not said how the box moves: {} is missing", missing),
+    fail_at(table, "shaking", fmt::format("it is not said how the box moves: {} is missing", missing),
             "acceleration and frequency say it, or a record", "Give acceleration and frequency, or record = \"FILE\"");
   }
   const double a = unit_of(table) * acceleration->real, start = number(table, "start");
   if (!(start < run_duration))
-    fail_at(*table.find("start"), "shaking.start", format("the box begins to shake at {} s", start),
-            format("the run ends at {} s", run_duration), "Start earlier, or run longer");
+    fail_at(*table.find("start"), "shaking.start", fmt::format("the box begins to shake at {} s", start),
+            fmt::format("the run ends at {} s", run_duration), "Start earlier, or run longer");
   shaking.frequency = frequency->real;
   shaking.cycles = count_cycles(table, shaking.frequency, start, run_duration);
   try {
     shaking.motion.displacement = harmonic_shaking(a, shaking.frequency, start, shaking.cycles);
   } catch (const Error& error) {
-    throw error.at(format("{}: shaking.frequency", frequency->where()));
+    throw error.at(fmt::format("{}: shaking.frequency", frequency->where()));
   }
   const double omega = 2 * std::numbers::pi * shaking.frequency;
   shaking.motion.peak_acceleration = a;
@@ -94,7 +94,7 @@ void read_record(TomlValue& table, const fs::path& folder, ShakingCase& shaking)
                                             baseline != nullptr && baseline->text == "velocity" ? Baseline::velocity
                                                                                                 : Baseline::rest);
   } catch (const Error& error) {
-    throw error.at(format("{}: shaking.record", path.where()));
+    throw error.at(fmt::format("{}: shaking.record", path.where()));
   }
   path.text = file.string();
 }
@@ -195,8 +195,8 @@ ShakingCase read_shaking(TomlValue& root, const fs::path& folder, double run_dur
   }
   constexpr double fastest = 3e8;  // light
   if (!(shaking.motion.peak_velocity < fastest))
-    fail_at(table, "shaking", format("the box would move with {:.3g} m/s", shaking.motion.peak_velocity),
-            format("nothing is faster than {:.0e} m/s", fastest), "Give a smaller acceleration, or check the units");
+    fail_at(table, "shaking", fmt::format("the box would move with {:.3g} m/s", shaking.motion.peak_velocity),
+            fmt::format("nothing is faster than {:.0e} m/s", fastest), "Give a smaller acceleration, or check the units");
   bool any = false;
   const auto& tables = repeated(root, "wall");
   for (std::size_t k = 0; k < walls.size(); ++k) {
@@ -206,7 +206,7 @@ ShakingCase read_shaking(TomlValue& root, const fs::path& folder, double run_dur
     try {
       shake(walls.subspan(k, 1), shaking.direction, shaking.motion.displacement);
     } catch (const Error& error) {
-      throw error.at(format("{}: wall", tables[k].where()));
+      throw error.at(fmt::format("{}: wall", tables[k].where()));
     }
   }
   if (!any)

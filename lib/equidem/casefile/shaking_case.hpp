@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "equidem/casefile/keys.hpp"
-#include "equidem/grains/shaking.hpp"
+#include "equidem/grains/scene/shaking.hpp"
 
 namespace equidem {
 

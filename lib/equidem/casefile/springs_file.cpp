@@ -16,9 +16,9 @@ std::string springs_file(const SpringConstants& springs, SpringWeighting weighti
     // TOML allows no control characters in a comment.
     for (char& c : line)
       if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-    out += line.empty() ? "#\n" : format("# {}\n", line);
+    out += line.empty() ? "#\n" : fmt::format("# {}\n", line);
   }
-  return out + format("schema = \"{}\"\ntitle = {}\n\n[springs]\nkN = {}\nkT = {}\nweighting = {}\n",
+  return out + fmt::format("schema = \"{}\"\ntitle = {}\n\n[springs]\nkN = {}\nkT = {}\nweighting = {}\n",
                       springs_file_spec().schema, toml_text(title), toml_number(springs.kN), toml_number(springs.kT),
                       toml_text(to_string(weighting)));
 }

@@ -29,7 +29,7 @@ VariedKey read_varied(const TomlValue& table) {
   VariedKey varied{.keys = listed(text(table, "key")), .values = {}};
   for (const std::string& key : varied.keys) {
     if (key.find('.') == std::string::npos)
-      fail_at(*table.find("key"), "vary.key", format("'{}' is no key of a case", key), "a key has a table and a name",
+      fail_at(*table.find("key"), "vary.key", fmt::format("'{}' is no key of a case", key), "a key has a table and a name",
               "Write it as in assembly.rows");
   }
   if (varied.keys.empty())
@@ -44,14 +44,14 @@ VariedKey read_varied(const TomlValue& table) {
   using enum VariedKey::Refines;
   varied.refines = refines == "larger" ? larger : refines == "smaller" ? smaller : not_at_all;
   if (varied.refines != not_at_all && *different.begin() <= 0)
-    fail_at(*table.find("values"), "vary.values", format("{} is among values that refine", *different.begin()),
+    fail_at(*table.find("values"), "vary.values", fmt::format("{} is among values that refine", *different.begin()),
             "orders are read off their logarithms", "Give positive values, or set refines = \"not\"");
   return varied;
 }
 
 /// A number as TOML, whole ones without a point: keys that count take nothing else.
 std::string as_toml(double value) {
-  return value == std::floor(value) && std::abs(value) < 1e15 ? format("{:.0f}", value) : toml_number(value);
+  return value == std::floor(value) && std::abs(value) < 1e15 ? fmt::format("{:.0f}", value) : toml_number(value);
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ StudyCase parse_study_case(std::string_view content, const std::string& name, co
     return varied.refines != VariedKey::Refines::not_at_all;
   });
   if (refining > 1)
-    fail_at(repeated(root, "vary").back(), "vary.refines", format("{} keys refine", refining),
+    fail_at(repeated(root, "vary").back(), "vary.refines", fmt::format("{} keys refine", refining),
             "errors are ordered by one", "Set refines = \"not\" of the others");
   if (refining == 0 && result.truth != Truth::known)
     fail_at(study, "study.truth", "no key refines, and the truth is that of the finest level", "there is none",
@@ -106,7 +106,7 @@ std::vector<StudyPoint> points_of(const StudyCase& study) {
         for (const std::string& key : varied.keys) next.overrides.push_back(key + "=" + as_toml(value));
         if (varied.refines == VariedKey::Refines::not_at_all) {
           next.setting.method +=
-              format("{}{} = {:.6g}", next.setting.method.empty() ? "" : ", ", varied.keys.front(), value);
+              fmt::format("{}{} = {:.6g}", next.setting.method.empty() ? "" : ", ", varied.keys.front(), value);
         } else {
           next.setting.values.emplace_back(varied.keys.front(), value);
           next.setting.resolution = varied.refines == VariedKey::Refines::larger ? 1 / value : value;

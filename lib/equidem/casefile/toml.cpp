@@ -89,7 +89,7 @@ TomlValue* TomlValue::find(std::string_view name) {
 
 std::string TomlValue::where() const {
   const std::string name = source ? *source : std::string();
-  return line > 0 ? format("{}:{}", name, line) : name;
+  return line > 0 ? fmt::format("{}:{}", name, line) : name;
 }
 
 std::string TomlValue::type_name() const {
@@ -117,7 +117,7 @@ std::string TomlValue::shown() const {
     case Type::table:
       return "{ ... }";
     case Type::integer:
-      return format("{}", integer);
+      return fmt::format("{}", integer);
     case Type::real:
       return toml_number(real);
     case Type::boolean:
@@ -129,7 +129,7 @@ std::string TomlValue::shown() const {
     case Type::array: {
       std::string shown_items;
       for (std::size_t k = 0; k < items.size() && k < 4; ++k) shown_items += (k > 0 ? ", " : "") + items[k].shown();
-      return format("[{}{}]", shown_items, items.size() > 4 ? ", ..." : "");
+      return fmt::format("[{}{}]", shown_items, items.size() > 4 ? ", ..." : "");
     }
   }
   return {};
@@ -142,12 +142,12 @@ TomlValue parse_toml(std::string_view text, const std::string& source) {
   } catch (const toml::parse_error& error) {
     throw Error(ErrorKind::bad_input, "this is not TOML", reason_of(error),
                 "Correct the line; 'equidem help case' shows a case file",
-                format("{}:{}", source, error.source().begin.line));
+                fmt::format("{}:{}", source, error.source().begin.line));
   }
 }
 
 std::string toml_parser() {
-  return format("toml++ {}.{}.{}", TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH);
+  return fmt::format("toml++ {}.{}.{}", TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH);
 }
 
 std::string toml_text(std::string_view text) {
@@ -158,7 +158,7 @@ std::string toml_text(std::string_view text) {
       quoted += '\\';
       quoted += c;
     } else if (byte < 0x20 || byte == 0x7f) {
-      quoted += format("\\u{:04X}", byte);
+      quoted += fmt::format("\\u{:04X}", byte);
     } else {
       quoted += c;
     }
@@ -169,7 +169,7 @@ std::string toml_text(std::string_view text) {
 std::string toml_number(double value) {
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value < 0 ? "-inf" : "inf";
-  std::string text = format("{}", value);
+  std::string text = fmt::format("{}", value);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
   return text;
 }

@@ -36,7 +36,7 @@ NormalLaw normal_law_from(const std::string& name) {
     if (name == named.name) return named.law;
     choices += (choices.empty() ? "" : ", ") + std::string(named.name);
   }
-  bad_input(format("\"{}\" is not a law of normal contact", name), "", "Choose one of " + choices);
+  bad_input(fmt::format("\"{}\" is not a law of normal contact", name), "", "Choose one of " + choices);
 }
 
 std::string to_string(NormalLaw law) {
@@ -50,10 +50,10 @@ std::string letter_of(NormalLaw law) {
 void check_five_case_range(double a, double restitution) {
   if (restitution * restitution * (1 + a) >= a) return;
   bad_input(
-      format("the law five_case_map is asked for restitution {:.6g} at dimensionless stiffness a = {:.6g}", restitution,
+      fmt::format("the law five_case_map is asked for restitution {:.6g} at dimensionless stiffness a = {:.6g}", restitution,
              a),
-      format("its first step has an answer only where e² >= a/(1 + a), that is e >= {:.6g}", std::sqrt(a / (1 + a))),
-      format("Choose energy_map, which takes any restitution, or an a of at most {:.6g}",
+      fmt::format("its first step has an answer only where e² >= a/(1 + a), that is e >= {:.6g}", std::sqrt(a / (1 + a))),
+      fmt::format("Choose energy_map, which takes any restitution, or an a of at most {:.6g}",
              restitution * restitution / ((1 - restitution) * (1 + restitution))));
 }
 

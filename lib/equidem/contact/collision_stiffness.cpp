@@ -12,15 +12,15 @@ namespace {
 
 double positive(double value, const char* name, const char* unit) {
   if (!(value > 0 && std::isfinite(value))) {
-    bad_input(format("the {} is {:.6g}{}{}", name, value, *unit ? " " : "", unit), "it must be positive and finite",
-              format("Give a {} above 0", name));
+    bad_input(fmt::format("the {} is {:.6g}{}{}", name, value, *unit ? " " : "", unit), "it must be positive and finite",
+              fmt::format("Give a {} above 0", name));
   }
   return value;
 }
 
 void check_damping(double damping_ratio) {
   if (!(damping_ratio >= 0 && std::isfinite(damping_ratio))) {
-    bad_input(format("the damping ratio is {:.6g}", damping_ratio), "a dashpot takes energy",
+    bad_input(fmt::format("the damping ratio is {:.6g}", damping_ratio), "a dashpot takes energy",
               "Give a finite number from 0 on");
   }
 }
@@ -29,7 +29,7 @@ void check_damping(double damping_ratio) {
 double compliance(double young, double poisson) {
   positive(young, "Young modulus", "Pa");
   if (!(poisson > -1 && poisson <= 0.5)) {
-    bad_input(format("the Poisson ratio is {:.6g}", poisson), "a stable solid has -1 < nu <= 0.5",
+    bad_input(fmt::format("the Poisson ratio is {:.6g}", poisson), "a stable solid has -1 < nu <= 0.5",
               "Give a number in that range");
   }
   return (1 - poisson) * (1 + poisson) / young;
@@ -46,7 +46,7 @@ double stiffness_from_duration(double duration, double reduced_mass, double damp
   check_damping(damping_ratio);
   const double phase = contact_phase_of(damping_ratio, end);
   if (!std::isfinite(phase)) {
-    bad_input(format("the damping ratio is {:.6g} for a contact that ends at zero overlap", damping_ratio),
+    bad_input(fmt::format("the damping ratio is {:.6g} for a contact that ends at zero overlap", damping_ratio),
               "from 1 on such a contact never ends", "Give one below 1, or end contacts at zero force");
   }
   const double frequency = phase / positive(duration, "duration of contact", "s");

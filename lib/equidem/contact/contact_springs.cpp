@@ -24,18 +24,18 @@ constexpr std::array<NamedWeighting, 3> weightings{{{"uniform", SpringWeighting:
 
 std::string name_of(const Assembly& assembly, std::size_t contact) {
   const Contact& c = assembly.contacts[contact];
-  return format("contact {} (discs {} and {})", contact, c.i, c.j);
+  return fmt::format("contact {} (discs {} and {})", contact, c.i, c.j);
 }
 
 /// \param where the contact, or empty for the springs of the case
 void check(const SpringConstants& k, const std::string& where) {
   const std::string of = where.empty() ? "" : " of " + where;
   if (!(k.kN > 0 && std::isfinite(k.kN))) {
-    bad_input(format("the normal spring{} is kN = {:.6g} Pa", of, k.kN), "it must be positive and finite",
+    bad_input(fmt::format("the normal spring{} is kN = {:.6g} Pa", of, k.kN), "it must be positive and finite",
               "Give a kN above 0 Pa");
   }
   if (!std::isfinite(k.kT)) {
-    bad_input(format("the tangential spring{} is kT = {:.6g} Pa", of, k.kT), "it must be finite",
+    bad_input(fmt::format("the tangential spring{} is kT = {:.6g} Pa", of, k.kT), "it must be finite",
               "Give a number of Pa");
   }
 }
@@ -57,7 +57,7 @@ std::vector<double> weights(const Assembly& assembly, SpringWeighting weighting)
     const std::vector<double> psi = contact_density(assembly);
     for (std::size_t c = 0; c < count; ++c) {
       if (!(psi[c] > 0)) {
-        bad_input(format("the contact density is {:.6g} contacts per radian at {}", psi[c], name_of(assembly, c)),
+        bad_input(fmt::format("the contact density is {:.6g} contacts per radian at {}", psi[c], name_of(assembly, c)),
                   "its second and fourth harmonics do not describe so anisotropic an assembly",
                   "Use the weighting \"uniform\"");
       }
@@ -73,7 +73,7 @@ std::vector<double> weights(const Assembly& assembly, SpringWeighting weighting)
   for (std::size_t c = 0; c < count; ++c) {
     weight[c] = assembly.facet_lengths[c] / norm(assembly.branch(assembly.contacts[c]));
     if (!(weight[c] > 0)) {
-      bad_input(format("the cells share no edge at {}", name_of(assembly, c)),
+      bad_input(fmt::format("the cells share no edge at {}", name_of(assembly, c)),
                 "the weighting \"voronoi\" would give it kN = 0", "Move one of the discs, or use another weighting");
     }
   }
@@ -86,7 +86,7 @@ SpringWeighting spring_weighting_from(const std::string& name) {
   for (const NamedWeighting& known : weightings) {
     if (name == known.name) return known.weighting;
   }
-  bad_input(format("'{}' is no weighting of springs", name), "",
+  bad_input(fmt::format("'{}' is no weighting of springs", name), "",
             "Write \"uniform\", \"contact_density\" or \"voronoi\"");
 }
 

@@ -39,7 +39,7 @@ Rotation rotation_from(const std::string& name) {
   if (name == "from_scene") return Rotation::from_scene;
   if (name == "free") return Rotation::free;
   if (name == "restrained") return Rotation::restrained;
-  bad_input(format("'{}' says nothing about rotation", name), "",
+  bad_input(fmt::format("'{}' says nothing about rotation", name), "",
             "Write \"free\" or \"restrained\", or \"from_scene\" to let the scene decide");
 }
 
@@ -49,7 +49,7 @@ std::string Effects::report() const {
   for (const Entry& entry : entries) {
     std::string& list = entry.active ? active : inactive;
     if (!list.empty()) list += ", ";
-    list += entry.active ? entry.name : format("{} ({})", entry.name, entry.why);
+    list += entry.active ? entry.name : fmt::format("{} ({})", entry.name, entry.why);
   }
   std::string text = "active: " + active + ".";
   if (!inactive.empty()) text += " inactive: " + inactive + ".";

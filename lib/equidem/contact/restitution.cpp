@@ -17,7 +17,7 @@ using std::numbers::pi;
 /// -ln e, +0 at e = 1.
 double logarithmic_loss(double restitution) {
   if (!(restitution >= 0 && restitution <= 1)) {
-    bad_input(format("the coefficient of restitution is {:.6g}", restitution),
+    bad_input(fmt::format("the coefficient of restitution is {:.6g}", restitution),
               "it is the ratio of two speeds, at most 1 where no energy is added", "Give a number from 0 to 1");
   }
   return 0 - std::log(restitution);
@@ -49,7 +49,7 @@ double damping_at_zero_force(double loss) {
 ContactEnd contact_end_from(const std::string& name) {
   if (name == "zero_overlap") return ContactEnd::at_zero_overlap;
   if (name == "zero_force") return ContactEnd::at_zero_force;
-  bad_input(format("\"{}\" is not an end of a contact", name), "a contact ends at zero overlap or at zero force",
+  bad_input(fmt::format("\"{}\" is not an end of a contact", name), "a contact ends at zero overlap or at zero force",
             "Choose zero_overlap or zero_force");
 }
 

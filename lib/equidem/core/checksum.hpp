@@ -31,7 +31,7 @@ class Checksum {
     for (const double value : values) add(value);
   }
   [[nodiscard]] std::uint64_t value() const { return sum_; }
-  [[nodiscard]] std::string text() const { return format("{:016x}", sum_); }
+  [[nodiscard]] std::string text() const { return fmt::format("{:016x}", sum_); }
 
  private:
   static constexpr std::uint64_t prime = 0x100000001b3U;

@@ -23,7 +23,7 @@ fs::path folder_of(const fs::path& path) {
 }
 
 [[noreturn]] void cannot_write(const fs::path& path, const std::string& reason) {
-  bad_input(format("cannot write '{}'", path.string()), reason, "Choose a place that can be written to");
+  bad_input(fmt::format("cannot write '{}'", path.string()), reason, "Choose a place that can be written to");
 }
 
 }  // namespace
@@ -31,19 +31,19 @@ fs::path folder_of(const fs::path& path) {
 std::string read_file(const fs::path& path) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) {
-    bad_input(format("cannot read '{}'", path.string()), "there is no such file", "Check its name and the folder");
+    bad_input(fmt::format("cannot read '{}'", path.string()), "there is no such file", "Check its name and the folder");
   }
   if (fs::is_directory(path, ignored)) {
-    bad_input(format("cannot read '{}'", path.string()), "it is a folder", "Name a file in it");
+    bad_input(fmt::format("cannot read '{}'", path.string()), "it is a folder", "Name a file in it");
   }
   if (!fs::is_regular_file(path, ignored)) {
-    bad_input(format("cannot read '{}'", path.string()), "it is no regular file, and reading it might never end",
+    bad_input(fmt::format("cannot read '{}'", path.string()), "it is no regular file, and reading it might never end",
               "Copy what it holds into a file");
   }
   std::ifstream file(path, std::ios::binary);
   std::string content((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   if (!file || file.bad()) {
-    bad_input(format("cannot read '{}'", path.string()), std::strerror(errno), "Check that you may read it");
+    bad_input(fmt::format("cannot read '{}'", path.string()), std::strerror(errno), "Check that you may read it");
   }
   return content;
 }
@@ -52,7 +52,7 @@ void check_writable(const fs::path& path, bool overwrite) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) cannot_write(path, "it is a folder");
   if (fs::exists(path, ignored) && !overwrite) {
-    bad_input(format("'{}' exists already", path.string()), "nothing of yours is overwritten unasked",
+    bad_input(fmt::format("'{}' exists already", path.string()), "nothing of yours is overwritten unasked",
               "Choose another name, or pass --overwrite");
   }
   fs::path folder = folder_of(path);
@@ -60,10 +60,10 @@ void check_writable(const fs::path& path, bool overwrite) {
     folder = folder.parent_path();
   }
   if (folder.empty() || !fs::exists(folder, ignored)) folder = ".";
-  if (!fs::is_directory(folder, ignored)) cannot_write(path, format("'{}' is not a folder", folder.string()));
+  if (!fs::is_directory(folder, ignored)) cannot_write(path, fmt::format("'{}' is not a folder", folder.string()));
   // Some file systems refuse what their permissions allow: try it.
-  const fs::path trial = folder / format(".equidem.{}.part", getpid());
-  if (mkdir(trial.c_str(), 0700) != 0) cannot_write(path, format("'{}': {}", folder.string(), std::strerror(errno)));
+  const fs::path trial = folder / fmt::format(".equidem.{}.part", getpid());
+  if (mkdir(trial.c_str(), 0700) != 0) cannot_write(path, fmt::format("'{}': {}", folder.string(), std::strerror(errno)));
   fs::remove(trial, ignored);
 }
 
@@ -72,7 +72,7 @@ void write_file(const fs::path& path, std::string_view content, bool overwrite) 
   std::error_code failed;
   fs::create_directories(folder_of(path), failed);
   if (failed) cannot_write(path, failed.message());
-  const fs::path temporary = path.string() + format(".{}.part", getpid());
+  const fs::path temporary = path.string() + fmt::format(".{}.part", getpid());
   {
     std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
     file.write(content.data(), static_cast<std::streamsize>(content.size()));

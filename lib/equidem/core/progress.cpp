@@ -43,7 +43,7 @@ void Progress::update(double fraction) {
   if (elapsed < first_line_after || elapsed - last_shown_ < line_every) return;
   if (!progress_shown || isatty(STDERR_FILENO) == 0) return;
   const double left = fraction > 0 ? elapsed * (1 - fraction) / fraction : 0;
-  const std::string line = format("\r\033[K{} {:.0f} %, {:.0f} s left", task_, 100 * fraction, left);
+  const std::string line = fmt::format("\r\033[K{} {:.0f} %, {:.0f} s left", task_, 100 * fraction, left);
   std::fputs(line.c_str(), stderr);
   last_shown_ = elapsed;
   shown_ = true;

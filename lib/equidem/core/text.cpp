@@ -11,7 +11,7 @@ std::string readable_bytes(double bytes) {
     bytes /= 1000;
     ++unit;
   }
-  return format("{:.{}f} {}", bytes, bytes < 9.95 && unit > 0 ? 1 : 0, units[unit]);
+  return fmt::format("{:.{}f} {}", bytes, bytes < 9.95 && unit > 0 ? 1 : 0, units[unit]);
 }
 
 }  // namespace equidem

@@ -9,11 +9,9 @@
 
 namespace equidem {
 
-using fmt::format;
-
 /// "1 disc", "2 discs".
 inline std::string counted(long long count, const std::string& singular, const std::string& plural = {}) {
-  return format("{} {}", count, count == 1 ? singular : plural.empty() ? singular + "s" : plural);
+  return fmt::format("{} {}", count, count == 1 ? singular : plural.empty() ? singular + "s" : plural);
 }
 
 /// A number of bytes as a person reads it: "5.7 GB".

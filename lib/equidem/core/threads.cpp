@@ -125,7 +125,7 @@ int thread_count() {
 
 void set_thread_count(int count) {
   if (count < 1) {
-    bad_input(format("the number of threads is {}", count), "at least one thread is needed", "Ask for 1 or more");
+    bad_input(fmt::format("the number of threads is {}", count), "at least one thread is needed", "Ask for 1 or more");
   }
   requested_threads = count;
 }

@@ -16,7 +16,7 @@ constexpr const char* component_names[] = {"ux", "uy", "rotation"};
 const DiscGroup& group_with_discs(const Assembly& assembly, const std::string& name, const char* what) {
   const DiscGroup& discs = group(assembly, name);
   if (discs.discs.empty()) {
-    bad_input(format("a {} acts on the group '{}', which is empty", what, name), "it would do nothing",
+    bad_input(fmt::format("a {} acts on the group '{}', which is empty", what, name), "it would do nothing",
               "Choose a group with discs or mend its definition");
   }
   return discs;
@@ -106,7 +106,7 @@ void DrivenDiscs::hold(Disc& disc, int component, std::int32_t schedule, const s
   if (schedule < 0) return;
   std::int32_t& held = disc.held[component];
   if (held >= 0 && !(schedules_[held] == schedules_[schedule])) {
-    bad_input(format("the support of '{}' prescribes {} of a disc a second time", group, component_names[component]),
+    bad_input(fmt::format("the support of '{}' prescribes {} of a disc a second time", group, component_names[component]),
               "another support gives it a different motion", "Prescribe each component of a disc once");
   }
   held = schedule;
@@ -118,14 +118,14 @@ void DrivenDiscs::add_loads(const Scene& scene, std::vector<std::vector<DiscLoad
     check(scene.loads[k].factor);
     const DiscGroup& discs = group_with_discs(scene.assembly, load.group, "load");
     if (!std::isfinite(load.force.x + load.force.y + load.moment)) {
-      bad_input(format("the load on '{}' is not finite", load.group), "a load must be a number", "Give a number");
+      bad_input(fmt::format("the load on '{}' is not finite", load.group), "a load must be a number", "Give a number");
     }
     if (load.moment != 0 && unknowns_ != 3) {
-      bad_input(format("a moment acts on the group '{}'", load.group), "rotations are no unknowns of this scene",
+      bad_input(fmt::format("a moment acts on the group '{}'", load.group), "rotations are no unknowns of this scene",
                 "Remove the moment, or let rotation = \"free\" with tangential springs");
     }
     if (load.kind == LoadKind::traction && discs.tributary_lengths.empty()) {
-      bad_input(format("a traction acts on the group '{}'", load.group),
+      bad_input(fmt::format("a traction acts on the group '{}'", load.group),
                 "it is no side of the assembly and has no length",
                 "Use kind = \"per_disc\" or \"total\", or one of the groups left, right, bottom, top");
     }

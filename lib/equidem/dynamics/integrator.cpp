@@ -53,7 +53,7 @@ Integrator integrator_from(const std::string& name) {
     if (name == to_string(integrator)) return integrator;
     known += (known.empty() ? "" : ", ") + to_string(integrator);
   }
-  bad_input(format("'{}' is no integrator", name), "", format("Choose one of {}", known));
+  bad_input(fmt::format("'{}' is no integrator", name), "", fmt::format("Choose one of {}", known));
 }
 
 std::string to_string(Integrator integrator) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "equidem/dynamics/step_kernel.hpp"
+#include "equidem/dynamics/kernels/step_kernel.hpp"
 
 namespace equidem {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "equidem/statics/contact_graph.hpp"
+#include "equidem/linear/contact_graph.hpp"
 
 namespace equidem {
 namespace {

@@ -15,7 +15,7 @@ void check_inertia(const Scene& scene) {
   for (std::size_t d = 0; d < scene.inertia.size(); ++d) {
     const Inertia& inertia = scene.inertia[d];
     if (inertia.mass > 0 && inertia.moment > 0 && std::isfinite(inertia.mass + inertia.moment)) continue;
-    bad_input(format("disc {} has the mass {} and the moment of inertia {}", d, inertia.mass, inertia.moment),
+    bad_input(fmt::format("disc {} has the mass {} and the moment of inertia {}", d, inertia.mass, inertia.moment),
               "a force would move it without limit", "Give a density > 0");
   }
 }
@@ -26,10 +26,10 @@ void check_damping(const SimulationOptions& options) {
       {"mass", damping.mass}, {"stiffness", damping.stiffness}, {"contact", damping.contact}, {"local", damping.local}};
   for (const auto& [name, value] : values) {
     if (value >= 0 && std::isfinite(value)) continue;
-    bad_input(format("{} damping is {}", name, value), "negative damping would feed the motion", "Give 0 or more");
+    bad_input(fmt::format("{} damping is {}", name, value), "negative damping would feed the motion", "Give 0 or more");
   }
   if (damping.local >= 1) {
-    bad_input(format("local damping is {}", damping.local), "at 1 and more nothing would start to move",
+    bad_input(fmt::format("local damping is {}", damping.local), "at 1 and more nothing would start to move",
               "Give a share below 1, such as 0.7");
   }
   const bool dashpots = damping.stiffness > 0 || damping.contact > 0;
@@ -61,11 +61,11 @@ void check_contacts(const Assembly& assembly) {
 
 void check(const Scene& scene, const SimulationOptions& options) {
   if (!(options.time_step > 0) || !std::isfinite(options.time_step)) {
-    bad_input(format("the time step is {} s", options.time_step), "time could not go on", "Give a step > 0");
+    bad_input(fmt::format("the time step is {} s", options.time_step), "time could not go on", "Give a step > 0");
   }
   if (scene.inertia.size() != scene.assembly.size()) {
-    bad_input(format("{} have a mass", counted(static_cast<std::int64_t>(scene.inertia.size()), "disc")),
-              format("the assembly has {}", scene.assembly.size()), "Give the inertia of every disc");
+    bad_input(fmt::format("{} have a mass", counted(static_cast<std::int64_t>(scene.inertia.size()), "disc")),
+              fmt::format("the assembly has {}", scene.assembly.size()), "Give the inertia of every disc");
   }
   check_contacts(scene.assembly);
   check_inertia(scene);

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "equidem/dynamics/simulation.hpp"
-#include "equidem/dynamics/step_kernel.hpp"
+#include "equidem/dynamics/kernels/step_kernel.hpp"
 
 namespace equidem {
 

@@ -14,8 +14,8 @@
 #include "equidem/core/text.hpp"
 #include "equidem/dynamics/still_unknowns.hpp"
 #include "equidem/dynamics/walls.hpp"
-#include "equidem/statics/contact_graph.hpp"
-#include "equidem/statics/stiffness_matrix.hpp"
+#include "equidem/linear/contact_graph.hpp"
+#include "equidem/statics/assemble_stiffness.hpp"
 
 namespace equidem {
 namespace {
@@ -273,10 +273,10 @@ class Descent {
 
   [[noreturn]] void not_at_rest(const char* cause) const {
     const std::string left = result_.relative_unbalanced < 1
-                                 ? format("relative unbalanced force {:.2g}", result_.relative_unbalanced)
+                                 ? fmt::format("relative unbalanced force {:.2g}", result_.relative_unbalanced)
                                  : std::string("no contact and no wall carries any of the force that acts");
-    computation_failed(format("the discs are not at rest after {}", counted(result_.steps, "step")),
-                       format("{}, wanted {:.2g}{}", left, options_.tolerance, cause),
+    computation_failed(fmt::format("the discs are not at rest after {}", counted(result_.steps, "step")),
+                       fmt::format("{}, wanted {:.2g}{}", left, options_.tolerance, cause),
                        "Allow more steps or a larger unbalanced force; where loads are held by no support, add one");
   }
 
@@ -311,18 +311,18 @@ double relative_unbalanced_force(const Scene& scene, LoopKind::Motion motion, co
 
 Relaxation relax(const Scene& scene, const RelaxationOptions& options) {
   if (!(options.tolerance > 0)) {
-    bad_input(format("the relative unbalanced force wanted is {}", options.tolerance), "rounding leaves some",
+    bad_input(fmt::format("the relative unbalanced force wanted is {}", options.tolerance), "rounding leaves some",
               "Give a number > 0, such as 1e-10");
   }
   if (options.max_steps <= 0)
-    bad_input(format("at most {} steps are allowed", options.max_steps), "rest takes some", "Give a number > 0");
+    bad_input(fmt::format("at most {} steps are allowed", options.max_steps), "rest takes some", "Give a number > 0");
   if (!options.start.empty() && options.start.size() != scene.assembly.size()) {
-    bad_input(format("the start has {}", counted(static_cast<long long>(options.start.size()), "disc")),
-              format("the assembly has {}", scene.assembly.size()), "Start from a state of the same assembly");
+    bad_input(fmt::format("the start has {}", counted(static_cast<long long>(options.start.size()), "disc")),
+              fmt::format("the assembly has {}", scene.assembly.size()), "Start from a state of the same assembly");
   }
   if ((options.gravity.x != 0 || options.gravity.y != 0) && scene.inertia.size() != scene.assembly.size()) {
-    bad_input(format("{} have a mass", counted(static_cast<long long>(scene.inertia.size()), "disc")),
-              format("gravity acts on all {}", scene.assembly.size()), "Give the inertia of every disc");
+    bad_input(fmt::format("{} have a mass", counted(static_cast<long long>(scene.inertia.size()), "disc")),
+              fmt::format("gravity acts on all {}", scene.assembly.size()), "Give the inertia of every disc");
   }
   const Stopwatch watch;
   Relaxation result;
@@ -334,9 +334,9 @@ Relaxation relax(const Scene& scene, const RelaxationOptions& options) {
 
 std::string Relaxation::report() const {
   const std::string work =
-      format("{}, {} of the forces, {:.2g} s", counted(steps, "step"), counted(evaluations, "evaluation"), seconds);
-  if (relative_unbalanced == 0) return format("at rest: no force is left unbalanced, after {}", work);
-  return format("at rest: relative unbalanced force {:.2g} after {}", relative_unbalanced, work);
+      fmt::format("{}, {} of the forces, {:.2g} s", counted(steps, "step"), counted(evaluations, "evaluation"), seconds);
+  if (relative_unbalanced == 0) return fmt::format("at rest: no force is left unbalanced, after {}", work);
+  return fmt::format("at rest: relative unbalanced force {:.2g} after {}", relative_unbalanced, work);
 }
 
 }  // namespace equidem

@@ -55,12 +55,12 @@ double in_smooth_table(const Schedule& table, double time) {
 
 void check_finite(double value, const char* name) {
   if (!std::isfinite(value))
-    bad_input(format("a schedule has {} = {}", name, value), "only finite numbers have a meaning", "Give a number");
+    bad_input(fmt::format("a schedule has {} = {}", name, value), "only finite numbers have a meaning", "Give a number");
 }
 
 void check_table(const Schedule& table) {
   if (table.times.empty() || table.times.size() != table.values.size()) {
-    bad_input(format("a table has {} and {}", counted(static_cast<long long>(table.times.size()), "time"),
+    bad_input(fmt::format("a table has {} and {}", counted(static_cast<long long>(table.times.size()), "time"),
                      counted(static_cast<long long>(table.values.size()), "value")),
               "each time needs its value", "Give as many of one as of the other, at least one");
   }
@@ -68,13 +68,13 @@ void check_table(const Schedule& table) {
     check_finite(table.times[k], "time");
     check_finite(table.values[k], "value");
     if (k > 0 && !(table.times[k] > table.times[k - 1])) {
-      bad_input(format("the time {} s comes after {} s", table.times[k], table.times[k - 1]),
+      bad_input(fmt::format("the time {} s comes after {} s", table.times[k], table.times[k - 1]),
                 "times ascend, and a value cannot jump", "Order the points and leave out repeated times");
     }
   }
   if (table.kind != Schedule::Kind::smooth_table) return;
   if (table.rates.size() != table.times.size()) {
-    bad_input(format("a smooth table has {} and {}", counted(static_cast<long long>(table.times.size()), "time"),
+    bad_input(fmt::format("a smooth table has {} and {}", counted(static_cast<long long>(table.times.size()), "time"),
                      counted(static_cast<long long>(table.rates.size()), "rate")),
               "each point needs its rate", "Give as many of one as of the other");
   }
@@ -84,7 +84,7 @@ void check_table(const Schedule& table) {
 void check_cycles(const Schedule& schedule) {
   const double cycles = schedule.frequency * (schedule.end - schedule.start);
   if (cycles >= 0.5 && std::abs(cycles - std::round(cycles)) <= 1e-9 * cycles) return;
-  bad_input(format("from {} s to {} s there are {} cycles", schedule.start, schedule.end, cycles),
+  bad_input(fmt::format("from {} s to {} s there are {} cycles", schedule.start, schedule.end, cycles),
             "only a whole number of them begins and ends at rest", "Put the end whole periods after the start");
 }
 
@@ -117,13 +117,13 @@ void check(const Schedule& schedule) {
   if (schedule.kind == Schedule::Kind::sine || cycles) {
     check_finite(schedule.frequency, "frequency");
     if (!(schedule.frequency > 0))
-      bad_input(format("a sine has the frequency {} Hz", schedule.frequency), "it must be > 0", "Give a positive one");
+      bad_input(fmt::format("a sine has the frequency {} Hz", schedule.frequency), "it must be > 0", "Give a positive one");
     if (!cycles) return;
   }
   check_finite(schedule.end, "end");
   if (cycles) return check_cycles(schedule);
   if (!(schedule.end > schedule.start)) {
-    bad_input(format("the ramp ends at {} s and starts at {} s", schedule.end, schedule.start),
+    bad_input(fmt::format("the ramp ends at {} s and starts at {} s", schedule.end, schedule.start),
               "it rises from start to end", "Put the end after the start");
   }
 }

@@ -220,8 +220,8 @@ void Simulation::restore(const SimulationState& state) {
   const std::size_t discs = s.scene.assembly.size(), strips = s.dissipation.size();
   if (state.motions.size() != discs || state.previous.size() != discs || state.velocities.size() != discs ||
       state.sums.size() != std::size(terms_at_start) + 6 * strips) {
-    bad_input(format("the saved state has {}", counted(static_cast<std::int64_t>(state.motions.size()), "disc")),
-              format("this assembly has {}", discs), "Go on with the case that the state was saved from");
+    bad_input(fmt::format("the saved state has {}", counted(static_cast<std::int64_t>(state.motions.size()), "disc")),
+              fmt::format("this assembly has {}", discs), "Go on with the case that the state was saved from");
   }
   s.steps = state.step;
   s.parity = 0;

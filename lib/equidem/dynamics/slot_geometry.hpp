@@ -4,7 +4,7 @@
 #pragma once
 
 #include "equidem/core/vector.hpp"
-#include "equidem/dynamics/step_kernel.hpp"
+#include "equidem/dynamics/kernels/step_kernel.hpp"
 #include "equidem/material/spring_constants.hpp"
 
 namespace equidem {

@@ -5,7 +5,7 @@
 
 #include "equidem/contact/effects.hpp"
 #include "equidem/dynamics/simulation.hpp"
-#include "equidem/statics/degrees_of_freedom.hpp"
+#include "equidem/statics/number_unknowns.hpp"
 
 namespace equidem {
 

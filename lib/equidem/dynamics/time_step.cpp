@@ -166,11 +166,11 @@ double growth_rate(const Vibration& vibration, double omega) {
 
 void check(const TimeStepOptions& wanted) {
   if (!(wanted.fraction > 0) || wanted.fraction > 1) {
-    bad_input(format("the fraction of the critical step is {}", wanted.fraction),
+    bad_input(fmt::format("the fraction of the critical step is {}", wanted.fraction),
               "a run takes a part of it, and past it motions grow", "Give a fraction in (0, 1], such as 0.8");
   }
   if (wanted.step && (!(*wanted.step > 0) || !std::isfinite(*wanted.step))) {
-    bad_input(format("the time step is {} s", *wanted.step), "time could not go on", "Give a step > 0, or \"auto\"");
+    bad_input(fmt::format("the time step is {} s", *wanted.step), "time could not go on", "Give a step > 0, or \"auto\"");
   }
 }
 
@@ -181,35 +181,35 @@ void respect_mass_damping(TimeStep& step, const SimulationOptions& options, cons
   const double alpha = options.damping.mass, longest = 2 / alpha;
   if (!(alpha > 0) || options.integrator == Integrator::thesis || wanted.allow_unstable) return;
   if (wanted.step && *wanted.step > longest) {
-    bad_input(format("the time step {:.6g} s is too long for the mass damping of {:.6g} 1/s", *wanted.step, alpha),
-              format("past 2/damping = {:.6g} s it would turn velocities around", longest),
+    bad_input(fmt::format("the time step {:.6g} s is too long for the mass damping of {:.6g} 1/s", *wanted.step, alpha),
+              fmt::format("past 2/damping = {:.6g} s it would turn velocities around", longest),
               "Give a smaller step, take \"auto\", or damp less");
   }
   if (!wanted.step && step.step > wanted.fraction * longest) {
     step.step = wanted.fraction * longest;
     step.notes.push_back(
-        format("Mass damping shortens the step: past 2/damping = {:.6g} s it would turn velocities around.", longest));
+        fmt::format("Mass damping shortens the step: past 2/damping = {:.6g} s it would turn velocities around.", longest));
   }
   const double share = step.step / longest;
   if (options.integrator == Integrator::fourth_order || share * share < 0.05) return;
-  step.notes.push_back(format("What mass damping brings to rest slides too short by up to {:.0f} %, (damping step/2)².",
+  step.notes.push_back(fmt::format("What mass damping brings to rest slides too short by up to {:.0f} %, (damping step/2)².",
                               100 * share * share));
 }
 
 void refuse_unstable(const TimeStep& result, const SimulationOptions& options) {
   if (result.growth_rate > 0) {
-    bad_input(format("motions grow at the rate {:.6g} 1/s, whatever the step", result.growth_rate),
+    bad_input(fmt::format("motions grow at the rate {:.6g} 1/s, whatever the step", result.growth_rate),
               "some kT is negative, which is stable in statics only",
               "Solve the stiffness matrix for the state of rest, or allow an unstable run");
   }
   if (result.critical == 0) {
-    bad_input(format("no time step is stable for the integrator \"{}\"", to_string(options.integrator)),
+    bad_input(fmt::format("no time step is stable for the integrator \"{}\"", to_string(options.integrator)),
               "without damping of every contact its motions grow", "Use leapfrog, or damp by stiffness or mass");
   }
   if (result.step > result.critical * (1 + 1e-12)) {
     bad_input(
-        format("the time step {:.6g} s ({}) is past the limit of {:.6g} s", result.step, result.rule, result.critical),
-        format("{} would grow without end at {:.4g} times the critical step", to_string(options.integrator),
+        fmt::format("the time step {:.6g} s ({}) is past the limit of {:.6g} s", result.step, result.rule, result.critical),
+        fmt::format("{} would grow without end at {:.4g} times the critical step", to_string(options.integrator),
                result.ratio()),
         "Give a smaller step or take \"auto\" with step_rule = \"lanczos\", or allow an unstable run");
   }
@@ -223,7 +223,7 @@ TimeStepRule time_step_rule_from(const std::string& name) {
     if (name == to_string(rule)) return rule;
     known += (known.empty() ? "" : ", ") + to_string(rule);
   }
-  bad_input(format("'{}' is no rule for the time step", name), "", format("Choose one of {}", known));
+  bad_input(fmt::format("'{}' is no rule for the time step", name), "", fmt::format("Choose one of {}", known));
 }
 
 std::string to_string(TimeStepRule rule) {
@@ -256,7 +256,7 @@ TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, 
       wanted.duration / first_step < steps_worth_lanczos) {
     use_bound = true;
     if (!wanted.step && wanted.rule == TimeStepRule::lanczos) result.rule = "bound";
-    result.notes.push_back(format(
+    result.notes.push_back(fmt::format(
         "The guaranteed bound serves for the critical step: the run takes about {}, fewer than finding the exact "
         "one is worth.",
         counted(std::llround(std::ceil(wanted.duration / first_step)), "step")));
@@ -265,7 +265,7 @@ TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, 
     use_bound = true;
     if (!wanted.step && wanted.rule == TimeStepRule::lanczos) result.rule = "bound";
     result.notes.push_back(
-        format("The guaranteed bound serves for the critical step: with more than {} discs the exact one is not "
+        fmt::format("The guaranteed bound serves for the critical step: with more than {} discs the exact one is not "
                "sought.",
                most_discs_of_lanczos));
   }
@@ -302,7 +302,7 @@ TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, 
   }
   if (wanted.allow_unstable) {
     if (result.growth_rate > 0) {
-      result.notes.push_back(format("Motions grow at the rate {:.6g} 1/s, whatever the step.", result.growth_rate));
+      result.notes.push_back(fmt::format("Motions grow at the rate {:.6g} 1/s, whatever the step.", result.growth_rate));
     } else if (result.step > result.critical) {
       result.notes.emplace_back("The step is past the critical one: motions will grow.");
     }
@@ -313,7 +313,7 @@ TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, 
 }
 
 std::string TimeStep::report() const {
-  std::string text = format("time step {:.6g} s ({}), {} {:.6g} s, ratio {:.4g}", step, rule,
+  std::string text = fmt::format("time step {:.6g} s ({}), {} {:.6g} s, ratio {:.4g}", step, rule,
                             exact ? "critical step" : "guaranteed step", critical, ratio());
   for (const std::string& note : notes) text += "\n  " + note;
   return text;

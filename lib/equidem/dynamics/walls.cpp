@@ -13,19 +13,19 @@ namespace {
 
 void check_alone(const Wall& wall, const Assembly& assembly) {
   if (assembly.periodic()) {
-    bad_input(format("wall '{}' stands in a periodic assembly", wall.name),
+    bad_input(fmt::format("wall '{}' stands in a periodic assembly", wall.name),
               "every disc has images on both sides of any wall", "Remove the wall, or set periodic = false");
   }
   if (!std::isfinite(wall.point.x + wall.point.y) || !std::isfinite(wall.normal.x + wall.normal.y)) {
-    bad_input(format("wall '{}' has a point or a normal that is not finite", wall.name), "it stands nowhere",
+    bad_input(fmt::format("wall '{}' has a point or a normal that is not finite", wall.name), "it stands nowhere",
               "Give finite numbers");
   }
   if (std::abs(dot(wall.normal, wall.normal) - 1) > 1e-12) {
-    bad_input(format("the normal ({}, {}) of wall '{}' is no unit vector", wall.normal.x, wall.normal.y, wall.name),
+    bad_input(fmt::format("the normal ({}, {}) of wall '{}' is no unit vector", wall.normal.x, wall.normal.y, wall.name),
               "distances are measured with it", "Divide it by its length");
   }
   if (!(wall.kN > 0) || !std::isfinite(wall.kN)) {
-    bad_input(format("wall '{}' has kN = {} Pa", wall.name, wall.kN), "its spring must be > 0 and finite",
+    bad_input(fmt::format("wall '{}' has kN = {} Pa", wall.name, wall.kN), "its spring must be > 0 and finite",
               "Give a positive one");
   }
   check(wall.displacement);
@@ -61,8 +61,8 @@ void check_room(const Wall& a, const Wall& b) {
   for (const double time : times) {
     const double room = dot(a.normal, b.point - a.point) - a.displacement.at(time) - b.displacement.at(time);
     if (room > 0) continue;
-    bad_input(format("walls '{}' and '{}' cross{}", a.name, b.name, time > 0 ? format(" at {:.6g} s", time) : ""),
-              format("they face each other with {:.6g} m between them", room),
+    bad_input(fmt::format("walls '{}' and '{}' cross{}", a.name, b.name, time > 0 ? fmt::format(" at {:.6g} s", time) : ""),
+              fmt::format("they face each other with {:.6g} m between them", room),
               time > 0 ? "Move them less or further apart" : "Move them apart, or turn their normals to the discs");
   }
 }
@@ -72,7 +72,7 @@ void check_discs(const Wall& wall, const Assembly& assembly) {
   for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
     const double height = dot(wall.normal, assembly.centres[disc] - wall.point) - start;
     if (height > 0) continue;
-    bad_input(format("the centre of disc {} lies {:.6g} m behind wall '{}'", disc, -height, wall.name),
+    bad_input(fmt::format("the centre of disc {} lies {:.6g} m behind wall '{}'", disc, -height, wall.name),
               "all discs are in front of a wall, where its normal points", "Turn the normal, or move the wall");
   }
 }

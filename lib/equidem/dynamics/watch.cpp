@@ -33,7 +33,7 @@ RunawayWatch::RunawayWatch(const Scene& scene, const SimulationOptions& options,
 
 void RunawayWatch::look(const Simulation& run, const EnergyLedger& energy) {
   if (const std::int64_t disc = run.first_runaway(); disc >= 0) {
-    stop(run, disc, format("the motion of disc {} is no finite number any more", disc));
+    stop(run, disc, fmt::format("the motion of disc {} is no finite number any more", disc));
   }
   // Loads and gravity first take energy and then give it back: what counts is the most that was there.
   given_ = std::max({given_, energy.initial + std::abs(energy.work_of_loads) + std::abs(energy.work_of_supports) +
@@ -42,7 +42,7 @@ void RunawayWatch::look(const Simulation& run, const EnergyLedger& energy) {
   if (!std::isfinite(held) || held > limits_.growth * given_) {
     const std::int64_t disc = fastest_disc(scene_, run.velocities());
     stop(run, disc,
-         format("energy ran away: {:.3g} N, when {:.3g} N was all that the run was given; disc {} is the fastest", held,
+         fmt::format("energy ran away: {:.3g} N, when {:.3g} N was all that the run was given; disc {} is the fastest", held,
                 given_, disc));
   }
   if (options_.motion == LoopKind::Motion::finite) check_bonds(run);
@@ -59,9 +59,9 @@ void RunawayWatch::check_bonds(const Simulation& run) const {
     if (moved <= most_of_a_bond && left >= least_of_a_bond) continue;
     computation_failed(
         moved > most_of_a_bond
-            ? format("the bonded discs {} and {} move past each other by {:.3g} of their distance in a step", contact.i,
+            ? fmt::format("the bonded discs {} and {} move past each other by {:.3g} of their distance in a step", contact.i,
                      contact.j, moved)
-            : format("the bonded discs {} and {} pass through each other: {:.3g} of their distance is left", contact.i,
+            : fmt::format("the bonded discs {} and {} pass through each other: {:.3g} of their distance is left", contact.i,
                      contact.j, left),
         where(run, contact.i),
         "Lower velocities, loads or prescribed motions, or stiffen the springs; a shorter step helps where it is close "
@@ -73,9 +73,9 @@ void RunawayWatch::check_bonds(const Simulation& run) const {
 std::string RunawayWatch::where(const Simulation& run, std::int64_t disc) const {
   const Vec2 centre = scene_.assembly.centres[disc];
   const std::string when = run.step() == 0 ? std::string("at the start")
-                                           : format("step {}, t = {:.6g} s, all was well at step {}", run.step(),
+                                           : fmt::format("step {}, t = {:.6g} s, all was well at step {}", run.step(),
                                                     run.time(), last_good_step_);
-  return format("{}; disc {} lay at ({:.6g}, {:.6g}) m at first", when, disc, centre.x, centre.y);
+  return fmt::format("{}; disc {} lay at ({:.6g}, {:.6g}) m at first", when, disc, centre.x, centre.y);
 }
 
 void RunawayWatch::stop(const Simulation& run, std::int64_t disc, const std::string& problem) const {
@@ -83,15 +83,15 @@ void RunawayWatch::stop(const Simulation& run, std::int64_t disc, const std::str
   const double ratio = limits_.critical_step > 0 ? options_.time_step / limits_.critical_step : 0;
   if (limits_.growth_rate > 0) {
     computation_failed(
-        problem, format("{}; some kT is negative and motions grow at the rate {:.4g} 1/s", place, limits_.growth_rate),
+        problem, fmt::format("{}; some kT is negative and motions grow at the rate {:.4g} 1/s", place, limits_.growth_rate),
         "Solve the stiffness matrix instead: kT < 0 is stable in statics only");
   }
   if (ratio > 1) {
-    computation_failed(problem, format("{}; the time step is {:.4g} times the critical one", place, ratio),
-                       format("Take a step below {:.4g} s", limits_.critical_step));
+    computation_failed(problem, fmt::format("{}; the time step is {:.4g} times the critical one", place, ratio),
+                       fmt::format("Take a step below {:.4g} s", limits_.critical_step));
   }
   const std::string known =
-      ratio > 0 ? format("; the time step is {:.4g} of the critical one of the reference state", ratio) : std::string();
+      ratio > 0 ? fmt::format("; the time step is {:.4g} of the critical one of the reference state", ratio) : std::string();
   if (options_.motion == LoopKind::Motion::finite) {
     computation_failed(problem, place + known,
                        "Contacts that are pulled or turned far are stiffer than at the start: halve the step, or apply "

@@ -45,13 +45,13 @@ Region CoarseGrid::cell(std::size_t k) const {
 CoarseGrid grid_over(const Region& region, double width) {
   const Vec2 sides = region.high - region.low;
   if (!(sides.x > 0 && sides.y > 0))
-    bad_input(format("the region of the fields is {} m wide and {} m high", sides.x, sides.y), "it has no area",
+    bad_input(fmt::format("the region of the fields is {} m wide and {} m high", sides.x, sides.y), "it has no area",
               "Give its lower left corner first");
   if (!(width > 0))
-    bad_input(format("the cells of the fields are {} m wide", width), "they need a positive width", "Give one");
+    bad_input(fmt::format("the cells of the fields are {} m wide", width), "they need a positive width", "Give one");
   constexpr double most = 1e6;
   if (!(sides.x / width * (sides.y / width) <= most))
-    bad_input(format("cells of {} m in a region of {:.4g} m by {:.4g} m", width, sides.x, sides.y),
+    bad_input(fmt::format("cells of {} m in a region of {:.4g} m by {:.4g} m", width, sides.x, sides.y),
               "they would be more than a million", "Give a larger width, a few bodies wide");
   const auto count = [&](double side) { return static_cast<std::size_t>(std::max(1.0, std::round(side / width))); };
   return {region, count(sides.x), count(sides.y)};

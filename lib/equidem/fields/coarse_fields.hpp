@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "equidem/grains/clipped_area.hpp"
+#include "equidem/grains/scene/clipped_area.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 
 namespace equidem {

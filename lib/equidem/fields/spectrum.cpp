@@ -75,15 +75,15 @@ SpectralPeak spectral_peak(std::span<const double> times, std::span<const double
                            double highest) {
   constexpr std::size_t fewest = 8;
   if (times.size() < fewest)
-    bad_input(format("the history has {}", counted(static_cast<long long>(times.size()), "moment")),
-              format("a period is looked for in {} or more", fewest), "Look more often, or longer");
+    bad_input(fmt::format("the history has {}", counted(static_cast<long long>(times.size()), "moment")),
+              fmt::format("a period is looked for in {} or more", fewest), "Look more often, or longer");
   const HarmonicFit fit(times, values);
   const double low = std::max(lowest, 1.5 / fit.duration());
   const double high = std::min(highest, 0.5 * static_cast<double>(times.size() - 1) / fit.duration());
   const double step = 0.25 / fit.duration();
   if (!(low + 2 * step < high))
-    bad_input(format("no frequency lies between {:.4g} and {:.4g} Hz", low, high),
-              format("the history lasts {:.4g} s and has {} moments", fit.duration(), times.size()),
+    bad_input(fmt::format("no frequency lies between {:.4g} and {:.4g} Hz", low, high),
+              fmt::format("the history lasts {:.4g} s and has {} moments", fit.duration(), times.size()),
               "Look longer or more often, or widen the bounds");
   std::vector<double> frequencies, explained;
   double f = low;
@@ -96,7 +96,7 @@ SpectralPeak spectral_peak(std::span<const double> times, std::span<const double
   const auto at = static_cast<std::size_t>(std::max_element(explained.begin(), explained.end()) - explained.begin());
   if (at == 0 || at + 1 == explained.size() || !(*most > *least) ||
       !(fit.at(frequencies[at]).amplitude > 1e-12 * (*most - *least)))
-    computation_failed(format("the history has no harmonic part between {:.4g} and {:.4g} Hz", low, high),
+    computation_failed(fmt::format("the history has no harmonic part between {:.4g} and {:.4g} Hz", low, high),
                        "its spectrum has no peak there", "Look longer, or widen the bounds");
   // The top of one peak: golden section.
   double a = frequencies[at - 1], b = frequencies[at + 1];

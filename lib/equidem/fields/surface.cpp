@@ -7,8 +7,8 @@
 #include <limits>
 #include <numeric>
 
-#include "equidem/contact/ellipse.hpp"
-#include "equidem/grains/neighbours.hpp"
+#include "equidem/contact/shapes/ellipse.hpp"
+#include "equidem/grains/neighbours/neighbours.hpp"
 
 namespace equidem {
 namespace {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "equidem/grains/clipped_area.hpp"
-#include "equidem/grains/grain_scene.hpp"
+#include "equidem/grains/scene/clipped_area.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem {
 

@@ -92,7 +92,7 @@ std::optional<Region> measured_region(std::span<const Grain> grains, std::span<c
 SolidMeasures measure_solids(std::span<const Grain> grains, std::span<const Clump> clumps, const Region& region) {
   const Vec2 sides = region.high - region.low;
   if (!(sides.x > 0 && sides.y > 0)) {
-    bad_input(format("the region measured is {} m wide and {} m high", sides.x, sides.y), "it has no area",
+    bad_input(fmt::format("the region measured is {} m wide and {} m high", sides.x, sides.y), "it has no area",
               "Give its lower left corner first");
   }
   double covered = 0;

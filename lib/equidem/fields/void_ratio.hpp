@@ -6,8 +6,8 @@
 #include <optional>
 #include <span>
 
-#include "equidem/grains/clipped_area.hpp"
-#include "equidem/grains/grain_scene.hpp"
+#include "equidem/grains/scene/clipped_area.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem {
 

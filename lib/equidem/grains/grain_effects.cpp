@@ -44,7 +44,7 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
       [](const GrainBond& b) { return b.tangential_dashpot > 0 || b.rolling_dashpot > 0 || b.tangential_spring > 0; });
   effects.rotation = friction || turning || ellipses || clumps;
   effects.entries = {
-      entry(format("normal contact by {}", to_string(options.law)), true, "grains rebound", ""),
+      entry(fmt::format("normal contact by {}", to_string(options.law)), true, "grains rebound", ""),
       entry("loss at impacts", losses, "restitution below 1", "restitution 1: impacts keep the energy"),
       entry("friction", friction, "a friction coefficient above 0", "friction 0 everywhere"),
       entry("tangential springs", springs, "tangential_ratio above 0", friction ? "tangential_ratio 0" : "no friction"),

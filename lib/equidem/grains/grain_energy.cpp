@@ -3,7 +3,7 @@
 #include <tuple>
 
 #include "equidem/grains/grain_simulation_implementation.hpp"
-#include "equidem/grains/part_meeting.hpp"
+#include "equidem/grains/contacts/part_meeting.hpp"
 
 namespace equidem {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "equidem/contact/effects.hpp"
-#include "equidem/grains/grain_scene.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem {
 

@@ -3,7 +3,7 @@
 /// The parts of a GrainSimulation.
 #pragma once
 
-#include "equidem/grains/force_step.hpp"
+#include "equidem/grains/contacts/force_step.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/grain_system.hpp"
 

@@ -4,7 +4,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
-#include "equidem/grains/part_pairs.hpp"
+#include "equidem/grains/neighbours/part_pairs.hpp"
 
 namespace equidem {
 namespace {
@@ -127,8 +127,8 @@ void GrainSimulation::go_back_to(const GrainState& state) {
   const std::size_t bonds = implementation_->verlet() ? numbers_per_bond * system.bonds.size() : 0;
   if (state.grains.size() != system.motions.size() || state.contacts.size() % numbers_per_contact != 0 ||
       state.sums.size() != pushes + bonds) {
-    bad_input(format("the state is of {}", counted(static_cast<long long>(state.grains.size()), "grain")),
-              format("the scene has {}", system.motions.size()), "Resume with the scene that the state was saved from");
+    bad_input(fmt::format("the state is of {}", counted(static_cast<long long>(state.grains.size()), "grain")),
+              fmt::format("the scene has {}", system.motions.size()), "Resume with the scene that the state was saved from");
   }
   system.step = state.step;
   system.lost = state.ledger;

@@ -7,16 +7,16 @@
 #include <vector>
 
 #include "equidem/contact/exact_contact.hpp"
-#include "equidem/grains/bond_loop.hpp"
-#include "equidem/grains/bond_step.hpp"
-#include "equidem/grains/grain_parts.hpp"
-#include "equidem/grains/grain_scene.hpp"
+#include "equidem/grains/kernels/bond_loop.hpp"
+#include "equidem/grains/contacts/bond_step.hpp"
+#include "equidem/grains/scene/grain_parts.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/grains/grain_simulation.hpp"
-#include "equidem/grains/near_pairs.hpp"
-#include "equidem/grains/near_parts.hpp"
-#include "equidem/grains/neighbours.hpp"
-#include "equidem/grains/touch_instants.hpp"
-#include "equidem/grains/wall_joints.hpp"
+#include "equidem/grains/neighbours/near_pairs.hpp"
+#include "equidem/grains/neighbours/near_parts.hpp"
+#include "equidem/grains/neighbours/neighbours.hpp"
+#include "equidem/grains/contacts/touch_instants.hpp"
+#include "equidem/grains/scene/wall_joints.hpp"
 
 namespace equidem {
 

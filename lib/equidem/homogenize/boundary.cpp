@@ -8,7 +8,7 @@
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/statics/contact_graph.hpp"
+#include "equidem/linear/contact_graph.hpp"
 
 namespace equidem {
 namespace {
@@ -26,7 +26,7 @@ bool crosses(const Contact& contact) {
 const DiscGroup& side_of(const Assembly& assembly, const Side& side) {
   const auto found = assembly.groups.find(side.name);
   if (found == assembly.groups.end() || found->second.discs.empty()) {
-    bad_input(format("the assembly has no discs in the group '{}'", side.name),
+    bad_input(fmt::format("the assembly has no discs in the group '{}'", side.name),
               "the boundary of a sample that is not periodic is made of left, right, bottom and top",
               "Define these groups, or use a periodic assembly");
   }
@@ -119,7 +119,7 @@ TractionSample cut_open(const Assembly& assembly, const ContactSprings& springs)
       continue;
     }
     if (springs[c].kT == 0) {
-      bad_input(format("contact {} crosses the period and has kT = 0", c),
+      bad_input(fmt::format("contact {} crosses the period and has kT = 0", c),
                 "cut open, it could not carry the shear of a uniform stress",
                 "Leave out the traction bound, or give the contacts kT > 0");
     }
@@ -145,7 +145,7 @@ TractionSample load_sides(const Assembly& assembly, const ContactSprings& spring
   for (const Side& side : sides) {
     const DiscGroup& discs = side_of(assembly, side);
     if (discs.tributary_lengths.empty()) {
-      bad_input(format("the discs of the group '{}' have no lengths", side.name),
+      bad_input(fmt::format("the discs of the group '{}' have no lengths", side.name),
                 "a stress is spread over the sides by the length that each disc stands for",
                 "Use boundary = \"displacement\", or a lattice or Delaunay assembly");
     }
@@ -173,7 +173,7 @@ Boundary boundary_from(const std::string& name) {
   for (const Boundary boundary : {Boundary::periodic, Boundary::displacement, Boundary::traction}) {
     if (name == to_string(boundary)) return boundary;
   }
-  bad_input(format("'{}' is no kind of boundary", name), "", "Choose one of periodic, displacement, traction");
+  bad_input(fmt::format("'{}' is no kind of boundary", name), "", "Choose one of periodic, displacement, traction");
 }
 
 std::string to_string(Boundary boundary) {

@@ -33,7 +33,7 @@ void refuse_negative_springs(const Assembly& assembly, const ContactSprings& spr
   if (!springs.any_negative()) return;
   std::size_t c = 0;
   while (springs[c].kT >= 0) ++c;
-  bad_input(format("the tangential spring is kT = {:.6g} Pa at contact {} (discs {} and {})", springs[c].kT, c,
+  bad_input(fmt::format("the tangential spring is kT = {:.6g} Pa at contact {} (discs {} and {})", springs[c].kT, c,
                    assembly.contacts[c].i, assembly.contacts[c].j),
             "the uniform-stress estimate adds up the energies that contacts store under given forces, which must not "
             "be negative",
@@ -45,7 +45,7 @@ void refuse_absent_springs(const Assembly& assembly, const ContactSprings& sprin
   if (on_lines_of_centres(assembly)) return;
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     if (springs[c].kT != 0) continue;
-    bad_input(format("contact {} has kT = 0", c),
+    bad_input(fmt::format("contact {} has kT = 0", c),
               "where contacts lie off the lines of centres, a uniform stress loads all tangential springs",
               "Give kT > 0, or do without this estimate");
   }

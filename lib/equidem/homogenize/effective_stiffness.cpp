@@ -31,7 +31,7 @@ void check_levers(const Assembly& assembly, const ContactSprings& springs, const
     const double gap = std::abs(c.lever_i + c.lever_j - length);
     if (springs[k].kT == 0 || gap <= close * length + rounding * coordinates) continue;
     bad_input(
-        format("contact {}, of discs {} and {}, has the lever arms {:.9g} and {:.9g} m over a distance of {:.9g} m", k,
+        fmt::format("contact {}, of discs {} and {}, has the lever arms {:.9g} and {:.9g} m over a distance of {:.9g} m", k,
                c.i, c.j, c.lever_i, c.lever_j, length),
         "they do not add up to it, so that turning the whole assembly would cost energy and no continuum is like it",
         "Correct the levers, or restrain rotation");
@@ -91,7 +91,7 @@ bool resists_with_equal_springs(const Assembly& assembly, const ContactSprings& 
 
 [[noreturn]] void refuse(const WeakStrain& e, const Assembly& assembly, const ContactSprings& springs,
                          const HomogenizeOptions& options) {
-  const std::string strain = format("the mean strain (xx {:.3f}, yy {:.3f}, shear {:.3f})", e[0], e[1], e[2]);
+  const std::string strain = fmt::format("the mean strain (xx {:.3f}, yy {:.3f}, shear {:.3f})", e[0], e[1], e[2]);
   if (!resists_with_equal_springs(assembly, springs, options)) {
     bad_input("the network is floppy", strain + " costs no energy beyond rounding",
               "A modulus would say nothing of it. Add contacts, or give the contacts tangential springs (kT > 0)");

@@ -15,7 +15,7 @@
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/homogenize/boundary.hpp"
 #include "equidem/homogenize/harmless_motions.hpp"
-#include "equidem/statics/linear_solver.hpp"
+#include "equidem/linear/linear_solver.hpp"
 
 namespace equidem {
 

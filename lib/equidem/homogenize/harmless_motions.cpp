@@ -52,7 +52,7 @@ std::vector<HarmlessMotion> harmless_motions(const Assembly& assembly, const Sti
   std::vector<HarmlessMotion> result;
   for (const GearMode& gear : held.gears) {
     if (result.size() == most_described) break;
-    result.push_back({"gear", format("{} around {} counter-rotate like gears: their contacts form no odd ring",
+    result.push_back({"gear", fmt::format("{} around {} counter-rotate like gears: their contacts form no odd ring",
                                      counted(gear.discs, "disc"),
                                      describe_disc(assembly, static_cast<std::size_t>(gear.first_disc)))});
   }
@@ -62,9 +62,9 @@ std::vector<HarmlessMotion> harmless_motions(const Assembly& assembly, const Sti
     const std::vector<DiscMotion> motion = disc_motions(solver.unknowns(), solver.factor().null_motion(k));
     const bool floppy = runs_through(assembly, movers(motion, assembly.mean_radius()));
     if (floppy || mechanisms > too_many) {
-      bad_input(mechanisms == 1 ? format("{} is a mechanism", name)
-                                : format("{} is floppy: it has {} mechanisms", name, mechanisms),
-                format("it can move at no cost: {}", describe_motion(assembly, motion)),
+      bad_input(mechanisms == 1 ? fmt::format("{} is a mechanism", name)
+                                : fmt::format("{} is floppy: it has {} mechanisms", name, mechanisms),
+                fmt::format("it can move at no cost: {}", describe_motion(assembly, motion)),
                 "A modulus would say nothing of it. Add contacts, or give the contacts tangential springs (kT > 0)");
     }
     if (static_cast<std::size_t>(k) < most_described) result.push_back({"local", describe_motion(assembly, motion)});

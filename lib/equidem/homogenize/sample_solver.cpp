@@ -88,7 +88,7 @@ std::vector<DiscMotion> SampleSolver::motions_of_whole(const PreciseMotion& moti
 }
 
 void SampleSolver::tear_off(std::size_t disc) const {
-  bad_input(format("the boundary tears {} off", describe_disc(assembly(), disc)),
+  bad_input(fmt::format("the boundary tears {} off", describe_disc(assembly(), disc)),
             "its piece of the network cannot balance the tractions of a uniform stress",
             "Use boundary = \"periodic\" or \"displacement\", or a larger sample");
 }

@@ -55,7 +55,7 @@ Tensor2 fitted_displacement_gradient(const Assembly& assembly, std::span<const D
   // The ratio of the principal second moments, about determinant/trace²: rounding makes 1e-16 of it for discs
   // on a line, while two rows of 4e6 discs still have 1e-13.
   if (!(determinant > 1e-13 * trace * trace)) {
-    bad_input(format("a displacement gradient cannot be fitted to {}",
+    bad_input(fmt::format("a displacement gradient cannot be fitted to {}",
                      counted(static_cast<long long>(chosen.size()), "disc")),
               "it takes three discs or more that are not on one line", "Choose a larger region");
   }

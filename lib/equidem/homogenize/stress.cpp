@@ -19,7 +19,7 @@ void check_cells(const Assembly& assembly) {
   }
   for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
     if (!(assembly.cell_areas[disc] > 0)) {
-      bad_input(format("disc {} has the cell area {} m²", disc, assembly.cell_areas[disc]),
+      bad_input(fmt::format("disc {} has the cell area {} m²", disc, assembly.cell_areas[disc]),
                 "its stress is divided by this area, which must be positive",
                 "Remove the disc, or give radii whose power cells all hold some area");
     }

@@ -40,8 +40,8 @@ double mean_branch_length(const Assembly& assembly) {
 }
 
 [[noreturn]] void refuse_size(GaugePlacement placement, const std::string& present, const std::string& needed) {
-  bad_input(format("the block has {}, too few for the gauges '{}'", present, to_string(placement)),
-            format("they need at least {}", needed),
+  bad_input(fmt::format("the block has {}, too few for the gauges '{}'", present, to_string(placement)),
+            fmt::format("they need at least {}", needed),
             placement == GaugePlacement::ends ? "Take a larger block" : "Take a larger block or another gauge");
 }
 
@@ -83,8 +83,8 @@ class LatticeGauges {
     const auto [a, b] = symmetric_pair(placement_, count(middle));
     const auto [c, d] = rows_of_vertical_gauge(middle);
     if (a < 0 || a >= b || c < 0 || c >= d || d >= rows()) {
-      refuse_size(placement_, format("{} and {}", counted(columns_, "column"), counted(rows(), "row")),
-                  format("{} columns and {} rows", least_columns(), least_rows()));
+      refuse_size(placement_, fmt::format("{} and {}", counted(columns_, "column"), counted(rows(), "row")),
+                  fmt::format("{} columns and {} rows", least_columns(), least_rows()));
     }
     setup.horizontal = {first_[middle] + a, first_[middle] + b};
     setup.vertical = {middle_disc(c), middle_disc(d)};
@@ -159,8 +159,8 @@ void place_nearest_gauges(const Assembly& assembly, GaugePlacement placement, Te
   const bool inside = 2 * half.x <= block.size().x + slack && 2 * half.y <= block.size().y + slack;
   if (!inside || setup.horizontal.first == setup.horizontal.second || setup.vertical.first == setup.vertical.second) {
     refuse_size(
-        placement, format("disc centres over {:.3g} m by {:.3g} m", block.size().x, block.size().y),
-        format("{0:.3g} m by {0:.3g} m, {1} mean spacings each way",
+        placement, fmt::format("disc centres over {:.3g} m by {:.3g} m", block.size().x, block.size().y),
+        fmt::format("{0:.3g} m by {0:.3g} m, {1} mean spacings each way",
                (placement == GaugePlacement::centre ? 4 : 2) * spacing, placement == GaugePlacement::centre ? 4 : 2));
   }
 }
@@ -169,9 +169,9 @@ void place_nearest_gauges(const Assembly& assembly, GaugePlacement placement, Te
 const DiscGroup& side(const Assembly& assembly, const std::string& name) {
   const DiscGroup& discs = group(assembly, name);
   if (discs.discs.empty() || discs.tributary_lengths.size() != discs.discs.size()) {
-    bad_input(format("the group '{}' is not a side of the block", name),
+    bad_input(fmt::format("the group '{}' is not a side of the block", name),
               "the test spreads its traction over the side by the tributary length of each disc",
-              format("Leave '{}' to be found from the cells of the discs", name));
+              fmt::format("Leave '{}' to be found from the cells of the discs", name));
   }
   return discs;
 }
@@ -192,7 +192,7 @@ double mean_normal_spring(const Assembly& assembly, const ContactSprings& spring
 GaugePlacement gauge_placement_from(const std::string& name) {
   for (const GaugePlacement placement : {GaugePlacement::centre, GaugePlacement::quarter, GaugePlacement::ends})
     if (name == to_string(placement)) return placement;
-  bad_input(format("gauge = \"{}\"", name), "there is no such placement of the strain gauges",
+  bad_input(fmt::format("gauge = \"{}\"", name), "there is no such placement of the strain gauges",
             "Choose \"centre\", \"quarter\" or \"ends\"");
 }
 
@@ -210,7 +210,7 @@ std::string to_string(GaugePlacement placement) {
 
 TensionSetup tension_setup(const Assembly& assembly, const TensionTest& test) {
   if (!std::isfinite(test.stress) || test.stress == 0) {
-    bad_input(format("the tension test pulls with a stress of {} Pa", test.stress),
+    bad_input(fmt::format("the tension test pulls with a stress of {} Pa", test.stress),
               "the ratios it measures need a finite stress other than zero", "Give a stress, 1e6 for example");
   }
   if (assembly.periodic()) {
@@ -225,7 +225,7 @@ TensionSetup tension_setup(const Assembly& assembly, const TensionTest& test) {
   setup.height = total_length(side(assembly, "left"));
   const double other = total_length(side(assembly, "right"));
   if (!(setup.height > 0) || std::abs(other - setup.height) > 1e-9 * setup.height) {
-    bad_input(format("the left side is {} m high and the right side {} m", setup.height, other),
+    bad_input(fmt::format("the left side is {} m high and the right side {} m", setup.height, other),
               "the two pulls of the test must balance", "Correct the tributary lengths of the two groups");
   }
   setup.supports = {{.group = "bottom", .ux = {}, .uy = 0.0, .rotation = {}},

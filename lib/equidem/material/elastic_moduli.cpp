@@ -16,8 +16,8 @@ double incompressible_poisson_ratio(Plane plane) {
 
 void check_positive(double modulus, const char* name) {
   if (!std::isfinite(modulus) || modulus <= 0) {
-    bad_input(format("the {} is {:.6g} Pa", name, modulus), "a modulus must be positive and finite",
-              format("Give a {} above 0 Pa", name));
+    bad_input(fmt::format("the {} is {:.6g} Pa", name, modulus), "a modulus must be positive and finite",
+              fmt::format("Give a {} above 0 Pa", name));
   }
 }
 
@@ -25,10 +25,10 @@ void check_poisson_ratio(double nu, Plane plane) {
   const double limit = incompressible_poisson_ratio(plane);
   if (std::isfinite(nu) && nu > -1 && nu < limit) return;
   const bool other_reading = plane == Plane::strain && nu >= 0.5 && nu < 1;
-  bad_input(format("Poisson's ratio is {:.6g} in plane {}", nu, to_string(plane)),
-            format("it must lie between -1 and {}, both excluded, for the body to be stable", limit),
+  bad_input(fmt::format("Poisson's ratio is {:.6g} in plane {}", nu, to_string(plane)),
+            fmt::format("it must lie between -1 and {}, both excluded, for the body to be stable", limit),
             other_reading ? "If it was measured on a thin sheet, say plane stress"
-                          : format("Give a Poisson's ratio between -1 and {}", limit));
+                          : fmt::format("Give a Poisson's ratio between -1 and {}", limit));
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ void check_poisson_ratio(double nu, Plane plane) {
 Plane plane_from(const std::string& name) {
   if (name == "strain") return Plane::strain;
   if (name == "stress") return Plane::stress;
-  bad_input(format("'{}' is no plane", name), "Poisson's ratio is read in plane strain or in plane stress",
+  bad_input(fmt::format("'{}' is no plane", name), "Poisson's ratio is read in plane strain or in plane stress",
             "Write \"strain\" or \"stress\"");
 }
 
@@ -78,10 +78,10 @@ ElasticModuli moduli_from_bulk(double bulk_modulus_2d, double shear_modulus, Pla
   // A sheet with G >= 3 K is stable, but as a section of a solid in plane strain it would have nu <= -1, that
   // is E <= 0.
   if (plane == Plane::strain && G >= 3 * K) {
-    bad_input(format("a shear modulus of {:.6g} Pa with a two-dimensional bulk modulus of {:.6g} Pa has no "
+    bad_input(fmt::format("a shear modulus of {:.6g} Pa with a two-dimensional bulk modulus of {:.6g} Pa has no "
                      "reading in plane strain",
                      G, K),
-              format("Poisson's ratio would be {:.6g}, and no solid has one of -1 or less", (K - G) / (2 * K)),
+              fmt::format("Poisson's ratio would be {:.6g}, and no solid has one of -1 or less", (K - G) / (2 * K)),
               "Read it in plane stress");
   }
   return {G, plane == Plane::strain ? (K - G) / (2 * K) : (K - G) / (K + G), plane};

@@ -14,7 +14,7 @@ namespace {
 
 void check_density(double density, const char* bodies) {
   if (!(density > 0 && std::isfinite(density))) {
-    bad_input(format("the density of the {} is {:.6g} kg/m³", bodies, density), "it must be positive and finite",
+    bad_input(fmt::format("the density of the {} is {:.6g} kg/m³", bodies, density), "it must be positive and finite",
               "Give a density above 0 kg/m³");
   }
 }
@@ -24,7 +24,7 @@ void check_density(double density, const char* bodies) {
 Body body_from(const std::string& name) {
   if (name == "disc") return Body::disc;
   if (name == "sphere") return Body::sphere;
-  bad_input(format("'{}' is no body", name), "mass and moment of inertia are those of a disc or of a sphere",
+  bad_input(fmt::format("'{}' is no body", name), "mass and moment of inertia are those of a disc or of a sphere",
             "Write \"disc\" or \"sphere\"");
 }
 

@@ -24,12 +24,12 @@ void check(const IsotropicMeasures& measures) {
   const double phi = measures.solid_fraction;
   const double psi = measures.contact_density;
   if (!(phi > 0 && phi <= 1)) {
-    bad_input(format("the solid fraction is {:.6g}", phi),
+    bad_input(fmt::format("the solid fraction is {:.6g}", phi),
               "the isotropic relation (Abe 1996, eq. 21) divides by it, and it lies above 0 and not above 1",
               "Give the solid fraction of the assembly");
   }
   if (!(psi > 0 && std::isfinite(psi))) {
-    bad_input(format("the contact density is {:.6g} contacts per radian", psi),
+    bad_input(fmt::format("the contact density is {:.6g} contacts per radian", psi),
               "the isotropic relation (Abe 1996, eq. 21) divides by it",
               "Give z/(2 pi), z the mean number of contacts of a disc");
   }
@@ -37,11 +37,11 @@ void check(const IsotropicMeasures& measures) {
 
 void check(const SpringConstants& springs) {
   if (!(springs.kN > 0 && std::isfinite(springs.kN))) {
-    bad_input(format("the normal spring is kN = {:.6g} Pa", springs.kN), "it must be positive and finite",
+    bad_input(fmt::format("the normal spring is kN = {:.6g} Pa", springs.kN), "it must be positive and finite",
               "Give a kN above 0 Pa");
   }
   if (!std::isfinite(springs.kT)) {
-    bad_input(format("the tangential spring is kT = {:.6g} Pa", springs.kT), "it must be finite",
+    bad_input(fmt::format("the tangential spring is kT = {:.6g} Pa", springs.kT), "it must be finite",
               "Give a number of Pa");
   }
 }
@@ -65,16 +65,16 @@ std::string static_limit(Packing packing) {
 
 void refuse_square(const ElasticModuli& moduli) {
   if (std::abs(moduli.poisson_ratio) <= equality_tolerance) return;
-  bad_input(format("Poisson's ratio is {:.6g} on the square lattice", moduli.poisson_ratio), square_tensor,
+  bad_input(fmt::format("Poisson's ratio is {:.6g} on the square lattice", moduli.poisson_ratio), square_tensor,
             "Set Poisson's ratio to 0, or use the hexagonal lattice");
 }
 
 void refuse_negative_tangential(const ElasticModuli& moduli, Packing packing) {
   const bool strain = moduli.plane == Plane::strain;
-  bad_input(format("Poisson's ratio is {:.6g} in plane {}", moduli.poisson_ratio, to_string(moduli.plane)),
-            format("above {} it needs kT < 0, and no motion of the discs is stable then; {}", strain ? "1/4" : "1/3",
+  bad_input(fmt::format("Poisson's ratio is {:.6g} in plane {}", moduli.poisson_ratio, to_string(moduli.plane)),
+            fmt::format("above {} it needs kT < 0, and no motion of the discs is stable then; {}", strain ? "1/4" : "1/3",
                    static_limit(packing)),
-            format("Choose a Poisson's ratio of at most {}, or allow kT < 0 with static_only = true",
+            fmt::format("Choose a Poisson's ratio of at most {}, or allow kT < 0 with static_only = true",
                    strain ? "1/4" : "1/3"));
 }
 
@@ -142,19 +142,19 @@ ElasticModuli moduli_of(const SpringConstants& springs, Packing packing, const I
   check(springs);
   if (packing == Packing::isotropic) check(measures);
   if (packing == Packing::square && std::abs(springs.kT - springs.kN) > equality_tolerance * springs.kN) {
-    bad_input(format("kT/kN is {:.6g} on the square lattice", springs.ratio()), square_tensor,
+    bad_input(fmt::format("kT/kN is {:.6g} on the square lattice", springs.ratio()), square_tensor,
               "Set kT = kN, or use the hexagonal lattice");
   }
   const SheetModuli sheet = sheet_moduli(springs, packing, measures);
   if (!(sheet.shear > 0)) {
     const bool restrained = packing == Packing::hexagonal_restrained;
-    bad_input(format("kT/kN is {:.6g}", springs.ratio()),
-              format("the shear modulus is no longer positive at {} and below; {}", restrained ? "-1/3" : "-1",
+    bad_input(fmt::format("kT/kN is {:.6g}", springs.ratio()),
+              fmt::format("the shear modulus is no longer positive at {} and below; {}", restrained ? "-1/3" : "-1",
                      static_limit(packing)),
-              format("Choose kT/kN above {}", restrained ? "-1/3" : "-1"));
+              fmt::format("Choose kT/kN above {}", restrained ? "-1/3" : "-1"));
   }
   if (!(sheet.bulk > 0)) {
-    bad_input(format("kT/kN is {:.6g} with rotation restrained", springs.ratio()),
+    bad_input(fmt::format("kT/kN is {:.6g} with rotation restrained", springs.ratio()),
               "G/(1 - 2 nu) = sqrt3/2 (kN - kT) of eq. (53) must be positive", "Choose kT below kN");
   }
   return moduli_from_bulk(sheet.bulk, sheet.shear, plane);

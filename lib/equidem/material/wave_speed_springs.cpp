@@ -13,12 +13,12 @@ namespace {
 
 void need_positive(const char* name, double value) {
   if (value > 0 && std::isfinite(value)) return;
-  bad_input(format("the {} is {}", name, value), "it must be positive and finite", "Correct it");
+  bad_input(fmt::format("the {} is {}", name, value), "it must be positive and finite", "Correct it");
 }
 
 void need_damping(double value) {
   if (value >= 0 && std::isfinite(value)) return;
-  bad_input(format("the damping is {}", value), "a negative one would feed the motion", "Give 0 or more");
+  bad_input(fmt::format("the damping is {}", value), "a negative one would feed the motion", "Give 0 or more");
 }
 
 }  // namespace
@@ -33,7 +33,7 @@ WaveSpeeds wave_speeds_of(const ElasticModuli& moduli, double density) {
 WaveSpeeds wave_speeds_from_shear(double shear_speed, double poisson_ratio) {
   need_positive("shear wave speed", shear_speed);
   if (!(poisson_ratio > -1 && poisson_ratio < 0.5)) {
-    bad_input(format("Poisson's ratio is {}", poisson_ratio), "in plane strain it lies between -1 and 1/2",
+    bad_input(fmt::format("Poisson's ratio is {}", poisson_ratio), "in plane strain it lies between -1 and 1/2",
               "Correct it");
   }
   return {shear_speed, shear_speed * std::sqrt(2 * (1 - poisson_ratio) / (1 - 2 * poisson_ratio))};

@@ -47,7 +47,7 @@ class Growth {
     const double period = std::min(options_.box.size.x, options_.box.size.y);
     if (!options_.box.periodic() || width <= period) return;
     computation_failed(
-        format("the largest {} grows wider than the period of {:.4g} m", noun_of(options_.shape.kind), period),
+        fmt::format("the largest {} grows wider than the period of {:.4g} m", noun_of(options_.shape.kind), period),
         "it would meet itself across the sides", "Take more of them, or a squarer box");
   }
 
@@ -113,7 +113,7 @@ void grow_to_size(const PackingOptions& options, Growth& growth) {
     progress.update(std::min(fraction / end, 1.0));
     if (last && !report.apart) {
       computation_failed(
-          format("the {}s jam at a solid fraction of {:.4g}, where they overlap by {:.2g} of the mean radius and no "
+          fmt::format("the {}s jam at a solid fraction of {:.4g}, where they overlap by {:.2g} of the mean radius and no "
                  "longer move apart",
                  noun_of(options.shape.kind), growth.full(), report.largest_overlap),
           "discs at random jam at 0.82 to 0.86, those of equal size at what is nearly a lattice",
@@ -153,8 +153,8 @@ void grow_to_jamming(const PackingOptions& options, Growth& growth) {
     fraction = loose > 0 && aim <= loose ? 0.5 * (fraction + loose) : aim;
   }
   computation_failed(
-      format("no jammed state with a mean overlap of {:.2g} of the mean radius was found", options.overlap),
-      format("the last one had {:.2g} and an unbalanced force of {:.1e}", report.mean_overlap, report.unbalanced),
+      fmt::format("no jammed state with a mean overlap of {:.2g} of the mean radius was found", options.overlap),
+      fmt::format("the last one had {:.2g} and an unbalanced force of {:.1e}", report.mean_overlap, report.unbalanced),
       "Allow a larger overlap, or change the seed");
 }
 

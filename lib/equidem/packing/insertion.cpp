@@ -192,9 +192,9 @@ void fill_by_insertion(const PackingOptions& options, GrainPacking& packing) {
     packing.complete = false;
     if (options.as_dense_as_possible) continue;
     computation_failed(
-        format("{} of {} {}s found a gap, {:.4g} of the box", k, radii.size(), noun_of(options.shape.kind),
+        fmt::format("{} of {} {}s found a gap, {:.4g} of the box", k, radii.size(), noun_of(options.shape.kind),
                area_of(options.shape, inserter.placed().bodies().radii) / options.box.area()),
-        format("for the next one {} gaps were all too small", attempt),
+        fmt::format("for the next one {} gaps were all too small", attempt),
         "Ask for less, for more attempts, or use growth");
   }
   make_grains(options.shape, inserter.placed().bodies(), options.settling.density, packing);

@@ -90,7 +90,7 @@ void fill_by_local_moves(const PackingOptions& options, GrainPacking& packing) {
     return;
   }
   computation_failed(
-      format("after {} sweeps {}s still overlap by {:.2g} of a radius at a solid fraction of {:.4g}", options.attempts,
+      fmt::format("after {} sweeps {}s still overlap by {:.2g} of a radius at a solid fraction of {:.4g}", options.attempts,
              noun_of(options.shape.kind), deepest, area_of(options.shape, options.radii) / options.box.area()),
       "small random moves find the way apart ever more slowly as the box fills",
       "Ask for less, for more attempts, or use growth");

@@ -139,13 +139,13 @@ double covered_area(const GrainPacking& packing, const Region& region) {
 void check_region(const GrainPacking& packing, const Region& region) {
   const Vec2 size = packing.box.size, sides = region.high - region.low;
   if (!(sides.x > 0 && sides.y > 0)) {
-    bad_input(format("the region measured is {} m wide and {} m high", sides.x, sides.y), "it has no area",
+    bad_input(fmt::format("the region measured is {} m wide and {} m high", sides.x, sides.y), "it has no area",
               "Give its lower left corner first");
   }
   const bool inside = region.low.x >= 0 && region.low.y >= 0 && region.high.x <= size.x && region.high.y <= size.y;
   if (packing.box.periodic() && !inside) {
     bad_input("the region measured reaches out of the periodic box",
-              format("the box is {:.6g} m by {:.6g} m, from the origin", size.x, size.y), "Give one within it");
+              fmt::format("the box is {:.6g} m by {:.6g} m, from the origin", size.x, size.y), "Give one within it");
   }
 }
 

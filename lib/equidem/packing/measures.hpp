@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "equidem/grains/clipped_area.hpp"
+#include "equidem/grains/scene/clipped_area.hpp"
 #include "equidem/packing/packing.hpp"
 
 namespace equidem {

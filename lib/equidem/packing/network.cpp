@@ -9,10 +9,10 @@
 
 #include "equidem/contact/effects.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/clipped_area.hpp"
+#include "equidem/grains/scene/clipped_area.hpp"
 #include "equidem/packing/measures.hpp"
 #include "equidem/packing/outline.hpp"
-#include "equidem/statics/degrees_of_freedom.hpp"
+#include "equidem/statics/number_unknowns.hpp"
 #include "equidem/statics/equilibrium.hpp"
 
 namespace equidem {
@@ -234,7 +234,7 @@ RestConfirmation confirm_rest(const GrainPacking& packing, const SettlingOptions
   LoadCase loads;
   for (std::size_t k = 0; k < network.bodies.size(); ++k) {
     const Lack& lack = lacks[static_cast<std::size_t>(network.bodies[k])];
-    const std::string name = format("body{}", k);
+    const std::string name = fmt::format("body{}", k);
     assembly.groups[name] = {{static_cast<std::int32_t>(k)}, {}};
     loads.push_back({.group = name, .force = lack.force, .moment = turns(k) ? lack.moment : 0});
   }

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <span>
 
-#include "equidem/contact/ellipse_contact.hpp"
+#include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/core/turns.hpp"
 #include "equidem/packing/packing.hpp"
 #include "equidem/packing/packing_shape.hpp"

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "equidem/grains/neighbours.hpp"
+#include "equidem/grains/neighbours/neighbours.hpp"
 #include "equidem/packing/packing.hpp"
 
 namespace equidem {

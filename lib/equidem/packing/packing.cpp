@@ -39,19 +39,19 @@ void check(const PackingOptions& options) {
   if (options.radii.empty()) bad_input("there are no bodies to pack", "the box would stay empty", "Give their number");
   const PackingBox& box = options.box;
   if (!positive(box.size.x) || (!falls && !positive(box.size.y))) {
-    bad_input(format("the box is {} m wide and {} m high", box.size.x, box.size.y), "it must have an area",
+    bad_input(fmt::format("the box is {} m wide and {} m high", box.size.x, box.size.y), "it must have an area",
               "Correct it");
   }
   if (falls != (box.sides == PackingBox::Sides::open_top)) {
     bad_input(falls ? "bodies shall fall into a closed box"
-                    : format("{} into a box with an open top", to_string(options.method)),
+                    : fmt::format("{} into a box with an open top", to_string(options.method)),
               "what falls comes from above, the others need a box to fill",
               falls ? "Open its top" : "Close the box, or make it periodic");
   }
   double largest = 0;
   for (std::size_t k = 0; k < options.radii.size(); ++k) {
     if (!positive(options.radii[k])) {
-      bad_input(format("{} {} has the radius {} m", noun, k, options.radii[k]), "it must be positive and finite",
+      bad_input(fmt::format("{} {} has the radius {} m", noun, k, options.radii[k]), "it must be positive and finite",
                 "Correct the sizes");
     }
     largest = std::max(largest, options.radii[k]);
@@ -61,19 +61,19 @@ void check(const PackingOptions& options) {
   const double width = 2 * shape.reach * largest;
   if (width > room) {
     bad_input(
-        format("the largest {} is {:.4g} m wide, the box {:.4g} m by {:.4g} m", noun, width, box.size.x, box.size.y),
+        fmt::format("the largest {} is {:.4g} m wide, the box {:.4g} m by {:.4g} m", noun, width, box.size.x, box.size.y),
         box.periodic() ? "half a period must hold it" : "it does not fit in", "Make the box larger");
   }
   const double share = area_of(options.shape, options.radii) / box.area();
   if (!falls && !options.as_dense_as_possible && share >= 1) {
-    bad_input(format("the {}s have {:.3g} times the area of the box", noun, share), "they leave gaps between them",
+    bad_input(fmt::format("the {}s have {:.3g} times the area of the box", noun, share), "they leave gaps between them",
               "Make the box larger, or take fewer of them");
   }
   if (!(options.overlap > 0 && options.overlap <= 0.1)) {
-    bad_input(format("the overlap allowed is {} of the smaller radius", options.overlap),
+    bad_input(fmt::format("the overlap allowed is {} of the smaller radius", options.overlap),
               "it must be above 0, which nothing reaches, and at most 0.1", "Correct it");
   }
-  if (options.attempts < 1) bad_input(format("{} attempts", options.attempts), "one is needed", "Give 1 or more");
+  if (options.attempts < 1) bad_input(fmt::format("{} attempts", options.attempts), "one is needed", "Give 1 or more");
 }
 
 }  // namespace
@@ -87,8 +87,8 @@ PackingMethod packing_method_from(const std::string& name) {
     list += (list.empty() ? "" : ", ") + names.back();
   }
   const auto meant = nearest(name, names);
-  bad_input(format("there is no method of packing '{}'", name), "they are " + list,
-            meant ? format("Did you mean '{}'?", *meant) : "Name one of them");
+  bad_input(fmt::format("there is no method of packing '{}'", name), "they are " + list,
+            meant ? fmt::format("Did you mean '{}'?", *meant) : "Name one of them");
 }
 
 std::string to_string(PackingMethod method) {

@@ -10,8 +10,8 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/nearest.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/clipped_area.hpp"
-#include "equidem/grains/clump.hpp"
+#include "equidem/grains/scene/clipped_area.hpp"
+#include "equidem/grains/scene/clump.hpp"
 
 namespace equidem {
 namespace {
@@ -41,8 +41,8 @@ double lever_of(double arm, double reach) {
 UnitBody unit_ellipse(double aspect) {
   constexpr double longest = 1000;
   if (!(aspect >= 1 && aspect <= longest)) {
-    bad_input(format("the aspect of the ellipses is {}", aspect),
-              format("it is the long half-axis over the short one, from 1 to {}", longest), "Correct it");
+    bad_input(fmt::format("the aspect of the ellipses is {}", aspect),
+              fmt::format("it is the long half-axis over the short one, from 1 to {}", longest), "Correct it");
   }
   const double a = std::sqrt(aspect), b = 1 / a;
   return {.a = a,
@@ -80,8 +80,8 @@ Kind packing_shape_from(const std::string& name) {
     list += (list.empty() ? "" : ", ") + known.back();
   }
   const auto meant = nearest(name, known);
-  bad_input(format("there is no shape '{}' to pack", name), "they are " + list,
-            meant ? format("Did you mean '{}'?", *meant) : "Name one of them");
+  bad_input(fmt::format("there is no shape '{}' to pack", name), "they are " + list,
+            meant ? fmt::format("Did you mean '{}'?", *meant) : "Name one of them");
 }
 
 std::string to_string(Kind kind) {

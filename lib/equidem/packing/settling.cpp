@@ -22,12 +22,12 @@ bool positive(double value) {
 void check(const SettlingOptions& options) {
   if (!positive(options.density) || !positive(options.springs.kN) || !positive(options.gravity)) {
     bad_input(
-        format("density {} kg/m³, kN {} Pa, gravity {} m/s²", options.density, options.springs.kN, options.gravity),
+        fmt::format("density {} kg/m³, kN {} Pa, gravity {} m/s²", options.density, options.springs.kN, options.gravity),
         "bodies that fall need all three", "Give numbers > 0");
   }
   if (!(options.springs.kT >= 0) || !(options.friction >= 0) || !(options.wall_friction >= 0)) {
     bad_input(
-        format("kT {} Pa, friction {}, with walls {}", options.springs.kT, options.friction, options.wall_friction),
+        fmt::format("kT {} Pa, friction {}, with walls {}", options.springs.kT, options.friction, options.wall_friction),
         "negative ones would feed the motion", "Give 0 or more");
   }
   if (options.springs.kT == 0 && (options.friction > 0 || options.wall_friction > 0)) {
@@ -35,12 +35,12 @@ void check(const SettlingOptions& options) {
               "friction that only slides trembles and never holds anything at rest", "Give kT > 0, or friction 0");
   }
   if (!(options.damping > 0 && options.damping <= 10)) {
-    bad_input(format("the damping is {}", options.damping),
+    bad_input(fmt::format("the damping is {}", options.damping),
               "without it nothing comes to rest, far above 1 steps become tiny",
               "Give a number above 0, at most 10; 1 is usual");
   }
   if (!(options.rest >= 1e-12 && options.rest < 1) || !positive(options.longest) || !(options.time_step >= 0)) {
-    bad_input(format("unbalanced force ratio {}, longest time {} s, time step {} s", options.rest, options.longest,
+    bad_input(fmt::format("unbalanced force ratio {}, longest time {} s, time step {} s", options.rest, options.longest,
                      options.time_step),
               "the ratio lies between 1e-12 and 1, times are positive", "Correct it");
   }
@@ -213,8 +213,8 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
     }
   }
   const SettlingReport report = unbalance(simulation.grains(), simulation.contacts(), scene.bonds, scene.gravity);
-  computation_failed(format("after {:.4g} s the bodies are not at rest", simulation.time()),
-                     format("the mean unbalanced force is {:.2g} of the mean contact force, {:.2g} was wanted",
+  computation_failed(fmt::format("after {:.4g} s the bodies are not at rest", simulation.time()),
+                     fmt::format("the mean unbalanced force is {:.2g} of the mean contact force, {:.2g} was wanted",
                             report.unbalanced, options.rest),
                      scene.bonds.empty() ? "Give them longer, more friction or damping, or take a shorter step"
                                          : "Let the bonds creep less (a larger bond_share), or give them longer");

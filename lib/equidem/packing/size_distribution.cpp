@@ -108,11 +108,11 @@ void check(const SizeDistribution& sizes) {
   switch (sizes.kind) {
     case SizeDistribution::Kind::uniform:
       if (positive(sizes.smallest) && positive(sizes.largest) && sizes.smallest <= sizes.largest) return;
-      bad_input(format("radii from {} to {} m", sizes.smallest, sizes.largest),
+      bad_input(fmt::format("radii from {} to {} m", sizes.smallest, sizes.largest),
                 "the first is the smaller, both are > 0", "Correct them");
     case SizeDistribution::Kind::log_normal:
       if (positive(sizes.median) && sizes.deviation >= 0 && sizes.deviation <= 2) return;
-      bad_input(format("radii with the median {} m and the deviation {}", sizes.median, sizes.deviation),
+      bad_input(fmt::format("radii with the median {} m and the deviation {}", sizes.median, sizes.deviation),
                 "the median is > 0, the deviation of the logarithm from 0 to 2", "Correct them");
     case SizeDistribution::Kind::sieve_curve:
       break;
@@ -126,7 +126,7 @@ void check(const SizeDistribution& sizes) {
     const bool ascends =
         k == 0 || (sieves[k].diameter > sieves[k - 1].diameter && sieves[k].passing >= sieves[k - 1].passing);
     if (positive(sieves[k].diameter) && std::isfinite(sieves[k].passing) && ascends) continue;
-    bad_input(format("point {} of the sieve curve is {} m, {}", k + 1, sieves[k].diameter, sieves[k].passing),
+    bad_input(fmt::format("point {} of the sieve curve is {} m, {}", k + 1, sieves[k].diameter, sieves[k].passing),
               "diameters ascend, and what passes never falls", "Correct it");
   }
 }
@@ -154,9 +154,9 @@ std::vector<Sieve> read_sieve_curve(const std::filesystem::path& path) {
     }
     if (!numbers && sieves.empty() && !std::exchange(named, true)) continue;  // the row of names
     if (!numbers) {
-      throw Error(ErrorKind::bad_input, format("'{}' is no point of a sieve curve", row),
+      throw Error(ErrorKind::bad_input, fmt::format("'{}' is no point of a sieve curve", row),
                   "a diameter in m and a share passing are needed", "Write two numbers with a comma between them",
-                  format("{}:{}", path.string(), line));
+                  fmt::format("{}:{}", path.string(), line));
     }
     sieves.push_back({values[0], values[1]});
   }

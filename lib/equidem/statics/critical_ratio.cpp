@@ -15,7 +15,7 @@
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/hold_free_motions.hpp"
-#include "equidem/statics/multifrontal_ldlt.hpp"
+#include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
 #include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
@@ -24,7 +24,7 @@ namespace {
 void check(const CriticalRatioOptions& options) {
   if (options.tolerance >= 1e-12 && options.lowest >= -1 && options.lowest < -options.tolerance) return;
   bad_input(
-      format("the search for the critical ratio from {} with the tolerance {}", options.lowest, options.tolerance),
+      fmt::format("the search for the critical ratio from {} with the tolerance {}", options.lowest, options.tolerance),
       "it needs a tolerance of at least 1e-12 and a start in [-1, -tolerance)", "Correct them");
 }
 

@@ -19,7 +19,7 @@ namespace {
 void check_load(const Load& load) {
   for (const double value : {load.force.x, load.force.y, load.moment}) {
     if (!std::isfinite(value)) {
-      bad_input(format("the load on '{}' has the value {}", load.group, value), "a load must be finite",
+      bad_input(fmt::format("the load on '{}' has the value {}", load.group, value), "a load must be finite",
                 "Give a number");
     }
   }
@@ -33,16 +33,16 @@ std::vector<double> assemble_loads(const Assembly& assembly, const DegreesOfFree
     check_load(load);
     const DiscGroup& discs = group(assembly, load.group);
     if (discs.discs.empty()) {
-      bad_input(format("a load acts on the group '{}', which is empty", load.group), "there is no disc to carry it",
+      bad_input(fmt::format("a load acts on the group '{}', which is empty", load.group), "there is no disc to carry it",
                 "Choose a group with discs or mend its definition");
     }
     if (load.kind == LoadKind::traction && discs.tributary_lengths.empty()) {
-      bad_input(format("a traction acts on the group '{}'", load.group),
+      bad_input(fmt::format("a traction acts on the group '{}'", load.group),
                 "it is no side of the assembly and has no length",
                 "Use kind = \"per_disc\" or \"total\", or one of the groups left, right, bottom, top");
     }
     if (load.moment != 0 && b != 3) {
-      bad_input(format("a moment acts on the group '{}'", load.group), "rotations are no unknowns of this scene",
+      bad_input(fmt::format("a moment acts on the group '{}'", load.group), "rotations are no unknowns of this scene",
                 "Remove the moment, or let rotation = \"free\" with tangential springs");
     }
     const double share = load.kind == LoadKind::total ? 1.0 / static_cast<double>(discs.discs.size()) : 1.0;
@@ -63,7 +63,7 @@ void check_inert_loads(const Assembly& assembly, const DegreesOfFreedom& unknown
   for (std::size_t d = 0; d < assembly.size(); ++d) {
     if (f[3 * d + 2] == 0 || unknowns.held[3 * d + 2] != DegreesOfFreedom::inert) continue;
     bad_input(
-        format("a moment acts on disc {}", d),
+        fmt::format("a moment acts on disc {}", d),
         "none of its contacts has a tangential spring and a lever arm, or lies off the line of centres, to resist it",
         "Remove the moment, hold the rotation of the disc, or give a contact of it kT != 0");
   }
@@ -213,24 +213,24 @@ SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& spr
 }
 
 std::string Equilibrium::report() const {
-  std::string text = format("{} unknowns, {}, {:.3g} entries in L ({})\n", unknowns, solver, factor_nonzeros,
+  std::string text = fmt::format("{} unknowns, {}, {:.3g} entries in L ({})\n", unknowns, solver, factor_nonzeros,
                             readable_bytes(factor_bytes));
-  text += format("relative residual {:.1e} after {}, {:.1e} for the motions rounded to double\n", relative_residual,
+  text += fmt::format("relative residual {:.1e} after {}, {:.1e} for the motions rounded to double\n", relative_residual,
                  counted(refinements, "refinement"), rounded_residual);
   if (condition > 0)
     text +=
-        format("condition about {:.1e}; relative error of the motions at most about {:.1e}\n", condition, error_bound);
+        fmt::format("condition about {:.1e}; relative error of the motions at most about {:.1e}\n", condition, error_bound);
   if (negative_pivots > 0 || unstable_modes != 0) {
-    text += negative_pivots < 0 ? "negative pivots not counted: " : format("{} negative pivots: ", negative_pivots);
+    text += negative_pivots < 0 ? "negative pivots not counted: " : fmt::format("{} negative pivots: ", negative_pivots);
     if (unstable_modes == 0) {
       text += "those of the rotations alone (kT < 0); the state of rest is stable in statics\n";
     } else if (unstable_modes < 0) {
       text += "the solver cannot tell stable from unstable\n";
     } else {
-      text += format("{} beyond those of the rotations: the state of rest is UNSTABLE\n", unstable_modes);
+      text += fmt::format("{} beyond those of the rotations: the state of rest is UNSTABLE\n", unstable_modes);
     }
   }
-  for (const auto& [stage, seconds] : times.stages()) text += format("{:<10} {:.4f} s\n", stage, seconds);
+  for (const auto& [stage, seconds] : times.stages()) text += fmt::format("{:<10} {:.4f} s\n", stage, seconds);
   return text;
 }
 

@@ -14,7 +14,7 @@
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/stopwatch.hpp"
-#include "equidem/statics/linear_solver.hpp"
+#include "equidem/linear/linear_solver.hpp"
 #include "equidem/statics/supports.hpp"
 
 namespace equidem {

@@ -8,8 +8,8 @@
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
-#include "equidem/statics/contact_graph.hpp"
-#include "equidem/statics/degrees_of_freedom.hpp"
+#include "equidem/linear/contact_graph.hpp"
+#include "equidem/statics/number_unknowns.hpp"
 #include "equidem/statics/rigid_motions.hpp"
 
 namespace equidem {

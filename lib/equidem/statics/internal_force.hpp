@@ -9,8 +9,8 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/frame.hpp"
-#include "equidem/statics/contact_graph.hpp"
-#include "equidem/statics/degrees_of_freedom.hpp"
+#include "equidem/linear/contact_graph.hpp"
+#include "equidem/statics/number_unknowns.hpp"
 
 namespace equidem {
 

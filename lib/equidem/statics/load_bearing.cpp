@@ -9,7 +9,7 @@
 
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/statics/contact_graph.hpp"
+#include "equidem/linear/contact_graph.hpp"
 #include "equidem/statics/motion_description.hpp"
 
 namespace equidem {
@@ -273,7 +273,7 @@ class Pruning {
         names += (names.empty() ? "" : ", ") + describe_disc(assembly_, d);
       }
       if (count > 0) {
-        network.sentences.push_back(format("{} ({}{}) {} left out", counted(count, name), names,
+        network.sentences.push_back(fmt::format("{} ({}{}) {} left out", counted(count, name), names,
                                            count > 3 ? ", ..." : "", count == 1 ? one : several));
       }
       return count;

@@ -10,7 +10,7 @@
 #include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/load_bearing.hpp"
 #include "equidem/statics/motion_description.hpp"
-#include "equidem/statics/multifrontal_ldlt.hpp"
+#include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
 #include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
@@ -70,12 +70,12 @@ MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& 
   report.free_pieces = system.held.rigid - report.rigid_motions;
   if (report.free_pieces > 0) {
     report.sentences.push_back(
-        format("{} of pieces or single discs that nothing holds", counted(report.free_pieces, "rigid motion")));
+        fmt::format("{} of pieces or single discs that nothing holds", counted(report.free_pieces, "rigid motion")));
   }
   if (report.gears > 0) {
     const GearMode& first = system.held.gears.front();
     report.sentences.push_back(
-        format("{} of discs that counter-rotate like gears, since every ring of contacts is even; the first has {} "
+        fmt::format("{} of discs that counter-rotate like gears, since every ring of contacts is even; the first has {} "
                "around {}",
                counted(report.gears, "group"), counted(first.discs, "disc"),
                describe_disc(assembly, static_cast<std::size_t>(first.first_disc))));
@@ -83,7 +83,7 @@ MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& 
   if (report.others > 0) {
     const std::vector<double> motion = system.factor->softest_motion();
     report.sentences.push_back(
-        format("{} in which no contact stretches or slips{}", counted(report.others, "motion"),
+        fmt::format("{} in which no contact stretches or slips{}", counted(report.others, "motion"),
                motion.empty() ? "" : ", such as " + describe_motion(assembly, motions_of(system.unknowns, motion))));
   }
   if (assembly.periodic() && supports.empty()) {

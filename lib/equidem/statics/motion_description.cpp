@@ -10,7 +10,7 @@
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/statics/contact_graph.hpp"
+#include "equidem/linear/contact_graph.hpp"
 #include "equidem/statics/unwrapped_pieces.hpp"
 
 namespace equidem {
@@ -55,7 +55,7 @@ class Description {
     const auto count = static_cast<double>(assembly_.size());
     if (participants_ <= std::max(2.0, 0.1 * count) && participants_ < 0.5 * count) return describe_local();
     return (strain.empty() ? "a motion " : strain) +
-           format("spread over {} of {}, largest at {}{}", moving_.size(), counted(as_count(assembly_.size()), "disc"),
+           fmt::format("spread over {} of {}, largest at {}{}", moving_.size(), counted(as_count(assembly_.size()), "disc"),
                   describe_disc(assembly_, largest_first_.front()), describe_contacts());
   }
 
@@ -97,13 +97,13 @@ class Description {
     if (moving == assembly_.size()) return "all " + counted(as_count(moving), "disc");
     const std::string disc = describe_disc(assembly_, largest_first_.front());
     if (moving == 1) return disc + " alone";
-    return format("{} of {}, such as {}", moving, counted(as_count(assembly_.size()), "disc"), disc);
+    return fmt::format("{} of {}, such as {}", moving, counted(as_count(assembly_.size()), "disc"), disc);
   }
 
   [[nodiscard]] std::string describe_single() const {
     const Vec2 u = u_[moving_.front()];
     const bool translates = rotation_ <= negligible * total_;
-    return format("a motion of {}{}", describe_moving(1), translates ? ", along " + describe_direction(u) : "");
+    return fmt::format("a motion of {}{}", describe_moving(1), translates ? ", along " + describe_direction(u) : "");
   }
 
   /// What a mechanism does to its contacts.
@@ -137,7 +137,7 @@ class Description {
                (squared(frame.lever_j) + squared(frame.offset_j)) * squared(theta_j);
     }
     const bool gears = slip <= negligible * scale;
-    return format("a {} in place of {}{}", gears ? "counter-rotation" : "rotation", describe_moving(moving_.size()),
+    return fmt::format("a {} in place of {}{}", gears ? "counter-rotation" : "rotation", describe_moving(moving_.size()),
                   gears ? ", neighbours turning against one another like gears" : "");
   }
 
@@ -212,14 +212,14 @@ class Description {
     const double turn = f.rotation();
     const std::string of = describe_moving(discs.size()) + describe_rolling(turn, discs);
     if (std::abs(turn) * extent <= 1e-4 * norm(f.t)) {
-      return format("a rigid translation along {} of {}", describe_direction(f.t), of);
+      return fmt::format("a rigid translation along {} of {}", describe_direction(f.t), of);
     }
     if (discs.size() == 2) return {};  // any two discs turn about some point
     Vec2 x = f.c + perpendicular(f.t) / turn;
     for (double* value : {&x.x, &x.y}) {
       if (std::abs(*value) < 1e-6 * extent) *value = 0;
     }
-    return format("a rigid rotation about ({:.6g}, {:.6g}) of {}", x.x, x.y, of);
+    return fmt::format("a rigid rotation about ({:.6g}, {:.6g}) of {}", x.x, x.y, of);
   }
 
   /// Groups of discs, such as rows, of which each translates as one; empty where some disc moves by itself.
@@ -239,7 +239,7 @@ class Description {
     double across = 0;
     for (const std::size_t d : moving_) across += squared(cross(u, u_[d]));
     const bool along = across <= negligible * total_ * dot(u, u);
-    return format("a sliding of {} of discs{}, each of which moves as one: {} of {}, such as {}",
+    return fmt::format("a sliding of {} of discs{}, each of which moves as one: {} of {}, such as {}",
                   counted(as_count(assembly_.size()) - std::count(sizes.begin(), sizes.end(), 0), "group"),
                   along ? " along " + describe_direction(u) : "", moving_.size(),
                   counted(as_count(assembly_.size()), "disc"), describe_disc(assembly_, largest_first_.front()));
@@ -275,7 +275,7 @@ class Description {
     for (std::size_t k = 0; k < std::min<std::size_t>({5, static_cast<std::size_t>(about), moving_.size()}); ++k) {
       names += (k == 0 ? "" : ", ") + describe_disc(assembly_, largest_first_[k]);
     }
-    return format("a local motion of about {} of {}: {}{}{}", about, counted(as_count(assembly_.size()), "disc"), names,
+    return fmt::format("a local motion of about {} of {}: {}{}{}", about, counted(as_count(assembly_.size()), "disc"), names,
                   about > 5 ? ", ..." : "", describe_contacts());
   }
 
@@ -316,11 +316,11 @@ std::string describe_direction(Vec2 direction) {
   if (std::abs(n.y) < aligned) return "x";
   if (std::abs(n.x) < aligned) return "y";
   if (n.x < 0) n = -n;
-  return format("({:.4g}, {:.4g})", n.x, n.y);
+  return fmt::format("({:.4g}, {:.4g})", n.x, n.y);
 }
 
 std::string describe_disc(const Assembly& assembly, std::size_t disc) {
-  return format("disc {} at ({:.6g}, {:.6g})", disc, assembly.centres[disc].x, assembly.centres[disc].y);
+  return fmt::format("disc {} at ({:.6g}, {:.6g})", disc, assembly.centres[disc].x, assembly.centres[disc].y);
 }
 
 double elastic_energy(const Assembly& assembly, const ContactSprings& springs, std::span<const DiscMotion> motions) {

@@ -23,7 +23,7 @@ std::string describe_rotation(const PieceMotions& piece, const RigidMotion& moti
   for (double* value : {&x.x, &x.y}) {
     if (std::abs(*value) < 1e-9 * size) *value = 0;
   }
-  return format("rotation about ({:.6g}, {:.6g}){}", x.x, x.y, piece.rolls ? ", discs rolling on one another" : "");
+  return fmt::format("rotation about ({:.6g}, {:.6g}){}", x.x, x.y, piece.rolls ? ", discs rolling on one another" : "");
 }
 
 /// A rotation about a point 1e7 sizes away counts as a translation.
@@ -47,7 +47,7 @@ std::string describe_free(const PieceMotions& piece) {
   // The rotation is the combination orthogonal to the translation.
   const auto& [p, q] = std::pair{free[0], free[1]};
   const RigidMotion rotation{p.rotation * p.t + q.rotation * q.t, p.rotation * p.rotation + q.rotation * q.rotation};
-  return format("translation along {} and {}", describe_direction(common_translation(free)),
+  return fmt::format("translation along {} and {}", describe_direction(common_translation(free)),
                 describe_rotation(piece, rotation));
 }
 
@@ -60,14 +60,14 @@ void check_discs_without_contacts(const Assembly& assembly, const std::vector<Pi
   }
   if (count == 0) return;
   if (assembly.size() == 1) {
-    bad_input(format("the assembly is a single disc that is free to move, {}", names), "no contact resists its motion",
+    bad_input(fmt::format("the assembly is a single disc that is free to move, {}", names), "no contact resists its motion",
               "Give it neighbours");
   }
   if (count == 1) {
-    bad_input(format("{} has no contacts and is not held in both directions", names), "nothing resists its motion",
+    bad_input(fmt::format("{} has no contacts and is not held in both directions", names), "nothing resists its motion",
               "Hold it, remove it, or give it contacts");
   }
-  bad_input(format("{} have no contacts and are not held in both directions: {}{}", counted(count, "disc"), names,
+  bad_input(fmt::format("{} have no contacts and are not held in both directions: {}{}", counted(count, "disc"), names,
                    count > 3 ? ", ..." : ""),
             "nothing resists their motion", "Hold them, remove them, or give them contacts");
 }
@@ -80,9 +80,9 @@ std::string sizes_of(const std::vector<PieceMotions>& pieces) {
   }
   std::sort(sizes.rbegin(), sizes.rend());
   constexpr std::size_t most = 5;
-  std::string text = format("of {}", sizes[0]);
+  std::string text = fmt::format("of {}", sizes[0]);
   for (std::size_t k = 1; k < std::min(sizes.size(), most); ++k) {
-    text += format("{}{}", k + 1 == sizes.size() ? " and " : ", ", sizes[k]);
+    text += fmt::format("{}{}", k + 1 == sizes.size() ? " and " : ", ", sizes[k]);
   }
   return text + (sizes.size() > most ? ", ... discs" : " discs");
 }
@@ -98,7 +98,7 @@ std::string remedy(const PieceMotions& piece) {
     return "Hold one more disc, along a line that does not pass through that point";
   }
   const std::string direction = describe_direction(free.size() == 1 ? free[0].t : common_translation(free));
-  return format("Hold a disc in {}{}", direction, rotates ? ", and another one so that the assembly cannot turn" : "");
+  return fmt::format("Hold a disc in {}{}", direction, rotates ? ", and another one so that the assembly cannot turn" : "");
 }
 
 void check_pieces(const Assembly& assembly, const std::vector<PieceMotions>& pieces) {
@@ -116,15 +116,15 @@ void check_pieces(const Assembly& assembly, const std::vector<PieceMotions>& pie
   const std::string names = describe_free(*first);
   const bool several = first->free.size() > 1;
   if (joined == 1) {
-    bad_input(first->held ? format("the supports leave {} of the assembly free: {}",
+    bad_input(first->held ? fmt::format("the supports leave {} of the assembly free: {}",
                                    several ? "rigid motions" : "a rigid motion", names)
-                          : format("no support holds the assembly: {} {} free", names, several ? "are" : "is"),
+                          : fmt::format("no support holds the assembly: {} {} free", names, several ? "are" : "is"),
               "no contact resists a rigid motion, so that equilibrium has no single answer", remedy(*first));
   }
   const std::string which = loose == 1        ? "one of them is not fully held,"
                             : loose == joined ? "none of them is fully held, such as"
-                                              : format("{} of them are not fully held, such as", loose);
-  bad_input(format("the assembly is in {} pieces ({}) and {} the {} with {}: {}", joined, sizes_of(pieces), which,
+                                              : fmt::format("{} of them are not fully held, such as", loose);
+  bad_input(fmt::format("the assembly is in {} pieces ({}) and {} the {} with {}: {}", joined, sizes_of(pieces), which,
                    counted(first->discs, "disc"), describe_disc(assembly, first->first_disc), names),
             "no contact joins them to the rest", "Hold every piece, remove it, or join it by contacts");
 }
@@ -134,9 +134,9 @@ void check_gears(const Assembly& assembly, const std::vector<GearMode>& gears) {
   const GearMode& first = gears.front();
   const auto more = static_cast<std::int64_t>(gears.size()) - 1;
   bad_input(
-      format("{} around {} can counter-rotate like gears at no cost{}", counted(first.discs, "disc"),
+      fmt::format("{} around {} can counter-rotate like gears at no cost{}", counted(first.discs, "disc"),
              describe_disc(assembly, first.first_disc),
-             more > 0 ? format(", and so can {} more such {}", more, more > 1 ? "groups" : "group") : std::string()),
+             more > 0 ? fmt::format(", and so can {} more such {}", more, more > 1 ? "groups" : "group") : std::string()),
       "their graph of contacts is bipartite: no odd ring of contacts makes neighbours slip",
       "Hold the rotation of one of them, restrain rotation, or add a contact that closes an odd ring");
 }

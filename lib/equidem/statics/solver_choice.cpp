@@ -9,13 +9,13 @@
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/statics/cholmod_factorization.hpp"
-#include "equidem/statics/memory.hpp"
+#include "equidem/linear/cholmod_factorization.hpp"
+#include "equidem/linear/memory.hpp"
 #include "equidem/statics/motion_description.hpp"
-#include "equidem/statics/multifrontal_cholesky.hpp"
-#include "equidem/statics/multifrontal_ldlt.hpp"
+#include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
+#include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
 #include "equidem/statics/spring_sizes.hpp"
-#include "equidem/statics/umfpack_factorization.hpp"
+#include "equidem/linear/umfpack_factorization.hpp"
 
 namespace equidem {
 namespace {
@@ -65,18 +65,18 @@ bool springs_cancel(const System& system, const std::vector<DiscMotion>& motions
   const std::vector<DiscMotion> motions = disc_motions(system.unknowns, softest);
   const std::string motion = describe_motion(system.k.assembly, motions);
   if (costs_no_energy(system, softest)) {
-    bad_input("the assembly is a mechanism", format("it can move at no cost: {}", motion),
+    bad_input("the assembly is a mechanism", fmt::format("it can move at no cost: {}", motion),
               system.springs.any_tangential()
                   ? "Hold that motion by a support, or add contacts"
                   : "Hold that motion by a support, add contacts, or give the contacts tangential springs (kT > 0)");
   }
   if (springs_cancel(system, motions)) {
     computation_failed("at this kT/kN the assembly is at its limit of stability",
-                       format("a motion resists no more than round-off: {}", motion),
+                       fmt::format("a motion resists no more than round-off: {}", motion),
                        "Choose another kT/kN; 'equidem stability' finds the limit");
   }
   computation_failed("the assembly is too soft for the digits of a double",
-                     format("a motion resists no more than round-off does: {}", motion),
+                     fmt::format("a motion resists no more than round-off does: {}", motion),
                      system.k.assembly.periodic()
                          ? "Give it more contacts, or larger tangential springs (kT)"
                          : "Hold that motion by a support; a slender assembly needs to be held in more places");
@@ -152,7 +152,7 @@ SolverMethod solver_method_from(const std::string& name) {
     if (name == entry.name) return entry.method;
     known += (known.empty() ? "" : ", ") + std::string(entry.name);
   }
-  bad_input(format("'{}' is no solver method", name), "", format("Choose one of {}", known));
+  bad_input(fmt::format("'{}' is no solver method", name), "", fmt::format("Choose one of {}", known));
 }
 
 std::string to_string(SolverMethod method) {
@@ -164,11 +164,11 @@ std::string to_string(SolverMethod method) {
 
 void check(const SolverOptions& options) {
   if (options.max_refinements < 0) {
-    bad_input(format("max_refinements = {}", options.max_refinements), "a number of steps cannot be negative",
+    bad_input(fmt::format("max_refinements = {}", options.max_refinements), "a number of steps cannot be negative",
               "Give 0 or more");
   }
   if (!(options.memory_limit >= 0)) {
-    bad_input(format("memory_limit = {}", options.memory_limit), "it must be a number of bytes, or 0 for what is free",
+    bad_input(fmt::format("memory_limit = {}", options.memory_limit), "it must be a number of bytes, or 0 for what is free",
               "Correct it");
   }
 }
@@ -190,8 +190,8 @@ void check_memory(const SolveEstimate& estimate, double memory_limit) {
   const double available = memory_limit > 0 ? memory_limit : available_memory();
   if (available == 0 || estimate.peak_bytes <= available) return;
   computation_failed(
-      format("the factorization of {} unknowns needs about {}", estimate.unknowns, readable_bytes(estimate.peak_bytes)),
-      format("{} {}", readable_bytes(available),
+      fmt::format("the factorization of {} unknowns needs about {}", estimate.unknowns, readable_bytes(estimate.peak_bytes)),
+      fmt::format("{} {}", readable_bytes(available),
              memory_limit > 0 ? "are allowed by memory_limit" : "of memory are available"),
       "Use fewer discs, restrain rotation, raise the limit, or take a machine with more memory");
 }

@@ -50,7 +50,7 @@ double spring_spread(const Assembly& assembly, const ContactSprings& springs) {
 }
 
 void refuse_spread(double spread) {
-  bad_input(format("the springs differ by a factor of {:.1e}", spread),
+  bad_input(fmt::format("the springs differ by a factor of {:.1e}", spread),
             "the softest of them is lost in the round-off of the stiffest",
             "Choose springs within a factor of 1e10 of each other");
 }

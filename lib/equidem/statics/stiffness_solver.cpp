@@ -120,15 +120,15 @@ struct StiffnessSolver::Refinement {
     constexpr double worthless = 1e-3;
     const double relative = solution.relative_residual();
     if (!std::isfinite(relative)) {
-      bad_input("the numbers of this case overflow a double", format("the residual comes out as {}", relative),
+      bad_input("the numbers of this case overflow a double", fmt::format("the residual comes out as {}", relative),
                 "Check the units of sizes, springs and loads");
     }
     if (!(relative <= worthless)) {
-      computation_failed(format("the solution leaves a relative residual of {:.1e}", relative), too_soft, remedy);
+      computation_failed(fmt::format("the solution leaves a relative residual of {:.1e}", relative), too_soft, remedy);
     }
     const double size = std::hypot(norm_of(solution.motion.high), imposed_length());
     if (corrections > 1 && relative > 0 && !(last_step <= worthless * size)) {
-      computation_failed(format("the last of {} refinements still changed the motions by {:.1e} of their size",
+      computation_failed(fmt::format("the last of {} refinements still changed the motions by {:.1e} of their size",
                                 corrections - 1, last_step / size),
                          too_soft, remedy);
     }

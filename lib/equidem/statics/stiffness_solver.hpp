@@ -12,11 +12,11 @@
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/stopwatch.hpp"
-#include "equidem/statics/contact_graph.hpp"
-#include "equidem/statics/degrees_of_freedom.hpp"
-#include "equidem/statics/factorization.hpp"
+#include "equidem/linear/contact_graph.hpp"
+#include "equidem/statics/number_unknowns.hpp"
+#include "equidem/linear/factorization.hpp"
 #include "equidem/statics/internal_force.hpp"
-#include "equidem/statics/linear_solver.hpp"
+#include "equidem/linear/linear_solver.hpp"
 #include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {

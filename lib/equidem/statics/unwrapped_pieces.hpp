@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
-#include "equidem/statics/contact_graph.hpp"
+#include "equidem/linear/contact_graph.hpp"
 
 namespace equidem {
 

@@ -35,7 +35,7 @@ Tension tension_of(int rows, GaugePlacement gauge) {
 Study abe_lattice_study(bool quick) {
   const ElasticModuli exact = moduli_of({kN, ratio * kN}, Packing::hexagonal);
   Study study{.name = "abe_lattice",
-              .title = format("Abe's tension test, hexagonal lattice, kT/kN = {:g}", ratio),
+              .title = fmt::format("Abe's tension test, hexagonal lattice, kT/kN = {:g}", ratio),
               .quantities = {{.name = "poisson_ratio",
                               .label = "error of Poisson's ratio",
                               .truth = exact.poisson_ratio,

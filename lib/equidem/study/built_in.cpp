@@ -34,11 +34,11 @@ Study built_in_study(const std::string& name, bool quick) {
   for (const BuiltInStudy& study : studies) {
     if (study.name == name) return study.make(quick);
     names.emplace_back(study.name);
-    list += format("{}{}", list.empty() ? "" : ", ", study.name);
+    list += fmt::format("{}{}", list.empty() ? "" : ", ", study.name);
   }
   const auto meant = nearest(name, names);
-  bad_input(format("there is no study '{}'", name), "the built-in ones are " + list,
-            meant ? format("Did you mean '{}'?", *meant) : "Choose one of them, or give a study file (.toml)");
+  bad_input(fmt::format("there is no study '{}'", name), "the built-in ones are " + list,
+            meant ? fmt::format("Did you mean '{}'?", *meant) : "Choose one of them, or give a study file (.toml)");
 }
 
 }  // namespace equidem

@@ -8,7 +8,7 @@
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/dynamics/simulation.hpp"
-#include "equidem/grains/clump.hpp"
+#include "equidem/grains/scene/clump.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/study/built_in.hpp"
 
@@ -78,7 +78,7 @@ GrainScene gas(int side) {
   scene.walls[1].point = {width, width}, scene.walls[1].normal = {0, -1};
   scene.walls[2].normal = {1, 0};
   scene.walls[3].point = {width, width}, scene.walls[3].normal = {-1, 0};
-  for (std::size_t k = 0; k < scene.walls.size(); ++k) scene.walls[k].name = format("wall {}", k + 1);
+  for (std::size_t k = 0; k < scene.walls.size(); ++k) scene.walls[k].name = fmt::format("wall {}", k + 1);
   scene.pairs = {{.stiffness = 1e6, .restitution = 0.5}};
   Random random(1);
   for (int k = 0; k < side * side; ++k) {
@@ -177,7 +177,7 @@ void add_colliding(Study& study, int side) {
   for (const NormalLaw law : {NormalLaw::linear_dashpot, NormalLaw::energy_map}) {
     const bool map = law == NormalLaw::energy_map;
     GrainScene scene = map ? gas(side) : bed(side);
-    const std::string problem = format("colliding discs, law {}{}", letter_of(law), map ? ", flying in a box" : "");
+    const std::string problem = fmt::format("colliding discs, law {}{}", letter_of(law), map ? ", flying in a box" : "");
     const GrainOptions options{.law = law, .time_step = 1e-5};
     for (const Bodies& one : scenes) {
       one.add(scene);
@@ -196,7 +196,7 @@ void add_colliding(Study& study, int side) {
 Study effects_study(bool quick) {
   const int side = quick ? 20 : 50;
   Study study{.name = "effects",
-              .title = format("{} discs, 100,000 disc-steps: 1 ms is 10 ns per disc-step", side * side),
+              .title = fmt::format("{} discs, 100,000 disc-steps: 1 ms is 10 ns per disc-step", side * side),
               .quantities = {{.name = "bytes_per_disc", .label = "bytes per disc", .fact = true},
                              {.name = "unknowns", .label = "unknowns per disc", .fact = true}},
               .tasks = {}};

@@ -7,8 +7,8 @@
 #include <memory>
 #include <numbers>
 
-#include "equidem/contact/ellipse_contact.hpp"
-#include "equidem/contact/enlarged_ellipse.hpp"
+#include "equidem/contact/shapes/ellipse_contact.hpp"
+#include "equidem/contact/shapes/enlarged_ellipse.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/study/built_in.hpp"
@@ -136,7 +136,7 @@ StudyTask task_of(Setting setting, const Pairs& pairs, Method method) {
 Study ellipse_contact_study(bool quick) {
   const int count = quick ? 200 : 1000;
   Study study{.name = "ellipse_contact",
-              .title = format("Normal and overlap of {} pairs of ellipses", count),
+              .title = fmt::format("Normal and overlap of {} pairs of ellipses", count),
               .quantities = {{.name = "normal",
                               .label = "rms error of the normal, rad",
                               .source = "the best of 4096 directions, then bisection"},
@@ -146,7 +146,7 @@ Study ellipse_contact_study(bool quick) {
               .tasks = {}};
   for (const double aspect : quick ? std::vector{2.0} : std::vector{1.2, 2.0, 5.0}) {
     const auto pairs = std::make_shared<const std::vector<Pair>>(random_pairs(aspect, count));
-    const std::string problem = format("aspect {:g}", aspect);
+    const std::string problem = fmt::format("aspect {:g}", aspect);
     study.tasks.push_back(task_of({.problem = problem, .method = "exact"}, pairs, exact));
     study.tasks.push_back(task_of({.problem = problem, .method = "enlarged as printed"}, pairs,
                                   [](const Pair& p) { return enlarged(p, AngleReading::printed); }));
@@ -169,7 +169,7 @@ Study ellipse_contact_study(bool quick) {
        .order = 1,
        .why = "half a step between directions at most"},
       {.method = "best of n directions", .quantity = "overlap", .order = 2, .why = "the overlap is stationary there"}};
-  study.notes = {format("Times are of all {} pairs.", count),
+  study.notes = {fmt::format("Times are of all {} pairs.", count),
                  "The enlarged ellipse has no overlap of its own: it is taken along its normal."};
   return study;
 }

@@ -128,7 +128,7 @@ std::string price_of_more(const Study& study, const StudyResult& result, const s
                           std::size_t row, double times) {
   const double wanted = points[row].error / times;
   if (const auto better = cheapest_within(points, wanted)) {
-    return format("{:g} times more accuracy costs {:.2g} times the time ({})", times,
+    return fmt::format("{:g} times more accuracy costs {:.2g} times the time ({})", times,
                   points[*better].seconds / points[row].seconds, result.rows[*better].setting.label());
   }
   double price = 0;
@@ -140,8 +140,8 @@ std::string price_of_more(const Study& study, const StudyResult& result, const s
     if (mine) price = std::max(price, cost_of_accuracy(times, curve.cost_exponent, curve.order->order));
   }
   if (price > 0)
-    return format("{:g} times more accuracy would cost about {:.2g} times the time, as its order says", times, price);
-  return format("no setting tried is {:g} times more accurate", times);
+    return fmt::format("{:g} times more accuracy would cost about {:.2g} times the time, as its order says", times, price);
+  return fmt::format("no setting tried is {:g} times more accurate", times);
 }
 
 std::string advice_for(const Study& study, const StudyResult& result, const std::string& problem) {
@@ -150,19 +150,19 @@ std::string advice_for(const Study& study, const StudyResult& result, const std:
   const std::string head = problem.empty() ? "" : problem + ": ";
   if (front.empty()) return "";
   const std::size_t last = front.back();
-  std::string text = format("{}{} is the most accurate (error {:.2g}, {})", head, result.rows[last].setting.label(),
+  std::string text = fmt::format("{}{} is the most accurate (error {:.2g}, {})", head, result.rows[last].setting.label(),
                             points[last].error, readable_seconds(points[last].seconds));
   if (front.size() == 1) return text + "; nothing else is as fast.";
   const std::size_t first = front.front();
-  text += format("; {} is the fastest (error {:.2g}, {}); from there {}.", result.rows[first].setting.label(),
+  text += fmt::format("; {} is the fastest (error {:.2g}, {}); from there {}.", result.rows[first].setting.label(),
                  points[first].error, readable_seconds(points[first].seconds),
                  price_of_more(study, result, points, first, 10));
   const auto slower = static_cast<std::size_t>(std::count_if(points.begin(), points.end(), [&](const CostPoint& p) {
     return std::isfinite(p.error) && p.seconds > points[last].seconds;
   }));
   if (slower > 0)
-    text += format(" Beyond it errors stop falling: {} without being more accurate.",
-                   slower == 1 ? "one setting takes longer" : format("{} settings take longer", slower));
+    text += fmt::format(" Beyond it errors stop falling: {} without being more accurate.",
+                   slower == 1 ? "one setting takes longer" : fmt::format("{} settings take longer", slower));
   return text;
 }
 
@@ -178,10 +178,10 @@ std::vector<std::string> problems_of(const Study& study) {
 }
 
 std::string readable_seconds(double seconds) {
-  if (seconds < 1e-6) return format("{:.3g} ns", 1e9 * seconds);
-  if (seconds < 1e-3) return format("{:.3g} µs", 1e6 * seconds);
-  if (seconds < 1) return format("{:.3g} ms", 1e3 * seconds);
-  return format("{:.3g} s", seconds);
+  if (seconds < 1e-6) return fmt::format("{:.3g} ns", 1e9 * seconds);
+  if (seconds < 1e-3) return fmt::format("{:.3g} µs", 1e6 * seconds);
+  if (seconds < 1) return fmt::format("{:.3g} ms", 1e3 * seconds);
+  return fmt::format("{:.3g} s", seconds);
 }
 
 StudyResult evaluate(const Study& study, const StudySamples& samples) {
@@ -223,12 +223,12 @@ std::vector<Recommendation> recommend(const Study& study, const StudyResult& res
         .problem = problem, .row = cheapest_within(points, accuracy), .best = points[front.back()].error, .text = {}};
     const std::string head = problem.empty() ? "" : problem + ": ";
     if (one.row) {
-      one.text = format("{}the cheapest setting that reaches {:g} is {} (error {:.2g}, {}); {}.", head, accuracy,
+      one.text = fmt::format("{}the cheapest setting that reaches {:g} is {} (error {:.2g}, {}); {}.", head, accuracy,
                         result.rows[*one.row].setting.label(), points[*one.row].error,
                         readable_seconds(points[*one.row].seconds), price_of_more(study, result, points, *one.row, 10));
     } else {
       one.text =
-          format("{}no setting reaches {:g}; the best, {}, reaches {:.2g} in {}.", head, accuracy,
+          fmt::format("{}no setting reaches {:g}; the best, {}, reaches {:.2g} in {}.", head, accuracy,
                  result.rows[front.back()].setting.label(), one.best, readable_seconds(points[front.back()].seconds));
     }
     all.push_back(std::move(one));

@@ -43,7 +43,7 @@ Study neighbour_margin_study(bool quick) {
   const int side = quick ? 20 : 60;
   const auto scene = std::make_shared<const GrainScene>(gas(side));
   Study study{.name = "neighbour_margin",
-              .title = format("{} flying discs, {} steps", side * side, steps),
+              .title = fmt::format("{} flying discs, {} steps", side * side, steps),
               .quantities = {{.name = "rebuilds", .label = "lists made", .fact = true},
                              {.name = "energy", .label = "kinetic energy at the end, N", .fact = true}},
               .tasks = {}};

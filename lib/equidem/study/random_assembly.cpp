@@ -64,7 +64,7 @@ Study random_assembly_study(bool quick) {
            {.name = "shear_modulus", .label = "relative standard error of the shear modulus", .source = source}},
       .tasks = {}};
   const int seeds = quick ? 24 : 96;
-  const std::string more_discs = format("{} cells, more discs", seeds);
+  const std::string more_discs = fmt::format("{} cells, more discs", seeds);
   for (std::int64_t discs = 25; discs <= (quick ? 400 : 1600); discs *= 2) {
     const auto n = static_cast<double>(discs);
     study.tasks.push_back(
@@ -73,7 +73,7 @@ Study random_assembly_study(bool quick) {
   }
   constexpr std::int64_t few = 50;
   for (int more = 6; more <= (quick ? 96 : 384); more *= 2) {
-    study.tasks.push_back(task_of({.method = format("cells of {} discs, more seeds", few),
+    study.tasks.push_back(task_of({.method = fmt::format("cells of {} discs, more seeds", few),
                                    .values = {{"discs", few * 1.0}, {"seeds", more * 1.0}},
                                    .resolution = 1.0 / static_cast<double>(few * more)},
                                   few, more));

@@ -45,7 +45,7 @@ std::int64_t Refinement::propose() {
     n = admissible(2 * real(finest()));
     if (n > std::min(options_.most, patience * options_.first))
       refuse(
-          format("its errors fall as {0}^-{1:.2g} up to {2} {0} and not as {0}^-{3:g}: the distance from the limit is "
+          fmt::format("its errors fall as {0}^-{1:.2g} up to {2} {0} and not as {0}^-{3:g}: the distance from the limit is "
                  "not known",
                  options_.unit, order_, finest(), options_.order));
     try_pilot(n);
@@ -82,11 +82,11 @@ std::int64_t Refinement::level_for(double accuracy, std::int64_t level) const {
 }
 
 void Refinement::refuse(const std::string& why) const {
-  computation_failed(format("an accuracy of {:.3g} cannot be reached", options_.accuracy), why, "Ask for less");
+  computation_failed(fmt::format("an accuracy of {:.3g} cannot be reached", options_.accuracy), why, "Ask for less");
 }
 
 void Refinement::refuse_beyond(double reached) const {
-  refuse(format("it takes about {:.2g} {}, and the most that are tried are {}, which reach about {:.2g}",
+  refuse(fmt::format("it takes about {:.2g} {}, and the most that are tried are {}, which reach about {:.2g}",
                 real(options_.most) * std::pow(reached / options_.accuracy, 1 / options_.order), options_.unit,
                 options_.most, reached));
 }
@@ -98,7 +98,7 @@ std::int64_t Refinement::admissible(double n) const {
 
 void Refinement::try_pilot(std::int64_t level) {
   if (level > options_.most)
-    refuse(format(
+    refuse(fmt::format(
         "to tell how errors fall takes three computations, the finest of {} {}, and the most that are tried are {}",
         level, options_.unit, options_.most));
   values_[level] = pilot_(level);

@@ -34,7 +34,7 @@ PackingOptions options_of(int discs, double step, std::uint64_t seed) {
 Study settled_void_ratio_study(bool quick) {
   const int discs = quick ? 60 : 150, seeds = quick ? 2 : 4;
   Study study{.name = "settled_void_ratio",
-              .title = format("{} boxes of {} discs that fell", seeds, discs),
+              .title = fmt::format("{} boxes of {} discs that fell", seeds, discs),
               .quantities = {{.name = "void_ratio",
                               .label = "difference of the mean void ratio from that of the finest step",
                               .source = "the finest step"},

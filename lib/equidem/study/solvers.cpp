@@ -115,7 +115,7 @@ Study solvers_study(bool quick) {
               .tasks = {}};
   for (const int rows : quick ? std::vector{15, 31} : std::vector{21, 61, 101}) {
     const auto lazy = std::make_shared<LazyBlock>(rows);
-    const std::string problem = format("{} x {} discs", rows, rows);
+    const std::string problem = fmt::format("{} x {} discs", rows, rows);
     for (const SolverMethod method : {SolverMethod::multifrontal, SolverMethod::cholmod, SolverMethod::umfpack}) {
       for (const int refinements : {0, 4}) {
         study.tasks.push_back(

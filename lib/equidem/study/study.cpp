@@ -10,7 +10,7 @@ namespace equidem {
 
 std::string Setting::label() const {
   std::string text = method;
-  for (const auto& [name, value] : values) text += format("{}{} = {:.6g}", text.empty() ? "" : ", ", name, value);
+  for (const auto& [name, value] : values) text += fmt::format("{}{} = {:.6g}", text.empty() ? "" : ", ", name, value);
   return text;
 }
 
@@ -33,12 +33,12 @@ std::string Study::checksum(const std::string& context) const {
   };
   add(context);
   add(name);
-  add(format("{}", static_cast<int>(truth)));
-  for (const Quantity& q : quantities) add(format("{} {} {} {}", q.name, q.fact, q.relative, q.truth));
+  add(fmt::format("{}", static_cast<int>(truth)));
+  for (const Quantity& q : quantities) add(fmt::format("{} {} {} {}", q.name, q.fact, q.relative, q.truth));
   for (const StudyTask& task : tasks) {
     add(task.setting.problem);
     add(task.setting.method);
-    for (const auto& [key, value] : task.setting.values) add(format("{} {}", key, value));
+    for (const auto& [key, value] : task.setting.values) add(fmt::format("{} {}", key, value));
   }
   return sum.text();
 }

@@ -11,7 +11,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/statics/dense_kernels.hpp"
+#include "equidem/linear/multifrontal/dense_kernels.hpp"
 
 namespace equidem {
 namespace {
@@ -63,7 +63,7 @@ struct Spectrum {
     [[maybe_unused]] static const bool one_thread = (dense::use_one_thread_per_call(), true);
     if (dense::find_spectrum(static_cast<std::size_t>(values.size()), vectors.data(), values.data(), with_vectors) !=
         0) {
-      computation_failed(format("the spectrum of a matrix of {} rows is not found", values.size()), "",
+      computation_failed(fmt::format("the spectrum of a matrix of {} rows is not found", values.size()), "",
                          "Report the case: this happens only where numbers are not finite");
     }
   }

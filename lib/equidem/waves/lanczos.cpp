@@ -9,7 +9,7 @@
 
 #include "equidem/core/progress.hpp"
 #include "equidem/core/random.hpp"
-#include "equidem/statics/dense_kernels.hpp"
+#include "equidem/linear/multifrontal/dense_kernels.hpp"
 
 namespace equidem {
 namespace {

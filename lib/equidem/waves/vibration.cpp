@@ -10,8 +10,8 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/statics/contact_graph.hpp"
-#include "equidem/statics/stiffness_matrix.hpp"
+#include "equidem/linear/contact_graph.hpp"
+#include "equidem/statics/assemble_stiffness.hpp"
 
 namespace equidem {
 
@@ -23,14 +23,14 @@ void check_magnitudes(const Assembly& assembly, const ContactSprings& springs, c
   };
   for (std::size_t d = 0; d < inertia.size(); ++d) {
     if (fits(inertia[d].mass) && fits(inertia[d].moment)) continue;
-    refuse(format("disc {} has the mass {:.3g} and the moment of inertia {:.3g}, in kg and m", d, inertia[d].mass,
+    refuse(fmt::format("disc {} has the mass {:.3g} and the moment of inertia {:.3g}, in kg and m", d, inertia[d].mass,
                   inertia[d].moment));
   }
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const Contact& contact = assembly.contacts[c];
     for (const std::int32_t d : {contact.i, contact.j}) {
       const double squared = springs[c].kN / inertia[d].mass;
-      if (!fits(squared)) refuse(format("contact {} has kN/m = {:.3g} 1/s² at disc {}", c, squared, d));
+      if (!fits(squared)) refuse(fmt::format("contact {} has kN/m = {:.3g} 1/s² at disc {}", c, squared, d));
     }
   }
 }

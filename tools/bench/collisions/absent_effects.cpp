@@ -22,14 +22,14 @@ void check_alike(const GrainSimulation& simulation, const Loop& loop, double tol
   double worst = 0;
   for (std::size_t i = 0; i < grains.size(); ++i) worst = std::max(worst, norm(grains[i].position - loop.position(i)));
   if (worst <= tolerance) return;
-  computation_failed(format("the loop by hand and the simulation are {:.3g} m apart", worst), "they should do the same",
+  computation_failed(fmt::format("the loop by hand and the simulation are {:.3g} m apart", worst), "they should do the same",
                      "One of the two is wrong");
 }
 
 std::string row(const std::string& name, const Seconds& seconds, const Seconds& by_hand, double disc_steps,
                 const std::string& bytes) {
   const Range time = range_of(seconds), over = ratio_of(seconds, by_hand);
-  return format("| {} | {:.2f} ({:.2f} .. {:.2f}) | {:.2f} ({:.2f} .. {:.2f}) | {} |\n", name,
+  return fmt::format("| {} | {:.2f} ({:.2f} .. {:.2f}) | {:.2f} ({:.2f} .. {:.2f}) | {} |\n", name,
                 1e9 * time.median / disc_steps, 1e9 * time.smallest / disc_steps, 1e9 * time.largest / disc_steps,
                 over.median, over.smallest, over.largest, bytes);
 }
@@ -62,9 +62,9 @@ std::string compare_free_flight(int discs, int rounds) {
   const double disc_steps = static_cast<double>(discs) * static_cast<double>(steps);
   for (std::size_t k = 0; k < entries.size(); ++k) {
     table += row(entries[k].label, seconds[k], seconds[0], disc_steps,
-                 k > 0 ? format("{:.0f}", simulations[k - 1].bytes_per_grain()) : "32");
+                 k > 0 ? fmt::format("{:.0f}", simulations[k - 1].bytes_per_grain()) : "32");
   }
-  return table + format("\nLists of neighbours made in {} steps: {}.\n", simulations[0].step(),
+  return table + fmt::format("\nLists of neighbours made in {} steps: {}.\n", simulations[0].step(),
                         simulations[0].counters().rebuilds);
 }
 
@@ -85,8 +85,8 @@ std::string compare_friction(int columns, int rows, int rounds) {
   check_alike(without, by_hand, 1e-6);
   const double disc_steps = static_cast<double>(smooth.grains.size()) * static_cast<double>(steps);
   return header + row(entries[0].label, seconds[0], seconds[0], disc_steps, "") +
-         row(entries[1].label, seconds[1], seconds[0], disc_steps, format("{:.0f}", without.bytes_per_grain())) +
-         row(entries[2].label, seconds[2], seconds[0], disc_steps, format("{:.0f}", with.bytes_per_grain()));
+         row(entries[1].label, seconds[1], seconds[0], disc_steps, fmt::format("{:.0f}", without.bytes_per_grain())) +
+         row(entries[2].label, seconds[2], seconds[0], disc_steps, fmt::format("{:.0f}", with.bytes_per_grain()));
 }
 
 }  // namespace equidem::bench

@@ -69,7 +69,7 @@ Study dilute_gas() {
   const auto scene = [](const Variant& variant) { return gas(1000, 0.2, pair_of(variant, e)); };
   int impacts = 0;
   const std::vector<Grain> truth = hard_discs_at(scene(variants()[0]), time, impacts);
-  return {format("1000 discs in a box, solid fraction 0.2, e = 0.9, {} impacts: median error of place over the radius",
+  return {fmt::format("1000 discs in a box, solid fraction 0.2, e = 0.9, {} impacts: median error of place over the radius",
                  impacts),
           scene, time, 0.05, [=](const std::vector<Grain>& grains) {
             std::vector<double> errors;
@@ -84,7 +84,7 @@ Study study_of(const std::string& name) {
   if (name == "ball") return ball();
   if (name == "stack") return stack();
   if (name == "gas") return dilute_gas();
-  bad_input(format("'{}' is no scene", name), "", "Choose ball, stack or gas");
+  bad_input(fmt::format("'{}' is no scene", name), "", "Choose ball, stack or gas");
 }
 
 struct Point {
@@ -129,19 +129,19 @@ std::string compare_accuracy(const std::string& scene, int finest, int rounds) {
   const Study study = study_of(scene);
   const std::vector<std::vector<Point>> curves = curves_of(study, finest, rounds);
   std::string table =
-      format("{}. Seconds (over C) of the coarsest step from which on the error stays below:\n\n", study.what);
+      fmt::format("{}. Seconds (over C) of the coarsest step from which on the error stays below:\n\n", study.what);
   table += "| law | 1e-1 | 1e-2 | 1e-3 | 1e-4 | order of the error | error, seconds at the finest step |\n";
   table += "|---|---|---|---|---|---|---|\n";
   for (std::size_t v = 0; v < curves.size(); ++v) {
-    table += format("| {} |", variants()[v].name);
+    table += fmt::format("| {} |", variants()[v].name);
     for (const double error : {1e-1, 1e-2, 1e-3, 1e-4}) {
       const auto own = seconds_for(curves[v], error), of_c = seconds_for(curves[0], error);
-      table += own ? format(" {:.2g}", *own) : std::string(" -");
-      table += own && of_c ? format(" ({:.2f}) |", *own / *of_c) : std::string(" |");
+      table += own ? fmt::format(" {:.2g}", *own) : std::string(" -");
+      table += own && of_c ? fmt::format(" ({:.2f}) |", *own / *of_c) : std::string(" |");
     }
     const Point& last = curves[v].back();
     const Point& early = curves[v][curves[v].size() - 1 - std::min<std::size_t>(4, curves[v].size() - 1)];
-    table += format(" {:.1f} | {:.2g}, {:.2g} |\n",
+    table += fmt::format(" {:.1f} | {:.2g}, {:.2g} |\n",
                     std::log(early.error / last.error) / std::log(early.step / last.step), last.error, last.seconds);
   }
   return table;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "equidem/grains/neighbours.hpp"
+#include "equidem/grains/neighbours/neighbours.hpp"
 
 namespace equidem::bench {
 

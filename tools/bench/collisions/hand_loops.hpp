@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "equidem/grains/grain_scene.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem::bench {
 

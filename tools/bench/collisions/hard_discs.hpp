@@ -3,7 +3,7 @@
 /// The limit of all laws: rigid discs, impacts without duration.
 #pragma once
 
-#include "equidem/grains/grain_scene.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem::bench {
 

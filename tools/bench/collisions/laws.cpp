@@ -107,7 +107,7 @@ Range scaled(const Seconds& seconds, double scale) {
 }
 
 std::string text(const Range& range, const char* digits) {
-  const auto one = [&](double value) { return format(fmt::runtime(digits), value); };
+  const auto one = [&](double value) { return fmt::format(fmt::runtime(digits), value); };
   return one(range.median) + " (" + one(range.smallest) + " .. " + one(range.largest) + ")";
 }
 
@@ -133,7 +133,7 @@ std::string compare_laws(int impacts, int rounds) {
     Range over = ratio_of(seconds[k], seconds[0]);
     for (double* value : {&over.median, &over.smallest, &over.largest}) *value *= sizes[0] / sizes[k];
     const double per_impact = range_of(seconds[k]).median;
-    table += format("| {} | {:.2f} | {} | {} | {:.0f} | {:.2f} |\n", entries[k].label, sizes[k] / impacts,
+    table += fmt::format("| {} | {:.2f} | {} | {} | {:.0f} | {:.2f} |\n", entries[k].label, sizes[k] / impacts,
                     text(each, "{:.1f}"), text(over, "{:.2f}"),
                     1e9 * per_impact / static_cast<double>(passes * impacts), per_impact / per_c);
   }
@@ -157,12 +157,12 @@ std::string compare_in_simulation(const std::string& scene, int rounds) {
     try {
       simulation.advance(500);  // away from the grid, or to rest
       const double moving = simulation.energy().kinetic;
-      if (moving > 10 * energy) fate = format("moves with {:.2g} times the energy that it had", moving / energy);
+      if (moving > 10 * energy) fate = fmt::format("moves with {:.2g} times the energy that it had", moving / energy);
     } catch (const Error&) {
-      fate = format("is refused at step {}", simulation.step());
+      fate = fmt::format("is refused at step {}", simulation.step());
     }
     if (!fate.empty()) {
-      failed += format("\n{} does not hold them: within 500 steps the scene {}.\n", variant.name, fate);
+      failed += fmt::format("\n{} does not hold them: within 500 steps the scene {}.\n", variant.name, fate);
       continue;
     }
     simulations.push_back(std::move(simulation));
@@ -182,7 +182,7 @@ std::string compare_in_simulation(const std::string& scene, int rounds) {
   constexpr auto disc_steps = static_cast<double>(discs * steps);
   for (std::size_t k = 0; k < names.size(); ++k) {
     const auto evaluations = static_cast<double>(simulations[k].counters().evaluations - before[k]);
-    table += format("| {} | {:.3f} | {} | {} | {:.0f} |\n", names[k], evaluations / (disc_steps * (rounds + 1)),
+    table += fmt::format("| {} | {:.3f} | {} | {} | {:.0f} |\n", names[k], evaluations / (disc_steps * (rounds + 1)),
                     text(scaled(seconds[k], 1e9 / disc_steps), "{:.1f}"),
                     text(ratio_of(seconds[k], seconds[0]), "{:.2f}"), simulations[k].bytes_per_grain());
   }

@@ -9,7 +9,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/json.hpp"
+#include "equidem/output/files/json.hpp"
 
 #include "absent_effects.hpp"
 #include "accuracy.hpp"
@@ -52,7 +52,7 @@ The law alone, on all steps of impacts with random speed and phase, in random or
 
 void run(const Request& request) {
   Report report;
-  report.add(format(introduction, library_version(), __VERSION__, request.rounds, request.halvings));
+  report.add(fmt::format(introduction, library_version(), __VERSION__, request.rounds, request.halvings));
   report.add(compare_laws(2000, request.rounds));
   report.add(
       "\nIn the simulation, everything that a step does. 2500 discs that keep colliding in a box, solid fraction 0.6, "
@@ -75,7 +75,7 @@ void run(const Request& request) {
   if (request.file.empty()) return;
   std::ofstream out(request.file);
   out << report.text();
-  if (!out.flush()) bad_input(format("'{}' cannot be written", request.file), "", "Choose another path");
+  if (!out.flush()) bad_input(fmt::format("'{}' cannot be written", request.file), "", "Choose another path");
 }
 
 int parse_and_run(int argc, char** argv) {

@@ -3,7 +3,7 @@
 /// What collides in the benchmarks.
 #pragma once
 
-#include "equidem/grains/grain_scene.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem::bench {
 

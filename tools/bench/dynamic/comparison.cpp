@@ -31,12 +31,12 @@ double activity_of(const Simulation& simulation) {
 
 void check_alike(const std::string& label, double activity, double expected) {
   if (std::abs(activity - expected) <= 1e-6 * expected) return;
-  computation_failed(format("'{}' ends with a sum of squared velocities of {:.9g}", label, activity),
-                     format("the simulation ends with {:.9g}", expected), "One of the two loops is wrong");
+  computation_failed(fmt::format("'{}' ends with a sum of squared velocities of {:.9g}", label, activity),
+                     fmt::format("the simulation ends with {:.9g}", expected), "One of the two loops is wrong");
 }
 
 std::string with_range(const Range& range, const char* digits) {
-  const auto text = [&](double value) { return format(fmt::runtime(digits), value); };
+  const auto text = [&](double value) { return fmt::format(fmt::runtime(digits), value); };
   return text(range.median) + " (" + text(range.smallest) + " .. " + text(range.largest) + ")";
 }
 
@@ -94,12 +94,12 @@ std::string compare_loops(const std::string& kind, std::int64_t discs, const std
   for (std::size_t k = 0; k < entries.size(); ++k) {
     const Range speed = speeds(seconds[k], disc_steps);
     const double cores = entries[k].threads;
-    table += format("| {} | {} | {} | {} | {} | {} |", kind, assembly.size(), entries[k].label, entries[k].threads,
+    table += fmt::format("| {} | {} | {} | {} | {} | {} |", kind, assembly.size(), entries[k].label, entries[k].threads,
                     with_range(speed, "{:.3g}"), with_range(ratio_of(seconds[0], seconds[k]), "{:.2f}"));
     if (k < 2) {
       table += " | | |\n";
     } else {
-      table += format(" {:.0f} | {:.0f} % | {:.0f} % |\n", stepwise.simulation().bytes_per_disc(),
+      table += fmt::format(" {:.0f} | {:.0f} % | {:.0f} % |\n", stepwise.simulation().bytes_per_disc(),
                       100 * speed.median * traffic(assembly) / (cores * limits.bandwidth),
                       100 * speed.median * operations(assembly) / (cores * limits.arithmetic));
     }
@@ -117,7 +117,7 @@ std::string count_memory(const std::string& kind, std::int64_t discs) {
     const double at_start = heap_bytes();
     const Scenery scenery(assembly, variants()[k]);
     const double own = (with_assembly - before) / size, simulation = (heap_bytes() - at_start) / size;
-    table += format("| {}, {} | {} | {:.0f} | {:.0f} | {:.0f} |\n", kind, variants()[k].name, assembly.size(), own,
+    table += fmt::format("| {}, {} | {} | {:.0f} | {:.0f} | {:.0f} |\n", kind, variants()[k].name, assembly.size(), own,
                     simulation, own + simulation);
   }
   return table;
@@ -139,7 +139,7 @@ std::string compare_effects(const std::string& kind, std::int64_t discs, int rou
   std::string table = "| effect | disc-steps/s | time over springs, rotation | bytes/disc |\n|---|---|---|---|\n";
   for (std::size_t k = 0; k < entries.size(); ++k) {
     table +=
-        format("| {} | {} | {} | {:.0f} |\n", entries[k].label, with_range(speeds(seconds[k], disc_steps), "{:.3g}"),
+        fmt::format("| {} | {} | {} | {:.0f} |\n", entries[k].label, with_range(speeds(seconds[k], disc_steps), "{:.3g}"),
                with_range(ratio_of(seconds[k], seconds[0]), "{:.2f}"), scenes[k]->simulation().bytes_per_disc());
   }
   return table;
@@ -159,7 +159,7 @@ std::string compare_absent_effects(const std::string& kind, std::int64_t discs, 
                              {"equidem", [&](std::int64_t n) { scenery.simulation().advance(n); }}};
     const std::vector<Seconds> seconds = take_turns(entries, steps, rounds);
     check_alike("by hand", by_hand->activity(), activity_of(scenery.simulation()));
-    table += format(
+    table += fmt::format(
         "| {} | {} | {} |\n", variants()[static_cast<std::size_t>(variant)].name,
         with_range(speeds(seconds[0], static_cast<double>(steps) * static_cast<double>(assembly.size())), "{:.3g}"),
         with_range(ratio_of(seconds[1], seconds[0]), "{:.3f}"));

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "equidem/dynamics/lanes.hpp"
+#include "equidem/dynamics/kernels/lanes.hpp"
 #include "equidem/dynamics/layout.hpp"
 
 #include "scene.hpp"

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "equidem/assembly/assembly.hpp"
-#include "equidem/dynamics/step_kernel.hpp"
+#include "equidem/dynamics/kernels/step_kernel.hpp"
 
 #include "contender.hpp"
 

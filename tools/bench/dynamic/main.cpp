@@ -10,7 +10,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/json.hpp"
+#include "equidem/output/files/json.hpp"
 
 #include "comparison.hpp"
 #include "machine_limits.hpp"
@@ -45,7 +45,7 @@ void run(const Request& request) {
   const Limits limits{.bandwidth = triad_bandwidth(), .arithmetic = peak_arithmetic()};
   const auto effects_discs = static_cast<std::int64_t>(request.effects_discs);
   Report report;
-  report.add(format(
+  report.add(fmt::format(
       "# Steps in time\n\nequidem {}, compiler {}. One core of this machine: triad {:.1f} GB/s, multiply-adds on four "
       "numbers {:.1f} Gflop/s.\nMedians (smallest .. largest) of {} rounds in which all take turns; one thread: "
       "processor time, more: the clock.\n",
@@ -65,7 +65,7 @@ void run(const Request& request) {
     report.add(count_memory(kind, static_cast<std::int64_t>(request.discs.back())) + "\n");
   }
   for (const std::string& kind : request.kinds) {
-    report.add(format("\n## What effects cost: {}, {} discs\n\n", kind, effects_discs));
+    report.add(fmt::format("\n## What effects cost: {}, {} discs\n\n", kind, effects_discs));
     report.add(compare_effects(kind, effects_discs, request.rounds));
     report.add("\nWhat absent effects cost: each scene beside a loop written by hand for it alone.\n\n");
     report.add(compare_absent_effects(kind, effects_discs, 3 * request.rounds));
@@ -73,7 +73,7 @@ void run(const Request& request) {
   if (request.file.empty()) return;
   std::ofstream out(request.file);
   out << report.text();
-  if (!out.flush()) bad_input(format("'{}' cannot be written", request.file), "", "Choose another path");
+  if (!out.flush()) bad_input(fmt::format("'{}' cannot be written", request.file), "", "Choose another path");
 }
 
 int parse_and_run(int argc, char** argv) {

@@ -76,7 +76,7 @@ std::vector<std::string> assembly_kinds() {
 Assembly build_assembly(const std::string& kind, std::int64_t discs) {
   if (kind == "delaunay") return delaunay_assembly({.discs = discs, .radii = {1, 1}});
   if (kind != "hexagonal")
-    bad_input(format("there is no kind '{}'", kind), "they are hexagonal and delaunay", "Choose one");
+    bad_input(fmt::format("there is no kind '{}'", kind), "they are hexagonal and delaunay", "Choose one");
   const auto side = static_cast<int>(std::lround(std::sqrt(static_cast<double>(discs))));
   return hexagonal_lattice({.columns = side, .rows = side, .radius = 1});
 }

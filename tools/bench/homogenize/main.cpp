@@ -15,7 +15,7 @@
 #include "equidem/core/threads.hpp"
 #include "equidem/homogenize/affine.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
-#include "equidem/output/json.hpp"
+#include "equidem/output/files/json.hpp"
 #include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
 
@@ -59,7 +59,7 @@ std::string compare(std::int64_t discs, int threads, int rounds) {
     ratio.push_back(whole.back() / one.back());
   }
   const auto [least, most] = std::minmax_element(ratio.begin(), ratio.end());
-  return format("| {} | {} | {} | {:.3f} | {:.3f} | {:.2f} ({:.2f} .. {:.2f}) |\n", cell.size(), threads, rounds,
+  return fmt::format("| {} | {} | {} | {:.3f} | {:.3f} | {:.2f} ({:.2f} .. {:.2f}) |\n", cell.size(), threads, rounds,
                 median(one), median(whole), median(ratio), *least, *most);
 }
 
@@ -75,7 +75,7 @@ int run(int argc, char** argv) {
   program.add_option("--rounds", rounds, "of both, one after the other")->check(CLI::PositiveNumber);
   program.add_option("--markdown", file, "file for the table");
   CLI11_PARSE(program, argc, argv);
-  std::string report = format(
+  std::string report = fmt::format(
       "equidem {}: three load cases, error bound and rigidity included, over one solve; medians of rounds, s\n\n",
       library_version());
   report += "| discs | threads | rounds | one solve | effective stiffness | ratio |\n|---|---|---|---|---|---|\n";
@@ -91,7 +91,7 @@ int run(int argc, char** argv) {
   if (!file.empty()) {
     std::ofstream out(file);
     out << "# Effective stiffness\n\n" << report;
-    if (!out.flush()) bad_input(format("'{}' cannot be written", file), "", "Choose another path");
+    if (!out.flush()) bad_input(fmt::format("'{}' cannot be written", file), "", "Choose another path");
   }
   return 0;
 }

@@ -12,9 +12,9 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/clump.hpp"
+#include "equidem/grains/scene/clump.hpp"
 #include "equidem/grains/grain_simulation.hpp"
-#include "equidem/output/json.hpp"
+#include "equidem/output/files/json.hpp"
 
 #include "contender.hpp"
 
@@ -150,7 +150,7 @@ const char* name_of(GrainOptions::Scheme scheme) {
 }
 
 std::string text(const Range& range, const char* digits) {
-  const auto one = [&](double value) { return format(fmt::runtime(digits), value); };
+  const auto one = [&](double value) { return fmt::format(fmt::runtime(digits), value); };
   return one(range.median) + " (" + one(range.smallest) + " .. " + one(range.largest) + ")";
 }
 
@@ -179,7 +179,7 @@ void run(const Request& request) {
   const std::vector<Seconds> seconds = take_turns(entries, steps, request.rounds);
   const double grains = request.side * request.side;
   std::string report =
-      format(introduction, library_version(), __VERSION__, request.side, request.rounds, request.side * request.side);
+      fmt::format(introduction, library_version(), __VERSION__, request.side, request.rounds, request.side * request.side);
   std::vector<double> contacts;
   for (std::size_t k = 0; k < simulations.size(); ++k) {
     const auto made = static_cast<double>(simulations[k].counters().evaluations - evaluations[k]);
@@ -194,7 +194,7 @@ void run(const Request& request) {
     const Range each = scaled(range_of(seconds[k]), 1e9 / (static_cast<double>(steps) * grains));
     const Range over_disc = ratio_of(seconds[k], seconds[disc]);
     const Range over = scaled(over_disc, contacts[disc] / contacts[k]);
-    report += format("| {} | {} | {:.2f} | {} | {} | {} | {} | {:.0f} |\n", entries[k].label,
+    report += fmt::format("| {} | {} | {:.2f} | {} | {} | {} | {} | {:.0f} |\n", entries[k].label,
                      name_of(shapes()[k].scheme), contacts[k], text(each, "{:.0f}"), text(over_disc, "{:.2f}"),
                      text(scaled(each, 1 / contacts[k]), "{:.0f}"), text(over, "{:.2f}"),
                      simulations[k].bytes_per_grain() * (shapes()[k].bonded ? 2 : 1));
@@ -203,7 +203,7 @@ void run(const Request& request) {
   if (request.file.empty()) return;
   std::ofstream out(request.file);
   out << report;
-  if (!out.flush()) bad_input(format("'{}' cannot be written", request.file), "", "Choose another path");
+  if (!out.flush()) bad_input(fmt::format("'{}' cannot be written", request.file), "", "Choose another path");
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ const Solver& solver_of(const Trial& trial) {
 }
 
 std::string with_range(const Range& range) {
-  return format("{:.3g} ({:.3g}..{:.3g})", range.median, range.smallest, range.largest);
+  return fmt::format("{:.3g} ({:.3g}..{:.3g})", range.median, range.smallest, range.largest);
 }
 
 using Row = std::vector<std::string>;
@@ -53,7 +53,7 @@ std::string markdown(const std::vector<Row>& rows) {
   }
   std::string text;
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    for (std::size_t c = 0; c < width.size(); ++c) text += format("| {:<{}} ", rows[r][c], width[c]);
+    for (std::size_t c = 0; c < width.size(); ++c) text += fmt::format("| {:<{}} ", rows[r][c], width[c]);
     text += "|\n";
     if (r > 0) continue;
     for (const std::size_t w : width) text += "|" + std::string(w + 2, '-');
@@ -69,17 +69,17 @@ std::string medians_table(const Comparison& comparison) {
     const auto median = [&](double Measurement::*value) {
       return range_of(s, [value](const Measurement& run) { return run.*value; }).median;
     };
-    const auto stage = [&](double Measurement::*value) { return format("{:.3g}", median(value)); };
+    const auto stage = [&](double Measurement::*value) { return fmt::format("{:.3g}", median(value)); };
     rows.push_back(
-        {solver_of(s.trial).label, format("{}", s.trial.threads), stage(&Measurement::order),
+        {solver_of(s.trial).label, fmt::format("{}", s.trial.threads), stage(&Measurement::order),
          stage(&Measurement::analyze), stage(&Measurement::factorize), stage(&Measurement::solve),
          with_range(range_of(s, [](const Measurement& run) { return run.total(); })), stage(&Measurement::assembly),
-         format("{:.3e}", median(&Measurement::nonzeros)),
-         format("{:.2f}", median(&Measurement::factor_bytes) / sizeof(double) / median(&Measurement::nonzeros)),
-         format("{:.0f}", median(&Measurement::factor_bytes) * 1e-6),
-         format("{:.0f}", median(&Measurement::peak_bytes) * 1e-6),
-         format("{:.2f}", median(&Measurement::peak_bytes) / median(&Measurement::factor_bytes)),
-         stage(&Measurement::cpu), format("{:.1e}", median(&Measurement::residual))});
+         fmt::format("{:.3e}", median(&Measurement::nonzeros)),
+         fmt::format("{:.2f}", median(&Measurement::factor_bytes) / sizeof(double) / median(&Measurement::nonzeros)),
+         fmt::format("{:.0f}", median(&Measurement::factor_bytes) * 1e-6),
+         fmt::format("{:.0f}", median(&Measurement::peak_bytes) * 1e-6),
+         fmt::format("{:.2f}", median(&Measurement::peak_bytes) / median(&Measurement::factor_bytes)),
+         stage(&Measurement::cpu), fmt::format("{:.1e}", median(&Measurement::residual))});
   }
   return markdown(rows);
 }
@@ -93,11 +93,11 @@ std::string ratios_table(const Comparison& comparison) {
       if (!peer || theirs.trial.threads != ours.trial.threads) continue;
       const auto share = range_of(ours, [](const Measurement& run) { return run.assembly / run.total(); });
       rows.push_back(
-          {solver_of(theirs.trial).label, format("{}", ours.trial.threads),
+          {solver_of(theirs.trial).label, fmt::format("{}", ours.trial.threads),
            with_range(ratio_of(ours, theirs, [](const Measurement& run) { return run.total(); })),
-           format("{:.3f}", ratio_of(ours, theirs, [](const Measurement& run) { return run.nonzeros; }).median),
-           format("{:.2f}", ratio_of(ours, theirs, [](const Measurement& run) { return run.peak_bytes; }).median),
-           format("{:.1f} %", 100 * share.median)});
+           fmt::format("{:.3f}", ratio_of(ours, theirs, [](const Measurement& run) { return run.nonzeros; }).median),
+           fmt::format("{:.2f}", ratio_of(ours, theirs, [](const Measurement& run) { return run.peak_bytes; }).median),
+           fmt::format("{:.1f} %", 100 * share.median)});
     }
   }
   return rows.size() == 1 ? "" : markdown(rows);
@@ -133,14 +133,14 @@ std::string explain_tables() {
       "process, solvers take turns.\n"
       "Threads of ";
   for (const Solver& solver : solvers()) {
-    text += format("{}{}: {}", &solver == &solvers().front() ? "" : "; ", solver.label, solver.threads);
+    text += fmt::format("{}{}: {}", &solver == &solvers().front() ? "" : "; ", solver.label, solver.threads);
   }
   return text + ". CHOLMOD runs supernodal, with 32-bit indices and OMP_THREAD_LIMIT=1.\n";
 }
 
 std::string tables(const Comparison& comparison) {
   const Measurement& first = comparison.series.at(0).runs.at(0);
-  return format("{}, {:.0f} discs, {:.0f} unknowns, {} rounds\n\n{}\n{}", comparison.kind, first.discs, first.unknowns,
+  return fmt::format("{}, {:.0f} discs, {:.0f} unknowns, {} rounds\n\n{}\n{}", comparison.kind, first.discs, first.unknowns,
                 comparison.series[0].runs.size(), medians_table(comparison), ratios_table(comparison));
 }
 
@@ -168,7 +168,7 @@ std::string describe_machine() {
     processor = line.substr(std::min(line.find(':') + 2, line.size()));
     break;
   }
-  return format("{}, {}, compiler {}", processor, counted(std::thread::hardware_concurrency(), "core"), __VERSION__);
+  return fmt::format("{}, {}, compiler {}", processor, counted(std::thread::hardware_concurrency(), "core"), __VERSION__);
 }
 
 }  // namespace equidem::bench

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "equidem/output/json.hpp"
+#include "equidem/output/files/json.hpp"
 
 #include "measurement.hpp"
 

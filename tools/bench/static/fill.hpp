@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <span>
 
-#include "equidem/statics/contact_graph.hpp"
-#include "equidem/statics/degrees_of_freedom.hpp"
+#include "equidem/linear/contact_graph.hpp"
+#include "equidem/statics/number_unknowns.hpp"
 
 namespace equidem::bench {
 

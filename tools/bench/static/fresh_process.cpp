@@ -44,7 +44,7 @@ std::vector<std::string> environment(std::map<std::string, std::string> changes)
     const std::string text = *entry;
     if (!changes.contains(text.substr(0, text.find('=')))) list.push_back(text);
   }
-  for (const auto& [name, value] : changes) list.push_back(format("{}={}", name, value));
+  for (const auto& [name, value] : changes) list.push_back(fmt::format("{}={}", name, value));
   return list;
 }
 
@@ -88,17 +88,17 @@ double memory_of(const Trial& trial) {
 }  // namespace
 
 Measurement measure_in_fresh_process(const Trial& trial) {
-  run_again({warm_up_option, format("{}", memory_of(trial))}, environment({}));
+  run_again({warm_up_option, fmt::format("{}", memory_of(trial))}, environment({}));
   // CHOLMOD as one would run it with care: threads for BLAS, none for OpenMP, of which it would otherwise ask
   // for four at each supernode. What equidem runs on is set in the process.
   const bool ours = trial.solver == "equidem";
-  const auto variables = environment({{"OPENBLAS_NUM_THREADS", format("{}", ours ? 1 : trial.threads)},
+  const auto variables = environment({{"OPENBLAS_NUM_THREADS", fmt::format("{}", ours ? 1 : trial.threads)},
                                       {"OMP_NUM_THREADS", "1"},
                                       {"OMP_THREAD_LIMIT", "1"}});
   const Ended ended = run_again(
-      {measure_option, trial.solver, trial.kind, format("{}", trial.discs), format("{}", trial.threads)}, variables);
+      {measure_option, trial.solver, trial.kind, fmt::format("{}", trial.discs), fmt::format("{}", trial.threads)}, variables);
   if (!WIFEXITED(ended.status) || WEXITSTATUS(ended.status) != 0) {
-    computation_failed(format("{} failed on {} discs", trial.solver, trial.discs),
+    computation_failed(fmt::format("{} failed on {} discs", trial.solver, trial.discs),
                        WIFSIGNALED(ended.status) ? "it was ended by a signal" : "its message is above", "");
   }
   Measurement result;

@@ -12,7 +12,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/json.hpp"
+#include "equidem/output/files/json.hpp"
 
 #include "comparison.hpp"
 #include "matrix_file.hpp"
@@ -38,11 +38,11 @@ int default_repetitions(double discs) {
 void write(const std::string& path, const std::string& text) {
   std::ofstream file(path);
   file << text;
-  if (!file.flush()) bad_input(format("'{}' cannot be written", path), "", "Choose another path");
+  if (!file.flush()) bad_input(fmt::format("'{}' cannot be written", path), "", "Choose another path");
 }
 
 void run(const Request& request) {
-  std::string report = format("equidem {}, {}\n\n{}", library_version(), describe_machine(), explain_tables());
+  std::string report = fmt::format("equidem {}, {}\n\n{}", library_version(), describe_machine(), explain_tables());
   std::printf("%s", report.c_str());
   std::vector<JsonObject> comparisons;
   for (const std::string& kind : request.kinds) {

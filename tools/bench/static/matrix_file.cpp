@@ -6,7 +6,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/statics/stiffness_matrix.hpp"
+#include "equidem/statics/assemble_stiffness.hpp"
 
 #include "problem.hpp"
 
@@ -46,7 +46,7 @@ void write_matrix_file(const std::string& path, const std::string& kind, std::in
   put(file, x);
   put(file, y);
   put(file, component);
-  if (!file.flush()) bad_input(format("'{}' cannot be written", path), "", "Choose another path");
+  if (!file.flush()) bad_input(fmt::format("'{}' cannot be written", path), "", "Choose another path");
 }
 
 }  // namespace equidem::bench

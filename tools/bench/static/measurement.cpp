@@ -10,8 +10,8 @@
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
-#include "equidem/statics/cholmod_factorization.hpp"
-#include "equidem/statics/multifrontal_cholesky.hpp"
+#include "equidem/linear/cholmod_factorization.hpp"
+#include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
 
 #include "fill.hpp"
 #include "problem.hpp"
@@ -104,7 +104,7 @@ Measurement measure(const Trial& trial) {
   } else if (trial.solver == "cholmod-ours") {
     factor = cholmod(problem, matrix, CholmodOrdering::ours, result);
   } else {
-    bad_input(format("there is no solver '{}'", trial.solver), "", "--help lists them");
+    bad_input(fmt::format("there is no solver '{}'", trial.solver), "", "--help lists them");
   }
   check_factor(factor);
   std::vector<double> x = problem.load;

@@ -56,7 +56,7 @@ Problem build_problem(const std::string& kind, std::int64_t discs) {
     }
     return problem;
   }
-  bad_input(format("there is no kind '{}'", kind), "the kinds are hexagonal and delaunay", "Choose one");
+  bad_input(fmt::format("there is no kind '{}'", kind), "the kinds are hexagonal and delaunay", "Choose one");
 }
 
 }  // namespace equidem::bench

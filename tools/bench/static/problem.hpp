@@ -9,7 +9,7 @@
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
-#include "equidem/statics/degrees_of_freedom.hpp"
+#include "equidem/statics/number_unknowns.hpp"
 
 namespace equidem::bench {
 

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// One stage of an integrator for finite motions: normals and contact points follow the bodies, by the law of
+/// contact/finite_bond.hpp.
+///
+/// The law takes two roots, two divisions and an arctangent. Where the neighbour has hardly turned as seen from the body, by
+/// less than 1/64 rad, whatever the body itself has done, one division and short polynomials give the same numbers to rounding
+/// in less than half the time. A group is summed so, and anew by the law itself where one of its contacts is further from rest.
+#pragma once
+
+#include <cstddef>
+
+#include "equidem/dynamics/kernels/lanes.hpp"
+#include "equidem/dynamics/kernels/lanes_math.hpp"
+#include "equidem/dynamics/kernels/small_motion_step.hpp"
+#include "equidem/dynamics/kernels/step_kernel.hpp"
+
+namespace equidem::lanes {
+
+constexpr double smallest = 1e-300;  // keeps lanes without a contact, where l = l0 = 0, from dividing by zero
+
+/// A slot's contacts at rest.
+struct BondAtRest {
+  Lanes x, y;    ///< l0
+  Lanes square;  ///< l0², 0: no contact
+};
+
+EQUIDEM_INLINE BondAtRest load_bond(const double* geometry) {
+  BondAtRest bond;
+  load(geometry, bond.x);
+  load(geometry + 4, bond.y);
+  load(geometry + 8, bond.square);
+  return bond;
+}
+
+/// Where body i lies between the two: r_i/L, L = r_i + r_j.
+template <LoopKind kind>
+EQUIDEM_INLINE Lanes share_of(const double* geometry) {
+  Lanes share = Lanes{} + 0.5;
+  if constexpr (!kind.equal_contacts) load(geometry + 16, share);
+  return share;
+}
+
+/// The same contacts as they are now.
+struct BondNow {
+  Lanes x, y;     ///< l
+  Lanes stretch;  ///< dn/|l|
+  Lanes ratio;    ///< |l0|/|l|
+  Lanes slip;     ///< ds/L = psi - theta
+};
+
+/// The law, for any motion d = u_j - u_i: with e = l² - l0² = d.(l0 + l), dn/|l| = e/(|l| (|l| + |l0|)), and psi the angle
+/// from l0 to l.
+/// \param twist theta_j - theta_i
+template <LoopKind kind>
+EQUIDEM_INLINE BondNow deform(const double* geometry, const Lanes& dx, const Lanes& dy, const Lanes& theta_i,
+                              const Lanes& twist) {
+  const BondAtRest rest = load_bond(geometry);
+  BondNow bond;
+  bond.x = rest.x + dx;
+  bond.y = rest.y + dy;
+  const Lanes length = square_root(bond.x * bond.x + bond.y * bond.y), length_at_rest = square_root(rest.square);
+  const Lanes lengths = length + length_at_rest, q = 1 / (length * lengths + smallest);
+  bond.stretch = (dx * (rest.x + bond.x) + dy * (rest.y + bond.y)) * q;
+  bond.ratio = length_at_rest * lengths * q;
+  if constexpr (kind.springs != LoopKind::Springs::normal) {
+    bond.slip = angle_of(rest.x * bond.x + rest.y * bond.y, rest.x * dy - rest.y * dx);
+  }
+  if constexpr (kind.springs == LoopKind::Springs::rotation) {
+    bond.slip = without_whole_turns(bond.slip - (theta_i + twist - share_of<kind>(geometry) * twist));
+  }
+  return bond;
+}
+
+/// A bond as body i sees it: with p = l0 turned by theta_i, v = l - p, and m = p.l = l0² + p.v.
+struct BondSeen {
+  Lanes x, y;     ///< l
+  Lanes stretch;  ///< (p.v)/m
+  Lanes turn;     ///< (p x v)/m, the tangent of psi - theta_i
+  Lanes ratio;    ///< l0²/m
+  Lanes twist;    ///< theta_j - theta_i
+};
+
+/// \param turn of body i
+template <LoopKind kind>
+EQUIDEM_INLINE BondSeen see(const double* geometry, const SineVersine& turn, const Lanes& dx, const Lanes& dy,
+                            const Lanes& twist) {
+  const BondAtRest rest = load_bond(geometry);
+  BondSeen bond;
+  Lanes px = rest.x, py = rest.y, vx = dx, vy = dy;
+  bond.x = rest.x + dx;
+  bond.y = rest.y + dy;
+  if constexpr (kind.springs == LoopKind::Springs::rotation) {
+    vx = vx + turn.versine * rest.x + turn.sine * rest.y;
+    vy = vy + turn.versine * rest.y - turn.sine * rest.x;
+    px = bond.x - vx;
+    py = bond.y - vy;
+  }
+  const Lanes along = px * vx + py * vy, over = 1 / (rest.square + (along + smallest));
+  bond.stretch = along * over;
+  bond.turn = (px * vy - py * vx) * over;
+  bond.ratio = rest.square * over;
+  bond.twist = twist;
+  return bond;
+}
+
+/// The law for a neighbour that has turned little as seen from body i: with t = tan(psi - theta_i), z = t², and
+/// C = 1/sqrt(1 + z) = 1 - z Q(z),
+///   |l0|/|l| = (l0²/m) C,   dn/|l| = 1 - |l0|/|l| = (p.v)/m + (l0²/m) z Q,   psi - theta_i = atan t.
+/// \param far its signs are set where a lane is too far from rest
+template <LoopKind kind>
+EQUIDEM_INLINE BondNow deform_little(const double* geometry, const BondSeen& seen, Choice& far) {
+  constexpr double near = 1.0 / 64;
+  BondNow bond;
+  bond.x = seen.x;
+  bond.y = seen.y;
+  const Lanes z = seen.turn * seen.turn;
+  bond.stretch = seen.stretch + seen.ratio * z * small_shortening(z);
+  bond.ratio = 1 - bond.stretch;
+  Lanes room = near * near - z;
+  if constexpr (kind.springs != LoopKind::Springs::normal) bond.slip = small_arctangent(seen.turn, z);
+  if constexpr (kind.springs == LoopKind::Springs::rotation) {
+    room -= seen.twist * seen.twist;
+    if constexpr (kind.equal_contacts) {
+      bond.slip -= 0.5 * seen.twist;
+    } else {
+      bond.slip -= seen.twist - share_of<kind>(geometry) * seen.twist;
+    }
+  }
+  far |= reinterpret_cast<Choice>(room) | reinterpret_cast<Choice>(seen.ratio);
+  return bond;
+}
+
+/// What discs sum over their contacts: forces f_N n + f_T L/|l| s and moments f_T r_i of stresses f_N and f_T. Equal springs
+/// come out of the sums, where L = |l0|.
+struct BondSums {
+  Lanes normal_x{}, normal_y{};  ///< f_N n, or dn n
+  Lanes across_x{}, across_y{};  ///< f_T L/|l| s, or ds L/|l| s
+  Lanes moment{};                ///< f_T r_i, or 2 ds r_i
+};
+
+/// Add one slot of springs, or with rates in place of stretch and slip one of dashpots, whose constants lie behind those of the
+/// springs.
+/// \param stretch dn/|l|
+/// \param slip ds/L
+template <LoopKind kind, bool dashpots>
+EQUIDEM_INLINE void add_stress(const double* geometry, const BondNow& bond, Lanes stretch, Lanes slip, BondSums& sum) {
+  constexpr bool tangential = kind.springs != LoopKind::Springs::normal;
+  if constexpr (!kind.equal_contacts) {
+    const double* springs = geometry + (dashpots ? 28 : 20);
+    Lanes kn, kt, levers;
+    load(springs, kn);
+    load(springs + 4, kt);
+    load(geometry + 12, levers);
+    stretch *= kn;
+    if constexpr (tangential) slip *= kt * (levers * levers);
+  }
+  sum.normal_x += stretch * bond.x;
+  sum.normal_y += stretch * bond.y;
+  if constexpr (tangential) {
+    const Lanes across = slip * (bond.ratio * bond.ratio);
+    sum.across_x -= across * bond.y;
+    sum.across_y += across * bond.x;
+  }
+  if constexpr (kind.springs == LoopKind::Springs::rotation) {
+    Lanes square;
+    load(geometry + 8, square);
+    if constexpr (!kind.equal_contacts) square *= share_of<kind>(geometry);
+    sum.moment += square * slip;
+  }
+}
+
+/// \param kN, kT of equal contacts, of springs or of dashpots
+template <LoopKind kind>
+EQUIDEM_INLINE Resultant resultant_of(const BondSums& sum, double kN, double kT) {
+  if constexpr (kind.equal_contacts) {
+    return {kN * sum.normal_x + kT * sum.across_x, kN * sum.normal_y + kT * sum.across_y, 0.5 * kT * sum.moment};
+  } else {
+    return {sum.normal_x + sum.across_x, sum.normal_y + sum.across_y, sum.moment};
+  }
+}
+
+/// A group's own motion and velocity.
+struct GroupState {
+  Lanes x, y, theta, vx, vy, omega;
+};
+
+template <LoopKind kind>
+EQUIDEM_INLINE GroupState load_state(const LoopData& data, int parity, std::int32_t group) {
+  const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(group) * 4 * kind.width();
+  GroupState own;
+  load_group<kind.width()>(data.motion[parity] + at, own.x, own.y, own.theta);
+  if constexpr (kind.resistance == LoopKind::Resistance::dashpot) {
+    load_group<kind.width()>(data.velocity_at[parity] + at, own.vx, own.vy, own.omega);
+  }
+  return own;
+}
+
+/// The contacts of one group.
+template <LoopKind kind>
+struct GroupBonds {
+  static constexpr std::int32_t most_seen = 16;
+  static constexpr bool rotation = kind.springs == LoopKind::Springs::rotation;
+  static constexpr bool dashpot = kind.resistance == LoopKind::Resistance::dashpot;
+
+  const LoopData& data;
+  const int parity;
+  const std::int32_t first, last;  // slots
+  Lanes x, y, theta, vx, vy, omega;
+  BondSums springs, dashpots;
+
+  EQUIDEM_INLINE GroupBonds(const LoopData& data_in, int parity_in, std::int32_t group)
+      : data(data_in), parity(parity_in), first(data_in.first[group]), last(data_in.first[group + 1]) {
+    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(group) * 4 * kind.width();
+    load_group<kind.width()>(data.motion[parity] + at, x, y, theta);
+    if constexpr (dashpot) load_group<kind.width()>(data.velocity_at[parity] + at, vx, vy, omega);
+  }
+
+  [[nodiscard]] EQUIDEM_INLINE const double* geometry(std::int32_t slot) const {
+    return data.geometry + static_cast<std::ptrdiff_t>(slot) * slot_doubles(kind) * 4;
+  }
+  [[nodiscard]] EQUIDEM_INLINE const std::int32_t* places(std::int32_t slot) const {
+    return data.neighbour + static_cast<std::ptrdiff_t>(slot) * 4;
+  }
+
+  EQUIDEM_INLINE void add(std::int32_t slot, const BondNow& bond) {
+    add_stress<kind, false>(geometry(slot), bond, bond.stretch, bond.slip, springs);
+    if constexpr (dashpot) {
+      Lanes dx, dy, spin, slip{};
+      gather<kind.width()>(data.velocity_at[parity], places(slot), dx, dy, spin);
+      dx -= vx;
+      dy -= vy;
+      const Lanes over_square = 1 / (bond.x * bond.x + bond.y * bond.y + smallest);
+      if constexpr (kind.springs != LoopKind::Springs::normal) slip = (bond.x * dy - bond.y * dx) * over_square;
+      if constexpr (rotation) slip -= spin + share_of<kind>(geometry(slot)) * (omega - spin);
+      add_stress<kind, true>(geometry(slot), bond, (bond.x * dx + bond.y * dy) * over_square, slip, dashpots);
+    }
+  }
+
+  /// In two passes, each of which does the same to slots that do not wait for one another: that keeps the processor busy.
+  /// \return whether all are near their rest; if not, the sums mean nothing
+  EQUIDEM_INLINE bool sum_near() {
+    if (last - first > most_seen) return false;
+    BondSeen seen[most_seen];
+    SineVersine turn;
+    if constexpr (rotation) turn = sine_versine(theta);
+    for (std::int32_t k = first; k < last; ++k) {
+      Lanes xj, yj, theta_j;
+      gather<kind.width()>(data.motion[parity], places(k), xj, yj, theta_j);
+      seen[k - first] = see<kind>(geometry(k), turn, xj - x, yj - y, theta_j - theta);
+    }
+    Choice far{};
+    for (std::int32_t k = first; k < last; ++k) add(k, deform_little<kind>(geometry(k), seen[k - first], far));
+    return (far[0] | far[1] | far[2] | far[3]) >= 0;
+  }
+
+  EQUIDEM_INLINE void sum_far() {
+    springs = dashpots = {};
+    for (std::int32_t k = first; k < last; ++k) {
+      Lanes xj, yj, theta_j;
+      gather<kind.width()>(data.motion[parity], places(k), xj, yj, theta_j);
+      add(k, deform<kind>(geometry(k), xj - x, yj - y, theta, theta_j - theta));
+    }
+  }
+};
+
+template <LoopKind kind>
+EQUIDEM_INLINE void finite_motion_step(const LoopData& data_in, const Stage& stage_in, int parity, std::int32_t begin,
+                                       std::int32_t end, Dissipation& sum) {
+  // Copies, as in small_motion_step.
+  const LoopData data = data_in;
+  const Stage stage = stage_in;
+  DissipationLanes dissipation;
+  for (std::int32_t group = begin; group < end; ++group) {
+    GroupBonds<kind> bonds(data, parity, group);
+    if (!bonds.sum_near()) bonds.sum_far();
+    advance<kind>(data, stage, parity, group, bonds.x, bonds.y, bonds.theta,
+                  resultant_of<kind>(bonds.springs, data.kN, data.kT),
+                  resultant_of<kind>(bonds.dashpots, data.cN, data.cT), dissipation);
+  }
+  if constexpr (kind.resistance != LoopKind::Resistance::none) add_dissipation(dissipation, sum);
+}
+
+}  // namespace equidem::lanes

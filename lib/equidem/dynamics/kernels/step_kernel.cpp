@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/dynamics/kernels/step_kernel.hpp"
+
+#include <array>
+#include <cstddef>
+#include <utility>
+
+#include "equidem/dynamics/kernels/finite_motion_step.hpp"
+#include "equidem/dynamics/kernels/small_motion_step.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr std::size_t kinds = 2 * 3 * 2 * 5;
+
+/// The kinds in one row: motion, springs, equal contacts, and resistance; equal discs without a resistance.
+constexpr LoopKind kind_of(std::size_t index) {
+  LoopKind kind;
+  kind.equal_discs = index % 5 == 4;
+  kind.resistance = kind.equal_discs ? LoopKind::Resistance::none : static_cast<LoopKind::Resistance>(index % 5);
+  kind.equal_contacts = index / 5 % 2 == 1;
+  kind.springs = static_cast<LoopKind::Springs>(index / 10 % 3);
+  kind.motion = static_cast<LoopKind::Motion>(index / 30);
+  return kind;
+}
+
+template <LoopKind kind>
+EQUIDEM_INLINE void step(const LoopData& data, const Stage& stage, int parity, std::int32_t begin, std::int32_t end,
+                         Dissipation& dissipation) {
+  if constexpr (kind.motion == LoopKind::Motion::finite) {
+    lanes::finite_motion_step<kind>(data, stage, parity, begin, end, dissipation);
+  } else {
+    lanes::small_motion_step<kind>(data, stage, parity, begin, end, dissipation);
+  }
+}
+
+template <std::size_t Index>
+void step_plain(const LoopData& data, const Stage& stage, int parity, std::int32_t begin, std::int32_t end,
+                Dissipation& dissipation) {
+  step<kind_of(Index)>(data, stage, parity, begin, end, dissipation);
+}
+
+#if defined(__x86_64__)
+template <std::size_t Index>
+__attribute__((target("avx2,fma"))) void step_wide(const LoopData& data, const Stage& stage, int parity,
+                                                   std::int32_t begin, std::int32_t end, Dissipation& dissipation) {
+  step<kind_of(Index)>(data, stage, parity, begin, end, dissipation);
+}
+
+/// The same vectors, and twice as many registers, which loops for finite motions have use for.
+template <std::size_t Index>
+__attribute__((target("avx2,fma,avx512f,avx512vl,avx512dq"))) void step_with_32_registers(
+    const LoopData& data, const Stage& stage, int parity, std::int32_t begin, std::int32_t end,
+    Dissipation& dissipation) {
+  step<kind_of(Index)>(data, stage, parity, begin, end, dissipation);
+}
+#endif
+
+template <std::size_t... Index>
+constexpr std::array<StepFunction, kinds> plain_steps(std::index_sequence<Index...>) {
+  return {&step_plain<Index>...};
+}
+
+#if defined(__x86_64__)
+template <std::size_t... Index>
+constexpr std::array<StepFunction, kinds> wide_steps(std::index_sequence<Index...>) {
+  return {&step_wide<Index>...};
+}
+
+template <std::size_t... Index>
+constexpr std::array<StepFunction, kinds / 2> finite_steps(std::index_sequence<Index...>) {
+  return {&step_with_32_registers<kinds / 2 + Index>...};
+}
+#endif
+
+}  // namespace
+
+StepFunction step_function(const LoopKind& kind) {
+  std::size_t index = 0;
+  while (!(kind_of(index) == kind)) ++index;
+  constexpr auto all = std::make_index_sequence<kinds>{};
+#if defined(__x86_64__)
+  static constexpr auto wide = wide_steps(all);
+  static constexpr auto finite = finite_steps(std::make_index_sequence<kinds / 2>{});
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+    const bool registers =
+        __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq");
+    return registers && kind.motion == LoopKind::Motion::finite ? finite[index - kinds / 2] : wide[index];
+  }
+#endif
+  static constexpr auto plain = plain_steps(all);
+  return plain[index];
+}
+
+}  // namespace equidem

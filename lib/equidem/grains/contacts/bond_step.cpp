@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/contacts/bond_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/grains/grain_simulation_implementation.hpp"
+#include "equidem/grains/contacts/move_bodies.hpp"
+
+namespace equidem {
+namespace {
+
+InverseInertia inverse_of(const Grain& grain) {
+  return {1 / grain.inertia.mass, 1 / grain.inertia.moment};
+}
+
+InverseInertia inverse_of(const GrainBody& body) {
+  return {body.inverse_mass, body.inverse_moment};
+}
+
+ContactFrame frame_of(Vec2 branch, double share) {
+  const double distance = norm(branch);
+  return {branch / distance, share * distance, distance - share * distance};
+}
+
+double share_of(const Grain& i, const Grain& j) {
+  return i.radius / (i.radius + j.radius);
+}
+
+bool is_wide(const GrainSystem& system, const TiedPair& bond) {
+  const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
+  const double radii = system.bodies[i].radius + system.bodies[j].radius;
+  return norm(system.motions[j].position - system.motions[i].position) > nearest_centres_of_bonds * radii;
+}
+
+/// From the start to now.
+BondMotion<double> motion_of(const GrainSystem& system, const TiedPair& bond) {
+  const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
+  const GrainMotion &mi = system.motions[i], &mj = system.motions[j];
+  const Vec2 way = mj.position - mi.position - bond.springs.branch;
+  return {way.x, way.y, mi.angle - system.scene.grains[i].angle, mj.angle - system.scene.grains[j].angle};
+}
+
+/// Springs by where the discs are at the start of the step.
+void push_springs(GrainSystem& system) {
+  const double dt = system.dt();
+  for (const std::size_t b : system.packed_bonds.sprung) {
+    const TiedPair& bond = system.bonds[b];
+    const BondForces<double> force = bond_forces(bond.springs, motion_of(system, bond));
+    Push& on_i = system.pushes[static_cast<std::size_t>(bond.i)];
+    Push& on_j = system.pushes[static_cast<std::size_t>(bond.j)];
+    const Vec2 impulse = dt * Vec2{force.x, force.y};
+    on_i.impulse += impulse;
+    on_j.impulse -= impulse;
+    on_i.torque += dt * force.moment_i;
+    on_j.torque += dt * force.moment_j;
+  }
+}
+
+/// Rates of a bond at the start of the step.
+BondModes rates_now(const GrainSystem& system, const TiedPair& bond) {
+  const GrainMotion& i = system.motions[static_cast<std::size_t>(bond.i)];
+  const GrainMotion& j = system.motions[static_cast<std::size_t>(bond.j)];
+  return bond_rates(bond.frame, {i.velocity, i.spin}, {j.velocity, j.spin});
+}
+
+/// What the pushes as they stand add to the rates; gravity adds nothing.
+BondModes gain_by_pushes(const GrainSystem& system, const TiedPair& bond) {
+  const auto gain = [&](std::int32_t body) {
+    const auto b = static_cast<std::size_t>(body);
+    return DiscMotion{system.bodies[b].inverse_mass * system.pushes[b].impulse,
+                      system.bodies[b].inverse_moment * system.pushes[b].torque};
+  };
+  return bond_rates(bond.frame, gain(bond.i), gain(bond.j));
+}
+
+void give(GrainSystem& system, const TiedPair& bond, const BondModes& impulse) {
+  Push& on_i = system.pushes[static_cast<std::size_t>(bond.i)];
+  Push& on_j = system.pushes[static_cast<std::size_t>(bond.j)];
+  const Vec2 on = impulse.normal * bond.frame.normal + impulse.tangential * bond.frame.tangent();
+  on_i.impulse -= on;
+  on_j.impulse += on;
+  on_i.torque -= bond.frame.lever_i * impulse.tangential + impulse.rolling;
+  on_j.torque -= bond.frame.lever_j * impulse.tangential - impulse.rolling;
+}
+
+/// One bond after the other, each exact with those before it as they are: what dashpots take, they take from the motion, in
+/// whatever number they hang together.
+void resist_exactly(GrainSystem& system, TiedPair& bond, const BondModes& inverse) {
+  const double dt = system.dt();
+  const BondModes &c = bond.dashpots, &v = bond.rate, &g = bond.gained;
+  BondModes all = gain_by_pushes(system, bond);
+  const auto impulse = [&](double dashpot, double inverse_mass, double rate, double gained, double in_all) {
+    if (dashpot == 0) return 0.0;
+    return exact_dashpot_change(dashpot * inverse_mass * dt, rate, in_all - gained, gained) / inverse_mass;
+  };
+  bond.impulse = {impulse(c.normal, inverse.normal, v.normal, g.normal, all.normal),
+                  impulse(c.tangential, inverse.tangential, v.tangential, g.tangential, all.tangential), 0};
+  give(system, bond, bond.impulse);
+  if (c.rolling == 0) return;
+  all = gain_by_pushes(system, bond);  // spin of unequal discs has changed with the tangential impulse
+  bond.impulse.rolling = impulse(c.rolling, inverse.rolling, v.rolling, g.rolling, all.rolling);
+  give(system, bond, {0, 0, bond.impulse.rolling});
+}
+
+void resist_explicitly(GrainSystem& system, TiedPair& bond, const BondModes& inverse) {
+  const double dt = system.dt();
+  const auto impulse = [&](double dashpot, double inverse_mass, double rate) {
+    return explicit_dashpot_change(dashpot * inverse_mass * dt, rate) / inverse_mass;
+  };
+  const BondModes &c = bond.dashpots, &v = bond.rate;
+  bond.impulse = {impulse(c.normal, inverse.normal, v.normal), impulse(c.tangential, inverse.tangential, v.tangential),
+                  impulse(c.rolling, inverse.rolling, v.rolling)};
+  give(system, bond, bond.impulse);
+}
+
+/// What the motion loses: impulses times the rates when a share of all pushes has acted.
+double loss_of_bonds(const GrainSystem& system, double share) {
+  double sum = 0;
+  for (const std::size_t b : system.packed_bonds.one_by_one) {
+    const TiedPair& bond = system.bonds[b];
+    const BondModes gained = gain_by_pushes(system, bond);
+    const BondModes &v = bond.rate, &given = bond.impulse;
+    sum -= given.normal * (v.normal + share * gained.normal) +
+           given.tangential * (v.tangential + share * gained.tangential) +
+           given.rolling * (v.rolling + share * gained.rolling);
+  }
+  return sum;
+}
+
+BondDrift drift_of(const GrainSystem& system, const TiedPair& bond) {
+  const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
+  const BondMotion<double> motion = motion_of(system, bond);
+  const ContactDeformation drift = bond_deformation(bond.springs, motion);
+  const double radii = system.bodies[i].radius + system.bodies[j].radius;
+  const double roll = motion.theta_j - motion.theta_i;
+  const auto [first, second] = std::minmax(system.grain_of[i], system.grain_of[j]);
+  return {first, second, drift.normal / radii, drift.tangential / radii, first == system.grain_of[i] ? roll : -roll};
+}
+
+void check_bond(const GrainScene& scene, const GrainBond& bond) {
+  for (const std::size_t grain : {bond.i, bond.j}) {
+    if (grain >= scene.grains.size()) {
+      bad_input(fmt::format("a bond ties grain {}", grain),
+                fmt::format("there are {}, counted from 0", counted(static_cast<long long>(scene.grains.size()), "grain")),
+                "Correct the number");
+    }
+    if (scene.grains[grain].shape() == GrainShape::disc) continue;
+    bad_input(fmt::format("a bond ties grain {}, which is no disc", grain), "bonds lie on the line of the centres of discs",
+              "Tie discs only; clumps of discs are rigid without bonds");
+  }
+  if (bond.i == bond.j) {
+    bad_input(fmt::format("a bond ties grain {} to itself", bond.i), "it could not move against itself", "Tie two grains");
+  }
+  double largest = 0;
+  for (const double number : {bond.normal_dashpot, bond.tangential_dashpot, bond.rolling_dashpot, bond.normal_spring,
+                              bond.tangential_spring}) {
+    largest = std::max(largest, number);
+    if (number >= 0 && std::isfinite(number)) continue;
+    bad_input(fmt::format("the bond of grains {} and {} has a dashpot or a spring of {}", bond.i, bond.j, number),
+              "negative ones would feed the motion", "Give 0 or more");
+  }
+  if (largest == 0) {
+    bad_input(fmt::format("the bond of grains {} and {} has neither dashpot nor spring", bond.i, bond.j), "it ties nothing",
+              "Give a normal_dashpot and a tangential_dashpot > 0");
+  }
+  const Grain &i = scene.grains[bond.i], &j = scene.grains[bond.j];
+  const double distance = norm(j.position - i.position);
+  if (!(distance > nearest_centres_of_bonds * (i.radius + j.radius))) {
+    bad_input(fmt::format("the centres of the bonded grains {} and {} are {:.3g} m apart", bond.i, bond.j, distance),
+              "a bond lies along the line between them", "Move them apart");
+  }
+}
+
+/// \throws Error where two grains are bonded twice
+void check_twice(const std::vector<GrainBond>& bonds) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  pairs.reserve(bonds.size());
+  for (const GrainBond& bond : bonds) pairs.emplace_back(std::minmax(bond.i, bond.j));
+  std::sort(pairs.begin(), pairs.end());
+  const auto twice = std::adjacent_find(pairs.begin(), pairs.end());
+  if (twice == pairs.end()) return;
+  bad_input(fmt::format("grains {} and {} are bonded twice", twice->first, twice->second), "one bond ties them",
+            "Give the sum of both");
+}
+
+/// The part of a bond in M^-1 C and M^-1 K of its discs.
+struct Rates {
+  double rate = 0, square = 0;
+};
+
+Rates rates_of(const GrainScene& scene, const GrainBond& bond, GrainOptions::BondStep bond_step) {
+  const Grain &i = scene.grains[bond.i], &j = scene.grains[bond.j];
+  const ContactFrame frame = frame_of(j.position - i.position, share_of(i, j));
+  const auto largest = [&](const BondModes& c) { return largest_bond_rate(c, frame, inverse_of(i), inverse_of(j)); };
+  const bool limits = bond_step == GrainOptions::BondStep::explicit_euler;
+  return {limits ? largest({bond.normal_dashpot, bond.tangential_dashpot, bond.rolling_dashpot}) : 0.0,
+          largest({bond.normal_spring, bond.tangential_spring, 0})};
+}
+
+}  // namespace
+
+void tie_bonds(GrainSystem& system, const GrainScene& scene) {
+  for (const GrainBond& bond : scene.bonds) {
+    TiedPair pair;
+    std::tie(pair.i, pair.j) = std::minmax(system.place_of_grain[bond.i], system.place_of_grain[bond.j]);
+    const Grain& i = system.scene.grains[static_cast<std::size_t>(pair.i)];
+    const Grain& j = system.scene.grains[static_cast<std::size_t>(pair.j)];
+    pair.dashpots = {bond.normal_dashpot, bond.tangential_dashpot, bond.rolling_dashpot};
+    pair.share = share_of(i, j);
+    const Vec2 branch = j.position - i.position;
+    const ContactFrame frame = frame_of(branch, pair.share);
+    pair.springs = {branch, frame.lever_i, frame.lever_j, {.kN = bond.normal_spring, .kT = bond.tangential_spring}};
+    system.bonds.push_back(pair);
+  }
+  std::sort(system.bonds.begin(), system.bonds.end(),
+            [](const TiedPair& a, const TiedPair& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
+}
+
+void refuse_crept_bonds(const GrainSystem& system) {
+  for (const TiedPair& bond : system.bonds) {
+    if (is_wide(system, bond)) continue;
+    computation_failed(
+        fmt::format("step {}: the centres of the bonded grains {} and {} have crept together", system.step,
+               system.grain_of[static_cast<std::size_t>(bond.i)], system.grain_of[static_cast<std::size_t>(bond.j)]),
+        "dashpots alone give way to a steady force, N/C_n, and bonded discs do not collide",
+        "Use larger dashpots, give normal_spring, or tie the discs as a clump");
+  }
+}
+
+void push_bonds(GrainSystem& system) {
+  system.free_flight = false;
+  push_springs(system);
+  push_packed_bonds(system);
+  const bool turns_rims = system.near.active && system.friction;
+  for (const std::size_t b : system.packed_bonds.one_by_one) {
+    TiedPair& bond = system.bonds[b];
+    const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
+    const Vec2 branch = system.motions[j].position - system.motions[i].position;
+    if (!is_wide(system, bond)) refuse_crept_bonds(system);
+    if (turns_rims) {  // what others do to the spin is asked for
+      turn_rims(system.pushes[i], system.bodies[i]);
+      turn_rims(system.pushes[j], system.bodies[j]);
+    }
+    bond.frame = frame_of(branch, bond.share);
+    bond.rate = rates_now(system, bond);
+    bond.gained = gain_by_pushes(system, bond);
+  }
+  const auto resist = system.options.bond_step == GrainOptions::BondStep::exact ? resist_exactly : resist_explicitly;
+  for (const std::size_t b : system.packed_bonds.one_by_one) {
+    TiedPair& bond = system.bonds[b];
+    resist(system, bond,
+           bond_inverse_masses(bond.frame, inverse_of(system.bodies[static_cast<std::size_t>(bond.i)]),
+                               inverse_of(system.bodies[static_cast<std::size_t>(bond.j)])));
+  }
+  system.lost.lost_bond += system.options.verlet() ? 0.5 * loss_of_bonds(system, 0.25) : loss_of_bonds(system, 0.5);
+}
+
+void count_opening_kick(GrainSystem& system) {
+  count_opening_kick_of_packed_bonds(system);
+  for (const std::size_t b : system.packed_bonds.one_by_one) {
+    TiedPair& bond = system.bonds[b];
+    const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
+    bond.frame = frame_of(system.motions[j].position - system.motions[i].position, bond.share);
+    bond.rate = rates_now(system, bond);
+  }
+  system.lost.lost_bond += 0.5 * loss_of_bonds(system, 0.25);
+}
+
+double elastic_of_bonds(const GrainSystem& system) {
+  double sum = 0;
+  for (const TiedPair& bond : system.bonds) {
+    if (bond.has_springs()) sum += bond_energy(bond.springs, motion_of(system, bond));
+  }
+  return sum;
+}
+
+double bond_step_limit(const GrainScene& scene, GrainOptions::BondStep bond_step) {
+  std::vector<Rates> of_grain(scene.grains.size());
+  Rates largest;
+  for (const GrainBond& bond : scene.bonds) {
+    const Rates own = rates_of(scene, bond, bond_step);
+    for (const std::size_t grain : {bond.i, bond.j}) {
+      Rates& sum = of_grain[grain];
+      sum = {sum.rate + own.rate, sum.square + own.square};
+      largest = {std::max(largest.rate, sum.rate), std::max(largest.square, sum.square)};
+    }
+  }
+  return bond_step_limit(largest.rate, largest.square);
+}
+
+void check_bonds(const GrainScene& scene, const GrainOptions& options) {
+  if (scene.bonds.empty()) return;
+  if (options.law == NormalLaw::exact_flow) {
+    bad_input(fmt::format("bonds are asked for with the law \"{}\"", to_string(options.law)),
+              "it solves all contacts together and knows no bonds", "Use the law linear_dashpot");
+  }
+  for (const GrainBond& bond : scene.bonds) check_bond(scene, bond);
+  check_twice(scene.bonds);
+  const double limit = bond_step_limit(scene, options.bond_step);
+  if (options.time_step < limit) return;
+  bad_input(fmt::format("the step of {:.6g} s is {:.4g} times the limit of {:.6g} s that the bonds impose",
+                   options.time_step, options.time_step / limit, limit),
+            "bonded discs would swing ever faster",
+            bond_step_limit(scene, GrainOptions::BondStep::exact) > options.time_step
+                ? "Stay below it, use smaller dashpots, or make the step of bonds exact, which dashpots do not limit"
+                : "Stay below it, or use smaller springs");
+}
+
+std::vector<BondDrift> GrainSimulation::bond_drifts() const {
+  std::vector<BondDrift> drifts;
+  for (const TiedPair& bond : implementation_->system.bonds) drifts.push_back(drift_of(implementation_->system, bond));
+  std::sort(drifts.begin(), drifts.end(),
+            [](const BondDrift& a, const BondDrift& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
+  return drifts;
+}
+
+BondReport GrainSimulation::bonds() const {
+  const GrainSystem& system = implementation_->system;
+  BondReport report;
+  report.number = system.bonds.size();
+  report.step_limit = implementation_->bond_limit;
+  const auto add = [&](BondReport::Drift& sum, double amount) {
+    sum.largest = std::max(sum.largest, std::abs(amount));
+    sum.mean += std::abs(amount) / static_cast<double>(report.number);
+  };
+  for (const TiedPair& bond : system.bonds) {
+    const BondDrift drift = drift_of(system, bond);
+    add(report.distance, drift.distance);
+    add(report.slip, drift.slip);
+    add(report.roll, drift.roll);
+  }
+  return report;
+}
+
+}  // namespace equidem

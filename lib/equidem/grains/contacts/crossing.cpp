@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/contacts/crossing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/grains/contacts/part_crossing.hpp"
+
+namespace equidem {
+namespace {
+
+/// Of the smallest radius: no body crosses another in so short a way.
+constexpr double slow_way = 0.1;
+
+[[noreturn]] void refuse(const GrainSystem& system, const Candidate& candidate, Vec2 way, double room,
+                         const char* happening) {
+  const auto i = static_cast<std::size_t>(candidate.i);
+  std::string other;
+  if (candidate.j >= 0) {
+    other = fmt::format("grain {}", system.grain_of[static_cast<std::size_t>(candidate.j)]);
+  } else {
+    const GrainWall& wall = system.scene.walls[static_cast<std::size_t>(~candidate.j)];
+    other = wall.name.empty() ? fmt::format("wall {}", system.wall_of[static_cast<std::size_t>(~candidate.j)])
+                              : fmt::format("wall \"{}\"", wall.name);
+  }
+  const double speed = norm(way) / system.dt();
+  computation_failed(
+      fmt::format("step {}: grain {} would {} {}", system.step, system.grain_of[i], happening, other),
+      fmt::format("they move {:.4g} m against each other in a step of {:.4g} s, {:.4g} times the radius of the grain",
+             norm(way), system.dt(), norm(way) / system.bodies[i].radius),
+      norm(way) > room
+          ? fmt::format("Use a step below {:.3g} s, or stiffer contacts if they are pressed through", room / speed)
+          : "Use stiffer contacts, or press less: a shorter step would not hold them");
+}
+
+void check_discs(const GrainSystem& system, const Candidate& candidate, const PartWay& parts) {
+  const auto [before, after, radius_i, radius_j] = parts;
+  const Vec2 way = after - before;
+  const double small = std::min(radius_i, radius_j);
+  const double sum = radius_i + radius_j;
+  const double length2 = dot(way, way);
+  if (!(length2 > 0)) return;
+  const double along = std::clamp(-dot(before, way) / length2, 0.0, 1.0);
+  const double nearest = norm(before + along * way);
+  // centres that come this near and change sides were pressed through each other
+  if (nearest < 0.5 * sum && dot(before, after) < 0) {
+    refuse(system, candidate, way, 0.5 * small, "pass through");
+  }
+  // in short steps they would go round each other instead: no centre enters another body
+  const double distance = norm(after);
+  if (distance < sum - small && distance < norm(before)) {
+    refuse(system, candidate, way, 0.5 * small, "be pressed into");
+  }
+  const bool seen = norm(before) < sum || norm(after) < sum;
+  if (!seen && nearest < sum - 0.5 * small) refuse(system, candidate, way, 0.5 * small, "pass through");
+}
+
+void check_wall(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
+  const auto i = static_cast<std::size_t>(candidate.i);
+  const auto w = static_cast<std::size_t>(~candidate.j);
+  const WallPlace& place = system.walls[w];
+  const auto [start, end, radius_i, radius_j] = way_of_parts(system, candidate, parts);
+  const Vec2 before = start - place.displacement;
+  const Vec2 after = end - place.displacement - system.dt() * place.velocity;
+  if (passes_through(system.scene.walls[w], before, after)) {
+    refuse(system, candidate, after - before, 0.5 * system.bodies[i].radius, "pass through");
+  }
+}
+
+}  // namespace
+
+void check_parts(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
+  const PartWay way = way_of_parts(system, candidate, parts);
+  if (!has_ellipse(system, candidate, parts)) {
+    check_discs(system, candidate, way);
+  } else if (const char* happening = crossing_of_ellipses(system, candidate, parts)) {
+    refuse(system, candidate, way.after - way.before, 0.5 * std::min(way.radius_i, way.radius_j), happening);
+  }
+}
+
+void refuse_runaway(const GrainSystem& system, double reach) {
+  if (std::isfinite(reach)) return;
+  computation_failed(fmt::format("step {}: a motion is not a number any more", system.step),
+                     "forces or speeds have grown beyond all bounds", "Use a smaller step or softer contacts");
+}
+
+void refuse_crossings(const GrainSystem& system, double reach) {
+  // two bodies come nearer by twice the reach at most
+  if (reach <= slow_way * system.smallest_radius && system.deepest + 2 * reach < system.smallest_radius) return;
+  for (std::size_t p = 0; p < system.near.count; ++p) {
+    Candidate pair;
+    pair.i = system.near.first(p);
+    pair.j = system.near.second(p);
+    const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
+    check_discs(system, pair,
+                {system.motions[j].position - system.motions[i].position,
+                 system.next[j].position - system.next[i].position, system.bodies[i].radius, system.bodies[j].radius});
+  }
+  for (const NearParts::List& list : system.near_parts.lists) {
+    for (std::size_t p = 0; p < list.count; ++p) {
+      const auto [candidate, pair] = candidate_of(system, list, p);
+      check_parts(system, candidate, pair);
+    }
+  }
+  for (std::size_t c = 0; c < system.candidates.size(); ++c) {
+    const Candidate& candidate = system.candidates[c];
+    const PartPair parts = system.parts.empty() ? PartPair{} : system.part_pairs[c];
+    if (candidate.j < 0) {
+      check_wall(system, candidate, parts);
+    } else {
+      check_parts(system, candidate, parts);
+    }
+  }
+}
+
+}  // namespace equidem

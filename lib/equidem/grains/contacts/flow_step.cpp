@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/contacts/flow_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/grains/contacts/crossing.hpp"
+#include "equidem/grains/contacts/meeting.hpp"
+#include "equidem/grains/contacts/move_bodies.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr int most_sweeps = 400;
+/// Of the impulse of a contact: what still changes when sweeps end.
+constexpr double settled = 1e-14;
+/// Below it, changes that do not shrink any more are rounding.
+constexpr double rounding = 1e-12;
+
+/// A candidate while its step is being solved.
+struct Trial {
+  std::size_t candidate = 0;
+  double overlap = 0;  // at the start
+  Vec2 branch;         // at the start: from i to j, or to the nearest point of the wall
+  Vec2 normal;         // what the impulses below act along
+  double lever_i = 0, lever_j = 0;
+  double impulse = 0, moment = 0, tangential = 0;
+  double closing = 0;  // at the start, along the normal
+  ExactStep normal_step;
+  SlidingStep sliding_step;
+};
+
+/// All that pushes a body over the step but gravity, as it stands in the sweeps.
+void give(GrainSystem& system, const Candidate& candidate, const Trial& trial, double sign) {
+  const Vec2 tangent = perpendicular(trial.normal);
+  const Vec2 impulse = sign * (trial.impulse * trial.normal + trial.tangential * tangent);
+  const Vec2 moment = sign * (trial.moment * trial.normal + (0.5 * system.dt() * trial.tangential) * tangent);
+  const auto i = static_cast<std::size_t>(candidate.i);
+  system.pushes[i].impulse -= impulse;
+  system.moments[i] -= moment;
+  system.pushes[i].torque -= sign * trial.lever_i * trial.tangential;
+  if (candidate.j < 0) return;
+  const auto j = static_cast<std::size_t>(candidate.j);
+  system.pushes[j].impulse += impulse;
+  system.moments[j] += moment;
+  system.pushes[j].torque -= sign * trial.lever_j * trial.tangential;
+}
+
+/// What a body's velocity and position gain in the step by pushes and gravity.
+struct Gain {
+  Vec2 velocity, way;
+};
+
+Gain gain_of(const GrainSystem& system, std::size_t body) {
+  const double dt = system.dt();
+  const double inverse = system.bodies[body].inverse_mass;
+  return {inverse * system.pushes[body].impulse + dt * system.scene.gravity,
+          inverse * system.moments[body] + (0.5 * dt * dt) * system.scene.gravity};
+}
+
+/// Gain of j, or of the wall, over that of i.
+Gain relative_gain(const GrainSystem& system, const Candidate& candidate) {
+  const Gain of_i = gain_of(system, static_cast<std::size_t>(candidate.i));
+  if (candidate.j < 0) return {-of_i.velocity, -of_i.way};
+  const Gain of_j = gain_of(system, static_cast<std::size_t>(candidate.j));
+  return {of_j.velocity - of_i.velocity, of_j.way - of_i.way};
+}
+
+/// The direction along which a contact acts over a step, and how the distance of the bodies follows it.
+struct Line {
+  Vec2 normal;       // unit
+  double slope = 1;  // change of the distance over the way along the normal
+};
+
+/// From the way that the bodies go as the sweeps stand: the mean normal n = (r + r')/|r + r'|. The distance changes by
+/// |r'| - |r| = slope n . (r' - r), slope = |r + r'|/(|r| + |r'|), the cosine of half the angle by which the branch turns. Without it each
+/// contact that begins in a step would lose energy, by the square of that angle.
+Line line_of(const GrainSystem& system, const Candidate& candidate, const Trial& trial, Vec2 way) {
+  if (candidate.j >= 0) {
+    const Vec2 end = trial.branch + way;
+    const Vec2 sum = trial.branch + end;
+    const double length = norm(sum);
+    if (!(length > 0)) return {trial.normal, 1};
+    return {sum / length, std::max(0.5, length / (norm(trial.branch) + norm(end)))};
+  }
+  const auto w = static_cast<std::size_t>(~candidate.j);
+  const GrainWall& wall = system.scene.walls[w];
+  if (wall.shape == GrainWall::Shape::line) return {-wall.normal, 1};
+  const Vec2 centre = system.motions[static_cast<std::size_t>(candidate.i)].position;
+  const auto normal_at = [&](double share) {
+    return -nearest(wall, system.walls[w].displacement, centre - share * way).normal;
+  };
+  return {normal_at(0.5), std::max(0.5, 0.5 * norm(normal_at(0) + normal_at(1)))};
+}
+
+/// Speed of the two bodies and what the step adds to it: velocities are known to so many digits of it, however slowly the bodies
+/// close.
+double speed_of_bodies(const GrainSystem& system, const Candidate& candidate) {
+  const auto speed = [&](std::int32_t body) {
+    const auto b = static_cast<std::size_t>(body);
+    return norm(system.motions[b].velocity) + norm(gain_of(system, b).velocity);
+  };
+  return speed(candidate.i) + (candidate.j >= 0 ? speed(candidate.j) : 0);
+}
+
+/// Solve one contact with all others as they stand.
+/// \return change of its impulses, relative
+double solve(GrainSystem& system, Trial& trial) {
+  const Candidate& candidate = system.candidates[trial.candidate];
+  const double dt = system.dt();
+  const Vec2 relative = relative_velocity(system, candidate);
+  const bool acted = trial.impulse != 0 || trial.tangential != 0 || trial.moment != 0;
+  if (!candidate.touching && !acted) {
+    // neither by its own way nor by what others do can it come to touch
+    const Gain gain = relative_gain(system, candidate);
+    const double most = norm(relative) * dt + norm(gain.velocity) * dt + 4 * norm(gain.way);
+    if (trial.overlap + most <= 0) return 0;
+  }
+  const Vec2 way = dt * relative + relative_gain(system, candidate).way;
+  const double impulse_before = trial.impulse, tangential_before = trial.tangential, moment_before = trial.moment;
+  if (acted) give(system, candidate, trial, -1);
+  const auto [normal, slope] = line_of(system, candidate, trial, way);
+  trial.normal = normal;
+  const Gain outside = relative_gain(system, candidate);
+  const double closing = -slope * dot(relative, normal);
+  const double a = -slope * dot(outside.velocity, normal) / dt;
+  const double b = -2 * slope * dot(outside.way, normal) / (dt * dt);
+  trial.normal_step = exact_step(system.exact_pairs[trial.candidate], trial.overlap, closing, candidate.touching,
+                                 3 * b - 2 * a, 6 * (a - b) / dt);
+  trial.impulse = trial.normal_step.impulse / slope;
+  trial.moment = trial.normal_step.moment / slope;
+  trial.closing = closing;
+  trial.tangential = 0;
+  if (candidate.sliding.coefficient > 0 && trial.impulse != 0) {
+    Meeting meeting{trial.overlap, trial.normal, trial.lever_i, trial.lever_j};
+    const double mass = tangential_mass(system, candidate, meeting);
+    double gained = dot(outside.velocity, perpendicular(trial.normal));
+    const auto i = static_cast<std::size_t>(candidate.i);
+    gained -= trial.lever_i * system.bodies[i].inverse_moment * system.pushes[i].torque;
+    if (candidate.j >= 0) {
+      const auto j = static_cast<std::size_t>(candidate.j);
+      gained -= trial.lever_j * system.bodies[j].inverse_moment * system.pushes[j].torque;
+    }
+    const double velocity = slip_velocity(system, candidate, meeting, relative) + 0.5 * gained;
+    trial.sliding_step = sliding_step_midpoint(candidate.sliding, candidate.stretch, velocity, mass,
+                                               std::max(trial.impulse, 0.0) / dt, dt);
+    trial.tangential = trial.sliding_step.force * dt;
+  }
+  give(system, candidate, trial, 1);
+  if (trial.impulse != 0) ++system.counters.evaluations;
+  const double change = std::abs(trial.impulse - impulse_before) + std::abs(trial.tangential - tangential_before) +
+                        std::abs(trial.moment - moment_before) / dt;
+  const double scale = std::abs(trial.impulse) + std::abs(trial.tangential) +
+                       candidate.reduced_mass * speed_of_bodies(system, candidate);
+  return scale > 0 ? change / scale : 0;
+}
+
+std::vector<Trial> trials_of(GrainSystem& system) {
+  std::vector<Trial> trials;
+  trials.reserve(system.candidates.size());
+  for (std::size_t c = 0; c < system.candidates.size(); ++c) {
+    const Candidate& candidate = system.candidates[c];
+    if (candidate.covered) continue;
+    const Meeting meeting = meeting_of(system, candidate);
+    Trial trial;
+    trial.candidate = c;
+    trial.overlap = meeting.overlap;
+    system.deepest = std::max(system.deepest, meeting.overlap);
+    trial.lever_i = meeting.lever_i;
+    trial.lever_j = meeting.lever_j;
+    trial.normal = meeting.normal;
+    if (candidate.j >= 0) trial.branch = (meeting.lever_i + meeting.lever_j) * meeting.normal;
+    if (candidate.touching) {
+      // what the last step gave is near to what this one will give
+      trial.impulse = candidate.impulse;
+      trial.moment = candidate.moment;
+      trial.tangential = candidate.tangential_impulse;
+    }
+    trials.push_back(trial);
+  }
+  return trials;
+}
+
+/// Pushes from the contacts in their order: no trace of the way in which sweeps came to them.
+void sum_pushes(GrainSystem& system, const std::vector<Trial>& trials) {
+  std::fill(system.pushes.begin(), system.pushes.end(), Push{});
+  std::fill(system.moments.begin(), system.moments.end(), Vec2{});
+  for (const Trial& trial : trials) {
+    if (trial.impulse == 0 && trial.tangential == 0 && trial.moment == 0) continue;
+    give(system, system.candidates[trial.candidate], trial, 1);
+  }
+}
+
+/// When a trial was solved last, and whether that changed nothing.
+struct Visit {
+  std::int32_t i, j;
+  bool quiet = false;
+  std::int64_t when = 0;
+};
+
+void sweep_until_settled(GrainSystem& system, std::vector<Trial>& trials) {
+  double change = 0;
+  // A trial that has settled is solved again when another contact has changed what pushes its bodies: contacts that stand alone settle
+  // for themselves, whatever the clusters elsewhere take.
+  std::vector<Visit> visits;
+  visits.reserve(trials.size());
+  for (const Trial& trial : trials) {
+    const Candidate& candidate = system.candidates[trial.candidate];
+    visits.push_back({candidate.i, candidate.j});
+  }
+  std::vector<std::int64_t> pushed(system.bodies.size(), 0);
+  std::int64_t now = 0;
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    const double before = change;
+    change = 0;
+    for (std::size_t t = 0; t < trials.size(); ++t) {
+      Visit& visit = visits[t];
+      std::int64_t& on_i = pushed[static_cast<std::size_t>(visit.i)];
+      std::int64_t& on_j = visit.j < 0 ? on_i : pushed[static_cast<std::size_t>(visit.j)];
+      if (visit.quiet && on_i <= visit.when && on_j <= visit.when) continue;
+      const double own = solve(system, trials[t]);
+      visit.quiet = own <= settled;
+      visit.when = ++now;
+      if (!visit.quiet) on_i = on_j = now;
+      change = std::max(change, own);
+    }
+    ++system.counters.sweeps;
+    if (change <= settled) return;
+    if (change <= rounding && sweep > 8 && change > 0.5 * before) return;
+  }
+  // what oscillates in the last digits is settled as far as numbers go
+  if (change <= 1e-9) return;
+  computation_failed(fmt::format("step {}: the contacts find no common solution", system.step),
+                     fmt::format("after {} sweeps the impulses still change by {:.2g} of themselves", most_sweeps, change),
+                     "Use a smaller step: w dt below 1 for every pair, w² the stiffness over the reduced mass");
+}
+
+void move(GrainSystem& system) {
+  const double dt = system.dt();
+  move_bodies(system, [&](std::size_t i) {
+    GrainMotion motion = system.motions[i];
+    const Gain gain = gain_of(system, i);
+    motion.position += dt * motion.velocity + gain.way;
+    motion.velocity += gain.velocity;
+    const double turn = system.bodies[i].inverse_moment * system.pushes[i].torque;
+    motion.angle += dt * (motion.spin + 0.5 * turn);
+    motion.spin += turn;
+    return motion;
+  });
+}
+
+/// The same where nothing is near enough to push.
+void move_freely(GrainSystem& system) {
+  const double dt = system.dt();
+  const Vec2 fall = dt * system.scene.gravity, drop = (0.5 * dt * dt) * system.scene.gravity;
+  move_bodies(system, [&](std::size_t i) {
+    GrainMotion motion = system.motions[i];
+    motion.position += dt * motion.velocity + drop;
+    motion.velocity += fall;
+    motion.angle += dt * motion.spin;
+    return motion;
+  });
+}
+
+/// What the contacts remember, and what was lost in them.
+void remember(GrainSystem& system, const std::vector<Trial>& trials) {
+  for (const Trial& trial : trials) {
+    Candidate& candidate = system.candidates[trial.candidate];
+    const ExactStep& normal = trial.normal_step;
+    const bool touched = trial.impulse != 0 || normal.touching_at_end;
+    system.counters.contacts += normal.beginnings;
+    system.lost.lost_dashpot += normal.loss;
+    system.lost.lost_release += normal.released;
+    if (!touched) {
+      if (candidate.touching) let_go(system, candidate);
+      continue;
+    }
+    candidate.overlap = trial.overlap;
+    candidate.closing = trial.closing;
+    candidate.normal = trial.normal;
+    candidate.impulse = trial.impulse;
+    candidate.moment = trial.moment;
+    candidate.tangential_impulse = trial.tangential;
+    if (candidate.sliding.coefficient > 0 && trial.impulse != 0) {
+      candidate.stretch = trial.sliding_step.stretch;
+      system.lost.lost_slip += trial.sliding_step.slip_loss;
+      system.lost.lost_tangential_dashpot += trial.sliding_step.dashpot_loss;
+    }
+    if (candidate.j < 0) {
+      const Vec2 impulse = trial.impulse * trial.normal + trial.tangential * perpendicular(trial.normal);
+      system.lost.work_of_walls -= dot(impulse, system.walls[static_cast<std::size_t>(~candidate.j)].velocity);
+    }
+    ++candidate.steps;
+    candidate.touching = true;
+    if (!normal.touching_at_end) let_go(system, candidate);
+  }
+}
+
+/// Count contacts that share a body with others and whose step is not stable for every arrangement of them: w dt sqrt(1 + rho)
+/// must stay below pi (exact_contact.hpp), and 1 + rho is at most 1 + m ((z_i - 1)/m_i + (z_j - 1)/m_j), z contacts on a body,
+/// m the reduced mass.
+void count_doubtful(GrainSystem& system, const std::vector<Trial>& trials) {
+  constexpr double pi = 3.14159265358979323846;
+  constexpr double most_contacts = 9;  // so many discs no smaller than it a disc never touches
+  const auto square_step = [&](const Trial& trial) {
+    const double turn = system.exact_pairs[trial.candidate].frequency * system.dt();
+    return turn * turn;
+  };
+  if (std::none_of(trials.begin(), trials.end(),
+                   [&](const Trial& trial) { return square_step(trial) * most_contacts > pi * pi; })) {
+    return;
+  }
+  std::vector<int> contacts(system.bodies.size(), 0);
+  const auto touches = [](const Trial& trial) { return trial.impulse != 0; };
+  const auto count = [&](std::int32_t body) -> int& { return contacts[static_cast<std::size_t>(body)]; };
+  for (const Trial& trial : trials) {
+    if (!touches(trial)) continue;
+    const Candidate& candidate = system.candidates[trial.candidate];
+    ++count(candidate.i);
+    if (candidate.j >= 0) ++count(candidate.j);
+  }
+  for (const Trial& trial : trials) {
+    if (!touches(trial)) continue;
+    const Candidate& candidate = system.candidates[trial.candidate];
+    const auto others = [&](std::int32_t body) {
+      return body < 0 ? 0 : system.bodies[static_cast<std::size_t>(body)].inverse_mass * (count(body) - 1);
+    };
+    const double coupling = candidate.reduced_mass * (others(candidate.i) + others(candidate.j));
+    if (coupling > 0 && square_step(trial) * (1 + coupling) > pi * pi) ++system.counters.doubtful;
+  }
+}
+
+}  // namespace
+
+void flow(GrainSystem& system) {
+  std::vector<Trial> trials;
+  double reach = 0;
+  // once more where the bodies move further than the candidates allow for
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    trials = trials_of(system);
+    if (trials.empty()) {
+      move_freely(system);
+    } else {
+      sum_pushes(system, trials);
+      sweep_until_settled(system, trials);
+      sum_pushes(system, trials);
+      move(system);
+    }
+    reach = reach_of(system);
+    refuse_runaway(system, reach);
+    if (!refresh_candidates(system, reach)) break;
+  }
+  if (system.options.refuse_crossing) refuse_crossings(system, reach);
+  count_doubtful(system, trials);
+  remember(system, trials);
+}
+
+}  // namespace equidem

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/contacts/part_meeting.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/contact/shapes/enlarged_ellipse.hpp"
+#include "equidem/grains/contacts/meeting.hpp"
+
+namespace equidem {
+namespace {
+
+PartMeeting meeting_of_grain_parts(const GrainSystem& system, const Candidate& candidate, PartPair& pair) {
+  const auto i = static_cast<std::size_t>(candidate.i), j = static_cast<std::size_t>(candidate.j);
+  const GrainPart& part_i = system.parts[static_cast<std::size_t>(pair.i)];
+  const GrainPart& part_j = system.parts[static_cast<std::size_t>(pair.j)];
+  const Vec2 to_i = offset_of(part_i, system.axes[i]), to_j = offset_of(part_j, system.axes[j]);
+  const Vec2 branch = system.motions[j].position - system.motions[i].position + (to_j - to_i);
+  const double reach = part_i.a + part_j.a, square = dot(branch, branch);
+  if (square >= reach * reach) return {};
+  const double share = part_i.size / (part_i.size + part_j.size);
+  if (part_i.is_round() && part_j.is_round()) {
+    const double distance = std::sqrt(square), lever = share * distance, overlap = reach - distance;
+    const Vec2 normal = distance > 0 ? branch / distance : Vec2{1, 0};
+    return {overlap,
+            normal,
+            to_i + lever * normal,
+            to_j - (distance - lever) * normal,
+            part_i.a - lever,
+            part_j.a - (distance - lever)};
+  }
+  const Ellipse e_i{part_i.a, part_i.b, system.axes[i]}, e_j{part_j.a, part_j.b, system.axes[j]};
+  if (system.options.ellipse_law != GrainOptions::EllipseLaw::exact) {
+    const EllipseContact contact = contact_by_enlarged_ellipse(e_i, e_j, branch, system.options.ellipse_law);
+    if (!contact.is_contact()) return {};
+    return {-contact.gap, contact.normal, to_i + contact.arm_i, to_j + contact.arm_j, 0, 0};
+  }
+  const EllipseContact contact =
+      contact_of_parts(e_i, e_j, branch, candidate.touching, candidate.touching ? candidate.normal : pair.apart);
+  if (contact.gap > 0) {
+    pair.apart = contact.normal;
+    return {};
+  }
+  const double overlap = -contact.gap, sunk_i = share * overlap, sunk_j = overlap - sunk_i;
+  return {overlap,
+          contact.normal,
+          to_i + contact.arm_i - sunk_i * contact.normal,
+          to_j + contact.arm_j + sunk_j * contact.normal,
+          sunk_i,
+          sunk_j};
+}
+
+/// From outside, where refuse_bowls keeps it: against the whole circle where that is met on the arc, else against the nearer end, a point.
+EllipseContact contact_with_arc(const GrainSystem& system, std::int32_t grain, const Ellipse& ellipse,
+                                const GrainWall& wall, Vec2 displacement) {
+  const Vec2 position = system.motions[static_cast<std::size_t>(grain)].position;
+  const Vec2 middle = wall.point + displacement, to_middle = middle - position;
+  if (nearest(wall, displacement, position).distance > ellipse.a) return {EllipseState::apart, 1, {}, {}, {}};
+  const EllipseContact whole = contact_of_ellipses(ellipse, {wall.radius, wall.radius, {1, 0}}, to_middle);
+  if (whole.gap > 0) return whole;
+  const Vec2 beyond = middle + 2 * whole.arm_j;
+  if (std::abs(nearest(wall, displacement, beyond).distance - wall.radius) <= 1e-12 * wall.radius) return whole;
+  EllipseContact nearer{EllipseState::apart, 1, {}, {}, {}};
+  for (const double angle : {wall.from, wall.to}) {
+    const EllipseContact end = contact_of_ellipses(ellipse, {0, 0, {1, 0}}, to_middle + wall.radius * axis_at(angle));
+    if (end.gap < nearer.gap) nearer = end;
+  }
+  return nearer;
+}
+
+EllipseContact contact_with_wall(const GrainSystem& system, std::int32_t grain, const GrainPart& part,
+                                 std::int32_t wall_index, Vec2 last_normal) {
+  const auto i = static_cast<std::size_t>(grain), w = static_cast<std::size_t>(wall_index);
+  const GrainWall& wall = system.scene.walls[w];
+  const Vec2 displacement = system.walls[w].displacement;
+  const Ellipse ellipse{part.a, part.b, system.axes[i]};
+  const Vec2 to_point = wall.point + displacement - system.motions[i].position;
+  switch (wall.shape) {
+    case GrainWall::Shape::line:
+      return contact_with_line(ellipse, to_point, wall.normal);
+    case GrainWall::Shape::segment:
+      return contact_with_segment(ellipse, to_point, to_point + (wall.end - wall.point), last_normal);
+    case GrainWall::Shape::arc:
+      break;
+  }
+  return contact_with_arc(system, grain, ellipse, wall, displacement);
+}
+
+/// Surely, without a root.
+bool is_clear_of_line(const GrainSystem& system, std::size_t i, const GrainPart& part, std::size_t w) {
+  const GrainWall& wall = system.scene.walls[w];
+  if (wall.shape != GrainWall::Shape::line) return false;
+  const double height = dot(system.motions[i].position - (wall.point + system.walls[w].displacement), wall.normal);
+  const double x = part.a * dot(system.axes[i], wall.normal), y = part.b * cross(system.axes[i], wall.normal);
+  return height > 0 && height * height * (1 - 1e-9) > x * x + y * y;
+}
+
+PartMeeting meeting_of_part_with_wall(const GrainSystem& system, const Candidate& candidate, const PartPair& pair) {
+  if (candidate.covered) return {};
+  const auto i = static_cast<std::size_t>(candidate.i), w = static_cast<std::size_t>(~candidate.j);
+  const GrainPart& part = system.parts[static_cast<std::size_t>(pair.i)];
+  if (!part.is_round()) {
+    if (is_clear_of_line(system, i, part, w)) return {};
+    const EllipseContact contact =
+        contact_with_wall(system, candidate.i, part, ~candidate.j, candidate.touching ? candidate.normal : Vec2{});
+    if (contact.gap >= 0) return {};
+    return {-contact.gap, contact.normal, contact.arm_i, {}, 0, 0};
+  }
+  const Vec2 offset = offset_of(part, system.axes[i]);
+  const WallContact contact =
+      nearest(system.scene.walls[w], system.walls[w].displacement, system.motions[i].position + offset);
+  const double overlap = part.a - contact.distance;
+  if (!(overlap > 0)) return {};
+  return {overlap, -contact.normal, offset - part.a * contact.normal, {}, 0, 0};
+}
+
+}  // namespace
+
+EllipseContact contact_by_enlarged_ellipse(const Ellipse& i, const Ellipse& j, Vec2 branch,
+                                           GrainOptions::EllipseLaw law) {
+  struct Symmetric {
+    double xx, xy, yy;
+  };
+  const auto shape = [](const Ellipse& e) {
+    const double a = e.a * e.a, b = e.b * e.b, x = e.axis.x, y = e.axis.y;
+    return Symmetric{a * x * x + b * y * y, (a - b) * x * y, a * y * y + b * x * x};
+  };
+  const Symmetric p = shape(i), q = shape(j);
+  const double area_i = i.a * i.b, area_j = j.a * j.b;
+  const Symmetric t{p.xx / area_i + q.xx / area_j, p.xy / area_i + q.xy / area_j, p.yy / area_i + q.yy / area_j};
+  const double mean = 2 * std::sqrt(area_i * area_j / (t.xx * t.yy - t.xy * t.xy));
+  const Symmetric s{p.xx + q.xx + mean * t.xx, p.xy + q.xy + mean * t.xy, p.yy + q.yy + mean * t.yy};
+  const double determinant = s.xx * s.yy - s.xy * s.xy;
+  const auto product = [&](Vec2 x, Vec2 y) {
+    return (s.yy * x.x * y.x - s.xy * (x.x * y.y + x.y * y.x) + s.xx * x.y * y.y) / determinant;
+  };
+  const double room = 1 - product(branch, branch);
+  if (!(room >= 0)) return {EllipseState::apart, -room, {}, {}, {}};
+  const AngleReading reading =
+      law == GrainOptions::EllipseLaw::enlarged_as_printed ? AngleReading::printed : AngleReading::mended;
+  const EnlargedEllipseContact contact = enlarged_ellipse_contact(i, j, branch, reading);
+  const double square = product(contact.normal, contact.normal), half = product(contact.normal, branch);
+  const double root = std::sqrt(half * half + square * room);
+  EllipseContact result;
+  result.state = EllipseState::touching;
+  result.gap = half > 0 ? -room / (half + root) : -(root - half) / square;
+  result.normal = contact.normal;
+  result.arm_i = contact.surface_point;
+  result.arm_j = contact.surface_point - branch;
+  return result;
+}
+
+/// As long as the pair was not touching a step ago nothing of the past may enter: lists made anew would not know it.
+EllipseContact contact_of_parts(const Ellipse& i, const Ellipse& j, Vec2 branch, bool touching, Vec2 normal) {
+  constexpr WhenApart quick = WhenApart::only_that_it_is;
+  if (touching) return contact_of_ellipses(i, j, branch, normal, quick);
+  if (normal != Vec2{}) {
+    const double gap = separation_along(i, j, branch, normal);
+    if (gap > 0) return {EllipseState::apart, gap, normal, {}, {}};
+    const EllipseContact contact = contact_of_ellipses(i, j, branch, normal, quick);
+    if (contact.gap > 0) return contact;
+  }
+  return contact_of_ellipses(i, j, branch, {}, quick);
+}
+
+PartMeeting meeting_of_parts(const GrainSystem& system, const Candidate& candidate, PartPair& pair) {
+  return candidate.j >= 0 ? meeting_of_grain_parts(system, candidate, pair)
+                          : meeting_of_part_with_wall(system, candidate, pair);
+}
+
+double overlap_of(const GrainSystem& system, std::size_t candidate) {
+  if (system.parts.empty()) return meeting_of(system, system.candidates[candidate]).overlap;
+  PartPair pair = system.part_pairs[candidate];
+  return meeting_of_parts(system, system.candidates[candidate], pair).overlap;
+}
+
+Vec2 viewpoint_on(const GrainSystem& system, std::int32_t grain, std::int32_t part_index, std::int32_t wall) {
+  const auto i = static_cast<std::size_t>(grain);
+  const Vec2 position = system.motions[i].position;
+  if (system.parts.empty()) return position;
+  const GrainPart& part = system.parts[static_cast<std::size_t>(part_index)];
+  if (part.is_round()) return position + offset_of(part, system.axes[i]);
+  const EllipseContact contact = contact_with_wall(system, grain, part, wall, {});
+  return position + contact.arm_i + contact.gap * contact.normal;
+}
+
+}  // namespace equidem

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/contacts/touch_instants.hpp"
+
+#include <cmath>
+
+#include "equidem/grains/grain_system.hpp"
+
+namespace equidem {
+namespace {
+
+/// Impulses of spring and dashpot in a part of a drift, over those of a whole kick: of k d^p and c d^q v, d linear in time.
+struct Shares {
+  double spring = 0, dashpot = 0;
+};
+
+/// -zeta(-p, part)/part^p, by Euler and Maclaurin from part + 1 on: what the sum of x^p over part, part + 1, ... lacks at its start of the
+/// integral from 0. By this the trapezoidal rule errs where a force begins or ends.
+/// \param now, next part^p and (part + 1)^p
+double beyond_sum(double part, double power, double now, double next) {
+  return (((1 + part) / (power + 1) - 0.5 + power / (12 * (1 + part))) * next - now) / now;
+}
+
+/// From its first instant on the trapezoidal rule is exact for the linear spring; for that of Hertz its error there goes with the part.
+Shares shares_of(const GrainSystem& system, double part) {
+  if (system.options.law != NormalLaw::hertz_dashpot) return {part / 2, part};
+  const double seen = std::max(part, 1e-12);  // an overlap of round-off
+  const double now = std::sqrt(seen), next = std::sqrt(1 + seen);
+  return {0.5 + beyond_sum(seen, 1.5, seen * now, (1 + seen) * next),
+          0.5 + beyond_sum(seen, 0.25, std::sqrt(now), std::sqrt(next))};
+}
+
+bool corrects(const GrainSystem& system) {
+  return system.options.scheme == GrainOptions::Scheme::corrected_verlet;
+}
+
+TouchImpulse impulse_on(const TouchInstant& contact) {
+  TouchImpulse impulse;
+  impulse.i = contact.i;
+  impulse.j = contact.j;
+  impulse.normal = contact.normal;
+  impulse.arm_i = contact.arm_i;
+  impulse.arm_j = contact.arm_j;
+  return impulse;
+}
+
+/// Of the contact point of j, or of the wall in the drift, over that of i.
+Vec2 relative_velocity(const GrainSystem& system, const TouchImpulse& impulse) {
+  const auto at = [&](std::int32_t body, Vec2 arm) {
+    const GrainMotion& motion = system.motions[static_cast<std::size_t>(body)];
+    return motion.velocity + motion.spin * perpendicular(arm);
+  };
+  const Vec2 other = impulse.j >= 0 ? at(impulse.j, impulse.arm_j)
+                                    : system.walls[static_cast<std::size_t>(~impulse.j)].passed_velocity;
+  return other - at(impulse.i, impulse.arm_i);
+}
+
+/// In the part of the drift in which the contact lasts: its spring slackens by the slip, friction bounds it as the normal force falls.
+/// \param given, normal impulses along the normal, in the last whole kick and in the part
+double last_tangential(const GrainSystem& system, const TouchInstant& contact, double given, double normal) {
+  Candidate candidate;
+  candidate.i = contact.i;
+  candidate.j = contact.j;
+  const double friction = system.properties(candidate).friction;
+  const double bound = friction * std::max(given, 0.0), kick = std::abs(contact.tangential);
+  const double beyond_cap = contact.part * std::max(kick - bound, 0.0);
+  const double most = (given > 0 ? friction * std::max(normal, 0.0) : 0) + beyond_cap;
+  const bool slides = kick >= bound * (1 - 1e-9) && contact.tangential * contact.slip <= 0;
+  if (slides) return std::copysign(most, contact.tangential);
+  const double slack = contact.stored > 0 ? contact.tangential * contact.slip * contact.part / (2 * contact.stored) : 0;
+  const double held = contact.tangential * contact.part * (1 - 0.5 * slack);
+  return std::clamp(held, -most, most);
+}
+
+}  // namespace
+
+void begin_within_drift(GrainSystem& system, const TouchInstant& contact) {
+  GrainLedger& lost = system.lost;
+  lost.lost_dashpot += 0.5 * contact.dashpot * contact.closing;
+  if (contact.slides) {
+    lost.lost_slip -= 0.5 * contact.tangential * contact.slip + contact.stored;
+  } else {
+    lost.lost_tangential_dashpot -= 0.5 * contact.tangential_dashpot * contact.slip;
+  }
+  if (!corrects(system)) return;
+  Shares share = shares_of(system, contact.part);
+  share.dashpot /= 1 + 0.5 * share.dashpot * contact.decay;
+  TouchImpulse impulse = impulse_on(contact);
+  impulse.spring = (share.spring - 0.5) * contact.spring;
+  impulse.dashpot = (share.dashpot - 0.5) * contact.dashpot;
+  if (contact.slides) {  // as the normal force
+    const double normal = contact.spring + contact.dashpot;
+    impulse.tangential = normal > 0 ? contact.tangential * ((impulse.spring + impulse.dashpot) / normal) : 0;
+    impulse.taken = &GrainLedger::lost_slip;
+  } else {
+    impulse.tangential_spring = 0.5 * (contact.part - 1) * (contact.tangential - contact.tangential_dashpot);
+    impulse.tangential = (contact.part - 0.5) * contact.tangential_dashpot;
+    impulse.taken = &GrainLedger::lost_tangential_dashpot;
+  }
+  system.touch_impulses.push_back(impulse);
+}
+
+void end_within_drift(GrainSystem& system, const TouchInstant& contact) {
+  GrainLedger& lost = system.lost;
+  const Shares share = shares_of(system, contact.part);
+  const double given = contact.spring + contact.dashpot;
+  double true_one = given != 0 ? share.spring * contact.spring + share.dashpot * contact.dashpot : 0;
+  if (!contact.pulls) true_one = std::max(true_one, 0.0);
+  TouchImpulse impulse = impulse_on(contact);
+  impulse.spring = (share.spring - 0.5) * contact.spring;
+  impulse.dashpot = true_one - 0.5 * given - impulse.spring;
+  impulse.tangential = last_tangential(system, contact, given, true_one) - 0.5 * contact.tangential;
+  impulse.taken = &GrainLedger::lost_release;
+  lost.lost_dashpot += 0.5 * contact.dashpot * contact.closing;
+  lost.lost_release += contact.stored - 0.5 * contact.tangential * contact.slip;
+  if (given == 0) {  // the spring has nothing more to give: the dashpot takes what it holds
+    lost.lost_dashpot += impulse.dashpot * contact.closing;
+  } else if (corrects(system)) {
+    system.touch_impulses.push_back(impulse);
+  }
+}
+
+void give_touch_impulses(GrainSystem& system) {
+  for (const TouchImpulse& impulse : system.touch_impulses) {
+    const Vec2 tangent = perpendicular(impulse.normal);
+    const Vec2 on_j = (impulse.spring + impulse.dashpot) * impulse.normal +
+                      (impulse.tangential_spring + impulse.tangential) * tangent;
+    const auto push = [&](std::int32_t body, Vec2 arm, Vec2 on) {
+      const auto b = static_cast<std::size_t>(body);
+      system.motions[b].velocity += system.bodies[b].inverse_mass * on;
+      system.motions[b].spin += system.bodies[b].inverse_moment * cross(arm, on);
+    };
+    const Vec2 before = relative_velocity(system, impulse);
+    push(impulse.i, impulse.arm_i, -on_j);
+    if (impulse.j >= 0) {
+      push(impulse.j, impulse.arm_j, on_j);
+    } else {
+      system.lost.work_of_walls -= dot(on_j, system.walls[static_cast<std::size_t>(~impulse.j)].passed_velocity);
+    }
+    const Vec2 mean = 0.5 * (before + relative_velocity(system, impulse));
+    system.lost.lost_dashpot -= impulse.dashpot * dot(mean, impulse.normal);
+    system.lost.*impulse.taken -= impulse.tangential * dot(mean, tangent);
+  }
+  system.touch_impulses.clear();
+}
+
+}  // namespace equidem

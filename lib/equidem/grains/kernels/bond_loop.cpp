@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Vectors are passed between inlined functions only: no call depends on how.
+#pragma GCC diagnostic ignored "-Wpsabi"
+#include "equidem/grains/kernels/bond_loop.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "equidem/grains/grain_system.hpp"
+#include "equidem/grains/kernels/pair_lanes.hpp"
+#include "equidem/grains/kernels/vector_width.hpp"
+
+namespace equidem {
+namespace {
+
+using namespace eight;
+
+static_assert(sizeof(Push) == sizeof(Half));
+
+enum class BondTask { resist_exactly, resist_explicitly };
+
+/// Four columns of eight rows.
+EQUIDEM_ALWAYS_INLINE void columns_of(const Half (&row)[8], Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
+  Lanes twos[4];
+  for (int k = 0; k < 4; ++k) twos[k] = __builtin_shufflevector(row[k], row[k + 4], 0, 1, 2, 3, 4, 5, 6, 7);
+  const Lanes even_low = even_of(twos[0], twos[1]), even_high = even_of(twos[2], twos[3]);
+  const Lanes odd_low = odd_of(twos[0], twos[1]), odd_high = odd_of(twos[2], twos[3]);
+  constexpr Choice first = {0, 1, 8, 9, 4, 5, 12, 13}, second = {2, 3, 10, 11, 6, 7, 14, 15};
+  a = __builtin_shuffle(even_low, even_high, first);
+  b = __builtin_shuffle(odd_low, odd_high, first);
+  c = __builtin_shuffle(even_low, even_high, second);
+  d = __builtin_shuffle(odd_low, odd_high, second);
+}
+
+/// Decay::mean to 1e-15: the series of decay() at y = x/2^doublings <= 1/2, its even powers beside the odd ones, doubled so many times
+/// by mean(2 y) = mean(y) (1 - y mean(y)/2).
+template <int doublings>
+EQUIDEM_ALWAYS_INLINE Lanes mean_by_series(const Lanes& x) {
+  const Lanes y = x * (1.0 / (1 << doublings)), square = y * y;
+  Lanes even{}, odd{};
+  double factorial = 1;
+  double coefficient[14];
+  for (int k = 0; k < 14; ++k) coefficient[k] = 1 / (factorial *= k + 1);
+  for (int k = 12; k >= 0; k -= 2) {
+    even = even * square + coefficient[k];
+    odd = odd * square + coefficient[k + 1];
+  }
+  Lanes mean = even - y * odd;
+  for (int k = 0; k < doublings; ++k) mean *= 1 - (y * (0.5 * (1 << k))) * mean;
+  return mean;
+}
+
+/// Each lane by its own x alone; a second series only where one is large.
+EQUIDEM_ALWAYS_INLINE Lanes mean_of_decay(const Lanes& x) {
+  Lanes mean = mean_by_series<2>(x);
+  const Choice large = negative(2 - x);
+  if (any(large)) {
+    mean = choose(large, choose(negative(40 - x), 1 / x, mean_by_series<7>(x)), mean);
+  }
+  return mean;
+}
+
+/// Bonds at the start of the step: the way they lie, rates, and what the pushes as they stand add to these.
+struct BondLanes {
+  Lanes nx, ny, share;  ///< share: levers over radii
+  Lanes normal_rate, tangential_rate, normal_gain, tangential_gain;
+};
+
+/// What the pushes as they stand add to the rates of bond k: along x, along y, to the speed of the rims by torques and by pushes along them.
+EQUIDEM_ALWAYS_INLINE Half gain_by_pushes(const BondGroup& group, const Push* pushes, int k) {
+  Half push_i, push_j, gain_i, gain_j;
+  std::memcpy(&push_i, &pushes[group.i[k]], sizeof push_i);
+  std::memcpy(&push_j, &pushes[group.j[k]], sizeof push_j);
+  std::memcpy(&gain_i, group.gain_i[k], sizeof gain_i);
+  std::memcpy(&gain_j, group.gain_j[k], sizeof gain_j);
+  return push_i * gain_i + push_j * gain_j;
+}
+
+struct BondFrames {
+  Lanes nx, ny, share;
+};
+
+EQUIDEM_ALWAYS_INLINE BondFrames frames_of(const BondGroup& group, const Lanes& bx, const Lanes& by) {
+  const Lanes square = bx * bx + by * by;
+  const Lanes distance = square_root(square), inverse = distance * (1 / square);
+  return {bx * inverse, by * inverse, distance * load(group.per_reach)};
+}
+
+EQUIDEM_ALWAYS_INLINE BondLanes look_at(const BondGroup& group, const Push* pushes, const PairBody* bodies) {
+  // differences j - i, sums of the speeds of the rims
+  constexpr long long minus = std::numeric_limits<long long>::min();
+  const Choice difference = {minus, minus, minus, minus, 0, 0, 0, 0};
+  Lanes m[8];
+  Half row[8];
+  for (int k = 0; k < 8; ++k) {
+    const Lanes of_i = load(&bodies[group.i[k]].position.x), of_j = load(&bodies[group.j[k]].position.x);
+    m[k] = of_j + reinterpret_cast<Lanes>(reinterpret_cast<Choice>(of_i) ^ difference);
+    row[k] = gain_by_pushes(group, pushes, k);
+  }
+  transpose(m);
+  const Lanes &u = m[2], &v = m[3], &rims = m[4];
+  Lanes gx, gy, by_torque, by_rim;
+  columns_of(row, gx, gy, by_torque, by_rim);
+  const auto [nx, ny, share] = frames_of(group, m[0], m[1]);
+  return {nx,
+          ny,
+          share,
+          u * nx + v * ny,
+          v * nx - u * ny - share * rims,
+          gx * nx + gy * ny,
+          gy * nx - gx * ny - share * (by_torque + by_rim)};
+}
+
+/// In the half kick that opens a step of a Verlet scheme, at the mean rates of which a quarter of all pushes has acted.
+EQUIDEM_ALWAYS_INLINE void count_all_opening_kicks(GrainSystem& system) {
+  const GrainMotion* motions = system.motions.data();
+  const GrainBody* bodies = system.bodies.data();
+  const Push* pushes = system.pushes.data();
+  Lanes lost{};
+  for (const BondGroup& group : system.packed_bonds.groups) {
+    Lanes m[8];
+    for (int k = 0; k < 8; ++k) {
+      const std::int32_t i = group.i[k], j = group.j[k];
+      Half of_i, of_j;  // position and velocity
+      std::memcpy(&of_i, &motions[i], sizeof of_i);
+      std::memcpy(&of_j, &motions[j], sizeof of_j);
+      const Half rims = {0, 0, motions[i].spin * bodies[i].radius + motions[j].spin * bodies[j].radius, 0};
+      m[k] =
+          __builtin_shufflevector(of_j - of_i, rims + 0.25 * gain_by_pushes(group, pushes, k), 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+    transpose(m);
+    const auto [nx, ny, share] = frames_of(group, m[0], m[1]);
+    const Lanes u = m[2] + m[4], v = m[3] + m[5];
+    lost -= load(group.normal_impulse) * (u * nx + v * ny) +
+            load(group.tangential_impulse) * (v * nx - u * ny - share * (m[6] + m[7]));
+  }
+  double sum = 0;
+  for (int k = 0; k < 8; ++k) sum += lost[k];
+  system.lost.lost_bond += 0.5 * sum;
+}
+
+template <BondTask task>
+EQUIDEM_ALWAYS_INLINE void resist(GrainSystem& system) {
+  const PairBody* seen = system.near.bodies.data();
+  Push* pushes = system.pushes.data();
+  const bool verlet = system.options.verlet();
+  const Lanes half = all(verlet ? 0.25 : 0.5);  // share of all pushes of a step that has acted
+  Lanes lost{}, nearest = all(1);
+  for (BondGroup& group : system.packed_bonds.groups) {
+    const BondLanes bond = look_at(group, pushes, seen);
+    nearest = smaller(bond.share, nearest);
+    const Lanes mass = load(group.mass), tangential_dashpot = load(group.tangential);
+    const Lanes tangential_mass = mass + bond.share * bond.share * load(group.turning);
+    Lanes normal = -load(group.normal) * bond.normal_rate, tangential;
+    if constexpr (task == BondTask::resist_exactly) {
+      const Lanes mean = mean_of_decay(tangential_dashpot * tangential_mass);
+      normal -= load(group.normal_gain) * bond.normal_gain;
+      tangential =
+          -(tangential_dashpot * mean) * bond.tangential_rate - (1 - mean) / tangential_mass * bond.tangential_gain;
+    } else {
+      tangential = -tangential_dashpot * bond.tangential_rate;
+    }
+    store(normal, group.normal_impulse);
+    store(tangential, group.tangential_impulse);
+    lost -= normal * (bond.normal_rate + half * (bond.normal_gain + mass * normal)) +
+            tangential * (bond.tangential_rate + half * (bond.tangential_gain + tangential_mass * tangential));
+    // of both bodies the rim is pushed the same way round, and its lever is the radius
+    const Lanes x = normal * bond.nx - tangential * bond.ny, y = normal * bond.ny + tangential * bond.nx;
+    const Lanes rim = bond.share * tangential;
+    Half on_i[8], on_j[8];
+    if (verlet) {
+      rows_of(x, y, rim * load(group.radius_i), Lanes{}, on_i);
+      rows_of(x, y, rim * -load(group.radius_j), Lanes{}, on_j);
+    } else {  // the move of bodies turns rims
+      rows_of(x, y, Lanes{}, rim, on_i);
+      rows_of(x, y, Lanes{}, -rim, on_j);
+    }
+    for (int k = 0; k < 8; ++k) {
+      subtract(&pushes[group.i[k]], on_i[k]);
+      add(&pushes[group.j[k]], on_j[k]);
+    }
+  }
+  double sum = 0, least = 1;
+  for (int k = 0; k < 8; ++k) {
+    sum += lost[k];
+    least = std::min(least, nearest[k]);
+  }
+  system.lost.lost_bond += verlet ? 0.5 * sum : sum;
+  if (least <= nearest_centres_of_bonds) refuse_crept_bonds(system);
+}
+
+template <BondTask task>
+void resist_plain(GrainSystem& system) {
+  resist<task>(system);
+}
+void count_plain(GrainSystem& system) {
+  count_all_opening_kicks(system);
+}
+
+#if defined(__x86_64__)
+/// No products and sums fused: the same bits on every machine.
+#define EQUIDEM_BY_FOURS __attribute__((target("avx2")))
+#define EQUIDEM_BY_EIGHTS __attribute__((target("avx2,avx512f,avx512vl,avx512dq,prefer-vector-width=512")))
+template <BondTask task>
+EQUIDEM_BY_FOURS void resist_by_fours(GrainSystem& system) {
+  resist<task>(system);
+}
+template <BondTask task>
+EQUIDEM_BY_EIGHTS void resist_by_eights(GrainSystem& system) {
+  resist<task>(system);
+}
+EQUIDEM_BY_FOURS void count_by_fours(GrainSystem& system) {
+  count_all_opening_kicks(system);
+}
+EQUIDEM_BY_EIGHTS void count_by_eights(GrainSystem& system) {
+  count_all_opening_kicks(system);
+}
+#endif
+
+template <BondTask task>
+void push_by(GrainSystem& system) {
+#if defined(__x86_64__)
+  if (vector_width() == VectorWidth::bits_512) return resist_by_eights<task>(system);
+  if (vector_width() == VectorWidth::bits_256) return resist_by_fours<task>(system);
+#endif
+  resist_plain<task>(system);
+}
+
+void put_row(const GrainBody& body, double sign, BondGroup::Row& row) {
+  const double turn = body.radius * body.inverse_moment;
+  const double numbers[] = {sign * body.inverse_mass, sign * body.inverse_mass, turn, body.radius * turn};
+  std::copy(std::begin(numbers), std::end(numbers), row);
+}
+
+/// Lanes not yet used do nothing, with bodies that are there.
+void put(const GrainSystem& system, const TiedPair& bond, BondGroup& group, std::size_t from) {
+  const GrainBody& i = system.bodies[static_cast<std::size_t>(bond.i)];
+  const GrainBody& j = system.bodies[static_cast<std::size_t>(bond.j)];
+  const double dt = system.dt(), inverse_mass = i.inverse_mass + j.inverse_mass;
+  const bool exact = system.options.bond_step == GrainOptions::BondStep::exact;
+  const double mean = exact ? decay(bond.dashpots.normal * inverse_mass * dt).mean : 1;
+  for (std::size_t k = from; k < (from == 0 ? lanes_of_pairs : from + 1); ++k) {
+    const bool used = k == from;
+    group.i[k] = bond.i;
+    group.j[k] = bond.j;
+    put_row(i, -1, group.gain_i[k]);
+    put_row(j, 1, group.gain_j[k]);
+    group.radius_i[k] = i.radius;
+    group.radius_j[k] = j.radius;
+    group.per_reach[k] = 1 / (i.radius + j.radius);
+    group.mass[k] = inverse_mass;
+    group.turning[k] = i.radius * i.radius * i.inverse_moment + j.radius * j.radius * j.inverse_moment;
+    group.normal[k] = used ? bond.dashpots.normal * dt * mean : 0;
+    group.normal_gain[k] = used ? (1 - mean) / inverse_mass : 0;
+    group.tangential[k] = used ? bond.dashpots.tangential * dt : 0;
+    group.normal_impulse[k] = group.tangential_impulse[k] = 0;
+  }
+}
+
+}  // namespace
+
+void pack_bonds(GrainSystem& system) {
+  std::vector<int> bonds_of(system.bodies.size());
+  for (const TiedPair& bond : system.bonds) {
+    ++bonds_of[static_cast<std::size_t>(bond.i)];
+    ++bonds_of[static_cast<std::size_t>(bond.j)];
+  }
+  std::int32_t packed = 0;
+  for (std::size_t b = 0; b < system.bonds.size(); ++b) {
+    TiedPair& bond = system.bonds[b];
+    if (bond.has_springs()) system.packed_bonds.sprung.push_back(b);
+    const bool alone =
+        bonds_of[static_cast<std::size_t>(bond.i)] == 1 && bonds_of[static_cast<std::size_t>(bond.j)] == 1;
+    if (!system.near.active || !alone || bond.dashpots.rolling > 0) {
+      system.packed_bonds.one_by_one.push_back(b);
+      continue;
+    }
+    bond.packed = packed++;
+    const std::size_t lane = static_cast<std::size_t>(bond.packed) % lanes_of_pairs;
+    if (lane == 0) system.packed_bonds.groups.emplace_back();
+    put(system, bond, system.packed_bonds.groups.back(), lane);
+  }
+}
+
+void push_packed_bonds(GrainSystem& system) {
+  if (system.packed_bonds.groups.empty()) return;
+  if (system.options.bond_step == GrainOptions::BondStep::exact) {
+    push_by<BondTask::resist_exactly>(system);
+  } else {
+    push_by<BondTask::resist_explicitly>(system);
+  }
+}
+
+void count_opening_kick_of_packed_bonds(GrainSystem& system) {
+  if (system.packed_bonds.groups.empty()) return;
+#if defined(__x86_64__)
+  if (vector_width() == VectorWidth::bits_512) return count_by_eights(system);
+  if (vector_width() == VectorWidth::bits_256) return count_by_fours(system);
+#endif
+  count_plain(system);
+}
+
+BondModes last_impulse(const GrainSystem& system, const TiedPair& bond) {
+  if (bond.packed < 0) return bond.impulse;
+  const auto p = static_cast<std::size_t>(bond.packed);
+  const BondGroup& group = system.packed_bonds.groups[p / lanes_of_pairs];
+  return {group.normal_impulse[p % lanes_of_pairs], group.tangential_impulse[p % lanes_of_pairs], 0};
+}
+
+void take_last_impulse(GrainSystem& system, TiedPair& bond, const BondModes& impulse) {
+  bond.impulse = impulse;
+  if (bond.packed < 0) return;
+  const auto p = static_cast<std::size_t>(bond.packed);
+  BondGroup& group = system.packed_bonds.groups[p / lanes_of_pairs];
+  group.normal_impulse[p % lanes_of_pairs] = impulse.normal;
+  group.tangential_impulse[p % lanes_of_pairs] = impulse.tangential;
+}
+
+}  // namespace equidem

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Vectors are passed between inlined functions only: no call depends on how.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+#include "equidem/grains/grain_system.hpp"
+#include "equidem/grains/kernels/pair_lanes.hpp"
+
+namespace equidem {
+namespace {
+
+using eight::Pair;
+
+/// Two numbers anywhere: copied byte by byte they would go through general registers.
+using PairAnywhere = double __attribute__((vector_size(16), aligned(8), may_alias));
+
+template <class Number>
+EQUIDEM_ALWAYS_INLINE Pair load_pair(const Number& from) {
+  return *reinterpret_cast<const PairAnywhere*>(&from);
+}
+/// The number at `to` and the one behind it.
+template <class Number>
+EQUIDEM_ALWAYS_INLINE void store_pair(const Pair& pair, Number& to) {
+  *reinterpret_cast<PairAnywhere*>(&to) = pair;
+}
+
+/// \return the longest way of a body, squared, m²; no number where one is none
+template <bool turning>
+double move(GrainSystem& system) {
+  const double dt = system.dt();
+  const Pair fall = dt * load_pair(system.scene.gravity);
+  const std::size_t count = system.motions.size();
+  const GrainBody* bodies = system.bodies.data();
+  const GrainMotion* motions = system.motions.data();
+  GrainMotion* next = system.next.data();
+  Push* pushes = system.pushes.data();
+  PairBody* pair_bodies = system.near.bodies.data();
+  double longest = 0, none = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const GrainBody& body = bodies[i];
+    const GrainMotion& before = motions[i];
+    GrainMotion& after = next[i];
+    PairBody& seen = pair_bodies[i];
+    const Pair gain = body.inverse_mass * load_pair(pushes[i].impulse);
+    const Pair velocity = load_pair(before.velocity) + (gain + fall);
+    const Pair position = load_pair(before.position), moved = position + dt * velocity;
+    store_pair(moved, after.position);
+    store_pair(velocity, after.velocity);
+    store_pair(moved, seen.position);
+    store_pair(velocity, seen.velocity);
+    store_pair(velocity + 0.5 * gain, seen.middle_velocity);
+    double spin = before.spin;
+    if constexpr (turning) {
+      // near pairs gave forces along the rim
+      const double torque = pushes[i].torque + body.radius * pushes[i].rim;
+      store_pair(Pair{torque, 0}, pushes[i].torque);
+      const double turn = body.inverse_moment * torque;
+      spin += turn;
+      seen.rim_speed = spin * body.radius;
+      seen.middle_rim_speed = (spin + 0.5 * turn) * body.radius;
+    }
+    store_pair(Pair{spin, before.angle + dt * spin}, after.spin);
+    const Pair way = moved - position, square = way * way;
+    const double length = square[0] + square[1];
+    longest = longest > length ? longest : length;
+    none += length - length;  // 0, or no number for ever
+  }
+  return longest + none;
+}
+
+}  // namespace
+
+void move_pair_bodies(GrainSystem& system) {
+  const bool turning = system.friction || !system.bonds.empty() || !system.parts.empty();
+  system.longest_way = turning ? move<true>(system) : move<false>(system);
+}
+
+}  // namespace equidem

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Vectors are passed between inlined functions only: no call depends on how.
+#pragma GCC diagnostic ignored "-Wpsabi"
+#include <algorithm>
+#include <numbers>
+
+#include "equidem/grains/grain_system.hpp"
+#include "equidem/grains/kernels/pair_lanes.hpp"
+#include "equidem/grains/neighbours/part_pairs.hpp"
+#include "equidem/grains/kernels/vector_width.hpp"
+
+namespace equidem {
+namespace {
+
+using namespace eight;
+
+/// Turns up to here are rounded by adding what has no digits behind the point.
+constexpr double most_turns = 1e9, rounder = 6755399441055744.0;
+
+/// sine_of_turns(), bit by bit.
+EQUIDEM_ALWAYS_INLINE Lanes sines_of_turns(Lanes x) {
+  x -= (x + rounder) - rounder;
+  const Choice beyond = negative(0.25 - magnitude(x));
+  x = choose(beyond, with_sign(all(0.5), x) - x, x);
+  const Lanes y = (2 * std::numbers::pi) * x, square = y * y;
+  Lanes sum = all(1);
+#pragma GCC unroll 11
+  for (int k = 22; k >= 2; k -= 2) sum = 1 - square * (1.0 / (k * (k + 1))) * sum;
+  return y * sum;
+}
+
+/// Two eights at a time: of one alone each product would wait for the last.
+EQUIDEM_ALWAYS_INLINE void turn_all(GrainSystem& system) {
+  constexpr std::size_t most = 16;
+  const std::size_t count = system.shaped.size();
+  for (std::size_t first = 0; first < count; first += most) {
+    const std::size_t used = std::min(most, count - first);
+    double angle[most] = {}, largest = 0;
+    for (std::size_t k = 0; k < used; ++k) {
+      angle[k] = system.motions[static_cast<std::size_t>(system.shaped[first + k])].angle;
+      largest = std::max(largest, std::abs(angle[k]));
+    }
+    double x[most], y[most];
+#pragma GCC unroll 2
+    for (std::size_t k = 0; k < most; k += 8) {
+      const Lanes turns = load(angle + k) / (2 * std::numbers::pi);
+      store(sines_of_turns(turns + 0.25), x + k);
+      store(sines_of_turns(turns), y + k);
+    }
+    for (std::size_t k = 0; k < used; ++k) {
+      system.axes[static_cast<std::size_t>(system.shaped[first + k])] =
+          largest < most_turns ? Vec2{x[k], y[k]} : axis_at(angle[k]);
+    }
+  }
+}
+
+void turn_plain(GrainSystem& system) {
+  turn_all(system);
+}
+
+#if defined(__x86_64__)
+/// No products and sums fused: the same bits on every machine.
+__attribute__((target("avx2"))) void turn_by_fours(GrainSystem& system) {
+  turn_all(system);
+}
+__attribute__((target("avx2,avx512f,avx512vl,avx512dq,prefer-vector-width=512"))) void turn_by_eights(
+    GrainSystem& system) {
+  turn_all(system);
+}
+#endif
+
+}  // namespace
+
+void turn_axes(GrainSystem& system) {
+#if defined(__x86_64__)
+  if (vector_width() == VectorWidth::bits_512) return turn_by_eights(system);
+  if (vector_width() == VectorWidth::bits_256) return turn_by_fours(system);
+#endif
+  turn_plain(system);
+}
+
+}  // namespace equidem

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Vectors are passed between inlined functions only: no call depends on how.
+#pragma GCC diagnostic ignored "-Wpsabi"
+#include "equidem/grains/kernels/touch_lanes.hpp"
+
+#include <cmath>
+
+namespace equidem::eight {
+
+void count_instants(GrainSystem& system, const TouchLanes& lanes) {
+  const bool hertz = system.options.law == NormalLaw::hertz_dashpot;
+  for (int k = 0; k < 8; ++k) {
+    if (lanes.begun[k] == 0 && lanes.ended[k] == 0) continue;
+    TouchInstant contact;
+    contact.i = lanes.i[k];
+    contact.j = lanes.j[k];
+    contact.normal = {lanes.nx[k], lanes.ny[k]};
+    contact.arm_i = {lanes.arm_i_x[k], lanes.arm_i_y[k]};
+    contact.arm_j = {lanes.arm_j_x[k], lanes.arm_j_y[k]};
+    contact.closing = lanes.closing[k];
+    contact.slip = lanes.slip[k];
+    contact.part = part_of_drift(lanes.deep[k], lanes.begun[k] != 0 ? contact.closing : -contact.closing, system.dt());
+    contact.spring = lanes.spring[k];
+    contact.dashpot = lanes.impulse[k] - lanes.spring[k];
+    contact.decay = lanes.dashpot[k] * lanes.mobility[k] * system.dt();
+    if (hertz) contact.decay *= std::sqrt(std::sqrt(lanes.deep[k]));
+    contact.tangential = lanes.tangential[k];
+    contact.tangential_dashpot = lanes.tangential_dashpot[k];
+    contact.stored = lanes.stored[k];
+    contact.slides = lanes.slides[k] != 0;
+    contact.pulls = lanes.least[k] < 0;
+    if (lanes.begun[k] != 0) {
+      begin_within_drift(system, contact);
+    } else {
+      end_within_drift(system, contact);
+    }
+  }
+}
+
+}  // namespace equidem::eight

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "equidem/contact/collision_stiffness.hpp"
+#include "equidem/grains/grain_system.hpp"
+#include "equidem/grains/contacts/meeting.hpp"
+#include "equidem/grains/neighbours/part_pairs.hpp"
+
+namespace equidem {
+namespace {
+
+ExactPair exact_pair_of(const GrainSystem& system, const Candidate& candidate) {
+  return exact_pair(candidate.reduced_mass, candidate.stiffness, candidate.strength, system.properties(candidate).end,
+                    system.dt());
+}
+
+/// The dashpot across the normal by the spring alone: the mass is that of the arms at the time.
+PartPair with_damping(const GrainSystem& system, const Candidate& candidate, PartPair parts) {
+  parts.tangential_damping =
+      2 * system.properties(candidate).tangential_damping * std::sqrt(candidate.sliding.stiffness);
+  return parts;
+}
+
+/// Order of partners of one body: grains ascending, then walls ascending.
+std::uint32_t rank(std::int32_t j) {
+  return j >= 0 ? static_cast<std::uint32_t>(j) : 0x80000000U + static_cast<std::uint32_t>(~j);
+}
+
+}  // namespace
+
+void find_strengths(GrainSystem& system) {
+  for (const PairProperties& pair : system.scene.pairs) {
+    if (is_map(system.options.law)) {
+      system.strengths.push_back(pair.restitution);
+    } else if (system.options.law == NormalLaw::hertz_dashpot) {
+      system.strengths.push_back(hertz_damping_of(pair.restitution, pair.end));
+    } else {
+      system.strengths.push_back(damping_ratio_of(pair.restitution, pair.end));
+    }
+  }
+}
+
+void set_constants(const GrainSystem& system, Candidate& candidate) {
+  const GrainBody& bi = system.bodies[static_cast<std::size_t>(candidate.i)];
+  double inverse_mass = bi.inverse_mass;
+  if (candidate.j >= 0) inverse_mass += system.bodies[static_cast<std::size_t>(candidate.j)].inverse_mass;
+  const PairProperties& properties = system.properties(candidate);
+  const double dt = system.dt();
+  const double m = candidate.reduced_mass = 1 / inverse_mass;
+  const bool hertz = system.options.law == NormalLaw::hertz_dashpot;
+  const double root_length = hertz ? std::sqrt(system.length) : 1;
+  candidate.stiffness = properties.stiffness > 0
+                            ? properties.stiffness
+                            : stiffness_from_dimensionless(properties.dimensionless, m, dt) / root_length;
+  candidate.a = properties.stiffness > 0 ? properties.stiffness * root_length * dt * dt / m : properties.dimensionless;
+  candidate.attraction = properties.end == ContactEnd::at_zero_overlap;
+  candidate.strength = system.strengths[static_cast<std::size_t>(&properties - system.scene.pairs.data())];
+  if (system.friction && properties.friction > 0) {
+    candidate.sliding.coefficient = properties.friction;
+    candidate.sliding.stiffness = properties.tangential_ratio * candidate.stiffness * root_length;
+    candidate.sliding.cap = properties.cap;
+    // of bodies that just touch: it must not depend on where they were when they were found
+    const Meeting meeting{
+        0, {}, bi.radius, candidate.j >= 0 ? system.bodies[static_cast<std::size_t>(candidate.j)].radius : 0};
+    candidate.sliding.dashpot = 2 * properties.tangential_damping *
+                                std::sqrt(tangential_mass(system, candidate, meeting) * candidate.sliding.stiffness);
+  }
+}
+
+void find_candidates(GrainSystem& system) {
+  std::vector<Circle>& circles = system.circles;
+  circles.clear();
+  for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+    circles.push_back({system.motions[i].position, system.bodies[i].radius});
+  }
+  const NeighbourList& list = system.finder.within(circles, system.margin);
+  std::vector<Candidate> before;
+  std::vector<ExactPair> pairs_before;
+  std::vector<PartPair> parts_before;
+  before.swap(system.candidates);
+  pairs_before.swap(system.exact_pairs);
+  parts_before.swap(system.part_pairs);
+  const bool exact = system.options.law == NormalLaw::exact_flow;
+  std::size_t k = 0;
+  const bool shapes = !system.parts.empty();
+  const auto add = [&](std::int32_t i, std::int32_t j, const PartPair* parts = nullptr) {
+    const auto key = [&](std::int32_t a, std::int32_t b, const PartPair* p) {
+      return std::tuple(a, rank(b), p ? p->i : 0, p ? p->j : 0);
+    };
+    const auto key_before = [&] { return key(before[k].i, before[k].j, shapes ? &parts_before[k] : nullptr); };
+    while (k < before.size() && key_before() < key(i, j, parts)) ++k;
+    if (k < before.size() && key_before() == key(i, j, parts)) {
+      system.candidates.push_back(before[k]);
+      if (exact) system.exact_pairs.push_back(pairs_before[k]);
+      if (shapes) system.part_pairs.push_back(parts_before[k]);
+      return;
+    }
+    Candidate candidate;
+    candidate.i = i;
+    candidate.j = j;
+    set_constants(system, candidate);
+    if (shapes) system.part_pairs.push_back(with_damping(system, candidate, *parts));
+    system.candidates.push_back(candidate);
+    if (exact) system.exact_pairs.push_back(exact_pair_of(system, candidate));
+  };
+  std::size_t next_bond = 0;
+  const bool all_near = shapes ? system.near_parts.active && system.near.active : system.near.active;
+  for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+    for (std::int64_t p = list.begin[i]; !all_near && p < list.begin[i + 1]; ++p) {
+      const std::int32_t j = list.partner[static_cast<std::size_t>(p)];
+      if (are_discs(system, static_cast<std::int32_t>(i), j) ? system.near.active : system.near_parts.active) continue;
+      if (are_tied(system.bonds, next_bond, static_cast<std::int32_t>(i), j)) continue;
+      if (!shapes) add(static_cast<std::int32_t>(i), j);
+      if (!shapes) continue;
+      for (const PartPair& parts : near_parts(system, i, static_cast<std::size_t>(j))) {
+        add(static_cast<std::int32_t>(i), j, &parts);
+      }
+    }
+    for (std::size_t w = 0; w < system.scene.walls.size(); ++w) {
+      const WallContact contact = nearest(system.scene.walls[w], system.walls[w].displacement, circles[i].centre);
+      if (!(contact.distance <= circles[i].radius + system.margin)) continue;
+      const std::int32_t j = ~static_cast<std::int32_t>(w);
+      if (!shapes) add(static_cast<std::int32_t>(i), j);
+      if (!shapes) continue;
+      for (const PartPair& parts : near_parts_of_wall(system, i, w)) add(static_cast<std::int32_t>(i), j, &parts);
+    }
+  }
+  cover_joints(system);
+  system.near.outer = &list;
+  if (system.near.active) find_near_pairs(system, std::sqrt(system.longest_way));
+  if (system.near_parts.active) find_near_parts(system, reach_of(system));
+  system.moved = 0;
+  ++system.counters.rebuilds;
+}
+
+bool refresh_candidates(GrainSystem& system, double reach) {
+  if (2 * (system.moved + reach) <= system.margin) {
+    system.moved += reach;
+    if (system.near.active) refresh_near_pairs(system, reach);
+    if (system.near_parts.active) refresh_near_parts(system, reach);
+    return false;
+  }
+  system.margin = std::max(system.base_margin, 8 * reach);
+  find_candidates(system);
+  system.moved = system.near.moved = system.near_parts.moved = reach;
+  return true;
+}
+
+double reach_of(const GrainSystem& system) {
+  double longest = system.longest_way;
+  for (const WallPlace& wall : system.walls) {
+    const Vec2 way = system.dt() * wall.velocity;
+    if (dot(way, way) > longest) longest = dot(way, way);
+  }
+  return std::sqrt(longest) + longest_turn(system);
+}
+
+void let_go(GrainSystem& system, Candidate& candidate) {
+  system.lost.lost_release += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
+  candidate.stretch = 0;
+  candidate.touching = candidate.parted = false;
+  candidate.steps = 0;
+  candidate.mode = 0;
+  candidate.impulse = candidate.moment = candidate.tangential_impulse = 0;
+}
+
+void place_walls(GrainSystem& system) {
+  const double now = system.time();
+  const double next = static_cast<double>(system.step + 1) * system.dt();
+  for (std::size_t w = 0; w < system.walls.size(); ++w) {
+    const GrainWall& wall = system.scene.walls[w];
+    if (!wall.moves() && system.step > 0) continue;  // where it always was
+    const Vec2 here = {wall.move_x.at(now), wall.move_y.at(now)};
+    const Vec2 there = {wall.move_x.at(next), wall.move_y.at(next)};
+    const Vec2 velocity = (there - here) / system.dt();
+    system.walls[w] = {here, velocity, velocity, velocity};
+    if (!system.options.verlet() || system.step == 0) continue;
+    const double past = static_cast<double>(system.step - 1) * system.dt();
+    const Vec2 before = {wall.move_x.at(past), wall.move_y.at(past)};
+    system.walls[w].acting_velocity = (there - before) / (2 * system.dt());
+    system.walls[w].passed_velocity = (here - before) / system.dt();
+  }
+}
+
+}  // namespace equidem

@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/neighbours/near_pairs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "equidem/grains/grain_system.hpp"
+#include "equidem/grains/contacts/meeting.hpp"
+#include "equidem/grains/contacts/move_bodies.hpp"
+#include "equidem/grains/neighbours/near_parts.hpp"
+
+namespace equidem {
+namespace {
+
+/// Margin of the pairs: of the smallest body; and a multiple of the mean of that and the way in a step, where pairs too many cost as
+/// much as lists found anew.
+constexpr double least_margin = 0.02, margin_of_mean = 2.5;
+
+PairLaw law_of(const Candidate& candidate) {
+  return {candidate.stiffness, candidate.attraction ? -std::numeric_limits<double>::infinity() : 0,
+          candidate.sliding.coefficient, candidate.sliding.stiffness,
+          candidate.sliding.cap == FrictionCap::spring_alone ? 1.0 : 0.0};
+}
+
+/// Of all kinds but those that are of walls alone.
+std::vector<const PairProperties*> pairs_of_grains(const GrainScene& scene) {
+  std::vector<bool> of_walls(static_cast<std::size_t>(scene.kinds)), met(of_walls);
+  for (const GrainWall& wall : scene.walls) of_walls[static_cast<std::size_t>(wall.kind)] = true;
+  for (const Grain& grain : scene.grains) met[static_cast<std::size_t>(grain.kind)] = true;
+  for (std::size_t k = 0; k < met.size(); ++k) met[k] = met[k] || !of_walls[k];
+  std::vector<const PairProperties*> pairs;
+  for (int a = 0; a < scene.kinds; ++a) {
+    for (int b = 0; b < scene.kinds; ++b) {
+      if (met[static_cast<std::size_t>(a)] && met[static_cast<std::size_t>(b)]) pairs.push_back(&scene.between(a, b));
+    }
+  }
+  return pairs;
+}
+
+bool gives_force(const GrainSystem& system) {
+  return system.options.law == NormalLaw::linear_dashpot || system.options.law == NormalLaw::hertz_dashpot;
+}
+
+/// Which pairs of grains with friction there are.
+struct Rubbing {
+  bool with_springs = false, without_springs = false;
+};
+
+Rubbing rubbing_of(const GrainScene& scene) {
+  Rubbing found;
+  for (const PairProperties* pair : pairs_of_grains(scene)) {
+    if (pair->friction > 0) (pair->tangential_ratio > 0 ? found.with_springs : found.without_springs) = true;
+  }
+  return found;
+}
+
+/// The lists as they come to be, from lanes of the lists before and from new pairs.
+class PairLists {
+ public:
+  explicit PairLists(GrainSystem& system)
+      : system_(system),
+        near_(system.near),
+        groups_(std::move(near_.groups)),
+        slips_(std::move(near_.slips)),
+        laws_(std::move(near_.laws)),
+        records_(std::move(near_.records)),
+        count_(near_.count) {
+    near_.groups.clear();
+    near_.slips.clear();
+    near_.laws.clear();
+    near_.records.clear();
+    const std::size_t room = groups_.size() + groups_.size() / 16 + 8;
+    near_.groups.reserve(room);
+    if (system.friction) near_.slips.reserve(room);
+    if (!near_.equal) near_.laws.reserve(room);
+    if (!records_.empty()) near_.records.reserve(room);
+    near_.count = 0;
+  }
+
+  /// Pairs of the list before up to (i, j): contacts stay until the loop has seen them end.
+  void keep_contacts_before(std::int32_t i, std::int32_t j) {
+    for (; at_ < count_ && std::pair(old().i[lane()], old().j[lane()]) < std::pair(i, j); ++at_) {
+      if (old().since[lane()] > PairGroup::apart) keep();
+    }
+  }
+  void see(std::int32_t i, std::int32_t j, bool near) {
+    keep_contacts_before(i, j);
+    if (at_ < count_ && old().i[lane()] == i && old().j[lane()] == j) {
+      if (near || old().since[lane()] > PairGroup::apart) keep();
+      ++at_;
+    } else if (near) {
+      add(i, j);
+    }
+  }
+  /// A new pair.
+  void add(std::int32_t i, std::int32_t j) {
+    Candidate candidate;
+    candidate.i = i;
+    candidate.j = j;
+    set_constants(system_, candidate);
+    const std::size_t k = make_room(i, j);
+    near_.groups.back().since[k] = PairGroup::apart;
+    near_.groups.back().reach[k] =
+        system_.bodies[static_cast<std::size_t>(i)].radius + system_.bodies[static_cast<std::size_t>(j)].radius;
+    const bool hertz = system_.options.law == NormalLaw::hertz_dashpot;
+    near_.groups.back().dashpot[k] =
+        (hertz ? 1 : 2) * candidate.strength * std::sqrt(candidate.stiffness * candidate.reduced_mass);
+    const GrainBody &bi = system_.bodies[static_cast<std::size_t>(i)],
+                    &bj = system_.bodies[static_cast<std::size_t>(j)];
+    near_.groups.back().mass[k] = bi.inverse_mass + bj.inverse_mass;
+    near_.groups.back().impulse[k] = 0;
+    if (system_.friction) {
+      const double share_i = bi.radius / (bi.radius + bj.radius), share_j = bj.radius / (bi.radius + bj.radius);
+      PairSlips& slips = near_.slips.back();
+      slips.turning[k] = share_i * share_i * bi.inverse_moment + share_j * share_j * bj.inverse_moment;
+      slips.dashpot[k] = candidate.sliding.dashpot;
+      slips.stretch[k] = slips.impulse[k] = 0;
+    }
+    if (!near_.equal) {
+      const PairLaw law = law_of(candidate);
+      PairLaws& laws = near_.laws.back();
+      laws.stiffness[k] = law.stiffness;
+      laws.least[k] = law.least;
+      laws.friction[k] = law.friction;
+      laws.tangential_stiffness[k] = law.tangential_stiffness;
+      laws.beyond_cap[k] = law.beyond_cap;
+    }
+  }
+
+ private:
+  [[nodiscard]] const PairGroup& old() const { return groups_[at_ / lanes_of_pairs]; }
+  [[nodiscard]] std::size_t lane() const { return at_ % lanes_of_pairs; }
+
+  std::size_t make_room(std::int32_t i, std::int32_t j) {
+    const std::size_t k = near_.count % lanes_of_pairs;
+    if (k == 0) {
+      near_.groups.emplace_back();
+      std::fill_n(near_.groups.back().since, lanes_of_pairs, PairGroup::unused);
+      std::fill_n(near_.groups.back().reach, lanes_of_pairs, 1.0);  // anything that can be divided by
+      if (system_.friction) near_.slips.emplace_back();
+      if (!near_.equal) near_.laws.emplace_back();
+      if (!records_.empty()) near_.records.emplace_back();
+    }
+    ++near_.count;
+    near_.groups.back().i[k] = i;
+    near_.groups.back().j[k] = j;
+    return k;
+  }
+
+  void keep() {
+    const PairGroup& before = old();
+    const std::size_t g = at_ / lanes_of_pairs, from = lane(), to = make_room(before.i[from], before.j[from]);
+    PairGroup& group = near_.groups.back();
+    group.since[to] = before.since[from];
+    copy(before, from, group, to, &PairGroup::reach, &PairGroup::dashpot, &PairGroup::mass, &PairGroup::impulse);
+    if (system_.friction) {
+      copy(slips_[g], from, near_.slips.back(), to, &PairSlips::turning, &PairSlips::dashpot, &PairSlips::stretch,
+           &PairSlips::impulse);
+    }
+    if (!near_.equal) {
+      copy(laws_[g], from, near_.laws.back(), to, &PairLaws::stiffness, &PairLaws::least, &PairLaws::friction,
+           &PairLaws::tangential_stiffness, &PairLaws::beyond_cap);
+    }
+    if (!records_.empty()) {
+      copy(records_[g], from, near_.records.back(), to, &PairRecords::overlap, &PairRecords::closing,
+           &PairRecords::normal_x, &PairRecords::normal_y);
+    }
+  }
+
+  /// A lane of columns that both have.
+  template <class Group, class... Column>
+  static void copy(const Group& group, std::size_t from, Group& to_group, std::size_t to, Column... columns) {
+    (((to_group.*columns)[to] = (group.*columns)[from]), ...);
+  }
+
+  GrainSystem& system_;
+  NearPairs& near_;
+  LaneVector<PairGroup> groups_;
+  LaneVector<PairSlips> slips_;
+  LaneVector<PairLaws> laws_;
+  LaneVector<PairRecords> records_;
+  std::size_t count_, at_ = 0;
+};
+
+}  // namespace
+
+std::size_t NearPairs::bytes() const {
+  return bodies.capacity() * sizeof(PairBody) + groups.capacity() * sizeof(PairGroup) +
+         slips.capacity() * sizeof(PairSlips) + laws.capacity() * sizeof(PairLaws) +
+         records.capacity() * sizeof(PairRecords);
+}
+
+bool go_by_eights(const GrainSystem& system) {
+  return gives_force(system) && !rubbing_of(system.scene).without_springs;
+}
+
+double margin_of_near_pairs(const GrainSystem& system, double size, double reach) {
+  const double wanted = std::max({least_margin * size, margin_of_mean * std::sqrt(reach * size), 4 * reach});
+  return std::min(wanted, system.margin);
+}
+
+void prepare_near_pairs(GrainSystem& system) {
+  NearPairs& near = system.near;
+  const std::vector<Grain>& grains = system.scene.grains;
+  const auto discs =
+      std::count_if(grains.begin(), grains.end(), [](const Grain& grain) { return grain.shape() == GrainShape::disc; });
+  if (discs < 2 || !gives_force(system)) return;
+  const Rubbing rubbing = rubbing_of(system.scene);
+  if (rubbing.without_springs && (rubbing.with_springs || !system.parts.empty())) return;
+  near.rigid = rubbing.without_springs;
+  const std::vector<const PairProperties*> pairs = pairs_of_grains(system.scene);
+  near.active = true;
+  near.equal = std::all_of(pairs.begin(), pairs.end(), [&](const PairProperties* pair) {
+    const bool plain =
+        pair->stiffness > 0 && (!system.friction || (pair->friction > 0 && pair->cap == FrictionCap::whole_force));
+    return plain && *pair == *pairs[0];
+  });
+  if (near.equal) {
+    Candidate candidate;
+    candidate.j = 1;
+    set_constants(system, candidate);
+    near.law = law_of(candidate);
+  }
+  near.loop = near_pair_loop(system);
+  near.bodies.resize(system.bodies.size());
+  load_pair_bodies(system);
+}
+
+void find_near_pairs(GrainSystem& system, double reach) {
+  const NeighbourList& list = *system.near.outer;
+  NearPairs& near = system.near;
+  near.margin = margin_of_near_pairs(system, system.smallest_radius, reach);
+  near.moved = 0;
+  PairLists lists(system);
+  const bool shapes = !system.parts.empty();
+  std::size_t next_bond = 0;
+  for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+    const Vec2 centre = system.motions[i].position;
+    const double own = system.bodies[i].radius + near.margin;
+    for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
+      const std::int32_t partner = list.partner[static_cast<std::size_t>(p)];
+      if (are_tied(system.bonds, next_bond, static_cast<std::int32_t>(i), partner)) continue;
+      if (shapes && !are_discs(system, static_cast<std::int32_t>(i), partner)) continue;
+      const auto j = static_cast<std::size_t>(partner);
+      const Vec2 branch = system.motions[j].position - centre;
+      const double far = own + system.bodies[j].radius;
+      lists.see(static_cast<std::int32_t>(i), partner, dot(branch, branch) <= far * far);
+    }
+  }
+  lists.keep_contacts_before(std::numeric_limits<std::int32_t>::max(), 0);
+}
+
+void refresh_near_pairs(GrainSystem& system, double reach) {
+  NearPairs& near = system.near;
+  if (2 * (near.moved + reach) > near.margin) find_near_pairs(system, reach);
+  near.moved += reach;
+}
+
+void load_pair_bodies(GrainSystem& system) {
+  for (std::size_t i = 0; i < system.near.bodies.size(); ++i) {
+    const GrainBody& body = system.bodies[i];
+    const GrainMotion& motion = system.motions[i];
+    const Push& push = system.pushes[i];
+    system.near.bodies[i] =
+        pair_body(body, motion, body.inverse_mass * push.impulse, body.inverse_moment * push.torque);
+  }
+}
+
+void touch_near_pairs(GrainSystem& system) {
+  NearPairs& near = system.near;
+  const bool verlet = system.options.verlet();
+  for (std::size_t p = 0; p < near.count; ++p) {
+    const auto i = static_cast<std::size_t>(near.first(p)), j = static_cast<std::size_t>(near.second(p));
+    const Vec2 branch = system.motions[j].position - system.motions[i].position;
+    if (!(meeting_of_grains(system.bodies[i], system.bodies[j], branch).overlap > 0)) continue;
+    near.groups[p / lanes_of_pairs].since[p % lanes_of_pairs] = system.step - (verlet ? 1 : 0);
+    ++system.counters.contacts;
+  }
+}
+
+Candidate candidate_of(const GrainSystem& system, std::size_t p) {
+  const NearPairs& near = system.near;
+  const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
+  Candidate candidate;
+  candidate.i = near.first(p);
+  candidate.j = near.second(p);
+  candidate.touching = near.touching(p);
+  if (!candidate.touching) return candidate;
+  candidate.steps = system.step - near.groups[g].since[k];
+  candidate.impulse = near.groups[g].impulse[k];
+  if (system.friction) {
+    candidate.stretch = near.slips[g].stretch[k];
+    candidate.tangential_impulse = near.slips[g].impulse[k];
+  }
+  if (g < near.records.size()) {
+    const PairRecords& records = near.records[g];
+    candidate.overlap = records.overlap[k];
+    candidate.closing = records.closing[k];
+    candidate.normal = {records.normal_x[k], records.normal_y[k]};
+  }
+  return candidate;
+}
+
+std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system) {
+  const NearPairs& near = system.near;
+  const bool hertz = system.options.law == NormalLaw::hertz_dashpot;
+  double normal = 0, tangential = 0;
+  for (std::size_t p = 0; p < near.count; ++p) {
+    const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
+    if (system.friction) {
+      const double spring = near.equal ? near.law.tangential_stiffness : near.laws[g].tangential_stiffness[k];
+      tangential += 0.5 * spring * near.slips[g].stretch[k] * near.slips[g].stretch[k];
+    }
+    const Vec2 branch = system.motions[static_cast<std::size_t>(near.second(p))].position -
+                        system.motions[static_cast<std::size_t>(near.first(p))].position;
+    const double overlap = near.groups[g].reach[k] - norm(branch);
+    if (!(overlap > 0)) continue;
+    const double stiffness = near.equal ? near.law.stiffness : near.laws[g].stiffness[k];
+    normal += (hertz ? 0.4 * std::sqrt(overlap) : 0.5) * stiffness * overlap * overlap;
+  }
+  return {normal, tangential};
+}
+
+void take_near_pairs(GrainSystem& system, const std::vector<Candidate>& contacts) {
+  NearPairs& near = system.near;
+  near.groups.clear();
+  near.slips.clear();
+  near.laws.clear();
+  near.count = 0;
+  near.records.resize(1);  // that there are some
+  PairLists lists(system);
+  for (const Candidate& contact : contacts) {
+    lists.add(contact.i, contact.j);
+    const std::size_t k = (near.count - 1) % lanes_of_pairs;
+    near.groups.back().since[k] = system.step - contact.steps;
+    near.groups.back().impulse[k] = contact.impulse;
+    PairRecords& records = near.records.back();
+    records.overlap[k] = contact.overlap;
+    records.closing[k] = contact.closing;
+    records.normal_x[k] = contact.normal.x;
+    records.normal_y[k] = contact.normal.y;
+    if (!system.friction) continue;
+    near.slips.back().stretch[k] = contact.stretch;
+    near.slips.back().impulse[k] = contact.tangential_impulse;
+  }
+}
+
+}  // namespace equidem

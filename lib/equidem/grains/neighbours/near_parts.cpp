@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/neighbours/near_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "equidem/grains/grain_system.hpp"
+#include "equidem/grains/contacts/part_meeting.hpp"
+
+namespace equidem {
+namespace {
+
+using Column = PartGroup::Column;
+
+/// A list as it comes to be, from lanes of the list before and from new pairs.
+class NewList {
+ public:
+  NewList(GrainSystem& system, NearParts::List& list)
+      : system_(system), list_(list), old_(std::move(list.groups)), count_(list.count) {
+    list_.groups.clear();
+    list_.groups.reserve(old_.size() + old_.size() / 16 + 8);
+    list_.count = 0;
+  }
+
+  /// Pairs of the list before up to (i, j): contacts stay until the loop has seen them end.
+  void keep_contacts_before(std::int32_t i, std::int32_t j) {
+    for (; at_ < count_ && std::pair(old().i[lane()], old().j[lane()]) < std::pair(i, j); ++at_) {
+      if (old().since[lane()] > PairGroup::apart) keep();
+    }
+  }
+  /// Go on to a pair; it is kept where it touches. \return whether it does
+  bool keep_contact(std::int32_t i, std::int32_t j) {
+    keep_contacts_before(i, j);
+    listed_ = at_ < count_ && old().i[lane()] == i && old().j[lane()] == j;
+    if (!listed_ || old().since[lane()] <= PairGroup::apart) return false;
+    keep();
+    ++at_;
+    return true;
+  }
+  /// Of the pair gone on to, which is apart: a direction along which it was, or {}.
+  [[nodiscard]] Vec2 apart() const {
+    if (!listed_) return {};
+    return {old().numbers[PartGroup::normal_x][lane()], old().numbers[PartGroup::normal_y][lane()]};
+  }
+  /// Whether it was listed; then it is kept where it is near.
+  bool leave(bool near) {
+    if (!listed_) return false;
+    if (near) keep();
+    ++at_;
+    return true;
+  }
+  /// A new pair. \param apart a direction along which they are apart, or {}
+  void add(std::int32_t i, std::int32_t j, Vec2 apart) {
+    Candidate candidate;
+    candidate.i = system_.body_of_part[static_cast<std::size_t>(i)];
+    candidate.j = system_.body_of_part[static_cast<std::size_t>(j)];
+    set_constants(system_, candidate);
+    const GrainPart &part_i = system_.parts[static_cast<std::size_t>(i)],
+                    &part_j = system_.parts[static_cast<std::size_t>(j)];
+    const GrainBody &body_i = system_.bodies[static_cast<std::size_t>(candidate.i)],
+                    &body_j = system_.bodies[static_cast<std::size_t>(candidate.j)];
+    const bool hertz = system_.options.law == NormalLaw::hertz_dashpot;
+    const std::size_t k = make_room(i, j);
+    PartGroup& group = list_.groups.back();
+    group.since[k] = PairGroup::apart;
+    for (PairLanes& column : group.numbers) column[k] = 0;
+    const auto set = [&](Column column, double number) { group.numbers[column][k] = number; };
+    set(PartGroup::reach, part_i.a + part_j.a);
+    set(PartGroup::a_i, part_i.a);
+    set(PartGroup::b_i, part_i.b);
+    set(PartGroup::a_j, part_j.a);
+    set(PartGroup::b_j, part_j.b);
+    set(PartGroup::share, part_i.size / (part_i.size + part_j.size));
+    set(PartGroup::arrived, angle_of_arrival({part_i.a, part_i.b}, {part_j.a, part_j.b}));
+    set(PartGroup::sharpest, part_i.b / part_i.a * part_i.b + part_j.b / part_j.a * part_j.b);
+    set(PartGroup::inverse_mass, body_i.inverse_mass + body_j.inverse_mass);
+    set(PartGroup::inverse_moment_i, body_i.inverse_moment);
+    set(PartGroup::inverse_moment_j, body_j.inverse_moment);
+    set(PartGroup::stiffness, candidate.stiffness);
+    set(PartGroup::dashpot,
+        (hertz ? 1 : 2) * candidate.strength * std::sqrt(candidate.stiffness * candidate.reduced_mass));
+    set(PartGroup::least, candidate.attraction ? -std::numeric_limits<double>::infinity() : 0);
+    set(PartGroup::friction, candidate.sliding.coefficient);
+    set(PartGroup::tangential_stiffness, candidate.sliding.stiffness);
+    set(PartGroup::tangential_damping,
+        2 * system_.properties(candidate).tangential_damping * std::sqrt(candidate.sliding.stiffness));
+    set(PartGroup::beyond_cap, candidate.sliding.cap == FrictionCap::spring_alone ? 1 : 0);
+    set(PartGroup::normal_x, apart.x);
+    set(PartGroup::normal_y, apart.y);
+  }
+
+ private:
+  [[nodiscard]] const PartGroup& old() const { return old_[at_ / lanes_of_pairs]; }
+  [[nodiscard]] std::size_t lane() const { return at_ % lanes_of_pairs; }
+
+  std::size_t make_room(std::int32_t i, std::int32_t j) {
+    const std::size_t k = list_.count % lanes_of_pairs;
+    if (k == 0) {
+      list_.groups.emplace_back();
+      PartGroup& group = list_.groups.back();
+      std::fill_n(group.since, lanes_of_pairs, PairGroup::unused);
+      std::fill_n(&group.numbers[0][0], PartGroup::columns * lanes_of_pairs, 1.0);  // anything that can be divided by
+    }
+    ++list_.count;
+    list_.groups.back().i[k] = i;
+    list_.groups.back().j[k] = j;
+    return k;
+  }
+  void keep() {
+    const std::size_t to = make_room(old().i[lane()], old().j[lane()]);
+    PartGroup& group = list_.groups.back();
+    group.since[to] = old().since[lane()];
+    for (std::size_t c = 0; c < PartGroup::columns; ++c) group.numbers[c][to] = old().numbers[c][lane()];
+  }
+
+  GrainSystem& system_;
+  NearParts::List& list_;
+  LaneVector<PartGroup> old_;
+  std::size_t count_, at_ = 0;
+  bool listed_ = false;
+};
+
+/// A direction along which ellipses are apart by some distance, m.
+struct Apart {
+  double gap = -std::numeric_limits<double>::infinity();
+  Vec2 normal = {};
+};
+
+/// The best of the axes of both, towards j: what a box round each says.
+Apart apart_along_axes(const Ellipse& i, const Ellipse& j, Vec2 branch) {
+  Apart best;
+  const double c = dot(i.axis, j.axis), s = cross(i.axis, j.axis);
+  const double cc = c * c, ss = s * s;
+  const auto look = [&](double way, Vec2 axis, double own, double a, double b, double along, double across) {
+    const double gap = std::abs(way) - own - std::sqrt(a * a * along + b * b * across);
+    if (gap > best.gap) best = {gap, way < 0 ? -axis : axis};
+  };
+  look(cross(i.axis, branch), perpendicular(i.axis), i.b, j.a, j.b, ss, cc);
+  look(cross(j.axis, branch), perpendicular(j.axis), j.b, i.a, i.b, ss, cc);
+  look(dot(i.axis, branch), i.axis, i.a, j.a, j.b, cc, ss);
+  look(dot(j.axis, branch), j.axis, j.a, i.a, i.b, cc, ss);
+  return best;
+}
+
+/// How far two parts are apart, or a bound of it that is enough; below 0: the overlap.
+/// \param[in,out] apart a direction along which they were apart, or {}
+double gap_of(const GrainSystem& system, std::int32_t p, std::int32_t q, double enough, Vec2& apart) {
+  const GrainPart &part_i = system.parts[static_cast<std::size_t>(p)],
+                  &part_j = system.parts[static_cast<std::size_t>(q)];
+  const auto i = static_cast<std::size_t>(system.body_of_part[static_cast<std::size_t>(p)]);
+  const auto j = static_cast<std::size_t>(system.body_of_part[static_cast<std::size_t>(q)]);
+  const Vec2 branch = system.motions[j].position - system.motions[i].position +
+                      (offset_of(part_j, system.axes[j]) - offset_of(part_i, system.axes[i]));
+  if (part_i.is_round() && part_j.is_round()) return norm(branch) - (part_i.a + part_j.a);
+  const Ellipse of_i{part_i.a, part_i.b, system.axes[i]}, of_j{part_j.a, part_j.b, system.axes[j]};
+  if (apart != Vec2{}) {
+    const double along = separation_along(of_i, of_j, branch, apart);
+    if (along > enough) return along;
+  }
+  const Apart boxes = apart_along_axes(of_i, of_j, branch);
+  if (boxes.gap > enough) {
+    apart = boxes.normal;
+    return boxes.gap;
+  }
+  const EllipseContact contact = contact_of_ellipses(of_i, of_j, branch, apart != Vec2{} ? apart : boxes.normal);
+  apart = contact.normal;
+  return contact.gap;
+}
+
+void find_met_parts(GrainSystem& system) {
+  NearParts& near = system.near_parts;
+  std::vector<bool> met(system.parts.size());
+  for (const NearParts::List& list : near.lists) {
+    for (std::size_t p = 0; p < list.count; ++p) {
+      const PartGroup& group = list.groups[p / lanes_of_pairs];
+      met[static_cast<std::size_t>(group.i[p % lanes_of_pairs])] = true;
+      met[static_cast<std::size_t>(group.j[p % lanes_of_pairs])] = true;
+    }
+  }
+  near.met.clear();
+  for (std::size_t k = 0; k < met.size(); ++k) {
+    if (met[k]) near.met.push_back(static_cast<std::int32_t>(k));
+  }
+}
+
+std::size_t list_of(const GrainSystem& system, std::int32_t p, std::int32_t q) {
+  const bool round =
+      system.parts[static_cast<std::size_t>(p)].is_round() && system.parts[static_cast<std::size_t>(q)].is_round();
+  return round ? 0 : 1;
+}
+
+/// All but pairs of whole discs.
+void find_close_parts(GrainSystem& system) {
+  const NeighbourList& neighbours = *system.near.outer;
+  NearParts& near = system.near_parts;
+  near.close.clear();
+  near.travelled = near.moved = 0;
+  for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+    const auto body = static_cast<std::int32_t>(i);
+    const bool disc = are_discs(system, body, body);
+    for (std::int32_t p = system.first_part[i]; p < system.first_part[i + 1]; ++p) {
+      for (std::int64_t n = neighbours.begin[i]; n < neighbours.begin[i + 1]; ++n) {
+        const std::int32_t partner = neighbours.partner[static_cast<std::size_t>(n)];
+        if (disc && are_discs(system, body, partner)) continue;
+        const auto j = static_cast<std::size_t>(partner);
+        for (std::int32_t q = system.first_part[j]; q < system.first_part[j + 1]; ++q) {
+          NearParts::Close pair{p, q, 0, {}};
+          pair.clear = gap_of(system, p, q, system.margin, pair.apart);
+          if (pair.clear <= system.margin) near.close.push_back(pair);
+        }
+      }
+    }
+  }
+}
+
+/// Those of the close parts that are nearer than the margin.
+void find_nearest_parts(GrainSystem& system, double reach) {
+  NearParts& near = system.near_parts;
+  near.margin = margin_of_near_pairs(system, near.size, reach);
+  near.travelled += near.moved;
+  near.moved = 0;
+  std::array<NewList, 2> lists{NewList(system, near.lists[0]), NewList(system, near.lists[1])};
+  for (NearParts::Close& pair : near.close) {
+    if (pair.clear - 2 * near.travelled > near.margin) continue;
+    NewList& list = lists[list_of(system, pair.i, pair.j)];
+    if (list.keep_contact(pair.i, pair.j)) continue;
+    if (list.apart() != Vec2{}) pair.apart = list.apart();
+    const double gap = gap_of(system, pair.i, pair.j, near.margin, pair.apart);
+    pair.clear = gap + 2 * near.travelled;
+    const bool is_near = gap <= near.margin;
+    if (!list.leave(is_near) && is_near) list.add(pair.i, pair.j, pair.apart);
+  }
+  for (NewList& list : lists) list.keep_contacts_before(std::numeric_limits<std::int32_t>::max(), 0);
+  find_met_parts(system);
+}
+
+}  // namespace
+
+std::size_t NearParts::bytes() const {
+  std::size_t sum =
+      bodies.capacity() * sizeof(PartBody) + met.capacity() * sizeof(std::int32_t) + close.capacity() * sizeof(Close);
+  for (const List& list : lists) sum += list.groups.capacity() * sizeof(PartGroup);
+  return sum;
+}
+
+bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
+  const auto is_disc = [&](std::int32_t body) {
+    return system.scene.grains[static_cast<std::size_t>(body)].shape() == GrainShape::disc;
+  };
+  return is_disc(i) && is_disc(j);
+}
+
+void prepare_near_parts(GrainSystem& system) {
+  if (system.parts.empty() || system.bodies.size() < 2 || !go_by_eights(system)) return;
+  if (system.options.ellipse_law != GrainOptions::EllipseLaw::exact) return;
+  NearParts& near = system.near_parts;
+  near.active = true;
+  near.lists[0].loop = near_part_loop(system, true);
+  near.lists[1].loop = near_part_loop(system, false);
+  near.bodies.resize(system.parts.size());
+  near.size = std::numeric_limits<double>::infinity();
+  for (const GrainPart& part : system.parts) near.size = std::min(near.size, part.size);
+}
+
+void find_near_parts(GrainSystem& system, double reach) {
+  find_close_parts(system);
+  find_nearest_parts(system, reach);
+}
+
+void refresh_near_parts(GrainSystem& system, double reach) {
+  NearParts& near = system.near_parts;
+  if (2 * (near.moved + reach) > near.margin) find_nearest_parts(system, reach);
+  near.moved += reach;
+}
+
+void load_part_bodies(GrainSystem& system) {
+  for (const std::int32_t p : system.near_parts.met) {
+    const auto k = static_cast<std::size_t>(p), b = static_cast<std::size_t>(system.body_of_part[k]);
+    const GrainMotion& motion = system.motions[b];
+    const GrainBody& body = system.bodies[b];
+    const GrainPart& part = system.parts[k];
+    const Push& push = system.pushes[b];
+    PartBody& seen = system.near_parts.bodies[k];
+    seen.turned = part.is_round() ? offset_of(part, system.axes[b]) : system.axes[b];
+    seen.centre = part.is_round() ? motion.position + seen.turned : motion.position;
+    seen.velocity = motion.velocity;
+    seen.middle_velocity = motion.velocity + (0.5 * body.inverse_mass) * push.impulse;
+    seen.spin = motion.spin;
+    seen.middle_spin = motion.spin + 0.5 * body.inverse_moment * push.torque;
+  }
+}
+
+void touch_near_parts(GrainSystem& system) {
+  for (NearParts::List& list : system.near_parts.lists) {
+    for (std::size_t p = 0; p < list.count; ++p) {
+      auto [candidate, pair] = candidate_of(system, list, p);
+      if (!(meeting_of_parts(system, candidate, pair).overlap > 0)) continue;
+      PartGroup& group = list.groups[p / lanes_of_pairs];
+      const std::size_t k = p % lanes_of_pairs;
+      group.since[k] = system.step - (system.options.verlet() ? 1 : 0);
+      group.numbers[PartGroup::normal_x][k] = group.numbers[PartGroup::normal_y][k] = 0;
+      ++system.counters.contacts;
+    }
+  }
+}
+
+std::pair<Candidate, PartPair> candidate_of(const GrainSystem& system, const NearParts::List& list, std::size_t p) {
+  const PartGroup& group = list.groups[p / lanes_of_pairs];
+  const std::size_t k = p % lanes_of_pairs;
+  const auto number = [&](Column column) { return group.numbers[column][k]; };
+  const Vec2 normal{number(PartGroup::normal_x), number(PartGroup::normal_y)};
+  Candidate candidate;
+  candidate.i = system.body_of_part[static_cast<std::size_t>(group.i[k])];
+  candidate.j = system.body_of_part[static_cast<std::size_t>(group.j[k])];
+  set_constants(system, candidate);
+  PartPair pair;
+  pair.i = group.i[k];
+  pair.j = group.j[k];
+  pair.tangential_damping = number(PartGroup::tangential_damping);
+  candidate.touching = list.touching(p);
+  if (!candidate.touching) {
+    pair.apart = normal;
+    return {candidate, pair};
+  }
+  candidate.steps = system.step - group.since[k];
+  candidate.normal = normal;
+  candidate.impulse = number(PartGroup::impulse);
+  candidate.tangential_impulse = number(PartGroup::tangential_impulse);
+  candidate.stretch = number(PartGroup::stretch);
+  candidate.overlap = number(PartGroup::overlap);
+  candidate.closing = number(PartGroup::closing);
+  pair.arm_i = {number(PartGroup::arm_i_x), number(PartGroup::arm_i_y)};
+  pair.arm_j = {number(PartGroup::arm_j_x), number(PartGroup::arm_j_y)};
+  return {candidate, pair};
+}
+
+void take_near_parts(GrainSystem& system, std::span<const std::pair<Candidate, PartPair>> contacts) {
+  std::array<NearParts::List, 2>& lists = system.near_parts.lists;
+  for (NearParts::List& list : lists) list.count = 0;
+  std::array<NewList, 2> taken{NewList(system, lists[0]), NewList(system, lists[1])};
+  for (const auto& [contact, pair] : contacts) {
+    const std::size_t l = list_of(system, pair.i, pair.j);
+    taken[l].add(pair.i, pair.j, contact.normal);
+    PartGroup& group = lists[l].groups.back();
+    const std::size_t k = (lists[l].count - 1) % lanes_of_pairs;
+    group.since[k] = system.step - contact.steps;
+    const auto set = [&](Column column, double number) { group.numbers[column][k] = number; };
+    set(PartGroup::impulse, contact.impulse);
+    set(PartGroup::tangential_impulse, contact.tangential_impulse);
+    set(PartGroup::stretch, contact.stretch);
+    set(PartGroup::overlap, contact.overlap);
+    set(PartGroup::closing, contact.closing);
+    set(PartGroup::arm_i_x, pair.arm_i.x);
+    set(PartGroup::arm_i_y, pair.arm_i.y);
+    set(PartGroup::arm_j_x, pair.arm_j.x);
+    set(PartGroup::arm_j_y, pair.arm_j.y);
+  }
+}
+
+}  // namespace equidem

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The parts of which bodies consist: what touches. A disc and an ellipse have one, a clump has its discs.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "equidem/contact/shapes/ellipse.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
+
+namespace equidem {
+
+/// In the frame of its body: a disc (a = b) or an ellipse whose long half-axis a lies along x.
+struct GrainPart {
+  Vec2 offset;          ///< of the centre, m
+  double a = 0, b = 0;  ///< half-axes, m
+  double size = 0;      ///< radius of the disc of equal area, m
+  [[nodiscard]] bool is_round() const { return a == b; }
+};
+
+/// Whether any body is more than a disc round its own centre.
+bool has_shapes(const GrainScene& scene);
+
+/// Parts of a grain; those of a clump in the order of their places, so that the caller's order changes no bit.
+std::vector<GrainPart> parts_of(const Grain& grain, const std::vector<Clump>& clumps);
+
+/// The x-axis of a body as unit vector, to 1e-15; the same bits on every machine.
+Vec2 axis_at(double angle);
+
+/// From the centre of mass of a body to the centre of a part.
+inline Vec2 offset_of(const GrainPart& part, Vec2 axis) {
+  return part.offset.x * axis + part.offset.y * perpendicular(axis);
+}
+
+/// Whether a point lies in a part.
+/// \param branch from the centre of the part to the point
+inline bool holds(const GrainPart& part, Vec2 axis, Vec2 branch) {
+  const double x = dot(axis, branch) / part.a, y = cross(axis, branch) / part.b;
+  return x * x + y * y < 1;
+}
+
+/// What a contact of parts has beyond a Candidate; one for each candidate, none in scenes of discs alone.
+struct PartPair {
+  std::int32_t i = 0, j = 0;      ///< of GrainSystem::parts; j = 0 of a wall
+  double tangential_damping = 0;  ///< 2 zeta_T sqrt(kT): times the root of the tangential mass the dashpot
+  Vec2 apart;         ///< along it ellipses were apart a moment ago; {}: not known. Saves time, changes no result
+  Vec2 arm_i, arm_j;  ///< of the last step: from the centres of the bodies to the contact point, m
+};
+
+}  // namespace equidem

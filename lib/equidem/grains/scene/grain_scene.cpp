@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/scene/grain_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/grains/contacts/bond_step.hpp"
+#include "equidem/grains/neighbours/neighbours.hpp"
+#include "equidem/grains/scene/shape_check.hpp"
+#include "equidem/grains/scene/wall_joints.hpp"
+
+namespace equidem {
+namespace {
+
+bool positive(double value) {
+  return value > 0 && std::isfinite(value);
+}
+
+bool not_negative(double value) {
+  return value >= 0 && std::isfinite(value);
+}
+
+void check_grain(const GrainScene& scene, std::size_t i) {
+  const Grain& grain = scene.grains[i];
+  if (!positive(grain.radius)) {
+    bad_input(fmt::format("grain {} has the radius {} m", i, grain.radius), "it would touch nothing", "Give a radius > 0");
+  }
+  if (!positive(grain.inertia.mass) || !positive(grain.inertia.moment)) {
+    bad_input(
+        fmt::format("grain {} has the mass {} and the moment of inertia {}", i, grain.inertia.mass, grain.inertia.moment),
+        "a force could not move it by a number", "Give a radius and a density whose mass is a number > 0");
+  }
+  constexpr double most = 1e150;
+  for (const double number : {grain.position.x, grain.position.y, grain.radius, grain.velocity.x, grain.velocity.y,
+                              grain.spin * grain.radius, grain.spin, grain.angle}) {
+    if (std::abs(number) <= most) continue;
+    bad_input(fmt::format("grain {} has a position, a velocity or a spin, a radius or an angle of {}", i, number),
+              fmt::format("squares of what is above {:.0e} are no numbers", most), "Give smaller numbers");
+  }
+  if (grain.kind < 0 || grain.kind >= scene.kinds) {
+    bad_input(fmt::format("grain {} is of the kind {}", i, grain.kind), fmt::format("the table of pairs has {}", scene.kinds),
+              "Use kinds from 0 to one less than that");
+  }
+}
+
+void check_pair(const PairProperties& pair, const GrainOptions& options) {
+  if ((pair.stiffness != 0) == (pair.dimensionless != 0)) {
+    bad_input(
+        pair.stiffness != 0 ? "a contact has a stiffness and a dimensionless stiffness" : "a contact has no stiffness",
+        "one number says how hard a contact is", "Give one of the two");
+  }
+  const double hardness = pair.stiffness != 0 ? pair.stiffness : pair.dimensionless;
+  if (!positive(hardness)) {
+    bad_input(fmt::format("a contact has the stiffness {}", hardness), "bodies would not rebound", "Give a stiffness > 0");
+  }
+  if (is_map(options.law)) {
+    if (!(pair.restitution >= 0 && pair.restitution <= 1)) {
+      bad_input(fmt::format("the restitution is {}", pair.restitution), "an impact cannot gain energy or pass through",
+                "Give a number from 0 to 1");
+    }
+  } else if (options.law == NormalLaw::hertz_dashpot) {
+    hertz_damping_of(pair.restitution, pair.end);
+  } else {
+    damping_ratio_of(pair.restitution, pair.end);
+  }
+  if (!not_negative(pair.friction) || !not_negative(pair.tangential_ratio) || !not_negative(pair.tangential_damping)) {
+    bad_input(fmt::format("friction {}, tangential_ratio {}, tangential_damping {}", pair.friction, pair.tangential_ratio,
+                     pair.tangential_damping),
+              "negative ones would feed the motion", "Give 0 or more");
+  }
+  if (pair.tangential_damping > 0 && !(pair.tangential_ratio > 0)) {
+    bad_input("tangential damping is given without a tangential spring", "it is measured by that spring",
+              "Give tangential_ratio > 0");
+  }
+}
+
+/// 1/m of the two lightest bodies of a kind, 0 of walls and of bodies that are not there.
+struct Lightest {
+  double inverse = 0, second = 0;
+  int bodies = 0;
+};
+
+std::vector<Lightest> lightest_of_kinds(const GrainScene& scene) {
+  std::vector<Lightest> kinds(static_cast<std::size_t>(scene.kinds));
+  for (const Grain& grain : scene.grains) {
+    Lightest& kind = kinds[static_cast<std::size_t>(grain.kind)];
+    const double inverse = 1 / grain.inertia.mass;
+    kind.second = std::max(kind.second, std::min(kind.inverse, inverse));
+    kind.inverse = std::max(kind.inverse, inverse);
+    ++kind.bodies;
+  }
+  for (const GrainWall& wall : scene.walls) ++kinds[static_cast<std::size_t>(wall.kind)].bodies;
+  return kinds;
+}
+
+/// a = k dt²/m of the lightest bodies that meet so: five_case_map is limited by it.
+void check_five_case(const GrainScene& scene, const GrainOptions& options) {
+  const std::vector<Lightest> kinds = lightest_of_kinds(scene);
+  for (int a = 0; a < scene.kinds; ++a) {
+    for (int b = a; b < scene.kinds; ++b) {
+      const Lightest& first = kinds[static_cast<std::size_t>(a)];
+      const Lightest& other = kinds[static_cast<std::size_t>(b)];
+      if (first.bodies == 0 || other.bodies < (a == b ? 2 : 1)) continue;
+      const double inverse = first.inverse + (a == b ? first.second : other.inverse);
+      if (inverse == 0) continue;  // two walls
+      const PairProperties& pair = scene.between(a, b);
+      const double stiffness = pair.stiffness * options.time_step * options.time_step * inverse;
+      check_five_case_range(pair.stiffness > 0 ? stiffness : pair.dimensionless, pair.restitution);
+    }
+  }
+}
+
+void check_table(const GrainScene& scene, const GrainOptions& options) {
+  if (scene.kinds < 1 ||
+      scene.pairs.size() != static_cast<std::size_t>(scene.kinds) * static_cast<std::size_t>(scene.kinds)) {
+    bad_input(fmt::format("{} pairs are given for {} kinds", scene.pairs.size(), scene.kinds),
+              "the table has kinds times kinds", "Give every pair");
+  }
+  for (int a = 0; a < scene.kinds; ++a) {
+    for (int b = 0; b < scene.kinds; ++b) {
+      check_pair(scene.between(a, b), options);
+      if (!(scene.between(a, b) == scene.between(b, a))) {
+        bad_input(fmt::format("kinds {} and {} meet by other rules than {} and {}", a, b, b, a), "action is reaction",
+                  "Make the table symmetric");
+      }
+    }
+  }
+  if (options.law == NormalLaw::five_case_map) check_five_case(scene, options);
+}
+
+[[noreturn]] void refuse_grain(std::size_t grain, const PlaceOfGrain& where, std::string problem, std::string why,
+                               std::string remedy) {
+  throw Error(ErrorKind::bad_input, std::move(problem), std::move(why), std::move(remedy),
+              where ? where(grain) : std::string());
+}
+
+/// Nothing may start inside something else.
+void check_places(const GrainScene& scene, const PlaceOfGrain& where) {
+  std::vector<Circle> circles;
+  for (const Grain& grain : scene.grains) circles.push_back({grain.position, grain.radius});
+  const NeighbourList near = neighbours_within(circles, 0);
+  for (std::size_t i = 0; i < circles.size(); ++i) {
+    for (std::int64_t p = near.begin[i]; p < near.begin[i + 1]; ++p) {
+      const auto j = static_cast<std::size_t>(near.partner[static_cast<std::size_t>(p)]);
+      const double distance = norm(circles[j].centre - circles[i].centre);
+      if (!are_inside_one_another(scene, scene.grains[i], scene.grains[j])) continue;
+      refuse_grain(j, where, fmt::format("grains {} and {} start inside one another", i, j),
+                   fmt::format("their centres are {:.4g} m apart, their radii {:.4g} m and {:.4g} m", distance,
+                          circles[i].radius, circles[j].radius),
+                   "Move them apart");
+    }
+  }
+  for (std::size_t i = 0; i < circles.size(); ++i) {
+    for (const GrainWall& wall : scene.walls) {
+      if (!is_behind(scene, scene.grains[i], wall)) continue;
+      refuse_grain(i, where, fmt::format("grain {} starts behind wall \"{}\" or on it", i, wall.name),
+                   "a contact could not tell which way is out",
+                   wall.shape == GrainWall::Shape::line ? "Move it, or turn the normal of the wall round" : "Move it");
+    }
+  }
+}
+
+}  // namespace
+
+void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where) {
+  if (scene.grains.empty()) bad_input("the scene has no grains", "there is nothing to move", "Add a grain");
+  if (!positive(options.time_step)) {
+    bad_input(fmt::format("the time step is {} s", options.time_step), "time could not go on", "Give a step > 0");
+  }
+  if (!not_negative(options.reference_length) || !not_negative(options.margin)) {
+    bad_input(fmt::format("the reference length is {} m, the margin {} m", options.reference_length, options.margin),
+              "lengths are not negative", "Give 0 to have them chosen");
+  }
+  check_laws_of_shapes(scene, options);
+  const bool own_step = is_map(options.law) || options.law == NormalLaw::exact_flow;
+  if (own_step && options.verlet()) {
+    bad_input(fmt::format("{} is asked for with the law \"{}\"",
+                     options.scheme == GrainOptions::Scheme::velocity_verlet ? "velocity_verlet" : "corrected_verlet",
+                     to_string(options.law)),
+              "that law says itself how a step is made",
+              "Leave the scheme out, or use linear_dashpot or hertz_dashpot");
+  }
+  if (!std::isfinite(scene.gravity.x + scene.gravity.y)) {
+    bad_input("gravity is not a number", "nothing could fall by it", "Give finite numbers");
+  }
+  for (std::size_t i = 0; i < scene.grains.size(); ++i) {
+    try {
+      check_grain(scene, i);
+      check_shape(scene, i);
+    } catch (const Error& error) {
+      throw error.at(where ? where(i) : std::string());
+    }
+  }
+  for (const GrainWall& wall : scene.walls) {
+    check(wall);
+    if (wall.kind < 0 || wall.kind >= scene.kinds) {
+      bad_input(fmt::format("wall \"{}\" is of the kind {}", wall.name, wall.kind),
+                fmt::format("the table of pairs has {}", scene.kinds), "Use kinds from 0 to one less than that");
+    }
+  }
+  double smallest = scene.grains.front().radius;
+  for (const Grain& grain : scene.grains) smallest = std::min(smallest, grain.radius);
+  if (const auto twice = coinciding_walls(scene.walls, joint_gap * smallest)) {
+    bad_input(fmt::format("walls \"{}\" and \"{}\" lie on one another", scene.walls[twice->first].name,
+                     scene.walls[twice->second].name),
+              "a grain would meet both at once, twice as stiff", "Remove one, or let it end where the other begins");
+  }
+  check_table(scene, options);
+  check_places(scene, where);
+  check_bonds(scene, options);
+}
+
+}  // namespace equidem

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/homogenize/calibrate/calibrate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/homogenize/calibrate/ratio_search.hpp"
+
+namespace equidem {
+namespace {
+
+double bulk_part(const Matrix3& c) {
+  return (c[0][0] + c[1][1] + 2 * c[0][1]) / 4;
+}
+double shear_part(const Matrix3& c) {
+  return (c[0][0] + c[1][1] - 2 * c[0][1] + 4 * c[2][2]) / 8;
+}
+
+/// q = G/K -> nu, at least -1.
+double poisson_ratio_of(double shear_to_bulk, Plane plane) {
+  const double q = shear_to_bulk;
+  if (plane == Plane::strain) return std::max(-1.0, (1 - q) / 2);
+  return std::isfinite(q) ? (1 - q) / (1 + q) : -1;
+}
+
+template <std::size_t N>
+void scale(SquareMatrix<N>& matrix, double factor) {
+  for (auto& row : matrix)
+    for (double& entry : row) entry *= factor;
+}
+
+/// The stiffness with all springs `factor` times as stiff: the motions stay.
+void scale_springs(EffectiveStiffness& c, double factor) {
+  scale(c.stiffness, factor);
+  scale(c.tangential_part, factor);
+  scale(c.normal_part, factor);
+  scale(c.gradient_stiffness, factor);
+  c.error_bound *= factor;
+}
+
+void check(const Assembly& assembly, const CalibrateOptions& options) {
+  if (!(options.tolerance >= 1e-14 && options.tolerance <= 1e-2)) {
+    bad_input(fmt::format("the tolerance of the calibration is {:.6g}", options.tolerance),
+              "it is a relative error from 1e-14 to 1e-2", "Leave it at 1e-11");
+  }
+  if (!assembly.contact_kN.empty() || !assembly.contact_kT.empty()) {
+    bad_input("the assembly file gives springs of its own", "calibration chooses the springs",
+              "Remove \"springs\" from the assembly file, or set assembly.own_springs = false");
+  }
+}
+
+/// Homogenizes one assembly with kN = 1 Pa at many spring ratios and keeps the last result.
+class Homogenizer {
+ public:
+  Homogenizer(const Assembly& assembly, const CalibrateOptions& options)
+      : assembly_(assembly), weighting_(options.weighting), options_(options.homogenize) {
+    if (options_.boundary == Boundary::periodic && !assembly.periodic()) options_.boundary = Boundary::displacement;
+  }
+
+  /// Not stable where the network cannot be homogenized at this ratio: a mechanism, or too near a loss of stability.
+  RatioSample sample(double ratio) {
+    stop_if_interrupted();
+    ++factorizations_;
+    ratio_ = ratio;
+    try {
+      last_ =
+          effective_stiffness(assembly_, contact_springs(assembly_, SpringConstants{1, ratio}, weighting_), options_);
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::interrupted) throw;
+      failure_ = error;
+      return {.ratio = ratio, .stable = false};
+    }
+    for (const auto& [stage, seconds] : last_.times.stages()) times_.add(stage, seconds);
+    const double K = bulk_part(last_.stiffness), G = shear_part(last_.stiffness);
+    const double K_T = bulk_part(last_.tangential_part), G_T = shear_part(last_.tangential_part);
+    return {.ratio = ratio,
+            .shear_to_bulk = G / K,
+            .slope = (G_T * K - G * K_T) / (ratio * K * K),
+            .bulk_growth = K_T / K,
+            .stable = last_.unstable_modes == 0 && eigenstrains(last_.stiffness).values[0] > 0};
+  }
+
+  /// The last sample, with springs `kN` times as stiff.
+  void deliver(double kN, Calibration& result) {
+    scale_springs(last_, kN);
+    result.springs = {kN, ratio_ * kN};
+    result.achieved = std::move(last_);
+    result.times = times_;
+    result.factorizations = factorizations_;
+  }
+
+  [[nodiscard]] const EffectiveStiffness& last() const { return last_; }
+  /// Why the last sample that could not be homogenized could not.
+  [[noreturn]] void fail() const {
+    if (failure_) throw *failure_;
+    computation_failed("the stiffness of the assembly is not positive at any spring ratio tried", "",
+                       "Ask equidem homogenize about it");
+  }
+  [[nodiscard]] bool failed() const { return failure_.has_value(); }
+
+ private:
+  const Assembly& assembly_;
+  SpringWeighting weighting_;
+  HomogenizeOptions options_;
+  double ratio_ = 0;
+  EffectiveStiffness last_;
+  std::optional<Error> failure_;
+  StageTimes times_;
+  int factorizations_ = 0;
+};
+
+void judge(const ElasticModuli& target, Calibration& result) {
+  result.moduli = effective_moduli(result.achieved.stiffness);
+  const auto error = [](double reached, double wanted) { return std::abs(reached - wanted) / wanted; };
+  result.relative_error = std::max(error(result.moduli.shear_modulus, target.shear_modulus),
+                                   error(result.moduli.bulk_modulus_2d, target.bulk_modulus_2d()));
+}
+
+/// Six decimals of nu, at least half of the last inside a limit.
+double below(double limit) {
+  return std::floor(limit * 1e6 - 0.5) / 1e6;
+}
+double above(double limit) {
+  return -below(-limit);
+}
+
+/// \param negative kT < 0 would have been tried with static_only
+[[noreturn]] void refuse_outside(const ElasticModuli& target, const RatioRange& range, bool negative) {
+  const std::string plane = to_string(target.plane);
+  const double nu = target.poisson_ratio;
+  const double lowest = poisson_ratio_of(range.greatest, target.plane);
+  const double highest = poisson_ratio_of(range.least, target.plane);
+  const std::string why = fmt::format("found for kT/kN from {} to {:.4g}",
+                                 range.closed ? "0" : fmt::format("{:.4g}", range.smallest.ratio), range.largest.ratio);
+  if (highest <= -1) {
+    bad_input(fmt::format("this assembly shows no Poisson's ratio in plane {}", plane),
+              "its G is at least three times its K, " + why + ", and no isotropic solid has that",
+              "Ask in plane stress, or for another assembly");
+  }
+  const std::string remedy = nu > highest ? fmt::format("Ask for a Poisson's ratio of at most {:.6f}{}", below(highest),
+                                                   negative ? ", or allow kT < 0 with static_only = true" : "")
+                                          : fmt::format("Ask for a Poisson's ratio of at least {:.6f}", above(lowest));
+  bad_input(fmt::format("Poisson's ratio {:.9g} in plane {} is out of the range of this assembly, {:.6g} to {:.6g}", nu,
+                   plane, lowest, highest),
+            why, remedy);
+}
+
+/// \param found where find_negative_ratio ended
+[[noreturn]] void refuse_unstable(const ElasticModuli& target, const FoundRatio& found) {
+  const double highest = poisson_ratio_of(found.at.shear_to_bulk, target.plane);
+  bad_input(fmt::format("Poisson's ratio {:.9g} in plane {} is beyond the static limit of this assembly",
+                   target.poisson_ratio, to_string(target.plane)),
+            fmt::format("short of it the highest is {:.6g}, at kT/kN = {:.4g}; it lies at {:.3g}", highest, found.at.ratio,
+                   found.limit),
+            fmt::format("Ask for a Poisson's ratio of at most {:.6f}", below(highest)));
+}
+
+Calibration search(const Assembly& assembly, const ElasticModuli& target, const CalibrateOptions& options) {
+  const double wanted = target.shear_modulus / target.bulk_modulus_2d();
+  Homogenizer homogenizer(assembly, options);
+  const RatioSampler sample = [&](double ratio) { return homogenizer.sample(ratio); };
+
+  RatioRange range = sample_range(sample);
+  if (!range.smallest.stable || !range.largest.stable) homogenizer.fail();
+  const bool between = wanted >= range.least * (1 - options.tolerance) && wanted <= range.greatest;
+  const bool below_zero = range.closed && range.smallest.slope > 0 && wanted < range.at_zero;
+  Calibration result;
+  FoundRatio found, negative;
+  const auto try_negative = [&] {
+    if (below_zero && options.static_only)
+      found = negative = find_negative_ratio(sample, range, wanted, options.tolerance);
+  };
+  if (range.rising && between) {
+    found = find_ratio(sample, range, wanted, options.tolerance);
+  } else if (range.rising) {
+    try_negative();
+  }
+  if (!found.reached) {
+    found = find_by_scan(sample, range, wanted, options.tolerance);
+    result.scanned = true;
+  }
+  if (!found.reached && !range.rising) try_negative();
+  if (!found.reached) {
+    if (negative.at.ratio < 0 && negative.at.shear_to_bulk < range.least) refuse_unstable(target, negative);
+    refuse_outside(target, range, below_zero && !options.static_only);
+  }
+  homogenizer.deliver(target.shear_modulus / shear_part(homogenizer.last().stiffness), result);
+  result.smallest_shear_to_bulk = range.least;
+  result.largest_shear_to_bulk = range.greatest;
+  result.method = "Newton on kT/kN";
+  result.iterations = found.steps;
+  result.rising = found.rising;
+  judge(target, result);
+  return result;
+}
+
+[[noreturn]] void refuse_negative_lattice(const ElasticModuli& target, double ratio) {
+  bad_input(fmt::format("Poisson's ratio {:.12g} in plane {} needs kT < 0 on the hexagonal lattice", target.poisson_ratio,
+                   to_string(target.plane)),
+            fmt::format("kT/kN = {:.4g} by Abe 1996, eq. 34, and no motion of the discs is stable then", ratio),
+            fmt::format("Ask for a Poisson's ratio of at most {}, or allow kT < 0 with static_only = true",
+                   target.plane == Plane::strain ? "1/4" : "1/3"));
+}
+
+[[noreturn]] void refuse_unstable_lattice(const ElasticModuli& target, double ratio) {
+  bad_input(fmt::format("Poisson's ratio {:.9g} in plane {} is beyond the static limit of the hexagonal lattice",
+                   target.poisson_ratio, to_string(target.plane)),
+            fmt::format("it needs kT/kN = {:.6g}, and the infinite lattice gives way at -1/3", ratio),
+            fmt::format("Ask for a Poisson's ratio below {}", target.plane == Plane::strain ? "1/3" : "1/2"));
+}
+
+Calibration solve_lattice(const Assembly& assembly, const ElasticModuli& target, const CalibrateOptions& options) {
+  const Packing packing = *options.lattice;
+  if (options.weighting != SpringWeighting::uniform) {
+    bad_input(fmt::format("the weighting is \"{}\" on a lattice", to_string(options.weighting)),
+              "its relations to moduli (Abe 1996, eqs. 31 and 34) are for equal springs",
+              "Use weighting = \"uniform\"");
+  }
+  const SpringConstants springs = springs_for(target, packing, {}, NegativeTangential::static_only);
+  const double ratio = springs.ratio();
+  if (ratio < 0 && !options.static_only) refuse_negative_lattice(target, ratio);
+  if (packing == Packing::hexagonal && ratio <= -1.0 / 3) refuse_unstable_lattice(target, ratio);
+  Calibration result;
+  result.smallest_shear_to_bulk = packing == Packing::square ? 1 : 0.5;  // hexagonal: q = (1 + r)/2
+  if (packing == Packing::square) result.largest_shear_to_bulk = 1;
+  result.scanned = true;
+  result.method = fmt::format("closed form, Abe 1996, eq. ({})", packing == Packing::square ? 31 : 34);
+  result.verified = assembly.periodic();
+  if (result.verified) {
+    Homogenizer homogenizer(assembly, options);
+    if (!homogenizer.sample(ratio).stable) {
+      if (homogenizer.failed()) homogenizer.fail();
+      refuse_unstable_lattice(target, ratio);
+    }
+    // Not scaled to the wanted moduli: the closed form is tried as it is.
+    homogenizer.deliver(springs.kN, result);
+  } else {
+    result.achieved.stiffness = isotropic_stiffness(target.bulk_modulus_2d(), target.shear_modulus);
+  }
+  result.springs = springs;
+  judge(target, result);
+  return result;
+}
+
+}  // namespace
+
+double Calibration::lowest_poisson_ratio(Plane plane) const {
+  return poisson_ratio_of(largest_shear_to_bulk, plane);
+}
+
+double Calibration::highest_poisson_ratio(Plane plane) const {
+  return poisson_ratio_of(smallest_shear_to_bulk, plane);
+}
+
+Calibration calibrate(const Assembly& assembly, const ElasticModuli& target, const CalibrateOptions& options) {
+  check(target);
+  check(assembly, options);
+  Calibration result = options.lattice ? solve_lattice(assembly, target, options) : search(assembly, target, options);
+  // Rounding of the homogenization itself, which the tolerance may lie below.
+  const double accepted = std::max(options.tolerance, 1e-10);
+  if (!(result.relative_error <= accepted)) {
+    computation_failed(fmt::format("the moduli reached are off by {:.2g}", result.relative_error),
+                       result.verified ? "the springs do not give them on this assembly" : "",
+                       "Check that the assembly is the lattice that it is said to be");
+  }
+  return result;
+}
+
+}  // namespace equidem

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// As many random cells, as large as needed: the cheapest ensemble that tells the moduli to an accuracy.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "equidem/homogenize/ensemble/ensemble.hpp"
+#include "equidem/homogenize/ensemble/ensemble_statistics.hpp"
+
+namespace equidem {
+
+struct EnsembleAccuracy {
+  double accuracy = 0.01;    ///< > 0: of K and G relative, of nu (plane strain) as it is
+  double confidence = 0.95;  ///< that all three are met
+  std::uint64_t first_seed = 1;
+  std::int64_t smallest = 32;  ///< discs in the smallest cells that are tried
+  double most_discs = 1e8;     ///< in all cells together
+};
+
+/// Cells of one size and their number.
+struct EnsembleSetting {
+  std::int64_t discs = 0;
+  int samples = 0;
+
+  [[nodiscard]] double all_discs() const { return static_cast<double>(discs) * samples; }
+  /// Work to sample them, in discs: elimination of a plane network of N takes slightly more than N, as N^1.1.
+  [[nodiscard]] double work() const;
+};
+
+struct AccurateEnsemble {
+  EnsembleSetting chosen;
+  EnsemblePlan plan;                    ///< of all sizes sampled; samples is that of the chosen size
+  std::vector<EnsembleSample> samples;  ///< pilot cells too
+  EnsembleStatistics statistics;        ///< of all sizes sampled
+  double estimated = 0;            ///< error of the mean of the chosen cells: scatter and drift, the worst of the three
+  EnsembleSetting ten_times_more;  ///< what a tenth of the accuracy asked for would take
+  bool stopped = false;            ///< by the user, before the end
+};
+
+/// Small cells of two sizes tell scatter and drift; the cheapest size and number follow from
+///
+///   P(|normal(drift/N, s)| > accuracy), summed over K, G and nu, <= 1 - confidence,   s² = amplitude²/(N S) + (error of drift)²/N²,
+///
+/// at least eight cells; they are sampled, and more of them until their own scatter
+/// reaches the accuracy. The choice depends on the samples alone, not on the clock.
+/// \throws Error (computation_failed) where that takes more discs than most_discs, naming what can be reached, or where no two cells have
+///         moduli
+AccurateEnsemble sample_to_accuracy(const CellSampler& sampler, const EnsembleAccuracy& options,
+                                    const std::function<void(const std::vector<EnsembleSample>& done)>& save = {});
+
+}  // namespace equidem

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Supernodal Cholesky factorization by CHOLMOD (Chen, Davis, Hager & Rajamanickam 2008).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "equidem/core/stopwatch.hpp"
+#include "equidem/linear/degrees_of_freedom.hpp"
+#include "equidem/linear/factorization.hpp"
+#include "equidem/linear/multifrontal/front.hpp"
+
+namespace equidem {
+
+/// Who chooses the elimination order.
+enum class CholmodOrdering {
+  ours,   ///< the given order of discs
+  metis,  ///< METIS nested dissection on the graph of unknowns
+  amd,    ///< approximate minimum degree on the graph of unknowns
+};
+
+/// What a comparison of solvers sets and learns.
+struct CholmodTrial {
+  bool keep_thread_settings = false;  ///< leave the threads of BLAS and OpenMP as the process has them
+  StageTimes times;                   ///< compression, ordering, analysis, factorization
+};
+
+/// K = L L^T over the components that are not held, with 32-bit indices as long as they reach. Returns a null pointer
+/// where K is not positive definite to working precision; `report`, where given, tells where. Held components are
+/// solved as rows of a unit matrix times the largest spring. One factorization must not be used by two threads at
+/// once.
+/// \param order discs in elimination order, for CholmodOrdering::ours
+/// \throws Error (computation_failed) where memory does not suffice or CHOLMOD fails
+std::unique_ptr<Factorization> cholmod_cholesky(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
+                                                CholmodOrdering ordering, std::span<const std::int32_t> order,
+                                                FactorReport* report = nullptr, CholmodTrial* trial = nullptr);
+
+}  // namespace equidem

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The structure of the factor: which discs each front holds.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "equidem/linear/contact_graph.hpp"
+#include "equidem/linear/ordering/nested_dissection.hpp"
+
+namespace equidem {
+
+/// Fronts of a multifrontal factorization (Duff & Reid 1983), one for each node of the dissection tree. Discs are
+/// named by their position in the elimination order.
+struct SymbolicFactor {
+  DissectionTree tree;
+  int block = 2;                                ///< unknowns of a disc
+  std::vector<std::int32_t> position;           ///< of each disc in the elimination order
+  std::vector<std::vector<std::int32_t>> rows;  ///< per node, ascending: the later discs that its own couple to
+  double nonzeros = 0;                          ///< of L, lower triangle
+  double operations = 0;                        ///< multiplications and additions of the factorization
+  double largest_front = 0;                     ///< rows of the largest front
+
+  [[nodiscard]] std::size_t fronts() const { return tree.nodes.size(); }
+  /// Unknowns that front t eliminates.
+  [[nodiscard]] std::size_t pivots(std::size_t t) const {
+    return static_cast<std::size_t>(block) * (tree.nodes[t].end - tree.nodes[t].begin);
+  }
+  /// Unknowns of later fronts that front t updates.
+  [[nodiscard]] std::size_t updates(std::size_t t) const { return block * rows[t].size(); }
+  /// Multiplications and additions of front t.
+  [[nodiscard]] double front_operations(std::size_t t) const;
+  /// Bytes of the factor's panels.
+  [[nodiscard]] double factor_bytes() const;
+};
+
+SymbolicFactor analyze(DissectionTree tree, const ContactGraph& graph, int block);
+
+/// A run of consecutive discs of a child that are consecutive in its parent, too.
+struct RowRun {
+  std::int32_t child;   ///< first index into the child's rows
+  std::int32_t parent;  ///< first index into the parent's front: its own discs, then its rows
+  std::int32_t count;
+};
+
+/// Where the rows of a child lie in its parent's front.
+void match_rows(const SymbolicFactor& symbolic, std::size_t child, std::vector<RowRun>& runs);
+
+/// A vector of discs x block components, from the order of discs to the order of elimination and back.
+void permute_to_elimination(const SymbolicFactor& symbolic, std::span<const double> x, std::span<double> y);
+void permute_from_elimination(const SymbolicFactor& symbolic, std::span<const double> y, std::span<double> x);
+
+}  // namespace equidem

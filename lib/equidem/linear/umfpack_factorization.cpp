@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/linear/umfpack_factorization.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <umfpack.h>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/linear/multifrontal/dense_kernels.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
+
+namespace equidem {
+namespace {
+
+using Index = SuiteSparse_long;
+
+/// All entries of a symmetric matrix as sorted compressed columns.
+struct FullColumns {
+  std::vector<Index> first, rows;
+  std::vector<double> values;
+};
+
+FullColumns mirror(const CompressedColumns& lower) {
+  FullColumns full;
+  full.first.assign(lower.size + 1, 0);
+  for (std::int64_t c = 0; c < lower.size; ++c) {
+    for (std::int64_t e = lower.first[c]; e < lower.first[c + 1]; ++e) {
+      ++full.first[c + 1];
+      if (lower.rows[e] != c) ++full.first[lower.rows[e] + 1];
+    }
+  }
+  for (std::int64_t c = 0; c < lower.size; ++c) full.first[c + 1] += full.first[c];
+  full.rows.resize(full.first.back());
+  full.values.resize(full.first.back());
+  // Columns are filled in ascending order: what earlier columns mirror into column c lies above its diagonal.
+  std::vector<Index> next(full.first.begin(), full.first.end() - 1);
+  const auto put = [&](std::int64_t column, std::int64_t row, double value) {
+    full.rows[next[column]] = row;
+    full.values[next[column]++] = value;
+  };
+  for (std::int64_t c = 0; c < lower.size; ++c) {
+    for (std::int64_t e = lower.first[c]; e < lower.first[c + 1]; ++e) {
+      put(c, lower.rows[e], lower.values[e]);
+      if (lower.rows[e] != c) put(lower.rows[e], c, lower.values[e]);
+    }
+  }
+  return full;
+}
+
+class UmfpackLu final : public Factorization {
+ public:
+  explicit UmfpackLu(const DegreesOfFreedom& unknowns, const StiffnessMatrix& matrix) {
+    const auto held = std::find(unknowns.held.begin(), unknowns.held.end(), 1);
+    if (held != unknowns.held.end()) {
+      const auto at = static_cast<std::size_t>(held - unknowns.held.begin());
+      const auto block = static_cast<std::size_t>(matrix.block);
+      held_stiffness_ = matrix.diagonal_block(at / block)[at % block * (block + 1)];
+    }
+    umfpack_dl_defaults(control_.data());
+    control_[UMFPACK_SCALE] = UMFPACK_SCALE_NONE;  // all entries of K have one unit
+    // Diagonal pivots must pass the same test as others: where K is indefinite the default, 0.001, is lax.
+    control_[UMFPACK_SYM_PIVOT_TOLERANCE] = control_[UMFPACK_PIVOT_TOLERANCE];
+    control_[UMFPACK_IRSTEP] = 0;  // refinement is done for all back ends alike
+    report_.name = "UMFPACK LU";
+  }
+  ~UmfpackLu() override { umfpack_dl_free_numeric(&numeric_); }
+
+  /// Whether no pivot is zero.
+  bool factorize(CompressedColumns lower) {
+    component_ = std::move(lower.component);
+    if (component_.empty()) return true;
+    const FullColumns k = mirror(lower);
+    lower = {};
+    const auto n = static_cast<Index>(component_.size());
+    std::array<double, UMFPACK_INFO> info{};
+    void* symbolic = nullptr;
+    Index status = umfpack_dl_symbolic(n, n, k.first.data(), k.rows.data(), k.values.data(), &symbolic, control_.data(),
+                                       info.data());
+    if (status < UMFPACK_OK) fail("analyzing", status);
+    status = umfpack_dl_numeric(k.first.data(), k.rows.data(), k.values.data(), symbolic, &numeric_, control_.data(),
+                                info.data());
+    umfpack_dl_free_symbolic(&symbolic);
+    if (status < UMFPACK_OK) fail("factorizing", status);
+    report_.nonzeros = info[UMFPACK_LNZ];
+    report_.bytes = info[UMFPACK_NUMERIC_SIZE] * info[UMFPACK_SIZE_OF_UNIT];
+    watch_pivots(k);
+    return status == UMFPACK_OK;
+  }
+
+  void solve(std::span<double> x, int right_hand_sides) const override {
+    const std::size_t free = component_.size(), columns = static_cast<std::size_t>(right_hand_sides);
+    const std::size_t n = columns == 0 ? 0 : x.size() / columns;
+    std::vector<double> b(free), y(free);
+    for (std::size_t c = 0; c < columns; ++c) {
+      double* column = &x[c * n];
+      for (std::size_t k = 0; k < free; ++k) b[k] = column[component_[k]];
+      for (std::size_t k = 0; k < n; ++k) column[k] /= held_stiffness_;
+      if (free == 0) continue;
+      const Index status = umfpack_dl_solve(UMFPACK_A, nullptr, nullptr, nullptr, y.data(), b.data(), numeric_,
+                                            control_.data(), nullptr);
+      if (status != UMFPACK_OK) fail("solving with", status);
+      for (std::size_t k = 0; k < free; ++k) column[component_[k]] = y[k];
+    }
+  }
+
+  [[nodiscard]] const FactorReport& report() const override { return report_; }
+
+ private:
+  void watch_pivots(const FullColumns& k) {
+    const std::size_t n = component_.size();
+    std::vector<double> pivots(n);
+    std::vector<Index> column_of(n);
+    const Index status = umfpack_dl_get_numeric(nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr,
+                                                column_of.data(), pivots.data(), nullptr, nullptr, numeric_);
+    if (status != UMFPACK_OK) fail("reading the factor of", status);
+    for (std::size_t p = 0; p < n; ++p) {
+      const Index c = column_of[p];
+      double largest = 0;
+      for (Index e = k.first[c]; e < k.first[c + 1]; ++e) largest = std::max(largest, std::abs(k.values[e]));
+      const double share = largest > 0 ? std::abs(pivots[p]) / largest : 0.0;
+      if (report_.smallest_component >= 0 && share >= report_.smallest_pivot) continue;
+      report_.smallest_pivot = share;
+      report_.smallest_component = component_[c];
+    }
+  }
+
+  [[noreturn]] void fail(const char* doing, Index status) const {
+    const std::string problem =
+        fmt::format("{} the stiffness matrix of {} unknowns failed in UMFPACK", doing, component_.size());
+    if (status == UMFPACK_ERROR_out_of_memory) {
+      computation_failed(problem, "there is not enough memory", "Use a smaller assembly or a machine with more memory");
+    }
+    computation_failed(problem, fmt::format("its status is {}", status), "Choose another solver: method = \"multifrontal\"");
+  }
+
+  double held_stiffness_ = 1;
+  std::array<double, UMFPACK_CONTROL> control_{};
+  std::vector<std::int64_t> component_;  // of each column
+  void* numeric_ = nullptr;
+  FactorReport report_;
+};
+
+}  // namespace
+
+std::unique_ptr<Factorization> umfpack_lu(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
+                                          FactorReport* report) {
+  dense::use_one_thread_per_call();
+  auto factor = std::make_unique<UmfpackLu>(unknowns, matrix.matrix);
+  const bool regular = factor->factorize(compress(matrix.matrix, matrix.assembly, matrix.graph, unknowns));
+  if (report != nullptr) *report = factor->report();
+  if (!regular) return nullptr;
+  return factor;
+}
+
+}  // namespace equidem

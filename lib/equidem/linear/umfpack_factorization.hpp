@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Unsymmetric LU factorization by UMFPACK (Davis 2004), for matrices that are not positive definite.
+#pragma once
+
+#include <memory>
+
+#include "equidem/linear/degrees_of_freedom.hpp"
+#include "equidem/linear/factorization.hpp"
+#include "equidem/linear/multifrontal/front.hpp"
+
+namespace equidem {
+
+/// P K Q = L U over the components that are not held, with threshold partial pivoting (|L_ij| <= 10) and an ordering
+/// of UMFPACK's own: any K that is not singular. Symmetry is not used, so that time and memory are about twice those
+/// of a symmetric factorization, and the inertia stays unknown (negative_pivots = -1). Returns a null pointer where a
+/// pivot is zero; a singular K may also end in one near round-off: the report's smallest_pivot, here over the largest
+/// entry of its column, tells. Held components are solved as rows of a unit matrix times the largest spring.
+/// \throws Error (computation_failed) where memory does not suffice or UMFPACK fails
+std::unique_ptr<Factorization> umfpack_lu(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
+                                          FactorReport* report = nullptr);
+
+}  // namespace equidem

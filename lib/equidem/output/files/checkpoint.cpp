@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/output/files/checkpoint.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "equidem/core/checksum.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/output/files/energy_terms.hpp"
+#include "equidem/output/files/hdf5.hpp"
+#include "equidem/output/files/json.hpp"
+#include "equidem/output/files/open_file.hpp"
+
+namespace equidem {
+namespace {
+
+static_assert(sizeof(SimulationState) ==
+                  sizeof(std::int64_t) + 4 * sizeof(std::vector<DiscMotion>) + sizeof(EnergyLedger),
+              "a member of the state is not saved");
+static_assert(sizeof(DiscMotion) == 3 * sizeof(double));
+
+constexpr std::string_view magic = "equidem-checkpoint/";
+constexpr int format_version = 2;
+constexpr std::size_t header_size = 512;
+
+struct Field {
+  const char* name;
+  std::vector<DiscMotion> SimulationState::*values;
+};
+constexpr Field fields[] = {{"motions", &SimulationState::motions},
+                            {"previous", &SimulationState::previous},
+                            {"velocities", &SimulationState::velocities}};
+
+std::string ledger_name(const EnergyTerm& term) {
+  return fmt::format("ledger/{}", term.name);
+}
+
+/// The 512 bytes before the HDF5 part; the last line is a checksum of the lines before and of all that follows.
+struct Header {
+  std::string library;
+  std::uint64_t bytes = 0;  ///< of the whole file
+  std::uint64_t checksum = 0;
+
+  [[nodiscard]] std::string first_lines() const {
+    return fmt::format("{}{}\nlibrary {}\nbytes {}\n", magic, format_version, library, bytes);
+  }
+  [[nodiscard]] std::string text() const {
+    std::string text = first_lines() + fmt::format("fnv1a {:016x}\n", checksum);
+    text.resize(header_size, '\0');
+    return text;
+  }
+};
+
+std::uint64_t checksum_of(const OpenFile& file, const Header& header) {
+  Checksum sum;
+  const std::string lines = header.first_lines();
+  sum.add(std::as_bytes(std::span(lines)));
+  std::vector<std::byte> piece(1 << 20);
+  for (std::uint64_t at = header_size; at < header.bytes; at += piece.size()) {
+    const auto part = std::span(piece).first(std::min<std::uint64_t>(piece.size(), header.bytes - at));
+    file.read_at(at, part);
+    sum.add(part);
+  }
+  return sum.value();
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why,
+                         const std::string& remedy = "Give another checkpoint, or start the run afresh") {
+  bad_input(fmt::format("cannot go on from '{}'", path.string()), why, remedy);
+}
+
+/// The value behind "KEY " on the next line of the text.
+std::string next_value(std::string_view& text, std::string_view key) {
+  const std::size_t end = text.find('\n');
+  if (end == std::string_view::npos || !text.starts_with(key)) return {};
+  const std::string value(text.substr(key.size(), end - key.size()));
+  text.remove_prefix(end + 1);
+  return value;
+}
+
+std::uint64_t number(const std::string& digits, int base) {
+  std::uint64_t value = 0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), value, base);
+  return value;
+}
+
+/// The file is a whole checkpoint of this version, byte for byte as it was written.
+void check_whole(const std::filesystem::path& path, const OpenFile& file) {
+  std::string text(std::min<std::uint64_t>(header_size, file.size()), '\0');
+  file.read_at(0, std::as_writable_bytes(std::span(text)));
+  if (!text.starts_with(magic)) refuse(path, "it is no checkpoint of equidem");
+  std::string_view rest = text;
+  const std::string version = next_value(rest, magic);
+  if (version != fmt::format("{}", format_version)) {
+    refuse(path, fmt::format("its format has version '{}', and this library reads version {}", version, format_version),
+           "Go on with the library that wrote it");
+  }
+  Header header;
+  header.library = next_value(rest, "library ");
+  header.bytes = number(next_value(rest, "bytes "), 10);
+  header.checksum = number(next_value(rest, "fnv1a "), 16);
+  if (text.size() < header_size || file.size() < header.bytes) {
+    refuse(path, fmt::format("it is truncated: {} bytes are left of {}", file.size(), header.bytes));
+  }
+  if (text != header.text() || file.size() != header.bytes || checksum_of(file, header) != header.checksum) {
+    refuse(path, "it was altered since it was written: its checksum is wrong");
+  }
+  if (header.library != library_version()) {
+    refuse(path,
+           fmt::format("equidem {} wrote it, this is {}, and the bits of two versions may differ", header.library,
+                  library_version()),
+           "Go on with the version that wrote it");
+  }
+}
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    lines.push_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+/// "line 7: 'kT = 1' there, 'kT = 2' here", up to three lines; past a line that only one of the texts has they no longer
+/// stand side by side, and one is enough.
+std::string first_differences(std::string_view there, std::string_view here) {
+  const auto a = lines_of(there), b = lines_of(here);
+  const auto show = [](const std::vector<std::string_view>& lines, std::size_t k) {
+    return k < lines.size() ? fmt::format("'{}'", lines[k]) : std::string("nothing");
+  };
+  std::string text;
+  const int most = a.size() == b.size() ? 3 : 1;
+  int shown = 0;
+  for (std::size_t k = 0; k < std::max(a.size(), b.size()) && shown < most; ++k) {
+    if (k < a.size() && k < b.size() && a[k] == b[k]) continue;
+    text += fmt::format("{}line {}: {} there, {} here", shown++ > 0 ? "; " : "", k + 1, show(a, k), show(b, k));
+  }
+  return shown > 0 ? text : "the ends of their lines";
+}
+
+constexpr std::size_t sample_size = 2 + std::size(energy_terms);
+
+std::vector<double> packed(std::span<const EnergySample> energies) {
+  std::vector<double> numbers;
+  for (const EnergySample& sample : energies) {
+    numbers.insert(numbers.end(), {static_cast<double>(sample.step), sample.time});
+    for (const EnergyTerm& term : energy_terms) numbers.push_back(sample.ledger.*term.value);
+  }
+  return numbers;
+}
+
+std::vector<EnergySample> unpacked(const std::vector<double>& numbers) {
+  std::vector<EnergySample> energies(numbers.size() / sample_size);
+  const double* next = numbers.data();
+  for (EnergySample& sample : energies) {
+    sample.step = static_cast<std::int64_t>(*next++);
+    sample.time = *next++;
+    for (const EnergyTerm& term : energy_terms) sample.ledger.*term.value = *next++;
+  }
+  return energies;
+}
+
+Hdf5Layout layout_of(const SimulationState& state, const std::string& case_text, std::size_t samples) {
+  Hdf5Layout layout;
+  layout.user_block = header_size;
+  layout.arrays = {{"case", Hdf5Number::text, {case_text.size()}},
+                   {"step", Hdf5Number::int64, {1}},
+                   {"sums", Hdf5Number::float64, {state.sums.size()}},
+                   {"energies", Hdf5Number::float64, {samples, sample_size}}};
+  for (const Field& field : fields) {
+    layout.arrays.push_back({field.name, Hdf5Number::float64, {(state.*field.values).size(), 3}});
+  }
+  for (const EnergyTerm& term : energy_terms) {
+    layout.arrays.push_back({ledger_name(term), Hdf5Number::float64, {1}, "J/m"});
+  }
+  return layout;
+}
+
+template <typename Entry>
+void put(OpenFile& file, const Hdf5Array& array, std::span<const Entry> entries) {
+  file.write_at(array.offset, std::as_bytes(entries));
+}
+
+template <typename Entry>
+void get(const OpenFile& file, const Hdf5Array& array, std::span<Entry> entries) {
+  file.read_at(array.offset, std::as_writable_bytes(entries));
+}
+
+OpenFile open_whole(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) refuse(path, "there is no such file");
+  if (!std::filesystem::is_regular_file(path, ignored)) refuse(path, "it is no file");
+  OpenFile file(path, OpenFile::Mode::read);
+  check_whole(path, file);
+  return file;
+}
+
+Hdf5Layout find_arrays(const std::filesystem::path& path) {
+  std::vector<std::string> names;
+  for (const Hdf5Array& array : layout_of({}, {}, 0).arrays) names.push_back(array.name);
+  return read_hdf5_layout(path, names);
+}
+
+std::string read_case(const OpenFile& file, const Hdf5Layout& layout) {
+  std::string text(layout["case"].bytes(), '\0');
+  get(file, layout["case"], std::span<char>(text));
+  if (text.back() == '\0') text.pop_back();  // of an empty text HDF5 keeps one byte
+  return text;
+}
+
+}  // namespace
+
+CheckpointWriter::CheckpointWriter(std::filesystem::path path, std::string case_text, bool overwrite)
+    : path_(std::move(path)), case_text_(std::move(case_text)) {
+  check_writable(path_, overwrite);
+}
+
+void CheckpointWriter::write(const SimulationState& state, std::span<const EnergySample> energies) const {
+  std::error_code ignored;
+  if (path_.has_parent_path()) std::filesystem::create_directories(path_.parent_path(), ignored);
+  Replacement replacement(path_);
+  const Hdf5Layout layout = write_hdf5_layout(replacement.path(), layout_of(state, case_text_, energies.size()));
+  OpenFile file(replacement.path(), OpenFile::Mode::update);
+  put(file, layout["case"], std::span<const char>(case_text_));
+  put(file, layout["step"], std::span(&state.step, 1));
+  put(file, layout["sums"], std::span<const double>(state.sums));
+  const std::vector<double> samples = packed(energies);
+  put(file, layout["energies"], std::span<const double>(samples));
+  for (const Field& field : fields) {
+    put(file, layout[field.name], std::span<const DiscMotion>(state.*field.values));
+  }
+  for (const EnergyTerm& term : energy_terms) {
+    put(file, layout[ledger_name(term)], std::span(&(state.ledger.*term.value), 1));
+  }
+  Header header{.library = library_version(), .bytes = file.size()};
+  header.checksum = checksum_of(file, header);
+  const std::string text = header.text();
+  file.write_at(0, std::as_bytes(std::span(text)));
+  file.sync();
+  replacement.commit();
+  sync_folder_of(path_);
+}
+
+Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string& case_text) {
+  const OpenFile file = open_whole(path);
+  const Hdf5Layout layout = find_arrays(path);
+  if (const std::string there = read_case(file, layout); there != case_text) {
+    refuse(path, fmt::format("it belongs to another case: {}", first_differences(there, case_text)),
+           "Go on with the case it was made by, or start the run afresh");
+  }
+  Checkpoint result;
+  SimulationState& state = result.state;
+  get(file, layout["step"], std::span(&state.step, 1));
+  state.sums.resize(layout["sums"].shape[0]);
+  get(file, layout["sums"], std::span(state.sums));
+  for (const Field& field : fields) {
+    (state.*field.values).resize(layout[field.name].shape[0]);
+    get(file, layout[field.name], std::span(state.*field.values));
+  }
+  for (const EnergyTerm& term : energy_terms) {
+    get(file, layout[ledger_name(term)], std::span(&(state.ledger.*term.value), 1));
+  }
+  std::vector<double> samples(layout["energies"].size());
+  get(file, layout["energies"], std::span(samples));
+  result.energies = unpacked(samples);
+  return result;
+}
+
+std::string case_of_checkpoint(const std::filesystem::path& path) {
+  const OpenFile file = open_whole(path);
+  return read_case(file, find_arrays(path));
+}
+
+}  // namespace equidem

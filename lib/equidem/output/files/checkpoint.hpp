@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A run in the middle, as a file from which it goes on with the same bits.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "equidem/dynamics/simulation.hpp"
+#include "equidem/output/files/energy_terms.hpp"
+
+namespace equidem {
+
+/// Writes NAME.checkpoint.h5: an HDF5 file after 512 bytes of text that name the format, the version of the library, the length of
+/// the file and a checksum of all of it. Arrays: case (the text of the resolved case), step, motions, previous,
+/// velocities (n, 3): x, y, rotation; sums; ledger/NAME for every term of the energy ledger; energies: step, time and every term
+/// of the samples so far.
+/// A checkpoint is written beside the last one, forced to the disk, and takes its name then: killed at any moment, power
+/// cut or disk full, the last good one is there.
+class CheckpointWriter {
+ public:
+  /// \param case_text the resolved case, by which read_checkpoint knows that a checkpoint belongs to a run
+  /// \param overwrite a checkpoint of another run, or of this one where it goes on
+  /// \throws Error (bad_input) where the file exists and `overwrite` is false, or where it cannot be written
+  CheckpointWriter(std::filesystem::path path, std::string case_text, bool overwrite);
+
+  /// \throws Error (computation_failed) where the disk is full; the last checkpoint stays
+  void write(const SimulationState& state, std::span<const EnergySample> energies = {}) const;
+
+ private:
+  std::filesystem::path path_;
+  std::string case_text_;
+};
+
+struct Checkpoint {
+  SimulationState state;
+  std::vector<EnergySample> energies;
+};
+
+/// \param case_text the resolved case that is to go on
+/// \throws Error (bad_input) where there is no such file, it is no checkpoint, it is truncated or altered, another version
+///         of the format or the library wrote it, or it belongs to another case (with the first lines that differ)
+Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string& case_text);
+
+/// The case that a checkpoint belongs to.
+/// \throws Error (bad_input) as read_checkpoint, for the file alone
+std::string case_of_checkpoint(const std::filesystem::path& path);
+
+}  // namespace equidem

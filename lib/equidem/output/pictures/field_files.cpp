@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/output/pictures/field_files.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+
+#include "equidem/core/file.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/output/pictures/canvas.hpp"
+#include "equidem/output/files/csv.hpp"
+
+namespace equidem {
+namespace {
+
+struct Column {
+  std::string name;
+  std::vector<double> values;
+};
+
+template <typename Value>
+Column column_of(const CoarseFields& fields, std::string name, const Value& value) {
+  Column column{std::move(name), {}};
+  for (std::size_t k = 0; k < fields.grid.size(); ++k) column.values.push_back(value(k));
+  return column;
+}
+
+Column pressure_of(const CoarseFields& fields) {
+  return column_of(fields, "pressure_Pa",
+                   [&](std::size_t k) { return -0.5 * (fields.stress[k].xx + fields.stress[k].yy); });
+}
+
+std::vector<Column> columns_of(const CoarseFields& f) {
+  return {column_of(f, "stress_xx_Pa", [&](std::size_t k) { return f.stress[k].xx; }),
+          column_of(f, "stress_yy_Pa", [&](std::size_t k) { return f.stress[k].yy; }),
+          column_of(f, "stress_xy_Pa", [&](std::size_t k) { return f.stress[k].xy; }),
+          column_of(f, "stress_yx_Pa", [&](std::size_t k) { return f.stress[k].yx; }),
+          pressure_of(f),
+          {"solid_fraction", f.solid_fraction},
+          {"coordination", f.coordination},
+          column_of(f, "vx_m_per_s", [&](std::size_t k) { return f.velocity[k].x; }),
+          column_of(f, "vy_m_per_s", [&](std::size_t k) { return f.velocity[k].y; })};
+}
+
+Table table_of(const CoarseFields& fields) {
+  const auto middle = [&](std::size_t k) {
+    const Region cell = fields.grid.cell(k);
+    return 0.5 * (cell.low + cell.high);
+  };
+  Table table;
+  table.add("x_m", column_of(fields, "", [&](std::size_t k) { return middle(k).x; }).values);
+  table.add("y_m", column_of(fields, "", [&](std::size_t k) { return middle(k).y; }).values);
+  for (const Column& column : columns_of(fields)) table.add(column.name, column.values);
+  return table;
+}
+
+/// One image, cells in rows from below; raw numbers behind the declarations.
+std::string image_text(const CoarseFields& fields) {
+  const CoarseGrid& grid = fields.grid;
+  const Vec2 size = grid.cell_size();
+  const std::string extent = fmt::format("0 {} 0 {} 0 0", grid.columns, grid.rows);
+  std::string text = fmt::format(
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"{}\" header_type=\"UInt64\">\n"
+      "  <ImageData WholeExtent=\"{}\" Origin=\"{} {} 0\" Spacing=\"{} {} 1\">\n    <Piece Extent=\"{}\">\n      "
+      "<CellData>\n",
+      std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian", extent, grid.region.low.x,
+      grid.region.low.y, size.x, size.y, extent);
+  std::string numbers;
+  const auto append = [&](auto number) {
+    char bytes[sizeof number];
+    std::memcpy(bytes, &number, sizeof number);
+    numbers.append(bytes, sizeof number);
+  };
+  for (const Column& column : columns_of(fields)) {
+    text += fmt::format("        <DataArray type=\"Float64\" Name=\"{}\" format=\"appended\" offset=\"{}\"/>\n", column.name,
+                   numbers.size());
+    append(std::uint64_t{8 * column.values.size()});
+    for (const double value : column.values) append(value);
+  }
+  return text + "      </CellData>\n    </Piece>\n  </ImageData>\n  <AppendedData encoding=\"raw\">\n_" + numbers +
+         "\n  </AppendedData>\n</VTKFile>\n";
+}
+
+constexpr double page = 1000, margin = 40, gap = 50, bar = 14, bar_room = 78, title_room = 34;  // units
+constexpr Colour black{0.13, 0.13, 0.13};
+
+/// A map in the width given, its colour bar to the right.
+void draw_map(Canvas& canvas, const CoarseGrid& grid, const Column& column, const std::string& title, Vec2 corner,
+              double width, double height) {
+  const ColourScale scale = colour_scale(column.values);
+  const Vec2 size = grid.region.high - grid.region.low;
+  const double shown = std::min(width / size.x, height / size.y);
+  const double w = shown * size.x, h = shown * size.y;
+  Raster raster(static_cast<int>(grid.columns), static_cast<int>(grid.rows));
+  for (std::size_t k = 0; k < grid.size(); ++k)
+    raster.set(static_cast<int>(k % grid.columns), static_cast<int>(grid.rows - 1 - k / grid.columns),
+               scale.colour_of(column.values[k]));
+  canvas.text(title, {corner.x, corner.y - 12}, 14, TextAnchor::left, black, true);
+  // Cells stay sharp: an image would be smoothed.
+  const double cw = w / static_cast<double>(grid.columns), ch = h / static_cast<double>(grid.rows);
+  if (grid.size() > 20'000) {
+    canvas.image(raster, corner, w, h);
+  } else {
+    for (std::size_t k = 0; k < grid.size(); ++k) {
+      const double x = corner.x + cw * static_cast<double>(k % grid.columns);
+      const double y = corner.y + h - ch * static_cast<double>(k / grid.columns + 1);
+      canvas.fill_polygon({{x, y}, {x + cw + 0.3, y}, {x + cw + 0.3, y + ch + 0.3}, {x, y + ch + 0.3}},
+                          scale.colour_of(column.values[k]));
+    }
+  }
+  canvas.stroke_polygon({corner, {corner.x + w, corner.y}, {corner.x + w, corner.y + h}, {corner.x, corner.y + h}}, 0.8,
+                        black);
+  constexpr int steps = 64;
+  const double left = corner.x + w + 12;
+  for (int k = 0; k < steps; ++k) {
+    const double y = corner.y + h * (1 - (k + 1.0) / steps);
+    canvas.fill_polygon({{left, y}, {left + bar, y}, {left + bar, y + h / steps + 0.3}, {left, y + h / steps + 0.3}},
+                        colour_at(scale.map, (k + 0.5) / steps));
+  }
+  const double low = std::min(scale.low, scale.high), high = std::max(scale.low, scale.high);
+  const UnitPrefix prefix =
+      column.name.ends_with("_Pa") ? unit_prefix(std::max(std::abs(low), std::abs(high))) : UnitPrefix{};
+  for (const double tick : nice_ticks(low * prefix.factor, high * prefix.factor, 4)) {
+    const double y = corner.y + h * (1 - (tick / prefix.factor - scale.low) / (scale.high - scale.low));
+    canvas.line({left + bar, y}, {left + bar + 4, y}, 0.8, black);
+    canvas.text(fmt::format("{:.4g}{}", tick, prefix.prefix.empty() ? "" : " " + prefix.prefix), {left + bar + 7, y + 4}, 11,
+                TextAnchor::left, black);
+  }
+}
+
+std::string draw(const CoarseFields& fields) {
+  const Column speed = column_of(fields, "speed", [&](std::size_t k) { return norm(fields.velocity[k]); });
+  const std::pair<std::string, Column> maps[] = {{"pressure, Pa", pressure_of(fields)},
+                                                 {"solid fraction", {"", fields.solid_fraction}},
+                                                 {"coordination", {"", fields.coordination}},
+                                                 {"speed, m/s", speed}};
+  const Vec2 size = fields.grid.region.high - fields.grid.region.low;
+  const double width = 0.5 * (page - 2 * margin - gap) - bar_room;
+  const double height = std::clamp(width * size.y / size.x, 60.0, 1.5 * width);
+  const double pitch = height + title_room + 26;
+  Canvas canvas(PageFormat::png, static_cast<int>(page), static_cast<int>(std::ceil(2 * pitch + 16)), 1);
+  for (std::size_t k = 0; k < 4; ++k)
+    draw_map(canvas, fields.grid, maps[k].second, maps[k].first,
+             {margin + static_cast<double>(k % 2) * (width + bar_room + gap),
+              title_room + static_cast<double>(k / 2) * pitch},
+             width, height);
+  return canvas.finish();
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> write_fields(const std::filesystem::path& folder, const std::string& name,
+                                                const CoarseFields& fields, bool overwrite) {
+  const std::vector<std::filesystem::path> paths{folder / (name + ".csv"), folder / (name + ".vti"),
+                                                 folder / (name + ".png")};
+  for (const auto& path : paths) check_writable(path, overwrite);
+  write_csv(paths[0], table_of(fields), overwrite);
+  write_file(paths[1], image_text(fields), overwrite);
+  write_file(paths[2], draw(fields), overwrite);
+  return paths;
+}
+
+}  // namespace equidem

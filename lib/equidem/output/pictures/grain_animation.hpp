@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Colliding bodies as a moving picture: one HTML file that holds all frames and needs nothing else.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "equidem/core/vector.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
+
+namespace equidem {
+
+/// Where all bodies are at a moment.
+struct GrainFrame {
+  double time = 0;             ///< s, by which walls have moved
+  std::vector<Vec2> places;    ///< m
+  std::vector<double> angles;  ///< rad
+};
+GrainFrame frame_of(std::span<const Grain> grains, double time);
+
+struct GrainAnimation {
+  std::string title = {};
+  std::string caption = {};            ///< a line under the picture, such as what the colours mean
+  std::span<const Grain> shapes = {};  ///< their places are not looked at
+  std::span<const Clump> clumps = {};
+  std::span<const int> groups = {};  ///< of each grain: its colour; empty: all alike
+  std::span<const GrainWall> walls = {};
+  std::span<const GrainFrame> frames = {};
+  double speed = 1;  ///< of the picture, in seconds of motion per second
+};
+
+/// The file. The view holds all bodies, segments and arcs at all times; of a line what crosses it. Places are rounded to 1/4095 of the
+/// view, angles to 1/4096 of a turn: 6 bytes for a body in a frame.
+/// \throws Error (bad_input) without grains or frames, on frames of another number of bodies, on places that are not finite
+std::string grain_animation_html(const GrainAnimation& animation);
+
+/// \throws Error (bad_input) as grain_animation_html and write_file
+void write_grain_animation(const std::filesystem::path& path, const GrainAnimation& animation, bool overwrite);
+
+}  // namespace equidem

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/output/pictures/grain_picture.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/output/pictures/canvas.hpp"
+#include "equidem/output/pictures/picture.hpp"
+#include "equidem/output/files/placed_discs.hpp"
+#include "equidem/output/pictures/scene.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr double margin = 40, bottom = 92, title_room = 66, no_title_room = 26;  // units
+constexpr double tallest = 1.4;                                                  // drawing area, in its own widths
+constexpr double smallest_marked = 6;                                            // units, radius
+constexpr double text_size = 12.5, title_size = 18;
+constexpr Colour grey{0.42, 0.42, 0.42}, wall_colour{0.25, 0.25, 0.28}, hatch_colour{0.62, 0.62, 0.66};
+
+/// Light tones of Okabe and Ito (2008), and the same darker for outlines, marks and paths.
+constexpr std::array fills = {Colour{0.68, 0.83, 0.93}, Colour{0.97, 0.83, 0.58}, Colour{0.66, 0.87, 0.78},
+                              Colour{0.94, 0.72, 0.60}, Colour{0.90, 0.76, 0.85}, Colour{0.97, 0.94, 0.65}};
+constexpr std::array inks = {Colour{0.00, 0.45, 0.70}, Colour{0.75, 0.50, 0.00}, Colour{0.00, 0.50, 0.37},
+                             Colour{0.70, 0.30, 0.00}, Colour{0.65, 0.35, 0.52}, Colour{0.55, 0.52, 0.00}};
+
+struct Bounds {
+  Vec2 low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
+  void include(Vec2 centre, double radius) {
+    low = {std::min(low.x, centre.x - radius), std::min(low.y, centre.y - radius)};
+    high = {std::max(high.x, centre.x + radius), std::max(high.y, centre.y + radius)};
+  }
+};
+
+Vec2 displacement(const GrainWall& wall, double time) {
+  return {wall.move_x.at(time), wall.move_y.at(time)};
+}
+
+/// Points along a segment or an arc.
+std::vector<Vec2> outline(const GrainWall& wall, double time) {
+  const Vec2 moved = displacement(wall, time);
+  if (wall.shape == GrainWall::Shape::segment) return {wall.point + moved, wall.end + moved};
+  std::vector<Vec2> points;
+  constexpr int per_turn = 180;
+  const int pieces = std::max(2, static_cast<int>(std::ceil(per_turn * (wall.to - wall.from) / 6.28)));
+  for (int k = 0; k <= pieces; ++k) {
+    const double angle = wall.from + (wall.to - wall.from) * k / pieces;
+    points.push_back(wall.point + moved + wall.radius * Vec2{std::cos(angle), std::sin(angle)});
+  }
+  return points;
+}
+
+Bounds bounds_of(const GrainPicture& picture) {
+  if (picture.grains.empty()) bad_input("the picture would be empty", "there are no grains", "Draw some");
+  Bounds bounds;
+  for (std::size_t g = 0; g < picture.grains.size(); ++g) {
+    const Grain& grain = picture.grains[g];
+    if (!std::isfinite(grain.position.x + grain.position.y))
+      bad_input(fmt::format("grain {} at ({}, {}) cannot be drawn", g, grain.position.x, grain.position.y),
+                "its place is not finite", "Check the run that it comes from");
+    bounds.include(grain.position, grain.radius);
+    for (const std::vector<Vec2>& places : picture.paths) bounds.include(places[g], grain.radius);
+  }
+  for (const GrainWall& wall : picture.walls) {
+    if (wall.shape == GrainWall::Shape::line) continue;
+    for (const Vec2 point : outline(wall, picture.time)) bounds.include(point, 0);
+  }
+  // A line near by is seen with some ground under it.
+  const double edge = 0.04 * std::max(bounds.high.x - bounds.low.x, bounds.high.y - bounds.low.y);
+  bounds.low -= Vec2{edge, edge};
+  bounds.high += Vec2{edge, edge};
+  return bounds;
+}
+
+PageFrame lay_out(const GrainPicture& picture) {
+  Bounds bounds = bounds_of(picture);
+  // A path straight up is no reason for a picture as thin.
+  const double narrowest = 0.5 * (bounds.high.y - bounds.low.y), flattest = 0.25 * (bounds.high.x - bounds.low.x);
+  const Vec2 missing{std::max(0.0, narrowest - (bounds.high.x - bounds.low.x)),
+                     std::max(0.0, flattest - (bounds.high.y - bounds.low.y))};
+  bounds.low -= 0.5 * missing;
+  bounds.high += 0.5 * missing;
+  PageFrame frame;
+  frame.corner = bounds.low;
+  frame.extent = bounds.high - bounds.low;
+  const double room = PageFrame::width - 2 * margin;
+  frame.scale = std::min(room / frame.extent.x, tallest * room / frame.extent.y);
+  const Vec2 size = frame.scale * frame.extent;
+  const double top = picture.title.empty() ? no_title_room : title_room;
+  frame.room = {room, size.y};
+  frame.origin = {margin + 0.5 * (room - size.x), top};
+  frame.height = top + size.y + bottom;
+  return frame;
+}
+
+/// The piece of the line through `point` along `along` that lies in the view.
+std::optional<std::array<Vec2, 2>> clipped(const PageFrame& frame, Vec2 point, Vec2 along) {
+  double from = -INFINITY, to = INFINITY;
+  const Vec2 high = frame.corner + frame.extent;
+  for (const auto& [at, speed, low, top] :
+       {std::array{point.x, along.x, frame.corner.x, high.x}, std::array{point.y, along.y, frame.corner.y, high.y}}) {
+    if (speed == 0) {
+      if (at < low || at > top) return {};
+      continue;
+    }
+    const double a = (low - at) / speed, b = (top - at) / speed;
+    from = std::max(from, std::min(a, b));
+    to = std::min(to, std::max(a, b));
+  }
+  if (!(from < to)) return {};
+  return std::array{point + from * along, point + to * along};
+}
+
+/// With strokes on the side where no grain can be.
+void draw_line_wall(Canvas& canvas, const PageFrame& frame, const GrainWall& wall, double time) {
+  const auto ends = clipped(frame, wall.point + displacement(wall, time), perpendicular(wall.normal));
+  if (!ends) return;
+  const Vec2 a = frame.to_page((*ends)[0]), b = frame.to_page((*ends)[1]);
+  const double length = norm(b - a);
+  const Vec2 along = (b - a) / length, behind{-wall.normal.x, wall.normal.y};
+  constexpr double spacing = 14, stroke = 9;
+  for (double at = 0.5 * spacing; at < length; at += spacing) {
+    const Vec2 start = a + at * along;
+    canvas.line(start, start + stroke * (behind + 0.7 * along), 0.8, hatch_colour);
+  }
+  canvas.line(a, b, 2, wall_colour);
+}
+
+void draw_walls(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
+  for (const GrainWall& wall : picture.walls) {
+    if (wall.shape == GrainWall::Shape::line) {
+      draw_line_wall(canvas, frame, wall, picture.time);
+      continue;
+    }
+    const auto points = outline(wall, picture.time);
+    for (std::size_t k = 1; k < points.size(); ++k)
+      canvas.line(frame.to_page(points[k - 1]), frame.to_page(points[k]), 2, wall_colour);
+  }
+}
+
+std::size_t tone(const GrainPicture& picture, std::size_t grain) {
+  return picture.groups.empty() ? 0 : static_cast<std::size_t>(picture.groups[grain]) % fills.size();
+}
+
+std::span<const Clump::Disc> discs_of(const GrainPicture& picture, const Grain& grain) {
+  return picture.clumps[static_cast<std::size_t>(grain.clump)].discs;
+}
+
+/// The smallest half-width of what is drawn, m.
+double smallest_radius(const GrainPicture& picture, const Grain& grain) {
+  switch (grain.shape()) {
+    case GrainShape::ellipse:
+      return grain.short_half_axis;
+    case GrainShape::clump:
+      return std::ranges::min(discs_of(picture, grain), {}, &Clump::Disc::radius).radius;
+    case GrainShape::disc:
+      break;
+  }
+  return grain.radius;
+}
+
+/// One outline round all discs: their edges first, then what lies inside.
+void draw_clump(Canvas& canvas, const PageFrame& frame, const Grain& grain, std::span<const Clump::Disc> discs,
+                const Colour& fill, const Colour& edge, double width) {
+  for (const bool inside : {false, true}) {
+    if (!inside && width == 0) continue;
+    for (const Clump::Disc& disc : discs) {
+      const Vec2 centre = frame.to_page(grain.position + turned(disc.offset, grain.angle));
+      canvas.fill_circle(centre, disc.radius * frame.scale - (inside ? width : 0), inside ? fill : edge);
+    }
+  }
+}
+
+/// What ties the discs of a clump: from its mass centre to their centres.
+void draw_ties(Canvas& canvas, const PageFrame& frame, const Grain& grain, std::span<const Clump::Disc> discs,
+               const Colour& colour) {
+  constexpr double width = 2;
+  for (const Clump::Disc& disc : discs)
+    canvas.line(frame.to_page(grain.position), frame.to_page(grain.position + turned(disc.offset, grain.angle)), width,
+                colour);
+}
+
+/// A mark shows how far a grain has turned, where any has: of a disc from the centre to the edge, of an ellipse along the long
+/// half-axis, of a clump in its first disc.
+void draw_grains(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
+  constexpr double width = 0.8;
+  const bool any_turned =
+      std::any_of(picture.grains.begin(), picture.grains.end(), [](const Grain& g) { return g.angle != 0; });
+  for (std::size_t g = 0; g < picture.grains.size(); ++g) {
+    const Grain& grain = picture.grains[g];
+    const double radius = grain.radius * frame.scale;
+    const Vec2 centre = frame.to_page(grain.position);
+    const Colour &fill = fills[tone(picture, g)], &edge = inks[tone(picture, g)];
+    const bool outlined = smallest_radius(picture, grain) * frame.scale >= smallest_marked;
+    Vec2 mark_from = centre;
+    double mark = radius;
+    if (grain.shape() == GrainShape::clump) {
+      const auto discs = discs_of(picture, grain);
+      draw_clump(canvas, frame, grain, discs, fill, edge, outlined ? width : 0);
+      if (outlined) draw_ties(canvas, frame, grain, discs, edge);
+      mark_from = frame.to_page(grain.position + turned(discs[0].offset, grain.angle));
+      mark = discs[0].radius * frame.scale;
+    } else {
+      // The page has y down.
+      const double other = grain.shape() == GrainShape::ellipse ? grain.short_half_axis * frame.scale : radius;
+      canvas.fill_ellipse(centre, {radius, other}, -grain.angle, fill);
+      const double inset = 0.5 * width;
+      if (outlined) canvas.stroke_ellipse(centre, {radius - inset, other - inset}, -grain.angle, width, edge);
+    }
+    if (any_turned && outlined) {
+      const Vec2 along = turned({1, 0}, grain.angle);
+      canvas.line(mark_from, mark_from + mark * Vec2{along.x, -along.y}, width, edge);
+    }
+  }
+}
+
+void draw_bonds(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
+  constexpr double widest = 4;  // units
+  for (const GrainBond& bond : picture.bonds) {
+    const Grain &i = picture.grains[bond.i], &j = picture.grains[bond.j];
+    const double width = std::min(widest, 0.3 * frame.scale * std::min(i.radius, j.radius));
+    canvas.line(frame.to_page(i.position), frame.to_page(j.position), width, inks[tone(picture, bond.i)]);
+  }
+}
+
+/// Of bodies that are no discs only the places are known: a circle in the middle.
+void draw_starts(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
+  if (picture.paths.empty()) return;
+  for (std::size_t g = 0; g < picture.grains.size(); ++g) {
+    const Grain& grain = picture.grains[g];
+    const double size = grain.shape() == GrainShape::disc ? grain.radius : 0.5 * smallest_radius(picture, grain);
+    canvas.stroke_circle(frame.to_page(picture.paths.front()[g]), std::max(1.5, size * frame.scale), 0.7, hatch_colour);
+  }
+}
+
+/// Whether the points between two of a path lie beside their chord by no more than can be seen.
+bool is_straight(const std::vector<Vec2>& path, std::size_t from, std::size_t to) {
+  constexpr double visible = 0.15;  // units
+  const Vec2 chord = path[to] - path[from];
+  for (std::size_t k = from + 1; k < to; ++k) {
+    const Vec2 out = path[k] - path[from];
+    const double along = dot(out, chord);
+    const bool beside = along >= 0 && along <= dot(chord, chord);
+    const double distance = beside && chord != Vec2{} ? std::abs(cross(out, chord)) / norm(chord)
+                                                      : std::min(norm(out), norm(path[k] - path[to]));
+    if (distance > visible) return false;
+  }
+  return true;
+}
+
+/// With no more strokes than are seen.
+void draw_paths(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
+  if (picture.paths.empty()) return;
+  std::vector<Vec2> path(picture.paths.size());
+  for (std::size_t g = 0; g < picture.grains.size(); ++g) {
+    for (std::size_t k = 0; k < path.size(); ++k) path[k] = frame.to_page(picture.paths[k][g]);
+    for (std::size_t from = 0; from + 1 < path.size();) {
+      std::size_t to = from + 1;
+      while (to + 1 < path.size() && is_straight(path, from, to + 1)) ++to;
+      if (path[from] != path[to]) canvas.line(path[from], path[to], 1, inks[tone(picture, g)]);
+      from = to;
+    }
+  }
+}
+
+void draw_legend(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
+  if (!picture.title.empty()) canvas.text(picture.title, {margin, 38}, title_size, TextAnchor::left, ink, true);
+  const double length = scale_bar_length(0.2 * frame.room.x / frame.scale);  // m
+  const double y = frame.height - 50.0, right = margin + length * frame.scale;
+  canvas.line({margin, y}, {right, y}, 1.4, ink);
+  for (const double x : {margin, right}) canvas.line({x, y - 5}, {x, y + 5}, 1.4, ink);
+  const UnitPrefix prefix = unit_prefix(length);
+  canvas.text(fmt::format("{:.3g} {}m", length * prefix.factor, prefix.prefix), {0.5 * (margin + right), y - 9}, text_size,
+              TextAnchor::centre, ink);
+  std::string caption =
+      fmt::format("{}, t = {:.6g} s", counted(static_cast<long long>(picture.grains.size()), "grain"), picture.time);
+  if (!picture.paths.empty()) caption += ", paths from the pale circles";
+  canvas.text(caption, {margin, frame.height - 18.0}, text_size, TextAnchor::left, grey);
+}
+
+std::string draw(const GrainPicture& picture, const PageFrame& frame, PageFormat format_of_page) {
+  Canvas canvas(format_of_page, static_cast<int>(PageFrame::width), static_cast<int>(std::ceil(frame.height)), 1);
+  draw_walls(canvas, frame, picture);
+  draw_starts(canvas, frame, picture);
+  draw_grains(canvas, frame, picture);
+  draw_bonds(canvas, frame, picture);
+  draw_paths(canvas, frame, picture);
+  draw_legend(canvas, frame, picture);
+  return canvas.finish();
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> write_grain_picture(const std::filesystem::path& folder, const std::string& name,
+                                                       const GrainPicture& picture, bool overwrite) {
+  const PageFrame frame = lay_out(picture);
+  std::vector<std::filesystem::path> files{folder / (name + ".png")};
+  write_file(files.back(), draw(picture, frame, PageFormat::png), overwrite);
+  if (picture.grains.size() > most_drawn_discs) return files;
+  files.push_back(folder / (name + ".svg"));
+  write_file(files.back(), draw(picture, frame, PageFormat::svg), overwrite);
+  return files;
+}
+
+}  // namespace equidem

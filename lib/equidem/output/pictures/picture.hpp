@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Pictures of an assembly, deformed, coloured by stress, with its force chains: SVG and PNG.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "equidem/core/vector.hpp"
+#include "equidem/output/files/state.hpp"
+
+namespace equidem {
+
+/// What the colour of a disc stands for.
+enum class DiscColour { none, mean_stress, stress_xx, stress_yy, stress_xy, displacement };
+
+/// "none" | "mean_stress" | "stress_xx" | "stress_yy" | "stress_xy" | "displacement".
+/// \throws Error (bad_input)
+DiscColour disc_colour_from(const std::string& name);
+
+/// An arrow at a disc.
+struct DrawnLoad {
+  std::int32_t disc = 0;
+  Vec2 force;  ///< N/m; the longest is drawn a thirteenth of the assembly long, the others in proportion
+};
+
+/// A triangle at a disc: solid where both directions are held, on rollers where one is.
+struct DrawnSupport {
+  std::int32_t disc = 0;
+  bool x = false;
+  bool y = false;
+};
+
+struct PictureOptions {
+  std::string title = {};
+  DiscColour colour = DiscColour::mean_stress;  ///< none is taken where the state does not know it
+  /// Lines along the branches, width in proportion to |normal force|; left out where the mean radius is below 5
+  /// pixels (a wider picture shows them).
+  bool force_chains = true;
+  bool undeformed = false;  ///< outlines of the discs where they were
+  /// Factor of the displacements; none: a factor 1, 2 or 5 times a power of ten, at least 1, with which the largest
+  /// one is between 2 and 5 % of the larger side of the assembly.
+  std::optional<double> displacement_scale = {};
+  int width = 1000;  ///< pixels, 400 to 5000; text and lines grow with it, the height follows from the assembly
+  std::vector<DrawnLoad> loads = {};
+  std::vector<DrawnSupport> supports = {};
+};
+
+/// Above this many discs they are drawn as an image in which each point has the colour of the nearest disc, in the
+/// SVG too, and outlines and force chains, too fine to be seen, are left out (the caption says so).
+inline constexpr std::size_t most_drawn_discs = 10000;
+
+struct PictureResult {
+  int width = 0;  ///< pixels
+  int height = 0;
+  double displacement_scale = 1;
+  std::string caption = {};  ///< the line under the picture
+  std::vector<std::filesystem::path> files = {};
+};
+
+/// Write NAME.svg and NAME.png. Positions are those of the discs moved by the scaled displacements; a contact through
+/// the period is drawn as two halves. Numbers of both signs are coloured on a diverging map, of one sign on a
+/// sequential one (colour_map.hpp says how the range is chosen).
+/// \throws Error (bad_input) on an empty assembly, motions or radii that are not finite, a width out of range, a load
+///         or
+///         support at an absent disc, and as write_file does
+PictureResult write_picture(const std::filesystem::path& folder, const std::string& name, const AssemblyState& state,
+                            const PictureOptions& options, bool overwrite);
+
+}  // namespace equidem

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A picture before it is drawn: positions on the page, colours, widths. Drawn once as SVG and once as PNG.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "equidem/core/vector.hpp"
+#include "equidem/output/pictures/canvas.hpp"
+#include "equidem/output/pictures/colour_map.hpp"
+#include "equidem/output/pictures/picture.hpp"
+
+namespace equidem {
+
+/// From metres, y up, to units of the page, y down. The page is 1000 units wide whatever its pixels, so that text and
+/// lines keep their proportion.
+struct PageFrame {
+  static constexpr double width = 1000;
+  double height = 0;
+  double pixels = 1;  ///< per unit
+  Vec2 corner;        ///< m, the lower left corner of what is shown
+  Vec2 extent;        ///< m
+  double scale = 1;   ///< units per metre
+  Vec2 origin;        ///< units, the upper left corner of the drawing
+  Vec2 room;          ///< units, of the area in whose middle it stands
+
+  [[nodiscard]] Vec2 to_page(Vec2 p) const {
+    return {origin.x + (p.x - corner.x) * scale, origin.y + (corner.y + extent.y - p.y) * scale};
+  }
+};
+
+struct PictureScene {
+  const AssemblyState& state;
+  const PictureOptions& options;
+  PageFrame frame = {};
+  std::vector<Vec2> centres = {};  ///< m, displaced
+  double displacement_scale = 1;
+
+  DiscColour coloured_by = DiscColour::none;
+  std::vector<double> values = {};  ///< per disc, in shown units; empty: not coloured
+  ColourScale colours = {};         ///< of the values
+  std::string colour_label = {};    ///< "mean stress"
+  std::string colour_unit = {};     ///< "(MPa)"
+
+  Vec2 middle = {};          ///< m, of the displaced centres
+  double longest_arrow = 0;  ///< m
+
+  bool as_image = false;      ///< more than most_drawn_discs
+  bool force_chains = false;  ///< asked for, known and not too fine
+  double widest_force = 0;    ///< N/m, |normal force| of the widest line; stronger ones are as wide
+  double widest_line = 0;     ///< units
+  std::string caption = {};
+};
+
+/// Everything that is decided before drawing.
+/// \throws Error (bad_input) as write_picture does
+PictureScene plan_scene(const AssemblyState& state, const PictureOptions& options);
+
+/// Whether a load points away from the middle of the assembly: its arrow then starts at the disc, else it ends there.
+inline bool pulls(const PictureScene& scene, const DrawnLoad& load) {
+  return dot(load.force, scene.centres[load.disc] - scene.middle) >= 0;
+}
+
+void draw_discs(Canvas& canvas, const PictureScene& scene);
+void draw_force_chains(Canvas& canvas, const PictureScene& scene);
+void draw_supports_and_loads(Canvas& canvas, const PictureScene& scene);
+
+/// Title, colour bar, scale bar, legend of the force chains, caption.
+void draw_legends(Canvas& canvas, const PictureScene& scene);
+
+inline constexpr Colour tension_colour{0.45, 0.02, 0.02};
+inline constexpr Colour compression_colour{0.02, 0.10, 0.33};
+inline constexpr Colour ink{0.13, 0.13, 0.13};
+
+}  // namespace equidem

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Numbering of the unknowns of statics from effects and supports.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/contact/effects.hpp"
+#include "equidem/contact/frame.hpp"
+#include "equidem/linear/degrees_of_freedom.hpp"
+#include "equidem/statics/supports.hpp"
+
+namespace equidem {
+
+/// \throws Error (bad_input) where a support names no group or an empty one, prescribes a component twice with
+///         different values, or prescribes a rotation that is not an unknown of the scene
+DegreesOfFreedom number_unknowns(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
+                                 std::span<const Support> supports);
+
+/// Components (u_x, u_y[, a theta]) of all discs as their motions.
+std::vector<DiscMotion> disc_motions(const DegreesOfFreedom& unknowns, std::span<const double> components);
+
+}  // namespace equidem

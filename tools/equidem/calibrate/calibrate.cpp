@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// equidem calibrate: wanted moduli -> springs.
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "equidem/casefile/springs_file.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/text.hpp"
+
+#include "calibrate/calibrated.hpp"
+#include "command.hpp"
+#include "solve/report.hpp"
+#include "verbs.hpp"
+
+namespace equidem {
+namespace {
+
+struct CalibrateVerb {
+  CommonOptions common;
+  std::optional<std::filesystem::path> springs;  ///< where the springs file goes
+
+  /// Where it really goes: unasked into --out, if there is one.
+  [[nodiscard]] std::optional<std::filesystem::path> springs_path() const {
+    if (springs || !common.out) return springs;
+    return *common.out / "springs.toml";
+  }
+};
+
+/// Before the computation: all files can be written, each to a place of its own.
+void check_outputs(const CalibrateVerb& options) {
+  const CommonOptions& common = options.common;
+  const OutputPlan plan(common);
+  plan.expect_json();
+  plan.expect("result.json");
+  plan.expect("case.toml");
+  const auto path = options.springs_path();
+  if (!path) return;
+  options.springs ? plan.expect_file(*path) : check_writable(*path, common.overwrite);
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  std::vector<fs::path> others;
+  if (common.json && *common.json != "-") others.emplace_back(*common.json);
+  if (common.out) others.insert(others.end(), {*common.out / "result.json", *common.out / "case.toml"});
+  const auto place = [&](const fs::path& file) { return fs::weakly_canonical(fs::absolute(file), ignored); };
+  for (const fs::path& other : others) {
+    if (place(other) != place(*path)) continue;
+    bad_input(fmt::format("the springs and another result would both be written to '{}'", path->string()),
+              "one would replace the other", "Give --springs a file of its own");
+  }
+}
+
+CalibrateOptions calibrate_options(const Case& resolved) {
+  CalibrateOptions options;
+  options.homogenize = {.boundary = resolved.homogenize.boundary.value_or(Boundary::periodic),
+                        .rotation = resolved.rotation,
+                        .solver = resolved.solver};
+  options.weighting = resolved.weighting;
+  options.static_only = resolved.material->static_only;
+  const bool equal = resolved.weighting == SpringWeighting::uniform;
+  if (resolved.assembly.kind == AssemblyKind::hexagonal && equal) options.lattice = Packing::hexagonal;
+  if (resolved.assembly.kind == AssemblyKind::square) options.lattice = Packing::square;
+  return options;
+}
+
+/// None for lattices, whose relation is exact.
+std::optional<MeanFieldGuess> mean_field_guess(const Case& resolved, const Assembly& assembly,
+                                               const EffectiveStiffness& achieved) {
+  MeanFieldGuess guess;
+  try {
+    const SpringRelation relation = spring_relation(resolved, assembly);
+    if (relation.packing != Packing::isotropic) return {};
+    guess.springs =
+        springs_for(resolved.material->moduli, relation.packing, relation.measures,
+                    resolved.material->static_only ? NegativeTangential::static_only : NegativeTangential::refuse);
+    const ContactSprings springs = contact_springs(assembly, guess.springs, resolved.weighting);
+    const EffectiveStiffness c = effective_stiffness(
+        assembly, springs, {.boundary = achieved.boundary, .rotation = resolved.rotation, .solver = resolved.solver});
+    if (c.unstable_modes == 0) {
+      guess.moduli = effective_moduli(c.stiffness);
+    } else {
+      guess.missing = "with them this assembly gives way";
+    }
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    guess.missing = error.what();
+  }
+  return guess;
+}
+
+/// The text of the springs file, with the moduli that it was made for and what shows them.
+std::string text_of_springs(const Case& resolved, const Assembly& assembly, const Calibration& found) {
+  const ElasticModuli& m = resolved.material->moduli;
+  const std::string moduli =
+      fmt::format("G = {:.9g} Pa and nu = {:.9g} in plane {}", m.shear_modulus, m.poisson_ratio, to_string(m.plane));
+  const std::string discs =
+      fmt::format("{} discs of kind {} with {} contacts", assembly.size(), assembly.kind, assembly.contacts.size());
+  std::string comment;
+  if (!found.verified) {
+    comment =
+        fmt::format("Springs that give the infinite lattice {}.\nThe {} they were made for have free edges, and are softer.",
+               moduli, discs);
+  } else {
+    comment =
+        fmt::format("Springs that give {}, to a relative error of {:.1e},\non {}", moduli, found.relative_error, discs);
+    comment += found.achieved.boundary == Boundary::periodic
+                   ? "."
+                   : fmt::format(" between boundaries of kind {}.", to_string(found.achieved.boundary));
+  }
+  return springs_file(found.springs, resolved.weighting, resolved.title,
+                      comment + fmt::format("\nBy equidem calibrate, {}.", found.method));
+}
+
+/// Of a sheet that is no solid in plane strain only the reading in plane stress.
+JsonObject both_readings(bool solid, double strain, double stress) {
+  JsonObject object;
+  solid ? object.set("plane_strain", strain) : object.set_null("plane_strain");
+  object.set("plane_stress", stress);
+  return object;
+}
+
+JsonObject moduli_object(const EffectiveModuli& m) {
+  const bool solid = m.poisson_strain > -1;
+  JsonObject object;
+  object.set("shear_modulus", m.shear_modulus)
+      .set("bulk_modulus_2d", m.bulk_modulus_2d)
+      .set("poisson_ratio", both_readings(solid, m.poisson_strain, m.poisson_stress))
+      .set("young_modulus", both_readings(solid, m.young_strain, m.young_stress))
+      .set("anisotropy", m.anisotropy);
+  return object;
+}
+
+std::vector<double> range_of(const Calibration& found, Plane plane) {
+  return {found.lowest_poisson_ratio(plane), found.highest_poisson_ratio(plane)};
+}
+
+void add_calibrated(JsonObject& object, const Calibrated& c) {
+  const Calibration& found = c.found;
+  const ElasticModuli& m = c.wanted();
+  JsonObject target;
+  target.set("shear_modulus", m.shear_modulus)
+      .set("bulk_modulus_2d", m.bulk_modulus_2d())
+      .set("poisson_ratio", m.poisson_ratio)
+      .set("plane", to_string(m.plane));
+  JsonObject achieved = moduli_object(found.moduli);
+  achieved.set("relative_error", found.relative_error);
+  JsonObject feasible;
+  feasible.set("plane_strain", range_of(found, Plane::strain)).set("plane_stress", range_of(found, Plane::stress));
+  object.set("title", c.problem.resolved.title)
+      .set("discs", c.problem.assembly.size())
+      .set("contacts", c.problem.assembly.contacts.size())
+      .set("kN", found.springs.kN)
+      .set("kT", found.springs.kT)
+      .set("ratio", found.springs.ratio())
+      .set("weighting", to_string(c.problem.resolved.weighting))
+      .set("target", target)
+      .set("achieved", achieved)
+      .set("verified", found.verified)
+      .set("method", found.method)
+      .set("iterations", found.iterations)
+      .set("factorizations", found.factorizations)
+      .set("feasible_poisson_ratio", range_of(found, m.plane))
+      .set("feasible_poisson_ratios", feasible)
+      .set("scanned", found.scanned)
+      .set("monotonic", found.rising);
+  if (found.verified) object.set("boundary", to_string(found.achieved.boundary));
+  if (!c.mean_field) return;
+  JsonObject guess;
+  if (c.mean_field->springs.kN > 0) guess.set("kN", c.mean_field->springs.kN).set("kT", c.mean_field->springs.kT);
+  if (c.mean_field->moduli) {
+    guess.set("achieved", moduli_object(*c.mean_field->moduli));
+  } else {
+    guess.set("missing", c.mean_field->missing);
+  }
+  object.set("mean_field", guess);
+}
+
+int dry_run_calibration(const CommonOptions& options, const Problem& problem) {
+  const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
+  const SolveEstimate size = estimate_solve(problem.assembly, problem.springs.springs, {}, problem.options());
+  const std::string report = describe_problem(problem, effects) +
+                             report_line("factorizations",
+                                         "six or fewer of this size, some thirty where nu does not fall throughout "
+                                         "with kT/kN, and one more to judge the mean field") +
+                             describe_estimate(size);
+  JsonObject object;
+  add_common(object, "dry_run", report, problem.times, effects);
+  object.set("discs", problem.assembly.size())
+      .set("contacts", problem.assembly.contacts.size())
+      .set("unknowns", size.unknowns)
+      .set("factor_nonzeros", size.factor_nonzeros)
+      .set("factor_bytes", size.factor_bytes)
+      .set("peak_bytes", size.peak_bytes)
+      .set("operations", size.operations);
+  CommonOptions without_folder = options;
+  without_folder.out.reset();
+  deliver(without_folder, report, object);
+  return 0;
+}
+
+/// The case with springs that are not known yet.
+Problem problem_with_material(Case resolved) {
+  if (!resolved.material) {
+    throw Error(ErrorKind::bad_input, "there is no [material]", "calibration looks for the springs that stand for it",
+                "Replace the springs by [material] with the moduli wanted", resolved.document.where());
+  }
+  StageTimes times;
+  Stopwatch watch;
+  Assembly assembly = build_assembly(resolved);
+  times.add("assembly", watch.lap());
+  BuiltSprings unknown{ContactSprings(SpringConstants{1, 1}), {}, "not known yet"};
+  return {std::move(resolved), std::move(assembly), std::move(unknown), {}, {}, {}, std::move(times)};
+}
+
+int calibrate(const CalibrateVerb& options) {
+  const CommonOptions& common = options.common;
+  check_outputs(options);
+  Problem problem = problem_with_material(read_case(common));
+  const Case& resolved = problem.resolved;
+  if (common.dry_run) return dry_run_calibration(common, problem);
+
+  Calibrated calibrated{.problem = problem,
+                        .found = calibrate(problem.assembly, resolved.material->moduli, calibrate_options(resolved)),
+                        .mean_field = {},
+                        .times = problem.times};
+  const Calibration& found = calibrated.found;
+  for (const auto& [stage, seconds] : found.times.stages()) calibrated.times.add(stage, seconds);
+  problem.springs = {contact_springs(problem.assembly, found.springs, resolved.weighting), found.springs,
+                     fmt::format("kN = {:.9g} Pa, kT = {:.9g} Pa (kT/kN = {:.9g}), weighting {}", found.springs.kN,
+                            found.springs.kT, found.springs.ratio(), to_string(resolved.weighting))};
+  Stopwatch watch;
+  calibrated.mean_field = mean_field_guess(resolved, problem.assembly, found.achieved);
+  calibrated.times.add("mean field", watch.lap());
+
+  const std::string file = text_of_springs(resolved, problem.assembly, found);
+  const auto path = options.springs_path();
+  if (path) write_file(*path, file, common.overwrite);
+  if (common.out) write_file(*common.out / "case.toml", to_toml(resolved, *common.out), common.overwrite);
+
+  const Effects effects = derive_effects(problem.assembly, problem.springs.springs, resolved.rotation);
+  std::string report = describe_problem(problem, effects) + describe_calibrated(calibrated);
+  report += path ? report_line("springs file", path->string()) : "\nsprings file (--springs FILE writes it):\n" + file;
+  JsonObject object;
+  add_common(object, "calibrated", report, calibrated.times, effects);
+  add_calibrated(object, calibrated);
+  path ? object.set("springs_file", path->string()) : object.set_null("springs_file");
+  deliver(common, report, object);
+  if (path) say(common, fmt::format("springs written to {}", path->string()));
+  return 0;
+}
+
+}  // namespace
+
+Run declare_calibrate(CLI::App& command) {
+  const auto options = std::make_shared<CalibrateVerb>();
+  add_common_options(command, options->common);
+  command.add_option("--springs", options->springs, "write the springs to this file, for springs = \"FILE\"")
+      ->type_name("FILE");
+  command.footer(
+      "Examples:\n"
+      "  equidem calibrate data/cases/calibrate_random.toml\n"
+      "  equidem calibrate data/cases/calibrate_random.toml --springs springs.toml\n"
+      "  equidem calibrate data/cases/calibrate_random.toml --set material.poisson_ratio=0.1 --json -");
+  return [options] { return calibrate(*options); };
+}
+
+}  // namespace equidem

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "homogenize/ensemble.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "equidem/casefile/build.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/homogenize/elasticity_tensor.hpp"
+
+#include "homogenize/ensemble_report.hpp"
+#include "homogenize/ensemble_table.hpp"
+#include "solve/report.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr const char* samples_name = "samples.csv";
+constexpr const char* statistics_name = "ensemble.csv";
+constexpr const char* case_name = "case.toml";
+
+HomogenizeOptions options_of(const Case& resolved) {
+  const auto& boundary = resolved.homogenize.boundary;
+  if (!boundary && !resolved.assembly.delaunay.periodic) {
+    throw Error(ErrorKind::bad_input, "the cells of the ensemble have free boundaries",
+                "their moduli lie between two answers, by displacements and by tractions at the boundary",
+                "Set assembly.periodic = true, or choose homogenize.boundary", resolved.where("ensemble"));
+  }
+  return {.boundary = boundary.value_or(Boundary::periodic), .rotation = resolved.rotation, .solver = resolved.solver};
+}
+
+Assembly build_cell(Case resolved, std::int64_t discs, std::uint64_t seed) {
+  resolved.assembly.delaunay.discs = discs;
+  resolved.assembly.delaunay.seed = seed;
+  return build_assembly(resolved);
+}
+
+/// The case but for sizes and samples, of which more may be asked later.
+std::string continued_part(CommonOptions options, const std::filesystem::path& folder) {
+  options.set.emplace_back("ensemble={discs = [3], samples = 2}");
+  return to_toml(read_case(options), folder);
+}
+
+/// Samples of an earlier run of the same case.
+std::vector<EnsembleSample> samples_to_keep(const CommonOptions& options, bool resume) {
+  if (!resume) return {};
+  if (!options.out)
+    bad_input("--resume has nothing to continue", "the samples done lie in the folder of --out", "Add --out DIR");
+  const auto table = *options.out / samples_name;
+  if (!std::filesystem::exists(table)) return {};
+  CommonOptions stored;
+  stored.case_file = *options.out / case_name;
+  stored.quiet = options.quiet;
+  if (continued_part(stored, *options.out) != continued_part(options, *options.out)) {
+    throw Error(ErrorKind::bad_input, "the samples there are of another case", "they would not fit together",
+                "Choose another --out, or leave out --resume and pass --overwrite", stored.case_file.string());
+  }
+  return read_samples_csv(table);
+}
+
+/// The samples done, and those of an earlier run beyond them, by size and seed: what was computed is not lost to a run that asks
+/// for less or is stopped.
+std::vector<EnsembleSample> with_kept(const std::vector<EnsembleSample>& done,
+                                      const std::vector<EnsembleSample>& kept) {
+  std::map<std::pair<std::int64_t, std::uint64_t>, EnsembleSample> all;
+  for (const EnsembleSample& sample : done) all.emplace(std::pair(sample.discs, sample.seed), sample);
+  for (const EnsembleSample& sample : kept) all.emplace(std::pair(sample.discs, sample.seed), sample);
+  std::vector<EnsembleSample> result;
+  for (auto& [key, sample] : all) result.push_back(std::move(sample));
+  return result;
+}
+
+std::string describe_plan(const EnsemblePlan& plan, double confidence) {
+  std::string sizes;
+  for (const std::int64_t discs : plan.discs) sizes += fmt::format("{}{}", sizes.empty() ? "" : ", ", discs);
+  return fmt::format("{} of {} discs each, seeds {} to {}; intervals of {:.4g} % confidence", counted(plan.samples, "cell"),
+                sizes, plan.first_seed, plan.first_seed + static_cast<std::uint64_t>(plan.samples) - 1,
+                100 * confidence);
+}
+
+int dry_run(const CommonOptions& options, const EnsemblePlan& plan, const EnsemblePreamble& preamble) {
+  std::string text = preamble.text;
+  std::vector<std::int64_t> unknowns;
+  for (const std::int64_t discs : plan.discs) {
+    unknowns.push_back(discs * preamble.effects.unknowns_per_disc());
+    text += report_line("unknowns", fmt::format("about {} in each cell of {} discs", unknowns.back(), discs));
+  }
+  text += "nothing was solved (--dry-run)\n";
+  JsonObject object;
+  add_common(object, "dry_run", text, {}, preamble.effects);
+  object.set("samples", plan.samples).set("discs", plan.discs).set("unknowns", unknowns);
+  CommonOptions without_folder = options;
+  without_folder.out.reset();
+  deliver(without_folder, text, object);
+  return 0;
+}
+
+}  // namespace
+
+HomogenizedCell homogenize_cell(const Case& resolved, std::int64_t discs, std::uint64_t seed) {
+  const Assembly assembly = build_cell(resolved, discs, seed);
+  const BuiltSprings springs = build_springs(resolved, assembly);
+  const EffectiveStiffness effective = effective_stiffness(assembly, springs.springs, options_of(resolved));
+  if (effective.unstable_modes != 0) {
+    computation_failed(effective.unstable_modes > 0 ? "the cell is unstable" : "the stability of the cell is not known",
+                       effective.unstable_modes > 0
+                           ? fmt::format("it would give way by {}", counted(effective.unstable_modes, "mode"))
+                           : "this solver does not count negative pivots",
+                       effective.unstable_modes > 0 ? "Use a larger kT" : "Set solver.method = \"auto\"");
+  }
+  return {static_cast<std::int64_t>(assembly.size()), effective_moduli(effective.stiffness)};
+}
+
+void check_ensemble_outputs(const CommonOptions& options) {
+  OutputPlan(options).expect_json();
+  const OutputPlan plan(options);
+  for (const char* name : {samples_name, statistics_name, case_name, "result.json"}) plan.expect(name);
+  for (const char* name : ensemble_plot_names)
+    for (const char* end : {".csv", ".gp", ".svg", ".png"}) plan.expect(std::string(name) + end);
+}
+
+EnsemblePreamble describe_cells(const Case& resolved, std::int64_t discs, std::uint64_t seed, const std::string& plan) {
+  const Assembly first = build_cell(resolved, discs, seed);
+  const BuiltSprings springs = build_springs(resolved, first);
+  EnsemblePreamble preamble{.text = resolved.title.empty() ? "" : resolved.title + "\n\n",
+                            .effects = derive_effects(springs.springs, resolved.rotation)};
+  if (!plan.empty()) preamble.text += report_line("ensemble", plan);
+  preamble.text += report_line(
+      "cells", fmt::format("{}, points = \"{}\", boundary = \"{}\"", first.kind,
+                      to_string(resolved.assembly.delaunay.points), to_string(options_of(resolved).boundary)));
+  preamble.text += report_line("springs", springs.report + (resolved.material ? " (of the first cell)" : ""));
+  preamble.text += report_line("effects", preamble.effects.report());
+  return preamble;
+}
+
+int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool resume) {
+  const EnsembleCase& asked = *resolved.ensemble;
+  EnsembleResult result{
+      .title = resolved.title,
+      .plan = {.discs = asked.discs, .samples = asked.samples, .first_seed = resolved.assembly.delaunay.seed},
+      .accuracy = asked.accuracy,
+      .samples = {},
+      .statistics = {}};
+  const EnsemblePlan& plan = result.plan;
+  const EnsemblePreamble preamble =
+      describe_cells(resolved, plan.discs.front(), plan.first_seed, describe_plan(plan, asked.confidence));
+  if (options.dry_run) return dry_run(options, plan, preamble);
+  CommonOptions written = options;
+  written.overwrite = options.overwrite || resume;
+  OutputPlan(options).expect_json();
+  check_ensemble_outputs(written);
+  const std::vector<EnsembleSample> kept = samples_to_keep(options, resume);
+
+  const auto& folder = options.out;
+  if (folder) write_file(*folder / case_name, to_toml(resolved, *folder), true);
+  const auto save = [&](const std::vector<EnsembleSample>& done) {
+    if (folder) write_file(*folder / samples_name, samples_csv(with_kept(done, kept)), true);
+  };
+  StageTimes times;
+  Stopwatch watch;
+  EnsembleSamples sampled = sample_ensemble(
+      result.plan, [&](std::int64_t discs, std::uint64_t seed) { return homogenize_cell(resolved, discs, seed); }, kept,
+      save);
+  times.add("sampling", watch.lap());
+  result.samples = std::move(sampled.samples);
+  result.statistics = analyze_ensemble(result.plan, result.samples, asked.confidence);
+
+  std::string report = preamble.text + "\n" + describe_ensemble(result);
+  const std::size_t wanted = result.plan.discs.size() * static_cast<std::size_t>(result.plan.samples);
+  if (sampled.stopped) report += fmt::format("INCOMPLETE: stopped after {} of {} cells\n", result.samples.size(), wanted);
+  if (folder && !sampled.stopped) {
+    write_csv(*folder / statistics_name, statistics_table(result.statistics), true);
+    for (const auto& [name, plot] : ensemble_plots(result))
+      report += write_plot(*folder, name, plot, true).message + "\n";
+    times.add("files", watch.lap());
+  }
+  const bool all_refused = std::all_of(result.samples.begin(), result.samples.end(),
+                                       [](const EnsembleSample& sample) { return sample.refused(); });
+  JsonObject object;
+  add_common(object,
+             sampled.stopped ? "interrupted"
+             : all_refused   ? "failed"
+                             : "done",
+             report, times, preamble.effects);
+  object.set("title", resolved.title).set("complete", !sampled.stopped);
+  add_ensemble(object, result);
+  CommonOptions common = options;
+  common.overwrite = true;
+  deliver(common, report, object);
+  if (folder) say(options, fmt::format("written to {}", folder->string()));
+  if (sampled.stopped) {
+    throw Error(
+        ErrorKind::interrupted, "stopped as asked", fmt::format("{} of {} cells are done", result.samples.size(), wanted),
+        folder ? "Run the same command with --resume to do the rest" : "With --out DIR the cells done would be kept");
+  }
+  if (all_refused)
+    computation_failed("none of the cells has moduli",
+                       "the first: " + without_full_stop(result.samples.front().refusal), "");
+  return 0;
+}
+
+}  // namespace equidem

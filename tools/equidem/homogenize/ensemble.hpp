@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// equidem homogenize of a case with [ensemble]: moduli of many random cells, their scatter, and the size they need.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "equidem/casefile/case.hpp"
+#include "equidem/contact/effects.hpp"
+#include "equidem/homogenize/ensemble/ensemble.hpp"
+
+#include "command.hpp"
+
+namespace equidem {
+
+/// Samples the cells of [ensemble] and delivers report, tables, plots and JSON.
+/// \param resume keep the samples that lie in --out (option --resume of the verb), compute the others
+/// \throws Error (bad_input) where the case has no periodic cell, or the samples in --out are of another case;
+///         (computation_failed) where every sample is refused; (interrupted), with what is done kept in --out
+int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool resume = false);
+
+/// As many random cells, as large as the accuracy needs, whatever sizes and numbers the case names; the case that is written names those
+/// that were chosen.
+/// \throws Error (bad_input) where the case has no periodic cells; (computation_failed) where the accuracy is beyond all means;
+///         (interrupted)
+int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, double accuracy);
+
+// What both share.
+
+/// Builds and homogenizes one cell.
+/// \throws Error (computation_failed) where the cell is unstable, or that is not known; as build_assembly
+HomogenizedCell homogenize_cell(const Case& resolved, std::int64_t discs, std::uint64_t seed);
+
+/// Title, cells, springs and effects; those of the first cell stand for all.
+struct EnsemblePreamble {
+  std::string text;
+  Effects effects;
+};
+/// \param plan what is sampled, in words; empty: left out
+EnsemblePreamble describe_cells(const Case& resolved, std::int64_t discs, std::uint64_t seed,
+                                const std::string& plan = {});
+
+/// \throws Error (bad_input) where a file of an ensemble could not be written
+void check_ensemble_outputs(const CommonOptions& options);
+
+}  // namespace equidem

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/homogenize/ensemble/ensemble_accuracy.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/stopwatch.hpp"
+#include "equidem/core/text.hpp"
+
+#include "accuracy.hpp"
+#include "homogenize/ensemble.hpp"
+#include "homogenize/ensemble_report.hpp"
+#include "homogenize/ensemble_table.hpp"
+#include "solve/report.hpp"
+
+namespace equidem {
+namespace {
+
+AccuracySetting setting_of(const EnsembleSetting& setting) {
+  return {{"ensemble.discs", static_cast<double>(setting.discs)},
+          {"ensemble.samples", static_cast<double>(setting.samples)}};
+}
+
+double work_of(const AccurateEnsemble& sampled) {
+  double work = 0;
+  for (const EnsembleSample& sample : sampled.samples) work += EnsembleSetting{sample.discs, 1}.work();
+  return work;
+}
+
+ReachedAccuracy reached_by(const AccurateEnsemble& sampled, const EnsembleAccuracy& wanted, double seconds) {
+  ReachedAccuracy reached{
+      .requested = wanted.accuracy,
+      .estimated = sampled.estimated,
+      .of = fmt::format(
+          "K and G relative, nu (plane strain) as it is, mean of {} cells of {} discs against infinite cells, with "
+          "{:.4g} % confidence, scatter and drift together",
+          sampled.chosen.samples, sampled.chosen.discs, 100 * wanted.confidence),
+      .knob = "size and number of cells",
+      .value = setting_of(sampled.chosen),
+      .pilots = {},
+      .ten_times_more = {}};
+  for (const std::int64_t discs : sampled.plan.discs) {
+    if (discs == sampled.chosen.discs) continue;
+    const auto cells = std::count_if(sampled.samples.begin(), sampled.samples.end(),
+                                     [&](const EnsembleSample& sample) { return sample.discs == discs; });
+    reached.pilots += fmt::format("{}{} cells of {} discs", reached.pilots.empty() ? "" : ", ", cells, discs);
+  }
+  reached.pilots_factor = work_of(sampled) / sampled.chosen.work() - 1;
+  auto& more = reached.ten_times_more;
+  more.time_factor = sampled.ten_times_more.work() / sampled.chosen.work();
+  more.seconds = seconds * sampled.ten_times_more.work() / work_of(sampled);
+  more.value = setting_of(sampled.ten_times_more);
+  if (sampled.estimated <= wanted.accuracy / 10) more.note = has_it_already;
+  if (sampled.ten_times_more.samples == 0) more.note = "cannot be had: cells of any size are off by more";
+  if (sampled.ten_times_more.all_discs() > wanted.most_discs)
+    more.note = fmt::format("cannot be had: it takes {:.2g} discs in all", sampled.ten_times_more.all_discs());
+  return reached;
+}
+
+}  // namespace
+
+int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, double accuracy) {
+  if (!resolved.assembly.delaunay.periodic) {
+    throw Error(ErrorKind::bad_input, "--accuracy cannot be kept by samples with free boundaries",
+                "their moduli depend on the boundary far more than on the number of samples",
+                "Set assembly.periodic = true", resolved.where("assembly"));
+  }
+  check_ensemble_outputs(options);
+  const EnsembleAccuracy wanted{.accuracy = accuracy,
+                                .confidence = resolved.ensemble ? resolved.ensemble->confidence : 0.95,
+                                .first_seed = resolved.assembly.delaunay.seed};
+  EnsemblePreamble preamble = describe_cells(resolved, wanted.smallest, wanted.first_seed);
+  const auto& folder = options.out;
+  const auto save = [&](const std::vector<EnsembleSample>& done) {
+    if (folder) write_file(*folder / "samples.csv", samples_csv(done), true);
+  };
+  StageTimes times;
+  Stopwatch watch;
+  AccurateEnsemble sampled = sample_to_accuracy(
+      [&](std::int64_t discs, std::uint64_t seed) { return homogenize_cell(resolved, discs, seed); }, wanted, save);
+  times.add("sampling", watch.lap());
+  if (sampled.stopped) {
+    throw Error(ErrorKind::interrupted, "stopped as asked",
+                fmt::format("{} cells are done, too few for an accuracy of {:.3g}", sampled.samples.size(), accuracy), "");
+  }
+  const ReachedAccuracy reached = reached_by(sampled, wanted, times.total());
+  EnsembleResult result{.title = resolved.title,
+                        .plan = sampled.plan,
+                        .accuracy = accuracy,
+                        .samples = std::move(sampled.samples),
+                        .statistics = std::move(sampled.statistics)};
+  std::string report = preamble.text + "\n" + describe_ensemble(result) + describe_accuracy(reached);
+  if (folder) {
+    CommonOptions chosen = options;
+    chosen.set.push_back(fmt::format("ensemble={{discs = [{}], samples = {}, accuracy = {}, confidence = {}}}",
+                                sampled.chosen.discs, sampled.chosen.samples, accuracy, wanted.confidence));
+    write_file(*folder / "case.toml", to_toml(read_case(chosen), *folder), true);
+    write_csv(*folder / "ensemble.csv", statistics_table(result.statistics), true);
+    for (const auto& [name, plot] : ensemble_plots(result))
+      report += write_plot(*folder, name, plot, true).message + "\n";
+    times.add("files", watch.lap());
+  }
+  JsonObject object;
+  add_common(object, "done", report, times, preamble.effects);
+  object.set("title", resolved.title).set("complete", true);
+  add_ensemble(object, result);
+  add_accuracy(object, reached);
+  CommonOptions common = options;
+  common.overwrite = true;
+  deliver(common, report, object);
+  if (folder) say(options, fmt::format("written to {}", folder->string()));
+  return 0;
+}
+
+}  // namespace equidem

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The statistics of an ensemble for people, as JSON and as plots.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "equidem/homogenize/ensemble/ensemble.hpp"
+#include "equidem/homogenize/ensemble/ensemble_statistics.hpp"
+#include "equidem/output/files/json.hpp"
+#include "equidem/output/plots/plot.hpp"
+
+namespace equidem {
+
+/// An ensemble as it was asked for, and what came of it.
+struct EnsembleResult {
+  std::string title;
+  EnsemblePlan plan;
+  std::optional<double> accuracy;  ///< relative, wanted
+  std::vector<EnsembleSample> samples;
+  EnsembleStatistics statistics;
+};
+
+std::string describe_ensemble(const EnsembleResult& result);
+
+/// ensemble: list of {discs, mean_discs, samples, refused, the quantities of `homogenize`, each {mean,
+/// standard_deviation, standard_error, confidence_interval}}; scatter_exponent, size_limit and needed_discs of each
+/// quantity but the anisotropy; confidence, accuracy, refusals.
+void add_ensemble(JsonObject& object, const EnsembleResult& result);
+
+/// Names that ensemble_plots may use.
+inline constexpr std::array ensemble_plot_names{"shear_modulus", "poisson_ratio", "scatter"};
+
+/// Name and plot: means with their confidence limits and all samples against size, of G and of nu (plane strain); the
+/// scatter of K, G and nu against size, where they scatter.
+std::vector<std::pair<std::string, Plot>> ensemble_plots(const EnsembleResult& result);
+
+}  // namespace equidem

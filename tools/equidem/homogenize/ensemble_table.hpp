@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The samples of an ensemble as a table that can be written, read back and continued; their statistics as another.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "equidem/homogenize/ensemble/ensemble.hpp"
+#include "equidem/homogenize/ensemble/ensemble_statistics.hpp"
+#include "equidem/output/files/csv.hpp"
+
+namespace equidem {
+
+/// One row per cell: discs, seed, discs_built, the moduli, refusal.
+std::string samples_csv(const std::vector<EnsembleSample>& samples);
+
+/// What samples_csv wrote, bit for bit.
+/// \throws Error (bad_input) where the file is another table or damaged
+std::vector<EnsembleSample> read_samples_csv(const std::filesystem::path& path);
+
+/// One row per size: discs, mean_discs, samples, refused, and of each quantity the mean, standard deviation, standard
+/// error and confidence limits.
+Table statistics_table(const EnsembleStatistics& statistics);
+
+}  // namespace equidem

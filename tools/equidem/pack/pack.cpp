@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <CLI/CLI.hpp>
+
+#include "equidem/assembly/files.hpp"
+#include "equidem/casefile/echo.hpp"
+#include "equidem/casefile/pack_case.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
+#include "equidem/output/pictures/grain_picture.hpp"
+#include "equidem/output/files/grain_tables.hpp"
+#include "equidem/packing/network.hpp"
+
+#include "command.hpp"
+#include "pack/pack_report.hpp"
+#include "verbs.hpp"
+
+namespace equidem {
+namespace {
+
+PackCase read(const CommonOptions& common) {
+  if (common.threads > 0) set_thread_count(common.threads);
+  set_progress_shown(!common.quiet);
+  std::vector<std::string> overrides = common.set;
+  if (common.seed) overrides.push_back(fmt::format("packing.seed={}", *common.seed));
+  return read_pack_case(common.case_file, overrides);
+}
+
+void check_outputs(const CommonOptions& common, const PackCase& resolved) {
+  const OutputPlan plan(common);
+  plan.expect_json();
+  for (const char* name : {"result.json", "case.toml"}) plan.expect(name);
+  plan.expect("assembly.json");
+  if (!resolved.packing.box.periodic()) plan.expect("assembly_with_walls.json");
+  if (resolved.csv) {
+    plan.expect("grains.csv");
+    if (resolved.packing.shape.kind == PackingShape::Kind::bonded_pair) plan.expect("bonds.csv");
+  }
+  if (resolved.picture) plan.expect("picture.png");
+}
+
+std::vector<GrainWall> walls_of(const PackingBox& box) {
+  if (box.periodic()) return {};
+  std::vector<GrainWall> walls = walls_of_box(box.size.x);
+  if (box.sides == PackingBox::Sides::walls) {
+    walls.push_back(walls.front());
+    walls.back().name = "lid";
+    walls.back().point = {0, box.size.y};
+    walls.back().normal = {0, -1};
+  }
+  return walls;
+}
+
+void write_files(const CommonOptions& common, const PackCase& resolved, const GrainPacking& packing) {
+  const auto& folder = *common.out;
+  const SettlingOptions& settling = resolved.packing.settling;
+  if (resolved.csv) {
+    const std::vector<std::string> groups(packing.grains.size(), "grains");
+    const std::vector<double> densities(packing.grains.size(), settling.density);
+    write_grain_csv(folder / "grains.csv", {packing.grains, packing.clumps, groups, densities}, common.overwrite);
+    if (!packing.bonds.empty()) write_bond_csv(folder / "bonds.csv", packing.bonds, {}, common.overwrite);
+  }
+  write_assembly(folder / "assembly.json", network_of(packing, settling.springs), common.overwrite);
+  if (!packing.box.periodic()) {
+    const HeldNetwork held = held_network_of(packing, settling.springs);
+    if (!held.bodies.empty()) write_assembly(folder / "assembly_with_walls.json", held.assembly, common.overwrite);
+  }
+  if (resolved.picture) {
+    const std::vector<GrainWall> walls = walls_of(packing.box);
+    write_grain_picture(folder, "picture",
+                        {.title = resolved.title,
+                         .time = packing.settling.time,
+                         .grains = packing.grains,
+                         .clumps = packing.clumps,
+                         .bonds = packing.bonds,
+                         .walls = walls},
+                        common.overwrite);
+  }
+  write_file(folder / "case.toml", to_toml(resolved.document, folder), common.overwrite);
+}
+
+int dry_run(const CommonOptions& common, const PackCase& resolved) {
+  JsonObject object;
+  const std::string report = describe_pack_case(resolved);
+  add_common(object, "dry_run", report, {}, {});
+  object.set("grains", resolved.packing.radii.size());
+  CommonOptions without_folder = common;
+  without_folder.out.reset();
+  deliver(without_folder, report, object);
+  return 0;
+}
+
+/// Bodies that settled stay what they are where statics cannot judge them: a network may have motions without stiffness.
+std::optional<ConfirmedRest> confirmed(const PackCase& resolved, const GrainPacking& packing) {
+  if (packing.contacts.empty()) return {};
+  ConfirmedRest rest;
+  try {
+    rest.confirmation = confirm_rest(packing, resolved.packing.settling);
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    rest.why_not = error.problem();
+  }
+  return rest;
+}
+
+/// What cannot be packed or measured is told with the line of that key.
+template <typename Task>
+auto located(const PackCase& resolved, const char* key, const Task& task) {
+  try {
+    return task();
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    const TomlValue& packing = *resolved.document.find("packing");
+    const TomlValue* value = packing.find(key);
+    throw error.at(value != nullptr ? fmt::format("{}: packing.{}", value->where(), key)
+                                    : fmt::format("{}: packing", packing.where()));
+  }
+}
+
+int run(const CommonOptions& common) {
+  const PackCase resolved = read(common);
+  check_outputs(common, resolved);
+  if (common.dry_run) return dry_run(common, resolved);
+  StageTimes times;
+  Stopwatch watch;
+  const GrainPacking packing = located(resolved, "method", [&] { return pack(resolved.packing); });
+  times.add("packing", watch.lap());
+  const PackingMeasures measures = located(resolved, "region", [&] { return measure(packing, resolved.region); });
+  times.add("measures", watch.lap());
+  const std::optional<ConfirmedRest> rest = confirmed(resolved, packing);
+  times.add("statics", watch.lap());
+  if (common.out) write_files(common, resolved, packing);
+  times.add("files", watch.lap());
+  const std::string report = describe_pack_case(resolved) + describe_packing(resolved, packing, measures, rest, times);
+  JsonObject object;
+  add_common(object, "done", report, times, {});
+  add_packing(object, resolved, packing, measures, rest);
+  deliver(common, report, object);
+  if (common.out) say(common, fmt::format("written to {}", common.out->string()));
+  return 0;
+}
+
+}  // namespace
+
+Run declare_pack(CLI::App& command) {
+  auto common = std::make_shared<CommonOptions>();
+  add_common_options(command, *common);
+  command.get_option("--seed")->description("short for --set packing.seed=S");
+  command.footer(
+      "With --out: grains.csv for 'equidem run', and assembly.json, the contacts with their springs for homogenize,\n"
+      "stability, calibrate and solve; where walls hold the bodies also assembly_with_walls.json, whose group "
+      "\"walls\"\n"
+      "is to be held. A pair tied by dashpots counts there as one rigid body.\n"
+      "Examples:\n"
+      "  equidem pack data/cases/pack_jammed.toml --out jammed   a cell for homogenize, stability\n"
+      "  equidem pack data/cases/pack_soil.toml --set packing.grains=300 --out soil      discs that fell\n"
+      "  equidem pack data/cases/pack_ellipses.toml --out ellipses\n"
+      "  equidem pack data/cases/pack_pairs.toml --set packing.shape.kind=bonded_pair --out pairs");
+  return [common] { return run(*common); };
+}
+
+}  // namespace equidem

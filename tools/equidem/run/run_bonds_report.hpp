@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What `equidem run` says of bonds; nothing where there are none.
+#pragma once
+
+#include <string>
+
+#include "equidem/grains/grain_simulation.hpp"
+#include "equidem/output/files/json.hpp"
+
+#include "run/run_grains_loop.hpp"
+
+namespace equidem {
+
+/// How many, how they act over a step, the step that they allow.
+std::string describe_bonds(const GrainSetup& setup);
+/// How far they gave way since the start.
+std::string describe_drift_of_bonds(const BondReport& bonds);
+
+/// bonds {number, critical_time_step (null: none), distance_drift, slip_drift, roll_drift {largest, mean}}.
+void add_bonds(JsonObject& object, const GrainSetup& setup, const BondReport& bonds);
+
+}  // namespace equidem

@@ -1,0 +1,396 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/run_grains_report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "equidem/casefile/grain_pairs.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/output/files/grain_energy.hpp"
+#include "equidem/output/plots/plot.hpp"
+
+#include "solve/report.hpp"
+#include "run/run_bonds_report.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr double balance_to_doubt = 0.1;
+
+double grain_steps_per_second(const GrainSetup& setup, const GrainRun& run) {
+  if (!(run.seconds > 0)) return 0;
+  return static_cast<double>(run.steps_done) * static_cast<double>(setup.resolved.grains.size()) / run.seconds;
+}
+
+/// What the balance is held against: the most energy that there was.
+double largest_term(const GrainLedger& ledger) {
+  return std::max({ledger.kinetic, ledger.elastic(), std::abs(ledger.potential), ledger.lost(),
+                   std::abs(ledger.work_of_walls), ledger.initial});
+}
+
+double relative_error(const GrainLedger& ledger) {
+  const double size = largest_term(ledger);
+  return size > 0 ? ledger.error() / size : 0.0;
+}
+
+const char* energy_unit(Body body) {
+  return body == Body::disc ? "J per m of depth" : "J";
+}
+
+/// "0.02 m", "0.01 to 0.02 m".
+std::string range(double smallest, double largest) {
+  return smallest == largest ? fmt::format("{:.6g}", smallest) : fmt::format("{:.6g} to {:.6g}", smallest, largest);
+}
+
+/// How many bodies have each shape, in the order of GrainShape.
+std::array<std::int64_t, 3> counts_of_shapes(const GrainCase& resolved) {
+  std::array<std::int64_t, 3> counts{};
+  for (const Grain& grain : resolved.grains) ++counts[static_cast<std::size_t>(grain.shape())];
+  return counts;
+}
+
+/// "24 discs", "3 discs, 1 ellipse and 2 clumps".
+std::string describe_shapes(const GrainCase& resolved) {
+  const auto [round, ellipses, clumps] = counts_of_shapes(resolved);
+  std::vector<std::string> parts;
+  for (const auto& [count, name] :
+       {std::pair{round, to_string(resolved.body)}, std::pair{ellipses, std::string("ellipse")},
+        std::pair{clumps, std::string("clump")}})
+    if (count > 0) parts.push_back(fmt::format("{} {}{}", grouped(count), name, count == 1 ? "" : "s"));
+  std::string text = parts.front();
+  for (std::size_t k = 1; k < parts.size(); ++k) text += (k + 1 == parts.size() ? " and " : ", ") + parts[k];
+  return text;
+}
+
+const char* describe_ellipse_contact(GrainOptions::EllipseLaw law) {
+  using enum GrainOptions::EllipseLaw;
+  return law == exact ? "ellipses meet at their closest points (exact)"
+         : law == enlarged_mended
+             ? "ellipses meet by the test of enlarged ellipses, mended: shallow contacts are missed"
+             : "ellipses meet by the test of enlarged ellipses as printed: many contacts are missed";
+}
+
+std::string describe_bodies(const GrainCase& resolved) {
+  double mass = 0, smallest = INFINITY, largest = 0;
+  std::map<std::string, std::int64_t> groups;
+  for (const Grain& grain : resolved.grains) {
+    mass += grain.inertia.mass;
+    smallest = std::min(smallest, grain.radius);
+    largest = std::max(largest, grain.radius);
+    ++groups[resolved.kinds[static_cast<std::size_t>(grain.kind)]];
+  }
+  const auto [round, ellipses, clumps] = counts_of_shapes(resolved);
+  std::string out = report_line(
+      "bodies", fmt::format("{}, {} {} m, {:.6g} {} in all", describe_shapes(resolved),
+                       ellipses + clumps == 0 ? "radius" : "radius of the circle around each", range(smallest, largest),
+                       mass, resolved.body == Body::disc ? "kg per m of depth" : "kg"));
+  if (clumps > 0) {
+    std::size_t fewest = resolved.clumps.front().discs.size(), most = fewest;
+    for (const Clump& clump : resolved.clumps) {
+      fewest = std::min(fewest, clump.discs.size());
+      most = std::max(most, clump.discs.size());
+    }
+    out += report_line("",
+                       fmt::format("clumps of {} {}", fewest == most ? fmt::format("{}", most) : fmt::format("{} to {}", fewest, most),
+                              most == 1 ? "disc" : "discs"));
+  }
+  if (ellipses > 0) out += report_line("", describe_ellipse_contact(resolved.ellipse_law));
+  if (groups.size() > 1) {
+    std::string list;
+    for (const auto& [name, members] : groups) list += fmt::format("{}{} {}", list.empty() ? "" : ", ", name, members);
+    out += report_line("groups", list);
+  }
+  std::string walls;
+  for (const GrainWall& wall : resolved.walls) {
+    constexpr const char* shapes[] = {"line", "segment", "arc"};
+    walls += fmt::format("{}{} ({}{})", walls.empty() ? "" : ", ", wall.name, shapes[static_cast<int>(wall.shape)],
+                    wall.moves() ? ", moves" : "");
+  }
+  return walls.empty() ? out : out + report_line("walls", walls);
+}
+
+std::string describe_pair(const GrainCase& resolved, const PairCase& pair) {
+  const PairProperties& p = pair.properties;
+  std::string text = fmt::format("restitution {}", p.restitution);
+  if (!is_map(resolved.law) && p.restitution < 1)
+    text += p.end == ContactEnd::at_zero_force ? " (never pulls)" : " (may pull at the end)";
+  if (pair.duration > 0) {
+    text += fmt::format(", contacts of {:.6g} s", pair.duration);
+  } else if (p.dimensionless > 0) {
+    text += fmt::format(", k dt²/m = {:.6g}", p.dimensionless);
+  } else {
+    text += fmt::format(", k = {:.6g} N/m{}", p.stiffness, resolved.law == NormalLaw::hertz_dashpot ? "^1.5" : "");
+  }
+  if (p.friction == 0) return text + ", no friction";
+  text += fmt::format(", friction {}, kT/kN {:.6g}", p.friction, p.tangential_ratio);
+  if (p.tangential_ratio == 0) text += " (slides always)";
+  if (p.tangential_damping > 0) text += fmt::format(", tangential damping {}", p.tangential_damping);
+  return text;
+}
+
+/// Every two kinds that can meet; those that meet alike on one line.
+std::string describe_pairs(const GrainCase& resolved) {
+  std::vector<std::pair<std::string, std::string>> lines;  // what, who
+  const auto masses = masses_of_kinds(resolved);
+  constexpr int most_kinds = 8;
+  if (resolved.kind_count() > most_kinds)
+    return report_line("contacts",
+                       fmt::format("{} kinds of bodies, each pair with its own stiffness", resolved.kind_count()));
+  for (int a = 0; a < resolved.kind_count(); ++a) {
+    for (int b = a; b < resolved.kind_count(); ++b) {
+      if (!reduced_masses(masses, a, b)) continue;
+      const std::string what = describe_pair(resolved, resolved.between(a, b));
+      const std::string who =
+          fmt::format("{} and {}", resolved.kinds[static_cast<std::size_t>(a)], resolved.kinds[static_cast<std::size_t>(b)]);
+      const auto at = std::find_if(lines.begin(), lines.end(), [&](const auto& line) { return line.first == what; });
+      if (at == lines.end()) {
+        lines.emplace_back(what, who);
+      } else {
+        at->second += ", " + who;
+      }
+    }
+  }
+  std::string out;
+  for (const auto& [what, who] : lines)
+    out += report_line(out.empty() ? "contacts" : "", lines.size() == 1 ? what : fmt::format("{}: {}", who, what));
+  return out;
+}
+
+std::string describe_law(const GrainCase& resolved) {
+  const std::string letter = letter_of(resolved.law);
+  const std::string name = fmt::format("{} ({})", to_string(resolved.law), letter);
+  switch (resolved.law) {
+    case NormalLaw::exact_flow:
+      return name + ": linear spring and dashpot solved exactly within the step, all contacts together";
+    case NormalLaw::linear_dashpot:
+    case NormalLaw::hertz_dashpot:
+      return fmt::format("{}: {} spring and dashpot, {}", name,
+                    resolved.law == NormalLaw::linear_dashpot ? "linear" : "Hertz",
+                    resolved.scheme == GrainOptions::Scheme::semi_implicit_euler ? "semi-implicit Euler"
+                    : resolved.scheme == GrainOptions::Scheme::velocity_verlet
+                        ? "velocity Verlet"
+                        : "velocity Verlet, contacts that begin or end within a step corrected");
+    case NormalLaw::five_case_map:
+      return name + ": restitution at the first step of a contact, energy kept after it";
+    case NormalLaw::energy_map:
+      return name +
+             ": restitution at the first step of a contact, corrected to its true beginning; energy kept after it";
+  }
+  return name;
+}
+
+/// A map turns the approach of two bodies round as if nothing else acted on them: summed at one body, that is too much.
+std::string describe_limit_of_maps(const GrainCase& resolved) {
+  if (!is_map(resolved.law) || resolved.grains.size() + resolved.walls.size() <= 2) return "";
+  return report_line(
+      "",
+      "for bodies that meet two by two: each contact is taken as if nothing else acted on its bodies, and where they "
+      "press on one another energy comes and goes; for beds exact_flow or linear_dashpot");
+}
+
+/// Where a balance that lacks much comes from, and what to do.
+std::string advice_on_balance(const GrainSetup& setup, const GrainSimulation& simulation, const GrainLedger& ledger) {
+  const GrainCase& resolved = setup.resolved;
+  if (is_map(resolved.law)) {
+    return fmt::format(
+        "{:.3g} {} {}, as this law takes each contact as if nothing else acted on its bodies; take exact_flow or "
+        "linear_dashpot where they press on one another",
+        std::abs(ledger.error()), energy_unit(resolved.body),
+        ledger.error() > 0 ? "came from nothing" : "vanished uncounted");
+  }
+  const bool euler =
+      resolved.law != NormalLaw::exact_flow && resolved.scheme == GrainOptions::Scheme::semi_implicit_euler;
+  if (euler && !simulation.effects().tangential_springs && ledger.lost_slip > std::abs(ledger.error())) {
+    return "contacts without tangential springs that nearly stick count too large a loss by slip in "
+           "semi_implicit_euler; take velocity_verlet, or a tangential_ratio above 0";
+  }
+  return "compare with a shorter step before trusting the motion";
+}
+
+std::string describe_step(const GrainSetup& setup) {
+  const GrainStep& step = setup.step;
+  std::string out = report_line("time step", fmt::format("{:.6g} s{}", step.step, step.automatic ? ", automatic" : ""));
+  if (step.contact > 0) {
+    out += report_line("", fmt::format("the shortest contact lasts {:.4g} s, {:.3g} steps ({})", step.contact,
+                                  step.steps_in_contact(), step.between));
+  } else {
+    out += report_line("", "how long contacts last is not known: " +
+                               std::string(setup.resolved.law == NormalLaw::hertz_dashpot
+                                               ? "that of a Hertz spring depends on the speed (closing_speed says it)"
+                                               : "no two bodies can meet"));
+  }
+  if (step.omega_step > 0 && step.limit > 0) {
+    out += report_line(
+        "", fmt::format("omega dt = {:.4g}, {:.3g} of {:.4g}, {}", step.omega_step, step.omega_step / step.limit, step.limit,
+                   is_map(setup.resolved.law) ? "past which a contact is over in a step"
+                                              : "the limit of stability of one contact; several at a body lower it"));
+  } else if (step.omega_step > 0) {
+    out += report_line("", fmt::format("omega dt = {:.4g}; a single contact is exact at any step", step.omega_step));
+  }
+  return out;
+}
+
+/// What of the output is not what a reader of the case would expect.
+std::string describe_output(const GrainSetup& setup) {
+  const OutputCase& output = setup.resolved.output;
+  std::string out;
+  if (!setup.resolved.probes.empty() && !output.probe_interval)
+    out += report_line("probes", "not recorded: [output] has no probe_interval");
+  for (const auto& [name, interval] :
+       {std::pair{"frames", output.frame_interval}, std::pair{"probes", output.probe_interval}}) {
+    if (interval && *interval < setup.step.step)
+      out += report_line(name, fmt::format("at every step, which is longer than the interval of {} s", *interval));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string describe_grains(const GrainSetup& setup, const GrainSimulation& simulation) {
+  const GrainCase& resolved = setup.resolved;
+  std::string out;
+  if (!resolved.title.empty()) out += resolved.title + "\n\n";
+  out += describe_bodies(resolved);
+  std::string active;
+  for (const Effects::Entry& entry : simulation.effects().entries)
+    if (entry.active) active += (active.empty() ? "" : ", ") + entry.name;
+  out += report_line("effects", active);
+  for (const Effects::Entry& entry : simulation.effects().entries)
+    if (!entry.active) out += report_line("", fmt::format("no {}: {}", entry.name, entry.why));
+  out += report_line("law", describe_law(resolved)) + describe_limit_of_maps(resolved);
+  out += describe_pairs(resolved) + describe_shaking(resolved) + describe_step(setup) + describe_bonds(setup) +
+         describe_output(setup);
+  return out + report_line("memory", fmt::format("{:.0f} bytes a grain in the loop", simulation.bytes_per_grain()));
+}
+
+std::string describe_grain_run(const GrainSetup& setup, const GrainSimulation& simulation, const GrainRun& run,
+                               const StageTimes& times) {
+  const GrainCounters& counters = simulation.counters();
+  std::string out =
+      report_line("steps", fmt::format("{}, to t = {:.6g} s; {:.3g} grain-steps per second", grouped(simulation.step()),
+                                  simulation.time(), grain_steps_per_second(setup, run)));
+  out += report_line("collisions",
+                     fmt::format("{} contacts begun, {} at the end; {} evaluations of the law", grouped(counters.contacts),
+                            simulation.contacts().size(), grouped(counters.evaluations)));
+  out += describe_drift_of_bonds(simulation.bonds());
+  const GrainLedger l = simulation.energy();
+  out += report_line("energy", fmt::format("kinetic {:.6g}, elastic {:.6g}, potential {:.6g} {}", l.kinetic, l.elastic(),
+                                      l.potential, energy_unit(setup.resolved.body)));
+  const GrainLedger& start = run.record.energies.front().ledger;
+  const double overlap = start.elastic();
+  out += report_line(
+      "", fmt::format("at the start {:.6g}{}{}", l.initial,
+                 overlap > 1e-6 * largest_term(l) ? fmt::format(", {:.6g} of it in bodies that overlap", overlap) : "",
+                 l.work_of_walls != 0 ? fmt::format("; put in by walls {:.6g}", l.work_of_walls) : ""));
+  std::string lost;
+  for (const auto& [name, value] :
+       {std::pair{"restitution", l.lost_restitution}, std::pair{"normal dashpots", l.lost_dashpot},
+        std::pair{"slip", l.lost_slip}, std::pair{"tangential dashpots", l.lost_tangential_dashpot},
+        std::pair{"springs let go", l.lost_release}, std::pair{"bonds", l.lost_bond}})
+    if (value != 0) lost += fmt::format("{}{} {:.6g}", lost.empty() ? "" : ", ", name, value);
+  out += report_line("", lost.empty() ? "nothing lost" : fmt::format("lost {:.6g}: {}", l.lost(), lost));
+  out += report_line("balance", fmt::format("lacks {:.1e} of the largest term", relative_error(l)));
+  if (std::abs(relative_error(l)) > balance_to_doubt)
+    out += report_line("", "that is much: " + advice_on_balance(setup, simulation, l));
+  if (counters.doubtful > 0)
+    out += report_line(
+        "", fmt::format("of all evaluations {} were of contacts pressed together in a step that may feed their vibration: "
+                   "the step is safe for one contact, not for any cluster; compare with one a third as long",
+                   grouped(counters.doubtful)));
+  std::string stages;
+  for (const auto& [stage, seconds] : times.stages())
+    if (seconds >= 0.02 * times.total()) stages += fmt::format(", {} {:.2g} s", stage, seconds);
+  return out + report_line("times", fmt::format("{:.2g} s in all{}", times.total(), stages));
+}
+
+void add_grain_step(JsonObject& object, const GrainStep& step) {
+  const auto set_known = [&](const char* key, double value) {
+    if (value > 0) {
+      object.set(key, value);
+    } else {
+      object.set_null(key);
+    }
+  };
+  object.set("time_step", step.step).set("time_step_automatic", step.automatic);
+  set_known("contact_duration", step.contact);
+  set_known("steps_in_contact", step.contact / step.step);
+  set_known("omega_time_step", step.omega_step);
+  set_known("critical_time_step", step.omega_step > 0 ? step.step * step.limit / step.omega_step : 0);
+}
+
+void add_grain_run(JsonObject& object, const GrainSetup& setup, const GrainSimulation& simulation,
+                   const GrainRun& run) {
+  const GrainCase& resolved = setup.resolved;
+  const auto [round, ellipses, clumps] = counts_of_shapes(resolved);
+  JsonObject shapes;
+  shapes.set(to_string(resolved.body) + "s", round).set("ellipses", ellipses).set("clumps", clumps);
+  object.set("title", resolved.title)
+      .set("body", to_string(resolved.body))
+      .set("grains", resolved.grains.size())
+      .set("shapes", shapes)
+      .set("walls", resolved.walls.size())
+      .set("law", to_string(resolved.law))
+      .set("steps", simulation.step())
+      .set("time", simulation.time());
+  add_grain_step(object, setup.step);
+  add_bonds(object, setup, simulation.bonds());
+  const GrainLedger ledger = simulation.energy();
+  JsonObject energy;
+  for (const GrainEnergyTerm& term : grain_energy_terms) energy.set(term.name, ledger.*term.value);
+  energy.set("elastic", ledger.elastic())
+      .set("dissipated", ledger.lost())
+      .set("input", ledger.work_of_walls)
+      .set("error", ledger.error())
+      .set("relative_error", relative_error(ledger));
+  const GrainCounters& counters = simulation.counters();
+  object.set("energy", energy)
+      .set("contacts", counters.contacts)
+      .set("touching", simulation.contacts().size())
+      .set("evaluations", counters.evaluations)
+      .set("sweeps", counters.sweeps)
+      .set("rebuilds", counters.rebuilds)
+      .set("particle_steps_per_second", grain_steps_per_second(setup, run))
+      .set("bytes_per_grain", simulation.bytes_per_grain());
+}
+
+void write_grain_energy_plot(const std::filesystem::path& folder, const GrainSetup& setup, const GrainRun& run,
+                             bool overwrite) {
+  Plot plot;
+  plot.title = setup.resolved.title;
+  plot.x.label = "time, s";
+  plot.y.label = fmt::format("energy, {}", energy_unit(setup.resolved.body));
+  struct Curve {
+    const char* label;
+    PlotColour colour;
+    double (*value)(const GrainLedger&);
+  };
+  constexpr Curve curves[] = {
+      {"kinetic", PlotColour::blue, [](const GrainLedger& l) { return l.kinetic; }},
+      {"elastic", PlotColour::vermilion, [](const GrainLedger& l) { return l.elastic(); }},
+      {"potential", PlotColour::green, [](const GrainLedger& l) { return l.potential; }},
+      {"lost at impacts", PlotColour::orange,
+       [](const GrainLedger& l) { return l.lost_restitution + l.lost_dashpot + l.lost_release; }},
+      {"lost by friction", PlotColour::purple,
+       [](const GrainLedger& l) { return l.lost_slip + l.lost_tangential_dashpot; }},
+      {"lost in bonds", PlotColour::yellow, [](const GrainLedger& l) { return l.lost_bond; }},
+      {"put in by walls", PlotColour::sky_blue, [](const GrainLedger& l) { return l.work_of_walls; }},
+      {"what the balance lacks", PlotColour::black, [](const GrainLedger& l) { return l.error(); }},
+  };
+  for (const Curve& curve : curves) {
+    Series series{.label = curve.label, .colour = curve.colour};
+    bool any = false;
+    for (const GrainEnergySample& sample : run.record.energies) {
+      series.x.push_back(sample.time);
+      series.y.push_back(curve.value(sample.ledger));
+      any = any || series.y.back() != 0;
+    }
+    if (any) plot.series.push_back(std::move(series));
+  }
+  if (!plot.series.empty()) write_plot(folder, "energy_plot", plot, overwrite);
+}
+
+}  // namespace equidem

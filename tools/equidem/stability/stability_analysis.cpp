@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stability/stability_analysis.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "equidem/assembly/body_inertia.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/statics/motion_description.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr std::size_t most_discs_of_antiperiodic = 20000;
+
+/// kT/kN where it is the same everywhere (to round-off).
+std::optional<double> common_ratio(const Problem& problem) {
+  const ContactSprings& springs = problem.springs.springs;
+  const double first = springs[0].ratio();
+  for (std::size_t c = 1; !springs.uniform() && c < problem.assembly.contacts.size(); ++c)
+    if (std::abs(springs[c].ratio() - first) > 1e-12 * std::abs(first)) return {};
+  return first;
+}
+
+CriticalMotion critical_of_survey(const WaveSurvey& survey) {
+  CriticalMotion critical{.ratio = survey.critical.value,
+                          .wave = survey.critical.at,
+                          .equivalent = survey.critical.points,
+                          .motion = {},
+                          .searched = {}};
+  critical.searched = fmt::format(
+      "all waves of the infinite assembly: {} wave vectors, all points of symmetry, long waves (q -> 0) along all "
+      "directions, and a climb from the best",
+      survey.critical.on_grid.size());
+  if (critical.ratio <= -1)
+    critical = {.ratio = -std::numeric_limits<double>::infinity(), .searched = critical.searched};
+  return critical;
+}
+
+/// Motions that repeat with the cell, and those that change sign from one cell to the next.
+CriticalMotion critical_of_large_cell(const Problem& problem, bool rotation) {
+  const Vec2 period = *problem.assembly.period;
+  CriticalMotion critical{.ratio = -std::numeric_limits<double>::infinity()};
+  const bool antiperiodic = problem.assembly.size() <= most_discs_of_antiperiodic;
+  std::string searched;
+  for (const auto& [x, y] :
+       {std::pair{false, false}, std::pair{true, false}, std::pair{false, true}, std::pair{true, true}}) {
+    if ((x || y) && !antiperiodic) continue;
+    const Vec2 q{x ? std::numbers::pi / period.x : 0, y ? std::numbers::pi / period.y : 0};
+    const ZonePoint wave{x && y ? "S" : x ? "X" : y ? "Y" : "Gamma", q};
+    double ratio = 0;
+    try {
+      ratio = find_critical_ratio(problem.assembly, problem.springs.springs, {},
+                                  {.rotation = rotation, .antiperiodic_x = x, .antiperiodic_y = y})
+                  .ratio;
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::computation_failed || !(x || y)) throw;
+      continue;  // gears that turn from cell to cell: this wave stays unsearched
+    }
+    searched += (searched.empty() ? "" : ", ") + wave.name;
+    if (ratio <= critical.ratio) continue;
+    critical.ratio = ratio;
+    critical.wave = wave;
+    critical.equivalent = {wave};
+  }
+  critical.searched = fmt::format(
+      "by inertia, of the waves of the given cell: {} (Gamma: repeats with the cell; X, Y, S: changes "
+      "sign along x, y, both). Other waves were not searched",
+      searched);
+  return critical;
+}
+
+CriticalMotion critical_of(const Stability& s, bool rotation) {
+  const Problem& problem = s.problem;
+  if (!on_lines_of_centres(problem.assembly))
+    return {.sought = false,
+            .searched =
+                "contacts lie off the lines of centres, where normal springs resist rotations too, so that no "
+                "single kT/kN tells what gives way"};
+  if (s.survey) return critical_of_survey(*s.survey);
+  if (problem.assembly.periodic()) return critical_of_large_cell(problem, rotation);
+  CriticalMotion critical;
+  const CriticalRatio found =
+      find_critical_ratio(problem.assembly, problem.springs.springs, problem.supports, {.rotation = rotation});
+  critical.ratio = found.ratio;
+  if (!found.motion.empty()) critical.motion = describe_motion(problem.assembly, found.motion);
+  critical.searched = problem.supports.empty() ? "all motions of the free body, by inertia"
+                                               : "all motions that the supports allow, by inertia";
+  return critical;
+}
+
+/// Sound of the homogenized continuum, or why there is none.
+void add_continuum(Stability& s) {
+  EffectiveStiffness homogenized;
+  try {
+    homogenized = effective_stiffness(
+        s.problem.assembly, s.problem.springs.springs,
+        {.boundary = Boundary::periodic, .rotation = s.problem.resolved.rotation, .solver = s.problem.resolved.solver});
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    s.no_continuum = error.problem();
+    return;
+  }
+  std::vector<double> angles{0, std::numbers::pi / 2};
+  if (s.survey) {
+    angles.clear();
+    for (const SoundAlong& along : s.survey->sound) angles.push_back(along.angle);
+  }
+  for (const double angle : angles)
+    s.sound.push_back(plane_waves(homogenized.gradient_stiffness, s.mass_per_area, {std::cos(angle), std::sin(angle)}));
+}
+
+}  // namespace
+
+double density_of(const Case& resolved) {
+  return resolved.assembly.density.value_or(1);
+}
+
+std::string Stability::status() const {
+  if (mechanisms.count() > 0 || (survey && !survey->free_waves.empty())) return "mechanism";
+  const bool below = critical.sought && ratio && *ratio < 0 && *ratio <= critical.ratio;
+  return inertia.unstable_modes != 0 || below ? "unstable" : "stable";
+}
+
+double Stability::growth_rate() const {
+  double squared = lowest ? std::max(0.0, -lowest->value) : 0;
+  if (lowest && survey) squared = std::max(squared, survey->growing.value);
+  constexpr double round_off = 1e-12;  // of the bound on omega², in what costs nothing
+  return squared > round_off * element_bound ? std::sqrt(squared) : 0;
+}
+
+Problem stability_problem(Case resolved) {
+  const bool acts = resolved.test || !resolved.supports.empty() || !resolved.load_cases.front().loads.empty();
+  if (acts) return build_problem(std::move(resolved));
+  StageTimes times;
+  Stopwatch watch;
+  Assembly assembly = build_assembly(resolved);
+  times.add("assembly", watch.lap());
+  BuiltSprings springs = build_springs(resolved, assembly);
+  times.add("springs", watch.lap());
+  return {std::move(resolved), std::move(assembly), std::move(springs), {}, {}, {}, std::move(times)};
+}
+
+Stability analyze_stability(const Problem& problem) {
+  const Assembly& assembly = problem.assembly;
+  const ContactSprings& springs = problem.springs.springs;
+  if (assembly.contacts.empty())
+    bad_input("no contact joins any disc", "nothing resists any motion", "Give the assembly contacts");
+  const Rotation rotation = problem.resolved.rotation;
+  Stability s(problem, derive_effects(assembly, springs, rotation));
+  s.times = problem.times;
+  s.density = density_of(problem.resolved);
+  s.density_assumed = !problem.resolved.assembly.density.has_value();
+  s.ratio = common_ratio(problem);
+  const std::vector<Inertia> inertia = inertia_of(assembly, s.density, problem.resolved.assembly.body);
+  check_magnitudes(assembly, springs, inertia);
+
+  Stopwatch watch;
+  s.mechanisms = find_mechanisms(assembly, springs, rotation, problem.supports);
+  s.inertia = find_inertia(assembly, springs, rotation, problem.supports);
+  s.times.add("inertia", watch.lap());
+
+  const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, s.effects, problem.supports);
+  if (unknowns.unknowns == 0)
+    bad_input("the supports hold every disc", "nothing can move, so that nothing can be lost", "Hold fewer discs");
+  s.element_bound = element_bound(assembly, springs, inertia, s.effects.rotation);
+  s.highest = extreme_squared_frequency(assembly, springs, unknowns, inertia, SpectrumEnd::largest);
+  constexpr double round_off = 1e-14;  // of the bound, in what costs nothing
+  if (s.highest.converged && s.highest.value <= round_off * s.element_bound) {
+    s.highest.value = s.highest.residual = 0;  // a cell of discs that touch only their own images
+  } else if (!(s.highest.value > 0)) {
+    computation_failed("the highest frequency was not found",
+                       fmt::format("{} products with the matrix did not separate it from the next", s.highest.products),
+                       "Take a smaller assembly; --dry-run tells the time step that is guaranteed");
+  }
+  if (springs.any_negative())
+    s.lowest = extreme_squared_frequency(assembly, springs, unknowns, inertia, SpectrumEnd::smallest);
+  s.rules = time_step_rules(assembly, springs, inertia, s.effects.rotation);
+  s.times.add("highest frequency", watch.lap());
+
+  if (assembly.periodic()) {
+    const PrimitiveCell cell = primitive_cell(assembly, springs);
+    s.cell_discs = static_cast<std::int64_t>(cell.size());
+    if (cell.size() <= most_discs_of_survey) s.survey = survey_waves(cell, inertia, rotation);
+    double mass = 0;
+    for (const Inertia& body : inertia) mass += body.mass;
+    s.mass_per_area = mass / assembly.area();
+    s.times.add("waves", watch.lap());
+    add_continuum(s);
+    s.times.add("continuum", watch.lap());
+  }
+  s.critical = critical_of(s, rotation != Rotation::restrained);
+  s.times.add("critical ratio", watch.lap());
+  return s;
+}
+
+}  // namespace equidem

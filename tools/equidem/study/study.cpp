@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// equidem study: error against time.
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
+#include "equidem/study/built_in.hpp"
+
+#include "command.hpp"
+#include "study/study_file.hpp"
+#include "study/study_report.hpp"
+#include "study/study_samples.hpp"
+#include "verbs.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr const char* samples_name = "samples.csv";
+
+struct StudyVerb {
+  CommonOptions common;
+  std::string what;
+  bool quick = false;
+  bool list = false;
+  StudyOptions options;
+  std::optional<double> accuracy;
+};
+
+bool is_file(const std::string& what) {
+  return what.ends_with(".toml");
+}
+
+std::string list_of_studies() {
+  std::string text = "Built-in studies:\n";
+  for (const BuiltInStudy& study : built_in_studies()) text += fmt::format("  {:<20} {}\n", study.name, study.summary);
+  return text;
+}
+
+std::string command_of(const StudyVerb& verb) {
+  std::string command = "equidem study " + verb.what;
+  if (verb.quick) command += " --quick";
+  command += fmt::format(" --seed {} --threads {} --budget {:g} --rounds {}", verb.options.seed, thread_count(),
+                    verb.options.budget, verb.options.least_rounds);
+  if (verb.accuracy) command += fmt::format(" --accuracy {:g}", *verb.accuracy);
+  return command;
+}
+
+/// Measurements that an earlier run left; none where it begins anew.
+StudySamples samples_to_keep(const StudyVerb& verb, const Study& study, const std::string& checksum) {
+  if (!verb.common.out || verb.common.overwrite) return {};
+  const auto table = *verb.common.out / samples_name;
+  if (!std::filesystem::exists(table)) return {};
+  return read_study_samples(table, study, checksum);
+}
+
+/// Files of an earlier run of the same study are replaced; those of anything else are not.
+void check_outputs(const StudyVerb& verb, const Study& study, bool continues) {
+  OutputPlan(verb.common).expect_json();
+  CommonOptions common = verb.common;
+  common.overwrite = common.overwrite || continues;
+  const OutputPlan plan(common);
+  for (const char* name : {samples_name, "study.csv", "result.json"}) plan.expect(name);
+  for (const std::string& name : study_plot_names(study)) {
+    for (const char* end : {".csv", ".gp", ".svg", ".png"}) plan.expect(name + end);
+  }
+}
+
+void check(const StudyVerb& verb) {
+  if (verb.accuracy && !(*verb.accuracy > 0))
+    bad_input(fmt::format("the accuracy {:g} is not positive", *verb.accuracy), "no computation is without error",
+              "Give a positive number, such as 1e-3");
+  if (verb.quick && is_file(verb.what))
+    bad_input("--quick does not belong to a study file", "it would change nothing",
+              "Leave it out, or vary fewer values");
+}
+
+void refuse_all_failed(const StudyReport& report) {
+  for (const StudyRow& row : report.result.rows) {
+    if (row.refusal.empty()) return;
+  }
+  computation_failed("none of the settings could be computed",
+                     "the first: " + without_full_stop(report.result.rows.front().refusal), "");
+}
+
+/// The accuracy is asked of each problem.
+void refuse_unreached(const StudyReport& report) {
+  for (const Recommendation& one : report.recommendations) {
+    if (one.row) continue;
+    computation_failed(fmt::format("no setting reaches {:g}{}", *report.accuracy,
+                              one.problem.empty() ? "" : fmt::format(" for {}", one.problem)),
+                       fmt::format("the best one reaches {:.2g}", one.best), "Ask for less, or study finer settings");
+  }
+  if (report.recommendations.empty())
+    computation_failed("this study has no errors", "it measures time alone", "Leave out --accuracy");
+}
+
+int run_verb(const StudyVerb& verb) {
+  if (verb.list) {
+    std::fputs(list_of_studies().c_str(), stdout);
+    return 0;
+  }
+  check(verb);
+  set_thread_count(verb.common.threads > 0 ? verb.common.threads : 1);
+  set_progress_shown(!verb.common.quiet);
+  const Study study =
+      is_file(verb.what) ? study_of_file(verb.what, verb.common) : built_in_study(verb.what, verb.quick);
+  const Machine machine = this_machine();
+  const std::string checksum =
+      study.checksum(fmt::format("{} seed {} threads {}", machine.text(), verb.options.seed, thread_count()));
+  StudySamples kept = samples_to_keep(verb, study, checksum);
+  const bool continues = !kept.tasks.empty();
+  check_outputs(verb, study, continues);
+  const auto& folder = verb.common.out;
+  Stopwatch since_saved;
+  const auto save = [&](const StudySamples& done, bool now) {
+    if (!folder || (!now && since_saved.seconds() < 1)) return;
+    write_file(*folder / samples_name, study_samples_csv(study, done, checksum), true);
+    since_saved.lap();
+  };
+  const StudySamples samples =
+      run_study(study, verb.options, std::move(kept), [&](const StudySamples& done) { save(done, false); });
+  save(samples, true);
+
+  StudyReport report{.study = study,
+                     .result = evaluate(study, samples),
+                     .options = verb.options,
+                     .machine = machine,
+                     .command = command_of(verb),
+                     .checksum = checksum,
+                     .accuracy = verb.accuracy,
+                     .recommendations = {}};
+  if (verb.accuracy) report.recommendations = recommend(study, report.result, *verb.accuracy);
+  std::string text = describe_study(report);
+  if (samples.stopped)
+    text += fmt::format("INCOMPLETE: stopped after {} of all settings\n", counted(samples.rounds(), "round"));
+  if (folder) {
+    write_csv(*folder / "study.csv", study_table(report), true);
+    for (const auto& [name, plot] : study_plots(report)) text += write_plot(*folder, name, plot, true).message + "\n";
+  }
+  CommonOptions common = verb.common;
+  common.overwrite = common.overwrite || folder.has_value();
+  deliver(common, text, study_json(report, text));
+  if (folder) say(verb.common, fmt::format("written to {}", folder->string()));
+  if (samples.stopped) {
+    throw Error(ErrorKind::interrupted, "stopped as asked",
+                fmt::format("{} of all settings are done", counted(samples.rounds(), "round")),
+                folder ? "Run the same command to go on" : "With --out DIR what is done would be kept");
+  }
+  refuse_all_failed(report);
+  if (verb.accuracy) refuse_unreached(report);
+  return 0;
+}
+
+}  // namespace
+
+Run declare_study(CLI::App& command) {
+  const auto verb = std::make_shared<StudyVerb>();
+  command.add_option("STUDY", verb->what, "a built-in study, or a study file (.toml)")->type_name("NAME|FILE");
+  add_result_options(command, verb->common);
+  command.get_option("--threads")->description("threads; left out: one, so that times are those of one processor");
+  command.add_flag("--list", verb->list, "list the built-in studies");
+  command.add_flag("--quick", verb->quick, "built-in studies: fewer and smaller settings");
+  command.add_option("--accuracy", verb->accuracy, "name the cheapest setting whose errors are at most X")
+      ->type_name("X");
+  command
+      .add_option("--budget", verb->options.budget,
+                  "seconds after which no round begins, once there are --rounds of them")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1e7))
+      ->type_name("S");
+  command.add_option("--rounds", verb->options.least_rounds, "rounds at least")
+      ->capture_default_str()
+      ->check(CLI::Range(3, 100))
+      ->type_name("N");
+  command.add_option("--seed", verb->options.seed, "of the order in which settings are timed")
+      ->capture_default_str()
+      ->type_name("S");
+  command.footer(list_of_studies() +
+                 "\nExamples:\n"
+                 "  equidem study integrators --out figures\n"
+                 "  equidem study collision_laws --quick --accuracy 0.01\n"
+                 "  equidem study data/cases/study_tension.toml --out figures\n"
+                 "Ctrl-C keeps what is done; the same command with the same --out goes on from there.");
+  return [verb] {
+    if (verb->what.empty() && !verb->list)
+      bad_input("it is not said what to study", "a study has a name or a file",
+                "'equidem study --list' shows the built-in ones");
+    return run_verb(*verb);
+  };
+}
+
+}  // namespace equidem

@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// equidem sweep: solve over a range of one key.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+#include "equidem/casefile/keys.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/output/plots/plot.hpp"
+
+#include "command.hpp"
+#include "problem.hpp"
+#include "solve/report.hpp"
+#include "sweep/sweep_table.hpp"
+#include "verbs.hpp"
+
+namespace equidem {
+namespace {
+
+struct SweepOptions {
+  CommonOptions common;
+  std::string key;
+  std::optional<double> from, to;
+  int steps = 11;
+  std::vector<double> values;
+  std::string verb = "solve";
+  bool resume = false;
+};
+
+[[noreturn]] void refuse_sweep(const std::string& problem, const std::string& why, const std::string& remedy) {
+  bad_input(problem, why, remedy);
+}
+
+std::vector<double> values_of(const SweepOptions& options) {
+  const bool range = options.from && options.to;
+  if (range == !options.values.empty() || options.from.has_value() != options.to.has_value())
+    refuse_sweep("the values of the sweep are not clear", "either a list or a range is needed",
+                 "Give --values a,b,c or --from A --to B --steps N");
+  std::vector<double> values = options.values;
+  const int intervals = options.steps - 1;
+  for (int k = 0; range && k < options.steps; ++k) {
+    const double value =
+        intervals == 0 ? *options.from : (*options.from * (intervals - k) + *options.to * k) / intervals;
+    // The decimal number that is meant, 0.3 and not 0.30000000000000004; and a spring that is absent, not one
+    // that is almost absent.
+    const double rounding = 1e-13 * std::max(std::abs(*options.from), std::abs(*options.to));
+    values.push_back(std::abs(value) <= rounding ? 0 : std::stod(fmt::format("{:.12g}", value)));
+  }
+  for (const double value : values)
+    if (!std::isfinite(value))
+      refuse_sweep(fmt::format("{} is among the values", value), "a sweep needs finite numbers", "Leave it out");
+  return values;
+}
+
+/// The override that a value of the key means. "ratio" stands for kT/kN at the kN of the case.
+std::string override_of(const SweepOptions& options, const Case& base, double value) {
+  if (options.key != "ratio") {
+    const TomlValue& now = value_at(base.document, options.key);
+    const bool whole = now.type == TomlValue::Type::integer && value == std::floor(value) && std::abs(value) < 1e15;
+    return fmt::format("{}={}", options.key, whole ? fmt::format("{:.0f}", value) : toml_number(value));
+  }
+  return fmt::format("springs={{kN = {}, kT = {}, weighting = \"{}\"}}", toml_number(base.springs->kN),
+                toml_number(value * base.springs->kN), to_string(base.weighting));
+}
+
+/// Points that share an assembly build it once.
+class ProblemFactory {
+ public:
+  explicit ProblemFactory(const SweepOptions& options)
+      : reusable_(!options.key.starts_with("assembly.") && !options.key.starts_with("group.")) {}
+
+  std::unique_ptr<Problem> operator()(Case resolved) {
+    std::optional<Assembly> given;
+    if (reusable_ && last_) given = *last_;
+    auto problem = std::make_unique<Problem>(build_problem(std::move(resolved), std::move(given)));
+    if (reusable_ && !last_) last_ = problem->assembly;
+    return problem;
+  }
+
+ private:
+  bool reusable_;
+  std::optional<Assembly> last_;
+};
+
+SweepPoint compute(const SweepOptions& options, const Case& base, double value, ProblemFactory& build, Effects& effects,
+                   StageTimes& times) {
+  SweepPoint point;
+  point.value = value;
+  try {
+    CommonOptions common = options.common;
+    common.set.push_back(override_of(options, base, value));
+    const auto problem = build(read_case(common));
+    if (problem->load_cases.size() > 1)
+      refuse_sweep("the case has several load cases", "a sweep shows one", "Leave one [[load]] case in the file");
+    const EquilibriumSolver solver(problem->assembly, problem->springs.springs, problem->supports, problem->options());
+    const SolvedCase result = solve_case(*problem, solver, problem->load_cases.front());
+    effects = solver.effects();
+    for (const auto& [stage, seconds] : problem->times.stages()) times.add(stage, seconds);
+    for (const auto& [stage, seconds] : result.equilibrium.times.stages()) times.add(stage, seconds);
+    point.status = result.status();
+    point.energy = result.equilibrium.energy;
+    point.relative_residual = result.equilibrium.relative_residual;
+    point.negative_pivots = static_cast<double>(result.equilibrium.negative_pivots);
+    point.unstable_modes = static_cast<double>(result.equilibrium.unstable_modes);
+    if (result.tension) {
+      point.poisson_ratio = result.tension->poisson_ratio;
+      point.stiffness_ratio = result.tension->stiffness_ratio;
+    }
+    if (const auto theory = tension_theory(*problem)) {
+      point.theory_poisson_ratio = theory->poisson_ratio;
+      point.theory_stiffness_ratio = theory->stiffness_ratio;
+    }
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    point.status = "failed";
+    point.message = error.what();
+  }
+  return point;
+}
+
+constexpr const char* table_name = "sweep.csv";
+constexpr const char* case_name = "case.toml";
+constexpr std::array curve_names{"poisson_ratio", "stiffness_ratio"};
+
+std::string axis_label(const std::string& key) {
+  return key == "ratio" ? "kT/kN" : key;
+}
+
+std::string plot_curves(const SweepOptions& options, const Case& base, const std::vector<SweepPoint>& points,
+                        bool overwrite) {
+  struct Curve {
+    const char* name;
+    const char* label;
+    double SweepPoint::*computed;
+    double SweepPoint::*theory;
+  };
+  const std::array curves{
+      Curve{curve_names[0], "Poisson's ratio (plane strain)", &SweepPoint::poisson_ratio,
+            &SweepPoint::theory_poisson_ratio},
+      Curve{curve_names[1], "2G/((1 - nu) kN)", &SweepPoint::stiffness_ratio, &SweepPoint::theory_stiffness_ratio}};
+  std::vector<SweepPoint> ordered = points;
+  std::stable_sort(ordered.begin(), ordered.end(),
+                   [](const SweepPoint& a, const SweepPoint& b) { return a.value < b.value; });
+  std::string said;
+  for (const Curve& curve : curves) {
+    Series theory{.label = "theory of the lattice", .x = {}, .y = {}, .column = "theory"};
+    Series stable{.label = "computed",
+                  .x = {},
+                  .y = {},
+                  .style = SeriesStyle::points,
+                  .colour = PlotColour::blue,
+                  .column = "computed"};
+    Series unstable{.label = "computed, unstable or not judged",
+                    .x = {},
+                    .y = {},
+                    .style = SeriesStyle::points,
+                    .colour = PlotColour::vermilion,
+                    .filled = false,
+                    .column = "unstable"};
+    for (const SweepPoint& point : ordered) {
+      if (!std::isnan(point.*curve.theory)) {
+        theory.x.push_back(point.value);
+        theory.y.push_back(point.*curve.theory);
+      }
+      if (std::isnan(point.*curve.computed)) continue;
+      Series& series = point.unstable_modes != 0 ? unstable : stable;
+      series.x.push_back(point.value);
+      series.y.push_back(point.*curve.computed);
+    }
+    Plot plot{.title = base.title, .x = {.label = axis_label(options.key)}, .y = {.label = curve.label}, .series = {}};
+    for (const Series* series : {&theory, &stable, &unstable})
+      if (!series->x.empty()) plot.series.push_back(*series);
+    if (stable.x.empty() && unstable.x.empty()) continue;
+    said += write_plot(*options.common.out, curve.name, plot, overwrite).message + "\n";
+  }
+  return said;
+}
+
+/// Points of an earlier run of the same sweep.
+std::vector<SweepPoint> points_to_keep(const SweepOptions& options, const Case& base) {
+  if (!options.resume) return {};
+  if (!options.common.out)
+    refuse_sweep("--resume has nothing to continue", "the points done lie in the folder of --out", "Add --out DIR");
+  const auto table = *options.common.out / table_name;
+  if (!std::filesystem::exists(table)) return {};
+  if (read_file(*options.common.out / case_name) != to_toml(base, *options.common.out)) {
+    throw Error(ErrorKind::bad_input, "the sweep there is of another case", "its points would not fit together",
+                "Choose another --out, or leave out --resume and pass --overwrite",
+                (*options.common.out / case_name).string());
+  }
+  return read_sweep_csv(table, options.key);
+}
+
+void check_outputs(const SweepOptions& options) {
+  CommonOptions common = options.common;
+  common.overwrite = common.overwrite || options.resume;
+  const OutputPlan plan(common);
+  for (const char* name : {table_name, case_name, "result.json"}) plan.expect(name);
+  for (const char* name : curve_names)
+    for (const char* end : {".csv", ".gp", ".svg", ".png"}) plan.expect(std::string(name) + end);
+  OutputPlan(options.common).expect_json();
+}
+
+/// The points of this run, then those of an earlier one that it has not come to.
+std::vector<SweepPoint> merged(std::vector<SweepPoint> points, const std::vector<SweepPoint>& kept) {
+  const std::size_t own = points.size();
+  for (const SweepPoint& point : kept) {
+    const auto same = [&](const SweepPoint& other) { return other.value == point.value; };
+    if (std::none_of(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(own), same)) points.push_back(point);
+  }
+  return points;
+}
+
+/// The key exists and the sweep can begin.
+void check_key(const SweepOptions& options, const Case& base, double first) {
+  if (options.key == "ratio") {
+    if (!base.springs)
+      refuse_sweep("--key ratio needs springs", "it changes kT at the kN of the case file",
+                   "Give [springs] in place of [material]");
+    return;
+  }
+  if (is_known_key(options.key)) return;
+  CommonOptions common = options.common;
+  common.set.push_back(fmt::format("{}={}", options.key, toml_number(first)));
+  static_cast<void>(read_case(common));
+}
+
+int dry_run(const SweepOptions& options, const Case& base, const std::vector<double>& values) {
+  const Problem problem = build_problem(base);
+  const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
+  const std::string report =
+      fmt::format("{} of {}, each about as large as this one:\n\n", counted(static_cast<long long>(values.size()), "point"),
+             options.key) +
+      describe_problem(problem, effects) +
+      describe_estimate(estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options()));
+  JsonObject object;
+  add_common(object, "dry_run", report, problem.times, effects);
+  object.set("key", options.key).set("values", values);
+  CommonOptions without_folder = options.common;
+  without_folder.out.reset();
+  deliver(without_folder, report, object);
+  return 0;
+}
+
+/// What a sweep has come to.
+struct Progressed {
+  std::vector<SweepPoint> points;  ///< of this run
+  bool stopped = false;            ///< by the user, before the last value
+  Effects effects;                 ///< of the last point
+  StageTimes times;                ///< of all points
+};
+
+/// Compute the points that are not kept, and save the table every second: whatever ends the program, little is lost.
+Progressed compute_points(const SweepOptions& options, const Case& base, const std::vector<double>& values,
+                          const std::vector<SweepPoint>& kept) {
+  Progressed run;
+  const auto save = [&] {
+    if (!options.common.out) return;
+    write_file(*options.common.out / table_name, sweep_csv(options.key, merged(run.points, kept)), true);
+  };
+  ProblemFactory build(options);
+  Stopwatch since_saved;
+  try {
+    Progress progress(fmt::format("sweeping {}", options.key));
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      progress.update(static_cast<double>(k) / static_cast<double>(values.size()));
+      const auto done = std::find_if(kept.begin(), kept.end(), [&](const SweepPoint& point) {
+        return point.value == values[k] && point.status != "failed";
+      });
+      run.points.push_back(done != kept.end() ? *done
+                                              : compute(options, base, values[k], build, run.effects, run.times));
+      if (since_saved.seconds() < 1) continue;
+      save();
+      since_saved.lap();
+    }
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::interrupted) throw;
+    run.stopped = true;
+  }
+  save();
+  return run;
+}
+
+int sweep(const SweepOptions& options) {
+  if (options.verb != "solve")
+    refuse_sweep(fmt::format("--verb {} cannot be swept", options.verb), "this version sweeps solve", "Leave out --verb");
+  const std::vector<double> values = values_of(options);
+  const Case base = read_case(options.common);
+  check_key(options, base, values.front());
+  check_outputs(options);
+  if (options.common.dry_run) return dry_run(options, base, values);
+  const std::vector<SweepPoint> kept = points_to_keep(options, base);
+
+  const auto& folder = options.common.out;
+  if (folder) write_file(*folder / case_name, to_toml(base, *folder), true);
+  Progressed run = compute_points(options, base, values, kept);
+  const std::size_t done = run.points.size();
+  const std::vector<SweepPoint> points = merged(std::move(run.points), kept);
+  const auto failed = static_cast<std::size_t>(
+      std::count_if(points.begin(), points.end(), [](const SweepPoint& point) { return point.status == "failed"; }));
+  const bool all_failed = failed == points.size();
+
+  std::string report = base.title.empty() ? "" : base.title + "\n\n";
+  report += describe_sweep(options.key, points);
+  if (failed > 0)
+    report += fmt::format("{} failed, {} done\n", counted(static_cast<long long>(failed), "point"), points.size() - failed);
+  if (run.stopped) report += fmt::format("INCOMPLETE: stopped after {} of {} points\n", done, values.size());
+  if (folder && !run.stopped && base.test) report += plot_curves(options, base, points, true);
+
+  JsonObject object;
+  add_common(object, run.stopped ? "interrupted" : all_failed ? "failed" : "done", report, run.times, run.effects);
+  object.set("key", options.key).set("complete", !run.stopped);
+  std::vector<JsonObject> rows;
+  for (const SweepPoint& point : points) rows.push_back(sweep_json("value", point));
+  object.set("points", rows);
+  CommonOptions common = options.common;
+  common.overwrite = true;
+  deliver(common, report, object);
+  if (folder) say(options.common, fmt::format("written to {}", folder->string()));
+  if (run.stopped) {
+    throw Error(
+        ErrorKind::interrupted, "stopped as asked", fmt::format("{} of {} points are done", done, values.size()),
+        folder ? "Run the same command with --resume to do the rest" : "With --out DIR the points done would be kept");
+  }
+  if (all_failed)
+    computation_failed("none of the points could be computed",
+                       "the first: " + without_full_stop(points.front().message), "");
+  return 0;
+}
+
+}  // namespace
+
+Run declare_sweep(CLI::App& command) {
+  const auto options = std::make_shared<SweepOptions>();
+  add_common_options(command, options->common);
+  command.add_option("--key", options->key, "the key to vary, such as springs.kT or assembly.rows; ratio: kT/kN")
+      ->required()
+      ->type_name("KEY");
+  command.add_option("--from", options->from, "first value")->type_name("A");
+  command.add_option("--to", options->to, "last value")->type_name("B");
+  command.add_option("--steps", options->steps, "number of values from A to B; 11 where left out")
+      ->check(CLI::Range(1, 1000000))
+      ->type_name("N");
+  command.add_option("--values", options->values, "the values themselves")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("A,B,C");
+  command.add_option("--verb", options->verb, "what is done at each value: solve")->type_name("VERB");
+  command.add_flag("--resume", options->resume, "keep the points that lie in --out, compute the others");
+  command.footer(
+      "Examples:\n"
+      "  equidem sweep data/cases/abe1996_fig6.toml --key ratio --from 0 --to 1 --steps 11 --out curve\n"
+      "  equidem sweep data/cases/abe1996_fig6.toml --key assembly.rows --values 5,11,21,41\n"
+      "A point that fails stays in the table with its reason.\n"
+      "Ctrl-C keeps what is done; --resume continues.");
+  return [options] { return sweep(*options); };
+}
+
+}  // namespace equidem

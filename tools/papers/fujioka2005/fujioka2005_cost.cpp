@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Table 1, and what a bouncing ball costs at a given accuracy.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "equidem/contact/exact_contact.hpp"
+
+#include "fujioka2005/fujioka2005.hpp"
+
+namespace equidem::fujioka2005 {
+namespace {
+
+constexpr int balls_of_table1 = 16;
+constexpr double never = std::numeric_limits<double>::infinity();
+
+struct Sample {
+  double depth, closing;
+};
+
+/// One step of the law, dimensionless.
+template <NormalLaw law>
+ContactStep step_of(const Variant& variant, double strength, const Sample& at) {
+  if constexpr (law == NormalLaw::linear_dashpot) {
+    return linear_dashpot_step(at.depth, at.closing, variant.a, strength, true);
+  } else if constexpr (law == NormalLaw::hertz_dashpot) {
+    return hertz_dashpot_step(at.depth, at.closing, variant.a, strength, true);
+  } else if constexpr (law == NormalLaw::five_case_map) {
+    return five_case_map_step(at.depth, at.closing, variant.a, strength);
+  } else {
+    return energy_map_step(at.depth, at.closing, variant.a, strength);
+  }
+}
+
+double strength_of(NormalLaw law) {
+  if (law == NormalLaw::linear_dashpot) return damping_ratio_of(restitution, ContactEnd::at_zero_overlap);
+  if (law == NormalLaw::hertz_dashpot) return hertz_damping_of(restitution);
+  return restitution;
+}
+
+constexpr std::size_t sample_count = 4096;
+constexpr double sample_closing = 1e-3;
+double phase_of(std::size_t k) {
+  return std::fmod(0.618033988749895 * (static_cast<double>(k) + 0.5), 1.0);
+}
+
+/// States that impacts of all phases go through.
+template <NormalLaw law>
+std::vector<Sample> samples_of(const Variant& variant) {
+  std::vector<Sample> samples;
+  const double strength = strength_of(law);
+  for (std::size_t impact = 0; samples.size() < sample_count; ++impact) {
+    Sample at{std::max(1e-6, phase_of(impact)) * sample_closing, sample_closing};
+    while (at.depth > 0) {
+      samples.push_back(at);
+      const ContactStep step = step_of<law>(variant, strength, at);
+      at.closing += step.change;
+      at.depth += step.shift + at.closing;
+    }
+  }
+  samples.resize(sample_count);
+  return samples;
+}
+
+template <class Evaluate>
+double nanoseconds(int repeats, Evaluate evaluate) {
+  double sum = 0;
+  Stopwatch watch;
+  for (int r = 0; r < repeats; ++r) {
+    for (std::size_t k = 0; k < sample_count; ++k) sum += evaluate(k);
+  }
+  const double seconds = watch.seconds();
+  // the sum is asked for, so that nothing is left out
+  return std::isfinite(sum) ? seconds * 1e9 / (repeats * static_cast<double>(sample_count)) : never;
+}
+
+template <NormalLaw law>
+double nanoseconds_of(const Variant& variant) {
+  const std::vector<Sample> samples = samples_of<law>(variant);
+  const double strength = strength_of(law);
+  return nanoseconds(20, [&](std::size_t k) { return step_of<law>(variant, strength, samples[k]).change; });
+}
+
+/// Unit mass and step; gravity as an outside acceleration of a thousandth of the closing speed.
+double nanoseconds_of_exact(const Variant& variant) {
+  const PairProperties properties = pair_of(variant);
+  const ExactPair pair = exact_pair(1, variant.a, damping_ratio_of(restitution, properties.end), properties.end, 1);
+  struct Start {
+    Sample at;
+    bool touching;
+  };
+  std::vector<Start> starts;
+  constexpr double fall = 1e-3 * sample_closing;
+  for (std::size_t impact = 0; starts.size() < sample_count; ++impact) {
+    Start now{{-phase_of(impact) * sample_closing, sample_closing}, false};
+    while (now.at.depth > 0 || now.at.closing > 0) {
+      starts.push_back(now);
+      const ExactStep step = exact_step(pair, now.at.depth, now.at.closing, now.touching, fall, 0);
+      now.at.depth += now.at.closing - step.moment + 0.5 * fall;
+      now.at.closing += fall - step.impulse;
+      now.touching = step.touching_at_end;
+      if (!now.touching) break;
+    }
+  }
+  return nanoseconds(1, [&](std::size_t k) {
+    return exact_step(pair, starts[k].at.depth, starts[k].at.closing, starts[k].touching, fall, 0).impulse;
+  });
+}
+
+double evaluation_nanoseconds(const Variant& variant) {
+  switch (variant.law) {
+    case NormalLaw::linear_dashpot:
+      return nanoseconds_of<NormalLaw::linear_dashpot>(variant);
+    case NormalLaw::hertz_dashpot:
+      return nanoseconds_of<NormalLaw::hertz_dashpot>(variant);
+    case NormalLaw::five_case_map:
+      return nanoseconds_of<NormalLaw::five_case_map>(variant);
+    case NormalLaw::energy_map:
+      return nanoseconds_of<NormalLaw::energy_map>(variant);
+    default:
+      return nanoseconds_of_exact(variant);
+  }
+}
+
+/// The paper's run by a plain loop that adds gravity before the contact force.
+template <NormalLaw law>
+std::int64_t evaluations_with_gravity_first(const Variant& variant, double step, std::int64_t steps) {
+  const double strength = strength_of(law), fall = gravity * step * step / diameter;
+  Sample at{-drop, 0};
+  std::int64_t count = 0;
+  for (std::int64_t n = 0; n < steps; ++n) {
+    at.closing += fall;
+    if (at.depth > 0) {
+      ++count;
+      const ContactStep change = step_of<law>(variant, strength, at);
+      at.closing += change.change;
+      at.depth += change.shift;
+    }
+    at.depth += at.closing;
+  }
+  return balls_of_table1 * count;
+}
+
+std::int64_t gravity_first(const Variant& variant, double step, std::int64_t steps) {
+  switch (variant.law) {
+    case NormalLaw::linear_dashpot:
+      return evaluations_with_gravity_first<NormalLaw::linear_dashpot>(variant, step, steps);
+    case NormalLaw::hertz_dashpot:
+      return evaluations_with_gravity_first<NormalLaw::hertz_dashpot>(variant, step, steps);
+    case NormalLaw::five_case_map:
+      return evaluations_with_gravity_first<NormalLaw::five_case_map>(variant, step, steps);
+    case NormalLaw::energy_map:
+      return evaluations_with_gravity_first<NormalLaw::energy_map>(variant, step, steps);
+    default:
+      return 0;
+  }
+}
+
+/// 16 balls side by side, apart.
+GrainScene row_of_balls(const Variant& variant) {
+  GrainScene scene = column(variant, 1, drop);
+  for (int k = 1; k < balls_of_table1; ++k) {
+    scene.grains.push_back(scene.grains.front());
+    scene.grains.back().position.x = 1.5 * diameter * k;
+  }
+  return scene;
+}
+
+/// A rigid ball dropped from rest: its height above the floor.
+double rigid_height(double time) {
+  const double height = drop * diameter;
+  double speed = std::sqrt(2 * gravity * height), left = time - speed / gravity;
+  if (left < 0) return height - 0.5 * gravity * time * time;
+  speed *= restitution;
+  while (left > 2 * speed / gravity) {
+    left -= 2 * speed / gravity;
+    speed *= restitution;
+  }
+  return speed * left - 0.5 * gravity * left * left;
+}
+
+constexpr double looked_at = 0.1;  // s
+constexpr int looks = 30;
+
+BallPoint follow_ball(Variant variant, double a, double step) {
+  variant.a = a;
+  const auto between = static_cast<std::int64_t>(std::llround(looked_at / step));
+  BallPoint point{.step = step, .a = a};
+  double squares = 0, least = never, all = 0;
+  for (int round = 0; round < 3 || (all < 0.005 && round < 200); ++round) {
+    squares = 0;
+    GrainSimulation run = start(column(variant, 1, drop), variant, step);
+    Stopwatch watch;
+    for (int k = 1; k <= looks; ++k) {
+      run.advance(between);
+      const double error = run.grains()[0].position.y - 0.5 * diameter - rigid_height(k * looked_at);
+      squares += error * error;
+    }
+    least = std::min(least, watch.seconds());
+    all += watch.seconds();
+  }
+  point.error = std::sqrt(squares / looks) / (drop * diameter);
+  point.seconds = least;
+  return point;
+}
+
+}  // namespace
+
+Table1 measure_table1(bool quick, Progress& progress) {
+  Table1 table{.step = quick ? 1e-5 : 1e-6, .rows = {}};
+  table.rest_time = std::sqrt(2 * drop * diameter / gravity) * (1 + restitution) / (1 - restitution);
+  constexpr int slices = 50;
+  std::vector<GrainSimulation> runs;
+  for (const Variant& variant : variants(very_stiff_for_x)) {
+    Table1Row row{.variant = variant, .step = variant.label == "X stiff" ? paper_step : table.step};
+    row.evaluation_nanoseconds = never;
+    row.gravity_first = gravity_first(variant, row.step, std::llround(table.duration / row.step));
+    runs.push_back(start(row_of_balls(variant), variant, row.step));
+    table.rows.push_back(row);
+  }
+  // turn by turn, so that what else the machine does falls on all alike
+  for (int slice = 0; slice < slices; ++slice) {
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      Table1Row& row = table.rows[k];
+      Stopwatch watch;
+      runs[k].advance(std::llround(table.duration / row.step) / slices);
+      row.run_seconds += watch.seconds();
+      if (slice % 5 == 0) {
+        row.evaluation_nanoseconds = std::min(row.evaluation_nanoseconds, evaluation_nanoseconds(row.variant));
+      }
+      stop_if_interrupted();
+    }
+    progress.update(0.5 + 0.5 * (slice + 1) / slices);
+  }
+  for (std::size_t k = 0; k < runs.size(); ++k) table.rows[k].evaluations = runs[k].counters().evaluations;
+  return table;
+}
+
+std::vector<BallCost> cost_of_ball(bool quick, Progress& progress) {
+  std::vector<double> steps{1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4};
+  if (!quick) steps.insert(steps.end(), {5e-5, 2e-5, 1e-5});
+  std::vector<BallCost> all;
+  for (const Variant& variant : variants(0)) {
+    const bool stiff = variant.a == 0;
+    BallCost cost{.variant = variant, .label = stiff ? "X, step 0.1 s" : variant.label, .points = {}};
+    if (stiff) {
+      for (double a = 1e4; a <= 1.1e12; a *= 10) cost.points.push_back(follow_ball(variant, a, looked_at));
+    } else {
+      for (const double step : steps) cost.points.push_back(follow_ball(variant, variant.a, step));
+    }
+    all.push_back(std::move(cost));
+    progress.update(0.03 * static_cast<double>(all.size()));
+  }
+  return all;
+}
+
+}  // namespace equidem::fujioka2005

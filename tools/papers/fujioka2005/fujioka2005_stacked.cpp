@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Figs. 10 and 11: a sphere slides down between two others.
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/core/text.hpp"
+
+#include "fujioka2005/fujioka2005.hpp"
+
+namespace equidem::fujioka2005 {
+namespace {
+
+constexpr double watched = 1.3 * exact_parting;
+
+/// Steps over the whole range, `per_decade` a decade.
+std::vector<double> steps_of(bool quick) {
+  std::vector<double> steps;
+  const int last = quick ? 20 : 24;
+  for (int k = 12; k <= last; k += quick ? 2 : 1) steps.push_back(std::pow(10.0, -k / 4.0));
+  return steps;
+}
+
+struct Slide {
+  double speed = 0, parting = 0;  ///< d', T0
+  double sweeps = 0;
+};
+
+void score(StackedPoint& point, const Slide& slide) {
+  point.speed_error = std::abs(slide.speed / exact_speed - 1);
+  point.parting_error = std::abs(slide.parting / exact_parting - 1);
+  point.sweeps = slide.sweeps;
+}
+
+double dimensionless_speed(double speed) {
+  return speed / std::sqrt(4 * gravity * stacked_radius);
+}
+
+Slide slide(const Variant& variant, double step) {
+  GrainSimulation run = start(stacked(variant), variant, step);
+  const auto last = static_cast<std::int64_t>(std::ceil(watched / step));
+  // an Euler step lists what touched at its start, a step of X what touches at its end
+  const std::int64_t late = variant.of_paper() ? 0 : 1;
+  Slide result;
+  while (run.step() < last) {
+    run.advance(1);
+    for (const GrainContact& contact : run.contacts()) {
+      if (contact.i == 1 && contact.j == 2) result.parting = static_cast<double>(run.step() + late) * step;
+    }
+  }
+  result.speed = dimensionless_speed(run.grains()[1].velocity.x);
+  result.sweeps = static_cast<double>(run.counters().sweeps) / static_cast<double>(last);
+  return result;
+}
+
+double seconds_of(const Variant& variant, double step) {
+  const auto steps = static_cast<std::int64_t>(std::ceil(exact_parting / step));
+  double least = 1e300, all = 0;
+  for (int round = 0; round < 3 || (all < 0.05 && round < 100); ++round) {
+    GrainSimulation run = start(stacked(variant), variant, step);
+    Stopwatch watch;
+    run.advance(steps);
+    least = std::min(least, watch.seconds());
+    all += watch.seconds();
+  }
+  return least;
+}
+
+/// C by a loop of its own, B and C alone by symmetry: closing is the change of overlap since the step before, in place of the old
+/// velocity along the new normal.
+Slide slide_with_closing_from_overlap(double step) {
+  constexpr double r = stacked_radius;
+  const double zeta = damping_ratio_of(restitution, ContactEnd::at_zero_overlap);
+  const Variant law = variants(stiff_for_x)[0];
+  Vec2 b{r, r}, vb{};
+  double c = (1 + std::sqrt(3.0)) * r, vc = 0;
+  double pair_before = 0, floor_before = 0;
+  Slide result;
+  const auto last = static_cast<std::int64_t>(std::ceil(watched / step));
+  for (std::int64_t n = 1; n <= last; ++n) {
+    const Vec2 branch = b - Vec2{0, c};
+    const double pair = 2 * r - norm(branch), floor = r - b.y;
+    const Vec2 normal = branch / norm(branch);
+    Vec2 change{};
+    double on_c = 0;
+    if (pair > 0) {
+      // of the closing speed, shared by two equal masses; C feels the mirror image of B as well
+      const double push = -0.5 * linear_dashpot_step(pair, pair - pair_before, law.a, zeta, true).change / step;
+      change += push * normal;
+      on_c = -2 * push * normal.y;
+      result.parting = static_cast<double>(n) * step;
+    }
+    if (floor > 0) change.y -= linear_dashpot_step(floor, floor - floor_before, law.a, zeta, true).change / step;
+    pair_before = pair;
+    floor_before = floor;
+    vb += change + Vec2{0, -gravity * step};
+    vc += on_c - gravity * step;
+    b += step * vb;
+    c += step * vc;
+  }
+  result.speed = dimensionless_speed(vb.x);
+  return result;
+}
+
+/// Slope of log(error) over log(step), least squares over steps up to 1e-4 s.
+double order(const std::vector<StackedPoint>& points, double StackedPoint::*error) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (const StackedPoint& point : points) {
+    if (point.step > 1.01e-4 || !(point.*error > 0)) continue;
+    const double u = std::log(point.step), v = std::log(point.*error);
+    n += 1;
+    x += u;
+    y += v;
+    xx += u * u;
+    xy += u * v;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
+}  // namespace
+
+std::vector<Stacked> slide_stacked(bool quick, Progress& progress) {
+  const std::vector<double> steps = steps_of(quick);
+  std::vector<Stacked> all;
+  const std::vector<Variant> laws = variants(stiff_for_x);
+  for (const Variant& variant : laws) {
+    Stacked curve{.variant = variant, .label = variant.label, .points = {}};
+    for (const double step : steps) {
+      StackedPoint point{.step = step};
+      score(point, slide(variant, step));
+      point.seconds = seconds_of(variant, step);
+      curve.points.push_back(point);
+      stop_if_interrupted();
+    }
+    all.push_back(std::move(curve));
+    progress.update(0.2 + 0.3 * static_cast<double>(all.size()) / static_cast<double>(laws.size()));
+  }
+  Stacked corrected{.variant = laws[0], .label = "C, no lag", .points = {}};
+  for (const double step : steps) {
+    StackedPoint point{.step = step};
+    score(point, slide_with_closing_from_overlap(step));
+    corrected.points.push_back(point);
+  }
+  all.push_back(std::move(corrected));
+  for (Stacked& curve : all) {
+    curve.speed_order = order(curve.points, &StackedPoint::speed_error);
+    curve.parting_order = order(curve.points, &StackedPoint::parting_error);
+  }
+  return all;
+}
+
+}  // namespace equidem::fujioka2005

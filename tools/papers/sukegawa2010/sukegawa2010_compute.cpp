@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cassert>
+#include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
+#include "equidem/output/files/grain_checkpoint.hpp"
+
+#include "sukegawa2010/sukegawa2010.hpp"
+
+namespace equidem::sukegawa2010 {
+
+const std::vector<OutcomeKey>& outcome_keys() {
+  static const std::vector<OutcomeKey> keys{{"void_ratio_before", &Outcome::void_ratio_before},
+                                            {"void_ratio", &Outcome::void_ratio},
+                                            {"whole_void_ratio_before", &Outcome::whole_before},
+                                            {"whole_void_ratio", &Outcome::whole},
+                                            {"surface_height_before_m", &Outcome::height_before},
+                                            {"surface_height_m", &Outcome::height},
+                                            {"roughness_before_m", &Outcome::roughness_before},
+                                            {"roughness_m", &Outcome::roughness},
+                                            {"centre_height_before_m", &Outcome::centre_before},
+                                            {"centre_height_m", &Outcome::centre},
+                                            {"largest_slope", &Outcome::slope},
+                                            {"swing_m", &Outcome::swing},
+                                            {"thrown", &Outcome::thrown},
+                                            {"coordination", &Outcome::coordination},
+                                            {"bond_creep", &Outcome::creep},
+                                            {"bond_roll_rad", &Outcome::roll},
+                                            {"largest_overlap", &Outcome::overlap},
+                                            {"time_step_s", &Outcome::time_step},
+                                            {"steps", &Outcome::steps},
+                                            {"time_s", &Outcome::time},
+                                            {"energy_error", &Outcome::energy_error},
+                                            {"seconds", &Outcome::seconds}};
+  return keys;
+}
+
+namespace {
+
+const char* name_of(EllipseLaw law) {
+  switch (law) {
+    case EllipseLaw::exact:
+      return "exact";
+    case EllipseLaw::enlarged_as_printed:
+      return "printed";
+    case EllipseLaw::enlarged_mended:
+      break;
+  }
+  return "mended";
+}
+
+/// All that a fill depends on: the name of the loop and the settings.
+std::string settings_of(const Fill& fill) {
+  return fmt::format(
+      "{} columns {} rows {} seed {} softness {} damping {} friction {} step {} bonds {} rows {} cap {} ellipses {} "
+      "version {}",
+      plural_of(fill.shape), fill.grid.columns, fill.grid.rows, fill.seed, fill.softness, fill.damping, fill.friction,
+      fill.step ? fmt::format("{} s", *fill.step) : fmt::format("{}", fill.step_share), fill.bond_step, fill.row_share,
+      fill.cap == FrictionCap::whole_force ? "whole" : "spring", name_of(fill.ellipse_law), library_version());
+}
+std::string settings_of(const Run& run) {
+  std::string text = settings_of(run.fill);
+  if (run.shaking)
+    text += fmt::format(" {} gal {} Hz {} cycles", run.shaking->gal, run.shaking->frequency, run.shaking->cycles);
+  return text;
+}
+
+class Store {
+ public:
+  explicit Store(const CommonOptions& options) : folder_(options.out), overwrite_(options.overwrite) {}
+
+  std::optional<Outcome> find(const std::string& name, const std::string& settings) const {
+    const auto path = file(name, ".json");
+    if (!folder_ || overwrite_ || !std::filesystem::exists(path)) return {};
+    const std::string text = read_file(path);
+    if (text.find("\"" + settings + "\"") == std::string::npos) {
+      throw Error(ErrorKind::bad_input, "the run there has other settings", "they would not fit together",
+                  "Choose another --out, or pass --overwrite to begin anew", path.string());
+    }
+    Outcome outcome;
+    for (const OutcomeKey& key : outcome_keys())
+      outcome.*key.value = number_in_json(text, key.name).value_or(std::numeric_limits<double>::quiet_NaN());
+    return outcome;
+  }
+
+  void keep(const std::string& name, const std::string& settings, const Outcome& outcome) const {
+    if (!folder_) return;
+    JsonObject object;
+    object.set("settings", settings);
+    for (const OutcomeKey& key : outcome_keys()) object.set(key.name, outcome.*key.value);
+    write_file(file(name, ".json"), object.text(), true);
+  }
+
+  std::optional<GrainState> find_state(const Fill& fill, const std::string& settings) const {
+    const auto path = file(fill.name(), ".h5");
+    if (!folder_ || overwrite_ || !std::filesystem::exists(path)) return {};
+    const std::lock_guard lock(mutex_);
+    return read_grain_checkpoint(path, settings, start_of(fill).grains).state;
+  }
+  void keep_state(const Fill& fill, const std::string& settings, const GrainState& state) const {
+    if (!folder_) return;
+    const std::lock_guard lock(mutex_);
+    write_grain_checkpoint(CheckpointWriter(file(fill.name(), ".h5"), settings, true), state, {});
+  }
+
+ private:
+  [[nodiscard]] std::filesystem::path file(const std::string& name, const char* end) const {
+    return folder_ ? *folder_ / "runs" / (name + end) : std::filesystem::path();
+  }
+  std::optional<std::filesystem::path> folder_;
+  bool overwrite_;
+  mutable std::mutex mutex_;  // of HDF5
+};
+
+/// Fraction of all work done, told by several threads.
+class Work {
+ public:
+  explicit Work(double total) : total_(total) {}
+  void tell(double& counted, double now) {
+    const std::lock_guard lock(mutex_);
+    done_ += now - counted;
+    counted = now;
+    progress_.update(std::min(1.0, done_ / total_));
+  }
+
+ private:
+  std::mutex mutex_;
+  double total_, done_ = 0;
+  Progress progress_{"reproducing Sukegawa 2010"};
+};
+
+struct SharedFill {
+  std::mutex mutex;
+  std::optional<FilledBox> box;
+};
+
+}  // namespace
+
+void compute(const CommonOptions& options, Reproduction& result) {
+  const std::vector<Run> runs = plan(result.quick);
+  result.planned = runs.size();
+  const Store store(options);
+  const RunFiles files{.folder = options.out, .overwrite = true};
+  std::vector<std::optional<Outcome>> outcomes;
+  std::map<std::string, std::unique_ptr<SharedFill>> fills;
+  std::map<std::string, bool> shown;
+  std::map<std::string, std::string> names;
+  double total = 0;
+  for (const Run& run : runs) {
+    [[maybe_unused]] const auto [known, is_new] = names.emplace(run.fill.name(), settings_of(run.fill));
+    assert((is_new || known->second == settings_of(run.fill)) && "a name stands for one filling");
+    outcomes.push_back(store.find(run.name(), settings_of(run)));
+    if (outcomes.back()) continue;
+    total += cost_of(run);
+    auto& fill = fills[run.fill.name()];
+    if (!fill) {
+      fill = std::make_unique<SharedFill>();
+      total += cost_of({.fill = run.fill});
+    }
+    shown[run.fill.name()] |= run.shown;
+  }
+  Work work(std::max(total, 1e-300));
+  const auto one = [&](std::size_t k, int) {
+    if (outcomes[k]) return;
+    const Run& run = runs[k];
+    double counted = 0, base = 0;
+    const auto tick = [&](double cost) {
+      return [&work, &counted, &base, cost](double share) { work.tell(counted, base + share * cost); };
+    };
+    SharedFill& fill = *fills.at(run.fill.name());
+    {
+      const std::lock_guard lock(fill.mutex);
+      const double cost = cost_of({.fill = run.fill});
+      if (!fill.box) {
+        const std::string settings = settings_of(run.fill);
+        const auto outcome = store.find(run.fill.name(), settings);
+        auto state = outcome ? store.find_state(run.fill, settings) : std::nullopt;
+        if (state) {
+          fill.box = FilledBox{std::move(*state), *outcome};
+        } else {
+          fill.box = fill_box(run.fill, shown.at(run.fill.name()), files, tick(cost));
+          store.keep_state(run.fill, settings, fill.box->state);
+          store.keep(run.fill.name(), settings, fill.box->outcome);
+        }
+        work.tell(counted, base = cost);
+      }
+    }
+    const double cost = cost_of(run);
+    const Outcome outcome = shake_box(run, *fill.box, files, tick(cost));
+    work.tell(counted, base + cost);
+    store.keep(run.name(), settings_of(run), outcome);
+    outcomes[k] = outcome;
+  };
+  const auto gather = [&] {
+    for (std::size_t k = 0; k < runs.size(); ++k)
+      if (outcomes[k]) result.runs.push_back({runs[k], *outcomes[k]});
+  };
+  try {
+    parallel_tasks(runs.size(), one);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::interrupted) throw;
+    gather();
+    throw;
+  }
+  gather();
+}
+
+}  // namespace equidem::sukegawa2010

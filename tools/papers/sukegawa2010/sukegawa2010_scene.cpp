@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/core/random.hpp"
+#include "equidem/material/wave_speed_springs.hpp"
+#include "equidem/packing/packing.hpp"
+#include "equidem/packing/size_distribution.hpp"
+
+#include "sukegawa2010/sukegawa2010.hpp"
+
+namespace equidem::sukegawa2010 {
+namespace {
+
+bool is_pair(Shape shape) {
+  return shape == Shape::bonded_pair || shape == Shape::rigid_pair;
+}
+
+SettlingOptions material_of(const Fill& fill) {
+  const WaveSpeeds speeds = wave_speeds_from_shear(shear_speed, poisson_ratio);
+  SettlingOptions options{.density = density,
+                          .springs = springs_of_wave_speeds(density, speeds),
+                          .damping = fill.damping,
+                          .gravity = gravity,
+                          .friction = fill.friction,
+                          .wall_friction = wall_friction};
+  options.springs.kN /= fill.softness;
+  options.springs.kT /= fill.softness;
+  return options;
+}
+
+/// A pair takes two places of a row.
+Bodies placed(const Fill& fill) {
+  const StartGrid& grid = fill.grid;
+  const bool pairs = is_pair(fill.shape);
+  const std::int64_t columns = pairs ? grid.columns / 2 : grid.columns;
+  const double wide = StartGrid::cell * (pairs ? 2 : 1), high = pairs ? StartGrid::pair_row : StartGrid::cell;
+  // An even row of pairs begins at the wall, an odd one ends there.
+  const double shift = pairs ? StartGrid::cell / 2 : wide / 2;
+  Random random(fill.seed);
+  Bodies bodies;
+  bodies.radii = draw_radii({.smallest = smallest_radius, .largest = largest_radius}, columns * grid.rows, random);
+  for (std::int64_t k = 0; k < columns * grid.rows; ++k) {
+    const std::int64_t row = k / columns, column = k % columns;
+    bodies.centres.push_back({(static_cast<double>(column) + 0.5) * wide + (row % 2 == 1 ? shift : 0),
+                              (static_cast<double>(row) + 0.5) * high * fill.row_share});
+    if (fill.shape != Shape::disc) bodies.turns.push_back(random.uniform());
+  }
+  return bodies;
+}
+
+}  // namespace
+
+GrainScene start_of(const Fill& fill) {
+  GrainPacking packing;
+  make_grains({.kind = fill.shape}, placed(fill), density, packing);
+  GrainScene scene = scene_of_box(fill.grid.width(), material_of(fill));
+  for (PairProperties& pair : scene.pairs) pair.cap = fill.cap;
+  scene.grains = std::move(packing.grains);
+  scene.clumps = std::move(packing.clumps);
+  scene.bonds = std::move(packing.bonds);
+  for (GrainBond& bond : scene.bonds) {
+    bond.normal_dashpot = 0.5 * scene.grains[bond.i].inertia.mass / fill.bond_step;
+    bond.tangential_dashpot = bond.normal_dashpot / 3;  // a push along the tangent moves a disc three times as easily
+  }
+  return scene;
+}
+
+double step_of(const GrainScene& scene, const Fill& fill) {
+  if (fill.step) return *fill.step;
+  const SpringConstants springs = material_of(fill).springs;
+  double limit = INFINITY;
+  for (const Grain& grain : scene.grains) {
+    const double mass = grain.inertia.mass;
+    const auto bound = [&](double stiffness, double lever) {
+      const double moved = 0.5 / (1 / mass + lever * lever / grain.inertia.moment);
+      const double damping = fill.damping * std::sqrt(mass / moved);  // of c = 2 h sqrt(m k) (2.27)
+      return semi_implicit_limit(damping) / std::sqrt(stiffness / moved);
+    };
+    double arm = 0;  // the longest of a force along the normal
+    if (grain.shape() == GrainShape::ellipse) arm = grain.radius - grain.short_half_axis;
+    if (grain.shape() == GrainShape::clump) arm = 0.5 * grain.radius;
+    limit = std::min({limit, bound(springs.kN, arm), bound(springs.kT, grain.radius)});
+  }
+  return fill.step_share * limit;
+}
+
+GrainOptions options_of(const GrainScene& scene, const Fill& fill) {
+  return {.law = NormalLaw::linear_dashpot,
+          .scheme = GrainOptions::Scheme::corrected_verlet,
+          .time_step = step_of(scene, fill),
+          .ellipse_law = fill.ellipse_law};
+}
+
+}  // namespace equidem::sukegawa2010
