@@ -128,8 +128,8 @@ TEST_CASE("damped_motion_comes_to_the_same_rest_in_many_more_steps") {
   CHECK(run.step() > 3 * rest.evaluations);
 }
 
-// A strip clamped at its left end, bent by a force at its right end until it stands far off: relaxation and damped motion agree
-// where no matrix can tell.
+// A strip clamped at its left end, bent by a force at its right end until it stands far off: relaxation and damped
+// motion agree where no matrix can tell.
 TEST_CASE("a_bent_strip_relaxes_to_where_damped_motion_ends") {
   const Assembly strip = hexagonal_lattice({.columns = 10, .rows = 3, .radius = 0.5});
   const ContactSprings springs(SpringConstants{1, 0.5});

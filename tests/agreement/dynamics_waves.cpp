@@ -28,8 +28,8 @@ double inner_product(const Scene& scene, const std::vector<DiscMotion>& a, const
   return sum;
 }
 
-/// omega of q_n = cos(omega n h) from all of q: q_{n+1} + q_{n-1} = 2 cos(omega h) q_n, so that (q_{n+1} - 2 q_n + q_{n-1}) = -4
-/// sin²(omega h/2) q_n, least squares.
+/// omega of q_n = cos(omega n h) from all of q: q_{n+1} + q_{n-1} = 2 cos(omega h) q_n, so that (q_{n+1} - 2 q_n +
+/// q_{n-1}) = -4 sin²(omega h/2) q_n, least squares.
 double measured_frequency(const std::vector<double>& q, double h) {
   double above = 0, below = 0;
   for (std::size_t n = 1; n + 1 < q.size(); ++n) {

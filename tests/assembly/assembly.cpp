@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/assembly/assembly.hpp"
+
 #include <cmath>
 #include <functional>
 #include <limits>
 
-#include "equidem/assembly/assembly.hpp"
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/core/error.hpp"
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/assembly/delaunay.hpp"
+
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -6,7 +8,6 @@
 #include <numeric>
 #include <set>
 
-#include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/power_cells.hpp"
 #include "equidem/assembly/space_filling_curve.hpp"
 #include "equidem/assembly/triangulation.hpp"

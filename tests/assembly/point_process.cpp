@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/assembly/point_process.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "equidem/assembly/point_process.hpp"
 
 #include "support/catch.hpp"
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/assembly/space_filling_curve.hpp"
+
 #include <algorithm>
 #include <numeric>
 
-#include "equidem/assembly/space_filling_curve.hpp"
 #include "equidem/core/random.hpp"
 
 #include "support/catch.hpp"

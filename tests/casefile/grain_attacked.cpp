@@ -39,8 +39,8 @@ TEST_CASE("an_automatic_step_follows_strong_dashpots") {
     for (const double restitution : {0.1, 0.01, 0.001}) {
       const GrainCase given =
           case_of(ball_with(fmt::format("law = \"{}\"\nrestitution = {}\nstiffness = 1.0e6\nclosing_speed = 1.0\n"
-                                   "contact_end = \"zero_force\"",
-                                   law, restitution)));
+                                        "contact_end = \"zero_force\"",
+                                        law, restitution)));
       const GrainStep step = choose_grain_step(given);
       GrainSimulation simulation(build_grain_scene(given, step.step), grain_options(given, step.step));
       simulation.advance(count_steps(given, step.step));
@@ -75,7 +75,8 @@ TEST_CASE("friction_of_the_maps_is_slip_unless_a_spring_is_asked_for") {
 
 TEST_CASE("restitutions_that_no_dashpot_resolves_are_refused_with_ways_out") {
   for (const char* restitution : {"0.0", "1e-300", "1e-13"}) {
-    const std::string sentence = sentence_of(ball_with(fmt::format("restitution = {}\nstiffness = 1.0e6", restitution)));
+    const std::string sentence =
+        sentence_of(ball_with(fmt::format("restitution = {}\nstiffness = 1.0e6", restitution)));
     CAPTURE(sentence);
     CHECK(sentence.find("contact_end = \"zero_overlap\"") != std::string::npos);
     CHECK(sentence.find("energy_map") != std::string::npos);

@@ -91,7 +91,8 @@ TEST_CASE("the_settings_of_a_packing_are_those_of_a_run") {
   for (const bool at_wall : {false, true}) {
     CAPTURE(at_wall);
     const PairProperties& pair = c.between(0, at_wall ? 1 : 0).properties;
-    // Dashpots 2 h sqrt(m k) (2.27); m/2 moves along the normal, at a wall m; a third of it along the tangent of a disc.
+    // Dashpots 2 h sqrt(m k) (2.27); m/2 moves along the normal, at a wall m; a third of it along the tangent of a
+    // disc.
     const double mass = 3.0, moved = at_wall ? mass : mass / 2;
     const double zeta = dashpot_of(0.3, mass, springs.kN) / (2 * std::sqrt(moved * springs.kN));
     CHECK(damping_ratio_of(pair.restitution, pair.end) == Approx(zeta));

@@ -73,7 +73,8 @@ TEST_CASE("disc_and_bulk_density_differ_by_the_solid_fraction") {
 
   CHECK(disc_density(parsed(block_of(material), {"assembly.density=2000"}), assembly) == 2000.0);
   const auto both = [&](double rho) {
-    return building_error_of(parsed(block_of(material + "density = 1800.0\n"), {fmt::format("assembly.density={}", rho)}));
+    return building_error_of(
+        parsed(block_of(material + "density = 1800.0\n"), {fmt::format("assembly.density={}", rho)}));
   };
   CHECK(both(1800 / phi).empty());
   CHECK(both(1800 / phi * (1 + 5e-7)).empty());

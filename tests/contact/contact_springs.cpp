@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The springs of every contact: weightings, overrides, refusals.
+#include "equidem/contact/contact_springs.hpp"
+
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
 
-#include "equidem/contact/contact_springs.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
 

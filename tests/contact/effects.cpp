@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The unknowns of a scene follow from its effects.
+#include "equidem/contact/effects.hpp"
+
 #include <string>
 #include <vector>
 
-#include "equidem/contact/effects.hpp"
 #include "equidem/core/error.hpp"
 
 #include "support/catch.hpp"

@@ -60,9 +60,9 @@ TEST_CASE("closest_points_of_ellipses_are_exact") {
   }
   INFO(
       fmt::format("100000 pairs, {} apart, {} deeper than the sharpest radii, {} with two normals: gap {:.1e}, points "
-             "{:.1e} apart, "
-             "{:.1e} times their sensitivity overlapping",
-             apart, deep, ties, worst_gap, worst_apart, worst_point));
+                  "{:.1e} apart, "
+                  "{:.1e} times their sensitivity overlapping",
+                  apart, deep, ties, worst_gap, worst_apart, worst_point));
   CHECK(worst_gap < 1e-13);
   CHECK(worst_apart < 1e-12);
   CHECK(std::min(apart, deep) > 10000);
@@ -202,7 +202,8 @@ TEST_CASE("ellipses_in_one_another_are_told") {
   }
   SECTION("nested, either way round, up to touching from inside") {
     for (const double r : {0.25, 0.8}) {
-      // A circle in (2, 1) with its centre at x touches it in the tip, x + r = a, or beside it, x²/(a² - b²) + r²/b² = 1.
+      // A circle in (2, 1) with its centre at x touches it in the tip, x + r = a, or beside it, x²/(a² - b²) + r²/b²
+      // = 1.
       const Ellipse round{r, r};
       const double farthest = r < 0.5 ? 2 - r : std::sqrt(3 * (1 - r * r));
       CAPTURE(r, farthest);

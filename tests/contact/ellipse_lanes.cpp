@@ -94,7 +94,7 @@ TEST_CASE("closest_points_of_eight_pairs_of_ellipses_are_exact") {
     }
   }
   INFO(fmt::format("{} contacts, {} with other bits than one by one: gap {:.1e}, points {:.1e}, normals {:.1e}", count,
-              by_lanes, worst_gap, worst_point, worst_normal));
+                   by_lanes, worst_gap, worst_point, worst_normal));
   CHECK(worst_gap < 1e-13);
   CHECK(by_lanes > count / 10);  // otherwise it is the function for single ones
 }

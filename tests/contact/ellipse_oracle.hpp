@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The contact of two ellipses by looking in all directions, slowly and in long double; and whether they overlap, by algebra.
+/// The contact of two ellipses by looking in all directions, slowly and in long double; and whether they overlap, by
+/// algebra.
 #pragma once
 
 #include <algorithm>
@@ -91,9 +92,10 @@ inline Found contact(const Ellipse& i, const Ellipse& j, Vec2 branch) {
   return best;
 }
 
-/// Whether the ellipses are apart: whether det(l A + B) has two distinct positive roots l, A and B the conics, negative inside (Wang,
-/// Wang & Kim 2001). In the frame where i is the unit circle and the axes are those of the image of j, with half-axes 1/sqrt(q_k) and
-/// centre d: (l + q_1)(l + q_2)(s - 1 - l) - q_1² d_1² (l + q_2) - q_2² d_2² (l + q_1), s = q_1 d_1² + q_2 d_2².
+/// Whether the ellipses are apart: whether det(l A + B) has two distinct positive roots l, A and B the conics, negative
+/// inside (Wang, Wang & Kim 2001). In the frame where i is the unit circle and the axes are those of the image of j,
+/// with half-axes 1/sqrt(q_k) and centre d: (l + q_1)(l + q_2)(s - 1 - l) - q_1² d_1² (l + q_2) - q_2² d_2² (l + q_1),
+/// s = q_1 d_1² + q_2 d_2².
 inline bool apart_by_algebra(const Ellipse& i, const Ellipse& j, Vec2 branch) {
   const auto mapped = [&](Vec2 x) { return Point{Real(dot(i.axis, x)) / i.a, Real(cross(i.axis, x)) / i.b}; };
   const Point c = mapped(branch), u = mapped(j.axis), v = mapped(perpendicular(j.axis));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Impacts of spring and dashpot by the classical Runge-Kutta method, with mass, spring and speed 1: an oracle for closed forms.
+/// Impacts of spring and dashpot by the classical Runge-Kutta method, with mass, spring and speed 1: an oracle for
+/// closed forms.
 #pragma once
 
 #include <array>
@@ -63,8 +64,8 @@ inline IntegratedImpact integrate_linear_impact(double damping_ratio, ContactEnd
   return {static_cast<double>(-y[1]), static_cast<double>(y[2]), static_cast<double>(overlap)};
 }
 
-/// d'' + alpha d^(1/4) d' + d^(3/2) = 0 from d = 0, d' = 1, with d = x^4 and time dt = 4 x³ dtau, which leaves no roots: x' = v,
-/// v' = -4 x³ (x^6 + alpha x v).
+/// d'' + alpha d^(1/4) d' + d^(3/2) = 0 from d = 0, d' = 1, with d = x^4 and time dt = 4 x³ dtau, which leaves no
+/// roots: x' = v, v' = -4 x³ (x^6 + alpha x v).
 inline IntegratedImpact integrate_hertz_impact(double alpha, ContactEnd end) {
   long double largest = 0;
   const auto y = integrate_until(

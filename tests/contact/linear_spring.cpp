@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// One contact: the law's energy, force and tangent belong together, and rigid motions cost nothing.
+#include "equidem/contact/linear_spring.hpp"
+
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
-#include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/random.hpp"
 
 #include "support/catch.hpp"

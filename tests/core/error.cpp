@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Errors read as sentences; text helpers; time per stage.
+#include "equidem/core/error.hpp"
+
 #include <string>
 #include <thread>
 
-#include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Files are written whole or not at all, and never over the user's without leave.
+#include "equidem/core/file.hpp"
+
 #include <csignal>
 #include <filesystem>
 #include <iterator>
@@ -10,7 +12,6 @@
 #include <unistd.h>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/file.hpp"
 
 #include "support/catch.hpp"
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Seeded random numbers: the published generator, bit for bit, and its distributions.
+#include "equidem/core/random.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
-
-#include "equidem/core/random.hpp"
 
 #include "support/catch.hpp"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Parallel loops: every task once, errors travel, and the number of threads changes no bit.
+#include "equidem/core/threads.hpp"
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -11,7 +13,6 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
-#include "equidem/core/threads.hpp"
 
 #include "support/catch.hpp"
 

@@ -50,8 +50,8 @@ struct LoopScene {
   LoopKind kind;
 };
 
-/// Every assembly with every kind of loop: equal contacts, and contacts that differ in springs and levers, some of which do not
-/// add up to the branch.
+/// Every assembly with every kind of loop: equal contacts, and contacts that differ in springs and levers, some of
+/// which do not add up to the branch.
 std::vector<LoopScene> loop_scenes() {
   std::vector<LoopScene> scenes;
   std::vector<std::pair<std::string, Assembly>> assemblies{{"star of 70", star(70)}};
@@ -85,7 +85,8 @@ std::vector<LoopScene> loop_scenes() {
   return scenes;
 }
 
-/// The assembly turned about the origin by an angle, and every disc moved by some share of the mean radius and turned by some angle.
+/// The assembly turned about the origin by an angle, and every disc moved by some share of the mean radius and turned
+/// by some angle.
 std::vector<DiscMotion> turned_motions(const Assembly& assembly, double angle, double size, bool rotation,
                                        Random& random) {
   std::vector<DiscMotion> motions(assembly.size());

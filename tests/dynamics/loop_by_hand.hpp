@@ -10,9 +10,9 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/frame.hpp"
+#include "equidem/dynamics/kernels/step_kernel.hpp"
 #include "equidem/dynamics/layout.hpp"
 #include "equidem/dynamics/slot_geometry.hpp"
-#include "equidem/dynamics/kernels/step_kernel.hpp"
 #include "equidem/material/inertia.hpp"
 
 namespace equidem::test {

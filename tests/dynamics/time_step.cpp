@@ -161,7 +161,8 @@ TEST_CASE("steps_that_cannot_work_are_refused_with_the_limit") {
   CHECK(choose_time_step(loose, {}, {.step = 1.0}).ratio() == 0);
 }
 
-// A disc that spins alone, six contacts with equal levers r: omega² = 6 kT r²/I. No motion grows faster than all of them together.
+// A disc that spins alone, six contacts with equal levers r: omega² = 6 kT r²/I. No motion grows faster than all of
+// them together.
 TEST_CASE("negative_kT_is_found_however_small_it_is") {
   const Assembly assembly = hexagonal_block(12);
   const double ratio = GENERATE(1e-1, 1e-3, 1e-5, 1e-8, 1e-13);

@@ -75,8 +75,8 @@ TEST_CASE("a_body_that_hits_the_joint_of_two_walls_rebounds_as_from_one") {
 }
 
 TEST_CASE("a_body_slides_over_the_joints_of_a_floor_as_over_a_whole_one") {
-  // Pressed in by its weight, a body that met the next piece before its time would be lifted and slowed there. What is left is the step
-  // in which it comes to the next piece: its contact is still with the end of the last one.
+  // Pressed in by its weight, a body that met the next piece before its time would be lifted and slowed there. What is
+  // left is the step in which it comes to the next piece: its contact is still with the end of the last one.
   std::vector<GrainWall> pieces;
   for (int k = 0; k < 10; ++k) pieces.push_back(segment("piece", {0.5 * k, 0}, {0.5 * (k + 1), 0}));
   const double stiffness = 1e4, step = 1e-3;

@@ -86,7 +86,8 @@ TEST_CASE("a_rigid_pair_flies_and_turns_freely") {
 }
 
 TEST_CASE("an_impact_turns_a_rigid_pair_by_its_arm") {
-  // Without friction the impulse P of the floor gives m dv = P, I dw = arm P; the smaller mass 1/(1/m + arm²/I) rebounds elastically.
+  // Without friction the impulse P of the floor gives m dv = P, I dw = arm P; the smaller mass 1/(1/m + arm²/I)
+  // rebounds elastically.
   const double angle = GENERATE(0.2, 0.7, 1.2);
   GrainScene scene = scene_of({}, {line("floor", {0, 0}, {0, 1})}, {.stiffness = 1e8});
   const double height = 1 + std::sin(angle), arm = -std::cos(angle);

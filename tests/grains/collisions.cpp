@@ -16,7 +16,8 @@ struct Rebound {
   std::int64_t steps = 0;  // of evaluations of the law
 };
 
-/// On a wall (mass 1), or of two discs of unequal masses; closing speed 1, contact begins `phase` of a step after the first step.
+/// On a wall (mass 1), or of two discs of unequal masses; closing speed 1, contact begins `phase` of a step after the
+/// first step.
 struct Impact {
   const char* name;
   bool wall;
@@ -122,8 +123,9 @@ TEST_CASE("exact_flow_gives_its_restitution_at_any_phase_and_with_any_step") {
 }
 
 TEST_CASE("restitution_of_the_force_laws_converges_with_the_step") {
-  // First order: the dashpot is evaluated at the start of a step, and contacts begin and end between steps. (velocity_verlet with the
-  // velocities of the half step is the same leapfrog as semi_implicit_euler, seen half a step later.)
+  // First order: the dashpot is evaluated at the start of a step, and contacts begin and end between steps.
+  // (velocity_verlet with the velocities of the half step is the same leapfrog as semi_implicit_euler, seen half a step
+  // later.)
   for (const Stepping& stepping : all_steppings) {
     if (is_map(stepping.law) || stepping.law == NormalLaw::exact_flow) continue;
     for (const ContactEnd end : {ContactEnd::at_zero_force, ContactEnd::at_zero_overlap}) {
@@ -182,8 +184,8 @@ TEST_CASE("a_million_elastic_impacts_keep_the_energy", "[.long]") {
 
 namespace {
 
-/// The paper's sphere of 225 m (section 5.3), 1e5 m/s towards a wall 0.01 diameters away: the first step closes 0.44 diameters. A second
-/// wall sends it back.
+/// The paper's sphere of 225 m (section 5.3), 1e5 m/s towards a wall 0.01 diameters away: the first step closes 0.44
+/// diameters. A second wall sends it back.
 GrainScene fast_impact() {
   const double d = 225;
   PairProperties pair;

@@ -61,7 +61,8 @@ TEST_CASE("an_ellipse_of_aspect_one_moves_as_the_disc") {
 }
 
 TEST_CASE("a_central_impact_of_ellipses_has_the_restitution_of_discs") {
-  // The masses alone say how an impact goes as long as the normal passes through both centres: tip on tip, side on side.
+  // The masses alone say how an impact goes as long as the normal passes through both centres: tip on tip, side on
+  // side.
   const Stepping stepping = GENERATE(from_range(force_steppings));
   const double e = GENERATE(0.5, 1.0);
   const bool sides = GENERATE(false, true);
@@ -226,7 +227,8 @@ TEST_CASE("needles_in_a_box_keep_their_energy") {
 }
 
 TEST_CASE("sukegawas_test_holds_the_overlap_that_it_implies") {
-  // Moved by its overlap along its normal the pair is judged to touch no more; where the test holds the ellipses overlap.
+  // Moved by its overlap along its normal the pair is judged to touch no more; where the test holds the ellipses
+  // overlap.
   using EllipseLaw = GrainOptions::EllipseLaw;
   const EllipseLaw law = GENERATE(EllipseLaw::enlarged_as_printed, EllipseLaw::enlarged_mended);
   Random random(9);

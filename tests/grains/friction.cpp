@@ -16,7 +16,8 @@ struct Oblique {
   double spin = 0;
 };
 
-/// Off a floor; the floor is horizontal, the radius 1 (of maps 1/4: their overlaps are small), contact begins within the second step.
+/// Off a floor; the floor is horizontal, the radius 1 (of maps 1/4: their overlaps are small), contact begins within
+/// the second step.
 struct Shot {
   Vec2 velocity;
   double spin = 0, beta = 0.5, phase = 0.5;
@@ -33,8 +34,8 @@ GrainSimulation shoot(const Shot& shot, const PairProperties& pair, const GrainO
 }  // namespace
 
 TEST_CASE("an_impact_that_slips_throughout_follows_the_closed_form") {
-  // v_t' = v_t - mu (1 + e) v_n, w' = mu (1 + e) v_n/(beta R), where v_t/v_n >= mu (1 + e)(1 + 1/beta); below that the contact point
-  // comes to rest: v_t' = v_t/(1 + beta).
+  // v_t' = v_t - mu (1 + e) v_n, w' = mu (1 + e) v_n/(beta R), where v_t/v_n >= mu (1 + e)(1 + 1/beta); below that the
+  // contact point comes to rest: v_t' = v_t/(1 + beta).
   const Stepping stepping = GENERATE(from_range(all_steppings));
   const double beta = GENERATE(0.4, 0.5);
   const double mu = GENERATE(0.02, 0.3);
@@ -72,7 +73,8 @@ TEST_CASE("an_impact_that_slips_throughout_follows_the_closed_form") {
 
 namespace {
 
-/// The largest gain of energy of random impacts with the step a fraction of their duration of one second, in units of the initial.
+/// The largest gain of energy of random impacts with the step a fraction of their duration of one second, in units of
+/// the initial.
 double largest_gain(Stepping stepping, double step, int count, ContactEnd end) {
   Random random(7);
   double largest = -1;
@@ -103,8 +105,9 @@ double largest_gain(Stepping stepping, double step, int count, ContactEnd end) {
 }  // namespace
 
 TEST_CASE("no_oblique_impact_gains_energy") {
-  // Maps and exact_flow: not by a digit. The force laws: by what their integrator errs, which falls with the step; velocity_verlet, which
-  // gives contacts that begin or end within a step too much of it or too little, needs half the step.
+  // Maps and exact_flow: not by a digit. The force laws: by what their integrator errs, which falls with the step;
+  // velocity_verlet, which gives contacts that begin or end within a step too much of it or too little, needs half the
+  // step.
   const Stepping stepping = GENERATE(from_range(all_steppings));
   const ContactEnd end = GENERATE(ContactEnd::at_zero_force, ContactEnd::at_zero_overlap);
   const double step = stepping.scheme == Scheme::velocity_verlet ? 0.05 : 0.1;
@@ -117,7 +120,8 @@ TEST_CASE("no_oblique_impact_gains_energy") {
 }
 
 TEST_CASE("no_oblique_impact_of_two_grains_gains_energy") {
-  // The normal turns during contact. Maps hold it over a step and lose by that; exact_flow follows it and may gain what its order allows.
+  // The normal turns during contact. Maps hold it over a step and lose by that; exact_flow follows it and may gain what
+  // its order allows.
   const NormalLaw law = GENERATE(from_range(exact_laws));
   const auto gain = [&](double step) {
     Random random(3);

@@ -73,8 +73,8 @@ TEST_CASE("the_ledger_of_one_contact_closes_to_round_off_with_maps_and_exact_flo
 }
 
 TEST_CASE("the_ledger_closes_to_the_order_of_the_integrator") {
-  // By Euler force laws are of first order: velocities stand half a step behind. The Verlet schemes are of second order. Maps keep the
-  // balance of a contact, but not that of gravity acting within it. exact_flow keeps both.
+  // By Euler force laws are of first order: velocities stand half a step behind. The Verlet schemes are of second
+  // order. Maps keep the balance of a contact, but not that of gravity acting within it. exact_flow keeps both.
   const Stepping stepping = GENERATE(from_range(all_steppings));
   const Vec2 gravity = GENERATE(Vec2{0, 0}, Vec2{0.1, -0.3});
   std::vector<double> errors;
@@ -122,7 +122,8 @@ TEST_CASE("losses_of_an_impact_belong_to_their_mechanisms") {
 
 namespace {
 
-/// Error of the ledger when a contact is over, of the initial energy: root mean square over the instants in a step at which it begins.
+/// Error of the ledger when a contact is over, of the initial energy: root mean square over the instants in a step at
+/// which it begins.
 double error_when_over(const GrainScene& scene, const Stepping& stepping, double step) {
   constexpr int phases = 10;
   double sum = 0;
@@ -140,8 +141,8 @@ double error_when_over(const GrainScene& scene, const Stepping& stepping, double
 }  // namespace
 
 TEST_CASE("a_contact_that_begins_within_a_step_gets_its_part_of_it_from_corrected_verlet") {
-  // A disc that comes with 1 m/s. velocity_verlet: (w dt)²/6 of the energy in the mean, w² = k/m; the end of a contact without damping
-  // gives it back but for what differs between its instant in the step and that of the beginning.
+  // A disc that comes with 1 m/s. velocity_verlet: (w dt)²/6 of the energy in the mean, w² = k/m; the end of a contact
+  // without damping gives it back but for what differs between its instant in the step and that of the beginning.
   const auto law = GENERATE(NormalLaw::linear_dashpot, NormalLaw::hertz_dashpot);
   const double restitution = GENERATE(0.05, 0.5, 1.0);
   const auto end = GENERATE(ContactEnd::at_zero_force, ContactEnd::at_zero_overlap);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What must not change a bit: the order in which bodies are listed, the number of threads, the margin of the neighbour lists.
+/// What must not change a bit: the order in which bodies are listed, the number of threads, the margin of the neighbour
+/// lists.
 #include <numeric>
 
 #include "equidem/core/threads.hpp"

@@ -63,8 +63,8 @@ inline GrainWall line(std::string name, Vec2 point, Vec2 normal) {
   return wall;
 }
 
-/// Contacts of w = sqrt(k/m) = pi for the reduced mass given: an impact with e = 1 lasts one second. hertz_dashpot: for a closing speed
-/// of 1 m/s.
+/// Contacts of w = sqrt(k/m) = pi for the reduced mass given: an impact with e = 1 lasts one second. hertz_dashpot: for
+/// a closing speed of 1 m/s.
 inline PairProperties one_second(NormalLaw law, double restitution, double reduced_mass = 1) {
   PairProperties pair;
   pair.restitution = restitution;
@@ -136,8 +136,8 @@ inline Bits bits_of(const GrainSimulation& simulation) {
   return {std::move(bits)};
 }
 
-/// Discs of several sizes thrown about in a box with friction, gravity and a floor that shakes: everything that a contact remembers is
-/// in use.
+/// Discs of several sizes thrown about in a box with friction, gravity and a floor that shakes: everything that a
+/// contact remembers is in use.
 inline GrainScene busy_box(NormalLaw law, int columns, int rows, std::uint64_t seed) {
   Random random(seed);
   std::vector<Grain> grains;

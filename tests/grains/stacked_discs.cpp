@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Fujioka & Ushijima (2005), section 5.6: a sphere slides down between two others and pushes them apart; contact that lasts, several at
-/// once. Exact for rigid spheres.
+/// Fujioka & Ushijima (2005), section 5.6: a sphere slides down between two others and pushes them apart; contact that
+/// lasts, several at once. Exact for rigid spheres.
 #include "grains/scenes.hpp"
 #include "support/catch.hpp"
 
@@ -85,7 +85,8 @@ TEST_CASE("stacked_spheres_slide_apart_as_rigid_ones_do") {
   }
   const double order = std::log10(velocity.front() / velocity.back()) / 2;
   CAPTURE(to_string(law), velocity, time, order);
-  // Springs grow as 1/dt², so their overlaps fall as dt²; those of Hertz as dt^(4/3). When contact ends is felt only to the root of it.
+  // Springs grow as 1/dt², so their overlaps fall as dt²; those of Hertz as dt^(4/3). When contact ends is felt only to
+  // the root of it.
   CHECK(order > (law == NormalLaw::hertz_dashpot ? 0.9 : 1.6));
   CHECK(velocity.back() < (law == NormalLaw::hertz_dashpot ? 1e-4 : 1e-5));
   CHECK(time.back() < 3e-3);

@@ -81,7 +81,7 @@ TEST_CASE("newtons_cradle_keeps_energy_and_momentum") {
     CHECK(fine.velocities.front() < -0.1);
     table.note(fmt::format("{} balls, exact_flow, w dt = 0.22", n), "velocities 2e-5, energy 1e-6, momentum 1e-13",
                fmt::format("velocities {}, energy {}; first ball {:.4f}, last {:.4f}", shown(off[2]), shown(energy[2]),
-                      fine.velocities.front(), fine.velocities.back()));
+                           fine.velocities.front(), fine.velocities.back()));
     const Cradle map = swing(n, NormalLaw::energy_map, 0.05);
     CHECK(std::abs(map.momentum) < 1e-13);
     CHECK(map.energy > 0.01);
@@ -187,8 +187,8 @@ TEST_CASE("steps_that_close_a_radius_and_contacts_within_a_step_are_exact") {
     }
     CAPTURE(to_string(law), refused, runs);
     CHECK(refused < runs / 4);
-    table.note(fmt::format("{}, closing up to 0.99 radii a step, a = 2", to_string(law)), "restitution to 1e-13, or refused",
-               fmt::format("{}, {} of {} refused", shown(worst), refused, runs));
+    table.note(fmt::format("{}, closing up to 0.99 radii a step, a = 2", to_string(law)),
+               "restitution to 1e-13, or refused", fmt::format("{}, {} of {} refused", shown(worst), refused, runs));
   }
   double worst = 0;
   for (const double ratio : {10.0, 100.0, 1000.0}) {  // step over contact

@@ -70,8 +70,8 @@ void stand(HardCase& table, NormalLaw law, double restitution, double step, std:
   CHECK(unrest.creep < 1e-8);
   CHECK(unrest.heat < 1e-16);
   CHECK(unrest.error < 1e-9);
-  table.note(fmt::format("{}, e = {}, w dt = {:.2f}, {} steps", to_string(law), restitution, step * std::sqrt(2 * stiffness),
-                    steps),
+  table.note(fmt::format("{}, e = {}, w dt = {:.2f}, {} steps", to_string(law), restitution,
+                         step * std::sqrt(2 * stiffness), steps),
              "creep 1e-8 of the overlap, heat 1e-16 of the elastic energy", shown(unrest));
 }
 
@@ -91,7 +91,8 @@ TEST_CASE("a_column_of_100_discs_neither_creeps_nor_warms_up") {
   const double heat = map.energy().kinetic / elastic;
   CAPTURE(heat);
   CHECK(heat > 1e-4);
-  table.note("energy_map, e = 0.9, w dt = 0.14, 1000 steps", "none: made for two bodies", fmt::format("heat {:.1e}", heat));
+  table.note("energy_map, e = 0.9, w dt = 0.14, 1000 steps", "none: made for two bodies",
+             fmt::format("heat {:.1e}", heat));
 }
 
 TEST_CASE("a_column_stands_for_a_million_steps", "[.large]") {

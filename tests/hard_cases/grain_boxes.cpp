@@ -140,8 +140,8 @@ TEST_CASE("a_box_filled_past_its_volume_balances_or_is_refused") {
     CHECK(overlap > 0.02);
     table.note("pressed to 1.05 times its area, " + name_of(kind),
                "forces in balance and equal to stiffness times overlap, 1e-6; energy to 1e-4",
-               fmt::format("balance {}, overlaps {}, energy {}; largest overlap {:.3f} of the circle's radius", digits(lack),
-                      digits(off / floor), digits(balance.energy), overlap / 0.49));
+               fmt::format("balance {}, overlaps {}, energy {}; largest overlap {:.3f} of the circle's radius",
+                           digits(lack), digits(off / floor), digits(balance.energy), overlap / 0.49));
     // and on
     GrainScene thrice = scene;
     thrice.walls[3].move_y.value = -(4 - area / 12);
@@ -190,7 +190,8 @@ TEST_CASE("bonds_past_their_step_limit_are_refused_with_the_limit") {
         "the limit that theory gives, to 1e-14; energy gained below 1e-3",
         fmt::format("limit off by {}, most energy {:.6f} of the first", digits(std::abs(limit / tie.limit - 1)), most));
     options.time_step = 1.001 * limit;
-    table.refused(fmt::format("{}, step 1.001 of the limit", tie.name), attempt([&] { GrainSimulation(scene, options); }),
+    table.refused(fmt::format("{}, step 1.001 of the limit", tie.name),
+                  attempt([&] { GrainSimulation(scene, options); }),
                   {"1.001 times the limit of", "that the bonds impose", "Stay below it"});
   }
   // without dashpots in the limit: exact ones of any size, whatever the step
@@ -237,9 +238,9 @@ TEST_CASE("a_box_shaken_at_100_g_keeps_its_grains_and_its_ledger") {
     CAPTURE(name_of(kind), errors, put_in);
     CHECK(errors[2] < 2e-3);
     CHECK(errors[0] < 2e-2);
-    table.note(
-        "12 at 5 Hz, 10 cycles, friction 0.4, " + name_of(kind),
-        "all stay inside; energy to 2e-3 of the work of the walls at the shortest step",
-        fmt::format("energy {}, {}, {}; {} contacts", digits(errors[0]), digits(errors[1]), digits(errors[2]), contacts));
+    table.note("12 at 5 Hz, 10 cycles, friction 0.4, " + name_of(kind),
+               "all stay inside; energy to 2e-3 of the work of the walls at the shortest step",
+               fmt::format("energy {}, {}, {}; {} contacts", digits(errors[0]), digits(errors[1]), digits(errors[2]),
+                           contacts));
   }
 }

@@ -31,8 +31,8 @@ GrainScene flying_needles() {
   return scene;
 }
 
-/// Equal ellipses, flat on one another from the floor up, each contact with the overlap that carries what lies above; `angle`
-/// turns the whole scene, gravity 1.
+/// Equal ellipses, flat on one another from the floor up, each contact with the overlap that carries what lies above;
+/// `angle` turns the whole scene, gravity 1.
 GrainScene flat_column(int n, double stiffness, double angle) {
   const Vec2 up{-std::sin(angle), std::cos(angle)};
   GrainScene scene = scene_of({}, {line("floor", {0, 0}, up)}, {.stiffness = stiffness, .restitution = 0.5}, -up);
@@ -64,8 +64,8 @@ TEST_CASE("needles_keep_momentum_and_energy") {
   CHECK(errors[2] < errors[0] / 8);
   table.note("16 that fly at each other, e = 1, w dt = 0.2, 0.1, 0.05",
              "momentum 1e-13, angular momentum 1e-12, energy 1e-3 at the last and of the second order",
-             fmt::format("momentum {}, angular {}, energy {}, {}, {}", digits(balance.momentum), digits(balance.angular),
-                    digits(errors[0]), digits(errors[1]), digits(errors[2])));
+             fmt::format("momentum {}, angular {}, energy {}, {}, {}", digits(balance.momentum),
+                         digits(balance.angular), digits(errors[0]), digits(errors[1]), digits(errors[2])));
 }
 
 TEST_CASE("a_needle_rests_on_two_pegs_by_its_tip_and_its_side") {
@@ -205,7 +205,7 @@ TEST_CASE("small_bodies_meet_one_a_hundred_times_as_large") {
     CHECK(balance.energy < 1e-4);
     table.note("24 thrown on one, " + name_of(kind), "energy to 1e-4, momentum to 1e-13, angular momentum to 1e-12",
                fmt::format("energy {}, momentum {}, angular {}", digits(balance.energy), digits(balance.momentum),
-                      digits(balance.angular)));
+                           digits(balance.angular)));
   }
   // a small disc in the hollow of two large ones: normals all but level, each carries half the weight
   GrainScene hollow = scene_of({ball({100, 100}, 100, {}, 1e4), ball({300, 100}, 100, {}, 1e4),

@@ -49,7 +49,7 @@ TEST_CASE("without_gravity_bodies_keep_their_momenta_and_rest_stays_rest") {
     table.note("16 fly at each other, one rests far away, " + name_of(kind),
                "momenta to 1e-12, energy to 2e-3; what rests keeps its bits",
                fmt::format("momentum {}, angular {}, energy {}; {}", digits(balance.momentum), digits(balance.angular),
-                      digits(balance.energy), same ? "the same bits" : "other bits"));
+                           digits(balance.energy), same ? "the same bits" : "other bits"));
   }
   // a million steps of free flight
   GrainScene scene = scene_of({oval({0, 0}, 1, 0.5, 0.2, {0.3, -0.7})}, {}, {.stiffness = 1});

@@ -23,8 +23,8 @@ namespace {
 
 const HardCase::Words many_discs{.name = "1e6 discs", .why = "three million unknowns; sums of millions of terms"};
 
-/// A square lattice of unit discs, kN = 1, kT = 1/2, whose motions are small integers beside a uniform stretch: all motions,
-/// deformations and forces are exact in doubles, and so is the load that belongs to them.
+/// A square lattice of unit discs, kN = 1, kT = 1/2, whose motions are small integers beside a uniform stretch: all
+/// motions, deformations and forces are exact in doubles, and so is the load that belongs to them.
 void solve_integers(HardCase& table, int n) {
   Problem problem{square_lattice({.columns = n, .rows = n, .radius = 0.5}),
                   ContactSprings(SpringConstants{1, 0.5}),

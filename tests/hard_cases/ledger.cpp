@@ -172,7 +172,7 @@ HardCase::~HardCase() {
   for (const auto& [task, a] : accuracies_) {
     write({task, "error <= bound <= " + rounded(a.promised),
            fmt::format("error {}, bound {}, condition {}{}", rounded(a.error), rounded(a.bound), rounded(a.condition),
-                  a.runs > 1 ? fmt::format(" (worst of {})", a.runs) : "")});
+                       a.runs > 1 ? fmt::format(" (worst of {})", a.runs) : "")});
   }
   for (const Row& row : rows_) write(row);
 }

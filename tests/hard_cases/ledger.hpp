@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The table of hard cases: each is right to a stated accuracy, or refused with a sentence that says what to do. What a test
-/// promises and measures becomes a row of data/hard_cases.md (make_table.py).
+/// The table of hard cases: each is right to a stated accuracy, or refused with a sentence that says what to do. What a
+/// test promises and measures becomes a row of data/hard_cases.md (make_table.py).
 #pragma once
 
 #include <functional>
@@ -20,8 +20,8 @@
 
 namespace equidem::test {
 
-/// What the library said and how far it is from the truth: errors and bounds are relative, of motions (2-norm, rotations times
-/// the mean radius) or of the largest entry of the stiffness.
+/// What the library said and how far it is from the truth: errors and bounds are relative, of motions (2-norm,
+/// rotations times the mean radius) or of the largest entry of the stiffness.
 struct Answer {
   double error = 0;
   double bound = 0;  ///< the library's own
@@ -57,8 +57,9 @@ Answer solve(const Problem& problem, const std::vector<double>& exact);
 Answer homogenize(const Assembly& cell, const ContactSprings& springs, Rotation rotation = Rotation::from_scene);
 Answer homogenize(const Assembly& cell, const ContactSprings& springs, Rotation rotation, const Matrix3& exact);
 
-/// One case of the table: collects what its tests ask of each task, checks it, and writes a row for each task to the file that
-/// EQUIDEM_HARD_CASES names. From the first on, all cases run on as many threads as EQUIDEM_HARD_CASES_THREADS says.
+/// One case of the table: collects what its tests ask of each task, checks it, and writes a row for each task to the
+/// file that EQUIDEM_HARD_CASES names. From the first on, all cases run on as many threads as
+/// EQUIDEM_HARD_CASES_THREADS says.
 class HardCase {
  public:
   struct Words {

@@ -21,8 +21,8 @@ using Quad = long double;  // quadruple where there is no other
 #endif
 
 /// Components (u_x, u_y[, a theta]) per disc, m, that balance `force` (N/m, moments over a); held ones as prescribed.
-/// K is factorized as L D L^T within its envelope, discs in the order of their x; an unknown that nothing is left to hold
-/// stays at zero.
+/// K is factorized as L D L^T within its envelope, discs in the order of their x; an unknown that nothing is left to
+/// hold stays at zero.
 std::vector<Quad> exact_motion(const Assembly& assembly, const ContactSprings& springs,
                                const DegreesOfFreedom& unknowns, const std::vector<double>& force);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Bodies many times longer than wide: the stiffness against bending falls as the cube of the length, the condition of K grows as
-/// its fourth power.
+/// Bodies many times longer than wide: the stiffness against bending falls as the cube of the length, the condition of
+/// K grows as its fourth power.
 #include <algorithm>
 #include <cmath>
 #include <vector>

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Forces of an affine motion: balance on lattices, virtual work everywhere.
+#include "equidem/homogenize/affine.hpp"
+
 #include <cmath>
 
 #include "equidem/contact/linear_spring.hpp"
-#include "equidem/homogenize/affine.hpp"
 #include "equidem/homogenize/stress.hpp"
 
 #include "homogenize/samples.hpp"

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Stress from contact forces: what holds for any forces on any assembly.
+#include "equidem/homogenize/stress.hpp"
+
 #include <cmath>
 #include <numeric>
 #include <string>
 #include <utility>
 
 #include "equidem/core/threads.hpp"
-#include "equidem/homogenize/stress.hpp"
 
 #include "homogenize/samples.hpp"
 #include "support/catch.hpp"

@@ -59,7 +59,8 @@ inline Voigt stress_of(const Matrix3& c, const Voigt& e) {
   return {row(0), row(1), row(2)};
 }
 
-/// sum of weight v v^T over the weights, each with a random v: with positive weights semi-definite, of their number as rank.
+/// sum of weight v v^T over the weights, each with a random v: with positive weights semi-definite, of their number as
+/// rank.
 inline Matrix3 random_stiffness(Random& random, const std::vector<double>& weights) {
   Matrix3 c{};
   for (const double weight : weights) {

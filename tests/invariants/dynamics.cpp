@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/assemble_stiffness.hpp"
+#include "equidem/statics/internal_force.hpp"
 
 #include "dynamics/moving_scenes.hpp"
 #include "support/assemblies.hpp"

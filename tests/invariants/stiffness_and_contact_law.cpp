@@ -12,9 +12,9 @@
 
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/core/random.hpp"
+#include "equidem/statics/assemble_stiffness.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/motion_description.hpp"
-#include "equidem/statics/assemble_stiffness.hpp"
 
 #include "support/assemblies.hpp"
 #include "support/catch.hpp"

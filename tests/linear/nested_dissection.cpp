@@ -10,9 +10,9 @@
 
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/core/random.hpp"
+#include "equidem/linear/multifrontal/tree_sweep.hpp"
 #include "equidem/linear/ordering/symbolic_factor.hpp"
 #include "equidem/linear/ordering/tree_schedule.hpp"
-#include "equidem/linear/multifrontal/tree_sweep.hpp"
 
 #include "support/assemblies.hpp"
 #include "support/catch.hpp"

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// One sheet, two readings: plane strain and plane stress.
+#include "equidem/material/elastic_moduli.hpp"
+
 #include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "equidem/core/error.hpp"
-#include "equidem/material/elastic_moduli.hpp"
 
 #include "support/catch.hpp"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Abe's relations between springs and moduli, both ways, and what they refuse.
+#include "equidem/material/spring_relations.hpp"
+
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -8,7 +10,6 @@
 #include <vector>
 
 #include "equidem/core/error.hpp"
-#include "equidem/material/spring_relations.hpp"
 
 #include "support/catch.hpp"
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/output/files/csv.hpp"
+
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -8,7 +10,6 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/random.hpp"
-#include "equidem/output/files/csv.hpp"
 
 #include "output/states.hpp"
 #include "support/catch.hpp"

@@ -7,10 +7,10 @@
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/frames.hpp"
 #include "equidem/output/files/grain_checkpoint.hpp"
-#include "equidem/output/pictures/grain_picture.hpp"
 #include "equidem/output/files/grain_tables.hpp"
 #include "equidem/output/files/growing_csv.hpp"
 #include "equidem/output/files/hdf5.hpp"
+#include "equidem/output/pictures/grain_picture.hpp"
 
 #include "output/runs.hpp"
 #include "output/states.hpp"
@@ -119,7 +119,8 @@ TEST_CASE("frames_of_travelling_bodies_hold_their_places") {
   CHECK(index.find("GeometryType=\"XYZ\"") != std::string::npos);
   CHECK(index.find("Name=\"angle\"") != std::string::npos);
   CHECK(index.find("displacement") == std::string::npos);
-  // ParaView 5.11 takes frames whose points begin alike for the same points, and reports an error where they begin with an element.
+  // ParaView 5.11 takes frames whose points begin alike for the same points, and reports an error where they begin with
+  // an element.
   const auto beginning = [&](int frame) {
     const std::string start = "<Geometry GeometryType=\"XYZ\"><DataItem ItemType=\"HyperSlab\" Dimensions=\"3 3\">";
     return index.find(fmt::format("{}<!--frame {}-->", start, frame));

@@ -13,10 +13,10 @@
 #include "equidem/casefile/grain_case.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/output/files/grain_frames.hpp"
-#include "equidem/output/pictures/grain_picture.hpp"
 #include "equidem/output/files/grain_tables.hpp"
 #include "equidem/output/files/hdf5.hpp"
 #include "equidem/output/files/placed_discs.hpp"
+#include "equidem/output/pictures/grain_picture.hpp"
 
 #include "output/runs.hpp"
 #include "output/states.hpp"

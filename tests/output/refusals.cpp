@@ -5,9 +5,9 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/output/files/csv.hpp"
+#include "equidem/output/files/vtk.hpp"
 #include "equidem/output/pictures/picture.hpp"
 #include "equidem/output/plots/plot.hpp"
-#include "equidem/output/files/vtk.hpp"
 
 #include "output/states.hpp"
 #include "support/catch.hpp"

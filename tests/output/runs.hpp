@@ -74,7 +74,8 @@ inline void kill_during(const std::function<void()>& work, unsigned microseconds
   waitpid(child, nullptr, 0);
 }
 
-/// The message of the Error that `work` ends with in a process of its own whose files may not grow past `bytes`; empty: none.
+/// The message of the Error that `work` ends with in a process of its own whose files may not grow past `bytes`; empty:
+/// none.
 inline std::string error_on_full_disk(const std::function<void()>& work, std::uint64_t bytes) {
   int ends[2];
   if (pipe(ends) != 0) return "no pipe";

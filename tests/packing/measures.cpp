@@ -74,7 +74,8 @@ TEST_CASE("contacts_rattlers_and_void_ratio_of_a_row_of_discs_are_counted_by_han
   CHECK(measures.contacts == 2);       // 0-1, 1-2
   CHECK(measures.wall_contacts == 4);  // three on the floor, one at the left
   CHECK(measures.coordination == 8.0 / 4);
-  // Three contacts hold a disc: 0 has floor, wall and 1; 1 has floor, 0, 2; 2 has two, so that it and then 1 and 0 are loose.
+  // Three contacts hold a disc: 0 has floor, wall and 1; 1 has floor, 0, 2; 2 has two, so that it and then 1 and 0 are
+  // loose.
   CHECK(measures.rattlers == 4);
   CHECK(measures.largest_overlap == Approx(0.001 / 0.5));
   const double solid = std::numbers::pi * (3 * 0.25 + 0.09) / 8;

@@ -69,8 +69,8 @@ TEST_CASE("a_seed_gives_the_same_bits_for_every_number_of_threads_and_another_se
   }
 }
 
-// Feder (1980): the solid fraction of n throws lags behind that of infinitely many by a multiple of n^(-1/2). Equal discs: 0.547070
-// (Zhang & Torquato 2013, Phys. Rev. E 88, 053312).
+// Feder (1980): the solid fraction of n throws lags behind that of infinitely many by a multiple of n^(-1/2). Equal
+// discs: 0.547070 (Zhang & Torquato 2013, Phys. Rev. E 88, 053312).
 TEST_CASE("equal_discs_thrown_at_random_approach_their_known_limit_from_below") {
   PackingOptions options;
   options.method = PackingMethod::rejection;

@@ -173,8 +173,8 @@ TEST_CASE("round_ellipses_and_clumps_of_one_disc_have_the_moduli_of_discs") {
   CHECK(difference(effective_stiffness(network, springs).stiffness, expected) < 1e-12);
 }
 
-// Jammed ellipses have fewer contacts than their motions need (Donev et al. 2007, Phys. Rev. E 75, 051304): without friction they are
-// floppy, or a hair's breadth from it.
+// Jammed ellipses have fewer contacts than their motions need (Donev et al. 2007, Phys. Rev. E 75, 051304): without
+// friction they are floppy, or a hair's breadth from it.
 TEST_CASE("jammed_ellipses_without_friction_have_no_modulus_and_no_support_is_asked_of_their_cell") {
   for (const double size : {1.0, 1e-4, 1e5}) {
     PackingOptions options = jammed({.kind = Kind::ellipse, .aspect = 2}, 30);
@@ -207,7 +207,8 @@ TEST_CASE("clumps_that_touch_twice_have_a_spring_in_each_place") {
   const HeldNetwork held = held_network_of(packing, usual);
   REQUIRE(held.assembly.contacts.size() == 4);
   CHECK(held.assembly.groups.at("walls").discs.size() == 1);
-  // Normal springs alone hold what rests in two places: statics has an answer, stiff against rocking as two springs two apart.
+  // Normal springs alone hold what rests in two places: statics has an answer, stiff against rocking as two springs two
+  // apart.
   const std::vector<Support> walls{{.group = "walls", .ux = 0.0, .uy = 0.0, .rotation = 0.0}};
   Assembly scene = held.assembly;
   scene.groups["top"] = {{1}, {}};

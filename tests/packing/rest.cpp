@@ -29,7 +29,8 @@ TEST_CASE("settled_discs_carry_their_weights_and_statics_confirms_it") {
     carried -= on_wall.y;
   }
   CHECK(carried == Approx(weight).epsilon(1e-5));
-  // Springs are compressed by what they carry, but for what dashpots still do, and none pulls or slides beyond its friction.
+  // Springs are compressed by what they carry, but for what dashpots still do, and none pulls or slides beyond its
+  // friction.
   double worst = 0, mean = 0;
   for (const GrainContact& contact : packing.contacts) {
     mean += contact.normal_force / static_cast<double>(packing.contacts.size());
@@ -94,8 +95,9 @@ TEST_CASE("discs_that_cannot_come_to_rest_are_refused") {
   CHECK_THROWS_AS(pack(options), Error);
 }
 
-// velocity_verlet: what a contact stores when it begins within a step is not known to the work of that step: (W dt)²/6 of the energy of
-// the impact in the mean, W² = k/m, which the force gives back where the contact ends as fast as it began, and a dashpot does not.
+// velocity_verlet: what a contact stores when it begins within a step is not known to the work of that step: (W dt)²/6
+// of the energy of the impact in the mean, W² = k/m, which the force gives back where the contact ends as fast as it
+// began, and a dashpot does not.
 TEST_CASE("the_energy_of_what_falls_is_accounted_for_but_for_an_error_of_the_order_of_the_scheme") {
   const bool corrected = GENERATE(false, true);
   const double damping = GENERATE(0.3, 1.0), slip = GENERATE(0.0, 0.5);

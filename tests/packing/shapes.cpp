@@ -46,8 +46,8 @@ double area_of_grains(const GrainPacking& packing) {
   return area;
 }
 
-/// Points on the edge of every grain, all along it, that lie in another grain or behind a wall: how deep at most, over the smallest
-/// radius. Knows nothing of contacts: an oracle.
+/// Points on the edge of every grain, all along it, that lie in another grain or behind a wall: how deep at most, over
+/// the smallest radius. Knows nothing of contacts: an oracle.
 double deepest_point(const GrainPacking& packing) {
   const double smallest = *std::min_element(packing.radii.begin(), packing.radii.end());
   const Vec2 size = packing.box.size;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Fujioka & Ushijima (2005), sections 5.2, 5.3, 5.5 in the simulation of grains: energy ratios of impacts on a floor, steps in contact,
-/// and what exact_flow makes of the same ball.
+/// Fujioka & Ushijima (2005), sections 5.2, 5.3, 5.5 in the simulation of grains: energy ratios of impacts on a floor,
+/// steps in contact, and what exact_flow makes of the same ball.
 #include <array>
 #include <cmath>
 #include <limits>

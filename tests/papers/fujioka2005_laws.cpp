@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Fujioka & Ushijima (2005), section 5, by a plain loop over the laws of contact: Table 2, the impact of Figs. 6 and 7, and the loss that
-/// the printed mode 2 has.
+/// Fujioka & Ushijima (2005), section 5, by a plain loop over the laws of contact: Table 2, the impact of Figs. 6 and
+/// 7, and the loss that the printed mode 2 has.
 #include <algorithm>
 #include <array>
 #include <cmath>

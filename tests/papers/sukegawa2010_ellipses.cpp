@@ -66,8 +66,8 @@ Spread spread_of(std::vector<double> values) {
   return spread;
 }
 
-/// JDG + 1 = c . M^-1 c with M = P_i + P_j + 2 P_i # P_j, P = R diag(a², b²) R^T and # the geometric mean of matrices, in the plane
-/// sqrt(al be/det(P_i/al + P_j/be)) (P_i/al + P_j/be), al = a_i b_i, be = a_j b_j.
+/// JDG + 1 = c . M^-1 c with M = P_i + P_j + 2 P_i # P_j, P = R diag(a², b²) R^T and # the geometric mean of matrices,
+/// in the plane sqrt(al be/det(P_i/al + P_j/be)) (P_i/al + P_j/be), al = a_i b_i, be = a_j b_j.
 double judgement_by_matrix_mean(const TwoEllipses& pair) {
   const auto matrix = [](const Ellipse& e) {
     const Vec2 v = perpendicular(e.axis);
@@ -179,7 +179,7 @@ TEST_CASE("sukegawa_2010_normals_at_first_touch") {
     }
     const Spread printed = spread_of(of_printed), mended = spread_of(of_mended);
     table += fmt::format("{:6.1f} | {:5.1f} {:5.1f} {:5.1f} | {:5.1f} {:5.1f} {:5.1f}\n", aspect, printed.mean,
-                    printed.most_of_all, printed.largest, mended.mean, mended.most_of_all, mended.largest);
+                         printed.most_of_all, printed.largest, mended.mean, mended.most_of_all, mended.largest);
     INFO(table);
     CHECK(printed.mean > mended.mean + 10);
     if (aspect == 1) CHECK(mended.largest < 1e-5);

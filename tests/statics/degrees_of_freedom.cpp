@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/statics/number_unknowns.hpp"
-
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "equidem/assembly/lattices.hpp"
+#include "equidem/statics/number_unknowns.hpp"
 
 #include "support/assemblies.hpp"
 #include "support/catch.hpp"

@@ -240,7 +240,8 @@ TEST_CASE("mechanisms_of_periodic_cells_are_named") {
     const Assembly assembly = cell_of_squares(size);
     std::vector<DiscMotion> motions(assembly.size());
     for (int d = 0; d < size; ++d) motions[d].u = {1, 0};
-    check_mechanism(assembly, 0, motions, {fmt::format("a rigid translation along x of {} of {} discs", size, size * size)});
+    check_mechanism(assembly, 0, motions,
+                    {fmt::format("a rigid translation along x of {} of {} discs", size, size * size)});
     if (size == 2) return;
     for (int d = 3 * size; d < 4 * size; ++d) motions[d].u = {-0.3, 0};
     check_mechanism(assembly, 0, motions,
@@ -264,7 +265,8 @@ TEST_CASE("mechanisms_of_periodic_cells_are_named") {
       ++ring;
     }
     REQUIRE(ring == 6);
-    check_mechanism(assembly, 0, motions, {"a rigid rotation about (", fmt::format("of 6 of {} discs", assembly.size())});
+    check_mechanism(assembly, 0, motions,
+                    {"a rigid rotation about (", fmt::format("of 6 of {} discs", assembly.size())});
   }
   SECTION("the shear of a honeycomb") {
     // The branches b from the one disc of a cell to the other, 2a (1, 0) and a (-1, +-sqrt3), keep their length where

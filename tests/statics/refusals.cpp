@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "equidem/assembly/lattices.hpp"
-#include "equidem/statics/equilibrium.hpp"
 #include "equidem/linear/linear_solver.hpp"
+#include "equidem/statics/equilibrium.hpp"
 
 #include "support/assemblies.hpp"
 #include "support/catch.hpp"

@@ -131,7 +131,8 @@ TEST_CASE("assemblies_without_neighbours_are_refused") {
     CHECK(scene.report().discs_without_contacts == 4);
     CHECK(scene.report().free_rigid_motions == 8);
     scene.hold(first, {0, 1}).hold(first + 1, {0, 1}).hold(first + 2, {0, 1}).hold(first + 3, {0});
-    check_says(scene.refusal(), {fmt::format("disc {} at (13.5, ", first + 3), "not held in both directions", "Hold it"});
+    check_says(scene.refusal(),
+               {fmt::format("disc {} at (13.5, ", first + 3), "not held in both directions", "Hold it"});
     CHECK(scene.hold(first + 3, {1}).refusal().empty());
   }
 }

@@ -11,8 +11,8 @@
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
-#include "equidem/statics/rigidity.hpp"
 #include "equidem/statics/assemble_stiffness.hpp"
+#include "equidem/statics/rigidity.hpp"
 
 #include "support/catch.hpp"
 

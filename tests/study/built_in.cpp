@@ -36,8 +36,8 @@ TEST_CASE("observed_orders_are_those_of_theory") {
   for (const StudyCurve& curve : result.curves) {
     if (!curve.order || !curve.expected) continue;
     told += fmt::format("{}, {}, {}: {:.3f} ± {:.2g} over {} levels, theory {:g}\n", curve.problem, curve.method,
-                   study.quantities[curve.quantity].name, curve.order->order, curve.order->uncertainty,
-                   curve.order->levels, curve.expected->order);
+                        study.quantities[curve.quantity].name, curve.order->order, curve.order->uncertainty,
+                        curve.order->levels, curve.expected->order);
   }
   INFO(told);
   CHECK_FALSE(told.empty());

@@ -60,7 +60,8 @@ double relative(const Values& a, const Values& b) {
   return apart > 0 ? apart / largest(b, Values(b.size())) : 0;
 }
 
-/// Waves of a bonded lattice, of which there is a closed form: each moves as exp(-alpha t/2) sin(w t), w² = omega² - alpha²/4.
+/// Waves of a bonded lattice, of which there is a closed form: each moves as exp(-alpha t/2) sin(w t), w² = omega² -
+/// alpha²/4.
 class Waves {
  public:
   struct Wave {
@@ -235,8 +236,8 @@ TEST_CASE("accuracy_asked_of_abes_test_is_kept_at_most_twice_the_least_cost") {
 }
 
 TEST_CASE("accuracy_asked_of_an_oscillator_is_kept_at_most_twice_the_least_cost") {
-  // Leapfrog on x'' = -w^2 x over a time of 1 from x = 1 at rest: x_n = cos(2 n asin(w h/2)) (its own closed form differs from the truth,
-  // cos w, by second order).
+  // Leapfrog on x'' = -w^2 x over a time of 1 from x = 1 at rest: x_n = cos(2 n asin(w h/2)) (its own closed form
+  // differs from the truth, cos w, by second order).
   Random random(51);
   Score score{.requests = 200};
   for (int k = 0; k < score.requests; ++k) {

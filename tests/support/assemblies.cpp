@@ -174,7 +174,7 @@ std::vector<HeldScene> held_scenes() {
         if (rotation == Rotation::restrained && ratio == 0) continue;
         for (const SpringWeighting weighting : {SpringWeighting::uniform, SpringWeighting::voronoi}) {
           scenes.push_back({fmt::format("{}, kT/kN = {}, rotation {}, {}", kind.name, ratio,
-                                   rotation == Rotation::free ? "free" : "restrained", to_string(weighting)),
+                                        rotation == Rotation::free ? "free" : "restrained", to_string(weighting)),
                             kind,
                             contact_springs(kind.assembly, {1e9, ratio * 1e9}, weighting),
                             {.rotation = rotation, .solver = {}},

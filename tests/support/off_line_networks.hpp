@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Networks of bodies that touch off the lines of their centres, and their energy as plain as it gets: from the points that touch.
+/// Networks of bodies that touch off the lines of their centres, and their energy as plain as it gets: from the points
+/// that touch.
 #pragma once
 
 #include <array>
@@ -29,8 +30,8 @@ inline void place_contact(Assembly& assembly, Contact contact, Vec2 normal, Vec2
   assembly.contact_arms.push_back({normal, dot(arm, s), dot(rest, s)});
 }
 
-/// The same bodies, of sections of their own, whose contacts have normals and points drawn about those of discs; one in `again` touch
-/// in a second place.
+/// The same bodies, of sections of their own, whose contacts have normals and points drawn about those of discs; one in
+/// `again` touch in a second place.
 inline Assembly off_line(const Assembly& discs, std::uint64_t seed, int again = 5) {
   Random random(seed);
   Assembly bodies = discs;
@@ -51,7 +52,8 @@ inline Assembly off_line(const Assembly& discs, std::uint64_t seed, int again = 
   return bodies;
 }
 
-/// The points that touch, carried by their bodies: W = sum kN dn²/2 + kT ds²/2 where images move with the gradient as well, N.
+/// The points that touch, carried by their bodies: W = sum kN dn²/2 + kT ds²/2 where images move with the gradient as
+/// well, N.
 inline double energy_of_points(const Assembly& assembly, const ContactSprings& springs,
                                const std::vector<DiscMotion>& motions, const Tensor2& gradient = {}) {
   double energy = 0;

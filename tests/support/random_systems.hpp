@@ -15,8 +15,8 @@
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/multifrontal/front.hpp"
 #include "equidem/linear/ordering/nested_dissection.hpp"
-#include "equidem/statics/assemble_stiffness.hpp"
 #include "equidem/linear/ordering/symbolic_factor.hpp"
+#include "equidem/statics/assemble_stiffness.hpp"
 
 #include "support/dense_oracle.hpp"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Impacts of one or two spheres of Chung & Ooi (2011), Granular Matter 13:643, doi 10.1007/s10035-011-0277-0, tests 1 to 4, against
-// what is exact for them: Hertz's largest overlap, force and duration, the restitution asked for, the impulses of gross slip.
+// Impacts of one or two spheres of Chung & Ooi (2011), Granular Matter 13:643, doi 10.1007/s10035-011-0277-0, tests 1
+// to 4, against what is exact for them: Hertz's largest overlap, force and duration, the restitution asked for, the
+// impulses of gross slip.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -181,7 +182,8 @@ TEST_CASE("chung_ooi_3_spheres_rebound_with_the_restitution_asked_for") {
           const double fine = rebound(material, pair, stepping, 0, 16000).velocity.y / 3.9 - e;
           CAPTURE(material.name, stepping.name(), to_string(end), e, coarse, fine, std::log2(coarse / fine) / 4);
           CHECK(std::abs(fine) < 1e-3 * e);
-          // the dashpot sees velocities half a step old: first order; an end at zero overlap adds the phase of the last step
+          // the dashpot sees velocities half a step old: first order; an end at zero overlap adds the phase of the last
+          // step
           CHECK(std::abs(fine) < std::max(std::abs(coarse) / 10, 1e-9));
         }
       }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs that LAMMPS keeps as references of its granular package: unittest/granular/tests/*.yaml of github.com/lammps/lammps,
-// states printed by LAMMPS (4 Jul 2026, dem03: 30 Mar 2026) to 17 digits. Spheres in a plane; velocity Verlet with the
-// damping of the velocity at half a step, contacts that end at zero overlap.
+// Runs that LAMMPS keeps as references of its granular package: unittest/granular/tests/*.yaml of
+// github.com/lammps/lammps, states printed by LAMMPS (4 Jul 2026, dem03: 30 Mar 2026) to 17 digits. Spheres in a plane;
+// velocity Verlet with the damping of the velocity at half a step, contacts that end at zero overlap.
 #include <algorithm>
 #include <cmath>
 
@@ -100,8 +100,8 @@ TEST_CASE("lammps_dem03_a_hertz_sphere_rebounds_from_a_wall") {  // dem03-hertz-
   }
 }
 
-TEST_CASE(
-    "lammps_dem03_two_spheres_squeezed_between_walls") {  // dem03-elastic-3d-si.yaml; MFiX-DEM case 3 (Garg et al. 2012)
+TEST_CASE("lammps_dem03_two_spheres_squeezed_between_walls") {  // dem03-elastic-3d-si.yaml; MFiX-DEM case 3 (Garg et
+                                                                // al. 2012)
   GrainSimulation simulation(
       scene_of({sphere(0.001, 1e4, {0, 0.00045}), sphere(0.001, 1e4, {0, 0.00135})},
                {line("floor", {0, 0}, {0, 1}), line("lid", {0, 0.0018}, {0, -1})}, as_lammps(1e3, 1), {0, -9.81}),
@@ -131,8 +131,8 @@ TEST_CASE(
 
 namespace {
 
-/// While the sphere slides friction is mu N, whatever the tangential spring and dashpot: there LAMMPS and we do the same. The laws differ in
-/// what the spring keeps once it sticks again, and where the normal force attracts.
+/// While the sphere slides friction is mu N, whatever the tangential spring and dashpot: there LAMMPS and we do the
+/// same. The laws differ in what the spring keeps once it sticks again, and where the normal force attracts.
 struct Moving {
   Vec2 velocity;
   double spin;
@@ -167,7 +167,8 @@ TEST_CASE("lammps_dem05_a_sliding_sphere_begins_to_roll") {  // dem05-sliptime-3
     CHECK(std::abs(-now.spin / printed[k].spin - 1) < 1e-12);
     CHECK(now.velocity.x == Approx(u0 - mu * g * simulation.time()).epsilon(1e-5));
   }
-  // it slides until t = 2 u0/(7 mu g), and rolls with 5 u0/7 from then on, but for what the spring swings that slip leaves stretched
+  // it slides until t = 2 u0/(7 mu g), and rolls with 5 u0/7 from then on, but for what the spring swings that slip
+  // leaves stretched
   REQUIRE(simulation.time() == Approx(2 * u0 / (7 * mu * g)));
   simulation.advance(20000);
   const Grain rolling = simulation.grains()[0];
@@ -189,8 +190,9 @@ struct Grazing {
   double tolerance = 0;  ///< of the tangential velocity, relative
 };
 
-/// LAMMPS has friction up to mu |N| also while the normal force attracts, just before the contact ends; ours acts where bodies are pressed.
-/// Where LAMMPS prints it begins a new run: it evaluates the force anew, with the velocity of the whole step.
+/// LAMMPS has friction up to mu |N| also while the normal force attracts, just before the contact ends; ours acts where
+/// bodies are pressed. Where LAMMPS prints it begins a new run: it evaluates the force anew, with the velocity of the
+/// whole step.
 void graze(const Grazing& asked) {
   constexpr double radius = 0.0025, step = 1e-8;
   const double mu = asked.pair.friction;

@@ -128,7 +128,8 @@ TEST_CASE("the_bits_of_the_highest_frequency_do_not_depend_on_threads") {
   }
 }
 
-// A chain of discs between walls, u_x only: omega² = 2 kN/m (1 + cos(pi/(n + 1))) for n discs between two that are held.
+// A chain of discs between walls, u_x only: omega² = 2 kN/m (1 + cos(pi/(n + 1))) for n discs between two that are
+// held.
 TEST_CASE("a_chain_between_held_ends_has_the_frequency_of_a_string_of_beads") {
   const int n = GENERATE(1, 2, 30, 300);
   Assembly chain = chain_of_discs(n + 2, 1);

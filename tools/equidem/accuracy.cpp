@@ -44,16 +44,17 @@ void refuse_dry_run_with_accuracy(const CommonOptions& options, bool accuracy) {
 std::string describe_accuracy(const ReachedAccuracy& reached) {
   const auto& more = reached.ten_times_more;
   std::string text = report_line("accuracy", fmt::format("asked {:.3g}, estimated to be reached {:.2g}: {}",
-                                                    reached.requested, reached.estimated, reached.of));
-  if (!reached.knob.empty()) text += report_line("", fmt::format("chosen: {}, {}", reached.knob, text_of(reached.value)));
+                                                         reached.requested, reached.estimated, reached.of));
+  if (!reached.knob.empty())
+    text += report_line("", fmt::format("chosen: {}, {}", reached.knob, text_of(reached.value)));
   if (!reached.pilots.empty())
     text += report_line("", fmt::format("to choose it took {}: {:.2g} times the work of what was chosen, beside it",
-                                   reached.pilots, reached.pilots_factor));
-  text += report_line(
-      "", more.note.empty()
-              ? fmt::format("ten times more accuracy ({:.3g}): about {:.3g} times the time, {}; {}", reached.requested / 10,
-                       more.time_factor, readable_seconds(more.seconds), text_of(more.value))
-              : fmt::format("ten times more accuracy ({:.3g}): {}", reached.requested / 10, more.note));
+                                        reached.pilots, reached.pilots_factor));
+  text += report_line("", more.note.empty()
+                              ? fmt::format("ten times more accuracy ({:.3g}): about {:.3g} times the time, {}; {}",
+                                            reached.requested / 10, more.time_factor, readable_seconds(more.seconds),
+                                            text_of(more.value))
+                              : fmt::format("ten times more accuracy ({:.3g}): {}", reached.requested / 10, more.note));
   return text;
 }
 

@@ -44,7 +44,8 @@ void add_accuracy_option(CLI::App& command, std::optional<double>& accuracy, con
 void refuse_dry_run_with_accuracy(const CommonOptions& options, bool accuracy);
 
 std::string describe_accuracy(const ReachedAccuracy& reached);
-/// accuracy: {requested, estimated, of, knob, value, pilots, pilots_factor, ten_times_more: {time_factor, seconds, value, note}}.
+/// accuracy: {requested, estimated, of, knob, value, pilots, pilots_factor, ten_times_more: {time_factor, seconds,
+/// value, note}}.
 void add_accuracy(JsonObject& object, const ReachedAccuracy& reached);
 
 }  // namespace equidem

@@ -24,7 +24,7 @@ std::string processor_name() {
 
 std::string Machine::text() const {
   return fmt::format("{}, {}; equidem {}, {}, compiler {}", processor.empty() ? "unknown processor" : processor,
-                counted(cores, "core"), version, build, compiler);
+                     counted(cores, "core"), version, build, compiler);
 }
 
 JsonObject Machine::json() const {

@@ -46,9 +46,9 @@ class HelpText : public CLI::Formatter {
     if (command->get_parent() == nullptr) return "Usage: equidem VERB CASE.toml [OPTIONS]\n";
     const auto takes = [&](const char* what) { return command->get_option_no_throw(what) != nullptr; };
     return fmt::format("Usage: equidem {} {} [OPTIONS]\n", command->get_name(),
-                  takes("CASE")    ? "CASE.toml"
-                  : takes("STUDY") ? "NAME|FILE.toml"
-                                   : "PAPER");
+                       takes("CASE")    ? "CASE.toml"
+                       : takes("STUDY") ? "NAME|FILE.toml"
+                                        : "PAPER");
   }
 };
 
@@ -64,8 +64,8 @@ std::string version_text() {
   const char* optimized = "not optimized";
 #endif
   return fmt::format("equidem {}\n{}, {}, compiler {}\nCLI11 {}, fmt {}.{}.{}, {}\n", library_version(), optimized,
-                assertions, __VERSION__, CLI11_VERSION, FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100,
-                toml_parser());
+                     assertions, __VERSION__, CLI11_VERSION, FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
+                     FMT_VERSION % 100, toml_parser());
 }
 
 std::vector<std::string> verb_names() {
@@ -196,8 +196,9 @@ int fail(const std::string& sentence, int exit_code) {
   return exit_code;
 }
 
-/// OpenBLAS starts its threads when it is loaded, before main, and lets them spin for a while beside ours, although every call
-/// here runs on one thread. Only its environment can tell it not to: where the user says nothing, start again and say it.
+/// OpenBLAS starts its threads when it is loaded, before main, and lets them spin for a while beside ours, although
+/// every call here runs on one thread. Only its environment can tell it not to: where the user says nothing, start
+/// again and say it.
 void start_without_blas_threads(char** argv) {
   constexpr const char* variable = "OPENBLAS_NUM_THREADS";
   if (std::getenv(variable) != nullptr || setenv(variable, "1", 0) != 0) return;

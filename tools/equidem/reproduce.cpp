@@ -15,14 +15,14 @@
 #include "equidem/core/threads.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/material/spring_relations.hpp"
+#include "equidem/output/files/vtk.hpp"
 #include "equidem/output/pictures/picture.hpp"
 #include "equidem/output/plots/plot.hpp"
-#include "equidem/output/files/vtk.hpp"
 
 #include "abe1996/abe1996.hpp"
+#include "abe1996_random/mean_field.hpp"
 #include "command.hpp"
 #include "fujioka2005/fujioka2005.hpp"
-#include "abe1996_random/mean_field.hpp"
 #include "sukegawa2010/sukegawa2010.hpp"
 #include "verbs.hpp"
 
@@ -78,13 +78,14 @@ Plot figure7(const abe1996::Reproduction& result) {
     series.x.push_back(p.ratio);
     series.y.push_back(p.poisson_ratio);
   }
-  Plot plot{.title = fmt::format("Abe (1996), Fig. 7: {} rows of {} and {} discs", result.block.rows, result.block.columns,
-                            result.block.columns - 1),
+  Plot plot{.title = fmt::format("Abe (1996), Fig. 7: {} rows of {} and {} discs", result.block.rows,
+                                 result.block.columns, result.block.columns - 1),
             .x = {.label = "kT/kN", .min = -1, .max = 1},
             .y = {.label = "Poisson's ratio (plane strain)", .min = -0.2, .max = 0.8}};
   plot.series = {theory_line(-1, 1, poisson_ratio_of_ratio, "eq. (22): (1 - kT/kN)/4"), stable, unstable};
-  plot.vertical_lines = {{result.lattice_limit, "infinite lattice: -1/3", PlotColour::black},
-                         {result.block_limit, fmt::format("this block: {:.4f}", result.block_limit), PlotColour::vermilion}};
+  plot.vertical_lines = {
+      {result.lattice_limit, "infinite lattice: -1/3", PlotColour::black},
+      {result.block_limit, fmt::format("this block: {:.4f}", result.block_limit), PlotColour::vermilion}};
   return plot;
 }
 
@@ -95,8 +96,8 @@ Plot figure8(const abe1996::Reproduction& result) {
     computed.x.push_back(p.ratio);
     computed.y.push_back(p.stiffness_ratio);
   }
-  Plot plot{.title = fmt::format("Abe (1996), Fig. 8: {} rows of {} and {} discs", result.block.rows, result.block.columns,
-                            result.block.columns - 1),
+  Plot plot{.title = fmt::format("Abe (1996), Fig. 8: {} rows of {} and {} discs", result.block.rows,
+                                 result.block.columns, result.block.columns - 1),
             .x = {.label = "kT/kN", .min = 0, .max = 1},
             .y = {.label = "2G/((1 - nu) kN)", .min = 1, .max = 2}};
   plot.series = {theory_line(0, 1, hexagonal_stiffness_ratio, "eq. (37)"), computed};
@@ -149,8 +150,9 @@ void show_block(const ReproduceOptions& options) {
   const AssemblyState state{
       .assembly = assembly, .motions = rest.motions, .contact_forces = rest.contact_forces, .stresses = stresses};
   write_vtk(*options.common.out, "tension", state, options.common.overwrite);
-  PictureOptions picture{.title = fmt::format("Abe (1996), Fig. 6: tension of {} rows, kT/kN = {}", block.rows, shown_ratio),
-                         .colour = DiscColour::stress_xx};
+  PictureOptions picture{
+      .title = fmt::format("Abe (1996), Fig. 6: tension of {} rows, kT/kN = {}", block.rows, shown_ratio),
+      .colour = DiscColour::stress_xx};
   write_picture(*options.common.out, "tension", state, picture, options.common.overwrite);
 }
 

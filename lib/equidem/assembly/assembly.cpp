@@ -21,7 +21,7 @@ bool finite(Vec2 v) {
 std::string described(const Contact& c, std::size_t index) {
   if (c.shift_x == 0 && c.shift_y == 0) return fmt::format("contact {}, of discs {} and {}", index, c.i, c.j);
   return fmt::format("contact {}, of disc {} and the image of disc {} shifted by ({}, {}) periods", index, c.i, c.j,
-                c.shift_x, c.shift_y);
+                     c.shift_x, c.shift_y);
 }
 
 void check_count(const char* what, std::size_t count, const char* per, std::size_t expected) {
@@ -49,7 +49,8 @@ void check_discs(const Assembly& assembly) {
                 "Correct it");
     }
     if (!measurable(assembly.radii[d])) {
-      bad_input(fmt::format("disc {} has the radius {} m", d, assembly.radii[d]), length_limits(), "Choose other units");
+      bad_input(fmt::format("disc {} has the radius {} m", d, assembly.radii[d]), length_limits(),
+                "Choose other units");
     }
   }
   if (assembly.cell_areas.empty()) return;
@@ -67,8 +68,8 @@ void check_contact(const Assembly& assembly, std::size_t index) {
   const auto n = static_cast<std::int64_t>(assembly.size());
   for (const std::int32_t disc : {c.i, c.j}) {
     if (disc < 0 || disc >= n) {
-      bad_input(fmt::format("contact {} names disc {}", index, disc), fmt::format("the discs are numbered from 0 to {}", n - 1),
-                "Correct the contact or add the disc");
+      bad_input(fmt::format("contact {} names disc {}", index, disc),
+                fmt::format("the discs are numbered from 0 to {}", n - 1), "Correct the contact or add the disc");
     }
   }
   const bool shifted = c.shift_x != 0 || c.shift_y != 0;
@@ -132,15 +133,17 @@ void check_bodies(const Assembly& assembly) {
   for (std::size_t d = 0; d < assembly.size(); ++d) {
     const BodySection& section = assembly.sections[d];
     if (!(section.area > 0 && section.polar_moment > 0 && std::isfinite(section.area + section.polar_moment))) {
-      bad_input(fmt::format("body {} has the area {} m² and the polar moment {} m⁴", d, section.area, section.polar_moment),
-                "both must be positive and finite", "Correct its section");
+      bad_input(
+          fmt::format("body {} has the area {} m² and the polar moment {} m⁴", d, section.area, section.polar_moment),
+          "both must be positive and finite", "Correct its section");
     }
     constexpr double close = 1e-6;
     const double least = section.area * section.area / (2 * std::numbers::pi);
     if (section.polar_moment < (1 - close) * least) {
-      bad_input(fmt::format("body {} has the area {} m² and the polar moment {} m⁴", d, section.area, section.polar_moment),
-                fmt::format("no section of that area has a smaller one than the disc, {:.9g} m⁴", least),
-                "Correct its section: the moment is about its own centre");
+      bad_input(
+          fmt::format("body {} has the area {} m² and the polar moment {} m⁴", d, section.area, section.polar_moment),
+          fmt::format("no section of that area has a smaller one than the disc, {:.9g} m⁴", least),
+          "Correct its section: the moment is about its own centre");
     }
     const double radius = std::sqrt(section.area / std::numbers::pi);
     if (std::abs(assembly.radii[d] - radius) > close * radius) {
@@ -162,8 +165,9 @@ void check_contacts(const Assembly& assembly) {
     check_count("facet lengths", assembly.facet_lengths.size(), "contacts", m);
     for (std::size_t c = 0; c < m; ++c) {
       if (!(assembly.facet_lengths[c] >= 0) || !std::isfinite(assembly.facet_lengths[c])) {
-        bad_input(fmt::format("{}, has the facet length {}", described(assembly.contacts[c], c), assembly.facet_lengths[c]),
-                  "facet lengths must be finite and not negative", "Measure the cells anew");
+        bad_input(
+            fmt::format("{}, has the facet length {}", described(assembly.contacts[c], c), assembly.facet_lengths[c]),
+            "facet lengths must be finite and not negative", "Measure the cells anew");
       }
     }
   }
@@ -195,13 +199,13 @@ void check_group(const Assembly& assembly, const std::string& name, const DiscGr
     }
   }
   if (discs.tributary_lengths.empty()) return;
-  check_count(fmt::format("tributary lengths of group '{}'", name).c_str(), discs.tributary_lengths.size(), "discs of it",
-              discs.discs.size());
+  check_count(fmt::format("tributary lengths of group '{}'", name).c_str(), discs.tributary_lengths.size(),
+              "discs of it", discs.discs.size());
   for (std::size_t k = 0; k < discs.discs.size(); ++k) {
     if (!(discs.tributary_lengths[k] >= 0) || !std::isfinite(discs.tributary_lengths[k])) {
-      bad_input(
-          fmt::format("disc {} of group '{}' has the tributary length {}", discs.discs[k], name, discs.tributary_lengths[k]),
-          "tributary lengths must be finite and not negative", "Correct it");
+      bad_input(fmt::format("disc {} of group '{}' has the tributary length {}", discs.discs[k], name,
+                            discs.tributary_lengths[k]),
+                "tributary lengths must be finite and not negative", "Correct it");
     }
   }
 }
@@ -242,8 +246,8 @@ bool on_lines_of_centres(const Assembly& assembly) {
 }
 
 std::string length_limits() {
-  return fmt::format("it must lie between {} and {} m, or squares of areas leave the range of a double", shortest_length,
-                longest_length);
+  return fmt::format("it must lie between {} and {} m, or squares of areas leave the range of a double",
+                     shortest_length, longest_length);
 }
 
 namespace {

@@ -20,8 +20,8 @@ struct Contact {
   std::int32_t j = 0;
   std::int32_t shift_x = 0;  ///< i touches j at x_j + (shift_x Lx, shift_y Ly); 0 with a free boundary
   std::int32_t shift_y = 0;
-  /// m; levers that do not add up to the distance leave a gap or an overlap under a contact that rolls: solve takes them,
-  /// homogenize refuses them, since turning all of such an assembly costs energy.
+  /// m; levers that do not add up to the distance leave a gap or an overlap under a contact that rolls: solve takes
+  /// them, homogenize refuses them, since turning all of such an assembly costs energy.
   double lever_i = 0;
   double lever_j = 0;  ///< m
 };
@@ -55,8 +55,8 @@ struct DiscGroup {
   std::vector<double> tributary_lengths;  ///< m, one per disc; empty where the group is not a side
 };
 
-/// A contact network of discs, or of other bodies, each then with its centre of mass and the radius of the disc of equal area; SI units,
-/// per metre of depth. Two bodies may touch in several places.
+/// A contact network of discs, or of other bodies, each then with its centre of mass and the radius of the disc of
+/// equal area; SI units, per metre of depth. Two bodies may touch in several places.
 struct Assembly {
   std::string kind;           ///< "hexagonal", "square", "delaunay", "file", ...
   std::vector<Vec2> centres;  ///< m
@@ -104,7 +104,8 @@ std::string length_limits();
 
 /// Check everything that later parts rely on: counts agree, radii, periods and distances of discs in contact are
 /// measurable, contacts join two existing discs (or a disc and another image of itself) with lever arms that are not
-/// negative; where contacts have arms of their own: unit normals, and arms that meet in one point to 1e-9 of the distance.
+/// negative; where contacts have arms of their own: unit normals, and arms that meet in one point to 1e-9 of the
+/// distance.
 /// \throws Error (bad_input) naming the first disc or contact that breaks this
 void check(const Assembly& assembly);
 

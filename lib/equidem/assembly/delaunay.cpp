@@ -21,17 +21,20 @@ void check(const DelaunayOptions& options) {
   const std::int64_t least = options.periodic ? 1 : 3;
   constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max() / 2;
   if (options.discs < least || options.discs > most) {
-    bad_input(fmt::format("discs = {}", options.discs),
-              fmt::format("a {} triangulation needs {} to {} discs", options.periodic ? "periodic" : "free", least, most),
-              "Correct the count");
+    bad_input(
+        fmt::format("discs = {}", options.discs),
+        fmt::format("a {} triangulation needs {} to {} discs", options.periodic ? "periodic" : "free", least, most),
+        "Correct the count");
   }
   if (!(options.disorder >= 0 && options.disorder < 0.5)) {
-    bad_input(fmt::format("disorder = {}", options.disorder), "it must lie in [0, 0.5), or neighbours could change places",
+    bad_input(fmt::format("disorder = {}", options.disorder),
+              "it must lie in [0, 0.5), or neighbours could change places",
               "Correct it, or ask for poisson_disc points");
   }
   const RadiusDistribution& radii = options.radii;
   if (!(radii.smallest > 0) || !std::isfinite(radii.smallest)) {
-    bad_input(fmt::format("the smallest radius is {} m", radii.smallest), "radii must be positive and finite", "Correct it");
+    bad_input(fmt::format("the smallest radius is {} m", radii.smallest), "radii must be positive and finite",
+              "Correct it");
   }
   if (!(radii.largest >= radii.smallest) || !std::isfinite(radii.largest)) {
     bad_input(fmt::format("the largest radius is {} m", radii.largest),
@@ -87,9 +90,9 @@ void take_network(Assembly& assembly, PowerCells&& cells) {
   take_sides(assembly, cells);
 }
 
-/// Leave out discs that hang loose: those without contacts, whose power cell their neighbours have taken, and those in a corner
-/// with a single neighbour, which would roll about it at no cost. Where many have a single neighbour the rectangle is a strip one
-/// disc wide, and they stay. Returns how many are left out.
+/// Leave out discs that hang loose: those without contacts, whose power cell their neighbours have taken, and those in
+/// a corner with a single neighbour, which would roll about it at no cost. Where many have a single neighbour the
+/// rectangle is a strip one disc wide, and they stay. Returns how many are left out.
 std::size_t drop_loose_discs(Assembly& assembly, const PowerCells& cells) {
   std::vector<int> contacts(assembly.size(), 0);
   for (const Contact& c : cells.neighbours) ++contacts[c.i], ++contacts[c.j];
@@ -119,7 +122,7 @@ std::size_t drop_loose_discs(Assembly& assembly, const PowerCells& cells) {
   const std::size_t one = furthest(assembly.centres[0]);
   const std::size_t other = furthest(assembly.centres[one]);
   bad_input(fmt::format("all {} discs lie on the line through discs {} and {}", assembly.size(), std::min(one, other),
-                   std::max(one, other)),
+                        std::max(one, other)),
             "points on one line have no triangles", "Move some of them, or list the contacts");
 }
 

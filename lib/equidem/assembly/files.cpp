@@ -73,10 +73,10 @@ std::int32_t integer(const Json& value, const std::string& entry) {
   const bool fits = value.is_number_unsigned() ? value.get<std::uint64_t>() <= std::numeric_limits<std::int32_t>::max()
                                                : value.get<std::int64_t>() >= std::numeric_limits<std::int32_t>::min();
   if (!fits) {
-    refuse(
-        fmt::format("{} is out of range", value.dump()),
-        fmt::format("discs and shifts are whole numbers of a magnitude up to {}", std::numeric_limits<std::int32_t>::max()),
-        "Correct the entry", entry);
+    refuse(fmt::format("{} is out of range", value.dump()),
+           fmt::format("discs and shifts are whole numbers of a magnitude up to {}",
+                       std::numeric_limits<std::int32_t>::max()),
+           "Correct the entry", entry);
   }
   return value.get<std::int32_t>();
 }
@@ -91,7 +91,7 @@ const Json& row(const Json& value, std::size_t count, const char* names, const s
   list(value, entry);
   if (value.size() == count) return value;
   refuse(fmt::format("{} {} where {} are expected", counted(static_cast<long long>(value.size()), "number"),
-                value.size() == 1 ? "stands" : "stand", count),
+                     value.size() == 1 ? "stands" : "stand", count),
          fmt::format("an entry is [{}]", names), "Correct the entry", entry);
 }
 
@@ -99,7 +99,7 @@ const Json& list_per(const char* what, const Json& value, std::size_t count, con
   list(value, entry);
   if (value.size() == count) return value;
   refuse(fmt::format("{} for {}", counted(static_cast<long long>(value.size()), "entry", "entries"),
-                counted(static_cast<long long>(count), what)),
+                     counted(static_cast<long long>(count), what)),
          "there must be one for each", "Correct the list or remove it", entry);
 }
 
@@ -120,7 +120,8 @@ void check_keys(const Json& file) {
   if (!file.is_object()) wrong_kind(file, "an object with the keys schema, discs, ...", "");
   const auto found = file.find("schema");
   if (found == file.end() || *found != assembly_schema) {
-    refuse(found == file.end() ? std::string("the key 'schema' is missing") : fmt::format("the schema is {}", found->dump()),
+    refuse(found == file.end() ? std::string("the key 'schema' is missing")
+                               : fmt::format("the schema is {}", found->dump()),
            fmt::format("an assembly file says \"schema\": \"{}\"", assembly_schema),
            "Add or correct it, if this is an assembly file", "schema");
   }
@@ -170,7 +171,7 @@ void refuse_repeated(const Assembly& assembly) {
   const auto& [first, second] = *twice;
   const Contact& c = assembly.contacts[first];
   refuse(fmt::format("contacts {} and {} are the same, of discs {} and {}", first, second, std::min(c.i, c.j),
-                std::max(c.i, c.j)),
+                     std::max(c.i, c.j)),
          "its springs would count twice", "Remove one of them", fmt::format("contacts[{}]", second));
 }
 
@@ -253,7 +254,7 @@ DiscGroup read_group(const Json& value, const std::string& entry) {
   list(*discs, entry);
   if (lengths != nullptr && list(*lengths, entry).size() != discs->size()) {
     refuse(fmt::format("{} for {}", counted(static_cast<long long>(lengths->size()), "tributary length"),
-                  counted(static_cast<long long>(discs->size()), "disc")),
+                       counted(static_cast<long long>(discs->size()), "disc")),
            "there must be one for each", "Correct the list or remove it", entry);
   }
   std::vector<std::pair<std::int32_t, double>> members;

@@ -25,9 +25,9 @@ struct PowerCells {
   bool collinear = false;                  ///< all centres lie on one line
 };
 
-/// Cells of a periodic assembly, or of a free one in the given rectangle, which must hold all centres: without one in that of
-/// the assembly, else in the smallest that holds all discs. Facets shorter than 1e-9 of the distance of the centres are left out: they are corners where more than
-/// three cells meet.
+/// Cells of a periodic assembly, or of a free one in the given rectangle, which must hold all centres: without one in
+/// that of the assembly, else in the smallest that holds all discs. Facets shorter than 1e-9 of the distance of the
+/// centres are left out: they are corners where more than three cells meet.
 ///
 /// A periodic diagram is that of the cell and of as many images around it as it takes to prove that none further away
 /// matters: no power circle of a triangle at the cell reaches beyond the images.

@@ -9,8 +9,8 @@
 namespace equidem {
 namespace {
 
-/// Bodies, shift and offsets: bodies that touch in several places do so with offsets of their own, since all their contacts
-/// lead along the same branch.
+/// Bodies, shift and offsets: bodies that touch in several places do so with offsets of their own, since all their
+/// contacts lead along the same branch.
 using Name = std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t, double, double>;
 
 Name name_of(const Assembly& assembly, std::size_t contact) {

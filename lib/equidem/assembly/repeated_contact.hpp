@@ -11,7 +11,8 @@
 
 namespace equidem {
 
-/// Two contacts, ascending, of the same bodies across the same period in the same place, whichever body each names first.
+/// Two contacts, ascending, of the same bodies across the same period in the same place, whichever body each names
+/// first.
 std::optional<std::pair<std::size_t, std::size_t>> find_repeated_contact(const Assembly& assembly);
 
 }  // namespace equidem

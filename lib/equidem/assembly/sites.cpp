@@ -62,9 +62,9 @@ void Sites::surround() {
   const double expected = n * ((period_.x + 2 * margin_) / period_.x * ((period_.y + 2 * margin_) / period_.y) - 1);
   if (expected > most_images_per_disc * n + most_images) {
     bad_input(fmt::format("the periodic cell of {} m by {} m needs more than {:.3g} images around it to find the "
-                     "neighbours of "
-                     "its {}",
-                     period_.x, period_.y, most_images_per_disc * n + most_images, counted(discs_, "disc")),
+                          "neighbours of "
+                          "its {}",
+                          period_.x, period_.y, most_images_per_disc * n + most_images, counted(discs_, "disc")),
               "it is too narrow, or its discs leave too wide a gap",
               "Repeat the cell along its narrow side, or fill the gap");
   }
@@ -95,7 +95,7 @@ void Sites::sort() {
     const std::int32_t b = image(order_[k]).disc;
     if (a == b || positions_[order_[k - 1]] != positions_[order_[k]]) continue;
     bad_input(fmt::format("discs {} and {} have the same centre, ({}, {}) m", std::min(a, b), std::max(a, b),
-                     positions_[a].x, positions_[a].y),
+                          positions_[a].x, positions_[a].y),
               "no direction joins them, and their cells cannot be told apart", "Move or remove one of them");
   }
 }

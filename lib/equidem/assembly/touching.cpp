@@ -32,7 +32,7 @@ class Grid {
       const double narrow = std::min(assembly.period->x, assembly.period->y);
       if (reach > most_periods * narrow) {
         bad_input(fmt::format("the largest disc, of diameter {:.6g} m, spans more than {} periods of {:.6g} m", reach,
-                         most_periods, narrow),
+                              most_periods, narrow),
                   "it would touch itself that many times", "Correct the radii or the cell");
       }
       low_ = {0, 0};

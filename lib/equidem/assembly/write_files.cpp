@@ -37,15 +37,16 @@ std::string joined(const Values& values, const Write& write) {
 std::string text_of(const Assembly& assembly) {
   std::string text = fmt::format("{{\"schema\": \"{}\"", assembly_schema);
   text += ",\n\"title\": " + quoted_json(assembly.kind);
-  text += assembly.period ? fmt::format(",\n\"cell\": [{}, {}]", shortest(assembly.period->x), shortest(assembly.period->y))
-                          : ",\n\"cell\": null";
+  text += assembly.period
+              ? fmt::format(",\n\"cell\": [{}, {}]", shortest(assembly.period->x), shortest(assembly.period->y))
+              : ",\n\"cell\": null";
   if (assembly.box) {
     text += fmt::format(",\n\"box\": [{}, {}]", pair_of(assembly.box->low.x, assembly.box->low.y),
-                   pair_of(assembly.box->high.x, assembly.box->high.y));
+                        pair_of(assembly.box->high.x, assembly.box->high.y));
   }
   append_list(text, "discs", assembly.size(), [&](std::size_t k) {
     return fmt::format("[{}, {}, {}]", shortest(assembly.centres[k].x), shortest(assembly.centres[k].y),
-                  shortest(assembly.radii[k]));
+                       shortest(assembly.radii[k]));
   });
   if (!assembly.sections.empty()) {
     append_list(text, "sections", assembly.size(),
@@ -75,7 +76,7 @@ std::string text_of(const Assembly& assembly) {
       text += separator + quoted_json(name) + ": ";
       text += members.tributary_lengths.empty() ? discs
                                                 : fmt::format("{{\"discs\": {}, \"tributary_lengths\": {}}}", discs,
-                                                         joined(members.tributary_lengths, shortest));
+                                                              joined(members.tributary_lengths, shortest));
       separator = ",\n";
     }
     text += "}";

@@ -88,7 +88,8 @@ bool ties(const GrainBond& bond) {
 constexpr const char* no_strength = "it would tie nothing";
 constexpr const char* give_strength = "Add normal_dashpot and tangential_dashpot to [bonds]";
 
-/// The strengths that the cells after i and j give, by the names of the columns; null for others, which are passed over.
+/// The strengths that the cells after i and j give, by the names of the columns; null for others, which are passed
+/// over.
 std::vector<const Strength*> strengths_of_columns(std::string_view row) {
   std::vector<const Strength*> columns;
   while (!row.empty()) {
@@ -126,8 +127,8 @@ void read_file_of_bonds(const fs::path& path, const GrainBond& common, Pairs& pa
     for (const auto& [cell, number] : {std::pair{left, &grains[0]}, std::pair{right, &grains[1]}}) {
       const auto [stop, problem] = std::from_chars(cell.data(), cell.data() + cell.size(), *number);
       if (problem == std::errc() && stop == cell.data() + cell.size()) continue;
-      throw Error(ErrorKind::bad_input, fmt::format("'{}' is no number of a grain", cell), "grains are counted 0, 1, 2, ...",
-                  "Correct it", where);
+      throw Error(ErrorKind::bad_input, fmt::format("'{}' is no number of a grain", cell),
+                  "grains are counted 0, 1, 2, ...", "Correct it", where);
     }
     GrainBond bond = common;
     for (const Strength* strength : columns) {

@@ -20,7 +20,8 @@ struct BondCase {
 std::vector<KeySpec> bond_keys();
 
 /// \param root seen by check_and_complete; the path becomes that which the program opens
-/// \throws Error (bad_input) with line and key: grains that are not there, tied to themselves or twice to one another, no dashpot, a
+/// \throws Error (bad_input) with line and key: grains that are not there, tied to themselves or twice to one another,
+///         no dashpot, a
 ///         file that is no table of bonds
 BondCase read_bonds(TomlValue& root, const std::filesystem::path& folder, std::size_t grains);
 

@@ -69,8 +69,9 @@ void add_groups(Assembly& assembly, const Case& resolved) {
     const GroupCase& wanted = resolved.groups[k];
     const std::string where = resolved.where(fmt::format("group.{}.{}", k, wanted.box_low ? "box" : "discs"));
     if (assembly.groups.contains(wanted.name)) {
-      fail(resolved.where(fmt::format("group.{}.name", k)), fmt::format("the assembly has a group '{}' of its own", wanted.name),
-           "a name means one group", "Choose another name");
+      fail(resolved.where(fmt::format("group.{}.name", k)),
+           fmt::format("the assembly has a group '{}' of its own", wanted.name), "a name means one group",
+           "Choose another name");
     }
     assembly.groups[wanted.name] = discs_of(wanted, assembly, where);
   }
@@ -108,14 +109,14 @@ SpringConstants springs_of_material(const Case& resolved, const Assembly& assemb
 
 std::string described(const SpringConstants& springs, SpringWeighting weighting) {
   return fmt::format("kN = {:.6g} Pa, kT = {:.6g} Pa (kT/kN = {:.6g}), weighting {}", springs.kN, springs.kT,
-                springs.ratio(), to_string(weighting));
+                     springs.ratio(), to_string(weighting));
 }
 
 std::string described(const MaterialCase& material, const SpringConstants& springs, SpringWeighting weighting,
                       Packing packing) {
   return fmt::format("G = {:.6g} Pa, nu = {:.6g} (plane {}) gives {}. The relation {}", material.moduli.shear_modulus,
-                material.moduli.poisson_ratio, to_string(material.moduli.plane), described(springs, weighting),
-                validity(packing));
+                     material.moduli.poisson_ratio, to_string(material.moduli.plane), described(springs, weighting),
+                     validity(packing));
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ namespace equidem {
 ///         none or takes a name that is taken, a support or load on a group that does not exist
 Assembly build_assembly(const Case& resolved);
 
-/// The density rho of the discs themselves, kg/m³: that of [assembly], else gamma/phi, gamma that of [material] and phi the
-/// solid fraction (Abe 1996, section 2). None where neither is given.
+/// The density rho of the discs themselves, kg/m³: that of [assembly], else gamma/phi, gamma that of [material] and phi
+/// the solid fraction (Abe 1996, section 2). None where neither is given.
 /// \throws Error (bad_input), with the line of the case file: both are given and gamma differs from rho phi by more
 ///         than 1e-6 of it; gamma alone is given for spheres, whose mass it does not tell
 std::optional<double> disc_density(const Case& resolved, const Assembly& assembly);

@@ -36,8 +36,8 @@ void check_supports(const Case& resolved, const Assembly& assembly, const std::v
         const auto [earlier, is_new] = prescribed.emplace(disc, k);
         if (is_new || supports[earlier->second].*component.motion == motion) continue;
         fail(resolved.where(fmt::format("support.{}.{}", k, component.name)),
-             fmt::format("the support of '{}' prescribes {} of disc {} a second time", supports[k].group, component.name,
-                    disc),
+             fmt::format("the support of '{}' prescribes {} of disc {} a second time", supports[k].group,
+                         component.name, disc),
              fmt::format("that of '{}' gives it another motion", supports[earlier->second].group),
              "Prescribe each component of a disc once");
       }
@@ -52,7 +52,8 @@ void check_velocities(const Case& resolved, const Assembly& assembly) {
     for (const std::int32_t disc : group(assembly, velocities[k].group).discs) {
       const auto [earlier, is_new] = given.emplace(disc, k);
       if (is_new) continue;
-      fail(resolved.where(fmt::format("velocity.{}.group", k)), fmt::format("disc {} has two velocities at the start", disc),
+      fail(resolved.where(fmt::format("velocity.{}.group", k)),
+           fmt::format("disc {} has two velocities at the start", disc),
            fmt::format("it is in '{}' and in '{}'", velocities[earlier->second].group, velocities[k].group),
            "Choose groups that share no disc");
     }
@@ -74,10 +75,11 @@ void check_velocities_count(const Case& resolved, const Scene& scene) {
   const bool turns = derive_effects(scene.assembly, scene.springs, resolved.rotation).rotation;
   for (std::size_t k = 0; k < velocities.size(); ++k) {
     if (velocities[k].spin != 0 && !turns) {
-      fail(resolved.where(fmt::format("velocity.{}.spin", k)),
-           fmt::format("'{}' has a spin at the start, and rotations are no unknowns of this scene", velocities[k].group),
-           scene.springs.any_tangential() ? "they are restrained" : "kT = 0 everywhere: the spin would change nothing",
-           "Remove the spin");
+      fail(
+          resolved.where(fmt::format("velocity.{}.spin", k)),
+          fmt::format("'{}' has a spin at the start, and rotations are no unknowns of this scene", velocities[k].group),
+          scene.springs.any_tangential() ? "they are restrained" : "kT = 0 everywhere: the spin would change nothing",
+          "Remove the spin");
     }
     const std::vector<std::int32_t>& moving = group(scene.assembly, velocities[k].group).discs;
     const std::set<std::int32_t> discs(moving.begin(), moving.end());
@@ -89,7 +91,7 @@ void check_velocities_count(const Case& resolved, const Scene& scene) {
           if (!discs.contains(disc)) continue;
           fail(resolved.where(fmt::format("velocity.{}.{}", k, component.key)),
                fmt::format("disc {} of '{}' has a velocity at the start, and its {} is prescribed", disc,
-                      velocities[k].group, component.name),
+                           velocities[k].group, component.name),
                fmt::format("the support of '{}' says how it moves", support.group),
                "Choose a group without held discs, or release them");
         }

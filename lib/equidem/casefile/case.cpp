@@ -57,8 +57,8 @@ AssemblyCase read_assembly_table(TomlValue& table, const fs::path& folder) {
     options.radii = {number(*radii, "smallest"), number(*radii, "largest")};
     if (options.radii.smallest > options.radii.largest) {
       fail_at(*radii, "assembly.radii",
-              fmt::format("smallest = {} is larger than largest = {}", options.radii.smallest, options.radii.largest), "",
-              "Exchange them");
+              fmt::format("smallest = {} is larger than largest = {}", options.radii.smallest, options.radii.largest),
+              "", "Exchange them");
     }
   }
   return result;
@@ -114,8 +114,8 @@ Load read_load(const TomlValue& table) {
   const TomlValue* force = table.find("force");
   const TomlValue* moment = table.find("moment");
   if (force == nullptr && moment == nullptr)
-    fail_at(table, "load", fmt::format("the load on '{}' has neither force nor moment", result.group), "it would do nothing",
-            "Add one, such as force = [1.0e3, 0.0]");
+    fail_at(table, "load", fmt::format("the load on '{}' has neither force nor moment", result.group),
+            "it would do nothing", "Add one, such as force = [1.0e3, 0.0]");
   if (moment != nullptr && result.kind == LoadKind::traction)
     fail_at(*moment, "load.moment", "a traction has no moment", "it is a force per area of a side",
             "Give the moment in a [[load]] of its own");

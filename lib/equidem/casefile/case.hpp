@@ -21,8 +21,8 @@
 #include "equidem/contact/effects.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/homogenize/tension_test.hpp"
-#include "equidem/material/inertia.hpp"
 #include "equidem/linear/linear_solver.hpp"
+#include "equidem/material/inertia.hpp"
 #include "equidem/statics/supports.hpp"
 
 namespace equidem {

@@ -138,15 +138,15 @@ class Checker {
       }
     }
     const bool as_table = value.is_table() || (value.is_array() && !value.items.empty() && value.items[0].is_table());
-    fail(value, joined(path, name), as_table ? "unknown table" : "unknown key", fmt::format("the {} is strict", spec_.noun),
-         remedy);
+    fail(value, joined(path, name), as_table ? "unknown table" : "unknown key",
+         fmt::format("the {} is strict", spec_.noun), remedy);
   }
 
   void check_inner_table(const std::string& path, const TomlValue& outer, TomlValue& value, const TableSpec& spec) {
     const std::string full = spec.name;
     if (!applies(path, outer, spec.when_key, spec.when)) {
-      fail(value, full, "this table does not apply here", fmt::format("it is for {} = {}", spec.when_key, listed(spec.when)),
-           "Remove it");
+      fail(value, full, "this table does not apply here",
+           fmt::format("it is for {} = {}", spec.when_key, listed(spec.when)), "Remove it");
     }
     if (spec.repeated) {
       if (!value.is_array()) {
@@ -164,7 +164,8 @@ class Checker {
     if (!value.is_table()) {
       const bool heading = value.is_array() && !value.items.empty() && value.items[0].is_table();
       fail(value, full,
-           heading ? fmt::format("[[{}]] is a list of tables", full) : fmt::format("{} is {}", value.shown(), value.type_name()),
+           heading ? fmt::format("[[{}]] is a list of tables", full)
+                   : fmt::format("{} is {}", value.shown(), value.type_name()),
            "one table is needed", fmt::format("Write [{}] and its keys below", full));
     }
     check_table(full, value);
@@ -194,8 +195,9 @@ class Checker {
     for (const KeySpec* key : keys) kinds.insert(kinds.end(), key->when.begin(), key->when.end());
     const std::string selecting = keys.front()->when_key;
     const std::string chosen = selector(path, table, selecting);
-    const std::string problem = chosen.empty() ? fmt::format("this key does not apply here")
-                                               : fmt::format("this key does not apply to {} = \"{}\"", selecting, chosen);
+    const std::string problem = chosen.empty()
+                                    ? fmt::format("this key does not apply here")
+                                    : fmt::format("this key does not apply to {} = \"{}\"", selecting, chosen);
     fail(value, joined(path, name), problem, fmt::format("it is for {}", listed(kinds)),
          fmt::format("Remove it, or change {}", selecting));
   }

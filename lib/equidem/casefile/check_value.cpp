@@ -94,14 +94,16 @@ void check_number(const TomlValue& value, const KeySpec& key) {
   if (!std::isfinite(value.real))
     fail(value, key, fmt::format("{} is not a finite number", value.shown()), "Give a finite one");
   if (!key.range.contains(value.real))
-    fail(value, key, fmt::format("{} is out of range", value.shown()), fmt::format("Give a number {}", key.range.text()));
+    fail(value, key, fmt::format("{} is out of range", value.shown()),
+         fmt::format("Give a number {}", key.range.text()));
 }
 
 void check_numbers(const TomlValue& value, const KeySpec& key, std::size_t count) {
   if (!value.is_array()) fail_type(value, key);
   if (value.items.size() != count) {
     fail(value, key,
-         fmt::format("{} has {}", value.shown(), counted(static_cast<long long>(value.items.size()), "entry", "entries")),
+         fmt::format("{} has {}", value.shown(),
+                     counted(static_cast<long long>(value.items.size()), "entry", "entries")),
          fmt::format("Give {} of them", count));
   }
   for (const TomlValue& item : value.items) check_number(item, key);
@@ -129,7 +131,8 @@ void check_circles(const TomlValue& value, const KeySpec& key) {
     if (!item.is_array()) fail_type(value, key);
     check_numbers(item, key, 3);
     if (!(item.items[2].real > 0))
-      fail(item.items[2], key, fmt::format("the radius {} is out of range", item.items[2].shown()), "Give a number > 0");
+      fail(item.items[2], key, fmt::format("the radius {} is out of range", item.items[2].shown()),
+           "Give a number > 0");
   }
 }
 
@@ -280,7 +283,8 @@ void check_value(const TomlValue& value, const KeySpec& key) {
       const auto bytes = bytes_of(value);
       if (!bytes) fail_type(value, key);
       if (!key.range.contains(*bytes))
-        fail(value, key, fmt::format("{} is out of range", value.shown()), fmt::format("Give a number {}", key.range.text()));
+        fail(value, key, fmt::format("{} is out of range", value.shown()),
+             fmt::format("Give a number {}", key.range.text()));
       return;
     }
   }

@@ -187,7 +187,8 @@ class GrainFile {
     if (at_[group] == width_ || cells[at_[group]].empty()) return "grains";
     const std::string_view name = cells[at_[group]];
     if (!is_plain_name(name))
-      fail(fmt::format("'{}' cannot name a group", name), "it stands in tables", "Use letters, digits, '_' and '-' only");
+      fail(fmt::format("'{}' cannot name a group", name), "it stands in tables",
+           "Use letters, digits, '_' and '-' only");
     if (name == "walls")
       fail("a group of grains is called 'walls'", "the name stands for all walls", "Name it otherwise");
     return std::string(name);

@@ -31,16 +31,17 @@ void check_letters(const TomlValue& root) {
   for (const NormalLaw meant : {NormalLaw::linear_dashpot, NormalLaw::hertz_dashpot, NormalLaw::five_case_map,
                                 NormalLaw::energy_map, NormalLaw::exact_flow})
     if (law->text == letter_of(meant))
-      fail_at(*law, "collisions.law", fmt::format("{} is the letter of a law", law->shown()), "laws go by their names here",
-              fmt::format("Write law = \"{}\"", to_string(meant)));
+      fail_at(*law, "collisions.law", fmt::format("{} is the letter of a law", law->shown()),
+              "laws go by their names here", fmt::format("Write law = \"{}\"", to_string(meant)));
 }
 
 Vec2 direction(const TomlValue& table, const char* key, const std::string& use) {
   const Vec2 given = vector(table, key);
   const double length = std::hypot(given.x, given.y);
   if (length == 0)
-    fail_at(*table.find(key), fmt::format("wall.{}", key), fmt::format("the {} of wall '{}' is zero", key, text(table, "name")),
-            use, "Give a direction, such as [0.0, 1.0]");
+    fail_at(*table.find(key), fmt::format("wall.{}", key),
+            fmt::format("the {} of wall '{}' is zero", key, text(table, "name")), use,
+            "Give a direction, such as [0.0, 1.0]");
   return given / length;
 }
 

@@ -36,8 +36,8 @@ struct GrainProbe {
   std::vector<std::string> quantities;  ///< words of the key probe.quantities
 };
 
-/// A checked case: complete, in range and without contradiction; what only all bodies together can tell is checked where the
-/// simulation begins.
+/// A checked case: complete, in range and without contradiction; what only all bodies together can tell is checked
+/// where the simulation begins.
 struct GrainCase {
   std::string title;
   Body body = Body::disc;
@@ -48,8 +48,8 @@ struct GrainCase {
   std::vector<int> grain_lines;   ///< of its grains, in that file
   BondCase bonds;
   std::vector<GrainWall> walls;
-  /// Of the scene, by name: groups of grains, "walls", walls with a pair of their own; with young_modulus a group counts once for
-  /// each radius.
+  /// Of the scene, by name: groups of grains, "walls", walls with a pair of their own; with young_modulus a group
+  /// counts once for each radius.
   std::vector<std::string> kinds;
   std::vector<PairCase> pairs;  ///< of the kinds of the scene, row by row, symmetric
   NormalLaw law = NormalLaw::exact_flow;

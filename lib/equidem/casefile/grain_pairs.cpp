@@ -89,8 +89,8 @@ Terms with(Terms terms, const TomlValue& table, const std::string& key, NormalLa
     terms.by = way;
   }
   if (const TomlValue* end = table.find("contact_end"); end != nullptr && !has_end(law))
-    fail_at(*end, key + ".contact_end", fmt::format("{} has no use for contact_end", to_string(law)), "it has no dashpot",
-            "Remove it");
+    fail_at(*end, key + ".contact_end", fmt::format("{} has no use for contact_end", to_string(law)),
+            "it has no dashpot", "Remove it");
   if (table.find("damping") != nullptr) check_damping(table, key, law);
   if (const TomlValue* duration = table.find("contact_duration");
       duration != nullptr && law == NormalLaw::hertz_dashpot)
@@ -218,7 +218,8 @@ PairCase pair_of(const Terms& terms, const GrainCase& result, const Meeting& mee
   const double tangential_zeta = read_dashpots(terms, result, meeting.on_wall, properties);
   properties.friction = terms.friction->real;
   if (properties.friction > 0) {
-    // A map gives all of its impulse in one or two steps, in which a spring cannot be stretched to the force of friction.
+    // A map gives all of its impulse in one or two steps, in which a spring cannot be stretched to the force of
+    // friction.
     const bool by_wave_speeds = std::string_view(terms.by) == "shear_wave_speed";
     const double usual = is_map(result.law) ? 0 : by_wave_speeds ? meeting.by_wave_speeds.ratio() : 2.0 / 7;
     properties.tangential_ratio = terms.tangential_ratio != nullptr ? terms.tangential_ratio->real : usual;
@@ -264,7 +265,8 @@ std::vector<Override> read_overrides(const TomlValue& collisions, const std::vec
       for (const std::string& choice : choices) list += fmt::format("{}'{}'", list.empty() ? "" : ", ", choice);
       fail_at(value, fmt::format("collisions.pair.{}", key),
               fmt::format("{} is no group of grains{}", value.shown(), walls_too ? " and no wall" : ""),
-              fmt::format("there are {}", list), meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Name one of them");
+              fmt::format("there are {}", list),
+              meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Name one of them");
     };
     const std::string first = known("group", false), second = known("with", true);
     if (is_in(wall_names, second) && !is_in(walls, second)) walls.push_back(second);

@@ -16,7 +16,8 @@ namespace equidem {
 /// \param root seen by check_and_complete
 /// \param groups of each grain
 /// \param result with bodies, walls and law; kinds and pairs are set
-/// \throws Error (bad_input) with line and key: several stiffnesses or none, a key that the law has no use for, a restitution that no
+/// \throws Error (bad_input) with line and key: several stiffnesses or none, a key that the law has no use for, a
+///         restitution that no
 ///         dashpot gives, a pair of unknown groups
 void read_collisions(const TomlValue& root, const std::vector<std::string>& groups, GrainCase& result);
 
@@ -33,7 +34,8 @@ struct ReducedMasses {
 /// Of all pairs of two kinds; none where no two such bodies are there.
 std::optional<ReducedMasses> reduced_masses(const std::vector<KindMasses>& kinds, int a, int b);
 
-/// zeta of the dashpot of a pair; 0 where the law has none. hertz_dashpot: that of the linear oscillator which it becomes.
+/// zeta of the dashpot of a pair; 0 where the law has none. hertz_dashpot: that of the linear oscillator which it
+/// becomes.
 double damping_ratio(NormalLaw law, const PairProperties& pair);
 
 }  // namespace equidem

@@ -23,8 +23,8 @@ void check_length(const char* what, double length) {
 
 void GrainShapes::check_body(const char* shape) const {
   if (body_ == Body::disc) return;
-  bad_input(fmt::format("{} among spheres", shape), "ellipses and clumps are cylinders, their mass is per metre of depth",
-            "Write body = \"disc\" in [grains]");
+  bad_input(fmt::format("{} among spheres", shape),
+            "ellipses and clumps are cylinders, their mass is per metre of depth", "Write body = \"disc\" in [grains]");
 }
 
 void GrainShapes::make_disc(Grain& grain, double radius, double density) const {
@@ -38,8 +38,9 @@ void GrainShapes::make_ellipse(Grain& grain, double long_half_axis, double short
   check_length("long half-axis", long_half_axis);
   check_length("short half-axis", short_half_axis);
   if (short_half_axis > long_half_axis) {
-    bad_input(fmt::format("the short half-axis {} m is longer than the long one, {} m", short_half_axis, long_half_axis),
-              "at angle 0 the long one lies along x", "Exchange them, and add a quarter turn (1.5708) to the angle");
+    bad_input(
+        fmt::format("the short half-axis {} m is longer than the long one, {} m", short_half_axis, long_half_axis),
+        "at angle 0 the long one lies along x", "Exchange them, and add a quarter turn (1.5708) to the angle");
   }
   grain.radius = long_half_axis;
   grain.short_half_axis = short_half_axis;
@@ -67,8 +68,8 @@ void GrainShapes::make_clump(Grain& grain, std::vector<Clump::Disc> discs, doubl
 
 std::vector<Clump::Disc> clump_from(std::string_view text) {
   const auto fail = [&] {
-    bad_input(fmt::format("'{}' are no discs of a clump", text), "three numbers for each, x y r in m, and ; between them",
-              "Write it like 0 0 0.01; 0.015 0 0.01");
+    bad_input(fmt::format("'{}' are no discs of a clump", text),
+              "three numbers for each, x y r in m, and ; between them", "Write it like 0 0 0.01; 0.015 0 0.01");
   };
   std::vector<Clump::Disc> discs;
   std::vector<double> numbers;

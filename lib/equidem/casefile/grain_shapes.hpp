@@ -20,7 +20,8 @@ class GrainShapes {
 
   /// Each sets radius, half-axis or clump, and inertia of a grain.
   /// \param density kg/m³
-  /// \throws Error (bad_input): lengths that are not positive, a short half-axis longer than the long one, no discs; ellipses and clumps
+  /// \throws Error (bad_input): lengths that are not positive, a short half-axis longer than the long one, no discs;
+  ///         ellipses and clumps
   ///         of spheres
   void make_disc(Grain& grain, double radius, double density) const;
   void make_ellipse(Grain& grain, double long_half_axis, double short_half_axis, double density) const;

@@ -149,20 +149,21 @@ GrainStep choose_grain_step(const GrainCase& resolved) {
   if (!resolved.bonds.bonds.empty()) limit_by_bonds(resolved, result);
   result.contact = shortest.duration;
   result.between = fmt::format("{} and {}", resolved.kinds[static_cast<std::size_t>(shortest.a)],
-                          resolved.kinds[static_cast<std::size_t>(shortest.b)]);
+                               resolved.kinds[static_cast<std::size_t>(shortest.b)]);
   result.omega_step = shortest.omega * result.step;
-  // hertz_dashpot: the dashpot 2 zeta sqrt(5/4 m k) d^(1/4) over the critical one of the tangent stiffness 3/2 k d^(1/2)
+  // hertz_dashpot: the dashpot 2 zeta sqrt(5/4 m k) d^(1/4) over the critical one of the tangent stiffness 3/2 k
+  // d^(1/2)
   const double zeta = resolved.law == NormalLaw::hertz_dashpot ? std::sqrt(5.0 / 6) * shortest.zeta : shortest.zeta;
   const bool has_limit = resolved.law == NormalLaw::linear_dashpot || resolved.law == NormalLaw::hertz_dashpot;
   if (has_limit) result.limit = 2 / (std::sqrt(1 + zeta * zeta) + zeta);
   if (is_map(resolved.law)) result.limit = 1;
   if (has_limit && result.omega_step > result.limit) {
     throw Error(ErrorKind::bad_input,
-                fmt::format("the step of {:.6g} s is {:.4g} times the limit of stability of a contact of {}", result.step,
-                       result.omega_step / result.limit, result.between),
+                fmt::format("the step of {:.6g} s is {:.4g} times the limit of stability of a contact of {}",
+                            result.step, result.omega_step / result.limit, result.between),
                 "contacts would gain energy without end",
                 fmt::format("Stay below {:.6g} s, or take softer contacts or the law exact_flow",
-                       result.step * result.limit / result.omega_step),
+                            result.step * result.limit / result.omega_step),
                 resolved.where("run.time_step"));
   }
   return result;

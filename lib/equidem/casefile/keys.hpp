@@ -110,9 +110,10 @@ bool is_known_key(std::string_view path);
 std::optional<double> bytes_of(const TomlValue& value);
 
 /// Set one key of a document as `--set` does: "springs.kT=0.3e9", "load.0.moment=2" (entries of repeated tables count
-/// from 0). The value is TOML; a bare word is taken as text, but none takes out the key, or one of several tables. Missing
-/// tables are made.
-/// \throws Error (bad_input) where this is no assignment, the value is no TOML, the path leads through a value, or there is
+/// from 0). The value is TOML; a bare word is taken as text, but none takes out the key, or one of several tables.
+/// Missing tables are made.
+/// \throws Error (bad_input) where this is no assignment, the value is no TOML, the path leads through a value, or
+///         there is
 ///         nothing to take out
 void apply_override(TomlValue& root, const std::string& assignment, const std::string& option = "--set");
 

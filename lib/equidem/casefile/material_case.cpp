@@ -57,13 +57,16 @@ Words given_in(const TomlValue& table) {
   const Words& meant = *std::min_element(sets.begin(), sets.end(),
                                          [&](const Words& a, const Words& b) { return distance(a) < distance(b); });
   const Words missing = without(meant, given), surplus = without(given, meant);
-  std::string why = missing.empty() ? "" : fmt::format("{} {} missing", listed(missing), missing.size() == 1 ? "is" : "are");
+  std::string why =
+      missing.empty() ? "" : fmt::format("{} {} missing", listed(missing), missing.size() == 1 ? "is" : "are");
   if (!surplus.empty())
-    why += fmt::format("{}{} {} too much", why.empty() ? "" : ", ", listed(surplus), surplus.size() == 1 ? "is" : "are");
+    why +=
+        fmt::format("{}{} {} too much", why.empty() ? "" : ", ", listed(surplus), surplus.size() == 1 ? "is" : "are");
   const TomlValue& at = surplus.empty() ? table : *table.find(surplus.front());
-  fail_at(at, surplus.empty() ? "material" : "material." + surplus.front(),
-          fmt::format("{} {} not describe an isotropic continuum", listed(given), given.size() == 1 ? "alone does" : "do"),
-          why, remedy);
+  fail_at(
+      at, surplus.empty() ? "material" : "material." + surplus.front(),
+      fmt::format("{} {} not describe an isotropic continuum", listed(given), given.size() == 1 ? "alone does" : "do"),
+      why, remedy);
 }
 
 ElasticModuli moduli_from_waves(const TomlValue& table, Plane plane) {

@@ -107,8 +107,8 @@ void apply_override(TomlValue& root, const std::string& assignment, const std::s
       const auto index = index_of(segment);
       if (!index || *index >= at->items.size()) {
         throw Error(ErrorKind::bad_input, fmt::format("there is no entry '{}'", segment),
-                    fmt::format("the case file has {} of them, counted from 0", at->items.size()), "Name one that exists",
-                    *source);
+                    fmt::format("the case file has {} of them, counted from 0", at->items.size()),
+                    "Name one that exists", *source);
       }
       next = &at->items[*index];
     } else if (at->is_table()) {
@@ -121,7 +121,8 @@ void apply_override(TomlValue& root, const std::string& assignment, const std::s
       }
     } else {
       throw Error(ErrorKind::bad_input, fmt::format("there is nothing below '{}'", segments[k - 1]),
-                  fmt::format("in the case file it is {}", at->shown()), "Set the key itself, or change the file", *source);
+                  fmt::format("in the case file it is {}", at->shown()), "Set the key itself, or change the file",
+                  *source);
     }
     at = next;
   }

@@ -38,7 +38,8 @@ bool is_plain_name(std::string_view name) {
 
 void check_plain_name(const TomlValue& value, const std::string& key, const std::string& what, const std::string& use) {
   if (is_plain_name(value.text)) return;
-  fail_at(value, key, fmt::format("{} cannot name {}", value.shown(), what), use, "Use letters, digits, '_' and '-' only");
+  fail_at(value, key, fmt::format("{} cannot name {}", value.shown(), what), use,
+          "Use letters, digits, '_' and '-' only");
 }
 
 }  // namespace equidem

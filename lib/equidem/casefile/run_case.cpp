@@ -47,8 +47,9 @@ Wall read_wall(const TomlValue& table, std::span<const NamedSchedule> schedules)
   }
   const TomlValue* schedule = table.find("schedule");
   if (schedule != nullptr && table.find("displacement") == nullptr) {
-    fail_at(*schedule, "wall.schedule", fmt::format("wall '{}' has a schedule and no displacement", text(table, "name")),
-            "it would not move", "Add displacement = ... in m");
+    fail_at(*schedule, "wall.schedule",
+            fmt::format("wall '{}' has a schedule and no displacement", text(table, "name")), "it would not move",
+            "Add displacement = ... in m");
   }
   return {.name = text(table, "name"),
           .point = vector(table, "point"),

@@ -42,8 +42,8 @@ struct RunCase {
 /// \param schedules, supports of the case
 /// \param loads of its first load case; where [run] is given there is one
 /// \throws Error (bad_input) with line and key: both or neither of duration and until_rest, a time step longer than the
-///         run, two kinds of dashpots, a schedule that does not exist, a wall without a normal, what acts in a run alone
-///         where there is none, several load cases (a run is one motion)
+///         run, two kinds of dashpots, a schedule that does not exist, a wall without a normal, what acts in a run
+///         alone where there is none, several load cases (a run is one motion)
 std::optional<RunCase> read_run(const TomlValue& root, std::span<const NamedSchedule> schedules,
                                 std::span<const Support> supports, std::span<const Load> loads);
 

@@ -21,7 +21,8 @@ struct NamedSchedule {
 
 /// All of a document that check_and_complete has seen; paths become those that the program opens.
 /// \param folder to which paths are relative
-/// \throws Error (bad_input) with line and key: an end before the start, points that are missing or do not ascend, a file
+/// \throws Error (bad_input) with line and key: an end before the start, points that are missing or do not ascend, a
+///         file
 ///         that is not a table of two columns
 std::vector<NamedSchedule> read_schedules(TomlValue& root, const std::filesystem::path& folder);
 

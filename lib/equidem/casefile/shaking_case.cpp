@@ -34,9 +34,10 @@ std::int64_t count_cycles(const TomlValue& table, double frequency, double start
   const double periods = frequency * (duration != nullptr ? duration->real : run_duration - start);
   const double whole = std::round(periods);
   if (duration != nullptr && (whole < 1 || std::abs(periods - whole) > 1e-6 * whole))
-    fail_at(
-        *duration, "shaking.duration", fmt::format("{} s are {:.6g} cycles of {} Hz", duration->real, periods, frequency),
-        "only whole cycles end at rest", fmt::format("Make it {:.6g} s, or give cycles", std::max(1.0, whole) / frequency));
+    fail_at(*duration, "shaking.duration",
+            fmt::format("{} s are {:.6g} cycles of {} Hz", duration->real, periods, frequency),
+            "only whole cycles end at rest",
+            fmt::format("Make it {:.6g} s, or give cycles", std::max(1.0, whole) / frequency));
   constexpr double most = 1e12;
   if (!(periods < most))
     fail_at(*table.find("frequency"), "shaking.frequency", fmt::format("the box would shake {:.3g} times", periods),
@@ -196,7 +197,8 @@ ShakingCase read_shaking(TomlValue& root, const fs::path& folder, double run_dur
   constexpr double fastest = 3e8;  // light
   if (!(shaking.motion.peak_velocity < fastest))
     fail_at(table, "shaking", fmt::format("the box would move with {:.3g} m/s", shaking.motion.peak_velocity),
-            fmt::format("nothing is faster than {:.0e} m/s", fastest), "Give a smaller acceleration, or check the units");
+            fmt::format("nothing is faster than {:.0e} m/s", fastest),
+            "Give a smaller acceleration, or check the units");
   bool any = false;
   const auto& tables = repeated(root, "wall");
   for (std::size_t k = 0; k < walls.size(); ++k) {

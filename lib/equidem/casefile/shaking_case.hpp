@@ -28,7 +28,8 @@ std::vector<KeySpec> shaking_keys();
 /// \param root seen by check_and_complete, with [shaking]; the path of the record becomes that which the program opens
 /// \param walls in the order of [[wall]]
 /// \param run_duration s: as long the box shakes where nothing else is said
-/// \throws Error (bad_input) with line and key: no motion or two, a duration of no whole cycles, no wall that moves, a wall that moves by
+/// \throws Error (bad_input) with line and key: no motion or two, a duration of no whole cycles, no wall that moves, a
+///         wall that moves by
 ///         itself as well, a record that is no table
 ShakingCase read_shaking(TomlValue& root, const std::filesystem::path& folder, double run_duration,
                          std::span<GrainWall> walls);

@@ -19,8 +19,8 @@ std::string springs_file(const SpringConstants& springs, SpringWeighting weighti
     out += line.empty() ? "#\n" : fmt::format("# {}\n", line);
   }
   return out + fmt::format("schema = \"{}\"\ntitle = {}\n\n[springs]\nkN = {}\nkT = {}\nweighting = {}\n",
-                      springs_file_spec().schema, toml_text(title), toml_number(springs.kN), toml_number(springs.kT),
-                      toml_text(to_string(weighting)));
+                           springs_file_spec().schema, toml_text(title), toml_number(springs.kN),
+                           toml_number(springs.kT), toml_text(to_string(weighting)));
 }
 
 }  // namespace equidem

@@ -29,8 +29,8 @@ VariedKey read_varied(const TomlValue& table) {
   VariedKey varied{.keys = listed(text(table, "key")), .values = {}};
   for (const std::string& key : varied.keys) {
     if (key.find('.') == std::string::npos)
-      fail_at(*table.find("key"), "vary.key", fmt::format("'{}' is no key of a case", key), "a key has a table and a name",
-              "Write it as in assembly.rows");
+      fail_at(*table.find("key"), "vary.key", fmt::format("'{}' is no key of a case", key),
+              "a key has a table and a name", "Write it as in assembly.rows");
   }
   if (varied.keys.empty())
     fail_at(*table.find("key"), "vary.key", "it is not said what varies", "the key is empty", "Name a key of the case");

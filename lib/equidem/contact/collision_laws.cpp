@@ -49,12 +49,12 @@ std::string letter_of(NormalLaw law) {
 
 void check_five_case_range(double a, double restitution) {
   if (restitution * restitution * (1 + a) >= a) return;
-  bad_input(
-      fmt::format("the law five_case_map is asked for restitution {:.6g} at dimensionless stiffness a = {:.6g}", restitution,
-             a),
-      fmt::format("its first step has an answer only where e² >= a/(1 + a), that is e >= {:.6g}", std::sqrt(a / (1 + a))),
-      fmt::format("Choose energy_map, which takes any restitution, or an a of at most {:.6g}",
-             restitution * restitution / ((1 - restitution) * (1 + restitution))));
+  bad_input(fmt::format("the law five_case_map is asked for restitution {:.6g} at dimensionless stiffness a = {:.6g}",
+                        restitution, a),
+            fmt::format("its first step has an answer only where e² >= a/(1 + a), that is e >= {:.6g}",
+                        std::sqrt(a / (1 + a))),
+            fmt::format("Choose energy_map, which takes any restitution, or an a of at most {:.6g}",
+                        restitution * restitution / ((1 - restitution) * (1 + restitution))));
 }
 
 }  // namespace equidem

@@ -2,10 +2,10 @@
 /// \file
 /// Normal contact in one step, dimensionless as in Fujioka & Ushijima (2005), section 2.
 ///
-/// depth d = overlap/d_c > 0, closing sigma = p + q = closing speed dt/d_c, slope s = sigma/d. A law gives the change f of sigma; bodies
-/// then move by sigma + f: d' = d + sigma + f. The force is f m d_c/dt², m the reduced mass. a = k dt²/m > 0 (k d_c^(1/2) dt²/m of
-/// Hertz). The maps keep (sigma² + a d²)/2 but for the loss they report; their roots are rewritten so that f is right to
-/// round-off for any a and s.
+/// depth d = overlap/d_c > 0, closing sigma = p + q = closing speed dt/d_c, slope s = sigma/d. A law gives the change f
+/// of sigma; bodies then move by sigma + f: d' = d + sigma + f. The force is f m d_c/dt², m the reduced mass. a = k
+/// dt²/m > 0 (k d_c^(1/2) dt²/m of Hertz). The maps keep (sigma² + a d²)/2 but for the loss they report; their roots
+/// are rewritten so that f is right to round-off for any a and s.
 #pragma once
 
 #include <cassert>
@@ -18,9 +18,11 @@ namespace equidem {
 enum class NormalLaw {
   linear_dashpot,  ///< "linear_dashpot", the paper's C (Cundall & Strack 1979): linear spring and dashpot
   hertz_dashpot,   ///< "hertz_dashpot", T (Tanaka, Ishida & Tsuji 1991): Hertz spring, dashpot with d^(1/4)
-  five_case_map,  ///< "five_case_map", F (Fujioka & Ushijima 2005 a): restitution at the first step of contact, then energy kept
+  five_case_map,   ///< "five_case_map", F (Fujioka & Ushijima 2005 a): restitution at the first step of contact, then
+                   ///< energy kept
   energy_map,  ///< "energy_map", P (Fujioka & Ushijima 2005 b): the first step corrected to the true instant of contact
-  exact_flow,  ///< "exact_flow": the linear spring and dashpot solved exactly within the step, contacts together (exact_contact.hpp)
+  exact_flow,  ///< "exact_flow": the linear spring and dashpot solved exactly within the step, contacts together
+               ///< (exact_contact.hpp)
 };
 
 /// \throws Error (bad_input) naming the choices
@@ -39,8 +41,8 @@ struct ContactStep {
       0;  ///< maps: 1 first step (10, 11: five_case_map, 1a and 1b), 2 deepening, 3 still touching, 4 parting; else 0
   double change = 0;  ///< f: of sigma, all of it
   double shift = 0;   ///< of the depth before the step, d^ - d (energy_map, mode 1; else 0): positions move by it
-  double loss =
-      0;  ///< of energy, by restitution or dashpot, >= 0, in units of m d_c²/dt²; maps: exact, forces: power at the start
+  double loss = 0;  ///< of energy, by restitution or dashpot, >= 0, in units of m d_c²/dt²; maps: exact, forces: power
+                    ///< at the start
 };
 
 /// C: f = -a d - 2 zeta sqrt(a) sigma; cut to f <= 0 where the contact ends at zero force.
@@ -53,12 +55,13 @@ inline ContactStep hertz_dashpot_step(double depth, double closing, double a, do
 /// \param first first step of this contact
 inline ContactStep energy_map_step(double depth, double closing, double a, double restitution, bool first);
 
-/// F: the first step accepted as it is; leaves at once with -e sigma where s >= 1/e, else the lower root with the energy less
-/// (1 - e²) sigma²/2; later steps as P.
+/// F: the first step accepted as it is; leaves at once with -e sigma where s >= 1/e, else the lower root with the
+/// energy less (1 - e²) sigma²/2; later steps as P.
 inline ContactStep five_case_map_step(double depth, double closing, double a, double restitution, bool first);
 
-/// The same where nothing is known of the step before: first means s >= 1, the bodies were apart before they moved by sigma. A contact
-/// that starts with d = 0 exactly has s = 1 but for round-off, which decides: the caller who knows better should say.
+/// The same where nothing is known of the step before: first means s >= 1, the bodies were apart before they moved by
+/// sigma. A contact that starts with d = 0 exactly has s = 1 but for round-off, which decides: the caller who knows
+/// better should say.
 inline ContactStep energy_map_step(double depth, double closing, double a, double restitution) {
   return energy_map_step(depth, closing, a, restitution, closing >= depth);
 }
@@ -113,7 +116,8 @@ inline ContactStep hertz_dashpot_step(double depth, double closing, double a, do
 inline ContactStep energy_map_step(double depth, double closing, double a, double restitution, bool first) {
   assert(depth > 0);
   if (!(first && closing > 0)) return detail::later_step(depth, closing, a);
-  // With t = 1/s: sigma^ = c sigma, d^ = c d (17); sigma' = sigma^/q (20); f = -sigma (q - c)/q without difference of equals.
+  // With t = 1/s: sigma^ = c sigma, d^ = c d (17); sigma' = sigma^/q (20); f = -sigma (q - c)/q without difference of
+  // equals.
   const double e = restitution;
   const double t =
       std::fmin(depth / closing, 1e100);  // far above 1 only where the caller says first; squares must not overflow

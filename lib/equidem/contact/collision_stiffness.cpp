@@ -12,8 +12,8 @@ namespace {
 
 double positive(double value, const char* name, const char* unit) {
   if (!(value > 0 && std::isfinite(value))) {
-    bad_input(fmt::format("the {} is {:.6g}{}{}", name, value, *unit ? " " : "", unit), "it must be positive and finite",
-              fmt::format("Give a {} above 0", name));
+    bad_input(fmt::format("the {} is {:.6g}{}{}", name, value, *unit ? " " : "", unit),
+              "it must be positive and finite", fmt::format("Give a {} above 0", name));
   }
   return value;
 }

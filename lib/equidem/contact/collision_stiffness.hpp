@@ -2,7 +2,8 @@
 /// \file
 /// The spring of a collision from what a user knows of it.
 ///
-/// All functions throw Error (bad_input) on numbers that are not positive and finite (damping ratio: negative; Poisson ratio: outside
+/// All functions throw Error (bad_input) on numbers that are not positive and finite (damping ratio: negative; Poisson
+/// ratio: outside
 /// (-1, 0.5]).
 #pragma once
 
@@ -16,8 +17,9 @@ double stiffness_from_dimensionless(double a, double reduced_mass, double step);
 /// \throws Error (bad_input) also where a contact that ends at zero overlap never ends: damping_ratio >= 1
 double stiffness_from_duration(double duration, double reduced_mass, double damping_ratio,
                                ContactEnd end = ContactEnd::at_zero_overlap);
-/// The smallest k of a linear spring whose overlap u stays below the given one at the given closing speed v, however the contact ends:
-/// e m v²/u², e = restitution_of(damping_ratio, at_zero_force), for u = v/w exp(-zeta acos(zeta)/sqrt(1 - zeta²)).
+/// The smallest k of a linear spring whose overlap u stays below the given one at the given closing speed v, however
+/// the contact ends: e m v²/u², e = restitution_of(damping_ratio, at_zero_force), for u = v/w exp(-zeta
+/// acos(zeta)/sqrt(1 - zeta²)).
 double stiffness_from_overlap(double largest_overlap, double closing_speed, double reduced_mass, double damping_ratio);
 /// k of F = k overlap^(3/2), (4/3) E* sqrt(R*), 1/E* = sum (1 - nu²)/E, 1/R* = sum 1/R; N/m^(3/2) (Hertz).
 double hertz_stiffness(double young_i, double poisson_i, double radius_i, double young_j, double poisson_j,

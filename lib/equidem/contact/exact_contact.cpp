@@ -282,8 +282,8 @@ class EventfulStep {
 
 void check(double value, bool right, const char* name, const char* bound) {
   if (right && std::isfinite(value)) return;
-  bad_input(fmt::format("the {} of an exact contact is {:.6g}", name, value), fmt::format("it must be finite and {}", bound),
-            fmt::format("Give a {} that is {}", name, bound));
+  bad_input(fmt::format("the {} of an exact contact is {:.6g}", name, value),
+            fmt::format("it must be finite and {}", bound), fmt::format("Give a {} that is {}", name, bound));
 }
 
 }  // namespace

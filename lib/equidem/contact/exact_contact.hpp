@@ -54,7 +54,8 @@ struct ExactStep {
 /// A step of more than 1000 beginnings and ends (which needs w dt > 1500) goes on as a plastic impact and rest at zero
 /// overlap.
 /// \param overlap, closing at the start of the step, m and m/s (closing > 0 approaches); overlap < 0: apart
-/// \param touching whether the contact lasts from the step before. One that ended at zero force while the bodies overlap
+/// \param touching whether the contact lasts from the step before. One that ended at zero force while the bodies
+///         overlap
 ///        resumes where k u + c v, by which it ended, is positive again: before they close, with no energy won
 /// \param h0, h1 outside closing acceleration, m/s², and its rate, m/s³
 ExactStep exact_step(const ExactPair& pair, double overlap, double closing, bool touching, double h0, double h1);

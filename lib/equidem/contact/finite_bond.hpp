@@ -2,8 +2,8 @@
 /// \file
 /// The bond of two discs whose normal and contact point follow the bodies, for motions of any size.
 ///
-/// With l0 the branch at rest, l = l0 + u_j - u_i the present one, n = l/|l|, s = (-n_y, n_x), and psi the angle by which l
-/// has turned from l0:
+/// With l0 the branch at rest, l = l0 + u_j - u_i the present one, n = l/|l|, s = (-n_y, n_x), and psi the angle by
+/// which l has turned from l0:
 ///
 ///   stretch  dn = |l| - |l0|
 ///   slip     ds = r_i (psi - theta_i) + r_j (psi - theta_j) = (r_i + r_j) (psi - theta),
@@ -12,11 +12,11 @@
 ///   force on i, -dW/du_i:         kN dn n + kT ds (r_i + r_j)/|l| s;  on j its negative
 ///   moment on i, -dW/dtheta_i:    kT ds r_i;                          on j: kT ds r_j
 ///
-/// W is a function of the motion alone: without dashpots energy is conserved. A common rigid motion costs nothing, forces and
-/// moments balance for any levers. psi is known but for whole turns: psi - theta is taken in [-pi, pi], so that turns of
-/// an assembly, rolling discs (theta_i = -theta_j) and rotations that have gone round many times all cost what they
-/// should; only a bond that slips by half a turn, pi (r_i + r_j), lets go. Where r_i + r_j = |l0|, the law is to first order
-/// that of linear_spring.hpp (Abe 1996, eqs. 1-5), and the tangent at rest is the stiffness matrix.
+/// W is a function of the motion alone: without dashpots energy is conserved. A common rigid motion costs nothing,
+/// forces and moments balance for any levers. psi is known but for whole turns: psi - theta is taken in [-pi, pi], so
+/// that turns of an assembly, rolling discs (theta_i = -theta_j) and rotations that have gone round many times all cost
+/// what they should; only a bond that slips by half a turn, pi (r_i + r_j), lets go. Where r_i + r_j = |l0|, the law is
+/// to first order that of linear_spring.hpp (Abe 1996, eqs. 1-5), and the tangent at rest is the stiffness matrix.
 #pragma once
 
 #include <cmath>
@@ -40,8 +40,8 @@ inline FiniteBond bond_of(const Assembly& assembly, const Contact& contact, cons
   return {assembly.branch(contact), contact.lever_i, contact.lever_j, springs};
 }
 
-/// What a bond sees of the motion of its two discs (or of their velocity): u_j - u_i (m) and the rotations (rad), which count
-/// whole turns.
+/// What a bond sees of the motion of its two discs (or of their velocity): u_j - u_i (m) and the rotations (rad), which
+/// count whole turns.
 template <typename Number>
 struct BondMotion {
   Number x = 0, y = 0;

@@ -10,8 +10,8 @@
 
 namespace equidem {
 
-/// The geometry of one contact: the unit normal n from i to j and the arms of the contact point, lever n + offset s from the centre of i
-/// and its negative from that of j (ContactArms).
+/// The geometry of one contact: the unit normal n from i to j and the arms of the contact point, lever n + offset s
+/// from the centre of i and its negative from that of j (ContactArms).
 struct ContactFrame {
   Vec2 normal;
   double lever_i = 0;   ///< m
@@ -56,15 +56,15 @@ inline ContactFrame frame_of(const Assembly& assembly, std::size_t contact) {
   return {l / norm(l), c.lever_i, c.lever_j};
 }
 
-/// Whether a rotation deforms a contact with the tangential spring kT, of which it moves the point by `lever` along and by `offset`
-/// across the contact.
+/// Whether a rotation deforms a contact with the tangential spring kT, of which it moves the point by `lever` along and
+/// by `offset` across the contact.
 constexpr bool turns_against(double lever, double offset, double kT) {
   return offset != 0 || (kT != 0 && lever != 0);
 }
 
-/// dn = du . n + opening,  ds = du . s - turn, with du = u_j - u_i, turn = r_i theta_i + r_j theta_j and opening = o_i theta_i +
-/// o_j theta_j of levers r and offsets o: Abe 1996, eqs. (1)-(3) with r_i = r_j = a, o_i = o_j = 0. In any precision: residuals need
-/// more than a double.
+/// dn = du . n + opening,  ds = du . s - turn, with du = u_j - u_i, turn = r_i theta_i + r_j theta_j and opening = o_i
+/// theta_i + o_j theta_j of levers r and offsets o: Abe 1996, eqs. (1)-(3) with r_i = r_j = a, o_i = o_j = 0. In any
+/// precision: residuals need more than a double.
 template <typename Number>
 DeformationOf<Number> deformation(const ContactFrame& frame, Number du_x, Number du_y, Number turn,
                                   Number opening = 0) {

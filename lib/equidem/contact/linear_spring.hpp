@@ -50,8 +50,8 @@ inline DeformationGradient deformation_gradient(const ContactFrame& frame, doubl
           {s.x, s.y, -frame.lever_j / rotation_scale}};
 }
 
-/// block += kN g_p g_q^T + kT h_p h_q^T, row-major B x B: the tangent between the ends p and q of a contact, from the derivatives g
-/// of stretch and h of slip by the motion of each end. B = 2 leaves rotations out.
+/// block += kN g_p g_q^T + kT h_p h_q^T, row-major B x B: the tangent between the ends p and q of a contact, from the
+/// derivatives g of stretch and h of slip by the motion of each end. B = 2 leaves rotations out.
 template <int B>
 void add_linear_spring_tangent(const SpringConstants& k, const std::array<double, 3>& normal_p,
                                const std::array<double, 3>& normal_q, const std::array<double, 3>& tangential_p,

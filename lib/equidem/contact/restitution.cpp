@@ -28,8 +28,8 @@ double damping_at_zero_overlap(double loss) {
   return loss < pi ? loss / std::hypot(pi, loss) : 1 / std::hypot(1, pi / loss);
 }
 
-/// zeta of zeta phase(zeta) = loss where the contact ends at zero force. Left of the root, Newton's method climbs to it and never
-/// passes it: zeta phase is concave and rises, from pi zeta to 2 ln(2 zeta).
+/// zeta of zeta phase(zeta) = loss where the contact ends at zero force. Left of the root, Newton's method climbs to it
+/// and never passes it: zeta phase is concave and rises, from pi zeta to 2 ln(2 zeta).
 double damping_at_zero_force(double loss) {
   double zeta = loss < 2 ? loss / pi : 0.35 * std::exp(loss / 2);
   for (int iteration = 0; iteration < 20; ++iteration) {

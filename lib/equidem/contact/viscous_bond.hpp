@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Two discs tied by dashpots (Sukegawa 2010, (5.1)-(5.19)): along the line of their centres, across it at the point of the bond, and,
-/// where wanted, against their relative spin.
+/// Two discs tied by dashpots (Sukegawa 2010, (5.1)-(5.19)): along the line of their centres, across it at the point of
+/// the bond, and, where wanted, against their relative spin.
 ///
-/// With n from i to j, s = (-n_y, n_x) and levers a_i, a_j that add up to the distance of the centres, so that the point of the bond is
-/// the same of both (5.16) and angular momentum is kept:
+/// With n from i to j, s = (-n_y, n_x) and levers a_i, a_j that add up to the distance of the centres, so that the
+/// point of the bond is the same of both (5.16) and angular momentum is kept:
 ///
 ///   rates       v_n = (v_j - v_i) . n,  v_s = (v_j - v_i) . s - a_i w_i - a_j w_j,  v_r = w_j - w_i
-///   forces      C_n v_n, C_s v_s, moment C_r v_r; pulling or pushing, whatever their size: (5.12) means no limit of friction
-///   masses      1/m_n = 1/m_i + 1/m_j,  1/m_s = 1/m_n + a_i²/I_i + a_j²/I_j,  1/m_r = 1/I_i + 1/I_j
+///   forces      C_n v_n, C_s v_s, moment C_r v_r; pulling or pushing, whatever their size: (5.12) means no limit of
+///   friction masses      1/m_n = 1/m_i + 1/m_j,  1/m_s = 1/m_n + a_i²/I_i + a_j²/I_j,  1/m_r = 1/I_i + 1/I_j
 ///
-/// A bond alone decays as exp(-C t/m) in each. Dashpots leave free the rigid motions and the rolling v_s = 0, w_i = -w_j (unless
-/// C_r > 0), and what pulls steadily with N makes them creep at N/C_n.
+/// A bond alone decays as exp(-C t/m) in each. Dashpots leave free the rigid motions and the rolling v_s = 0, w_i =
+/// -w_j (unless C_r > 0), and what pulls steadily with N makes them creep at N/C_n.
 #pragma once
 
 #include <algorithm>
@@ -44,8 +44,8 @@ inline BondModes bond_inverse_masses(const ContactFrame& frame, const InverseIne
           i.moment + j.moment};
 }
 
-/// Largest eigenvalue of M^-1 B^T C B, B the rates: how fast a bond alone decays (C dashpots, 1/s), or the square of its highest
-/// frequency (C springs, 1/s²). Spin couples v_s and v_r of unequal discs.
+/// Largest eigenvalue of M^-1 B^T C B, B the rates: how fast a bond alone decays (C dashpots, 1/s), or the square of
+/// its highest frequency (C springs, 1/s²). Spin couples v_s and v_r of unequal discs.
 inline double largest_bond_rate(const BondModes& c, const ContactFrame& frame, const InverseInertia& i,
                                 const InverseInertia& j) {
   const BondModes inverse = bond_inverse_masses(frame, i, j);
@@ -82,9 +82,9 @@ inline Decay decay(double x) {
   return {keep, mean};
 }
 
-/// What a dashpot alone makes of a rate v: v' = -(C/m) v + g. `before`: jumps of v at the start of the step (other bonds); `gained` =
-/// g dt, what steady forces add over the step. Exact, whatever x = C dt/m: no limit to the step, and where g is steady v comes to g m/C.
-/// \return change of the rate over the step by the dashpot
+/// What a dashpot alone makes of a rate v: v' = -(C/m) v + g. `before`: jumps of v at the start of the step (other
+/// bonds); `gained` = g dt, what steady forces add over the step. Exact, whatever x = C dt/m: no limit to the step, and
+/// where g is steady v comes to g m/C. \return change of the rate over the step by the dashpot
 inline double exact_dashpot_change(double x, double rate, double before, double gained) {
   const Decay left = decay(x);
   return -x * left.mean * (rate + before) - (1 - left.mean) * gained;
@@ -95,8 +95,8 @@ inline double explicit_dashpot_change(double x, double rate) {
   return -x * rate;
 }
 
-/// Longest step of semi-implicit Euler with dashpots taken at its start: modes of M^-1 K <= square (1/s²), M^-1 C <= rate (1/s) are
-/// stable while square dt² + 2 rate dt < 4. rate = 0 (no dashpots): 2/omega. Infinite where both are 0.
+/// Longest step of semi-implicit Euler with dashpots taken at its start: modes of M^-1 K <= square (1/s²), M^-1 C <=
+/// rate (1/s) are stable while square dt² + 2 rate dt < 4. rate = 0 (no dashpots): 2/omega. Infinite where both are 0.
 inline double bond_step_limit(double rate, double square) {
   return 4 / (rate + std::sqrt(rate * rate + 4 * square));
 }

@@ -63,7 +63,8 @@ void check_writable(const fs::path& path, bool overwrite) {
   if (!fs::is_directory(folder, ignored)) cannot_write(path, fmt::format("'{}' is not a folder", folder.string()));
   // Some file systems refuse what their permissions allow: try it.
   const fs::path trial = folder / fmt::format(".equidem.{}.part", getpid());
-  if (mkdir(trial.c_str(), 0700) != 0) cannot_write(path, fmt::format("'{}': {}", folder.string(), std::strerror(errno)));
+  if (mkdir(trial.c_str(), 0700) != 0)
+    cannot_write(path, fmt::format("'{}': {}", folder.string(), std::strerror(errno)));
   fs::remove(trial, ignored);
 }
 

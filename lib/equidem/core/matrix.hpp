@@ -15,7 +15,8 @@ using SquareMatrix = std::array<std::array<double, N>, N>;
 
 /// Rows and columns in Voigt order (xx, yy, xy); as a stiffness it maps strain with engineering shear to stress.
 using Matrix3 = SquareMatrix<3>;
-/// Rows: stress (xx, yy, xy, yx), columns: displacement gradient h_ij = du_i/dx_j (xx, yy, xy, yx); neither is assumed symmetric.
+/// Rows: stress (xx, yy, xy, yx), columns: displacement gradient h_ij = du_i/dx_j (xx, yy, xy, yx); neither is assumed
+/// symmetric.
 using Matrix4 = SquareMatrix<4>;
 
 template <std::size_t N>

@@ -7,8 +7,8 @@
 
 #include "equidem/contact/frame.hpp"
 #include "equidem/dynamics/kernels/lane_vector.hpp"
-#include "equidem/dynamics/layout.hpp"
 #include "equidem/dynamics/kernels/step_kernel.hpp"
+#include "equidem/dynamics/layout.hpp"
 
 namespace equidem {
 

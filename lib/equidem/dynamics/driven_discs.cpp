@@ -22,7 +22,8 @@ const DiscGroup& group_with_discs(const Assembly& assembly, const std::string& n
   return discs;
 }
 
-/// The values of schedules at one time. The last one asked for is kept: discs that follow one another often share theirs.
+/// The values of schedules at one time. The last one asked for is kept: discs that follow one another often share
+/// theirs.
 class ValuesAt {
  public:
   ValuesAt(const std::vector<Schedule>& schedules, double time) : schedules_(schedules), time_(time) {}
@@ -106,8 +107,9 @@ void DrivenDiscs::hold(Disc& disc, int component, std::int32_t schedule, const s
   if (schedule < 0) return;
   std::int32_t& held = disc.held[component];
   if (held >= 0 && !(schedules_[held] == schedules_[schedule])) {
-    bad_input(fmt::format("the support of '{}' prescribes {} of a disc a second time", group, component_names[component]),
-              "another support gives it a different motion", "Prescribe each component of a disc once");
+    bad_input(
+        fmt::format("the support of '{}' prescribes {} of a disc a second time", group, component_names[component]),
+        "another support gives it a different motion", "Prescribe each component of a disc once");
   }
   held = schedule;
 }
@@ -184,9 +186,9 @@ void DrivenDiscs::before(std::int32_t strip, const LoopData& data, int parity, d
   }
 }
 
-// The loop has made v' = keep v + kick a with the acceleration a of contacts and dampers: add what acts on this disc beyond
-// that, and make the stage anew. A prescribed motion asks for the velocity that reaches it; the force that this takes is the
-// support's.
+// The loop has made v' = keep v + kick a with the acceleration a of contacts and dampers: add what acts on this disc
+// beyond that, and make the stage anew. A prescribed motion asks for the velocity that reaches it; the force that this
+// takes is the support's.
 void DrivenDiscs::after(std::int32_t strip, const LoopData& data, const Stage& stage, int parity, double time,
                         double time_after, Dissipation& dissipation) {
   if (acting_[strip].empty()) return;

@@ -23,13 +23,15 @@ struct DrivingWork {
 /// Everything that acts on single discs, kept by strip. A disc that nothing drives costs nothing.
 class DrivenDiscs {
  public:
-  /// \throws Error (bad_input) on a group that does not exist or is empty, a motion prescribed twice, a load that is not finite
+  /// \throws Error (bad_input) on a group that does not exist or is empty, a motion prescribed twice, a load that is
+  ///         not finite
   DrivenDiscs(const Scene& scene, const DiscLayout& layout, const LoopKind& kind);
 
-  /// See which discs are acted upon, and keep the velocities of these that the loop will overwrite. `time` is that of the motions read.
+  /// See which discs are acted upon, and keep the velocities of these that the loop will overwrite. `time` is that of
+  /// the motions read.
   void before(std::int32_t strip, const LoopData& data, int parity, double time);
-  /// Add forces, prescribe motions, sum up work, and correct what the loop counted as dissipated on the discs that before() has found.
-  /// `time_after` is that of the motions written.
+  /// Add forces, prescribe motions, sum up work, and correct what the loop counted as dissipated on the discs that
+  /// before() has found. `time_after` is that of the motions written.
   void after(std::int32_t strip, const LoopData& data, const Stage& stage, int parity, double time, double time_after,
              Dissipation& dissipation);
 

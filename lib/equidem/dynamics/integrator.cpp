@@ -21,7 +21,8 @@ constexpr std::array<double, 4> drifts = {chi, 1 - 2 * (chi + xi), chi, 2 * xi};
 constexpr std::array all_integrators = {Integrator::leapfrog, Integrator::velocity_verlet, Integrator::thesis,
                                         Integrator::fourth_order};
 
-/// Half the trace of what one step of the fourth-order scheme does to an oscillator with W = omega dt; stable while in [-1, 1].
+/// Half the trace of what one step of the fourth-order scheme does to an oscillator with W = omega dt; stable while in
+/// [-1, 1].
 double half_trace(double w) {
   double a = 1, b = 0, c = 0, d = 1;  // (u, v/omega) after = [a b; c d] (u, v/omega) before
   for (std::size_t k = 0; k < kicks.size(); ++k) {

@@ -28,12 +28,13 @@ struct IntegratorFacts {
   bool velocities_lag = false;  ///< by half a step
 };
 IntegratorFacts facts_of(Integrator integrator);
-/// With forces that depend on velocities, of dashpots at contacts and of local damping: all schemes take them from before the
-/// step, half a step late at least.
+/// With forces that depend on velocities, of dashpots at contacts and of local damping: all schemes take them from
+/// before the step, half a step late at least.
 constexpr int order_with_late_velocities = 1;
 
-/// Largest stable omega dt of an oscillator u'' + 2 zeta omega u' + omega² u = 0. Mass-proportional damping of leapfrog is central and
-/// leaves its limit of 2; a contact dashpot (zeta > 0 from relative velocities) is evaluated half a step behind: 2 (sqrt(1 + zeta²)
+/// Largest stable omega dt of an oscillator u'' + 2 zeta omega u' + omega² u = 0. Mass-proportional damping of leapfrog
+/// is central and leaves its limit of 2; a contact dashpot (zeta > 0 from relative velocities) is evaluated half a step
+/// behind: 2 (sqrt(1 + zeta²)
 /// - zeta). The thesis's scheme: min(4 zeta, 1/zeta). 0: never stable.
 /// \param zeta damping ratio of the dashpots at contacts (thesis: all damping)
 double stability_limit(Integrator integrator, double zeta);

@@ -18,8 +18,8 @@ double strip_height(const Assembly& assembly) {
   return longest > 0 ? longest * (1 + 1e-9) : 2 * assembly.mean_radius();
 }
 
-/// Strips across y. Where the assembly repeats along y they form a ring, which is laid flat: the lowest strip and the highest
-/// are one, so are the next of either side, and so on.
+/// Strips across y. Where the assembly repeats along y they form a ring, which is laid flat: the lowest strip and the
+/// highest are one, so are the next of either side, and so on.
 std::vector<std::int32_t> strips_of(const Assembly& assembly) {
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   for (const Vec2 x : assembly.centres) lowest = std::min(lowest, x.y), highest = std::max(highest, x.y);

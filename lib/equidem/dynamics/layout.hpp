@@ -15,7 +15,8 @@ namespace equidem {
 /// within strips in groups of four whose lanes are computed at once. Places without a disc fill a strip up.
 ///
 /// Strips let several steps be made while data are near: strip l can be at step k + 1 as soon as its neighbours are at
-/// step k. Where the assembly repeats along y a strip holds discs of its lower and of its upper half: the ring lies flat.
+/// step k. Where the assembly repeats along y a strip holds discs of its lower and of its upper half: the ring lies
+/// flat.
 struct DiscLayout {
   static constexpr int lanes = 4;
 

@@ -333,8 +333,8 @@ Relaxation relax(const Scene& scene, const RelaxationOptions& options) {
 }
 
 std::string Relaxation::report() const {
-  const std::string work =
-      fmt::format("{}, {} of the forces, {:.2g} s", counted(steps, "step"), counted(evaluations, "evaluation"), seconds);
+  const std::string work = fmt::format("{}, {} of the forces, {:.2g} s", counted(steps, "step"),
+                                       counted(evaluations, "evaluation"), seconds);
   if (relative_unbalanced == 0) return fmt::format("at rest: no force is left unbalanced, after {}", work);
   return fmt::format("at rest: relative unbalanced force {:.2g} after {}", relative_unbalanced, work);
 }

@@ -55,13 +55,14 @@ double in_smooth_table(const Schedule& table, double time) {
 
 void check_finite(double value, const char* name) {
   if (!std::isfinite(value))
-    bad_input(fmt::format("a schedule has {} = {}", name, value), "only finite numbers have a meaning", "Give a number");
+    bad_input(fmt::format("a schedule has {} = {}", name, value), "only finite numbers have a meaning",
+              "Give a number");
 }
 
 void check_table(const Schedule& table) {
   if (table.times.empty() || table.times.size() != table.values.size()) {
     bad_input(fmt::format("a table has {} and {}", counted(static_cast<long long>(table.times.size()), "time"),
-                     counted(static_cast<long long>(table.values.size()), "value")),
+                          counted(static_cast<long long>(table.values.size()), "value")),
               "each time needs its value", "Give as many of one as of the other, at least one");
   }
   for (std::size_t k = 0; k < table.times.size(); ++k) {
@@ -75,7 +76,7 @@ void check_table(const Schedule& table) {
   if (table.kind != Schedule::Kind::smooth_table) return;
   if (table.rates.size() != table.times.size()) {
     bad_input(fmt::format("a smooth table has {} and {}", counted(static_cast<long long>(table.times.size()), "time"),
-                     counted(static_cast<long long>(table.rates.size()), "rate")),
+                          counted(static_cast<long long>(table.rates.size()), "rate")),
               "each point needs its rate", "Give as many of one as of the other");
   }
   for (const double rate : table.rates) check_finite(rate, "rate");
@@ -117,7 +118,8 @@ void check(const Schedule& schedule) {
   if (schedule.kind == Schedule::Kind::sine || cycles) {
     check_finite(schedule.frequency, "frequency");
     if (!(schedule.frequency > 0))
-      bad_input(fmt::format("a sine has the frequency {} Hz", schedule.frequency), "it must be > 0", "Give a positive one");
+      bad_input(fmt::format("a sine has the frequency {} Hz", schedule.frequency), "it must be > 0",
+                "Give a positive one");
     if (!cycles) return;
   }
   check_finite(schedule.end, "end");

@@ -14,8 +14,8 @@ struct Schedule {
     ramp,      ///< from 0 at `start` to value at `end`, smooth (cosine: no jump in velocity), value afterwards
     sine,      ///< value sin(2 pi frequency (t - start)), 0 before start
     table,     ///< linear between points, constant outside
-    /// value (1 - cos(2 pi frequency (t - start))) from start to end, whole cycles later; 0 outside. From rest to rest, and the
-    /// acceleration is value (2 pi frequency)² cos(...) all along: full from the first instant to the last.
+    /// value (1 - cos(2 pi frequency (t - start))) from start to end, whole cycles later; 0 outside. From rest to rest,
+    /// and the acceleration is value (2 pi frequency)² cos(...) all along: full from the first instant to the last.
     cycles,
     smooth_table,  ///< cubic between points, with the rates there; constant outside
   } kind = Kind::constant;
@@ -43,9 +43,8 @@ struct MissedEvent {
 };
 
 /// The most that steps of a given length miss of a schedule within a run, its values at two successive steps taken to
-/// span all between them: a point of a table that stands out; the peaks of a sine or of cycles, all of them below two steps a
-/// period. A jump is not missed.
-/// \param step, end s
+/// span all between them: a point of a table that stands out; the peaks of a sine or of cycles, all of them below two
+/// steps a period. A jump is not missed. \param step, end s
 MissedEvent missed_event(const Schedule& schedule, double step, double end);
 
 /// The schedule times a factor, at every time.

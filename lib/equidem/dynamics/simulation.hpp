@@ -32,8 +32,8 @@ struct TimedLoad {
   Schedule factor;
 };
 
-/// A straight wall, the half plane behind the line through `point` with the unit normal that points to the discs; pushes
-/// discs that enter it, kN per m of overlap; without friction.
+/// A straight wall, the half plane behind the line through `point` with the unit normal that points to the discs;
+/// pushes discs that enter it, kN per m of overlap; without friction.
 struct Wall {
   std::string name;
   Vec2 point;             ///< m
@@ -42,8 +42,8 @@ struct Wall {
   Schedule displacement;  ///< m, along the normal
 };
 
-/// Velocity at the start of the discs of a group; a prescribed motion overrules it, and where rotations are no unknowns no
-/// spin is kept.
+/// Velocity at the start of the discs of a group; a prescribed motion overrules it, and where rotations are no unknowns
+/// no spin is kept.
 struct InitialVelocity {
   std::string group;
   Vec2 velocity;    ///< m/s
@@ -87,10 +87,10 @@ struct DiscForce {
 
 /// Energies at time(), J per m per m of depth = N; kinetic energy of velocities(), elastic energy of motions().
 ///
-/// Leapfrog does not keep their sum, it lets it sway: by sway = h²/8 f.a, f the forces of springs, walls and gravity, a the
-/// accelerations (free vibration: h²/8 a.M a, the share (omega h)²/4 of the elastic energy of a mode). With it the balance is exact but for
-/// rounding where forces are linear in the motion; for finite motions and discs that meet walls it closes to the order of the
-/// integrator, work of loads and supports to the second.
+/// Leapfrog does not keep their sum, it lets it sway: by sway = h²/8 f.a, f the forces of springs, walls and gravity, a
+/// the accelerations (free vibration: h²/8 a.M a, the share (omega h)²/4 of the elastic energy of a mode). With it the
+/// balance is exact but for rounding where forces are linear in the motion; for finite motions and discs that meet
+/// walls it closes to the order of the integrator, work of loads and supports to the second.
 struct EnergyLedger {
   double kinetic = 0;
   double elastic = 0;                                            ///< contacts and walls
@@ -118,7 +118,8 @@ struct SimulationState {
 class Simulation {
  public:
   /// Decide the effects, pick the loop, lay out memory.
-  /// \throws Error (bad_input) on a group that does not exist, motions prescribed twice, a mass that is not positive, a damping out of
+  /// \throws Error (bad_input) on a group that does not exist, motions prescribed twice, a mass that is not positive, a
+  ///         damping out of
   ///         range or not known to the integrator
   Simulation(const Scene& scene, const SimulationOptions& options);
   ~Simulation();
@@ -135,8 +136,8 @@ class Simulation {
   [[nodiscard]] std::vector<DiscMotion> motions() const;
   /// Velocities at the time of motions() (leapfrog: the mean of half a step before and after).
   [[nodiscard]] std::vector<DiscMotion> velocities() const;
-  /// What contacts, loads, walls and gravity leave unbalanced now on every disc displaced by `motions`, dampers aside; 0 where
-  /// the motion is prescribed.
+  /// What contacts, loads, walls and gravity leave unbalanced now on every disc displaced by `motions`, dampers aside;
+  /// 0 where the motion is prescribed.
   [[nodiscard]] std::vector<DiscForce> unbalanced_forces(const std::vector<DiscMotion>& motions) const;
   [[nodiscard]] EnergyLedger energy() const;
   /// The loop that was picked, active effects and why others are not.

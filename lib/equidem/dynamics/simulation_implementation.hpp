@@ -7,8 +7,8 @@
 
 #include "equidem/dynamics/body_arrays.hpp"
 #include "equidem/dynamics/driven_discs.hpp"
-#include "equidem/dynamics/simulation.hpp"
 #include "equidem/dynamics/kernels/step_kernel.hpp"
+#include "equidem/dynamics/simulation.hpp"
 
 namespace equidem {
 

@@ -101,9 +101,9 @@ double Simulation::Implementation::elastic_energy(const std::vector<DiscMotion>&
   return energy + wall_pushes(scene, now, time_at(steps)).energy;
 }
 
-// From the state that leapfrog keeps to the present, with v-, v the velocities half a step before and now, f the forces of
-// springs, walls and gravity, g all others: m (v - v-) = h/2 (f + g), so that g works h/2 g.(v + v-)/2, and the energies
-// then differ from those that leapfrog conserves, half a step behind, by h/4 f.(v - v-).
+// From the state that leapfrog keeps to the present, with v-, v the velocities half a step before and now, f the forces
+// of springs, walls and gravity, g all others: m (v - v-) = h/2 (f + g), so that g works h/2 g.(v + v-)/2, and the
+// energies then differ from those that leapfrog conserves, half a step behind, by h/4 f.(v - v-).
 void Simulation::Implementation::add_half_kick(const std::vector<DiscMotion>& now, EnergyLedger& ledger) const {
   const double h = options.time_step;
   const std::vector<DiscMotion> before = bodies.disc_velocities(bodies.velocity);

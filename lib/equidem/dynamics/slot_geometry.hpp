@@ -19,9 +19,8 @@ constexpr int slot_doubles(const LoopKind& kind) {
 
 }  // namespace lanes
 
-/// Write the contact of one lane into its slot, in the order that LoopData::geometry states; c_N and c_T are left alone. A lane
-/// that is all zeros is no contact.
-/// \param branch from the disc of this lane to its neighbour, at rest, m
+/// Write the contact of one lane into its slot, in the order that LoopData::geometry states; c_N and c_T are left
+/// alone. A lane that is all zeros is no contact. \param branch from the disc of this lane to its neighbour, at rest, m
 /// \param lever_own, lever_other of the disc and of its neighbour, m
 /// \param k of this contact, Pa; equal contacts have theirs in LoopData
 /// \param slot slot_doubles(kind) x 4 doubles

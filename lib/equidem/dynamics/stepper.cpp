@@ -12,7 +12,8 @@
 namespace equidem {
 namespace {
 
-/// Threads wait for one another between waves of a few microseconds: they spin, and let others run when it takes longer.
+/// Threads wait for one another between waves of a few microseconds: they spin, and let others run when it takes
+/// longer.
 class SpinBarrier {
  public:
   explicit SpinBarrier(int threads) : threads_(threads) {}
@@ -60,9 +61,9 @@ void step_strips(std::int32_t strips, std::int64_t stages, int depth, int thread
     });
     return;
   }
-  // Stage s visits strip l in wave start(s) + l; a new block of `depth` stages follows when the first stage of the last one
-  // is through, so that no thread runs dry between blocks. Each thread has stages of a block that follow one another: strips
-  // pass through its own cache before the next thread has them.
+  // Stage s visits strip l in wave start(s) + l; a new block of `depth` stages follows when the first stage of the last
+  // one is through, so that no thread runs dry between blocks. Each thread has stages of a block that follow one
+  // another: strips pass through its own cache before the next thread has them.
   depth = (std::max(depth, 1) + threads - 1) / threads * threads;
   const std::int64_t block = std::max<std::int64_t>(strips, 2L * depth);
   const auto start = [&](std::int64_t stage) { return stage / depth * block + 2 * (stage % depth); };

@@ -76,9 +76,10 @@ struct Vibration {
   }
 };
 
-/// 4 M - 2 h C - h² K = 4 M - h² K(k + 2 c/h): h = 2/omega(h), solved by secants on a logarithmic scale, where the slope of
-/// the difference lies between -1 and -1/2. Local damping, which excludes dashpots, makes forces against the velocity larger by its
-/// share, and at the limit every force is one.
+/// 4 M - 2 h C - h² K = 4 M - h² K(k + 2 c/h): h = 2/omega(h), solved by secants on a logarithmic scale, where the
+/// slope of
+/// the difference lies between -1 and -1/2. Local damping, which excludes dashpots, makes forces against the velocity
+/// larger by its share, and at the limit every force is one.
 double critical_of_leapfrog(const Vibration& vibration, const SquaredFrequency& squared, double omega) {
   const double h = 2 / (omega * std::sqrt(1 + vibration.options.damping.local));
   if (!vibration.dashpots() || omega == 0) return h;
@@ -95,8 +96,8 @@ double critical_of_leapfrog(const Vibration& vibration, const SquaredFrequency& 
   return std::exp(x - std::abs(f));
 }
 
-/// v' = v - h M^-1 (C v + K u), u' = u + h (v + v')/2 wants h K < 2 C and h C < 2 M. The first holds where it does at every contact,
-/// mass-proportional damping alpha M >= alpha/omega² K helping.
+/// v' = v - h M^-1 (C v + K u), u' = u + h (v + v')/2 wants h K < 2 C and h C < 2 M. The first holds where it does at
+/// every contact, mass-proportional damping alpha M >= alpha/omega² K helping.
 double critical_of_thesis(const Vibration& vibration, const SquaredFrequency& squared, double omega) {
   const double alpha = vibration.options.damping.mass;
   double slowest = vibration.scene.assembly.contacts.empty() ? 0 : infinite, fastest = 0;  // c/k, lambda of M^-1 C
@@ -150,8 +151,9 @@ double lowest_of_spins(const Vibration& vibration) {
   return lowest;
 }
 
-/// Motions that grow as exp(rate t), against mass-proportional damping: rate² + alpha rate + omega² = 0, omega² < 0. Where kT
-/// is far below kN, Lanczos does not find the lowest omega² among many near 0 in reasonable time: then a bound of it serves.
+/// Motions that grow as exp(rate t), against mass-proportional damping: rate² + alpha rate + omega² = 0, omega² < 0.
+/// Where kT is far below kN, Lanczos does not find the lowest omega² among many near 0 in reasonable time: then a bound
+/// of it serves.
 double growth_rate(const Vibration& vibration, double omega) {
   if (!vibration.scene.springs.any_negative() || vibration.unknowns.unknowns == 0) return 0;
   const LanczosOptions brief{.tolerance = 1e-9, .work = 2e7};
@@ -170,13 +172,14 @@ void check(const TimeStepOptions& wanted) {
               "a run takes a part of it, and past it motions grow", "Give a fraction in (0, 1], such as 0.8");
   }
   if (wanted.step && (!(*wanted.step > 0) || !std::isfinite(*wanted.step))) {
-    bad_input(fmt::format("the time step is {} s", *wanted.step), "time could not go on", "Give a step > 0, or \"auto\"");
+    bad_input(fmt::format("the time step is {} s", *wanted.step), "time could not go on",
+              "Give a step > 0, or \"auto\"");
   }
 }
 
-/// What mass-proportional damping leaves of a velocity after a step is exp(-alpha h), and (1 - alpha h/2)/(1 + alpha h/2) in
-/// leapfrog: stable for every h, but past 2/alpha velocities turn around from step to step. The fourth-order scheme goes back in
-/// time within a step, where velocities grow by exp(0.21 alpha h).
+/// What mass-proportional damping leaves of a velocity after a step is exp(-alpha h), and (1 - alpha h/2)/(1 + alpha
+/// h/2) in leapfrog: stable for every h, but past 2/alpha velocities turn around from step to step. The fourth-order
+/// scheme goes back in time within a step, where velocities grow by exp(0.21 alpha h).
 void respect_mass_damping(TimeStep& step, const SimulationOptions& options, const TimeStepOptions& wanted) {
   const double alpha = options.damping.mass, longest = 2 / alpha;
   if (!(alpha > 0) || options.integrator == Integrator::thesis || wanted.allow_unstable) return;
@@ -187,13 +190,13 @@ void respect_mass_damping(TimeStep& step, const SimulationOptions& options, cons
   }
   if (!wanted.step && step.step > wanted.fraction * longest) {
     step.step = wanted.fraction * longest;
-    step.notes.push_back(
-        fmt::format("Mass damping shortens the step: past 2/damping = {:.6g} s it would turn velocities around.", longest));
+    step.notes.push_back(fmt::format(
+        "Mass damping shortens the step: past 2/damping = {:.6g} s it would turn velocities around.", longest));
   }
   const double share = step.step / longest;
   if (options.integrator == Integrator::fourth_order || share * share < 0.05) return;
-  step.notes.push_back(fmt::format("What mass damping brings to rest slides too short by up to {:.0f} %, (damping step/2)².",
-                              100 * share * share));
+  step.notes.push_back(fmt::format(
+      "What mass damping brings to rest slides too short by up to {:.0f} %, (damping step/2)².", 100 * share * share));
 }
 
 void refuse_unstable(const TimeStep& result, const SimulationOptions& options) {
@@ -207,11 +210,11 @@ void refuse_unstable(const TimeStep& result, const SimulationOptions& options) {
               "without damping of every contact its motions grow", "Use leapfrog, or damp by stiffness or mass");
   }
   if (result.step > result.critical * (1 + 1e-12)) {
-    bad_input(
-        fmt::format("the time step {:.6g} s ({}) is past the limit of {:.6g} s", result.step, result.rule, result.critical),
-        fmt::format("{} would grow without end at {:.4g} times the critical step", to_string(options.integrator),
-               result.ratio()),
-        "Give a smaller step or take \"auto\" with step_rule = \"lanczos\", or allow an unstable run");
+    bad_input(fmt::format("the time step {:.6g} s ({}) is past the limit of {:.6g} s", result.step, result.rule,
+                          result.critical),
+              fmt::format("{} would grow without end at {:.4g} times the critical step", to_string(options.integrator),
+                          result.ratio()),
+              "Give a smaller step or take \"auto\" with step_rule = \"lanczos\", or allow an unstable run");
   }
 }
 
@@ -266,8 +269,8 @@ TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, 
     if (!wanted.step && wanted.rule == TimeStepRule::lanczos) result.rule = "bound";
     result.notes.push_back(
         fmt::format("The guaranteed bound serves for the critical step: with more than {} discs the exact one is not "
-               "sought.",
-               most_discs_of_lanczos));
+                    "sought.",
+                    most_discs_of_lanczos));
   }
   result.omega_max = use_bound ? bound_omega : std::sqrt(vibration.exact(scene.springs));
   result.critical = use_bound              ? guaranteed
@@ -302,7 +305,8 @@ TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, 
   }
   if (wanted.allow_unstable) {
     if (result.growth_rate > 0) {
-      result.notes.push_back(fmt::format("Motions grow at the rate {:.6g} 1/s, whatever the step.", result.growth_rate));
+      result.notes.push_back(
+          fmt::format("Motions grow at the rate {:.6g} 1/s, whatever the step.", result.growth_rate));
     } else if (result.step > result.critical) {
       result.notes.emplace_back("The step is past the critical one: motions will grow.");
     }
@@ -314,7 +318,7 @@ TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, 
 
 std::string TimeStep::report() const {
   std::string text = fmt::format("time step {:.6g} s ({}), {} {:.6g} s, ratio {:.4g}", step, rule,
-                            exact ? "critical step" : "guaranteed step", critical, ratio());
+                                 exact ? "critical step" : "guaranteed step", critical, ratio());
   for (const std::string& note : notes) text += "\n  " + note;
   return text;
 }

@@ -15,7 +15,8 @@ namespace equidem {
 enum class TimeStepRule {
   lanczos,  ///< a fraction of the exact critical step
   bound,    ///< a fraction of a guaranteed step: no contact taken alone with its share of inertia is faster
-  thesis,  ///< an eighth of the period of one disc on one normal spring, 2 pi min sqrt(m/kN)/8 (Sukegawa 2010): no guarantee
+  thesis,   ///< an eighth of the period of one disc on one normal spring, 2 pi min sqrt(m/kN)/8 (Sukegawa 2010): no
+            ///< guarantee
 };
 
 /// "lanczos" | "bound" | "thesis".
@@ -27,7 +28,8 @@ struct TimeStepOptions {
   TimeStepRule rule = TimeStepRule::lanczos;
   double fraction = 0.8;            ///< of the critical step or of the bound, in (0, 1]
   std::optional<double> step = {};  ///< s, given: the rule is not asked
-  /// s, of the run: where it would be over before the exact critical step is found, the bound is taken for it. 0: not known.
+  /// s, of the run: where it would be over before the exact critical step is found, the bound is taken for it. 0: not
+  /// known.
   double duration = 0;
   bool allow_unstable = false;  ///< let a step past the limit pass, and kT < 0
 };
@@ -48,14 +50,16 @@ struct TimeStep {
 
 /// Choose or check the step of a run; options.time_step is not read.
 ///
-/// A step h of leapfrog is stable where 4 M - 2 h C - h² K is positive definite (K over the components that supports leave free, C
-/// of the dashpots at contacts, which act half a step late; mass-proportional damping does not enter). The critical step is thus that
-/// of the springs k + 2 c/h, and is found from its own eigenvector in a few rounds. For stiffness-proportional damping it is
-/// omega h = 2 (sqrt(1 + zeta²) - zeta), zeta = beta omega/2 of the highest mode. Local damping by the share alpha lowers the limit
-/// to omega h = 2/sqrt(1 + alpha). Mass-proportional damping by alpha keeps the step of leapfrog and of the fourth-order scheme below
+/// A step h of leapfrog is stable where 4 M - 2 h C - h² K is positive definite (K over the components that supports
+/// leave free, C of the dashpots at contacts, which act half a step late; mass-proportional damping does not enter).
+/// The critical step is thus that of the springs k + 2 c/h, and is found from its own eigenvector in a few rounds. For
+/// stiffness-proportional damping it is omega h = 2 (sqrt(1 + zeta²) - zeta), zeta = beta omega/2 of the highest mode.
+/// Local damping by the share alpha lowers the limit to omega h = 2/sqrt(1 + alpha). Mass-proportional damping by alpha
+/// keeps the step of leapfrog and of the fourth-order scheme below
 /// 2/alpha, past which it turns velocities around. The other integrators have the limits of
 /// integrator.hpp for the highest mode.
-/// \throws Error (bad_input) on options or magnitudes out of range, a step past the limit, motions that grow whatever the step, a scheme
+/// \throws Error (bad_input) on options or magnitudes out of range, a step past the limit, motions that grow whatever
+///         the step, a scheme
 ///         that no step makes stable
 TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, const TimeStepOptions& wanted = {});
 

@@ -21,8 +21,9 @@ void check_alone(const Wall& wall, const Assembly& assembly) {
               "Give finite numbers");
   }
   if (std::abs(dot(wall.normal, wall.normal) - 1) > 1e-12) {
-    bad_input(fmt::format("the normal ({}, {}) of wall '{}' is no unit vector", wall.normal.x, wall.normal.y, wall.name),
-              "distances are measured with it", "Divide it by its length");
+    bad_input(
+        fmt::format("the normal ({}, {}) of wall '{}' is no unit vector", wall.normal.x, wall.normal.y, wall.name),
+        "distances are measured with it", "Divide it by its length");
   }
   if (!(wall.kN > 0) || !std::isfinite(wall.kN)) {
     bad_input(fmt::format("wall '{}' has kN = {} Pa", wall.name, wall.kN), "its spring must be > 0 and finite",
@@ -61,9 +62,10 @@ void check_room(const Wall& a, const Wall& b) {
   for (const double time : times) {
     const double room = dot(a.normal, b.point - a.point) - a.displacement.at(time) - b.displacement.at(time);
     if (room > 0) continue;
-    bad_input(fmt::format("walls '{}' and '{}' cross{}", a.name, b.name, time > 0 ? fmt::format(" at {:.6g} s", time) : ""),
-              fmt::format("they face each other with {:.6g} m between them", room),
-              time > 0 ? "Move them less or further apart" : "Move them apart, or turn their normals to the discs");
+    bad_input(
+        fmt::format("walls '{}' and '{}' cross{}", a.name, b.name, time > 0 ? fmt::format(" at {:.6g} s", time) : ""),
+        fmt::format("they face each other with {:.6g} m between them", room),
+        time > 0 ? "Move them less or further apart" : "Move them apart, or turn their normals to the discs");
   }
 }
 

@@ -42,8 +42,8 @@ void RunawayWatch::look(const Simulation& run, const EnergyLedger& energy) {
   if (!std::isfinite(held) || held > limits_.growth * given_) {
     const std::int64_t disc = fastest_disc(scene_, run.velocities());
     stop(run, disc,
-         fmt::format("energy ran away: {:.3g} N, when {:.3g} N was all that the run was given; disc {} is the fastest", held,
-                given_, disc));
+         fmt::format("energy ran away: {:.3g} N, when {:.3g} N was all that the run was given; disc {} is the fastest",
+                     held, given_, disc));
   }
   if (options_.motion == LoopKind::Motion::finite) check_bonds(run);
   last_good_step_ = run.step();
@@ -59,10 +59,10 @@ void RunawayWatch::check_bonds(const Simulation& run) const {
     if (moved <= most_of_a_bond && left >= least_of_a_bond) continue;
     computation_failed(
         moved > most_of_a_bond
-            ? fmt::format("the bonded discs {} and {} move past each other by {:.3g} of their distance in a step", contact.i,
-                     contact.j, moved)
-            : fmt::format("the bonded discs {} and {} pass through each other: {:.3g} of their distance is left", contact.i,
-                     contact.j, left),
+            ? fmt::format("the bonded discs {} and {} move past each other by {:.3g} of their distance in a step",
+                          contact.i, contact.j, moved)
+            : fmt::format("the bonded discs {} and {} pass through each other: {:.3g} of their distance is left",
+                          contact.i, contact.j, left),
         where(run, contact.i),
         "Lower velocities, loads or prescribed motions, or stiffen the springs; a shorter step helps where it is close "
         "to "
@@ -74,7 +74,7 @@ std::string RunawayWatch::where(const Simulation& run, std::int64_t disc) const 
   const Vec2 centre = scene_.assembly.centres[disc];
   const std::string when = run.step() == 0 ? std::string("at the start")
                                            : fmt::format("step {}, t = {:.6g} s, all was well at step {}", run.step(),
-                                                    run.time(), last_good_step_);
+                                                         run.time(), last_good_step_);
   return fmt::format("{}; disc {} lay at ({:.6g}, {:.6g}) m at first", when, disc, centre.x, centre.y);
 }
 
@@ -83,7 +83,8 @@ void RunawayWatch::stop(const Simulation& run, std::int64_t disc, const std::str
   const double ratio = limits_.critical_step > 0 ? options_.time_step / limits_.critical_step : 0;
   if (limits_.growth_rate > 0) {
     computation_failed(
-        problem, fmt::format("{}; some kT is negative and motions grow at the rate {:.4g} 1/s", place, limits_.growth_rate),
+        problem,
+        fmt::format("{}; some kT is negative and motions grow at the rate {:.4g} 1/s", place, limits_.growth_rate),
         "Solve the stiffness matrix instead: kT < 0 is stable in statics only");
   }
   if (ratio > 1) {
@@ -91,7 +92,8 @@ void RunawayWatch::stop(const Simulation& run, std::int64_t disc, const std::str
                        fmt::format("Take a step below {:.4g} s", limits_.critical_step));
   }
   const std::string known =
-      ratio > 0 ? fmt::format("; the time step is {:.4g} of the critical one of the reference state", ratio) : std::string();
+      ratio > 0 ? fmt::format("; the time step is {:.4g} of the critical one of the reference state", ratio)
+                : std::string();
   if (options_.motion == LoopKind::Motion::finite) {
     computation_failed(problem, place + known,
                        "Contacts that are pulled or turned far are stiffer than at the start: halve the step, or apply "

@@ -12,15 +12,15 @@ namespace equidem {
 
 /// What tells a runaway and its likely cause.
 struct RunawayLimits {
-  /// Kinetic and elastic energy over all that the run was ever given (start, loads, supports, walls, gravity), beyond which
-  /// it is a runaway. That of a stable run is within a small multiple of 1.
+  /// Kinetic and elastic energy over all that the run was ever given (start, loads, supports, walls, gravity), beyond
+  /// which it is a runaway. That of a stable run is within a small multiple of 1.
   double growth = 100;
   double critical_step = 0;  ///< s; 0: not known
   double growth_rate = 0;    ///< 1/s, of motions that grow whatever the step
 };
 
-/// Looks at a run from time to time and stops it where motions are no numbers, energy comes from nowhere, or bonded discs of a
-/// finite motion pass through each other: the law of a bond does not hinder them.
+/// Looks at a run from time to time and stops it where motions are no numbers, energy comes from nowhere, or bonded
+/// discs of a finite motion pass through each other: the law of a bond does not hinder them.
 class RunawayWatch {
  public:
   /// The scene must outlive the watch.

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "equidem/grains/scene/clipped_area.hpp"
 #include "equidem/grains/grain_simulation.hpp"
+#include "equidem/grains/scene/clipped_area.hpp"
 
 namespace equidem {
 
@@ -32,8 +32,9 @@ CoarseGrid grid_over(const Region& region, double width);
 /// One value for each cell.
 struct CoarseFields {
   CoarseGrid grid;
-  /// Love and Weber's, s = (1/A) sum of F (x) l, tension positive, Pa: F is the force on body i, l the part of the way from i to j (or to the
-  /// wall) that lies in the cell. Over all cells it adds up to the stress of the whole; motion adds nothing to it.
+  /// Love and Weber's, s = (1/A) sum of F (x) l, tension positive, Pa: F is the force on body i, l the part of the way
+  /// from i to j (or to the wall) that lies in the cell. Over all cells it adds up to the stress of the whole; motion
+  /// adds nothing to it.
   std::vector<Tensor2> stress;
   std::vector<double> solid_fraction;  ///< exact areas
   std::vector<double> coordination;    ///< contacts of a body with its centre in the cell; NaN: there is none

@@ -17,16 +17,16 @@ struct GrainBox {
   bool lid = false;  ///< a wall above
 };
 
-/// Lines and segments along the axes are its sides; each is on that side of the middle of all bodies on which it lies at the start.
-/// \param time s, by which walls have moved
+/// Lines and segments along the axes are its sides; each is on that side of the middle of all bodies on which it lies
+/// at the start. \param time s, by which walls have moved
 /// \throws Error (bad_input) without grains
 GrainBox box_of(std::span<const GrainWall> walls, std::span<const Grain> grains, double time);
 
 /// Mean diameter of circles with the areas of the bodies, m.
 double mean_diameter(std::span<const Grain> grains, std::span<const Clump> clumps);
 
-/// The box without strips of two mean diameters at its sides and, under an open top, without three below the lowest place of the
-/// surface, seen in columns two largest diameters wide.
+/// The box without strips of two mean diameters at its sides and, under an open top, without three below the lowest
+/// place of the surface, seen in columns two largest diameters wide.
 /// \param heap of each body: whether it belongs to the surface (heap_of); empty: all do
 /// \return none where nothing as large as two diameters each way is left
 std::optional<Region> measured_region(std::span<const Grain> grains, std::span<const Clump> clumps, const GrainBox& box,

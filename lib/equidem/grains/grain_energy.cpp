@@ -2,8 +2,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "equidem/grains/grain_simulation_implementation.hpp"
 #include "equidem/grains/contacts/part_meeting.hpp"
+#include "equidem/grains/grain_simulation_implementation.hpp"
 
 namespace equidem {
 

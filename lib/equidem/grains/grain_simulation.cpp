@@ -11,12 +11,12 @@
 #include "equidem/core/text.hpp"
 #include "equidem/grains/contacts/crossing.hpp"
 #include "equidem/grains/contacts/flow_step.hpp"
-#include "equidem/grains/grain_simulation_implementation.hpp"
 #include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/contacts/part_crossing.hpp"
 #include "equidem/grains/contacts/part_meeting.hpp"
-#include "equidem/grains/neighbours/part_pairs.hpp"
 #include "equidem/grains/contacts/part_step.hpp"
+#include "equidem/grains/grain_simulation_implementation.hpp"
+#include "equidem/grains/neighbours/part_pairs.hpp"
 
 namespace equidem {
 namespace {

@@ -13,8 +13,8 @@
 
 namespace equidem {
 
-/// Energies, J (spheres) or J per metre of depth. Maps and exact_flow keep all to one instant; the force laws by Euler keep
-/// velocities half a step behind, and the potential of gravity is taken where the body was then.
+/// Energies, J (spheres) or J per metre of depth. Maps and exact_flow keep all to one instant; the force laws by Euler
+/// keep velocities half a step behind, and the potential of gravity is taken where the body was then.
 struct GrainLedger {
   double kinetic = 0;
   double elastic_normal = 0, elastic_tangential = 0;
@@ -56,7 +56,8 @@ struct GrainCounters {
   std::int64_t contacts = 0;     ///< begun
   std::int64_t rebuilds = 0;     ///< of the neighbour lists
   std::int64_t sweeps = 0;       ///< exact_flow: over all contacts
-  /// exact_flow: contacts in a step that is not stable for every arrangement of their neighbours; where it is 0 none was.
+  /// exact_flow: contacts in a step that is not stable for every arrangement of their neighbours; where it is 0 none
+  /// was.
   std::int64_t doubtful = 0;
 };
 
@@ -90,8 +91,8 @@ struct GrainState {
 
 class GrainSimulation {
  public:
-  /// Decide the effects, pick the loop. Bodies and walls are kept in an order of their own, by place, so that the caller's order
-  /// changes no bit.
+  /// Decide the effects, pick the loop. Bodies and walls are kept in an order of their own, by place, so that the
+  /// caller's order changes no bit.
   /// \throws Error as check(scene, options)
   GrainSimulation(const GrainScene& scene, const GrainOptions& options);
   ~GrainSimulation();
@@ -101,9 +102,10 @@ class GrainSimulation {
   GrainSimulation& operator=(const GrainSimulation&) = delete;
 
   /// Make steps.
-  /// \throws Error (computation_failed) before the step in which a body would pass through a wall or another body unseen, or centres
-  ///         would pass each other; naming step, bodies, speed and the step that would do; on motions that are no numbers; where
-  ///         exact_flow finds no common solution of all contacts. The state is that before the step.
+  /// \throws Error (computation_failed) before the step in which a body would pass through a wall or another body
+  ///         unseen, or centres
+  ///         would pass each other; naming step, bodies, speed and the step that would do; on motions that are no
+  ///         numbers; where exact_flow finds no common solution of all contacts. The state is that before the step.
   void advance(std::int64_t steps);
 
   [[nodiscard]] std::int64_t step() const;

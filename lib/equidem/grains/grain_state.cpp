@@ -128,7 +128,8 @@ void GrainSimulation::go_back_to(const GrainState& state) {
   if (state.grains.size() != system.motions.size() || state.contacts.size() % numbers_per_contact != 0 ||
       state.sums.size() != pushes + bonds) {
     bad_input(fmt::format("the state is of {}", counted(static_cast<long long>(state.grains.size()), "grain")),
-              fmt::format("the scene has {}", system.motions.size()), "Resume with the scene that the state was saved from");
+              fmt::format("the scene has {}", system.motions.size()),
+              "Resume with the scene that the state was saved from");
   }
   system.step = state.step;
   system.lost = state.ledger;

@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "equidem/contact/exact_contact.hpp"
-#include "equidem/grains/kernels/bond_loop.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
-#include "equidem/grains/scene/grain_parts.hpp"
-#include "equidem/grains/scene/grain_scene.hpp"
+#include "equidem/grains/contacts/touch_instants.hpp"
 #include "equidem/grains/grain_simulation.hpp"
+#include "equidem/grains/kernels/bond_loop.hpp"
 #include "equidem/grains/neighbours/near_pairs.hpp"
 #include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/neighbours/neighbours.hpp"
-#include "equidem/grains/contacts/touch_instants.hpp"
+#include "equidem/grains/scene/grain_parts.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/grains/scene/wall_joints.hpp"
 
 namespace equidem {
@@ -66,7 +66,8 @@ struct Candidate {
 struct WallPlace {
   Vec2 displacement;
   Vec2 velocity;  ///< mean over the step
-  /// That contacts see and walls do work with: velocity_verlet, whose forces act half in the step before, the mean over both.
+  /// That contacts see and walls do work with: velocity_verlet, whose forces act half in the step before, the mean over
+  /// both.
   Vec2 acting_velocity;
   Vec2 passed_velocity;  ///< velocity_verlet: mean over the step before
 };
@@ -138,9 +139,8 @@ void set_constants(const GrainSystem& system, Candidate& candidate);
 /// Find all candidates within the margin anew; contacts keep what they remember.
 void find_candidates(GrainSystem& system);
 
-/// See to it that the candidates hold all that may touch while no body moves further than `reach` from where it is, and count
-/// that way as gone.
-/// \return whether they were found anew
+/// See to it that the candidates hold all that may touch while no body moves further than `reach` from where it is, and
+/// count that way as gone. \return whether they were found anew
 bool refresh_candidates(GrainSystem& system, double reach);
 
 /// The longest way that a body goes in this step, walls included.

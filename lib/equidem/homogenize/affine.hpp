@@ -18,7 +18,8 @@ constexpr double mean_rotation(const Tensor2& gradient) {
   return 0.5 * (gradient.yx - gradient.xy);
 }
 
-/// Stretch and slip, m, of every contact where each sees the affine motion u = h x and all discs turn by `rotation` (rad).
+/// Stretch and slip, m, of every contact where each sees the affine motion u = h x and all discs turn by `rotation`
+/// (rad).
 std::vector<ContactDeformation> affine_deformations(const Assembly& assembly, const Tensor2& gradient, double rotation);
 
 /// Contact forces, N/m, where each contact sees the affine motion u = h x and all discs turn by the same `rotation`

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The boundary of a sample: the discs that carry prescribed displacements, and the shares by which they carry tractions.
+/// The boundary of a sample: the discs that carry prescribed displacements, and the shares by which they carry
+/// tractions.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +15,8 @@
 
 namespace equidem {
 
-/// How the macroscopic strain enters. As quadratic forms on the same cell: traction <= periodic <= displacement <= Voigt
-/// (Huet 1990).
+/// How the macroscopic strain enters. As quadratic forms on the same cell: traction <= periodic <= displacement <=
+/// Voigt (Huet 1990).
 enum class Boundary {
   periodic,      ///< images move with the mean strain: the cell repeats for ever
   displacement,  ///< the discs at the boundary follow a uniform displacement gradient (and turn freely)

@@ -34,7 +34,7 @@ void refuse_negative_springs(const Assembly& assembly, const ContactSprings& spr
   std::size_t c = 0;
   while (springs[c].kT >= 0) ++c;
   bad_input(fmt::format("the tangential spring is kT = {:.6g} Pa at contact {} (discs {} and {})", springs[c].kT, c,
-                   assembly.contacts[c].i, assembly.contacts[c].j),
+                        assembly.contacts[c].i, assembly.contacts[c].j),
             "the uniform-stress estimate adds up the energies that contacts store under given forces, which must not "
             "be negative",
             "Give kT >= 0, or do without this estimate");

@@ -31,8 +31,9 @@ void check_levers(const Assembly& assembly, const ContactSprings& springs, const
     const double gap = std::abs(c.lever_i + c.lever_j - length);
     if (springs[k].kT == 0 || gap <= close * length + rounding * coordinates) continue;
     bad_input(
-        fmt::format("contact {}, of discs {} and {}, has the lever arms {:.9g} and {:.9g} m over a distance of {:.9g} m", k,
-               c.i, c.j, c.lever_i, c.lever_j, length),
+        fmt::format(
+            "contact {}, of discs {} and {}, has the lever arms {:.9g} and {:.9g} m over a distance of {:.9g} m", k,
+            c.i, c.j, c.lever_i, c.lever_j, length),
         "they do not add up to it, so that turning the whole assembly would cost energy and no continuum is like it",
         "Correct the levers, or restrain rotation");
   }

@@ -32,19 +32,20 @@ struct EffectiveStiffness {
   /// Pa, symmetric part of the stress by strain (Voigt, engineering shear), from the energies of the load cases:
   /// its error is the square of that of the motions.
   Matrix3 stiffness{};
-  /// Pa, dC/dkT times kT and dC/dkN times kN (they add up to C): the strain energies in tangential and in normal springs. Exact
-  /// derivatives for springs scaled by a common factor, since the motion is stationary.
+  /// Pa, dC/dkT times kT and dC/dkN times kN (they add up to C): the strain energies in tangential and in normal
+  /// springs. Exact derivatives for springs scaled by a common factor, since the motion is stationary.
   Matrix3 tangential_part{};
   Matrix3 normal_part{};
-  /// Pa, Love-Weber stress (1/A) sum F_i l_j by displacement gradient. With free rotation columns xy and yx agree, and so do
-  /// the rows; with rotation restrained neither need (Abe 1996, eq. 55). Only for Boundary::periodic and displacement.
+  /// Pa, Love-Weber stress (1/A) sum F_i l_j by displacement gradient. With free rotation columns xy and yx agree, and
+  /// so do the rows; with rotation restrained neither need (Abe 1996, eq. 55). Only for Boundary::periodic and
+  /// displacement.
   Matrix4 gradient_stiffness{};
   double stress_asymmetry = 0;  ///< largest |s_xy - s_yx| of any unit gradient over the largest entry
 
   double relative_residual = 0;  ///< largest of the load cases
   double condition = 0;          ///< estimate of |K| |K^-1|, each component measured by the stiffness of its row
-  /// Pa: bound on the error of an entry of `stiffness`, from residual, condition and (but for tractions) rounding of normals and
-  /// lever arms; centres, period and springs are taken as the exact numbers that they are given as.
+  /// Pa: bound on the error of an entry of `stiffness`, from residual, condition and (but for tractions) rounding of
+  /// normals and lever arms; centres, period and springs are taken as the exact numbers that they are given as.
   double error_bound = 0;
   double hill_mandel = 0;  ///< largest |macroscopic - microscopic power| over the latter
 
@@ -64,7 +65,8 @@ struct EffectiveStiffness {
   std::string solver;
   double factor_bytes = 0;
   StageTimes times;
-  /// Motion of every disc for unit strain xx, yy, xy beside the uniform strain, m; discs removed stand still. Empty for tractions.
+  /// Motion of every disc for unit strain xx, yy, xy beside the uniform strain, m; discs removed stand still. Empty for
+  /// tractions.
   std::vector<std::vector<DiscMotion>> fluctuations;
 
   /// All springs `factor` times as stiff: the motions stay.
@@ -72,10 +74,11 @@ struct EffectiveStiffness {
 };
 
 /// Solve for unit strains xx, yy and xy (and the unit rotation where rotation is restrained) on one factorization.
-/// \throws Error (bad_input) where the boundary does not suit the assembly, levers do not add up to their branch where they
-///         matter, no piece spans the cell, the network is a mechanism (named) or some strain costs no energy (named), since a
-///         floppy network has no modulus; springs too far apart for a double;
-///         (computation_failed) as EquilibriumSolver; at the limit of stability
+/// \throws Error (bad_input) where the boundary does not suit the assembly, levers do not add up to their branch where
+///         they
+///         matter, no piece spans the cell, the network is a mechanism (named) or some strain costs no energy (named),
+///         since a floppy network has no modulus; springs too far apart for a double; (computation_failed) as
+///         EquilibriumSolver; at the limit of stability
 EffectiveStiffness effective_stiffness(const Assembly& assembly, const ContactSprings& springs,
                                        const HomogenizeOptions& options = {});
 

@@ -142,7 +142,7 @@ Matrix3 inverse(const Matrix3& stiffness) {
   for (std::size_t k = 0; k < 3; ++k) {
     if (!(std::abs(eigen.values[k]) > 4 * std::numeric_limits<double>::epsilon() * largest)) {
       computation_failed(fmt::format("the stiffness is singular, with the eigenvalues {:.6g}, {:.6g} and {:.6g} Pa",
-                                eigen.values[0], eigen.values[1], eigen.values[2]),
+                                     eigen.values[0], eigen.values[1], eigen.values[2]),
                          "some strain meets no stress, so that there is no compliance",
                          "Give the assembly the springs or contacts that resist it");
     }

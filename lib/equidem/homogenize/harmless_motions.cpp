@@ -53,8 +53,8 @@ std::vector<HarmlessMotion> harmless_motions(const Assembly& assembly, const Sti
   for (const GearMode& gear : held.gears) {
     if (result.size() == most_described) break;
     result.push_back({"gear", fmt::format("{} around {} counter-rotate like gears: their contacts form no odd ring",
-                                     counted(gear.discs, "disc"),
-                                     describe_disc(assembly, static_cast<std::size_t>(gear.first_disc)))});
+                                          counted(gear.discs, "disc"),
+                                          describe_disc(assembly, static_cast<std::size_t>(gear.first_disc)))});
   }
   const std::int64_t mechanisms = solver.factor().report().zero_pivots;
   constexpr std::int64_t too_many = 1000;

@@ -18,10 +18,11 @@ struct HarmlessMotion {
   std::string description;  ///< which discs, which motion
 };
 
-/// Gears, and mechanisms of a few discs: no contact is deformed by them, so that the forces of any mean strain do no work
-/// on them. At most eight of each kind are described.
+/// Gears, and mechanisms of a few discs: no contact is deformed by them, so that the forces of any mean strain do no
+/// work on them. At most eight of each kind are described.
 /// \param name of the network for messages: "the network", "the cell, cut open at its boundary,"
-/// \throws Error (bad_input) where a mechanism runs through the sample (winds around the period, or moves a quarter of the
+/// \throws Error (bad_input) where a mechanism runs through the sample (winds around the period, or moves a quarter of
+///         the
 ///         discs of a free sample), or where there are more than 1000: the network is floppy
 std::vector<HarmlessMotion> harmless_motions(const Assembly& assembly, const StiffnessSolver& solver,
                                              const HeldMotions& held, const std::string& name);

@@ -56,7 +56,7 @@ Tensor2 fitted_displacement_gradient(const Assembly& assembly, std::span<const D
   // on a line, while two rows of 4e6 discs still have 1e-13.
   if (!(determinant > 1e-13 * trace * trace)) {
     bad_input(fmt::format("a displacement gradient cannot be fitted to {}",
-                     counted(static_cast<long long>(chosen.size()), "disc")),
+                          counted(static_cast<long long>(chosen.size()), "disc")),
               "it takes three discs or more that are not on one line", "Choose a larger region");
   }
   const Tensor2 inverse = (1 / determinant) * Tensor2{s.yy, -s.xy, -s.yx, s.xx};

@@ -31,8 +31,8 @@ double power_difference(const std::vector<Tensor2>& stresses, const Matrix3& sti
   return largest / largest_entry(stiffness);
 }
 
-/// What rounding of normals and lever arms changes of an energy of two cases, N, at most: the motion is stationary, so that the change of
-/// sum kN dn_a dn_b + kT ds_a ds_b is that of the deformations of given motions.
+/// What rounding of normals and lever arms changes of an energy of two cases, N, at most: the motion is stationary, so
+/// that the change of sum kN dn_a dn_b + kT ds_a ds_b is that of the deformations of given motions.
 double rounding_of_energies(const SampleSolver& solver, const std::vector<Solution>& solutions,
                             const std::vector<std::vector<ContactDeformation>>& deformations) {
   const Assembly& assembly = solver.assembly();

@@ -7,8 +7,8 @@
 
 namespace equidem {
 
-/// Unit mean strains, and the unit mean rotation where discs cannot turn. Fills the stiffness, its parts, the unsymmetric
-/// tensor, the fluctuations and the error bound (without rounding) of `result`.
+/// Unit mean strains, and the unit mean rotation where discs cannot turn. Fills the stiffness, its parts, the
+/// unsymmetric tensor, the fluctuations and the error bound (without rounding) of `result`.
 /// \throws Error as effective_stiffness
 void solve_strains(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options,
                    EffectiveStiffness& result);

@@ -158,10 +158,10 @@ void place_nearest_gauges(const Assembly& assembly, GaugePlacement placement, Te
   const double slack = 1e-9 * spacing;
   const bool inside = 2 * half.x <= block.size().x + slack && 2 * half.y <= block.size().y + slack;
   if (!inside || setup.horizontal.first == setup.horizontal.second || setup.vertical.first == setup.vertical.second) {
-    refuse_size(
-        placement, fmt::format("disc centres over {:.3g} m by {:.3g} m", block.size().x, block.size().y),
-        fmt::format("{0:.3g} m by {0:.3g} m, {1} mean spacings each way",
-               (placement == GaugePlacement::centre ? 4 : 2) * spacing, placement == GaugePlacement::centre ? 4 : 2));
+    refuse_size(placement, fmt::format("disc centres over {:.3g} m by {:.3g} m", block.size().x, block.size().y),
+                fmt::format("{0:.3g} m by {0:.3g} m, {1} mean spacings each way",
+                            (placement == GaugePlacement::centre ? 4 : 2) * spacing,
+                            placement == GaugePlacement::centre ? 4 : 2));
   }
 }
 

@@ -38,8 +38,8 @@ class Factorization {
   /// The motion of least resistance that the factorization came across, not normalized: L^-T e for the unit vector e
   /// of the smallest pivot. Where K is singular it is a mechanism. Empty where the method does not tell.
   [[nodiscard]] virtual std::vector<double> softest_motion() const { return {}; }
-  /// The k-th of FactorReport::zero_pivots motions that cost nothing, not normalized; they are independent. Solving holds one
-  /// unknown for each of them. Empty where the method does not tell.
+  /// The k-th of FactorReport::zero_pivots motions that cost nothing, not normalized; they are independent. Solving
+  /// holds one unknown for each of them. Empty where the method does not tell.
   [[nodiscard]] virtual std::vector<double> null_motion(std::int64_t) const { return {}; }
   [[nodiscard]] virtual const FactorReport& report() const = 0;
 };

@@ -137,7 +137,8 @@ class UmfpackLu final : public Factorization {
     if (status == UMFPACK_ERROR_out_of_memory) {
       computation_failed(problem, "there is not enough memory", "Use a smaller assembly or a machine with more memory");
     }
-    computation_failed(problem, fmt::format("its status is {}", status), "Choose another solver: method = \"multifrontal\"");
+    computation_failed(problem, fmt::format("its status is {}", status),
+                       "Choose another solver: method = \"multifrontal\"");
   }
 
   double held_stiffness_ = 1;

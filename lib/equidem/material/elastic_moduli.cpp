@@ -79,8 +79,8 @@ ElasticModuli moduli_from_bulk(double bulk_modulus_2d, double shear_modulus, Pla
   // is E <= 0.
   if (plane == Plane::strain && G >= 3 * K) {
     bad_input(fmt::format("a shear modulus of {:.6g} Pa with a two-dimensional bulk modulus of {:.6g} Pa has no "
-                     "reading in plane strain",
-                     G, K),
+                          "reading in plane strain",
+                          G, K),
               fmt::format("Poisson's ratio would be {:.6g}, and no solid has one of -1 or less", (K - G) / (2 * K)),
               "Read it in plane stress");
   }

@@ -72,10 +72,10 @@ void refuse_square(const ElasticModuli& moduli) {
 void refuse_negative_tangential(const ElasticModuli& moduli, Packing packing) {
   const bool strain = moduli.plane == Plane::strain;
   bad_input(fmt::format("Poisson's ratio is {:.6g} in plane {}", moduli.poisson_ratio, to_string(moduli.plane)),
-            fmt::format("above {} it needs kT < 0, and no motion of the discs is stable then; {}", strain ? "1/4" : "1/3",
-                   static_limit(packing)),
+            fmt::format("above {} it needs kT < 0, and no motion of the discs is stable then; {}",
+                        strain ? "1/4" : "1/3", static_limit(packing)),
             fmt::format("Choose a Poisson's ratio of at most {}, or allow kT < 0 with static_only = true",
-                   strain ? "1/4" : "1/3"));
+                        strain ? "1/4" : "1/3"));
 }
 
 /// 1 - 4 nu, nu in plane strain; exactly 0 where nu is 1/4 (1/3 in plane stress) to rounding, so that kT = 0 is hit,
@@ -150,7 +150,7 @@ ElasticModuli moduli_of(const SpringConstants& springs, Packing packing, const I
     const bool restrained = packing == Packing::hexagonal_restrained;
     bad_input(fmt::format("kT/kN is {:.6g}", springs.ratio()),
               fmt::format("the shear modulus is no longer positive at {} and below; {}", restrained ? "-1/3" : "-1",
-                     static_limit(packing)),
+                          static_limit(packing)),
               fmt::format("Choose kT/kN above {}", restrained ? "-1/3" : "-1"));
   }
   if (!(sheet.bulk > 0)) {

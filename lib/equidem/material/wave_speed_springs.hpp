@@ -25,12 +25,12 @@ WaveSpeeds wave_speeds_from_shear(double shear_speed, double poisson_ratio);
 /// kN = (pi/4) rho Vp², kT = (pi/4) rho Vs² (2.26), Pa: each disc vibrates as the square around it, of the side 2r.
 SpringConstants springs_of_wave_speeds(double density, const WaveSpeeds& speeds);
 
-/// c = 2 h sqrt(m k) (2.27), N s/m per metre of depth; m is the mass of the disc. Of two such discs that meet, the reduced mass
-/// is m/2 and the damping ratio sqrt(2) h.
+/// c = 2 h sqrt(m k) (2.27), N s/m per metre of depth; m is the mass of the disc. Of two such discs that meet, the
+/// reduced mass is m/2 and the damping ratio sqrt(2) h.
 double dashpot_of(double damping, double mass, double stiffness);
 
-/// Damping ratios c/(2 sqrt(m' k)) of a contact whose two dashpots are c = 2 h sqrt(m k) (2.27). m is the mass of a disc, m' what
-/// the contact moves: m/2 along the normal, m at a wall; by 1 + m r²/I less along the tangent.
+/// Damping ratios c/(2 sqrt(m' k)) of a contact whose two dashpots are c = 2 h sqrt(m k) (2.27). m is the mass of a
+/// disc, m' what the contact moves: m/2 along the normal, m at a wall; by 1 + m r²/I less along the tangent.
 struct ContactDamping {
   double normal = 0, tangential = 0;
 };
@@ -45,7 +45,8 @@ double time_step_of_period(double shortest_period);
 /// Largest omega dt at which x'' = -omega² x - 2 zeta omega x' is stable. v' is v + a(x, v) dt.
 /// x' = x + v' dt: 2 (sqrt(1 + zeta²) - zeta).
 double semi_implicit_limit(double damping_ratio);
-/// x' = x + (v + v')/2 dt, as printed in (3.14)-(3.17): min(4 zeta, 1/zeta); 0 without damping, when every step is unstable.
+/// x' = x + (v + v')/2 dt, as printed in (3.14)-(3.17): min(4 zeta, 1/zeta); 0 without damping, when every step is
+/// unstable.
 double averaged_velocity_limit(double damping_ratio);
 
 }  // namespace equidem

@@ -61,7 +61,8 @@ class Growth {
     first_ = 0.4;
   }
 
-  /// Clumps that start through one another may stay entangled: circles round the bodies, thrown at random where they have room.
+  /// Clumps that start through one another may stay entangled: circles round the bodies, thrown at random where they
+  /// have room.
   void place_apart() {
     PackingOptions circles = options_;
     circles.shape = {};
@@ -94,14 +95,15 @@ class Growth {
   std::int64_t work_ = 0;
 };
 
-/// Steps of the solid fraction, ever smaller: the bodies are few enough to find their way while there is room; at most 7 % of their
-/// size, so that none passes through another.
+/// Steps of the solid fraction, ever smaller: the bodies are few enough to find their way while there is room; at most
+/// 7 % of their size, so that none passes through another.
 double next_fraction(double fraction, double end) {
   const double step = std::min(0.15 * fraction, fraction < 0.7 ? 0.1 : fraction < 0.8 ? 0.02 : 0.005);
   return std::min(fraction + step, end);
 }
 
-/// Radii larger by `spare` are pushed apart to overlaps of less than `spare`, so that the bodies themselves do not touch.
+/// Radii larger by `spare` are pushed apart to overlaps of less than `spare`, so that the bodies themselves do not
+/// touch.
 void grow_to_size(const PackingOptions& options, Growth& growth) {
   const double spare = std::min(options.overlap, 1e-4);
   const double end = growth.full() * (1 + spare) * (1 + spare);
@@ -113,9 +115,10 @@ void grow_to_size(const PackingOptions& options, Growth& growth) {
     progress.update(std::min(fraction / end, 1.0));
     if (last && !report.apart) {
       computation_failed(
-          fmt::format("the {}s jam at a solid fraction of {:.4g}, where they overlap by {:.2g} of the mean radius and no "
-                 "longer move apart",
-                 noun_of(options.shape.kind), growth.full(), report.largest_overlap),
+          fmt::format(
+              "the {}s jam at a solid fraction of {:.4g}, where they overlap by {:.2g} of the mean radius and no "
+              "longer move apart",
+              noun_of(options.shape.kind), growth.full(), report.largest_overlap),
           "discs at random jam at 0.82 to 0.86, those of equal size at what is nearly a lattice",
           "Ask for a smaller solid fraction, or for the densest one");
     }
@@ -125,8 +128,8 @@ void grow_to_size(const PackingOptions& options, Growth& growth) {
   growth.grow_to(growth.full(), {.overlap = 1, .most = 1});
 }
 
-/// Compress until forces no longer vanish, then take the radii back until the mean overlap is the wanted one: it grows in
-/// proportion to the solid fraction above that of jamming (O'Hern et al. 2003, Phys. Rev. E 68, 011306).
+/// Compress until forces no longer vanish, then take the radii back until the mean overlap is the wanted one: it grows
+/// in proportion to the solid fraction above that of jamming (O'Hern et al. 2003, Phys. Rev. E 68, 011306).
 void grow_to_jamming(const PackingOptions& options, Growth& growth) {
   Progress progress("growing");
   PushingReport report;

@@ -16,7 +16,8 @@ namespace {
 /// Rounding of tangent places, of the radius.
 constexpr double rounding = 1e-9;
 
-/// The centre of a disc at the distances `from_a` from a and `from_b` from b, on the left or right of the way between them.
+/// The centre of a disc at the distances `from_a` from a and `from_b` from b, on the left or right of the way between
+/// them.
 std::optional<Vec2> tangent_place(Vec2 a, Vec2 way, double from_a, double from_b, bool left) {
   const double length = norm(way);
   if (!(length > 0) || length > from_a + from_b || length < std::abs(from_a - from_b)) return {};
@@ -26,8 +27,9 @@ std::optional<Vec2> tangent_place(Vec2 a, Vec2 way, double from_a, double from_b
   return a + along * unit + (left ? across : -across) * perpendicular(unit);
 }
 
-/// How far from the centre of a, along a unit vector, that of b lies when it comes from far away and first touches a. The gap between
-/// convex parts is a convex function of the way, so that Newton's method comes nearer from outside and never passes.
+/// How far from the centre of a, along a unit vector, that of b lies when it comes from far away and first touches a.
+/// The gap between convex parts is a convex function of the way, so that Newton's method comes nearer from outside and
+/// never passes.
 double touching_distance(const Outline& a, const Outline& b, double far, Vec2 along) {
   double way = far;
   for (int k = 0; k < 60; ++k) {
@@ -72,7 +74,8 @@ class Inserter {
     return false;
   }
 
-  /// Whether places beside every body were tried in vain: of shapes other than discs, whose places are not to be had for little.
+  /// Whether places beside every body were tried in vain: of shapes other than discs, whose places are not to be had
+  /// for little.
   [[nodiscard]] bool hopeless() const { return !options_.shape.is_disc() && passes_ > 1; }
 
  private:
@@ -97,7 +100,8 @@ class Inserter {
     return {.place = {x, random_.uniform(margin, options_.box.size.y - margin)}};
   }
 
-  /// Where a body, turned at random, touches body a and the first other one, or wall, that it meets on its way around a.
+  /// Where a body, turned at random, touches body a and the first other one, or wall, that it meets on its way around
+  /// a.
   Placement around(std::size_t a, double radius) {
     constexpr int directions = 16, halvings = 32;
     const double turns = random_.uniform(), start = random_.uniform(),
@@ -193,7 +197,7 @@ void fill_by_insertion(const PackingOptions& options, GrainPacking& packing) {
     if (options.as_dense_as_possible) continue;
     computation_failed(
         fmt::format("{} of {} {}s found a gap, {:.4g} of the box", k, radii.size(), noun_of(options.shape.kind),
-               area_of(options.shape, inserter.placed().bodies().radii) / options.box.area()),
+                    area_of(options.shape, inserter.placed().bodies().radii) / options.box.area()),
         fmt::format("for the next one {} gaps were all too small", attempt),
         "Ask for less, for more attempts, or use growth");
   }

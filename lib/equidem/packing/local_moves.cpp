@@ -35,8 +35,8 @@ Crowding crowding(const PlacedBodies& placed, std::int32_t body, Placement there
 
 }  // namespace
 
-/// Monte Carlo without temperature: a random move of a body that overlaps is taken where it overlaps less afterwards, one that lies
-/// free is shaken. Discs are larger by a little than they should be, so that they end apart.
+/// Monte Carlo without temperature: a random move of a body that overlaps is taken where it overlaps less afterwards,
+/// one that lies free is shaken. Discs are larger by a little than they should be, so that they end apart.
 void fill_by_local_moves(const PackingOptions& options, GrainPacking& packing) {
   const bool discs = options.shape.is_disc();
   const double spare = discs ? std::max(options.overlap, 1e-4) : 0;
@@ -90,8 +90,9 @@ void fill_by_local_moves(const PackingOptions& options, GrainPacking& packing) {
     return;
   }
   computation_failed(
-      fmt::format("after {} sweeps {}s still overlap by {:.2g} of a radius at a solid fraction of {:.4g}", options.attempts,
-             noun_of(options.shape.kind), deepest, area_of(options.shape, options.radii) / options.box.area()),
+      fmt::format("after {} sweeps {}s still overlap by {:.2g} of a radius at a solid fraction of {:.4g}",
+                  options.attempts, noun_of(options.shape.kind), deepest,
+                  area_of(options.shape, options.radii) / options.box.area()),
       "small random moves find the way apart ever more slowly as the box fills",
       "Ask for less, for more attempts, or use growth");
 }

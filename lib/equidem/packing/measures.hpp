@@ -19,12 +19,13 @@ struct PackingContact {
   std::int32_t shift_x = 0, shift_y = 0;  ///< i touches j at x_j + (shift_x Lx, shift_y Ly)
   double overlap = 0;                     ///< m
   Vec2 normal;                            ///< unit, from i to j
-  /// From the centre of grain i to the contact point, m: between the surfaces in proportion to the radii of the parts that touch, on the
-  /// wall.
+  /// From the centre of grain i to the contact point, m: between the surfaces in proportion to the radii of the parts
+  /// that touch, on the wall.
   Vec2 arm_i;
 };
 
-/// All that overlap or whose gap is at most 1e-8 of the smaller radius; i < j, ordered. The grains of a bonded pair do not touch each other.
+/// All that overlap or whose gap is at most 1e-8 of the smaller radius; i < j, ordered. The grains of a bonded pair do
+/// not touch each other.
 std::vector<PackingContact> contacts_of(const GrainPacking& packing);
 
 struct PackingMeasures {
@@ -40,8 +41,9 @@ struct PackingMeasures {
   double largest_overlap = 0;  ///< over the smaller radius (of the body: PackingShape)
 };
 
-/// The box without strips of two mean diameters at its walls; under an open top also without three below the lowest place of the surface,
-/// seen in columns two largest diameters wide. The whole box where it is periodic, or too small for that.
+/// The box without strips of two mean diameters at its walls; under an open top also without three below the lowest
+/// place of the surface, seen in columns two largest diameters wide. The whole box where it is periodic, or too small
+/// for that.
 Region measured_region(const GrainPacking& packing);
 
 /// \param region none: measured_region

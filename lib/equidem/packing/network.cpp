@@ -12,8 +12,8 @@
 #include "equidem/grains/scene/clipped_area.hpp"
 #include "equidem/packing/measures.hpp"
 #include "equidem/packing/outline.hpp"
-#include "equidem/statics/number_unknowns.hpp"
 #include "equidem/statics/equilibrium.hpp"
+#include "equidem/statics/number_unknowns.hpp"
 
 namespace equidem {
 namespace {

@@ -2,11 +2,12 @@
 /// \file
 /// A packing as a network of contacts with springs: what statics takes.
 ///
-/// Bodies are those of the packing, numbered alike. Discs touch on the lines of their centres, with levers in proportion to the radii. Of
-/// ellipses and clumps each contact has its normal and its point (ContactArms), each body its section (BodySection) and the radius of the
-/// disc of equal area; clumps may touch in several places, with a spring in each. A pair tied by dashpots counts as one rigid body: at rest
-/// dashpots resist nothing, and without them the pair would fall apart, while over any time in which bodies move little they hold it.
-/// Springs are those given, unstressed: what the forces at rest add to the stiffness as contacts turn is left out.
+/// Bodies are those of the packing, numbered alike. Discs touch on the lines of their centres, with levers in
+/// proportion to the radii. Of ellipses and clumps each contact has its normal and its point (ContactArms), each body
+/// its section (BodySection) and the radius of the disc of equal area; clumps may touch in several places, with a
+/// spring in each. A pair tied by dashpots counts as one rigid body: at rest dashpots resist nothing, and without them
+/// the pair would fall apart, while over any time in which bodies move little they hold it. Springs are those given,
+/// unstressed: what the forces at rest add to the stiffness as contacts turn is left out.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +24,8 @@ Assembly network_of(const GrainPacking& packing, const SpringConstants& springs)
 
 /// What walls hold.
 struct HeldNetwork {
-  /// Contacts with a wall are ones with a body that mirrors it behind the wall; these are the group "walls": held, they resist as
-  /// the wall does. Bodies with fewer than two contacts, which could roll, are left out one after the other.
+  /// Contacts with a wall are ones with a body that mirrors it behind the wall; these are the group "walls": held, they
+  /// resist as the wall does. Bodies with fewer than two contacts, which could roll, are left out one after the other.
   Assembly assembly;
   std::vector<std::int32_t> bodies;  ///< of the packing: the first of the assembly
 };

@@ -47,9 +47,9 @@ struct PushingReport {
   std::int64_t evaluations = 0;
 };
 
-/// Minimize the energy by FIRE (Bitzek et al. 2006, Phys. Rev. Lett. 97, 170201): motion with unit masses that is stopped where it goes
-/// uphill, in steps that grow while it does not. Bodies turn by an angle whose arc at their longest lever counts as their motion.
-/// \param bodies moved and turned
+/// Minimize the energy by FIRE (Bitzek et al. 2006, Phys. Rev. Lett. 97, 170201): motion with unit masses that is
+/// stopped where it goes uphill, in steps that grow while it does not. Bodies turn by an angle whose arc at their
+/// longest lever counts as their motion. \param bodies moved and turned
 PushingReport push_apart(const PackingBox& box, const UnitBody& shape, const PushingOptions& options,
                          PairFinder& finder, Bodies& bodies);
 

@@ -60,9 +60,9 @@ void check(const PackingOptions& options) {
   const double room = (falls ? box.size.x : std::min(box.size.x, box.size.y)) / (box.periodic() ? 2 : 1);
   const double width = 2 * shape.reach * largest;
   if (width > room) {
-    bad_input(
-        fmt::format("the largest {} is {:.4g} m wide, the box {:.4g} m by {:.4g} m", noun, width, box.size.x, box.size.y),
-        box.periodic() ? "half a period must hold it" : "it does not fit in", "Make the box larger");
+    bad_input(fmt::format("the largest {} is {:.4g} m wide, the box {:.4g} m by {:.4g} m", noun, width, box.size.x,
+                          box.size.y),
+              box.periodic() ? "half a period must hold it" : "it does not fit in", "Make the box larger");
   }
   const double share = area_of(options.shape, options.radii) / box.area();
   if (!falls && !options.as_dense_as_possible && share >= 1) {

@@ -46,8 +46,8 @@ struct PackingOptions {
   PackingShape shape;
   std::vector<double> radii;  ///< of each body as the shape says, m
   std::uint64_t seed = 1;
-  /// Not all bodies need to fit: rejection and insertion leave out what does not (they take the bodies in the order given), growth
-  /// scales the radii until the bodies jam.
+  /// Not all bodies need to fit: rejection and insertion leave out what does not (they take the bodies in the order
+  /// given), growth scales the radii until the bodies jam.
   bool as_dense_as_possible = false;
   double overlap = 1e-6;           ///< largest allowed, of the smaller radius; of jammed bodies the mean wanted
   std::int64_t attempts = 100000;  ///< to place a body by rejection or insertion; sweeps of local moves
@@ -86,8 +86,8 @@ std::span<const PackingMethodEntry> packing_methods();
 
 /// Same options, same packing, whatever the number of threads.
 /// \throws Error (bad_input): no bodies, a shape that is none (unit_body_of), a box or radii that are not
-///         positive, bodies wider than the box, more area than the box has, falling into a box without an open top and the
-///         reverse; (computation_failed): the bodies do not fit, naming how dense they came to lie, and as settle
+///         positive, bodies wider than the box, more area than the box has, falling into a box without an open top and
+///         the reverse; (computation_failed): the bodies do not fit, naming how dense they came to lie, and as settle
 GrainPacking pack(const PackingOptions& options);
 
 /// Bodies as grains of a scene: `grains`, `clumps`, `bonds` (without dashpots) and `radii` of a packing.

@@ -31,8 +31,8 @@ const Name& name_of(Kind kind) {
   return *std::find_if(names.begin(), names.end(), [&](const Name& name) { return name.kind == kind; });
 }
 
-/// By it moments are divided while bodies are pushed apart. What is nearly round would be turned far by its small moments, so that it
-/// never came to rest; what is round but for rounding of its centre does not turn.
+/// By it moments are divided while bodies are pushed apart. What is nearly round would be turned far by its small
+/// moments, so that it never came to rest; what is round but for rounding of its centre does not turn.
 double lever_of(double arm, double reach) {
   constexpr double rounding = 1e-12, shortest = 0.1;
   return arm <= rounding * reach ? 0 : std::max(arm, shortest * reach);

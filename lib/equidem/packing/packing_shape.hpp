@@ -11,8 +11,8 @@
 
 namespace equidem {
 
-/// All bodies of a packing have one shape, in sizes and directions of their own. The radius drawn for a body is that of the disc of
-/// equal area, of a pair that of its discs.
+/// All bodies of a packing have one shape, in sizes and directions of their own. The radius drawn for a body is that of
+/// the disc of equal area, of a pair that of its discs.
 struct PackingShape {
   enum class Kind {
     disc,

@@ -20,7 +20,8 @@ struct Placement {
 /// Anywhere, in any direction; between walls anywhere that it does not cross them.
 Placement placement_at_random(const PackingOptions& options, const UnitBody& shape, double radius, Random& random);
 
-/// Grids of squares, one for each class of sizes, a factor of four wide; each square holds the bodies whose centres lie in it.
+/// Grids of squares, one for each class of sizes, a factor of four wide; each square holds the bodies whose centres lie
+/// in it.
 class PlacedBodies {
  public:
   /// \param radii of all bodies that may come

@@ -14,7 +14,8 @@ namespace equidem {
 void fill_by_rejection(const PackingOptions& options, GrainPacking& packing) {
   Random random(options.seed);
   std::vector<double> radii = options.radii;
-  // Large ones first find room that small ones leave; where not all need to fit, in the order given: it decides who stays.
+  // Large ones first find room that small ones leave; where not all need to fit, in the order given: it decides who
+  // stays.
   if (!options.as_dense_as_possible) std::sort(radii.begin(), radii.end(), std::greater<>());
   PlacedBodies placed(options.box, unit_body_of(options.shape), radii);
   Progress progress("placing");
@@ -33,7 +34,7 @@ void fill_by_rejection(const PackingOptions& options, GrainPacking& packing) {
     if (options.as_dense_as_possible) continue;
     computation_failed(
         fmt::format("{} of {} {}s found a place, {:.4g} of the box", k, radii.size(), noun_of(options.shape.kind),
-               area_of(options.shape, placed.bodies().radii) / options.box.area()),
+                    area_of(options.shape, placed.bodies().radii) / options.box.area()),
         fmt::format(
             "for the next one {} attempts were all in vain; equal discs thrown at random never cover more than 0.547",
             options.attempts),

@@ -21,14 +21,14 @@ bool positive(double value) {
 
 void check(const SettlingOptions& options) {
   if (!positive(options.density) || !positive(options.springs.kN) || !positive(options.gravity)) {
-    bad_input(
-        fmt::format("density {} kg/m³, kN {} Pa, gravity {} m/s²", options.density, options.springs.kN, options.gravity),
-        "bodies that fall need all three", "Give numbers > 0");
+    bad_input(fmt::format("density {} kg/m³, kN {} Pa, gravity {} m/s²", options.density, options.springs.kN,
+                          options.gravity),
+              "bodies that fall need all three", "Give numbers > 0");
   }
   if (!(options.springs.kT >= 0) || !(options.friction >= 0) || !(options.wall_friction >= 0)) {
-    bad_input(
-        fmt::format("kT {} Pa, friction {}, with walls {}", options.springs.kT, options.friction, options.wall_friction),
-        "negative ones would feed the motion", "Give 0 or more");
+    bad_input(fmt::format("kT {} Pa, friction {}, with walls {}", options.springs.kT, options.friction,
+                          options.wall_friction),
+              "negative ones would feed the motion", "Give 0 or more");
   }
   if (options.springs.kT == 0 && (options.friction > 0 || options.wall_friction > 0)) {
     bad_input("there is friction, but no tangential spring (kT = 0)",
@@ -41,7 +41,7 @@ void check(const SettlingOptions& options) {
   }
   if (!(options.rest >= 1e-12 && options.rest < 1) || !positive(options.longest) || !(options.time_step >= 0)) {
     bad_input(fmt::format("unbalanced force ratio {}, longest time {} s, time step {} s", options.rest, options.longest,
-                     options.time_step),
+                          options.time_step),
               "the ratio lies between 1e-12 and 1, times are positive", "Correct it");
   }
 }
@@ -176,9 +176,10 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
                                      .reference_length = 0,
                                      .margin = 0});
 
-  // What is left of the motion once the bodies lie: they swing in the slowest modes, which contacts hardly damp. Where the kinetic
-  // energy has fallen to half a peak all of them are stopped, and the springs find them nearer to rest. Bodies that can
-  // still drop by more than this share of their radius are left to fall; bonded pairs creep as long as they carry.
+  // What is left of the motion once the bodies lie: they swing in the slowest modes, which contacts hardly damp. Where
+  // the kinetic energy has fallen to half a peak all of them are stopped, and the springs find them nearer to rest.
+  // Bodies that can still drop by more than this share of their radius are left to fall; bonded pairs creep as long as
+  // they carry.
   constexpr double lying_drop = 1e-4;
   const double resting_drop = scene.bonds.empty() ? 1e-9 : 1e-5;
   double smallest = INFINITY;
@@ -215,7 +216,7 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
   const SettlingReport report = unbalance(simulation.grains(), simulation.contacts(), scene.bonds, scene.gravity);
   computation_failed(fmt::format("after {:.4g} s the bodies are not at rest", simulation.time()),
                      fmt::format("the mean unbalanced force is {:.2g} of the mean contact force, {:.2g} was wanted",
-                            report.unbalanced, options.rest),
+                                 report.unbalanced, options.rest),
                      scene.bonds.empty() ? "Give them longer, more friction or damping, or take a shorter step"
                                          : "Let the bonds creep less (a larger bond_share), or give them longer");
 }

@@ -23,12 +23,12 @@ struct SettlingOptions {
   double time_step = 0;  ///< s; 0: a quarter of the limit of stability of the two lightest bodies
   double rest = 1e-6;    ///< unbalanced force ratio at which the bodies are at rest
   double longest = 10;   ///< s of motion after which it is given up
-  /// Bring the bodies down without inertia and friction first: much faster, but the network of contacts is that of frictionless
-  /// bodies and denser than what falls.
+  /// Bring the bodies down without inertia and friction first: much faster, but the network of contacts is that of
+  /// frictionless bodies and denser than what falls.
   bool relax_first = false;
-  /// Dashpots of bonded pairs, as shares of what a step by the velocities at its start bears: C_n = share 2 m_n/dt, C_s = share 2 m_s/dt
-  /// with m_n = m/2, m_s = m/6. What they carry makes them creep, the less the larger they are: far more than an explicit step bears,
-  /// or the bodies never come to rest.
+  /// Dashpots of bonded pairs, as shares of what a step by the velocities at its start bears: C_n = share 2 m_n/dt, C_s
+  /// = share 2 m_s/dt with m_n = m/2, m_s = m/6. What they carry makes them creep, the less the larger they are: far
+  /// more than an explicit step bears, or the bodies never come to rest.
   double bond_share = 2e4;
 };
 
@@ -53,12 +53,13 @@ struct SettledBodies {
 /// The walls of the box: 0 floor, 1 left, 2 right.
 std::vector<GrainWall> walls_of_box(double width);
 
-/// A box of a width with an open top, floor at y = 0, walls at x = 0 and x = width: walls, gravity, contacts of linear springs and
-/// dashpots. Bodies are of kind 0 and still to come.
+/// A box of a width with an open top, floor at y = 0, walls at x = 0 and x = width: walls, gravity, contacts of linear
+/// springs and dashpots. Bodies are of kind 0 and still to come.
 GrainScene scene_of_box(double width, const SettlingOptions& options);
 
 /// The grains of a scene of a box are let go until all is at rest. Bonds get their dashpots.
-/// \throws Error (bad_input) on options out of range; (computation_failed) where no rest comes in `longest`, and as GrainSimulation
+/// \throws Error (bad_input) on options out of range; (computation_failed) where no rest comes in `longest`, and as
+///         GrainSimulation
 SettledBodies settle(GrainScene scene, const SettlingOptions& options);
 
 /// How far the contact forces are from carrying the weights. Bonded grains are one body.

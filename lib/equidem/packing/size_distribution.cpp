@@ -196,7 +196,8 @@ RadiusMoments moments_of(const SizeDistribution& sizes) {
     };
     return {moment(1), moment(2)};
   }
-  // Mass is that of discs: with the mass uniform in ln d between sieves, E[r^k] over numbers is the integral of d^(k-2).
+  // Mass is that of discs: with the mass uniform in ln d between sieves, E[r^k] over numbers is the integral of
+  // d^(k-2).
   double numbers = 0, lengths = 0, squares = 0;
   for (std::size_t k = 1; k < sizes.sieves.size(); ++k) {
     const double d1 = sizes.sieves[k - 1].diameter, d2 = sizes.sieves[k].diameter;

@@ -32,13 +32,13 @@ struct SizeDistribution {
 /// \throws Error (bad_input) on numbers out of range, sieves that do not ascend or do not run from 0 to 1
 void check(const SizeDistribution& distribution);
 
-/// A curve of two columns, diameter in m and share passing by mass in [0, 1], ascending, the first share 0, the last 1. A first row of
-/// names, empty lines and lines that begin with # are passed over.
+/// A curve of two columns, diameter in m and share passing by mass in [0, 1], ascending, the first share 0, the last 1.
+/// A first row of names, empty lines and lines that begin with # are passed over.
 /// \throws Error (bad_input) with file and line
 std::vector<Sieve> read_sieve_curve(const std::filesystem::path& path);
 
-/// Radii in random order, one from each of `count` parts of equal probability, so that even a few follow the distribution.
-/// Only operations that IEEE 754 rounds alike everywhere: a seed gives the same bits on every machine.
+/// Radii in random order, one from each of `count` parts of equal probability, so that even a few follow the
+/// distribution. Only operations that IEEE 754 rounds alike everywhere: a seed gives the same bits on every machine.
 /// \return m
 std::vector<double> draw_radii(const SizeDistribution& distribution, std::int64_t count, Random& random);
 

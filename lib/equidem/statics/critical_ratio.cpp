@@ -14,8 +14,8 @@
 #include "equidem/core/progress.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
+#include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {

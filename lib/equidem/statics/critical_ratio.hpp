@@ -32,13 +32,14 @@ struct CriticalRatio {
 };
 
 /// The ratio r_c < 0 below which the assembly is unstable in statics where contacts have kT = r kN: the stiffness with
-/// rotations eliminated is linear in r, S = K_N + r S_T with S_T >= 0, so that S loses definiteness once and for good as r falls.
-/// The number of negative eigenvalues of K beyond those of the rotations brackets r_c; inverse iteration on the pencil
-/// K_N x = -r K_T x from the stable end of the bracket then converges to r_c, which is nearest to it; two more
-/// factorizations beside the value prove it. Rigid motions and gears that nothing resists are held, in a periodic cell the
-/// translations; other mechanisms are counted as they are at r = 1.
+/// rotations eliminated is linear in r, S = K_N + r S_T with S_T >= 0, so that S loses definiteness once and for good
+/// as r falls. The number of negative eigenvalues of K beyond those of the rotations brackets r_c; inverse iteration on
+/// the pencil K_N x = -r K_T x from the stable end of the bracket then converges to r_c, which is nearest to it; two
+/// more factorizations beside the value prove it. Rigid motions and gears that nothing resists are held, in a periodic
+/// cell the translations; other mechanisms are counted as they are at r = 1.
 /// \param springs kN of every contact; where some kT are zero and others are not, the former have none for any r
-/// \throws Error (bad_input) on options out of range, on contacts off the lines of centres, as number_unknowns does; (computation_failed) where K cannot be
+/// \throws Error (bad_input) on options out of range, on contacts off the lines of centres, as number_unknowns does;
+///         (computation_failed) where K cannot be
 ///         factorized
 CriticalRatio find_critical_ratio(const Assembly& assembly, const ContactSprings& springs,
                                   std::span<const Support> supports, const CriticalRatioOptions& options = {});

@@ -33,8 +33,8 @@ std::vector<double> assemble_loads(const Assembly& assembly, const DegreesOfFree
     check_load(load);
     const DiscGroup& discs = group(assembly, load.group);
     if (discs.discs.empty()) {
-      bad_input(fmt::format("a load acts on the group '{}', which is empty", load.group), "there is no disc to carry it",
-                "Choose a group with discs or mend its definition");
+      bad_input(fmt::format("a load acts on the group '{}', which is empty", load.group),
+                "there is no disc to carry it", "Choose a group with discs or mend its definition");
     }
     if (load.kind == LoadKind::traction && discs.tributary_lengths.empty()) {
       bad_input(fmt::format("a traction acts on the group '{}'", load.group),
@@ -214,14 +214,15 @@ SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& spr
 
 std::string Equilibrium::report() const {
   std::string text = fmt::format("{} unknowns, {}, {:.3g} entries in L ({})\n", unknowns, solver, factor_nonzeros,
-                            readable_bytes(factor_bytes));
-  text += fmt::format("relative residual {:.1e} after {}, {:.1e} for the motions rounded to double\n", relative_residual,
-                 counted(refinements, "refinement"), rounded_residual);
+                                 readable_bytes(factor_bytes));
+  text += fmt::format("relative residual {:.1e} after {}, {:.1e} for the motions rounded to double\n",
+                      relative_residual, counted(refinements, "refinement"), rounded_residual);
   if (condition > 0)
-    text +=
-        fmt::format("condition about {:.1e}; relative error of the motions at most about {:.1e}\n", condition, error_bound);
+    text += fmt::format("condition about {:.1e}; relative error of the motions at most about {:.1e}\n", condition,
+                        error_bound);
   if (negative_pivots > 0 || unstable_modes != 0) {
-    text += negative_pivots < 0 ? "negative pivots not counted: " : fmt::format("{} negative pivots: ", negative_pivots);
+    text +=
+        negative_pivots < 0 ? "negative pivots not counted: " : fmt::format("{} negative pivots: ", negative_pivots);
     if (unstable_modes == 0) {
       text += "those of the rotations alone (kT < 0); the state of rest is stable in statics\n";
     } else if (unstable_modes < 0) {

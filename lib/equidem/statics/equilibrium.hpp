@@ -32,19 +32,23 @@ struct Equilibrium {
   std::vector<ContactForce> contact_forces;  ///< per contact
   std::vector<Reaction> reactions;           ///< discs with a held component
   std::vector<double> rotation_moments;  ///< N, per disc: moment that holds it where rotation is restrained; else empty
-  /// |f - K u| over |f| (prescribed motions included in f), 2-norms over the unknowns, for the motion u that refinement keeps to
+  /// |f - K u| over |f| (prescribed motions included in f), 2-norms over the unknowns, for the motion u that refinement
+  /// keeps to
   /// twice the digits of a double: the residual of the contact forces.
   double relative_residual = 0;
   double rounded_residual = 0;  ///< the same for `motions`, which are u rounded to doubles
   int refinements = 0;          ///< steps of iterative refinement done
-  /// |K| |K^-1|, estimated (2-norm of the inverse by inverse iteration from the solution), and the bound on the relative error of
-  /// `motions` (2-norm) that follows from it, the residual and the rounding of normals, with a margin of 10; 0 unless asked for.
+  /// |K| |K^-1|, estimated (2-norm of the inverse by inverse iteration from the solution), and the bound on the
+  /// relative error of
+  /// `motions` (2-norm) that follows from it, the residual and the rounding of normals, with a margin of 10; 0 unless
+  /// asked for.
   double condition = 0;
   double error_bound = 0;
   std::int64_t unknowns = 0;
   std::int64_t negative_pivots = 0;  ///< negative eigenvalues of K (Sylvester's law of inertia); -1: not counted
-  /// Negative eigenvalues beyond those that the rotations bring by themselves where kT < 0 (one each): independent motions
-  /// by which the assembly would give way. 0: the state of rest is stable as statics sees it; -1: the solver cannot tell.
+  /// Negative eigenvalues beyond those that the rotations bring by themselves where kT < 0 (one each): independent
+  /// motions by which the assembly would give way. 0: the state of rest is stable as statics sees it; -1: the solver
+  /// cannot tell.
   std::int64_t unstable_modes = 0;
   double pivot_growth = 0;     ///< largest |L_ij| of the factorization
   double factor_nonzeros = 0;  ///< entries of L
@@ -81,7 +85,8 @@ class EquilibriumSolver {
   EquilibriumSolver& operator=(const EquilibriumSolver&) = delete;
 
   /// A load on a component that is held goes straight into its reaction.
-  /// \throws Error (bad_input) where a load names no group or an empty one, or gives a moment to a disc that nothing keeps
+  /// \throws Error (bad_input) where a load names no group or an empty one, or gives a moment to a disc that nothing
+  ///         keeps
   ///         from turning; Error (computation_failed) where the residual shows that K is too near to singular
   [[nodiscard]] Equilibrium solve(const LoadCase& loads) const;
   [[nodiscard]] const Effects& effects() const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Hold what can move at no cost, where that changes no force: rigid motions and gears of an assembly under balanced loads.
+/// Hold what can move at no cost, where that changes no force: rigid motions and gears of an assembly under balanced
+/// loads.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +21,8 @@ struct HeldMotions {
   std::vector<GearMode> gears;
 };
 
-/// Hold one component for each free rigid motion of a piece (that which the motion moves most) and the rotation of one disc
-/// of each group of gears. The reactions are zero exactly where the loads do no work in those motions.
+/// Hold one component for each free rigid motion of a piece (that which the motion moves most) and the rotation of one
+/// disc of each group of gears. The reactions are zero exactly where the loads do no work in those motions.
 HeldMotions hold_free_motions(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
                               DegreesOfFreedom& unknowns);
 

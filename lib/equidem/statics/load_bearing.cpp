@@ -274,7 +274,7 @@ class Pruning {
       }
       if (count > 0) {
         network.sentences.push_back(fmt::format("{} ({}{}) {} left out", counted(count, name), names,
-                                           count > 3 ? ", ..." : "", count == 1 ? one : several));
+                                                count > 3 ? ", ..." : "", count == 1 ? one : several));
       }
       return count;
     };

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "equidem/core/text.hpp"
+#include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
 #include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/load_bearing.hpp"
 #include "equidem/statics/motion_description.hpp"
-#include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
 #include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
@@ -33,7 +33,8 @@ struct HeldSystem {
         matrix(assemble_stiffness(assembly, graph, springs, unknowns)),
         symbolic(std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph), graph, unknowns.per_disc))) {
     check_memory(estimate(*symbolic, unknowns, true), 0);
-    // Of many mechanisms at once a pivot that is zero would outgrow its round-off by the usual threshold, and be missed.
+    // Of many mechanisms at once a pivot that is zero would outgrow its round-off by the usual threshold, and be
+    // missed.
     factor = multifrontal_ldlt(symbolic, MatrixOnGraph{matrix, assembly, graph}, {.threshold = 0.1});
   }
 };
@@ -74,17 +75,17 @@ MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& 
   }
   if (report.gears > 0) {
     const GearMode& first = system.held.gears.front();
-    report.sentences.push_back(
-        fmt::format("{} of discs that counter-rotate like gears, since every ring of contacts is even; the first has {} "
-               "around {}",
-               counted(report.gears, "group"), counted(first.discs, "disc"),
-               describe_disc(assembly, static_cast<std::size_t>(first.first_disc))));
+    report.sentences.push_back(fmt::format(
+        "{} of discs that counter-rotate like gears, since every ring of contacts is even; the first has {} "
+        "around {}",
+        counted(report.gears, "group"), counted(first.discs, "disc"),
+        describe_disc(assembly, static_cast<std::size_t>(first.first_disc))));
   }
   if (report.others > 0) {
     const std::vector<double> motion = system.factor->softest_motion();
-    report.sentences.push_back(
-        fmt::format("{} in which no contact stretches or slips{}", counted(report.others, "motion"),
-               motion.empty() ? "" : ", such as " + describe_motion(assembly, motions_of(system.unknowns, motion))));
+    report.sentences.push_back(fmt::format(
+        "{} in which no contact stretches or slips{}", counted(report.others, "motion"),
+        motion.empty() ? "" : ", such as " + describe_motion(assembly, motions_of(system.unknowns, motion))));
   }
   if (assembly.periodic() && supports.empty()) {
     const ContactSprings equal(SpringConstants{1, 1});  // what carries no load for want of slip joins all the same

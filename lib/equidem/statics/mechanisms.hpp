@@ -15,15 +15,15 @@
 
 namespace equidem {
 
-/// Motions that neither stretch nor slip, kT of either sign counted by its size. The rigid motions of an assembly in one piece that
-/// no support is given for (a free body 3, a periodic cell 2 translations) are no mechanisms.
+/// Motions that neither stretch nor slip, kT of either sign counted by its size. The rigid motions of an assembly in
+/// one piece that no support is given for (a free body 3, a periodic cell 2 translations) are no mechanisms.
 struct MechanismReport {
   std::int64_t rigid_motions = 0;  ///< of the whole, allowed
   std::int64_t free_pieces = 0;    ///< rigid motions of pieces or discs that should be held but are not
   std::int64_t gears = 0;          ///< groups of discs that can counter-rotate
   std::int64_t others = 0;         ///< found as zero pivots of K
-  /// Directions of the period in which nothing joins the assembly to its images: in the infinite assembly they move apart and past
-  /// each other, in no motion that repeats with the cell.
+  /// Directions of the period in which nothing joins the assembly to its images: in the infinite assembly they move
+  /// apart and past each other, in no motion that repeats with the cell.
   std::int64_t unjoined = 0;
   std::vector<std::string> sentences;  ///< one for each kind, naming the first
 

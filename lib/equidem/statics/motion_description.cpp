@@ -55,8 +55,9 @@ class Description {
     const auto count = static_cast<double>(assembly_.size());
     if (participants_ <= std::max(2.0, 0.1 * count) && participants_ < 0.5 * count) return describe_local();
     return (strain.empty() ? "a motion " : strain) +
-           fmt::format("spread over {} of {}, largest at {}{}", moving_.size(), counted(as_count(assembly_.size()), "disc"),
-                  describe_disc(assembly_, largest_first_.front()), describe_contacts());
+           fmt::format("spread over {} of {}, largest at {}{}", moving_.size(),
+                       counted(as_count(assembly_.size()), "disc"), describe_disc(assembly_, largest_first_.front()),
+                       describe_contacts());
   }
 
  private:
@@ -137,8 +138,9 @@ class Description {
                (squared(frame.lever_j) + squared(frame.offset_j)) * squared(theta_j);
     }
     const bool gears = slip <= negligible * scale;
-    return fmt::format("a {} in place of {}{}", gears ? "counter-rotation" : "rotation", describe_moving(moving_.size()),
-                  gears ? ", neighbours turning against one another like gears" : "");
+    return fmt::format("a {} in place of {}{}", gears ? "counter-rotation" : "rotation",
+                       describe_moving(moving_.size()),
+                       gears ? ", neighbours turning against one another like gears" : "");
   }
 
   /// Least squares over some discs.
@@ -240,9 +242,9 @@ class Description {
     for (const std::size_t d : moving_) across += squared(cross(u, u_[d]));
     const bool along = across <= negligible * total_ * dot(u, u);
     return fmt::format("a sliding of {} of discs{}, each of which moves as one: {} of {}, such as {}",
-                  counted(as_count(assembly_.size()) - std::count(sizes.begin(), sizes.end(), 0), "group"),
-                  along ? " along " + describe_direction(u) : "", moving_.size(),
-                  counted(as_count(assembly_.size()), "disc"), describe_disc(assembly_, largest_first_.front()));
+                       counted(as_count(assembly_.size()) - std::count(sizes.begin(), sizes.end(), 0), "group"),
+                       along ? " along " + describe_direction(u) : "", moving_.size(),
+                       counted(as_count(assembly_.size()), "disc"), describe_disc(assembly_, largest_first_.front()));
   }
 
   /// Discs that turn, but not as the rigid motion does.
@@ -275,8 +277,8 @@ class Description {
     for (std::size_t k = 0; k < std::min<std::size_t>({5, static_cast<std::size_t>(about), moving_.size()}); ++k) {
       names += (k == 0 ? "" : ", ") + describe_disc(assembly_, largest_first_[k]);
     }
-    return fmt::format("a local motion of about {} of {}: {}{}{}", about, counted(as_count(assembly_.size()), "disc"), names,
-                  about > 5 ? ", ..." : "", describe_contacts());
+    return fmt::format("a local motion of about {} of {}: {}{}{}", about, counted(as_count(assembly_.size()), "disc"),
+                       names, about > 5 ? ", ..." : "", describe_contacts());
   }
 
   /// "a nearly uniform shear ", "a nearly uniform strain " or "": images of one disc move alike, which strain forbids.

@@ -25,8 +25,8 @@ void hold(DegreesOfFreedom& unknowns, std::int32_t disc, int k, double value, co
 
 void check_value(const std::optional<double>& value, const std::string& key, const std::string& group) {
   if (value && !std::isfinite(*value)) {
-    bad_input(fmt::format("the support of '{}' prescribes {} = {}", group, key, *value), "a motion must be a finite number",
-              "Give a number in metres or radians");
+    bad_input(fmt::format("the support of '{}' prescribes {} = {}", group, key, *value),
+              "a motion must be a finite number", "Give a number in metres or radians");
   }
 }
 
@@ -53,7 +53,8 @@ void apply(const Assembly& assembly, const Effects& effects, const Support& supp
   }
 }
 
-/// Rotations that no contact resists: every contact of the disc lies on the line of centres and has kT = 0 or a lever arm of zero.
+/// Rotations that no contact resists: every contact of the disc lies on the line of centres and has kT = 0 or a lever
+/// arm of zero.
 void hold_inert_rotations(const Assembly& assembly, const ContactSprings& springs, DegreesOfFreedom& unknowns) {
   std::vector<std::uint8_t> resisted(assembly.size(), 0);
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {

@@ -23,7 +23,8 @@ std::string describe_rotation(const PieceMotions& piece, const RigidMotion& moti
   for (double* value : {&x.x, &x.y}) {
     if (std::abs(*value) < 1e-9 * size) *value = 0;
   }
-  return fmt::format("rotation about ({:.6g}, {:.6g}){}", x.x, x.y, piece.rolls ? ", discs rolling on one another" : "");
+  return fmt::format("rotation about ({:.6g}, {:.6g}){}", x.x, x.y,
+                     piece.rolls ? ", discs rolling on one another" : "");
 }
 
 /// A rotation about a point 1e7 sizes away counts as a translation.
@@ -48,7 +49,7 @@ std::string describe_free(const PieceMotions& piece) {
   const auto& [p, q] = std::pair{free[0], free[1]};
   const RigidMotion rotation{p.rotation * p.t + q.rotation * q.t, p.rotation * p.rotation + q.rotation * q.rotation};
   return fmt::format("translation along {} and {}", describe_direction(common_translation(free)),
-                describe_rotation(piece, rotation));
+                     describe_rotation(piece, rotation));
 }
 
 void check_discs_without_contacts(const Assembly& assembly, const std::vector<PieceMotions>& pieces) {
@@ -60,15 +61,15 @@ void check_discs_without_contacts(const Assembly& assembly, const std::vector<Pi
   }
   if (count == 0) return;
   if (assembly.size() == 1) {
-    bad_input(fmt::format("the assembly is a single disc that is free to move, {}", names), "no contact resists its motion",
-              "Give it neighbours");
+    bad_input(fmt::format("the assembly is a single disc that is free to move, {}", names),
+              "no contact resists its motion", "Give it neighbours");
   }
   if (count == 1) {
     bad_input(fmt::format("{} has no contacts and is not held in both directions", names), "nothing resists its motion",
               "Hold it, remove it, or give it contacts");
   }
   bad_input(fmt::format("{} have no contacts and are not held in both directions: {}{}", counted(count, "disc"), names,
-                   count > 3 ? ", ..." : ""),
+                        count > 3 ? ", ..." : ""),
             "nothing resists their motion", "Hold them, remove them, or give them contacts");
 }
 
@@ -98,7 +99,8 @@ std::string remedy(const PieceMotions& piece) {
     return "Hold one more disc, along a line that does not pass through that point";
   }
   const std::string direction = describe_direction(free.size() == 1 ? free[0].t : common_translation(free));
-  return fmt::format("Hold a disc in {}{}", direction, rotates ? ", and another one so that the assembly cannot turn" : "");
+  return fmt::format("Hold a disc in {}{}", direction,
+                     rotates ? ", and another one so that the assembly cannot turn" : "");
 }
 
 void check_pieces(const Assembly& assembly, const std::vector<PieceMotions>& pieces) {
@@ -117,7 +119,7 @@ void check_pieces(const Assembly& assembly, const std::vector<PieceMotions>& pie
   const bool several = first->free.size() > 1;
   if (joined == 1) {
     bad_input(first->held ? fmt::format("the supports leave {} of the assembly free: {}",
-                                   several ? "rigid motions" : "a rigid motion", names)
+                                        several ? "rigid motions" : "a rigid motion", names)
                           : fmt::format("no support holds the assembly: {} {} free", names, several ? "are" : "is"),
               "no contact resists a rigid motion, so that equilibrium has no single answer", remedy(*first));
   }
@@ -125,7 +127,7 @@ void check_pieces(const Assembly& assembly, const std::vector<PieceMotions>& pie
                             : loose == joined ? "none of them is fully held, such as"
                                               : fmt::format("{} of them are not fully held, such as", loose);
   bad_input(fmt::format("the assembly is in {} pieces ({}) and {} the {} with {}: {}", joined, sizes_of(pieces), which,
-                   counted(first->discs, "disc"), describe_disc(assembly, first->first_disc), names),
+                        counted(first->discs, "disc"), describe_disc(assembly, first->first_disc), names),
             "no contact joins them to the rest", "Hold every piece, remove it, or join it by contacts");
 }
 
@@ -133,12 +135,12 @@ void check_gears(const Assembly& assembly, const std::vector<GearMode>& gears) {
   if (gears.empty()) return;
   const GearMode& first = gears.front();
   const auto more = static_cast<std::int64_t>(gears.size()) - 1;
-  bad_input(
-      fmt::format("{} around {} can counter-rotate like gears at no cost{}", counted(first.discs, "disc"),
-             describe_disc(assembly, first.first_disc),
-             more > 0 ? fmt::format(", and so can {} more such {}", more, more > 1 ? "groups" : "group") : std::string()),
-      "their graph of contacts is bipartite: no odd ring of contacts makes neighbours slip",
-      "Hold the rotation of one of them, restrain rotation, or add a contact that closes an odd ring");
+  bad_input(fmt::format("{} around {} can counter-rotate like gears at no cost{}", counted(first.discs, "disc"),
+                        describe_disc(assembly, first.first_disc),
+                        more > 0 ? fmt::format(", and so can {} more such {}", more, more > 1 ? "groups" : "group")
+                                 : std::string()),
+            "their graph of contacts is bipartite: no odd ring of contacts makes neighbours slip",
+            "Hold the rotation of one of them, restrain rotation, or add a contact that closes an odd ring");
 }
 
 }  // namespace

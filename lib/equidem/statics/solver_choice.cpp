@@ -11,11 +11,11 @@
 #include "equidem/core/text.hpp"
 #include "equidem/linear/cholmod_factorization.hpp"
 #include "equidem/linear/memory.hpp"
-#include "equidem/statics/motion_description.hpp"
 #include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
 #include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
-#include "equidem/statics/spring_sizes.hpp"
 #include "equidem/linear/umfpack_factorization.hpp"
+#include "equidem/statics/motion_description.hpp"
+#include "equidem/statics/spring_sizes.hpp"
 
 namespace equidem {
 namespace {
@@ -168,8 +168,8 @@ void check(const SolverOptions& options) {
               "Give 0 or more");
   }
   if (!(options.memory_limit >= 0)) {
-    bad_input(fmt::format("memory_limit = {}", options.memory_limit), "it must be a number of bytes, or 0 for what is free",
-              "Correct it");
+    bad_input(fmt::format("memory_limit = {}", options.memory_limit),
+              "it must be a number of bytes, or 0 for what is free", "Correct it");
   }
 }
 
@@ -189,11 +189,11 @@ SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& u
 void check_memory(const SolveEstimate& estimate, double memory_limit) {
   const double available = memory_limit > 0 ? memory_limit : available_memory();
   if (available == 0 || estimate.peak_bytes <= available) return;
-  computation_failed(
-      fmt::format("the factorization of {} unknowns needs about {}", estimate.unknowns, readable_bytes(estimate.peak_bytes)),
-      fmt::format("{} {}", readable_bytes(available),
-             memory_limit > 0 ? "are allowed by memory_limit" : "of memory are available"),
-      "Use fewer discs, restrain rotation, raise the limit, or take a machine with more memory");
+  computation_failed(fmt::format("the factorization of {} unknowns needs about {}", estimate.unknowns,
+                                 readable_bytes(estimate.peak_bytes)),
+                     fmt::format("{} {}", readable_bytes(available),
+                                 memory_limit > 0 ? "are allowed by memory_limit" : "of memory are available"),
+                     "Use fewer discs, restrain rotation, raise the limit, or take a machine with more memory");
 }
 
 std::unique_ptr<Factorization> factorize(const System& system, const SolverOptions& options, Mechanisms mechanisms,

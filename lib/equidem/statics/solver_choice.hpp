@@ -7,11 +7,11 @@
 
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/core/stopwatch.hpp"
-#include "equidem/statics/number_unknowns.hpp"
 #include "equidem/linear/factorization.hpp"
-#include "equidem/linear/multifrontal/front.hpp"
 #include "equidem/linear/linear_solver.hpp"
+#include "equidem/linear/multifrontal/front.hpp"
 #include "equidem/linear/ordering/symbolic_factor.hpp"
+#include "equidem/statics/number_unknowns.hpp"
 
 namespace equidem {
 

@@ -8,7 +8,8 @@
 
 namespace equidem {
 
-/// Every spring that there is as stiff as any other, 1 Pa: which motions cost nothing, no longer how little others cost.
+/// Every spring that there is as stiff as any other, 1 Pa: which motions cost nothing, no longer how little others
+/// cost.
 ContactSprings equal_springs(const Assembly& assembly, const ContactSprings& springs);
 
 /// All springs times a factor.

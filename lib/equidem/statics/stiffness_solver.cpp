@@ -67,9 +67,10 @@ void StiffnessSolver::evaluate_residual(const RightHandSide& given, const Precis
 }
 
 /// Refinement of one right-hand side: K d = f - f_int(u), u := u + d, until the residual no longer falls. The first
-/// pass is the solution itself; the residual comes from the contact law, the motion is kept to twice the digits. Round-off of
-/// the factor hides the softest motions first, of which a correction then brings only a part, and always the same one: where
-/// corrections shrink slowly, each is scaled to the least energy, u := u + (d.r / d.K d) d, which brings all of one such motion.
+/// pass is the solution itself; the residual comes from the contact law, the motion is kept to twice the digits.
+/// Round-off of the factor hides the softest motions first, of which a correction then brings only a part, and always
+/// the same one: where corrections shrink slowly, each is scaled to the least energy, u := u + (d.r / d.K d) d, which
+/// brings all of one such motion.
 struct StiffnessSolver::Refinement {
   const StiffnessSolver& solver;
   const RightHandSide& given;
@@ -129,7 +130,7 @@ struct StiffnessSolver::Refinement {
     const double size = std::hypot(norm_of(solution.motion.high), imposed_length());
     if (corrections > 1 && relative > 0 && !(last_step <= worthless * size)) {
       computation_failed(fmt::format("the last of {} refinements still changed the motions by {:.1e} of their size",
-                                corrections - 1, last_step / size),
+                                     corrections - 1, last_step / size),
                          too_soft, remedy);
     }
     return std::move(solution);

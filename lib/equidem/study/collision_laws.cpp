@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Fujioka & Ushijima (2005), section 5: laws of collision that stand for rigid bodies, their dimensionless stiffness held while the step
-/// changes; Figs. 10 and 11 with the time of computing as the axis.
+/// Fujioka & Ushijima (2005), section 5: laws of collision that stand for rigid bodies, their dimensionless stiffness
+/// held while the step changes; Figs. 10 and 11 with the time of computing as the axis.
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -45,7 +45,8 @@ std::shared_ptr<GrainSimulation> start(const GrainScene& scene, const Law& law, 
                                            GrainOptions{.law = law.law, .time_step = step, .refuse_crossing = false});
 }
 
-// One impact: balls of 1 m side by side fall from heights about 0.1 m, each meeting the floor at another instant of its step.
+// One impact: balls of 1 m side by side fall from heights about 0.1 m, each meeting the floor at another instant of its
+// step.
 constexpr int balls = 32;
 constexpr double height = 0.1, watched = 0.25;  // m, s: near the top of the rebound of most
 
@@ -148,7 +149,8 @@ Study collision_laws_study(bool quick) {
        .order = 0,
        .why = "its closing speed, that of the step before, lags behind the turning normal: an adhesion that no step "
               "removes"},
-      // A time s before parting, Hertz's overlap is d ~ (s dt²)^(2/3) and its period dt d^(-1/4); contact is lost where it is s.
+      // A time s before parting, Hertz's overlap is d ~ (s dt²)^(2/3) and its period dt d^(-1/4); contact is lost where
+      // it is s.
       {.problem = "stacked spheres",
        .method = "T hertz_dashpot",
        .quantity = "parting_time",

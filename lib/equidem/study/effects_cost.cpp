@@ -8,8 +8,8 @@
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/dynamics/simulation.hpp"
-#include "equidem/grains/scene/clump.hpp"
 #include "equidem/grains/grain_simulation.hpp"
+#include "equidem/grains/scene/clump.hpp"
 #include "equidem/study/built_in.hpp"
 
 namespace equidem {
@@ -177,7 +177,8 @@ void add_colliding(Study& study, int side) {
   for (const NormalLaw law : {NormalLaw::linear_dashpot, NormalLaw::energy_map}) {
     const bool map = law == NormalLaw::energy_map;
     GrainScene scene = map ? gas(side) : bed(side);
-    const std::string problem = fmt::format("colliding discs, law {}{}", letter_of(law), map ? ", flying in a box" : "");
+    const std::string problem =
+        fmt::format("colliding discs, law {}{}", letter_of(law), map ? ", flying in a box" : "");
     const GrainOptions options{.law = law, .time_step = 1e-5};
     for (const Bodies& one : scenes) {
       one.add(scene);

@@ -32,8 +32,9 @@ struct Found {
 };
 using Method = std::function<Found(const Pair&)>;
 
-/// n that maximizes branch . n - h_i(n) - h_j(n): the best of `directions`, then bisection of the derivative, branch . s - h_i' + h_j'
-/// with h_j' that of -n, between its neighbours. \param directions enough for the best one to lie beside the maximum
+/// n that maximizes branch . n - h_i(n) - h_j(n): the best of `directions`, then bisection of the derivative, branch .
+/// s - h_i' + h_j' with h_j' that of -n, between its neighbours. \param directions enough for the best one to lie
+/// beside the maximum
 Vec2 normal_by_bisection(const Pair& pair, int directions) {
   const auto at = [](double angle) { return Vec2{std::cos(angle), std::sin(angle)}; };
   double best = 0, largest = -1e300;

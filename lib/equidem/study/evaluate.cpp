@@ -106,7 +106,8 @@ std::vector<StudyCurve> curves_of(const Study& study, const std::vector<StudyRow
   return curves;
 }
 
-/// Time and assured error of the rows of a problem; others take no part. The largest over all quantities where none is given.
+/// Time and assured error of the rows of a problem; others take no part. The largest over all quantities where none is
+/// given.
 std::vector<CostPoint> points_of(const Study& study, const std::vector<StudyRow>& rows, const std::string& problem,
                                  std::optional<std::size_t> quantity) {
   std::vector<CostPoint> points;
@@ -122,14 +123,14 @@ std::vector<CostPoint> points_of(const Study& study, const std::vector<StudyRow>
   return points;
 }
 
-/// What an error `times` smaller than that of a row costs beside it: by the front where it reaches that far, else by the order of the
-/// row's method.
+/// What an error `times` smaller than that of a row costs beside it: by the front where it reaches that far, else by
+/// the order of the row's method.
 std::string price_of_more(const Study& study, const StudyResult& result, const std::vector<CostPoint>& points,
                           std::size_t row, double times) {
   const double wanted = points[row].error / times;
   if (const auto better = cheapest_within(points, wanted)) {
     return fmt::format("{:g} times more accuracy costs {:.2g} times the time ({})", times,
-                  points[*better].seconds / points[row].seconds, result.rows[*better].setting.label());
+                       points[*better].seconds / points[row].seconds, result.rows[*better].setting.label());
   }
   double price = 0;
   for (const StudyCurve& curve : result.curves) {
@@ -140,7 +141,8 @@ std::string price_of_more(const Study& study, const StudyResult& result, const s
     if (mine) price = std::max(price, cost_of_accuracy(times, curve.cost_exponent, curve.order->order));
   }
   if (price > 0)
-    return fmt::format("{:g} times more accuracy would cost about {:.2g} times the time, as its order says", times, price);
+    return fmt::format("{:g} times more accuracy would cost about {:.2g} times the time, as its order says", times,
+                       price);
   return fmt::format("no setting tried is {:g} times more accurate", times);
 }
 
@@ -150,19 +152,20 @@ std::string advice_for(const Study& study, const StudyResult& result, const std:
   const std::string head = problem.empty() ? "" : problem + ": ";
   if (front.empty()) return "";
   const std::size_t last = front.back();
-  std::string text = fmt::format("{}{} is the most accurate (error {:.2g}, {})", head, result.rows[last].setting.label(),
-                            points[last].error, readable_seconds(points[last].seconds));
+  std::string text =
+      fmt::format("{}{} is the most accurate (error {:.2g}, {})", head, result.rows[last].setting.label(),
+                  points[last].error, readable_seconds(points[last].seconds));
   if (front.size() == 1) return text + "; nothing else is as fast.";
   const std::size_t first = front.front();
   text += fmt::format("; {} is the fastest (error {:.2g}, {}); from there {}.", result.rows[first].setting.label(),
-                 points[first].error, readable_seconds(points[first].seconds),
-                 price_of_more(study, result, points, first, 10));
+                      points[first].error, readable_seconds(points[first].seconds),
+                      price_of_more(study, result, points, first, 10));
   const auto slower = static_cast<std::size_t>(std::count_if(points.begin(), points.end(), [&](const CostPoint& p) {
     return std::isfinite(p.error) && p.seconds > points[last].seconds;
   }));
   if (slower > 0)
     text += fmt::format(" Beyond it errors stop falling: {} without being more accurate.",
-                   slower == 1 ? "one setting takes longer" : fmt::format("{} settings take longer", slower));
+                        slower == 1 ? "one setting takes longer" : fmt::format("{} settings take longer", slower));
   return text;
 }
 
@@ -223,13 +226,14 @@ std::vector<Recommendation> recommend(const Study& study, const StudyResult& res
         .problem = problem, .row = cheapest_within(points, accuracy), .best = points[front.back()].error, .text = {}};
     const std::string head = problem.empty() ? "" : problem + ": ";
     if (one.row) {
-      one.text = fmt::format("{}the cheapest setting that reaches {:g} is {} (error {:.2g}, {}); {}.", head, accuracy,
-                        result.rows[*one.row].setting.label(), points[*one.row].error,
-                        readable_seconds(points[*one.row].seconds), price_of_more(study, result, points, *one.row, 10));
-    } else {
       one.text =
-          fmt::format("{}no setting reaches {:g}; the best, {}, reaches {:.2g} in {}.", head, accuracy,
-                 result.rows[front.back()].setting.label(), one.best, readable_seconds(points[front.back()].seconds));
+          fmt::format("{}the cheapest setting that reaches {:g} is {} (error {:.2g}, {}); {}.", head, accuracy,
+                      result.rows[*one.row].setting.label(), points[*one.row].error,
+                      readable_seconds(points[*one.row].seconds), price_of_more(study, result, points, *one.row, 10));
+    } else {
+      one.text = fmt::format("{}no setting reaches {:g}; the best, {}, reaches {:.2g} in {}.", head, accuracy,
+                             result.rows[front.back()].setting.label(), one.best,
+                             readable_seconds(points[front.back()].seconds));
     }
     all.push_back(std::move(one));
   }

@@ -21,8 +21,8 @@ struct StudyRow {
   Timing time;
   std::vector<double> values;  ///< one per quantity; empty where refused
   std::vector<double> errors;  ///< likewise; not a number: a fact, or no part of this problem, or itself the truth
-  /// The largest error of this and all finer settings of the same problem and method: what one may count on. An error that is small by
-  /// luck, between two levels where it changes its sign, does not make a setting good.
+  /// The largest error of this and all finer settings of the same problem and method: what one may count on. An error
+  /// that is small by luck, between two levels where it changes its sign, does not make a setting good.
   std::vector<double> assured;
   std::string refusal;
 };

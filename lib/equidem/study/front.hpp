@@ -17,7 +17,8 @@ struct CostPoint {
   double error = 0;  ///< not a number: it takes no part
 };
 
-/// The Pareto front: the points than which none is both faster and at least as accurate, in the order of time. Errors fall along it.
+/// The Pareto front: the points than which none is both faster and at least as accurate, in the order of time. Errors
+/// fall along it.
 std::vector<std::size_t> front_of(std::span<const CostPoint> points);
 
 /// The fastest point with at most that error; empty where there is none.

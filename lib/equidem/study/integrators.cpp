@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A damped plane wave in a bonded lattice: every disc moves as exp(-alpha t/2) sin(w t), w² = omega² - alpha²/4, omega that of the
-/// Bloch wave.
+/// A damped plane wave in a bonded lattice: every disc moves as exp(-alpha t/2) sin(w t), w² = omega² - alpha²/4, omega
+/// that of the Bloch wave.
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -90,7 +90,8 @@ Study integrators_study(bool quick) {
   constexpr double periods = 1.125;  // a whole number of steps of every setting
   const auto wave = std::make_shared<const Wave>();
   const int less = quick ? 2 : 0;
-  // The thesis's scheme is stable for steps below 4 zeta/omega of every mode only, and the fastest ones are hardly damped by alpha.
+  // The thesis's scheme is stable for steps below 4 zeta/omega of every mode only, and the fastest ones are hardly
+  // damped by alpha.
   for (const Range& range : {Range{Integrator::leapfrog, 5, 12}, Range{Integrator::velocity_verlet, 5, 12},
                              Range{Integrator::fourth_order, 4, 11}, Range{Integrator::thesis, 8, 13}}) {
     for (int k = range.coarsest; k <= range.finest - less; ++k) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Lists with a wide margin last long but hold pairs that do not touch. The motion is the same for every margin: time is all that changes.
+/// Lists with a wide margin last long but hold pairs that do not touch. The motion is the same for every margin: time
+/// is all that changes.
 #include <memory>
 
 #include "equidem/core/random.hpp"

@@ -41,8 +41,9 @@ ObservedOrder fit(std::span<const Level> levels) {
   return result;
 }
 
-/// Where the orders between neighbouring levels approach a limit smoothly, each change of one sign and smaller than the one before by
-/// `smooth`, there is no scatter but curvature: the last order, uncertain by its last change. Empty where they do not.
+/// Where the orders between neighbouring levels approach a limit smoothly, each change of one sign and smaller than the
+/// one before by `smooth`, there is no scatter but curvature: the last order, uncertain by its last change. Empty where
+/// they do not.
 std::optional<ObservedOrder> order_that_settles(std::span<const Level> levels) {
   constexpr std::size_t needed = 5;
   constexpr double smooth = 0.7;

@@ -28,21 +28,22 @@ struct ObservedOrder {
   [[nodiscard]] double resolution_for(double error) const;
 };
 
-/// Slope of log error over log h, least squares over the asymptotic range: at least four levels from the finest on (where there are so
-/// many), and as many coarser ones as leave the slope known within twice the narrowest of these intervals (Student's). Where errors do
-/// not scatter but bend, and the orders between neighbours settle, the last of these, uncertain by its last change. Errors at or
-/// below `floor`, where rounding takes over, are left out, and so is what is not finite; the same level twice counts once. Empty below two
-/// levels.
+/// Slope of log error over log h, least squares over the asymptotic range: at least four levels from the finest on
+/// (where there are so many), and as many coarser ones as leave the slope known within twice the narrowest of these
+/// intervals (Student's). Where errors do not scatter but bend, and the orders between neighbours settle, the last of
+/// these, uncertain by its last change. Errors at or below `floor`, where rounding takes over, are left out, and so is
+/// what is not finite; the same level twice counts once. Empty below two levels.
 std::optional<ObservedOrder> observed_order(std::span<const Level> levels, double floor = 0);
 
 /// The limit h -> 0 of f(h) = limit + c h^order from two levels (Richardson 1911).
 double richardson_limit(double coarse_h, double coarse, double fine_h, double fine, double order);
 
-/// The order p for which three levels lie on f = limit + c h^p: (f1 - f2)/(f2 - f3) = (h1^p - h2^p)/(h2^p - h3^p), by bisection in
-/// [0.05, 20]. Empty where the values do not approach a limit that way. \param h descending
+/// The order p for which three levels lie on f = limit + c h^p: (f1 - f2)/(f2 - f3) = (h1^p - h2^p)/(h2^p - h3^p), by
+/// bisection in [0.05, 20]. Empty where the values do not approach a limit that way. \param h descending
 std::optional<double> order_of_three(std::span<const double, 3> h, std::span<const double, 3> values);
 
-/// The factor by which time grows where errors fall by `factor`, for time ~ h^-cost and error ~ h^order: factor^(cost/order).
+/// The factor by which time grows where errors fall by `factor`, for time ~ h^-cost and error ~ h^order:
+/// factor^(cost/order).
 double cost_of_accuracy(double factor, double cost_exponent, double order);
 
 }  // namespace equidem

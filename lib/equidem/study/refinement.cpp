@@ -44,10 +44,10 @@ std::int64_t Refinement::propose() {
   while (std::abs(order_ / options_.order - 1) > order_off) {
     n = admissible(2 * real(finest()));
     if (n > std::min(options_.most, patience * options_.first))
-      refuse(
-          fmt::format("its errors fall as {0}^-{1:.2g} up to {2} {0} and not as {0}^-{3:g}: the distance from the limit is "
-                 "not known",
-                 options_.unit, order_, finest(), options_.order));
+      refuse(fmt::format(
+          "its errors fall as {0}^-{1:.2g} up to {2} {0} and not as {0}^-{3:g}: the distance from the limit is "
+          "not known",
+          options_.unit, order_, finest(), options_.order));
     try_pilot(n);
   }
   for (;;) {
@@ -87,8 +87,8 @@ void Refinement::refuse(const std::string& why) const {
 
 void Refinement::refuse_beyond(double reached) const {
   refuse(fmt::format("it takes about {:.2g} {}, and the most that are tried are {}, which reach about {:.2g}",
-                real(options_.most) * std::pow(reached / options_.accuracy, 1 / options_.order), options_.unit,
-                options_.most, reached));
+                     real(options_.most) * std::pow(reached / options_.accuracy, 1 / options_.order), options_.unit,
+                     options_.most, reached));
 }
 
 std::int64_t Refinement::admissible(double n) const {

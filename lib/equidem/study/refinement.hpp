@@ -18,7 +18,8 @@ struct RefinementOptions {
   std::int64_t first = 1;       ///< the coarsest level, an `admissible` one
   std::int64_t most = 0;        ///< the finest level that may be tried
   std::string unit = "levels";  ///< what levels are numbers of, in messages: "steps"
-  /// Levels that tell how errors fall lie at least this apart, > 1: near ones are cheaper, far ones disturbed less by what is no power of n.
+  /// Levels that tell how errors fall lie at least this apart, > 1: near ones are cheaper, far ones disturbed less by
+  /// what is no power of n.
   double apart = 2;
   /// The smallest level >= n that can be computed; empty: every n.
   std::function<std::int64_t(std::int64_t n)> admissible = {};
@@ -31,9 +32,9 @@ struct RefinementOptions {
 ///     Refinement search(pilot, options);
 ///     do level = search.propose(); while (!search.accepts(level, values_at(level)));
 ///
-/// Pilots are three levels, each `apart` times as fine as the last, and finer ones until the distances between them fall by the order of
-/// theory, or within 0.3 of it (relative). What they extrapolate to (Richardson 1911) stands for the limit, with the smaller of both orders;
-/// how far the limit moved with the finest of them is added to every error.
+/// Pilots are three levels, each `apart` times as fine as the last, and finer ones until the distances between them
+/// fall by the order of theory, or within 0.3 of it (relative). What they extrapolate to (Richardson 1911) stands for
+/// the limit, with the smaller of both orders; how far the limit moved with the finest of them is added to every error.
 class Refinement {
  public:
   using Values = std::vector<double>;
@@ -42,7 +43,8 @@ class Refinement {
   Refinement(std::function<Values(std::int64_t level)> pilot, RefinementOptions options);
 
   /// The coarsest level that should reach the accuracy, by all that is known so far.
-  /// \throws Error (computation_failed) as soon as it is plain that no level up to `most` does, naming what can be reached, or where errors
+  /// \throws Error (computation_failed) as soon as it is plain that no level up to `most` does, naming what can be
+  ///         reached, or where errors
   ///         do not fall as theory says up to 64 times the first level; whatever `pilot` throws
   std::int64_t propose();
   /// Whether the error of what a level gave, estimated with it, is within the accuracy.

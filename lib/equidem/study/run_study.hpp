@@ -34,9 +34,10 @@ struct StudySamples {
   [[nodiscard]] int rounds() const;  ///< that all settings have been through
 };
 
-/// Every round goes once through all settings, in an order drawn anew, so that a machine that gets slower or busier hurts all alike.
-/// The first round warms up: it gives the values, its times are not kept. Rounds go on until all times are trusted or the budget is
-/// spent. A setting that fails is kept with its reason; the user's wish to stop ends the study and keeps what is done. Shows progress.
+/// Every round goes once through all settings, in an order drawn anew, so that a machine that gets slower or busier
+/// hurts all alike. The first round warms up: it gives the values, its times are not kept. Rounds go on until all times
+/// are trusted or the budget is spent. A setting that fails is kept with its reason; the user's wish to stop ends the
+/// study and keeps what is done. Shows progress.
 /// \param kept of an earlier run of the same study, which goes on from there; empty: none
 /// \param save called after each setting with all samples so far; may be empty
 StudySamples run_study(const Study& study, const StudyOptions& options, StudySamples kept = {},

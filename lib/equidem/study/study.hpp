@@ -78,8 +78,8 @@ struct Study {
 
   /// The first entry that fits; empty: theory says nothing.
   [[nodiscard]] const ExpectedOrder* expected(const Setting& setting, const std::string& quantity) const;
-  /// Of name, quantities, truth and settings, as 16 hexadecimal digits: measurements of studies with the same sum fit together.
-  /// \param context what else they depend on, such as machine and build
+  /// Of name, quantities, truth and settings, as 16 hexadecimal digits: measurements of studies with the same sum fit
+  /// together. \param context what else they depend on, such as machine and build
   [[nodiscard]] std::string checksum(const std::string& context) const;
 };
 

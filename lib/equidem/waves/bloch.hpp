@@ -2,8 +2,8 @@
 /// \file
 /// Bloch waves of a periodic assembly: disc d moves as U_d exp(i q.x_d - i omega t), x_d its centre in whichever cell.
 ///
-/// A contact of i and j with the branch vector l stores the energy of the contact law in the motions U_i and U_j exp(i q.l),
-/// so that with the derivatives g of its stretch and h of its slip (linear_spring.hpp)
+/// A contact of i and j with the branch vector l stores the energy of the contact law in the motions U_i and U_j exp(i
+/// q.l), so that with the derivatives g of its stretch and h of its slip (linear_spring.hpp)
 ///
 ///   K_ij(q) += (kN g_i g_j^T + kT h_i h_j^T) exp(i q.l),   K_ji = K_ij^H,   K_ii, K_jj as at rest,
 ///
@@ -41,8 +41,8 @@ class BlochWaves {
   /// omega² of all branches, ascending, (rad/s)²; negative where a wave grows as exp(sqrt(-omega²) t).
   [[nodiscard]] std::vector<double> squared_frequencies(Vec2 q) const;
 
-  /// Speeds of long waves along a direction, c² = d(omega²)/d(q²) at q = 0 in (m/s)²: exact second-order perturbation theory,
-  /// in which discs of the cell and their rotations follow the wave.
+  /// Speeds of long waves along a direction, c² = d(omega²)/d(q²) at q = 0 in (m/s)²: exact second-order perturbation
+  /// theory, in which discs of the cell and their rotations follow the wave.
   struct SoundSpeeds {
     double longitudinal_squared = 0;  ///< of the wave whose mean motion is most along q
     double transverse_squared = 0;    ///< of the one that is most across it
@@ -50,21 +50,22 @@ class BlochWaves {
   };
   [[nodiscard]] SoundSpeeds sound_speeds(Vec2 direction) const;
 
-  /// Smallest omega² (by magnitude) at q = 0 of a wave with more than half of its kinetic energy in rotations, other than one that
-  /// costs nothing; none where rotations are no unknowns or all such waves cost nothing. On lattices of one disc:
-  /// hexagonal 12 kT/(beta m), square 8 kT/(beta m).
+  /// Smallest omega² (by magnitude) at q = 0 of a wave with more than half of its kinetic energy in rotations, other
+  /// than one that costs nothing; none where rotations are no unknowns or all such waves cost nothing. On lattices of
+  /// one disc: hexagonal 12 kT/(beta m), square 8 kT/(beta m).
   [[nodiscard]] std::optional<double> squared_rotational_gap() const;
 
-  /// The ratio r < 0 at which the wave loses its stiffness in statics where contacts have kT = r kN: K(q) with rotations
-  /// eliminated is S_N + r S_T, both positive semidefinite, and r_c = -1/lambda, S_T v = lambda S_N v for the largest lambda.
+  /// The ratio r < 0 at which the wave loses its stiffness in statics where contacts have kT = r kN: K(q) with
+  /// rotations eliminated is S_N + r S_T, both positive semidefinite, and r_c = -1/lambda, S_T v = lambda S_N v for the
+  /// largest lambda.
   /// 0 where normal springs do not resist a motion that tangential ones do; negative infinity where tangential springs
-  /// resist no motion. Motions that neither resists (translation at q = 0, gears) are left out. Of the springs kT only is read
-  /// which are zero beside others that are not: those contacts have none for any r. Of contacts on the lines of centres only: elsewhere
-  /// normal springs resist rotations too, and the stiffness is not linear in r.
+  /// resist no motion. Motions that neither resists (translation at q = 0, gears) are left out. Of the springs kT only
+  /// is read which are zero beside others that are not: those contacts have none for any r. Of contacts on the lines of
+  /// centres only: elsewhere normal springs resist rotations too, and the stiffness is not linear in r.
   [[nodiscard]] double critical_ratio(Vec2 q) const;
 
-  /// The largest limit of critical_ratio(q) as q -> 0, over all directions. The limit is another one along each of them, and none
-  /// is what q = 0 has: there the mean strain is held, in a long wave it follows.
+  /// The largest limit of critical_ratio(q) as q -> 0, over all directions. The limit is another one along each of
+  /// them, and none is what q = 0 has: there the mean strain is held, in a long wave it follows.
   [[nodiscard]] LongWaveLoss long_wave_loss() const;
 
  private:

@@ -24,7 +24,8 @@ struct BrillouinZone {
   std::string lattice;             ///< "hexagonal", "square", "rectangular" or "oblique"
   std::array<Vec2, 2> reciprocal;  ///< rad/m, period_a . reciprocal_b = 2 pi delta_ab
   /// Points of symmetry, inequivalent ones all listed: hexagonal Gamma, M (3), K (2); square Gamma, X (2), M;
-  /// rectangular Gamma, X, Y, S; oblique Gamma, the middles X, Y, C of the sides and the corners H (2: q and -q, as K is).
+  /// rectangular Gamma, X, Y, S; oblique Gamma, the middles X, Y, C of the sides and the corners H (2: q and -q, as K
+  /// is).
   std::vector<ZonePoint> points;
   /// Corners of the usual path: Gamma-M-K-Gamma, Gamma-X-M-Gamma, Gamma-X-S-Y-Gamma, Gamma-X-H-C-H-Y-Gamma.
   std::vector<ZonePoint> path;
@@ -58,9 +59,9 @@ struct ZoneMaximum {
   std::vector<double> on_points;  ///< values at zone.points
 };
 
-/// The largest value of f, by a grid, all points of symmetry, and then a derivative-free climb from the best grid points. What
-/// is found is a lower bound of the maximum; symmetry makes the points of symmetry stationary, where f is smooth.
-/// \param f of q and of -q alike; may be called by several threads at once; not finite: left out
+/// The largest value of f, by a grid, all points of symmetry, and then a derivative-free climb from the best grid
+/// points. What is found is a lower bound of the maximum; symmetry makes the points of symmetry stationary, where f is
+/// smooth. \param f of q and of -q alike; may be called by several threads at once; not finite: left out
 ZoneMaximum maximize_over_zone(const BrillouinZone& zone, const std::function<double(Vec2 q)>& f,
                                const ZoneSearch& search = {});
 

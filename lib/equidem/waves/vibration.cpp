@@ -24,7 +24,7 @@ void check_magnitudes(const Assembly& assembly, const ContactSprings& springs, c
   for (std::size_t d = 0; d < inertia.size(); ++d) {
     if (fits(inertia[d].mass) && fits(inertia[d].moment)) continue;
     refuse(fmt::format("disc {} has the mass {:.3g} and the moment of inertia {:.3g}, in kg and m", d, inertia[d].mass,
-                  inertia[d].moment));
+                       inertia[d].moment));
   }
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const Contact& contact = assembly.contacts[c];

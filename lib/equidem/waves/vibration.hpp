@@ -14,24 +14,25 @@
 
 namespace equidem {
 
-/// \throws Error (bad_input) where a mass, a moment or a kN/m is not within 1e-150 to 1e150: squares of frequencies and speeds
+/// \throws Error (bad_input) where a mass, a moment or a kN/m is not within 1e-150 to 1e150: squares of frequencies and
+///         speeds
 ///         would leave the range of numbers
 void check_magnitudes(const Assembly& assembly, const ContactSprings& springs, const std::vector<Inertia>& inertia);
 
-/// An end of the spectrum of M^-1 K, (rad/s)², over the components that are not held; in a periodic cell: of the motions
-/// that repeat with it.
-/// \param inertia per disc
+/// An end of the spectrum of M^-1 K, (rad/s)², over the components that are not held; in a periodic cell: of the
+/// motions that repeat with it. \param inertia per disc
 ExtremeEigenvalue extreme_squared_frequency(const Assembly& assembly, const ContactSprings& springs,
                                             const DegreesOfFreedom& unknowns, const std::vector<Inertia>& inertia,
                                             SpectrumEnd end, const LanczosOptions& options = {});
 
-/// Upper bound of omega², whatever the supports: the largest eigenvalue of any contact taken alone with its share m/z, I/z of
-/// the inertia of its discs (Fried 1972; O'Sullivan & Bray 2004). Stretch and slip of a contact do not couple, so that
+/// Upper bound of omega², whatever the supports: the largest eigenvalue of any contact taken alone with its share m/z,
+/// I/z of the inertia of its discs (Fried 1972; O'Sullivan & Bray 2004). Stretch and slip of a contact do not couple,
+/// so that
 ///
 ///   omega² <= max over contacts of kN (z_i/m_i + z_j/m_j) and kT (z_i/m_i + z_j/m_j + z_i r_i²/I_i + z_j r_j²/I_j),
 ///
-/// z the number of contacts of a disc; off the lines of centres the larger eigenvalue of stretch and slip together, which the rotations
-/// then couple. Negative kT can only lower omega² and counts as 0.
+/// z the number of contacts of a disc; off the lines of centres the larger eigenvalue of stretch and slip together,
+/// which the rotations then couple. Negative kT can only lower omega² and counts as 0.
 /// \param rotation whether discs turn
 double element_bound(const Assembly& assembly, const ContactSprings& springs, const std::vector<Inertia>& inertia,
                      bool rotation);

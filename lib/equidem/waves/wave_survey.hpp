@@ -40,8 +40,8 @@ struct WaveSurvey {
   ZoneMaximum critical;      ///< of r_c: the wave that loses its stiffness first as kT/kN falls from 0
   ZoneMaximum highest;       ///< of omega²
   ZoneMaximum growing;       ///< of -omega²: positive where waves grow; not searched where no kT < 0
-  /// Of the grid and the points of symmetry but Gamma: wave vectors of waves that neither stretch nor slip any contact, kT of
-  /// either sign counted by its size. Such waves are mechanisms of the infinite assembly.
+  /// Of the grid and the points of symmetry but Gamma: wave vectors of waves that neither stretch nor slip any contact,
+  /// kT of either sign counted by its size. Such waves are mechanisms of the infinite assembly.
   std::vector<Vec2> free_waves;
   std::vector<PathPoint> path;
   std::vector<SoundAlong> sound;  ///< every 15 degrees from 0 to 165
@@ -56,7 +56,8 @@ constexpr std::size_t most_discs_of_survey = 100;
 std::size_t survey_size(const PrimitiveCell& cell);
 
 /// Grid and path are as fine as one disc in a cell of its own needs: a larger cell has a zone smaller by as much.
-/// \param rotation restrained: rotations are unknowns of none of the waves; else of those of the critical ratio, and of the others
+/// \param rotation restrained: rotations are unknowns of none of the waves; else of those of the critical ratio, and of
+///         the others
 ///        where some kT is not 0
 /// \throws Error (interrupted)
 WaveSurvey survey_waves(const PrimitiveCell& cell, const std::vector<Inertia>& inertia, Rotation rotation);

@@ -22,16 +22,16 @@ void check_alike(const GrainSimulation& simulation, const Loop& loop, double tol
   double worst = 0;
   for (std::size_t i = 0; i < grains.size(); ++i) worst = std::max(worst, norm(grains[i].position - loop.position(i)));
   if (worst <= tolerance) return;
-  computation_failed(fmt::format("the loop by hand and the simulation are {:.3g} m apart", worst), "they should do the same",
-                     "One of the two is wrong");
+  computation_failed(fmt::format("the loop by hand and the simulation are {:.3g} m apart", worst),
+                     "they should do the same", "One of the two is wrong");
 }
 
 std::string row(const std::string& name, const Seconds& seconds, const Seconds& by_hand, double disc_steps,
                 const std::string& bytes) {
   const Range time = range_of(seconds), over = ratio_of(seconds, by_hand);
   return fmt::format("| {} | {:.2f} ({:.2f} .. {:.2f}) | {:.2f} ({:.2f} .. {:.2f}) | {} |\n", name,
-                1e9 * time.median / disc_steps, 1e9 * time.smallest / disc_steps, 1e9 * time.largest / disc_steps,
-                over.median, over.smallest, over.largest, bytes);
+                     1e9 * time.median / disc_steps, 1e9 * time.smallest / disc_steps, 1e9 * time.largest / disc_steps,
+                     over.median, over.smallest, over.largest, bytes);
 }
 
 constexpr const char* header =
@@ -65,7 +65,7 @@ std::string compare_free_flight(int discs, int rounds) {
                  k > 0 ? fmt::format("{:.0f}", simulations[k - 1].bytes_per_grain()) : "32");
   }
   return table + fmt::format("\nLists of neighbours made in {} steps: {}.\n", simulations[0].step(),
-                        simulations[0].counters().rebuilds);
+                             simulations[0].counters().rebuilds);
 }
 
 std::string compare_friction(int columns, int rows, int rounds) {

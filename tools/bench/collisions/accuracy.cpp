@@ -69,15 +69,16 @@ Study dilute_gas() {
   const auto scene = [](const Variant& variant) { return gas(1000, 0.2, pair_of(variant, e)); };
   int impacts = 0;
   const std::vector<Grain> truth = hard_discs_at(scene(variants()[0]), time, impacts);
-  return {fmt::format("1000 discs in a box, solid fraction 0.2, e = 0.9, {} impacts: median error of place over the radius",
-                 impacts),
-          scene, time, 0.05, [=](const std::vector<Grain>& grains) {
-            std::vector<double> errors;
-            for (std::size_t i = 0; i < grains.size(); ++i) {
-              errors.push_back(norm(grains[i].position - truth[i].position) / grains[i].radius);
-            }
-            return median(std::move(errors));
-          }};
+  return {
+      fmt::format("1000 discs in a box, solid fraction 0.2, e = 0.9, {} impacts: median error of place over the radius",
+                  impacts),
+      scene, time, 0.05, [=](const std::vector<Grain>& grains) {
+        std::vector<double> errors;
+        for (std::size_t i = 0; i < grains.size(); ++i) {
+          errors.push_back(norm(grains[i].position - truth[i].position) / grains[i].radius);
+        }
+        return median(std::move(errors));
+      }};
 }
 
 Study study_of(const std::string& name) {
@@ -141,7 +142,8 @@ std::string compare_accuracy(const std::string& scene, int finest, int rounds) {
     }
     const Point& last = curves[v].back();
     const Point& early = curves[v][curves[v].size() - 1 - std::min<std::size_t>(4, curves[v].size() - 1)];
-    table += fmt::format(" {:.1f} | {:.2g}, {:.2g} |\n",
+    table +=
+        fmt::format(" {:.1f} | {:.2g}, {:.2g} |\n",
                     std::log(early.error / last.error) / std::log(early.step / last.step), last.error, last.seconds);
   }
   return table;

@@ -2,9 +2,9 @@
 /// \file
 /// What a law costs at equal accuracy.
 ///
-/// The dimensionless stiffness is held as the step falls (the paper's way), so all laws tend to rigid bodies and impacts without
-/// duration. The truth is known for these: a bouncing ball in closed form, the stacked spheres by eq. (28), a gas of discs from impact to
-/// impact.
+/// The dimensionless stiffness is held as the step falls (the paper's way), so all laws tend to rigid bodies and
+/// impacts without duration. The truth is known for these: a bouncing ball in closed form, the stacked spheres by eq.
+/// (28), a gas of discs from impact to impact.
 #pragma once
 
 #include <string>

@@ -26,7 +26,8 @@ class FallingPoints {
   Vec2 gravity_;
 };
 
-/// Equal discs of mass 1 with law C between lines; pairs that may touch are given once and for all, there is no friction, no spin, no ledger.
+/// Equal discs of mass 1 with law C between lines; pairs that may touch are given once and for all, there is no
+/// friction, no spin, no ledger.
 class FrictionlessDiscs {
  public:
   FrictionlessDiscs(const GrainScene& scene, double margin, double dt);

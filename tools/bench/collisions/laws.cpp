@@ -134,8 +134,8 @@ std::string compare_laws(int impacts, int rounds) {
     for (double* value : {&over.median, &over.smallest, &over.largest}) *value *= sizes[0] / sizes[k];
     const double per_impact = range_of(seconds[k]).median;
     table += fmt::format("| {} | {:.2f} | {} | {} | {:.0f} | {:.2f} |\n", entries[k].label, sizes[k] / impacts,
-                    text(each, "{:.1f}"), text(over, "{:.2f}"),
-                    1e9 * per_impact / static_cast<double>(passes * impacts), per_impact / per_c);
+                         text(each, "{:.1f}"), text(over, "{:.2f}"),
+                         1e9 * per_impact / static_cast<double>(passes * impacts), per_impact / per_c);
   }
   return table;
 }
@@ -183,8 +183,8 @@ std::string compare_in_simulation(const std::string& scene, int rounds) {
   for (std::size_t k = 0; k < names.size(); ++k) {
     const auto evaluations = static_cast<double>(simulations[k].counters().evaluations - before[k]);
     table += fmt::format("| {} | {:.3f} | {} | {} | {:.0f} |\n", names[k], evaluations / (disc_steps * (rounds + 1)),
-                    text(scaled(seconds[k], 1e9 / disc_steps), "{:.1f}"),
-                    text(ratio_of(seconds[k], seconds[0]), "{:.2f}"), simulations[k].bytes_per_grain());
+                         text(scaled(seconds[k], 1e9 / disc_steps), "{:.1f}"),
+                         text(ratio_of(seconds[k], seconds[0]), "{:.2f}"), simulations[k].bytes_per_grain());
   }
   table += failed;
   return table;

@@ -7,7 +7,8 @@
 
 namespace equidem::bench {
 
-/// Discs of radius 0.5 m and mass 1 kg in a square box, on a grid with solid fraction `fraction`, with random velocities of 1 m/s.
+/// Discs of radius 0.5 m and mass 1 kg in a square box, on a grid with solid fraction `fraction`, with random
+/// velocities of 1 m/s.
 GrainScene gas(int discs, double fraction, const PairProperties& pair);
 
 /// The paper's sphere of 2.25 m, 2.25 m above a floor.

@@ -51,8 +51,8 @@ double operations(const Assembly& assembly) {
   return 22 * assembly.coordination_number() + 28;
 }
 
-/// Bytes per disc and step that a loop reads and writes when nothing stays in the cache: geometry and place of every neighbour,
-/// motion, motion after, velocity in and out.
+/// Bytes per disc and step that a loop reads and writes when nothing stays in the cache: geometry and place of every
+/// neighbour, motion, motion after, velocity in and out.
 double traffic(const Assembly& assembly) {
   return (3 * 8 + 4) * assembly.coordination_number() + 2 * 32 + 2 * 24;
 }
@@ -95,13 +95,13 @@ std::string compare_loops(const std::string& kind, std::int64_t discs, const std
     const Range speed = speeds(seconds[k], disc_steps);
     const double cores = entries[k].threads;
     table += fmt::format("| {} | {} | {} | {} | {} | {} |", kind, assembly.size(), entries[k].label, entries[k].threads,
-                    with_range(speed, "{:.3g}"), with_range(ratio_of(seconds[0], seconds[k]), "{:.2f}"));
+                         with_range(speed, "{:.3g}"), with_range(ratio_of(seconds[0], seconds[k]), "{:.2f}"));
     if (k < 2) {
       table += " | | |\n";
     } else {
       table += fmt::format(" {:.0f} | {:.0f} % | {:.0f} % |\n", stepwise.simulation().bytes_per_disc(),
-                      100 * speed.median * traffic(assembly) / (cores * limits.bandwidth),
-                      100 * speed.median * operations(assembly) / (cores * limits.arithmetic));
+                           100 * speed.median * traffic(assembly) / (cores * limits.bandwidth),
+                           100 * speed.median * operations(assembly) / (cores * limits.arithmetic));
     }
   }
   return table;
@@ -118,7 +118,7 @@ std::string count_memory(const std::string& kind, std::int64_t discs) {
     const Scenery scenery(assembly, variants()[k]);
     const double own = (with_assembly - before) / size, simulation = (heap_bytes() - at_start) / size;
     table += fmt::format("| {}, {} | {} | {:.0f} | {:.0f} | {:.0f} |\n", kind, variants()[k].name, assembly.size(), own,
-                    simulation, own + simulation);
+                         simulation, own + simulation);
   }
   return table;
 }
@@ -138,9 +138,9 @@ std::string compare_effects(const std::string& kind, std::int64_t discs, int rou
   const std::vector<Seconds> seconds = take_turns(entries, steps, rounds);
   std::string table = "| effect | disc-steps/s | time over springs, rotation | bytes/disc |\n|---|---|---|---|\n";
   for (std::size_t k = 0; k < entries.size(); ++k) {
-    table +=
-        fmt::format("| {} | {} | {} | {:.0f} |\n", entries[k].label, with_range(speeds(seconds[k], disc_steps), "{:.3g}"),
-               with_range(ratio_of(seconds[k], seconds[0]), "{:.2f}"), scenes[k]->simulation().bytes_per_disc());
+    table += fmt::format(
+        "| {} | {} | {} | {:.0f} |\n", entries[k].label, with_range(speeds(seconds[k], disc_steps), "{:.3g}"),
+        with_range(ratio_of(seconds[k], seconds[0]), "{:.2f}"), scenes[k]->simulation().bytes_per_disc());
   }
   return table;
 }

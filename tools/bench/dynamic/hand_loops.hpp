@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The loops of the library written by hand without anything that a scene may switch on: what an absent effect must not cost.
+/// The loops of the library written by hand without anything that a scene may switch on: what an absent effect must not
+/// cost.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the effective stiffness of a cell costs beside one factorization and one solve of the same matrix: bench_homogenize --help.
+// What the effective stiffness of a cell costs beside one factorization and one solve of the same matrix:
+// bench_homogenize --help.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -60,7 +61,7 @@ std::string compare(std::int64_t discs, int threads, int rounds) {
   }
   const auto [least, most] = std::minmax_element(ratio.begin(), ratio.end());
   return fmt::format("| {} | {} | {} | {:.3f} | {:.3f} | {:.2f} ({:.2f} .. {:.2f}) |\n", cell.size(), threads, rounds,
-                median(one), median(whole), median(ratio), *least, *most);
+                     median(one), median(whole), median(ratio), *least, *most);
 }
 
 int run(int argc, char** argv) {

@@ -12,8 +12,8 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/scene/clump.hpp"
 #include "equidem/grains/grain_simulation.hpp"
+#include "equidem/grains/scene/clump.hpp"
 #include "equidem/output/files/json.hpp"
 
 #include "contender.hpp"
@@ -178,8 +178,8 @@ void run(const Request& request) {
   constexpr std::int64_t steps = 500;
   const std::vector<Seconds> seconds = take_turns(entries, steps, request.rounds);
   const double grains = request.side * request.side;
-  std::string report =
-      fmt::format(introduction, library_version(), __VERSION__, request.side, request.rounds, request.side * request.side);
+  std::string report = fmt::format(introduction, library_version(), __VERSION__, request.side, request.rounds,
+                                   request.side * request.side);
   std::vector<double> contacts;
   for (std::size_t k = 0; k < simulations.size(); ++k) {
     const auto made = static_cast<double>(simulations[k].counters().evaluations - evaluations[k]);
@@ -195,9 +195,9 @@ void run(const Request& request) {
     const Range over_disc = ratio_of(seconds[k], seconds[disc]);
     const Range over = scaled(over_disc, contacts[disc] / contacts[k]);
     report += fmt::format("| {} | {} | {:.2f} | {} | {} | {} | {} | {:.0f} |\n", entries[k].label,
-                     name_of(shapes()[k].scheme), contacts[k], text(each, "{:.0f}"), text(over_disc, "{:.2f}"),
-                     text(scaled(each, 1 / contacts[k]), "{:.0f}"), text(over, "{:.2f}"),
-                     simulations[k].bytes_per_grain() * (shapes()[k].bonded ? 2 : 1));
+                          name_of(shapes()[k].scheme), contacts[k], text(each, "{:.0f}"), text(over_disc, "{:.2f}"),
+                          text(scaled(each, 1 / contacts[k]), "{:.0f}"), text(over, "{:.2f}"),
+                          simulations[k].bytes_per_grain() * (shapes()[k].bonded ? 2 : 1));
   }
   std::printf("%s", report.c_str());
   if (request.file.empty()) return;

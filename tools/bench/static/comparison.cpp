@@ -140,8 +140,9 @@ std::string explain_tables() {
 
 std::string tables(const Comparison& comparison) {
   const Measurement& first = comparison.series.at(0).runs.at(0);
-  return fmt::format("{}, {:.0f} discs, {:.0f} unknowns, {} rounds\n\n{}\n{}", comparison.kind, first.discs, first.unknowns,
-                comparison.series[0].runs.size(), medians_table(comparison), ratios_table(comparison));
+  return fmt::format("{}, {:.0f} discs, {:.0f} unknowns, {} rounds\n\n{}\n{}", comparison.kind, first.discs,
+                     first.unknowns, comparison.series[0].runs.size(), medians_table(comparison),
+                     ratios_table(comparison));
 }
 
 JsonObject json(const Comparison& comparison) {
@@ -168,7 +169,8 @@ std::string describe_machine() {
     processor = line.substr(std::min(line.find(':') + 2, line.size()));
     break;
   }
-  return fmt::format("{}, {}, compiler {}", processor, counted(std::thread::hardware_concurrency(), "core"), __VERSION__);
+  return fmt::format("{}, {}, compiler {}", processor, counted(std::thread::hardware_concurrency(), "core"),
+                     __VERSION__);
 }
 
 }  // namespace equidem::bench

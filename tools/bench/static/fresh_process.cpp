@@ -96,7 +96,8 @@ Measurement measure_in_fresh_process(const Trial& trial) {
                                       {"OMP_NUM_THREADS", "1"},
                                       {"OMP_THREAD_LIMIT", "1"}});
   const Ended ended = run_again(
-      {measure_option, trial.solver, trial.kind, fmt::format("{}", trial.discs), fmt::format("{}", trial.threads)}, variables);
+      {measure_option, trial.solver, trial.kind, fmt::format("{}", trial.discs), fmt::format("{}", trial.threads)},
+      variables);
   if (!WIFEXITED(ended.status) || WEXITSTATUS(ended.status) != 0) {
     computation_failed(fmt::format("{} failed on {} discs", trial.solver, trial.discs),
                        WIFSIGNALED(ended.status) ? "it was ended by a signal" : "its message is above", "");

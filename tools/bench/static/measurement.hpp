@@ -70,7 +70,8 @@ Measurement measure(const Trial& trial);
 
 /// Measure in a fresh process, whose peak memory and thread settings are its own. Before it another process
 /// touches as much memory as the solution will need: memory that the system hands out for the first time is
-/// slow. \throws Error (computation_failed) where the process fails
+/// slow.
+/// \throws Error (computation_failed) where the process fails
 Measurement measure_in_fresh_process(const Trial& trial);
 
 /// What such a process does: `arguments` are what follows the hidden option that starts it.

@@ -103,9 +103,9 @@ std::string text_of_springs(const Case& resolved, const Assembly& assembly, cons
       fmt::format("{} discs of kind {} with {} contacts", assembly.size(), assembly.kind, assembly.contacts.size());
   std::string comment;
   if (!found.verified) {
-    comment =
-        fmt::format("Springs that give the infinite lattice {}.\nThe {} they were made for have free edges, and are softer.",
-               moduli, discs);
+    comment = fmt::format(
+        "Springs that give the infinite lattice {}.\nThe {} they were made for have free edges, and are softer.",
+        moduli, discs);
   } else {
     comment =
         fmt::format("Springs that give {}, to a relative error of {:.1e},\non {}", moduli, found.relative_error, discs);
@@ -233,7 +233,7 @@ int calibrate(const CalibrateVerb& options) {
   for (const auto& [stage, seconds] : found.times.stages()) calibrated.times.add(stage, seconds);
   problem.springs = {contact_springs(problem.assembly, found.springs, resolved.weighting), found.springs,
                      fmt::format("kN = {:.9g} Pa, kT = {:.9g} Pa (kT/kN = {:.9g}), weighting {}", found.springs.kN,
-                            found.springs.kT, found.springs.ratio(), to_string(resolved.weighting))};
+                                 found.springs.kT, found.springs.ratio(), to_string(resolved.weighting))};
   Stopwatch watch;
   calibrated.mean_field = mean_field_guess(resolved, problem.assembly, found.achieved);
   calibrated.times.add("mean field", watch.lap());

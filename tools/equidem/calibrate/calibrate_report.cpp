@@ -25,7 +25,7 @@ std::string shown_springs(const SpringConstants& k) {
 void append_wanted(std::string& out, const ElasticModuli& m) {
   const Plane other = m.plane == Plane::strain ? Plane::stress : Plane::strain;
   out += report_line("wanted", fmt::format("G = {:.9g} Pa, K = {:.9g} Pa, nu = {:.9g} in plane {}", m.shear_modulus,
-                                      m.bulk_modulus_2d(), m.poisson_ratio, to_string(m.plane)));
+                                           m.bulk_modulus_2d(), m.poisson_ratio, to_string(m.plane)));
   const double nu = m.read_as(other).poisson_ratio;
   out += report_line("", nu > -1 ? fmt::format("the same body in plane {}: nu = {:.9g}", to_string(other), nu)
                                  : fmt::format("in plane {} {}", to_string(other), no_solid));
@@ -33,12 +33,13 @@ void append_wanted(std::string& out, const ElasticModuli& m) {
 
 void append_method(std::string& out, const Calibration& found) {
   if (found.iterations > 0) {
-    out += report_line("method", fmt::format("{}: {}, {} in all with {}", found.method, counted(found.iterations, "step"),
-                                        counted(found.factorizations, "factorization"),
-                                        found.scanned ? "a scan of the range" : "the two ends of the range"));
+    out +=
+        report_line("method", fmt::format("{}: {}, {} in all with {}", found.method, counted(found.iterations, "step"),
+                                          counted(found.factorizations, "factorization"),
+                                          found.scanned ? "a scan of the range" : "the two ends of the range"));
   } else {
-    out += report_line(
-        "method", fmt::format("{}{}", found.method, found.verified ? "; checked by one factorization of this cell" : ""));
+    out += report_line("method", fmt::format("{}{}", found.method,
+                                             found.verified ? "; checked by one factorization of this cell" : ""));
   }
   if (!found.verified) {
     out += report_line("",
@@ -48,12 +49,13 @@ void append_method(std::string& out, const Calibration& found) {
       out +=
           report_line("", "WARNING: with free edges it gives way already at kT/kN near -0.26; see equidem stability");
   } else if (found.achieved.boundary != Boundary::periodic) {
-    out += report_line("boundary",
-                       fmt::format("{}: the sample is not periodic, so the moduli are those of this sample with {}",
-                              to_string(found.achieved.boundary),
-                              found.achieved.boundary == Boundary::displacement
-                                  ? "a uniform displacement gradient at its boundary, stiffer than the large sample"
-                                  : "the tractions of a uniform stress at its boundary, softer than the large sample"));
+    out += report_line(
+        "boundary",
+        fmt::format("{}: the sample is not periodic, so the moduli are those of this sample with {}",
+                    to_string(found.achieved.boundary),
+                    found.achieved.boundary == Boundary::displacement
+                        ? "a uniform displacement gradient at its boundary, stiffer than the large sample"
+                        : "the tractions of a uniform stress at its boundary, softer than the large sample"));
   }
 }
 
@@ -66,9 +68,10 @@ void append_reached(std::string& out, const Calibration& found) {
                                            ? fmt::format("nu = {:.9g}, E = {:.9g} Pa", m.poisson_strain, m.young_strain)
                                            : no_solid);
   out += report_line("  plane stress", fmt::format("nu = {:.9g}, E = {:.9g} Pa", m.poisson_stress, m.young_stress));
-  out += report_line("anisotropy", m.anisotropy < 1e-9 ? std::string("none, to round-off")
-                                                       : fmt::format("{:.3g} %; the moduli are the mean over all directions",
-                                                                100 * m.anisotropy));
+  out += report_line("anisotropy",
+                     m.anisotropy < 1e-9
+                         ? std::string("none, to round-off")
+                         : fmt::format("{:.3g} %; the moduli are the mean over all directions", 100 * m.anisotropy));
   if (found.springs.kT < 0) {
     out += report_line("statics only", "kT < 0: this equilibrium exists, and no motion of the discs is stable");
   }
@@ -76,8 +79,8 @@ void append_reached(std::string& out, const Calibration& found) {
 
 void append_range(std::string& out, const Calibration& found) {
   const auto range = [&](Plane plane) {
-    return fmt::format("{:.6g} to {:.6g} in plane {}", found.lowest_poisson_ratio(plane), found.highest_poisson_ratio(plane),
-                  to_string(plane));
+    return fmt::format("{:.6g} to {:.6g} in plane {}", found.lowest_poisson_ratio(plane),
+                       found.highest_poisson_ratio(plane), to_string(plane));
   };
   const std::string ranges = range(Plane::strain) + ", " + range(Plane::stress) + ", without negative springs";
   out += report_line("feasible nu", found.scanned ? ranges : "at least " + ranges);
@@ -108,20 +111,22 @@ void append_mean_field(std::string& out, const Calibrated& c) {
   }
   const EffectiveModuli& m = *guess.moduli;
   const bool strain = c.wanted().plane == Plane::strain;
-  out += report_line(
-      "", fmt::format("with them this assembly has G = {:.6g} Pa ({}), K = {:.6g} Pa ({}), nu = {:.6g} in "
-                 "plane {} in place of {:.6g}",
-                 m.shear_modulus, percent_beside(m.shear_modulus, c.wanted().shear_modulus), m.bulk_modulus_2d,
-                 percent_beside(m.bulk_modulus_2d, c.wanted().bulk_modulus_2d()),
-                 strain ? m.poisson_strain : m.poisson_stress, to_string(c.wanted().plane), c.wanted().poisson_ratio));
+  out +=
+      report_line("", fmt::format("with them this assembly has G = {:.6g} Pa ({}), K = {:.6g} Pa ({}), nu = {:.6g} in "
+                                  "plane {} in place of {:.6g}",
+                                  m.shear_modulus, percent_beside(m.shear_modulus, c.wanted().shear_modulus),
+                                  m.bulk_modulus_2d, percent_beside(m.bulk_modulus_2d, c.wanted().bulk_modulus_2d()),
+                                  strain ? m.poisson_strain : m.poisson_stress, to_string(c.wanted().plane),
+                                  c.wanted().poisson_ratio));
 }
 
 /// Eq. (53) beside the springs of a lattice whose discs do not turn.
 void append_operator(std::string& out, const Calibrated& c) {
   const SpringConstants k = springs_for(c.wanted(), Packing::hexagonal_restrained, {}, NegativeTangential::static_only);
-  out += report_line("displacements", fmt::format("eq. (53) advises {}: it fits wave speeds and problems in which all of "
-                                             "the boundary is displaced, not the stress, which is calibrated here",
-                                             shown_springs(k)));
+  out +=
+      report_line("displacements", fmt::format("eq. (53) advises {}: it fits wave speeds and problems in which all of "
+                                               "the boundary is displaced, not the stress, which is calibrated here",
+                                               shown_springs(k)));
 }
 
 }  // namespace

@@ -62,8 +62,8 @@ std::vector<EnsembleSample> samples_to_keep(const CommonOptions& options, bool r
   return read_samples_csv(table);
 }
 
-/// The samples done, and those of an earlier run beyond them, by size and seed: what was computed is not lost to a run that asks
-/// for less or is stopped.
+/// The samples done, and those of an earlier run beyond them, by size and seed: what was computed is not lost to a run
+/// that asks for less or is stopped.
 std::vector<EnsembleSample> with_kept(const std::vector<EnsembleSample>& done,
                                       const std::vector<EnsembleSample>& kept) {
   std::map<std::pair<std::int64_t, std::uint64_t>, EnsembleSample> all;
@@ -77,9 +77,9 @@ std::vector<EnsembleSample> with_kept(const std::vector<EnsembleSample>& done,
 std::string describe_plan(const EnsemblePlan& plan, double confidence) {
   std::string sizes;
   for (const std::int64_t discs : plan.discs) sizes += fmt::format("{}{}", sizes.empty() ? "" : ", ", discs);
-  return fmt::format("{} of {} discs each, seeds {} to {}; intervals of {:.4g} % confidence", counted(plan.samples, "cell"),
-                sizes, plan.first_seed, plan.first_seed + static_cast<std::uint64_t>(plan.samples) - 1,
-                100 * confidence);
+  return fmt::format("{} of {} discs each, seeds {} to {}; intervals of {:.4g} % confidence",
+                     counted(plan.samples, "cell"), sizes, plan.first_seed,
+                     plan.first_seed + static_cast<std::uint64_t>(plan.samples) - 1, 100 * confidence);
 }
 
 int dry_run(const CommonOptions& options, const EnsemblePlan& plan, const EnsemblePreamble& preamble) {
@@ -131,7 +131,7 @@ EnsemblePreamble describe_cells(const Case& resolved, std::int64_t discs, std::u
   if (!plan.empty()) preamble.text += report_line("ensemble", plan);
   preamble.text += report_line(
       "cells", fmt::format("{}, points = \"{}\", boundary = \"{}\"", first.kind,
-                      to_string(resolved.assembly.delaunay.points), to_string(options_of(resolved).boundary)));
+                           to_string(resolved.assembly.delaunay.points), to_string(options_of(resolved).boundary)));
   preamble.text += report_line("springs", springs.report + (resolved.material ? " (of the first cell)" : ""));
   preamble.text += report_line("effects", preamble.effects.report());
   return preamble;
@@ -171,7 +171,8 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
 
   std::string report = preamble.text + "\n" + describe_ensemble(result);
   const std::size_t wanted = result.plan.discs.size() * static_cast<std::size_t>(result.plan.samples);
-  if (sampled.stopped) report += fmt::format("INCOMPLETE: stopped after {} of {} cells\n", result.samples.size(), wanted);
+  if (sampled.stopped)
+    report += fmt::format("INCOMPLETE: stopped after {} of {} cells\n", result.samples.size(), wanted);
   if (folder && !sampled.stopped) {
     write_csv(*folder / statistics_name, statistics_table(result.statistics), true);
     for (const auto& [name, plot] : ensemble_plots(result))
@@ -194,7 +195,8 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
   if (folder) say(options, fmt::format("written to {}", folder->string()));
   if (sampled.stopped) {
     throw Error(
-        ErrorKind::interrupted, "stopped as asked", fmt::format("{} of {} cells are done", result.samples.size(), wanted),
+        ErrorKind::interrupted, "stopped as asked",
+        fmt::format("{} of {} cells are done", result.samples.size(), wanted),
         folder ? "Run the same command with --resume to do the rest" : "With --out DIR the cells done would be kept");
   }
   if (all_refused)

@@ -83,7 +83,8 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
   times.add("sampling", watch.lap());
   if (sampled.stopped) {
     throw Error(ErrorKind::interrupted, "stopped as asked",
-                fmt::format("{} cells are done, too few for an accuracy of {:.3g}", sampled.samples.size(), accuracy), "");
+                fmt::format("{} cells are done, too few for an accuracy of {:.3g}", sampled.samples.size(), accuracy),
+                "");
   }
   const ReachedAccuracy reached = reached_by(sampled, wanted, times.total());
   EnsembleResult result{.title = resolved.title,
@@ -95,7 +96,7 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
   if (folder) {
     CommonOptions chosen = options;
     chosen.set.push_back(fmt::format("ensemble={{discs = [{}], samples = {}, accuracy = {}, confidence = {}}}",
-                                sampled.chosen.discs, sampled.chosen.samples, accuracy, wanted.confidence));
+                                     sampled.chosen.discs, sampled.chosen.samples, accuracy, wanted.confidence));
     write_file(*folder / "case.toml", to_toml(read_case(chosen), *folder), true);
     write_csv(*folder / "ensemble.csv", statistics_table(result.statistics), true);
     for (const auto& [name, plot] : ensemble_plots(result))

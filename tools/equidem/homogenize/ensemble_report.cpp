@@ -25,13 +25,13 @@ std::string table_of(const EnsembleStatistics& statistics, std::size_t quantity)
   const EnsembleQuantity& q = ensemble_quantities[quantity];
   std::string text = fmt::format("{}{}\n", q.symbol, q.modulus ? ", Pa" : "");
   text += fmt::format("    discs  cells            mean   {:>4} % interval of the mean    sd of one cell   sd/mean\n",
-                 fmt::format("{:.4g}", 100 * statistics.confidence));
+                      fmt::format("{:.4g}", 100 * statistics.confidence));
   for (const EnsembleSize& size : statistics.sizes) {
     const MeanEstimate& e = size.estimates[quantity];
     const double relative = e.mean != 0 ? e.standard_deviation / std::abs(e.mean) : MeanEstimate::unknown;
     text += fmt::format("  {:>7}  {:>5}  {:>14}   {:>12} .. {:<12}  {:>15}   {:>7}\n", size.discs, e.samples,
-                   shown(e.mean, 7), shown(e.low(), 6), shown(e.high(), 6), shown(e.standard_deviation, 3),
-                   std::isnan(relative) ? "-" : percent(relative));
+                        shown(e.mean, 7), shown(e.low(), 6), shown(e.high(), 6), shown(e.standard_deviation, 3),
+                        std::isnan(relative) ? "-" : percent(relative));
   }
   return text;
 }
@@ -47,8 +47,9 @@ std::string describe_scatter(const SizeDependence& d, double confidence) {
         "independent patches is used below\n",
         error);
   }
-  const std::string text = fmt::format("  scatter {} as N^{:.2f} (± {:.2f}): ", *d.measured_exponent < 0 ? "grows" : "falls",
-                                  -*d.measured_exponent, error);
+  const std::string text =
+      fmt::format("  scatter {} as N^{:.2f} (± {:.2f}): ", *d.measured_exponent < 0 ? "grows" : "falls",
+                  -*d.measured_exponent, error);
   if (d.exponent == 0.5) return text + "compatible with N^-1/2 of many independent patches, which is used below\n";
   return text + "not the N^-1/2 of many independent patches; the exponent measured is used below\n";
 }
@@ -61,7 +62,7 @@ std::string describe_drift(const EnsembleStatistics& statistics, std::size_t qua
   const EnsembleSize& largest = statistics.sizes.back();
   if (!d.drifts) {
     return fmt::format("  size: no drift seen; mean = limit + b/N would have b = {:.3g} ± {:.2g}{}\n", d.drift,
-                  t * d.drift_error, unit);
+                       t * d.drift_error, unit);
   }
   return fmt::format(
       "  size: the mean drifts as {:.6g} + {:.3g}/N{} (limit ± {:.2g}, b ± {:.2g}): at N = {:.0f} it is still "
@@ -95,8 +96,8 @@ std::string describe_need(const EnsembleResult& result, std::size_t quantity) {
   const auto alone = needed_discs(statistics, quantity, *result.accuracy, 1);
   const auto averaged = needed_discs(statistics, quantity, *result.accuracy, result.plan.samples);
   if (!alone || !averaged) {
-    return text + fmt::format("  {} is 0 within its error, or its scatter does not fall: no size reaches {} of it\n", symbol,
-                         percent(*result.accuracy));
+    return text + fmt::format("  {} is 0 within its error, or its scatter does not fall: no size reaches {} of it\n",
+                              symbol, percent(*result.accuracy));
   }
   const auto smallest = std::find_if(statistics.sizes.begin(), statistics.sizes.end(),
                                      [&](const EnsembleSize& size) { return size.estimates[quantity].samples > 0; });
@@ -104,8 +105,8 @@ std::string describe_need(const EnsembleResult& result, std::size_t quantity) {
     return fmt::format("{} discs{}", needed, static_cast<double>(needed) < smallest->mean_discs + 1 ? " at most" : "");
   };
   return text + fmt::format("  {} of {} with {} confidence needs one cell of {}, or the mean of {} cells of {}\n",
-                       percent(*result.accuracy), symbol, percent(confidence), discs(*alone), result.plan.samples,
-                       discs(*averaged));
+                            percent(*result.accuracy), symbol, percent(confidence), discs(*alone), result.plan.samples,
+                            discs(*averaged));
 }
 
 std::string describe_refusals(const EnsembleResult& result) {
@@ -119,7 +120,7 @@ std::string describe_refusals(const EnsembleResult& result) {
   if (refused == 0) return "";
   if (refused > named) text += fmt::format("  and {} more, named in samples.csv\n", refused - named);
   return fmt::format("{} of {} have no moduli; the means are those of the others, not of all such cells:\n",
-                counted(refused, "cell"), result.samples.size()) +
+                     counted(refused, "cell"), result.samples.size()) +
          text + "\n";
 }
 

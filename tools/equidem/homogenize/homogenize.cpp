@@ -16,8 +16,8 @@
 #include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/output/files/csv.hpp"
-#include "equidem/output/pictures/picture.hpp"
 #include "equidem/output/files/vtk.hpp"
+#include "equidem/output/pictures/picture.hpp"
 #include "equidem/statics/load_bearing.hpp"
 
 #include "command.hpp"
@@ -210,7 +210,7 @@ void write_states(const CommonOptions& options, const Homogenized& homogenized) 
       const std::string& title = problem.resolved.title;
       const PictureOptions picture{
           .title = fmt::format("{}{}{} = {}{}", title, title.empty() ? "" : ": ", label, written_strain,
-                          assembly.periodic() ? ", discs moved beside the mean strain" : ""),
+                               assembly.periodic() ? ", discs moved beside the mean strain" : ""),
           .colour = gradient.xy != 0 ? DiscColour::stress_xy : DiscColour::mean_stress};
       write_picture(folder, fmt::format("picture_{}", name), state, picture, options.overwrite);
     }
@@ -226,8 +226,8 @@ int dry_run_homogenization(const CommonOptions& options, const Problem& problem)
   const std::string report =
       describe_problem(problem, effects) +
       report_line("mean strain", fmt::format("boundaries {}: one factorization and three solutions for "
-                                        "each, every one about as large as this",
-                                        names)) +
+                                             "each, every one about as large as this",
+                                             names)) +
       describe_estimate(size);
   JsonObject object;
   add_common(object, "dry_run", report, problem.times, effects);
@@ -291,8 +291,8 @@ int homogenize(const HomogenizeVerb& options) {
   if (common.out) {
     const bool states = !homogenized.result.fluctuations.empty();
     say(common, fmt::format("written to {}{}", common.out->string(),
-                       states ? fmt::format("; states are those of strains of {}", written_strain)
-                              : ", without states: those are of prescribed strains"));
+                            states ? fmt::format("; states are those of strains of {}", written_strain)
+                                   : ", without states: those are of prescribed strains"));
   }
   return 0;
 }

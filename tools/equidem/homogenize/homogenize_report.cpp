@@ -77,15 +77,15 @@ void append_rigidity(std::string& out, const EffectiveStiffness& r) {
     line(r.unstable_modes > 0 ? "every disc carries load" : "every disc carries load, and every motion costs energy");
   if (r.self_stresses >= 0) {
     line(fmt::format("{} of self-stress: {}", counted(r.self_stresses, "independent state", "independent states"),
-                r.self_stresses == 0 ? "statically determinate, forces do not depend on the springs"
-                                     : "so many springs more than rigidity needs"));
+                     r.self_stresses == 0 ? "statically determinate, forces do not depend on the springs"
+                                          : "so many springs more than rigidity needs"));
   }
   if (r.unstable_modes > 0) {
     line(fmt::format("UNSTABLE: {} by which the network would give way; this stiffness is no state of rest",
-                counted(r.unstable_modes, "mode")));
+                     counted(r.unstable_modes, "mode")));
     if (r.unstable_strains > 0) {
       line(fmt::format("{} of the stiffness {} negative: such a mean strain gives energy back",
-                  counted(r.unstable_strains, "eigenvalue"), r.unstable_strains == 1 ? "is" : "are"));
+                       counted(r.unstable_strains, "eigenvalue"), r.unstable_strains == 1 ? "is" : "are"));
     }
   } else if (r.unstable_modes < 0) {
     line("stability NOT KNOWN: this solver does not count the negative pivots that would tell; method = \"auto\" does");
@@ -94,8 +94,8 @@ void append_rigidity(std::string& out, const EffectiveStiffness& r) {
 
 void append_moduli(std::string& out, const Homogenized& h) {
   const EffectiveModuli& m = h.moduli;
-  out += report_line("moduli", fmt::format("K = {:.9g} Pa (two-dimensional bulk modulus), G = {:.9g} Pa", m.bulk_modulus_2d,
-                                      m.shear_modulus));
+  out += report_line("moduli", fmt::format("K = {:.9g} Pa (two-dimensional bulk modulus), G = {:.9g} Pa",
+                                           m.bulk_modulus_2d, m.shear_modulus));
   out += report_line("  plane strain", fmt::format("nu = {:.9g}, E = {:.9g} Pa", m.poisson_strain, m.young_strain));
   out += report_line("  plane stress", fmt::format("nu = {:.9g}, E = {:.9g} Pa", m.poisson_stress, m.young_stress));
   constexpr double visible = 1e-9;
@@ -110,7 +110,7 @@ void append_moduli(std::string& out, const Homogenized& h) {
     directions += fmt::format("along {} by {} (across it softer)", degrees(axes.one_direction), percent(axes.one_axis));
   if (axes.two_axes > visible) {
     directions += fmt::format("{}along {} and at right angles to it by {} (between them softer)",
-                         directions.empty() ? "" : ", and ", degrees(axes.two_directions), percent(axes.two_axes));
+                              directions.empty() ? "" : ", and ", degrees(axes.two_directions), percent(axes.two_axes));
   }
   out += report_line("anisotropy", line);
   if (!directions.empty()) out += report_line("", "stretch meets more stiffness " + directions);
@@ -120,25 +120,25 @@ void append_fabric(std::string& out, const Homogenized& h) {
   const Assembly& a = h.problem.assembly;
   const Fabric& f = h.fabric;
   out += report_line("fabric", fmt::format("z = {:.6g} contacts of a disc, solid fraction {:.6g}, mean branch {:.6g} m",
-                                      a.coordination_number(), a.solid_fraction(), f.mean_branch));
+                                           a.coordination_number(), a.solid_fraction(), f.mean_branch));
   constexpr double visible = 1e-9;
   std::string preferred;
   if (f.anisotropy_2 > visible)
     preferred = fmt::format("one axis by {} ({})", percent(f.anisotropy_2), degrees(f.direction_2));
   if (f.anisotropy_4 > visible) {
-    preferred += fmt::format("{}two axes at right angles by {} ({})", preferred.empty() ? "" : ", ", percent(f.anisotropy_4),
-                        degrees(f.direction_4));
+    preferred += fmt::format("{}two axes at right angles by {} ({})", preferred.empty() ? "" : ", ",
+                             percent(f.anisotropy_4), degrees(f.direction_4));
   }
   out += report_line("", preferred.empty() ? "contacts prefer no axis" : "contacts prefer " + preferred);
 }
 
 void append_table(std::string& out, const Homogenized& h) {
-  out +=
-      fmt::format("\n{:<40}{:>15}{:>15}{:>12}{:>12}\n", "bounds and estimates", "K, Pa", "G, Pa", "nu strain", "nu stress");
+  out += fmt::format("\n{:<40}{:>15}{:>15}{:>12}{:>12}\n", "bounds and estimates", "K, Pa", "G, Pa", "nu strain",
+                     "nu stress");
   const auto row = [&](const std::string& name, double bulk, double shear) {
     const auto ratio = [](double nu) { return fmt::format("{:>12.5f}", nu); };
     out += fmt::format("{:<40}{:>15.8g}{:>15.8g}{}{}\n", "  " + name, bulk, shear, ratio((bulk - shear) / (2 * bulk)),
-                  ratio((bulk - shear) / (bulk + shear)));
+                       ratio((bulk - shear) / (bulk + shear)));
   };
   const auto tensor_row = [&](const std::string& name, const Matrix3& c) {
     const EffectiveModuli m = effective_moduli(c);
@@ -171,8 +171,8 @@ void append_table(std::string& out, const Homogenized& h) {
       margins += (k == 1 ? "" : ", ") + (std::abs(m) <= round_off ? std::string("0") : fmt::format("{:.2g}", m));
     }
     out += report_line("order", fmt::format("{} as quadratic forms: {}; least eigenvalues of the differences over the "
-                                       "larger: {}",
-                                       names, holds ? "holds" : "BROKEN, do not trust this result", margins));
+                                            "larger: {}",
+                                            names, holds ? "holds" : "BROKEN, do not trust this result", margins));
   } else if (h.problem.springs.springs.any_negative()) {
     out += report_line("order", "kT < 0: energies are no minima, and nothing above is a bound");
   }
@@ -184,11 +184,12 @@ void append_restrained(std::string& out, const EffectiveStiffness& r) {
   out += matrix_lines("  stress of", r.gradient_stiffness, "Pa");
   out += report_line("  gradients",
                      fmt::format("rows s_xx, s_yy, s_xy, s_yx, columns u_x,x u_y,y u_x,y u_y,x; |s_xy - s_yx| is up "
-                            "to {} of the largest entry",
-                            percent(r.stress_asymmetry)));
+                                 "to {} of the largest entry",
+                                 percent(r.stress_asymmetry)));
   std::string seen = fmt::format("G' = {:.9g} Pa, K' = {:.9g} Pa", o.shear_modulus, o.bulk_modulus_2d);
   if (o.bulk_modulus_2d > 0)
-    seen += fmt::format(", nu' = {:.6g} in plane strain", (o.bulk_modulus_2d - o.shear_modulus) / (2 * o.bulk_modulus_2d));
+    seen +=
+        fmt::format(", nu' = {:.6g} in plane strain", (o.bulk_modulus_2d - o.shear_modulus) / (2 * o.bulk_modulus_2d));
   out += report_line("  displacements", "see " + seen + " (hexagonal lattice: Abe 1996, eq. 53)");
   out += report_line("",
                      "These fit wave speeds and problems in which all of the boundary is displaced, not the stress: a "
@@ -211,23 +212,24 @@ std::string describe_homogenized(const Homogenized& h) {
     const TomlValue* given = h.problem.resolved.document.find(table);
     if (given != nullptr)
       unused += fmt::format("{}{}", unused.empty() ? "" : ", ",
-                       given->is_array() ? fmt::format("[[{}]]", table) : fmt::format("[{}]", table));
+                            given->is_array() ? fmt::format("[[{}]]", table) : fmt::format("[{}]", table));
   }
   if (!unused.empty()) out += report_line("not used", unused + ": the mean strain takes their place");
   append_rigidity(out, r);
   out += "\n" + matrix_lines("stiffness", r.stiffness, "Pa");
   const double largest = largest_entry(r.stiffness);
   out += report_line("", "rows: stress, columns: strain, both xx, yy, xy with engineering shear");
-  out += report_line("error bound",
-                     fmt::format("{:.1e} Pa for an entry, {:.0e} of the largest: residual {:.1e}, condition {:.1e}; "
-                            "macroscopic and microscopic power differ by {:.0e}",
-                            r.error_bound, r.error_bound / largest, r.relative_residual, r.condition, r.hill_mandel));
+  out +=
+      report_line("error bound",
+                  fmt::format("{:.1e} Pa for an entry, {:.0e} of the largest: residual {:.1e}, condition {:.1e}; "
+                              "macroscopic and microscopic power differ by {:.0e}",
+                              r.error_bound, r.error_bound / largest, r.relative_residual, r.condition, r.hill_mandel));
   append_moduli(out, h);
   append_fabric(out, h);
   append_table(out, h);
   if (r.effects.restrained && r.boundary != Boundary::traction) append_restrained(out, r);
   out += fmt::format("\n{}", report_line("unknowns", fmt::format("{}, solver {}, factor {}", r.unknowns, r.solver,
-                                                       readable_bytes(r.factor_bytes))));
+                                                                 readable_bytes(r.factor_bytes))));
   std::string stages;
   for (const auto& [stage, seconds] : h.times.stages())
     if (seconds >= 0.02 * h.times.total()) stages += fmt::format(", {} {:.2g} s", stage, seconds);

@@ -9,8 +9,8 @@
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
-#include "equidem/output/pictures/grain_picture.hpp"
 #include "equidem/output/files/grain_tables.hpp"
+#include "equidem/output/pictures/grain_picture.hpp"
 #include "equidem/packing/network.hpp"
 
 #include "command.hpp"
@@ -92,7 +92,8 @@ int dry_run(const CommonOptions& common, const PackCase& resolved) {
   return 0;
 }
 
-/// Bodies that settled stay what they are where statics cannot judge them: a network may have motions without stiffness.
+/// Bodies that settled stay what they are where statics cannot judge them: a network may have motions without
+/// stiffness.
 std::optional<ConfirmedRest> confirmed(const PackCase& resolved, const GrainPacking& packing) {
   if (packing.contacts.empty()) return {};
   ConfirmedRest rest;

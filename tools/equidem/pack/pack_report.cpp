@@ -34,13 +34,13 @@ std::string describe_pack_case(const PackCase& resolved) {
   std::string out;
   if (!resolved.title.empty()) out += resolved.title + "\n\n";
   const auto [low, high] = std::minmax_element(options.radii.begin(), options.radii.end());
-  out += report_line(
-      noun_of(options.shape.kind) + "s",
-      fmt::format("{}, radius {:.6g} to {:.6g} m", grouped(static_cast<std::int64_t>(options.radii.size())), *low, *high));
+  out += report_line(noun_of(options.shape.kind) + "s",
+                     fmt::format("{}, radius {:.6g} to {:.6g} m",
+                                 grouped(static_cast<std::int64_t>(options.radii.size())), *low, *high));
   const bool open = options.box.sides == PackingBox::Sides::open_top;
   out += report_line("box", open ? fmt::format("{:.6g} m wide, {}", options.box.size.x, name_of(options.box.sides))
                                  : fmt::format("{:.6g} m by {:.6g} m, {}", options.box.size.x, options.box.size.y,
-                                          name_of(options.box.sides)));
+                                               name_of(options.box.sides)));
   out += report_line("method", to_string(options.method));
   const SpringConstants springs = options.settling.springs;
   return out + report_line("springs", fmt::format("kN = {:.6g} Pa, kT = {:.6g} Pa", springs.kN, springs.kT));
@@ -52,19 +52,20 @@ std::string describe_packing(const PackCase& resolved, const GrainPacking& packi
   const std::string noun = noun_of(options.shape.kind);
   std::string out;
   if (!packing.complete) {
-    out += report_line("packed", packing.size() < options.radii.size()
-                                     ? fmt::format("{} of {}", packing.size(), options.radii.size())
-                                     : fmt::format("radii {:.6g} of those asked for", packing.radii[0] / options.radii[0]));
+    out += report_line("packed",
+                       packing.size() < options.radii.size()
+                           ? fmt::format("{} of {}", packing.size(), options.radii.size())
+                           : fmt::format("radii {:.6g} of those asked for", packing.radii[0] / options.radii[0]));
   }
   const Region& region = measures.region;
-  out += report_line("solid fraction", fmt::format("{:.6g}, porosity {:.6g}, void ratio {:.6g}", measures.solid_fraction,
-                                              measures.porosity, measures.void_ratio));
+  out += report_line("solid fraction", fmt::format("{:.6g}, porosity {:.6g}, void ratio {:.6g}",
+                                                   measures.solid_fraction, measures.porosity, measures.void_ratio));
   out += report_line("", fmt::format("measured from ({:.4g}, {:.4g}) to ({:.4g}, {:.4g}) m", region.low.x, region.low.y,
-                                region.high.x, region.high.y));
-  out += report_line("contacts",
-                     fmt::format("{} of {}s, {} with walls; {:.4g} of each, {:.4g} without {}", grouped(measures.contacts),
-                            noun, grouped(measures.wall_contacts), measures.coordination,
-                            measures.coordination_without_rattlers, counted(measures.rattlers, "rattler")));
+                                     region.high.x, region.high.y));
+  out += report_line(
+      "contacts", fmt::format("{} of {}s, {} with walls; {:.4g} of each, {:.4g} without {}", grouped(measures.contacts),
+                              noun, grouped(measures.wall_contacts), measures.coordination,
+                              measures.coordination_without_rattlers, counted(measures.rattlers, "rattler")));
   out += report_line("overlap", fmt::format("at most {:.3g} of the smaller radius", measures.largest_overlap));
   if (rest) {
     const SettlingReport& settling = packing.settling;
@@ -78,14 +79,14 @@ std::string describe_packing(const PackCase& resolved, const GrainPacking& packi
     out += report_line(
         "", rest->confirmation
                 ? fmt::format("statics on the same contacts would move nothing further than {:.2g} of the mean overlap",
-                         rest->confirmation->share())
+                              rest->confirmation->share())
                 : fmt::format("statics does not confirm it: {}", rest->why_not));
     const BondReport& bonds = settling.bonds;
     if (bonds.number > 0) {
-      out += report_line("bonds",
-                         fmt::format("the dashpots let pairs drift by {:.2g} of their length in the mean, {:.2g} at most; "
-                                "surfaces slipped by {:.2g} at most",
-                                bonds.distance.mean, bonds.distance.largest, bonds.slip.largest));
+      out += report_line(
+          "bonds", fmt::format("the dashpots let pairs drift by {:.2g} of their length in the mean, {:.2g} at most; "
+                               "surfaces slipped by {:.2g} at most",
+                               bonds.distance.mean, bonds.distance.largest, bonds.slip.largest));
     }
   }
   out += report_line("work", fmt::format("{} {}", grouped(packing.work), entry_of(options.method).unit_of_work));

@@ -13,8 +13,8 @@
 #include "equidem/dynamics/relaxation.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/output/files/csv.hpp"
-#include "equidem/output/pictures/picture.hpp"
 #include "equidem/output/files/vtk.hpp"
+#include "equidem/output/pictures/picture.hpp"
 
 #include "command.hpp"
 #include "run/run_accuracy.hpp"
@@ -113,7 +113,8 @@ int relax_to_rest(const RunVerb& options, const RunSetup& setup) {
   return 0;
 }
 
-/// Makes all steps and delivers what came of them; false, and nothing delivered, where the step that the search proposed is too long.
+/// Makes all steps and delivers what came of them; false, and nothing delivered, where the step that the search
+/// proposed is too long.
 bool step_through(const RunVerb& options, const RunSetup& setup, StepSearch* search) {
   const CommonOptions& common = options.common;
   Simulation simulation(setup.simulation());

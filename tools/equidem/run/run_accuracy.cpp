@@ -92,19 +92,20 @@ ReachedAccuracy StepSearch::reached() const {
     list += fmt::format("{}{}", k == 0 ? "" : k + 1 < others.size() ? ", " : " and ", others[k]);
   }
   const double factor = static_cast<double>(finer) / static_cast<double>(steps);
-  return {.requested = accuracy_,
-          .estimated = search_.error(steps),
-          .of = fmt::format("displacements at the end of the run, over the largest of them, against those of a step of 0, "
-                       "extrapolated (errors fall as steps^-{:.2f})",
-                       search_.order()),
-          .knob = fmt::format("the time step, {:.6g} s in the case", case_step_),
-          .value = setting_of(steps),
-          .pilots = fmt::format("runs of {} steps", list),
-          .pilots_factor = all / static_cast<double>(steps),
-          .ten_times_more = {.time_factor = factor,
-                             .seconds = factor * seconds_,
-                             .value = setting_of(finer),
-                             .note = enough ? has_it_already : ""}};
+  return {
+      .requested = accuracy_,
+      .estimated = search_.error(steps),
+      .of = fmt::format("displacements at the end of the run, over the largest of them, against those of a step of 0, "
+                        "extrapolated (errors fall as steps^-{:.2f})",
+                        search_.order()),
+      .knob = fmt::format("the time step, {:.6g} s in the case", case_step_),
+      .value = setting_of(steps),
+      .pilots = fmt::format("runs of {} steps", list),
+      .pilots_factor = all / static_cast<double>(steps),
+      .ten_times_more = {.time_factor = factor,
+                         .seconds = factor * seconds_,
+                         .value = setting_of(finer),
+                         .note = enough ? has_it_already : ""}};
 }
 
 Case StepSearch::case_of(std::int64_t steps) const {

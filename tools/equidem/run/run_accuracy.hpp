@@ -17,9 +17,9 @@ namespace equidem {
 
 struct RunSetup;
 
-/// The longest step for which the displacements at the end are within the accuracy, relative to the largest one. Pilots are runs with the
-/// step of the case, that over root 2, and its half (and finer ones, until the motions at the end converge by the order of the
-/// integrator); they write nothing.
+/// The longest step for which the displacements at the end are within the accuracy, relative to the largest one. Pilots
+/// are runs with the step of the case, that over root 2, and its half (and finer ones, until the motions at the end
+/// converge by the order of the integrator); they write nothing.
 class StepSearch {
  public:
   /// \throws Error (bad_input) where the run goes to rest

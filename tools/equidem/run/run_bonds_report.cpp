@@ -13,13 +13,13 @@ std::string describe_bonds(const GrainSetup& setup) {
   const BondCase& bonds = setup.resolved.bonds;
   if (bonds.bonds.empty()) return {};
   const bool exact = bonds.step == GrainOptions::BondStep::exact;
-  std::string out = report_line(
-      "bonds", fmt::format("{}, {}", grouped(static_cast<std::int64_t>(bonds.bonds.size())),
-                      exact ? "each decays exactly over a step" : "dashpots by the velocities at the start of a step"));
+  std::string out = report_line("bonds", fmt::format("{}, {}", grouped(static_cast<std::int64_t>(bonds.bonds.size())),
+                                                     exact ? "each decays exactly over a step"
+                                                           : "dashpots by the velocities at the start of a step"));
   const double limit = setup.step.bond_limit;
   if (limit == 0) return out + report_line("", "they do not limit the step");
-  return out + report_line(
-                   "", fmt::format("they limit the step to {:.6g} s; it is {:.3g} of that", limit, setup.step.step / limit));
+  return out + report_line("", fmt::format("they limit the step to {:.6g} s; it is {:.3g} of that", limit,
+                                           setup.step.step / limit));
 }
 
 std::string describe_drift_of_bonds(const BondReport& bonds) {
@@ -28,7 +28,7 @@ std::string describe_drift_of_bonds(const BondReport& bonds) {
     return fmt::format("{} {:.3g} (mean {:.3g})", what, of.largest, of.mean);
   };
   return report_line("drift of bonds", fmt::format("largest since the start: {}, {} of the sum of the radii",
-                                              drift("distance", bonds.distance), drift("slip", bonds.slip))) +
+                                                   drift("distance", bonds.distance), drift("slip", bonds.slip))) +
          report_line("", drift("roll", bonds.roll) + " rad");
 }
 

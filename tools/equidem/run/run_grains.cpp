@@ -10,12 +10,12 @@
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
-#include "equidem/output/pictures/grain_picture.hpp"
 #include "equidem/output/files/grain_tables.hpp"
+#include "equidem/output/pictures/grain_picture.hpp"
 
-#include "solve/report.hpp"
 #include "run/run_grains_loop.hpp"
 #include "run/run_grains_report.hpp"
+#include "solve/report.hpp"
 
 namespace equidem {
 namespace {

@@ -17,8 +17,8 @@
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/grain_energy.hpp"
 #include "equidem/output/files/grain_frames.hpp"
-#include "equidem/output/pictures/grain_picture.hpp"
 #include "equidem/output/files/growing_csv.hpp"
+#include "equidem/output/pictures/grain_picture.hpp"
 
 #include "recurrence.hpp"
 
@@ -125,7 +125,7 @@ void refuse_made_energy(const GrainSetup& setup, const GrainSimulation& simulati
   if (ledger.kinetic <= most * (given + rounding_of_energy(setup, simulation.grains()))) return;
   computation_failed(
       fmt::format("step {}: the bodies move with {:.3g} times the energy that there was", simulation.step(),
-             ledger.kinetic / given),
+                  ledger.kinetic / given),
       "contacts make energy where steps are too long for them, and maps where several act on a body at once",
       "Use a shorter time_step, or the law exact_flow");
 }
@@ -281,11 +281,12 @@ void check_events(const GrainCase& resolved, const GrainStep& step) {
     for (const Schedule* schedule : {&resolved.walls[k].move_x, &resolved.walls[k].move_y}) {
       const MissedEvent missed = missed_event(*schedule, step.step, resolved.duration);
       if (missed.share <= most) continue;
-      throw Error(ErrorKind::bad_input,
-                  fmt::format("its schedule has an event at {:.6g} s that steps of {:.6g} s miss", missed.time, step.step),
-                  fmt::format("between two steps lie {:.0f} % of the range of its values", 100 * missed.share),
-                  "Give a time_step well below its length, or let it last longer",
-                  resolved.where(fmt::format("wall.{}.schedule", k)));
+      throw Error(
+          ErrorKind::bad_input,
+          fmt::format("its schedule has an event at {:.6g} s that steps of {:.6g} s miss", missed.time, step.step),
+          fmt::format("between two steps lie {:.0f} % of the range of its values", 100 * missed.share),
+          "Give a time_step well below its length, or let it last longer",
+          resolved.where(fmt::format("wall.{}.schedule", k)));
     }
   }
 }
@@ -313,7 +314,7 @@ std::string GrainSetup::fingerprint() const {
   erase(*known.find("run"), {"duration", "time_step", "steps_per_contact"});  // the step is below
   erase(known, {"title", "output", "probe", "measures"});
   return to_toml(std::move(known), {}) + fmt::format("\n# step {} s\n# checksum of grains and schedules {}\n",
-                                                toml_number(step.step), checksum_of(resolved));
+                                                     toml_number(step.step), checksum_of(resolved));
 }
 
 GrainRun run_through(const GrainSetup& setup, GrainSimulation& simulation, const GrainFiles& files,

@@ -44,9 +44,10 @@ struct GrainRun {
   GrainRecord record;           ///< 200 to 400 moments, of few grains 1000 to 2000, from the start of the run
 };
 
-/// Make all steps; frames, histories and checkpoints on their schedules, progress on stderr. An interrupt leaves a checkpoint, and so
-/// does a step that cannot be made.
-/// \throws Error as the writers, GrainSimulation::advance and stop_if_interrupted; (bad_input) where a checkpoint lies past the end
+/// Make all steps; frames, histories and checkpoints on their schedules, progress on stderr. An interrupt leaves a
+/// checkpoint, and so does a step that cannot be made.
+/// \throws Error as the writers, GrainSimulation::advance and stop_if_interrupted; (bad_input) where a checkpoint lies
+///         past the end
 /// \param measures recorded at the moments of the probes, at the start and at the end; none: nullptr
 GrainRun run_through(const GrainSetup& setup, GrainSimulation& simulation, const GrainFiles& files,
                      GrainMeasures* measures = nullptr);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What `equidem run` reads off bodies in a box while they move: void ratio, surface, bodies thrown, period of the surface.
+/// What `equidem run` reads off bodies in a box while they move: void ratio, surface, bodies thrown, period of the
+/// surface.
 #pragma once
 
 #include <cstdint>

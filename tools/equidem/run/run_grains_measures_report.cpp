@@ -13,8 +13,8 @@
 #include "equidem/output/plots/plot.hpp"
 
 #include "csv_cells.hpp"
-#include "solve/report.hpp"
 #include "run/run_grains_measures.hpp"
+#include "solve/report.hpp"
 
 namespace equidem {
 namespace {
@@ -82,22 +82,25 @@ std::string GrainMeasures::describe() const {
   const MeasuredMoment& after = moments_.back();
   std::string out;
   if (resolved_.shaking)
-    out += report_line("measured", fmt::format("before, at t = {:.4g} s, and after, at {:.4g} s", before.time, after.time));
+    out += report_line("measured",
+                       fmt::format("before, at t = {:.4g} s, and after, at {:.4g} s", before.time, after.time));
   out += report_line("void ratio",
                      fmt::format("e = {} before, {} after (porosity {}, {}), {}", shown(before.void_ratio),
-                            shown(after.void_ratio), shown(before.porosity), shown(after.porosity),
-                            resolved_.measures->region ? "in the region given" : "away from walls and surface"));
-  out += report_line("surface", fmt::format("height {} before, {} after; slope {}, {}; roughness {}, {}",
-                                       shown(before.surface.height, " m"), shown(after.surface.height, " m"),
-                                       shown(before.surface.slope), shown(after.surface.slope),
-                                       shown(before.surface.roughness, " m"), shown(after.surface.roughness, " m")));
+                                 shown(after.void_ratio), shown(before.porosity), shown(after.porosity),
+                                 resolved_.measures->region ? "in the region given" : "away from walls and surface"));
+  out +=
+      report_line("surface", fmt::format("height {} before, {} after; slope {}, {}; roughness {}, {}",
+                                         shown(before.surface.height, " m"), shown(after.surface.height, " m"),
+                                         shown(before.surface.slope), shown(after.surface.slope),
+                                         shown(before.surface.roughness, " m"), shown(after.surface.roughness, " m")));
   out += report_line("settlement", fmt::format("of the surface {}, of the centre of mass {}",
-                                          shown(before.surface.height - after.surface.height, " m"),
-                                          shown(before.centre.y - after.centre.y, " m")));
+                                               shown(before.surface.height - after.surface.height, " m"),
+                                               shown(before.centre.y - after.centre.y, " m")));
   out += report_line(
-      "thrown", fmt::format("{} were further than {} from the heap at a moment looked at, {} at the end; {} outside the box",
-                       counted(static_cast<long long>(after.ever_thrown), "grain"),
-                       shown(resolved_.measures->thrown_gap * diameter_, " m"), after.thrown, after.outside));
+      "thrown",
+      fmt::format("{} were further than {} from the heap at a moment looked at, {} at the end; {} outside the box",
+                  counted(static_cast<long long>(after.ever_thrown), "grain"),
+                  shown(resolved_.measures->thrown_gap * diameter_, " m"), after.thrown, after.outside));
   const Sloshing slosh = sloshing();
   const std::string theory =
       std::isnan(slosh.theory) ? "" : fmt::format("; linear theory of a liquid {:.4g} s", slosh.theory);
@@ -147,7 +150,8 @@ void GrainMeasures::write_files(const std::filesystem::path& folder, const Grain
     plot.x.label = "x, m";
     plot.y.label = "surface, m";
     const auto add = [&](const SurfaceProfile& profile, double time, PlotColour colour) {
-      Series series{.label = fmt::format("t = {:.4g} s", time), .style = SeriesStyle::line_with_points, .colour = colour};
+      Series series{
+          .label = fmt::format("t = {:.4g} s", time), .style = SeriesStyle::line_with_points, .colour = colour};
       for (std::size_t k = 0; k < profile.heights.size(); ++k) {
         series.x.push_back(profile.place(k));
         series.y.push_back(profile.heights[k]);
@@ -191,16 +195,18 @@ std::string describe_shaking(const GrainCase& resolved) {
       fmt::format("{:.4g} m/s² ({:.4g} gal) at most", motion.peak_acceleration, motion.peak_acceleration / gal);
   const std::string along = fmt::format("along ({:.4g}, {:.4g})", shaking.direction.x, shaking.direction.y);
   std::string out = report_line(
-      "shaking", shaking.recorded ? fmt::format("{} {}, a record of {} points from {:.4g} s to {:.4g} s", size, along,
-                                           motion.displacement.times.size(), motion.displacement.times.front(),
-                                           motion.displacement.times.back())
-                                  : fmt::format("{} {}, {} Hz, {} from {:.4g} s to {:.4g} s", size, along, shaking.frequency,
-                                           counted(static_cast<long long>(shaking.cycles), "cycle"),
-                                           motion.displacement.start, motion.displacement.end));
-  out += report_line("", fmt::format("at most {:.4g} m/s and {:.4g} m", motion.peak_velocity, motion.peak_displacement));
+      "shaking", shaking.recorded
+                     ? fmt::format("{} {}, a record of {} points from {:.4g} s to {:.4g} s", size, along,
+                                   motion.displacement.times.size(), motion.displacement.times.front(),
+                                   motion.displacement.times.back())
+                     : fmt::format("{} {}, {} Hz, {} from {:.4g} s to {:.4g} s", size, along, shaking.frequency,
+                                   counted(static_cast<long long>(shaking.cycles), "cycle"), motion.displacement.start,
+                                   motion.displacement.end));
+  out +=
+      report_line("", fmt::format("at most {:.4g} m/s and {:.4g} m", motion.peak_velocity, motion.peak_displacement));
   if (shaking.recorded && motion.correction > 0)
     out += report_line("", fmt::format("baseline: up to {:.3g} of that acceleration taken away",
-                                  motion.correction / motion.peak_acceleration));
+                                       motion.correction / motion.peak_acceleration));
   if (motion.final_displacement != 0 && std::abs(motion.final_displacement) > 1e-9 * motion.peak_displacement)
     out += report_line("", fmt::format("the box ends {:.4g} m from where it began", motion.final_displacement));
   return out;

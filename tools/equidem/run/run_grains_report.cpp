@@ -13,8 +13,8 @@
 #include "equidem/output/files/grain_energy.hpp"
 #include "equidem/output/plots/plot.hpp"
 
-#include "solve/report.hpp"
 #include "run/run_bonds_report.hpp"
+#include "solve/report.hpp"
 
 namespace equidem {
 namespace {
@@ -86,17 +86,17 @@ std::string describe_bodies(const GrainCase& resolved) {
   const auto [round, ellipses, clumps] = counts_of_shapes(resolved);
   std::string out = report_line(
       "bodies", fmt::format("{}, {} {} m, {:.6g} {} in all", describe_shapes(resolved),
-                       ellipses + clumps == 0 ? "radius" : "radius of the circle around each", range(smallest, largest),
-                       mass, resolved.body == Body::disc ? "kg per m of depth" : "kg"));
+                            ellipses + clumps == 0 ? "radius" : "radius of the circle around each",
+                            range(smallest, largest), mass, resolved.body == Body::disc ? "kg per m of depth" : "kg"));
   if (clumps > 0) {
     std::size_t fewest = resolved.clumps.front().discs.size(), most = fewest;
     for (const Clump& clump : resolved.clumps) {
       fewest = std::min(fewest, clump.discs.size());
       most = std::max(most, clump.discs.size());
     }
-    out += report_line("",
-                       fmt::format("clumps of {} {}", fewest == most ? fmt::format("{}", most) : fmt::format("{} to {}", fewest, most),
-                              most == 1 ? "disc" : "discs"));
+    out += report_line("", fmt::format("clumps of {} {}",
+                                       fewest == most ? fmt::format("{}", most) : fmt::format("{} to {}", fewest, most),
+                                       most == 1 ? "disc" : "discs"));
   }
   if (ellipses > 0) out += report_line("", describe_ellipse_contact(resolved.ellipse_law));
   if (groups.size() > 1) {
@@ -108,7 +108,7 @@ std::string describe_bodies(const GrainCase& resolved) {
   for (const GrainWall& wall : resolved.walls) {
     constexpr const char* shapes[] = {"line", "segment", "arc"};
     walls += fmt::format("{}{} ({}{})", walls.empty() ? "" : ", ", wall.name, shapes[static_cast<int>(wall.shape)],
-                    wall.moves() ? ", moves" : "");
+                         wall.moves() ? ", moves" : "");
   }
   return walls.empty() ? out : out + report_line("walls", walls);
 }
@@ -144,8 +144,8 @@ std::string describe_pairs(const GrainCase& resolved) {
     for (int b = a; b < resolved.kind_count(); ++b) {
       if (!reduced_masses(masses, a, b)) continue;
       const std::string what = describe_pair(resolved, resolved.between(a, b));
-      const std::string who =
-          fmt::format("{} and {}", resolved.kinds[static_cast<std::size_t>(a)], resolved.kinds[static_cast<std::size_t>(b)]);
+      const std::string who = fmt::format("{} and {}", resolved.kinds[static_cast<std::size_t>(a)],
+                                          resolved.kinds[static_cast<std::size_t>(b)]);
       const auto at = std::find_if(lines.begin(), lines.end(), [&](const auto& line) { return line.first == what; });
       if (at == lines.end()) {
         lines.emplace_back(what, who);
@@ -169,11 +169,11 @@ std::string describe_law(const GrainCase& resolved) {
     case NormalLaw::linear_dashpot:
     case NormalLaw::hertz_dashpot:
       return fmt::format("{}: {} spring and dashpot, {}", name,
-                    resolved.law == NormalLaw::linear_dashpot ? "linear" : "Hertz",
-                    resolved.scheme == GrainOptions::Scheme::semi_implicit_euler ? "semi-implicit Euler"
-                    : resolved.scheme == GrainOptions::Scheme::velocity_verlet
-                        ? "velocity Verlet"
-                        : "velocity Verlet, contacts that begin or end within a step corrected");
+                         resolved.law == NormalLaw::linear_dashpot ? "linear" : "Hertz",
+                         resolved.scheme == GrainOptions::Scheme::semi_implicit_euler ? "semi-implicit Euler"
+                         : resolved.scheme == GrainOptions::Scheme::velocity_verlet
+                             ? "velocity Verlet"
+                             : "velocity Verlet, contacts that begin or end within a step corrected");
     case NormalLaw::five_case_map:
       return name + ": restitution at the first step of a contact, energy kept after it";
     case NormalLaw::energy_map:
@@ -216,7 +216,7 @@ std::string describe_step(const GrainSetup& setup) {
   std::string out = report_line("time step", fmt::format("{:.6g} s{}", step.step, step.automatic ? ", automatic" : ""));
   if (step.contact > 0) {
     out += report_line("", fmt::format("the shortest contact lasts {:.4g} s, {:.3g} steps ({})", step.contact,
-                                  step.steps_in_contact(), step.between));
+                                       step.steps_in_contact(), step.between));
   } else {
     out += report_line("", "how long contacts last is not known: " +
                                std::string(setup.resolved.law == NormalLaw::hertz_dashpot
@@ -224,10 +224,11 @@ std::string describe_step(const GrainSetup& setup) {
                                                : "no two bodies can meet"));
   }
   if (step.omega_step > 0 && step.limit > 0) {
-    out += report_line(
-        "", fmt::format("omega dt = {:.4g}, {:.3g} of {:.4g}, {}", step.omega_step, step.omega_step / step.limit, step.limit,
-                   is_map(setup.resolved.law) ? "past which a contact is over in a step"
-                                              : "the limit of stability of one contact; several at a body lower it"));
+    out += report_line("", fmt::format("omega dt = {:.4g}, {:.3g} of {:.4g}, {}", step.omega_step,
+                                       step.omega_step / step.limit, step.limit,
+                                       is_map(setup.resolved.law)
+                                           ? "past which a contact is over in a step"
+                                           : "the limit of stability of one contact; several at a body lower it"));
   } else if (step.omega_step > 0) {
     out += report_line("", fmt::format("omega dt = {:.4g}; a single contact is exact at any step", step.omega_step));
   }
@@ -272,20 +273,21 @@ std::string describe_grain_run(const GrainSetup& setup, const GrainSimulation& s
   const GrainCounters& counters = simulation.counters();
   std::string out =
       report_line("steps", fmt::format("{}, to t = {:.6g} s; {:.3g} grain-steps per second", grouped(simulation.step()),
-                                  simulation.time(), grain_steps_per_second(setup, run)));
-  out += report_line("collisions",
-                     fmt::format("{} contacts begun, {} at the end; {} evaluations of the law", grouped(counters.contacts),
-                            simulation.contacts().size(), grouped(counters.evaluations)));
+                                       simulation.time(), grain_steps_per_second(setup, run)));
+  out += report_line("collisions", fmt::format("{} contacts begun, {} at the end; {} evaluations of the law",
+                                               grouped(counters.contacts), simulation.contacts().size(),
+                                               grouped(counters.evaluations)));
   out += describe_drift_of_bonds(simulation.bonds());
   const GrainLedger l = simulation.energy();
-  out += report_line("energy", fmt::format("kinetic {:.6g}, elastic {:.6g}, potential {:.6g} {}", l.kinetic, l.elastic(),
-                                      l.potential, energy_unit(setup.resolved.body)));
+  out += report_line("energy", fmt::format("kinetic {:.6g}, elastic {:.6g}, potential {:.6g} {}", l.kinetic,
+                                           l.elastic(), l.potential, energy_unit(setup.resolved.body)));
   const GrainLedger& start = run.record.energies.front().ledger;
   const double overlap = start.elastic();
   out += report_line(
-      "", fmt::format("at the start {:.6g}{}{}", l.initial,
-                 overlap > 1e-6 * largest_term(l) ? fmt::format(", {:.6g} of it in bodies that overlap", overlap) : "",
-                 l.work_of_walls != 0 ? fmt::format("; put in by walls {:.6g}", l.work_of_walls) : ""));
+      "",
+      fmt::format("at the start {:.6g}{}{}", l.initial,
+                  overlap > 1e-6 * largest_term(l) ? fmt::format(", {:.6g} of it in bodies that overlap", overlap) : "",
+                  l.work_of_walls != 0 ? fmt::format("; put in by walls {:.6g}", l.work_of_walls) : ""));
   std::string lost;
   for (const auto& [name, value] :
        {std::pair{"restitution", l.lost_restitution}, std::pair{"normal dashpots", l.lost_dashpot},
@@ -298,9 +300,10 @@ std::string describe_grain_run(const GrainSetup& setup, const GrainSimulation& s
     out += report_line("", "that is much: " + advice_on_balance(setup, simulation, l));
   if (counters.doubtful > 0)
     out += report_line(
-        "", fmt::format("of all evaluations {} were of contacts pressed together in a step that may feed their vibration: "
-                   "the step is safe for one contact, not for any cluster; compare with one a third as long",
-                   grouped(counters.doubtful)));
+        "",
+        fmt::format("of all evaluations {} were of contacts pressed together in a step that may feed their vibration: "
+                    "the step is safe for one contact, not for any cluster; compare with one a third as long",
+                    grouped(counters.doubtful)));
   std::string stages;
   for (const auto& [stage, seconds] : times.stages())
     if (seconds >= 0.02 * times.total()) stages += fmt::format(", {} {:.2g} s", stage, seconds);

@@ -95,13 +95,13 @@ class RunLoop {
     }
   }
 
-  /// Samples of a shorter run are more, and at every power of two steps: those of this run are among them, but for the one
-  /// at its end.
+  /// Samples of a shorter run are more, and at every power of two steps: those of this run are among them, but for the
+  /// one at its end.
   void go_on(Checkpoint checkpoint) {
     simulation_.restore(checkpoint.state);
     if (simulation_.step() > total_) {
       bad_input(fmt::format("the run is to end at {:.6g} s, and its checkpoint lies at {:.6g} s",
-                       static_cast<double>(total_) * setup_.step.step, simulation_.time()),
+                            static_cast<double>(total_) * setup_.step.step, simulation_.time()),
                 "a run does not go back", "Give a longer duration, or start the run afresh");
     }
     result_.energies = std::move(checkpoint.energies);

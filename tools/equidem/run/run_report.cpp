@@ -127,15 +127,15 @@ std::string describe_run_setup(const RunSetup& setup, const Simulation& simulati
   const bool late = run.damping.stiffness > 0 || run.damping.contact > 0 || run.damping.local > 0;
   const int order = late ? order_with_late_velocities : facts.order;
   out += report_line("integrator", fmt::format("{}, order {}{}, {} a step", to_string(run.integrator), order,
-                                          order < facts.order ? " (dampers act half a step late)" : "",
-                                          counted(facts.force_evaluations, "force evaluation")));
+                                               order < facts.order ? " (dampers act half a step late)" : "",
+                                               counted(facts.force_evaluations, "force evaluation")));
   const TimeStep& step = setup.step;
   if (std::isinf(step.critical)) {
     out += report_line("time step", fmt::format("{:.6g} s; nothing vibrates, any step is stable", step.step));
   } else {
-    out +=
-        report_line("time step", fmt::format("{:.6g} s, {:.4g} of the {} step {:.6g} s (rule: {})", step.step, step.ratio(),
-                                        step.exact ? "critical" : "guaranteed", step.critical, step.rule));
+    out += report_line("time step",
+                       fmt::format("{:.6g} s, {:.4g} of the {} step {:.6g} s (rule: {})", step.step, step.ratio(),
+                                   step.exact ? "critical" : "guaranteed", step.critical, step.rule));
     for (const std::string& note : step.notes) out += report_line("", note);
   }
   out += describe_output(setup);
@@ -158,38 +158,40 @@ double estimate_seconds(const RunSetup& setup, Simulation& simulation) {
 }
 
 std::string describe_estimate(const RunSetup& setup, double seconds) {
-  return report_line("steps",
-                     fmt::format("{}, about {:.2g} s with these threads, output aside", grouped(setup.steps()), seconds));
+  return report_line(
+      "steps", fmt::format("{}, about {:.2g} s with these threads, output aside", grouped(setup.steps()), seconds));
 }
 
 std::string describe_run(const RunSetup& setup, const Simulation& simulation, const RunResult& result,
                          const StageTimes& times) {
   std::string out =
       report_line("steps", fmt::format("{}, to t = {:.6g} s; {:.3g} disc-steps per second", grouped(simulation.step()),
-                                  simulation.time(), disc_steps_per_second(setup, result)));
+                                       simulation.time(), disc_steps_per_second(setup, result)));
   const EnergyLedger ledger = simulation.energy();
-  out += report_line("energy", fmt::format("kinetic {:.6g}, elastic {:.6g}, potential {:.6g} N (J per m of depth, per m)",
-                                      ledger.kinetic, ledger.elastic, ledger.potential));
-  out += report_line("", fmt::format("at the start {:.6g}; put in by loads {:.6g}, supports {:.6g}, walls {:.6g}",
-                                ledger.initial, ledger.work_of_loads, ledger.work_of_supports, ledger.work_of_walls));
+  out +=
+      report_line("energy", fmt::format("kinetic {:.6g}, elastic {:.6g}, potential {:.6g} N (J per m of depth, per m)",
+                                        ledger.kinetic, ledger.elastic, ledger.potential));
+  out +=
+      report_line("", fmt::format("at the start {:.6g}; put in by loads {:.6g}, supports {:.6g}, walls {:.6g}",
+                                  ledger.initial, ledger.work_of_loads, ledger.work_of_supports, ledger.work_of_walls));
   if (std::abs(ledger.sway) > balance_to_mention * largest_energy(ledger)) {
     out += report_line(
         "", fmt::format("leapfrog lets kinetic + elastic energy sway with the motion, now by {:.3g}", ledger.sway));
   }
   out += report_line("", fmt::format("dissipated by mass damping {:.6g}, contacts {:.6g}, local damping {:.6g}",
-                                ledger.damped_mass, ledger.damped_contact, ledger.damped_local));
+                                     ledger.damped_mass, ledger.damped_contact, ledger.damped_local));
   const Balance balance = balance_of(simulation, result);
   const double lacks = balance.most;
-  out +=
-      report_line("balance", fmt::format("lacks {:.1e} of the largest term of the run at its end, at most {:.1e} on the way",
-                                    std::abs(balance.now), lacks));
+  out += report_line("balance",
+                     fmt::format("lacks {:.1e} of the largest term of the run at its end, at most {:.1e} on the way",
+                                 std::abs(balance.now), lacks));
   if (lacks > balance_to_mention) {
     const Scene& scene = setup.scene;  // the work of what drives a run is counted to the second order
     const bool driven = !scene.loads.empty() || !scene.supports.empty() || !scene.walls.empty();
     const int order = std::min(facts_of(setup.run().integrator).order, driven ? 2 : 4);
-    out += report_line("",
-                       fmt::format("it falls as the step to the power {}: about {:g} with run.time_step={:.2g}", order,
-                              balance_to_mention, setup.step.step * std::pow(balance_to_mention / lacks, 1.0 / order)));
+    out += report_line(
+        "", fmt::format("it falls as the step to the power {}: about {:g} with run.time_step={:.2g}", order,
+                        balance_to_mention, setup.step.step * std::pow(balance_to_mention / lacks, 1.0 / order)));
   }
   if (lacks > balance_to_doubt) {
     out += report_line("", "that is much: compare with a shorter step before trusting the motion");

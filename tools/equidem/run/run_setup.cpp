@@ -79,14 +79,15 @@ void check_events(const Case& resolved, TimeStep& step) {
     const MissedEvent missed = missed_event(schedule, step.step, end);
     const std::string place = fmt::format("{}.{}", table, k);
     if (missed.share > most) {
-      throw Error(ErrorKind::bad_input,
-                  fmt::format("its schedule has an event at {:.6g} s that steps of {:.6g} s miss", missed.time, step.step),
-                  fmt::format("between two steps lie {:.0f} % of the range of its values", 100 * missed.share),
-                  "Give a time_step well below its length, or let it last longer", resolved.where(place + ".schedule"));
+      throw Error(
+          ErrorKind::bad_input,
+          fmt::format("its schedule has an event at {:.6g} s that steps of {:.6g} s miss", missed.time, step.step),
+          fmt::format("between two steps lie {:.0f} % of the range of its values", 100 * missed.share),
+          "Give a time_step well below its length, or let it last longer", resolved.where(place + ".schedule"));
     }
     if (missed.share > worth_telling) {
       step.notes.push_back(fmt::format("Of the schedule of {} {} steps miss up to {:.0f} % of its range, at {:.6g} s.",
-                                  table, k, 100 * missed.share, missed.time));
+                                       table, k, 100 * missed.share, missed.time));
     }
   };
   const RunCase& run = *resolved.run;
@@ -197,8 +198,8 @@ std::string RunSetup::fingerprint() const {
   sort_keys(known.document);
   return to_toml(known, {}) +
          fmt::format("{}{}{}{}\n# checksums: discs and contacts {}\n# springs {}\n# schedules {}\n", step_line,
-                toml_number(step.step), step_rule, step.rule, checksum_of(problem.assembly),
-                checksum_of(problem.assembly, problem.springs.springs), checksum_of_schedules(scene));
+                     toml_number(step.step), step_rule, step.rule, checksum_of(problem.assembly),
+                     checksum_of(problem.assembly, problem.springs.springs), checksum_of_schedules(scene));
 }
 
 }  // namespace equidem

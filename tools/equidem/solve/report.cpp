@@ -22,7 +22,7 @@ std::string stability(const Problem& problem, const Equilibrium& result) {
   }
   if (result.negative_pivots == 0) return "stable: no negative pivot";
   return fmt::format("stable: {}, one for each rotation{}", counted(result.negative_pivots, "negative pivot"),
-                problem.springs.springs.any_negative() ? " (kT < 0; static-only)" : "");
+                     problem.springs.springs.any_negative() ? " (kT < 0; static-only)" : "");
 }
 
 std::string scientific(double value) {
@@ -44,15 +44,16 @@ void append_stress(std::string& out, const SolvedCase& result) {
   const auto shown = [&](double value) { return component(value, largest); };
   const bool symmetric = std::abs(asymmetry(s)) <= 1e-9 * largest;
   if (symmetric) {
-    out += report_line("stress",
-                       fmt::format("xx {}, yy {}, xy {} Pa, mean over the assembly", shown(s.xx), shown(s.yy), shown(s.xy)));
+    out += report_line(
+        "stress", fmt::format("xx {}, yy {}, xy {} Pa, mean over the assembly", shown(s.xx), shown(s.yy), shown(s.xy)));
     return;
   }
-  out += report_line("stress", fmt::format("xx {}, yy {}, xy {}, yx {} Pa, mean over the assembly", shown(s.xx), shown(s.yy),
-                                      shown(s.xy), shown(s.yx)));
-  out += report_line("", fmt::format("not symmetric: xy - yx = {:.6g} Pa (Abe 1996, eq. 55). The moments that restrained "
-                                "rotation, supports and loads put on the discs are {:.6g} N m per m²",
-                                asymmetry(s), result.moment_per_area));
+  out += report_line("stress", fmt::format("xx {}, yy {}, xy {}, yx {} Pa, mean over the assembly", shown(s.xx),
+                                           shown(s.yy), shown(s.xy), shown(s.yx)));
+  out +=
+      report_line("", fmt::format("not symmetric: xy - yx = {:.6g} Pa (Abe 1996, eq. 55). The moments that restrained "
+                                  "rotation, supports and loads put on the discs are {:.6g} N m per m²",
+                                  asymmetry(s), result.moment_per_area));
 }
 
 void append_tension(std::string& out, const Problem& problem, const SolvedCase& result) {
@@ -62,8 +63,8 @@ void append_tension(std::string& out, const Problem& problem, const SolvedCase& 
   const TomlValue& test = *problem.resolved.document.find("test");
   out += report_line("tension test",
                      fmt::format("s11 = {:.6g} Pa, height {:.6g} m, gauge \"{}\": discs {}-{} along x, {}-{} along y",
-                            t.stress.xx, setup.height, test.find("gauge")->text, setup.horizontal.first,
-                            setup.horizontal.second, setup.vertical.first, setup.vertical.second));
+                                 t.stress.xx, setup.height, test.find("gauge")->text, setup.horizontal.first,
+                                 setup.horizontal.second, setup.vertical.first, setup.vertical.second));
   out += report_line("  strain", fmt::format("e11 = {:.9g}, e22 = {:.9g}", t.strain.xx, t.strain.yy));
   const auto compared = [&](const std::string& name, double value, double expected) {
     std::string line = fmt::format("{:<14.9g}", value);
@@ -113,12 +114,12 @@ std::string describe_problem(const Problem& problem, const Effects& effects) {
   std::string out;
   if (!problem.resolved.title.empty()) out += problem.resolved.title + "\n\n";
   out += report_line("assembly", fmt::format("{}, {} disc{}, {} contact{}, z = {:.4g}", a.kind,
-                                        grouped(static_cast<std::int64_t>(a.size())), a.size() == 1 ? "" : "s",
-                                        grouped(static_cast<std::int64_t>(a.contacts.size())),
-                                        a.contacts.size() == 1 ? "" : "s", a.coordination_number()));
+                                             grouped(static_cast<std::int64_t>(a.size())), a.size() == 1 ? "" : "s",
+                                             grouped(static_cast<std::int64_t>(a.contacts.size())),
+                                             a.contacts.size() == 1 ? "" : "s", a.coordination_number()));
   if (a.periodic() || !a.cell_areas.empty())
     out += report_line("", fmt::format("area {:.6g} m², solid fraction {:.6g}{}", a.area(), a.solid_fraction(),
-                                  a.periodic() ? ", periodic" : ""));
+                                       a.periodic() ? ", periodic" : ""));
   if (!a.periodic() && !a.box && !a.cell_areas.empty() && !a.sections.empty()) {
     out += report_line("",
                        "The area is that of the rectangle around the discs of equal area: the file gives no \"box\", "
@@ -145,18 +146,18 @@ std::string describe_results(const Problem& problem, std::span<const SolvedCase>
   }
   out += report_line("unknowns", grouped(first.unknowns));
   out += report_line("solver", fmt::format("{}, {:.3g} entries in the factor ({})", first.solver, first.factor_nonzeros,
-                                      readable_bytes(first.factor_bytes)));
+                                           readable_bytes(first.factor_bytes)));
   out += report_line("stability", stability(problem, first));
   for (const SolvedCase& result : results) {
     if (!result.name.empty()) out += fmt::format("\nload case {}\n", result.name);
     const Equilibrium& e = result.equilibrium;
     out += report_line("residual",
                        fmt::format("{:.1e} relative, after {} of refinement; {:.1e} for the motions rounded to double",
-                              e.relative_residual, counted(e.refinements, "step"), e.rounded_residual));
+                                   e.relative_residual, counted(e.refinements, "step"), e.rounded_residual));
     if (e.condition > 0) {
-      out +=
-          report_line("error bound", fmt::format("{:.1e} of the motions, from the residual and a condition of about {:.1e}",
-                                            e.error_bound, e.condition));
+      out += report_line("error bound",
+                         fmt::format("{:.1e} of the motions, from the residual and a condition of about {:.1e}",
+                                     e.error_bound, e.condition));
     }
     constexpr double doubtful = 1e-10;
     if (e.relative_residual > doubtful) {
@@ -177,8 +178,8 @@ std::string describe_results(const Problem& problem, std::span<const SolvedCase>
 std::string describe_estimate(const SolveEstimate& e) {
   return report_line("unknowns", grouped(e.unknowns)) +
          report_line("memory",
-                     fmt::format("{} at the peak, {} of it for the factor ({:.3g} entries)", readable_bytes(e.peak_bytes),
-                            readable_bytes(e.factor_bytes), e.factor_nonzeros)) +
+                     fmt::format("{} at the peak, {} of it for the factor ({:.3g} entries)",
+                                 readable_bytes(e.peak_bytes), readable_bytes(e.factor_bytes), e.factor_nonzeros)) +
          report_line("work", fmt::format("{:.3g} multiplications and additions to factorize", e.operations)) +
          "nothing was solved (--dry-run)\n";
 }

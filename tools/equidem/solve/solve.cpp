@@ -10,8 +10,8 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/csv.hpp"
-#include "equidem/output/pictures/picture.hpp"
 #include "equidem/output/files/vtk.hpp"
+#include "equidem/output/pictures/picture.hpp"
 
 #include "command.hpp"
 #include "problem.hpp"

@@ -71,13 +71,13 @@ ReachedAccuracy BlockSearch::reached() const {
       .requested = accuracy_,
       .estimated = search_.error(rows),
       .of = fmt::format("nu, and 2G/((1-nu)kN) relative, of this block against the lattice without sides, extrapolated "
-                   "(errors fall as rows^-{:.2f})",
-                   search_.order()),
+                        "(errors fall as rows^-{:.2f})",
+                        search_.order()),
       .knob = fmt::format("the size of the block, {} in the case", of_case_),
       .value = setting_of(size_of(rows)),
       .pilots =
           fmt::format("{} of {} to {} rows", counted(std::ssize(pilots) + std::ssize(proposed_) - 1, "block"),
-                 *std::min_element(pilots.begin(), pilots.end()), *std::max_element(pilots.begin(), pilots.end())),
+                      *std::min_element(pilots.begin(), pilots.end()), *std::max_element(pilots.begin(), pilots.end())),
       .pilots_factor = other_seconds_ / seconds_,
       .ten_times_more = {.time_factor = factor,
                          .seconds = factor * seconds_,
@@ -119,12 +119,12 @@ std::vector<double> BlockSearch::solve_pilot(std::int64_t rows) {
 
 ReachedAccuracy solver_accuracy(double accuracy, double error_bound, double condition, double seconds) {
   if (!(error_bound > 0) || error_bound > accuracy) {
-    computation_failed(
-        fmt::format("an accuracy of {:.3g} cannot be reached", accuracy),
-        error_bound > 0 ? fmt::format("the answer is known to {:.2g}: its condition is about {:.1e}", error_bound, condition)
-                        : "this solver gives no bound of its error",
-        error_bound > 0 ? "Ask for less, or give the assembly with fewer extremes of size or stiffness"
-                        : "Set solver.method = \"auto\"");
+    computation_failed(fmt::format("an accuracy of {:.3g} cannot be reached", accuracy),
+                       error_bound > 0 ? fmt::format("the answer is known to {:.2g}: its condition is about {:.1e}",
+                                                     error_bound, condition)
+                                       : "this solver gives no bound of its error",
+                       error_bound > 0 ? "Ask for less, or give the assembly with fewer extremes of size or stiffness"
+                                       : "Set solver.method = \"auto\"");
   }
   ReachedAccuracy reached{
       .requested = accuracy,

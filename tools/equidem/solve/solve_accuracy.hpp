@@ -15,9 +15,9 @@
 
 namespace equidem {
 
-/// A tension test of a lattice misses the lattice without sides by about one over its rows. Finds the rows and columns, in the proportion
-/// of the case, for which nu, and the stiffness ratio (36) relative to itself, are within the accuracy. Sides of whole fours and one disc:
-/// gauges then sit alike in all.
+/// A tension test of a lattice misses the lattice without sides by about one over its rows. Finds the rows and columns,
+/// in the proportion of the case, for which nu, and the stiffness ratio (36) relative to itself, are within the
+/// accuracy. Sides of whole fours and one disc: gauges then sit alike in all.
 class BlockSearch {
  public:
   /// Whether the case is such a test; where it is not there is nothing to choose.
@@ -28,7 +28,8 @@ class BlockSearch {
   BlockSearch& operator=(const BlockSearch&) = delete;
 
   /// The case of the block that should do.
-  /// \throws Error (computation_failed) where that takes more than a million discs, or errors do not fall as one over the rows
+  /// \throws Error (computation_failed) where that takes more than a million discs, or errors do not fall as one over
+  ///         the rows
   Case propose();
   /// Whether the block is known to be within the accuracy.
   bool accepts(const TensionResult& result, double seconds);

@@ -32,9 +32,10 @@ int dry_run_survey(const CommonOptions& options, const Problem& problem) {
     const bool surveyed = cell.size() <= most_discs_of_survey;
     object.set("primitive_cell_discs", cell.size());
     if (surveyed) object.set("wave_vectors", survey_size(cell));
-    waves = surveyed ? fmt::format("about {} wave vectors of a cell of {}", survey_size(cell),
+    waves = surveyed
+                ? fmt::format("about {} wave vectors of a cell of {}", survey_size(cell),
                               counted(static_cast<std::int64_t>(cell.size()), "disc"))
-                     : fmt::format("none: the smallest cell has {} discs, more than {}", cell.size(), most_discs_of_survey);
+                : fmt::format("none: the smallest cell has {} discs, more than {}", cell.size(), most_discs_of_survey);
   }
   const auto inertia = inertia_of(assembly, density_of(problem.resolved), problem.resolved.assembly.body);
   check_magnitudes(assembly, springs, inertia);
@@ -45,7 +46,7 @@ int dry_run_survey(const CommonOptions& options, const Problem& problem) {
       report_line("factorizations", "about 15 of the size below, 50 where a large cell is periodic") +
       report_line("waves", waves) +
       report_line("time step", fmt::format("{:.6g} s is guaranteed to be stable (element bound{})", step,
-                                      problem.resolved.assembly.density ? "" : "; density 1 kg/m³ assumed")) +
+                                           problem.resolved.assembly.density ? "" : "; density 1 kg/m³ assumed")) +
       describe_estimate(size);
   JsonObject result;
   add_common(result, "dry_run", report, times, effects);

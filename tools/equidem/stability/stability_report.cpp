@@ -45,12 +45,13 @@ void append_mechanisms(std::string& out, const Stability& s) {
                                      : s.problem.assembly.periodic()
                                          ? " (the two translations of a periodic cell do not count)"
                                          : fmt::format(" (the {} of a body that nothing holds do not count)",
-                                                  counted(s.mechanisms.rigid_motions, "rigid motion"));
+                                                       counted(s.mechanisms.rigid_motions, "rigid motion"));
     line = fmt::format("none{}: every motion stretches or slips some contact{}",
-                  waves.empty() ? "" : " that repeats with the cell", of_the_whole);
+                       waves.empty() ? "" : " that repeats with the cell", of_the_whole);
   } else {
-    line = s.mechanisms.sentences.size() > 1 ? fmt::format("{} without energy: ", counted(s.mechanisms.count(), "motion"))
-                                             : std::string();
+    line = s.mechanisms.sentences.size() > 1
+               ? fmt::format("{} without energy: ", counted(s.mechanisms.count(), "motion"))
+               : std::string();
     for (std::size_t k = 0; k < s.mechanisms.sentences.size(); ++k)
       line += (k > 0 ? "; " : "") + s.mechanisms.sentences[k];
   }
@@ -59,8 +60,8 @@ void append_mechanisms(std::string& out, const Stability& s) {
   const std::string name = s.survey->zone.name_of(waves.front());
   out += report_line(
       "", fmt::format("of the infinite assembly: waves that stretch and slip no contact, at {} searched, such as {}",
-                 counted(static_cast<std::int64_t>(waves.size()), "of the wave vectors", "of the wave vectors"),
-                 name_of({name, waves.front()}, {})));
+                      counted(static_cast<std::int64_t>(waves.size()), "of the wave vectors", "of the wave vectors"),
+                      name_of({name, waves.front()}, {})));
 }
 
 void append_inertia(std::string& out, const Stability& s) {
@@ -70,7 +71,7 @@ void append_inertia(std::string& out, const Stability& s) {
     line += inertia.unstable_modes == 0 ? ", one for each rotation: no translation has lost its stiffness"
             : inertia.unstable_modes > 0
                 ? fmt::format(", {} beyond one for each rotation: the assembly gives way by so many modes",
-                         inertia.unstable_modes)
+                              inertia.unstable_modes)
                 : "; the rotations alone are singular, so that they cannot be told apart";
   }
   out += report_line("inertia", line);
@@ -99,15 +100,15 @@ void append_critical(std::string& out, const Stability& s) {
   }
   const double margin = *s.ratio - c.ratio;
   const std::string where = std::isfinite(margin) ? fmt::format(", {:.6g} {} the critical ratio", std::abs(margin),
-                                                           margin >= 0 ? "above" : "below")
+                                                                margin >= 0 ? "above" : "below")
                                                   : "";
   const std::string state = s.status();
-  out +=
-      report_line("this case", fmt::format("kT/kN = {:.6g}{}: {}", *s.ratio, where,
-                                      state == "stable"     ? "stable in statics"
-                                      : state == "unstable" ? "UNSTABLE in statics"
-                                      : margin >= 0 ? "stable in statics but for its mechanisms, which nothing resists"
-                                                    : "UNSTABLE in statics, and a mechanism"));
+  out += report_line("this case",
+                     fmt::format("kT/kN = {:.6g}{}: {}", *s.ratio, where,
+                                 state == "stable"     ? "stable in statics"
+                                 : state == "unstable" ? "UNSTABLE in statics"
+                                 : margin >= 0 ? "stable in statics but for its mechanisms, which nothing resists"
+                                               : "UNSTABLE in statics, and a mechanism"));
 }
 
 void append_growth(std::string& out, const Stability& s) {
@@ -116,7 +117,7 @@ void append_growth(std::string& out, const Stability& s) {
   if (rate == 0) {
     const bool all_waves = !s.problem.assembly.periodic() || s.survey;
     out += report_line("growth", fmt::format("none: some kT are negative, but no motion{} has negative energy",
-                                        all_waves ? "" : " that repeats with the cell"));
+                                             all_waves ? "" : " that repeats with the cell"));
     return;
   }
   std::string which;
@@ -125,8 +126,8 @@ void append_growth(std::string& out, const Stability& s) {
     which = ", fastest at " + name_of(growing.at, growing.points);
     if (growing.at.name == greek_gamma && s.cell_discs == 1) which += ": all discs spin alike";
   }
-  out += report_line("growth",
-                     fmt::format("{:.9g} 1/s in motion: a disturbance grows e-fold in {:.3g} s{}", rate, 1 / rate, which));
+  out += report_line(
+      "growth", fmt::format("{:.9g} 1/s in motion: a disturbance grows e-fold in {:.3g} s{}", rate, 1 / rate, which));
   out += report_line(
       "",
       "kT < 0 gives rotations negative stiffness. Statics finds where all forces balance; for the rotations that is "
@@ -138,14 +139,14 @@ void append_time_step(std::string& out, const Stability& s) {
   const bool vibrates = s.highest.value > 0, grows = s.growth_rate() > 0;
   double omega = std::sqrt(s.highest.value);
   out += report_line("omega_max", vibrates ? fmt::format("{:.12g} rad/s, Lanczos, residual {:.1e} of omega²{}", omega,
-                                                    s.highest.residual / s.highest.value,
-                                                    s.highest.converged ? "" : " (NOT CONVERGED: a lower bound)")
+                                                         s.highest.residual / s.highest.value,
+                                                         s.highest.converged ? "" : " (NOT CONVERGED: a lower bound)")
                                            : "none: no motion that repeats with the given cell vibrates");
   if (s.survey && s.survey->highest.value > 0) {
     const ZoneMaximum& highest = s.survey->highest;
     if (!vibrates) omega = std::sqrt(highest.value);
     out += report_line("", fmt::format("{:.12g} rad/s over all waves of the infinite assembly, at {}",
-                                  std::sqrt(highest.value), name_of(highest.at, highest.points)));
+                                       std::sqrt(highest.value), name_of(highest.at, highest.points)));
   }
   const auto line = [&](const std::string& name, double step, const std::string& what) {
     out += report_line(name, fmt::format("{:<14.9g} s  {:.3f}  {}", step, step * omega / 2, what));
@@ -178,18 +179,19 @@ void append_sound(std::string& out, const Stability& s) {
   if (s.survey) {
     const std::vector<SoundAlong>& sound = s.survey->sound;
     for (const std::size_t k : {0, 2, 3, 6}) {
-      std::string line = fmt::format("{:3.0f} degrees from x: P {} S {}", sound[k].angle * 180 / std::numbers::pi,
-                                speed(sound[k].speeds.longitudinal_squared), speed(sound[k].speeds.transverse_squared));
+      std::string line =
+          fmt::format("{:3.0f} degrees from x: P {} S {}", sound[k].angle * 180 / std::numbers::pi,
+                      speed(sound[k].speeds.longitudinal_squared), speed(sound[k].speeds.transverse_squared));
       if (!s.sound.empty())
         line += fmt::format(" m/s; homogenized P {} S {}", speed(s.sound[k].longitudinal_squared),
-                       speed(s.sound[k].transverse_squared));
+                            speed(s.sound[k].transverse_squared));
       out += report_line(k == 0 ? "sound" : "", line + " m/s");
     }
   } else {
     for (std::size_t k = 0; k < s.sound.size(); ++k)
       out += report_line(k == 0 ? "sound" : "",
                          fmt::format("along {}: P {} S {} m/s, of the homogenized continuum", k == 0 ? "x" : "y",
-                                speed(s.sound[k].longitudinal_squared), speed(s.sound[k].transverse_squared)));
+                                     speed(s.sound[k].longitudinal_squared), speed(s.sound[k].transverse_squared)));
   }
   if (!s.no_continuum.empty()) out += report_line("", "no homogenized continuum to compare with: " + s.no_continuum);
 }
@@ -198,7 +200,7 @@ void append_waves(std::string& out, const Stability& s) {
   if (!s.problem.assembly.periodic()) return;
   if (!s.survey) {
     out += report_line("smallest cell", fmt::format("{}: too many for the spectrum of waves, which takes up to {}",
-                                               counted(s.cell_discs, "disc"), most_discs_of_survey));
+                                                    counted(s.cell_discs, "disc"), most_discs_of_survey));
     append_sound(out, s);
     return;
   }
@@ -206,8 +208,8 @@ void append_waves(std::string& out, const Stability& s) {
   const auto [a, b] = survey.cell.period;
   out += report_line("smallest cell",
                      fmt::format("{}, {} lattice ({:.6g}, {:.6g}), ({:.6g}, {:.6g}) m, {} of it in the given one",
-                            counted(s.cell_discs, "disc"), survey.zone.lattice, a.x, a.y, b.x, b.y,
-                            counted(survey.cell.copies, "copy", "copies")));
+                                 counted(s.cell_discs, "disc"), survey.zone.lattice, a.x, a.y, b.x, b.y,
+                                 counted(survey.cell.copies, "copy", "copies")));
   append_sound(out, s);
   if (survey.squared_rotational_gap)
     out += report_line("rotational gap", frequency(*survey.squared_rotational_gap) +

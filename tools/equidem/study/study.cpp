@@ -47,7 +47,7 @@ std::string command_of(const StudyVerb& verb) {
   std::string command = "equidem study " + verb.what;
   if (verb.quick) command += " --quick";
   command += fmt::format(" --seed {} --threads {} --budget {:g} --rounds {}", verb.options.seed, thread_count(),
-                    verb.options.budget, verb.options.least_rounds);
+                         verb.options.budget, verb.options.least_rounds);
   if (verb.accuracy) command += fmt::format(" --accuracy {:g}", *verb.accuracy);
   return command;
 }
@@ -94,7 +94,7 @@ void refuse_unreached(const StudyReport& report) {
   for (const Recommendation& one : report.recommendations) {
     if (one.row) continue;
     computation_failed(fmt::format("no setting reaches {:g}{}", *report.accuracy,
-                              one.problem.empty() ? "" : fmt::format(" for {}", one.problem)),
+                                   one.problem.empty() ? "" : fmt::format(" for {}", one.problem)),
                        fmt::format("the best one reaches {:.2g}", one.best), "Ask for less, or study finer settings");
   }
   if (report.recommendations.empty())

@@ -53,7 +53,7 @@ std::string order_text(const StudyReport& report, const std::string& problem, co
   for (const StudyCurve& curve : report.result.curves) {
     if (curve.problem != problem || curve.method != method || curve.quantity != quantity || !curve.order) continue;
     return fmt::format("order {:.2f}{}", curve.order->order,
-                  curve.expected ? fmt::format(" (theory {:.3g})", curve.expected->order) : "");
+                       curve.expected ? fmt::format(" (theory {:.3g})", curve.expected->order) : "");
   }
   return "";
 }

@@ -60,7 +60,7 @@ std::string table_of(const StudyReport& report, const std::string& problem) {
       continue;
     }
     text += fmt::format("  {:>10}  {:>6.1f} %  {:>4}", readable_seconds(time.median),
-                   100 * (time.upper_quartile - time.lower_quartile) / time.median, time.repetitions);
+                        100 * (time.upper_quartile - time.lower_quartile) / time.median, time.repetitions);
     for (const std::size_t q : told) {
       const bool fact = report.study.quantities[q].fact;
       text += fmt::format("  {:>18}", cell(fact ? row.values[q] : row.errors[q], fact));
@@ -79,8 +79,9 @@ std::string describe_orders(const StudyReport& report) {
     std::string who = curve.problem;
     for (const std::string& part : {curve.method, quantity.name})
       who += (who.empty() || part.empty() ? "" : ", ") + part;
-    text += fmt::format("  {}: order {:.3f}{} over {} levels", who, order.order,
-                   std::isfinite(order.uncertainty) ? fmt::format(" ± {:.2g}", order.uncertainty) : "", order.levels);
+    text +=
+        fmt::format("  {}: order {:.3f}{} over {} levels", who, order.order,
+                    std::isfinite(order.uncertainty) ? fmt::format(" ± {:.2g}", order.uncertainty) : "", order.levels);
     if (curve.expected) {
       text += fmt::format("; theory {:g}, {}", curve.expected->order, curve.agrees ? "agrees" : "DIFFERS");
       if (!curve.expected->why.empty()) text += fmt::format(" ({})", curve.expected->why);
@@ -146,10 +147,10 @@ std::string describe_study(const StudyReport& report) {
                                              (quantity.source.empty() ? name_of(report.study.truth) : quantity.source));
   }
   text += report_line("machine", report.machine.text());
-  text +=
-      report_line("timing", fmt::format("{} after one to warm up, all settings in an order drawn anew each time (seed {}); "
-                                   "median, quartiles apart, number n",
-                                   counted(report.result.rounds, "round"), report.options.seed));
+  text += report_line("timing",
+                      fmt::format("{} after one to warm up, all settings in an order drawn anew each time (seed {}); "
+                                  "median, quartiles apart, number n",
+                                  counted(report.result.rounds, "round"), report.options.seed));
   text += "\n";
   for (const std::string& problem : problems_of(report.study)) text += table_of(report, problem) + "\n";
   if (!report.result.fronts.empty()) text += "* on a front: nothing is both faster and as accurate\n\n";

@@ -33,11 +33,12 @@ struct StudyReport {
 
 std::string describe_study(const StudyReport& report);
 JsonObject study_json(const StudyReport& report, const std::string& text);
-/// One row per setting: problem, method, varied values, resolution, times, and of each quantity value, error and assured error.
+/// One row per setting: problem, method, varied values, resolution, times, and of each quantity value, error and
+/// assured error.
 Table study_table(const StudyReport& report);
 
-/// Name and plot: error against time with its front, for each problem and quantity; where nothing has an error, time against what is
-/// varied.
+/// Name and plot: error against time with its front, for each problem and quantity; where nothing has an error, time
+/// against what is varied.
 std::vector<std::pair<std::string, Plot>> study_plots(const StudyReport& report);
 /// The names that study_plots will use, known before.
 std::vector<std::string> study_plot_names(const Study& study);

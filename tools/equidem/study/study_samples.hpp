@@ -11,8 +11,8 @@
 
 namespace equidem {
 
-/// One row per timing: setting (its number), round (0: the values, not timed), seconds, processor_seconds, one column per quantity (round 0
-/// only), refusal, checksum.
+/// One row per timing: setting (its number), round (0: the values, not timed), seconds, processor_seconds, one column
+/// per quantity (round 0 only), refusal, checksum.
 std::string study_samples_csv(const Study& study, const StudySamples& samples, const std::string& checksum);
 
 /// What study_samples_csv wrote, bit for bit.

@@ -68,7 +68,7 @@ std::string override_of(const SweepOptions& options, const Case& base, double va
     return fmt::format("{}={}", options.key, whole ? fmt::format("{:.0f}", value) : toml_number(value));
   }
   return fmt::format("springs={{kN = {}, kT = {}, weighting = \"{}\"}}", toml_number(base.springs->kN),
-                toml_number(value * base.springs->kN), to_string(base.weighting));
+                     toml_number(value * base.springs->kN), to_string(base.weighting));
 }
 
 /// Points that share an assembly build it once.
@@ -237,8 +237,8 @@ int dry_run(const SweepOptions& options, const Case& base, const std::vector<dou
   const Problem problem = build_problem(base);
   const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
   const std::string report =
-      fmt::format("{} of {}, each about as large as this one:\n\n", counted(static_cast<long long>(values.size()), "point"),
-             options.key) +
+      fmt::format("{} of {}, each about as large as this one:\n\n",
+                  counted(static_cast<long long>(values.size()), "point"), options.key) +
       describe_problem(problem, effects) +
       describe_estimate(estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options()));
   JsonObject object;
@@ -291,7 +291,8 @@ Progressed compute_points(const SweepOptions& options, const Case& base, const s
 
 int sweep(const SweepOptions& options) {
   if (options.verb != "solve")
-    refuse_sweep(fmt::format("--verb {} cannot be swept", options.verb), "this version sweeps solve", "Leave out --verb");
+    refuse_sweep(fmt::format("--verb {} cannot be swept", options.verb), "this version sweeps solve",
+                 "Leave out --verb");
   const std::vector<double> values = values_of(options);
   const Case base = read_case(options.common);
   check_key(options, base, values.front());
@@ -311,7 +312,8 @@ int sweep(const SweepOptions& options) {
   std::string report = base.title.empty() ? "" : base.title + "\n\n";
   report += describe_sweep(options.key, points);
   if (failed > 0)
-    report += fmt::format("{} failed, {} done\n", counted(static_cast<long long>(failed), "point"), points.size() - failed);
+    report +=
+        fmt::format("{} failed, {} done\n", counted(static_cast<long long>(failed), "point"), points.size() - failed);
   if (run.stopped) report += fmt::format("INCOMPLETE: stopped after {} of {} points\n", done, values.size());
   if (folder && !run.stopped && base.test) report += plot_curves(options, base, points, true);
 

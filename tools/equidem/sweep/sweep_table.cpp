@@ -104,10 +104,11 @@ std::string describe_sweep(const std::string& key, const std::vector<SweepPoint>
   const bool tension =
       std::any_of(points.begin(), points.end(), [](const SweepPoint& p) { return !std::isnan(p.poisson_ratio); });
   const auto moduli = [&](const auto& nu, const auto& nu_theory, const auto& stiffness, const auto& stiffness_theory) {
-    return tension ? fmt::format("{:>14} {:>14} {:>14} {:>14} ", nu, nu_theory, stiffness, stiffness_theory) : std::string();
+    return tension ? fmt::format("{:>14} {:>14} {:>14} {:>14} ", nu, nu_theory, stiffness, stiffness_theory)
+                   : std::string();
   };
   std::string out = fmt::format("{:>14}  {:<8} {}{:>14}  {:>9} {:>9}\n", key, "status",
-                           moduli("nu", "theory", "2G/((1-nu)kN)", "theory"), "energy, N", "residual", "unstable");
+                                moduli("nu", "theory", "2G/((1-nu)kN)", "theory"), "energy, N", "residual", "unstable");
   for (const SweepPoint& p : points) {
     out += fmt::format("{:>14.8g}  {:<8} ", p.value, p.status);
     if (p.status == "failed") {

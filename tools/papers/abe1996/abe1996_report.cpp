@@ -15,11 +15,11 @@ std::string table_of_ratios(const Reproduction& result) {
       "  kT/kN    nu (35)   (1-r)/4   difference     (36)      (37)    difference  negative pivots\n";
   for (const RatioPoint& p : result.points) {
     const double nu = poisson_ratio_of_ratio(p.ratio), stiffness = hexagonal_stiffness_ratio(p.ratio);
-    text +=
-        fmt::format("  {:>5.2f}  {:>9.5f}  {:>8.5f}   {:>9.1e}  {:>9.5f}  {:>8.5f}   {:>9.1e}  {}\n", p.ratio,
-               p.poisson_ratio, nu, p.poisson_ratio - nu, p.stiffness_ratio, stiffness, p.stiffness_ratio - stiffness,
-               p.stable() ? fmt::format("{}, stable", p.negative_pivots)
-                          : fmt::format("{}, UNSTABLE by {}", p.negative_pivots, counted(p.unstable_modes, "mode")));
+    text += fmt::format(
+        "  {:>5.2f}  {:>9.5f}  {:>8.5f}   {:>9.1e}  {:>9.5f}  {:>8.5f}   {:>9.1e}  {}\n", p.ratio, p.poisson_ratio, nu,
+        p.poisson_ratio - nu, p.stiffness_ratio, stiffness, p.stiffness_ratio - stiffness,
+        p.stable() ? fmt::format("{}, stable", p.negative_pivots)
+                   : fmt::format("{}, UNSTABLE by {}", p.negative_pivots, counted(p.unstable_modes, "mode")));
   }
   return text;
 }
@@ -46,7 +46,7 @@ std::string table_of_sizes(const Reproduction& result) {
       text += "   exact to round-off  ";
     } else {
       text += fmt::format("  {:>9.2f} {:>9.2f}  ", slope(before.poisson_ratio_error, last.poisson_ratio_error),
-                     slope(before.stiffness_ratio_error, last.stiffness_ratio_error));
+                          slope(before.stiffness_ratio_error, last.stiffness_ratio_error));
     }
   }
   return text + "\n";
@@ -54,11 +54,12 @@ std::string table_of_sizes(const Reproduction& result) {
 
 std::string section_4(const StressCheck& s) {
   std::string text = "Section 4: macroscopic stress (50) of uniform strain on the periodic lattice, disc by disc\n";
-  text += fmt::format("  rotation free: differs from eq. (52) by at most {:.1e} of the largest stress\n", s.free_rotation);
+  text +=
+      fmt::format("  rotation free: differs from eq. (52) by at most {:.1e} of the largest stress\n", s.free_rotation);
   text += fmt::format("  rotation restrained: differs from eq. (55) (its first bracket completed) by at most {:.1e}\n",
-                 s.restrained_rotation);
-  text += fmt::format("  at kT/kN = {}, u_2,1 - u_1,2 = {}: s_12 - s_21 = {:.6g} Pa, eq. (55) gives {:.6g} Pa;\n", s.ratio,
-                 s.spin, s.asymmetry, s.expected_asymmetry);
+                      s.restrained_rotation);
+  text += fmt::format("  at kT/kN = {}, u_2,1 - u_1,2 = {}: s_12 - s_21 = {:.6g} Pa, eq. (55) gives {:.6g} Pa;\n",
+                      s.ratio, s.spin, s.asymmetry, s.expected_asymmetry);
   text += fmt::format(
       "  the moments that hold the discs come to {:.6g} Pa (N m per m² and metre of depth): they are its "
       "cause\n",
@@ -78,9 +79,9 @@ std::string report(const Reproduction& result) {
   const Block& b = result.block;
   std::string text = "Abe (1996): spring constants of discs and the continuum they stand for\n\n";
   text += fmt::format("Block: {} rows of {} and {} discs in turn, radius {} m, kN = {:g} Pa; s11 = {:g} Pa\n", b.rows,
-                 b.columns, b.columns - 1, b.radius, b.kN, b.test.stress);
+                      b.columns, b.columns - 1, b.radius, b.kN, b.test.stress);
   text += fmt::format("Gauges A-B {:g} m along x and C-D {:g} m along y; height {:g} m = rows * sqrt3 a\n",
-                 result.gauge_length, result.gauge_height, result.height);
+                      result.gauge_length, result.gauge_height, result.height);
   text += "(the paper prints neither the size of its block nor gauges and height)\n\n";
   text += table_of_ratios(result) + "\n";
   text += fmt::format(

@@ -53,7 +53,7 @@ Plot poisson_plot(const Result& result, std::size_t weighting) {
 /// Error against the scatter of branch lengths: a line through the perturbed lattices, points for the others.
 Plot error_plot(const Result& result, std::size_t weighting, const std::string& label, MeanEstimate Point::*error) {
   Plot plot{.title = fmt::format("Springs weighted \"{}\"; lines: hexagonal lattices with disorder",
-                            to_string(weightings[weighting])),
+                                 to_string(weightings[weighting])),
             .x = {.label = "scatter of branch lengths, sd/mean"},
             .y = {.label = label}};
   for (std::size_t r = 0; r < result.plan.ratios.size(); ++r) {

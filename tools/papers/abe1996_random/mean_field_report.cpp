@@ -54,14 +54,14 @@ std::string place(const Result& result, const Point& p) {
 }
 
 std::string describe_families(const Result& result) {
-  std::string text = fmt::format("{:<26} {:>16} {:>12} {:>12} {:>9} {:>6}\n", "assemblies", "branch lengths", "contacts",
-                            "psi(theta)", "phi", "z");
+  std::string text = fmt::format("{:<26} {:>16} {:>12} {:>12} {:>9} {:>6}\n", "assemblies", "branch lengths",
+                                 "contacts", "psi(theta)", "phi", "z");
   text += fmt::format("{:<26} {:>16} {:>12} {:>12}\n", "", "sd/mean", "sd", "anisotropy");
   for (std::size_t f = 0; f < result.disorder.size(); ++f) {
     const Disorder& d = result.disorder[f];
     text += fmt::format("{:<26} {:>16.4f} {:>12.3f} {:>12.4f} {:>9.4f} {:>6.3f}\n", result.plan.families[f].name,
-                   d.branch_scatter.mean, d.coordination_scatter.mean, d.contact_anisotropy.mean, d.solid_fraction,
-                   d.coordination_number);
+                        d.branch_scatter.mean, d.coordination_scatter.mean, d.contact_anisotropy.mean, d.solid_fraction,
+                        d.coordination_number);
   }
   return text;
 }
@@ -90,7 +90,7 @@ std::string grid(const Result& result, std::size_t weighting, const std::string&
     rows += "\n";
   }
   return fmt::format("{} (standard errors up to {})\n", title,
-                shares ? fmt::format("{:.2g} %", 100 * error) : fmt::format("{:.2g}", error)) +
+                     shares ? fmt::format("{:.2g} %", 100 * error) : fmt::format("{:.2g}", error)) +
          rows;
 }
 
@@ -118,7 +118,7 @@ std::string range_of(const Result& result, const std::vector<const Point*>& poin
   const double largest = std::max(std::abs(value(**low)), std::abs(value(**high)));
   if (clean(largest) == 0) return fmt::format("  {:<3} none: exact within {:.0e}\n", name, largest);
   return fmt::format("  {:<3} from {} ({}) to {} ({})\n", name, shown(value(**low)), place(result, **low),
-                shown(value(**high)), place(result, **high));
+                     shown(value(**high)), place(result, **high));
 }
 
 std::string conclude_errors(const Result& result) {
@@ -159,8 +159,8 @@ std::string conclude_disorder(const Result& result) {
     const auto exponent = [&](const Value& value) {
       return std::log(value(second) / value(first)) / std::log(larger / small);
     };
-    text += fmt::format("  {:<16} p = {:.2f} for nu, {:.2f} for G\n", to_string(weightings[w]), exponent(error_of_poisson),
-                   exponent(error_of_shear));
+    text += fmt::format("  {:<16} p = {:.2f} for nu, {:.2f} for G\n", to_string(weightings[w]),
+                        exponent(error_of_poisson), exponent(error_of_shear));
   }
   text += "   Against kT/kN, root mean square over isotropic random assemblies:\n" + fmt::format("  {:<22}", "kT/kN");
   for (const double ratio : result.plan.ratios) text += fmt::format(" {:>8g}", ratio);
@@ -194,9 +194,9 @@ std::string conclude_causes(const Result& result) {
   for (std::size_t w = 0; w < weightings.size(); ++w) {
     const Point& p = result.at(widest, w, r);
     text += fmt::format("  {:<16} true branches {}, discs free to leave the field {}, both together {}\n",
-                   to_string(weightings[w]), percent(p.voigt.shear.mean / p.mean_field.shear.mean - 1),
-                   percent(p.exact.shear.mean / p.voigt.shear.mean - 1),
-                   percent(p.exact.shear.mean / p.mean_field.shear.mean - 1));
+                        to_string(weightings[w]), percent(p.voigt.shear.mean / p.mean_field.shear.mean - 1),
+                        percent(p.exact.shear.mean / p.voigt.shear.mean - 1),
+                        percent(p.exact.shear.mean / p.mean_field.shear.mean - 1));
   }
   return text;
 }
@@ -225,7 +225,7 @@ std::string conclude_correction(const Result& result) {
   for (std::size_t f = 0; f < result.plan.families.size(); ++f) {
     if (result.plan.families[f].isotropic()) continue;
     text += fmt::format("   '{}' (psi uneven by {:.3f}), anisotropy of the exact tensor and error of nu:\n",
-                   result.plan.families[f].name, result.disorder[f].contact_anisotropy.mean);
+                        result.plan.families[f].name, result.disorder[f].contact_anisotropy.mean);
     for (std::size_t r = 0; r < result.plan.ratios.size(); ++r) {
       const Point &u = result.at(f, 0, r), &c = result.at(f, 1, r), &v = result.at(f, 2, r);
       text += fmt::format(
@@ -242,7 +242,7 @@ std::string conclude_weighting(const Result& result) {
   std::string text =
       "5. Which weighting the mean field describes best: root mean square over isotropic random assemblies and kT/kN\n";
   text += fmt::format("  {:<16} {:>12} {:>12} {:>12} {:>26} {:>14}\n", "weighting", "error of nu", "error of G",
-                 "error of K", "scatter of G, one cell", "anisotropy");
+                      "error of K", "scatter of G, one cell", "anisotropy");
   struct Score {
     double nu, shear, bulk;
   };
@@ -251,20 +251,20 @@ std::string conclude_weighting(const Result& result) {
     const auto points = isotropic_points(result, weighting);
     scores.push_back({root_mean_square(points, error_of_poisson), root_mean_square(points, error_of_shear),
                       root_mean_square(points, error_of_bulk)});
-    text +=
-        fmt::format("  {:<16} {:>12.4f} {:>10.2f} % {:>10.2f} % {:>24.2f} % {:>14.4f}\n", to_string(weighting),
-               scores.back().nu, 100 * scores.back().shear, 100 * scores.back().bulk,
-               100 * root_mean_square(
-                         points, [](const Point& p) { return p.exact.shear.standard_deviation / p.exact.shear.mean; }),
-               root_mean_square(points, [](const Point& p) { return p.anisotropy.mean; }));
+    text += fmt::format(
+        "  {:<16} {:>12.4f} {:>10.2f} % {:>10.2f} % {:>24.2f} % {:>14.4f}\n", to_string(weighting), scores.back().nu,
+        100 * scores.back().shear, 100 * scores.back().bulk,
+        100 * root_mean_square(points,
+                               [](const Point& p) { return p.exact.shear.standard_deviation / p.exact.shear.mean; }),
+        root_mean_square(points, [](const Point& p) { return p.anisotropy.mean; }));
   }
   const auto best = [&](double Score::*score) {
     const auto least = std::min_element(scores.begin(), scores.end(),
                                         [&](const Score& a, const Score& b) { return a.*score < b.*score; });
     return to_string(weightings[static_cast<std::size_t>(least - scores.begin())]);
   };
-  text +=
-      fmt::format("   Best for nu: {}; for G: {}; for K: {}.\n", best(&Score::nu), best(&Score::shear), best(&Score::bulk));
+  text += fmt::format("   Best for nu: {}; for G: {}; for K: {}.\n", best(&Score::nu), best(&Score::shear),
+                      best(&Score::bulk));
   double worst_bulk = 0;
   for (const Point& p : result.points)
     if (p.weighting == SpringWeighting::voronoi) worst_bulk = std::max(worst_bulk, std::abs(p.bulk_error.mean));
@@ -304,7 +304,7 @@ std::string conclude_limit(const Result& result) {
       if (largest == nullptr || p.exact.poisson.mean > largest->exact.poisson.mean) largest = &p;
     }
     text += fmt::format("  {:<16} {:.4f} ± {:.4f} ({})\n", to_string(weighting), largest->exact.poisson.mean,
-                   largest->exact.poisson.standard_error, place(result, *largest));
+                        largest->exact.poisson.standard_error, place(result, *largest));
   }
   return text;
 }
@@ -329,9 +329,10 @@ std::string answer(const Result& result) {
     std::array<double, weightings.size()> anisotropy{};
     for (std::size_t w = 0; w < weightings.size(); ++w)
       for (std::size_t r = 0; r < result.plan.ratios.size(); ++r) anisotropy[w] += result.at(f, w, r).anisotropy.mean;
-    text += fmt::format("\nOn '{}', mean over kT/kN, the correction (11) changes the anisotropy by {}, springs k h/l by {}.",
-                   result.plan.families[f].name, percent(anisotropy[1] / anisotropy[0] - 1),
-                   percent(anisotropy[2] / anisotropy[0] - 1));
+    text += fmt::format(
+        "\nOn '{}', mean over kT/kN, the correction (11) changes the anisotropy by {}, springs k h/l by {}.",
+        result.plan.families[f].name, percent(anisotropy[1] / anisotropy[0] - 1),
+        percent(anisotropy[2] / anisotropy[0] - 1));
   }
   return text + "\n\n";
 }
@@ -349,7 +350,7 @@ std::string report(const Result& result) {
       plan.samples, plan.discs, plan.first_seed, plan.first_seed + static_cast<std::uint64_t>(plan.samples) - 1);
   if (!result.refusals.empty()) {
     text += fmt::format("{} without moduli, left out; the first: {}\n\n",
-                   counted(static_cast<long long>(result.refusals.size()), "cell"), result.refusals.front());
+                        counted(static_cast<long long>(result.refusals.size()), "cell"), result.refusals.front());
   }
   text += describe_families(result) + "\n";
   for (std::size_t w = 0; w < weightings.size(); ++w) text += describe_weighting(result, w);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Fujioka & Ushijima (2005), "An evaluation method of normal contact force with energy conservation in distinct element
-/// method", section 5, computed again, with exact_flow beside the paper's laws.
+/// Fujioka & Ushijima (2005), "An evaluation method of normal contact force with energy conservation in distinct
+/// element method", section 5, computed again, with exact_flow beside the paper's laws.
 #pragma once
 
 #include <array>
@@ -48,7 +48,8 @@ std::vector<Variant> variants(double stiff);
 
 /// How bodies meet: C and T while they overlap (the paper's), X while the force pushes.
 PairProperties pair_of(const Variant& variant, double e = restitution);
-/// Spheres in a vertical column over a floor at y = 0, the k-th lowest with k + 1 gaps below it. \param gap of the diameter
+/// Spheres in a vertical column over a floor at y = 0, the k-th lowest with k + 1 gaps below it. \param gap of the
+/// diameter
 GrainScene column(const Variant& variant, int balls, double gap, double e = restitution);
 /// The three spheres of Fig. 9: A, B on the floor, C upon them.
 GrainScene stacked(const Variant& variant);

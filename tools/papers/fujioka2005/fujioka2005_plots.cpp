@@ -207,7 +207,8 @@ std::vector<std::pair<std::string, Plot>> plots(const Reproduction& result) {
                                 "relative error of d'", &StackedPoint::seconds, &StackedPoint::speed_error));
   all.emplace_back("ball_cost", ball_plot(result));
   all.emplace_back("rest", rest_plot("One ball falls and comes to rest", result.rest));
-  all.emplace_back("column", rest_plot(fmt::format("{} balls fall and settle", result.column.front().balls), result.column));
+  all.emplace_back("column",
+                   rest_plot(fmt::format("{} balls fall and settle", result.column.front().balls), result.column));
   all.emplace_back("lossless", lossless_plot(result.lossless));
   return all;
 }

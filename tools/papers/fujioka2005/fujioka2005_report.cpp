@@ -30,18 +30,20 @@ std::string trimmed(std::string row) {
 std::string table_1(const Table1& table) {
   constexpr const char* row_format = "  {:<20}{:>8}{:>13}{:>15}{:>10}{:>13}{:>22}{:>8}{:>16}\n";
   std::string text = fmt::format("Table 1: 16 balls fall and come to rest, {:g} s\n", table.duration);
-  text += fmt::format(row_format, "", "step", "evaluations", "gravity first", "run", "law alone", "printed: evaluations",
-                 "run", "one evaluation");
+  text += fmt::format(row_format, "", "step", "evaluations", "gravity first", "run", "law alone",
+                      "printed: evaluations", "run", "one evaluation");
   for (const Table1Row& row : table.rows) {
     std::array<std::string, 3> beside;
     for (const Printed1& printed : printed1) {
       if (row.variant.label != printed.law) continue;
-      beside = {fmt::format("{:.3g}", printed.count), fmt::format("{} s", printed.run), fmt::format("{:.2f} µs", printed.evaluation)};
+      beside = {fmt::format("{:.3g}", printed.count), fmt::format("{} s", printed.run),
+                fmt::format("{:.2f} µs", printed.evaluation)};
     }
-    text += trimmed(fmt::format(
-        row_format, label_of(row.variant), fmt::format("{:.0e} s", row.step), fmt::format("{:.3g}", double(row.evaluations)),
-        row.gravity_first > 0 ? fmt::format("{:.3g}", double(row.gravity_first)) : "-", fmt::format("{:.3g} s", row.run_seconds),
-        fmt::format("{:.3g} ns", row.evaluation_nanoseconds), beside[0], beside[1], beside[2]));
+    text += trimmed(fmt::format(row_format, label_of(row.variant), fmt::format("{:.0e} s", row.step),
+                                fmt::format("{:.3g}", double(row.evaluations)),
+                                row.gravity_first > 0 ? fmt::format("{:.3g}", double(row.gravity_first)) : "-",
+                                fmt::format("{:.3g} s", row.run_seconds),
+                                fmt::format("{:.3g} ns", row.evaluation_nanoseconds), beside[0], beside[1], beside[2]));
   }
   const double resting = 16 * (table.duration - table.rest_time) / 1e-6;
   text += fmt::format(
@@ -71,7 +73,7 @@ std::string table_2(const std::vector<Table2Row>& rows) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const Table2Row& row = rows[k];
     text += trimmed(fmt::format("  {}  {:>12}  {:>5}  {:>5}      {}", label_of(row.variant), row.steps[0], row.steps[1],
-                           row.steps[2], k < printed.size() ? printed[k] : ""));
+                                row.steps[2], k < printed.size() ? printed[k] : ""));
   }
   return text;
 }
@@ -118,7 +120,7 @@ std::string stacked_spheres(const std::vector<Stacked>& laws) {
     text += fmt::format("    {:>6.2f}  {:>5.2f}\n", law.speed_order, law.parting_order);
   }
   text += fmt::format("  Sweeps of X in a step of 1e-4 s: {:.1f} (a = 0.1), {:.1f} (a = 4).\n", sweeps_of(laws[4]),
-                 sweeps_of(laws[5]));
+                      sweeps_of(laws[5]));
   text +=
       "  C stops improving (orders near 0, as printed): its closing speed is the velocity of the step before\n"
       "  along the normal of this step, low by (v_t²/L) dt/2, which the dashpot, whose damping for a step is\n"
@@ -161,9 +163,9 @@ std::string at_rest(const std::string& title, const std::vector<Rest>& laws) {
                      "\n                     speed at the end   energy above rest     overlap at the floor   steps in "
                      "contact\n                     (of g dt)          (of weight x d)       (of the static one)\n";
   for (const Rest& law : laws) {
-    text +=
-        fmt::format("  {}   {:>10.2g}         {:>10.1e}            {:>10.6f}             {:>5.1f} %\n",
-               label_of(law.variant), law.speed, std::max(0.0, law.energies.back()), law.overlap, 100 * law.contact);
+    text += fmt::format("  {}   {:>10.2g}         {:>10.1e}            {:>10.6f}             {:>5.1f} %\n",
+                        label_of(law.variant), law.speed, std::max(0.0, law.energies.back()), law.overlap,
+                        100 * law.contact);
   }
   return text;
 }
@@ -177,7 +179,7 @@ std::string lossless(const std::vector<Rest>& laws) {
     double largest = 0;
     for (const double energy : law.energies) largest = std::max(largest, std::abs(energy / law.energies.front() - 1));
     text += fmt::format("  {}   {:>+9.1e}   {:>7.1e}\n", label_of(law.variant),
-                   law.energies.back() / law.energies.front() - 1, largest);
+                        law.energies.back() / law.energies.front() - 1, largest);
   }
   return text;
 }
@@ -232,7 +234,8 @@ std::string report(const Reproduction& r) {
   text += "\n" + costs("Bouncing ball, 3 s: least time for an rms error of the height, of the drop, of", r.ball,
                        &BallPoint::error, {1e-1, 1e-2, 1e-3, 1e-4, 1e-6});
   text += "\n" + at_rest("One ball at rest (not in the paper)", r.rest);
-  text += "\n" + at_rest(fmt::format("A column of {} balls at rest (not in the paper)", r.column.front().balls), r.column);
+  text +=
+      "\n" + at_rest(fmt::format("A column of {} balls at rest (not in the paper)", r.column.front().balls), r.column);
   text += "\n" + lossless(r.lossless);
   return text + "\n" + about_x;
 }

@@ -65,8 +65,8 @@ double seconds_of(const Variant& variant, double step) {
   return least;
 }
 
-/// C by a loop of its own, B and C alone by symmetry: closing is the change of overlap since the step before, in place of the old
-/// velocity along the new normal.
+/// C by a loop of its own, B and C alone by symmetry: closing is the change of overlap since the step before, in place
+/// of the old velocity along the new normal.
 Slide slide_with_closing_from_overlap(double step) {
   constexpr double r = stacked_radius;
   const double zeta = damping_ratio_of(restitution, ContactEnd::at_zero_overlap);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Sukegawa (2010), chapter 8, computed again: a box filled with discs, ellipses and pairs of discs, at rest and shaken; and what section 9.2
-/// leaves open, which shaking compacts best and whether the box resonates.
+/// Sukegawa (2010), chapter 8, computed again: a box filled with discs, ellipses and pairs of discs, at rest and
+/// shaken; and what section 9.2 leaves open, which shaking compacts best and whether the box resonates.
 #pragma once
 
 #include <array>
@@ -43,8 +43,10 @@ inline constexpr std::array printed_void_ratios{
     Printed{Shape::disc, 0.213, 0.198}, Printed{Shape::ellipse, 0.160, 0.139},
     Printed{Shape::bonded_pair, 0.220, 0.205}, Printed{Shape::rigid_pair, 0, 0}};
 
-/// The start: rows of places `cell` apart, every other row shifted by half of it, in a box as wide as they take. 40 columns, 75 rows and
-/// 3 cm give the thesis's box: width 40.5 x 3 cm = 1.215 m, height 75 x 3 cm = 2.25 m, 3000 bodies; its numbers 485, 500, 515 and
+/// The start: rows of places `cell` apart, every other row shifted by half of it, in a box as wide as they take. 40
+/// columns, 75 rows and
+/// 3 cm give the thesis's box: width 40.5 x 3 cm = 1.215 m, height 75 x 3 cm = 2.25 m, 3000 bodies; its numbers 485,
+/// 500, 515 and
 /// so on stand left, in the middle and right in rows 13, 38 and 63.
 struct StartGrid {
   std::int64_t columns = 40, rows = 75;
@@ -172,7 +174,8 @@ Outcome shake_box(const Run& run, const FilledBox& filled, const RunFiles& files
                   const std::function<void(double)>& tick);
 
 /// All runs that are not yet in the folder, on all threads.
-/// \throws Error (bad_input) where the folder holds runs of other settings; (interrupted), what is done is in the result
+/// \throws Error (bad_input) where the folder holds runs of other settings; (interrupted), what is done is in the
+///         result
 void compute(const CommonOptions& options, Reproduction& result);
 
 /// Runs alike but for the seed.

@@ -105,8 +105,8 @@ std::vector<Run> plan(bool quick) {
   long_shaken({}, 1);
   long_shaken(as_printed(Shape::disc), 1);
   runs.push_back(shaken({.step = printed_step, .variant = "printed_step"}, 400, 10));
-  // The thesis's test goes contact by contact, twenty times as slowly: fewer and softer grains. As printed it overlooks overlaps until
-  // grains are pressed into each other, which stops the fall: only mended.
+  // The thesis's test goes contact by contact, twenty times as slowly: fewer and softer grains. As printed it overlooks
+  // overlaps until grains are pressed into each other, which stops the fall: only mended.
   for (const auto& [law, name] :
        {std::pair{EllipseLaw::exact, "small"}, std::pair{EllipseLaw::enlarged_mended, "mended_test"}}) {
     runs.push_back(shaken({.shape = Shape::ellipse,
@@ -160,7 +160,7 @@ std::string Run::name() const {
   if (!shaking) return fill.name();
   const bool long_shaking = shaking->cycles > whole_cycles(shaking->gal, shaking->frequency).cycles;
   return fmt::format("{}_{:g}gal_{:.3g}Hz{}", fill.name(), shaking->gal, shaking->frequency,
-                long_shaking ? fmt::format("_{}cycles", shaking->cycles) : "");
+                     long_shaking ? fmt::format("_{}cycles", shaking->cycles) : "");
 }
 
 namespace {

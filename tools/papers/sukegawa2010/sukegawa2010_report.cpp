@@ -170,8 +170,8 @@ std::string best_compaction(const Reproduction& result) {
     }
     if (tried < 2) continue;
     text += fmt::format("  {} lie densest after {:g} gal, {:.3g} Hz: e = {:.4f}, of {} shakings of one filling\n",
-                   words(plural_of(shape)), best->run.shaking->gal, best->run.shaking->frequency,
-                   best->outcome.void_ratio, tried);
+                        words(plural_of(shape)), best->run.shaking->gal, best->run.shaking->frequency,
+                        best->outcome.void_ratio, tried);
   }
   return text.empty() ? "" : "Which compacts best (section 9.2)\n" + text + "\n";
 }
@@ -188,8 +188,8 @@ std::string periods(const Reproduction& result) {
   for (const auto& [name, h] :
        {std::pair{"height of the start, 2.25 m", printed_box_height}, {"depth of the heap", depth}}) {
     text += row(
-        {h == depth ? fmt::format("{}, {:.3f} m", name, depth) : name, figures(sloshing_period(width, h, gravity), 4) + " s",
-         figures(printed_formula_period(width, h), 4) + " s"},
+        {h == depth ? fmt::format("{}, {:.3f} m", name, depth) : name,
+         figures(sloshing_period(width, h, gravity), 4) + " s", figures(printed_formula_period(width, h), 4) + " s"},
         widths);
   }
   text += fmt::format(
@@ -220,8 +220,9 @@ std::string bonds(const Reproduction& result) {
   std::string text;
   for (const Done& done : result.runs) {
     if (done.run.fill.shape != Shape::bonded_pair || !std::isfinite(done.outcome.creep)) continue;
-    text += row({words(done.run.name()), fmt::format("{:.3g}", done.outcome.creep), fmt::format("{:.3g}", done.outcome.roll)},
-                {54, 14, 14});
+    text += row(
+        {words(done.run.name()), fmt::format("{:.3g}", done.outcome.creep), fmt::format("{:.3g}", done.outcome.roll)},
+        {54, 14, 14});
   }
   if (text.empty()) return "";
   return fmt::format(
@@ -271,7 +272,8 @@ std::string report(const Reproduction& result) {
       grid.places(), grid.rows, grid.columns, 100 * StartGrid::cell, grid.width(), 100 * smallest_radius,
       100 * largest_radius, shear_speed, poisson_ratio, density, friction, wall_friction);
   if (first.fill.softness != 1)
-    text += fmt::format("Quick: fewer grains than in the thesis, and springs {:g} times softer.\n", first.fill.softness);
+    text +=
+        fmt::format("Quick: fewer grains than in the thesis, and springs {:g} times softer.\n", first.fill.softness);
   if (!result.quick) {
     text +=
         "The start is deduced: 40 columns and 75 rows 3 cm apart, every other row half a place aside, take 40.5 x 3 cm "

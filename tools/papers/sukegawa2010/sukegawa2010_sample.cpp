@@ -51,8 +51,8 @@ double amplification_of(const Done& done) {
 }
 
 double liquid_amplification(double period, double width, double depth) {
-  // Modes 1, 3, 5, ... of a box whose floor and walls accelerate: each answers the uniform acceleration as an oscillator; their shares of
-  // the static shift of the centre of mass are those of 1/n^4 (long waves).
+  // Modes 1, 3, 5, ... of a box whose floor and walls accelerate: each answers the uniform acceleration as an
+  // oscillator; their shares of the static shift of the centre of mass are those of 1/n^4 (long waves).
   double sum = 0, all = 0;
   for (int n = 1; n < 20; n += 2) {
     const double share = 1.0 / (n * n * n * n);

@@ -5,9 +5,9 @@ namespace equidem {
 
 namespace {
 
-/// The affine map that makes `outer` the unit circle turns the inner ellipse into {c + A w, |w| <= 1}. It lies in the circle when
-/// max |c + A w|² <= 1; by duality the maximum is the minimum over l >= mu_1 of |c|² + l + sum (A^T c)_k²/(l - mu_k), in the
-/// eigenbasis of A^T A, mu_1 >= mu_2 its eigenvalues: a convex function of l.
+/// The affine map that makes `outer` the unit circle turns the inner ellipse into {c + A w, |w| <= 1}. It lies in the
+/// circle when max |c + A w|² <= 1; by duality the maximum is the minimum over l >= mu_1 of |c|² + l + sum (A^T
+/// c)_k²/(l - mu_k), in the eigenbasis of A^T A, mu_1 >= mu_2 its eigenvalues: a convex function of l.
 bool lies_in(const Ellipse& inner, const Ellipse& outer, Vec2 branch) {
   const auto mapped = [&](Vec2 x) { return Vec2{dot(outer.axis, x) / outer.a, cross(outer.axis, x) / outer.b}; };
   const Vec2 c = mapped(branch);

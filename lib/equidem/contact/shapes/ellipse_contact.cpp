@@ -19,7 +19,8 @@ struct Sample {
   double slope = 0;  ///< f'
 
   [[nodiscard]] double bend() const { return gap + (i.radius + j.radius); }  ///< -f''
-  /// The gradient of branch . x - h_i(x) - h_j(x) at n. That function of the plane is concave and homogeneous: gradient . x bounds it.
+  /// The gradient of branch . x - h_i(x) - h_j(x) at n. That function of the plane is concave and homogeneous: gradient
+  /// . x bounds it.
   [[nodiscard]] Vec2 gradient() const { return gap * n + slope * perpendicular(n); }
   /// Newton's step for f' = 0, its tangent: towards the centre of the circle of curvature of the Minkowski sum.
   [[nodiscard]] Vec2 newton() const {
@@ -80,8 +81,9 @@ struct Arc {
   bool climbs = false;  ///< f is concave with its maximum within
 };
 
-/// Both support functions are convex and homogeneous: within an arc of width w they are at most their larger value at the ends over
-/// cos(w/2), radii of curvature at least the smaller times cos³, and f at least the lower over cos where that is negative.
+/// Both support functions are convex and homogeneous: within an arc of width w they are at most their larger value at
+/// the ends over cos(w/2), radii of curvature at least the smaller times cos³, and f at least the lower over cos where
+/// that is negative.
 bool is_concave(const Sample& left, const Sample& right) {
   const double cosine = std::sqrt((1 + dot(left.n, right.n)) / 2);
   const double least_radius = std::min(left.i.radius, right.i.radius) + std::min(left.j.radius, right.j.radius);
@@ -111,8 +113,8 @@ bool within(const Arc& arc, Vec2 n) {
   return cross(arc.left.n, n) > 0 && cross(n, arc.right.n) > 0;
 }
 
-/// The highest maximum: arcs are divided where they may still hold something higher. As h is even, it lies within a quarter of a turn
-/// from the branch.
+/// The highest maximum: arcs are divided where they may still hold something higher. As h is even, it lies within a
+/// quarter of a turn from the branch.
 [[gnu::noinline]] Sample highest(const Pair& pair, Sample best, WhenApart when_apart) {
   constexpr std::size_t most_arcs = 128;
   const double resolution =
@@ -168,7 +170,8 @@ inline Vec2 support_point_beside(const EllipseSupport& s, Vec2 n, double turn) {
          turn * ((s.radius + turn / 2 * s.radius_slope) * perpendicular(n) - turn / 2 * s.radius * n);
 }
 
-/// In the maximum that has been arrived at, where f' - bend t - (R_i' + R_j') t^2/2 = 0; in the sample itself where none has.
+/// In the maximum that has been arrived at, where f' - bend t - (R_i' + R_j') t^2/2 = 0; in the sample itself where
+/// none has.
 inline EllipseContact contact_at(const Pair& pair, const Sample& s) {
   double gap = s.gap, turn = 0;
   if (pair.arrived(s)) {

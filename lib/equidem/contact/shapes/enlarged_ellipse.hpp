@@ -2,10 +2,11 @@
 /// \file
 /// The approximate contact of two ellipses after Sukegawa (2010), (4.1)-(4.49).
 ///
-/// The plane is stretched until ellipse j is a unit circle. The image of ellipse i with both half-axes longer by one, a' + 1 and
-/// b' + 1, then stands for all places where the circle would touch it, and the ellipses count as touching where it holds the circle's
-/// centre. It lies within the true curve of such places: contacts are never invented, but shallow ones are missed, and which depends
-/// on the aspects. The normal is that of ellipse i near the contact point: not the common one, even at first touch. Exact for discs.
+/// The plane is stretched until ellipse j is a unit circle. The image of ellipse i with both half-axes longer by one,
+/// a' + 1 and b' + 1, then stands for all places where the circle would touch it, and the ellipses count as touching
+/// where it holds the circle's centre. It lies within the true curve of such places: contacts are never invented, but
+/// shallow ones are missed, and which depends on the aspects. The normal is that of ellipse i near the contact point:
+/// not the common one, even at first touch. Exact for discs.
 #pragma once
 
 #include "equidem/contact/shapes/ellipse.hpp"
@@ -14,13 +15,13 @@ namespace equidem {
 
 /// How the angles of contact are read.
 enum class AngleReading {
-  printed,  ///< phi = (acos + asin)/2 (4.44)-(4.45), right only for phi from 0 to pi/2; omega (4.49) in the half that the heights of
-            ///< the centres tell
+  printed,  ///< phi = (acos + asin)/2 (4.44)-(4.45), right only for phi from 0 to pi/2; omega (4.49) in the half that
+            ///< the heights of the centres tell
   mended,   ///< phi = atan2(sin phi_b, cos phi_a), omega by atan2: outwards of ellipse i
 };
 
-/// OBE_i': the image of ellipse i where ellipse j is the unit circle round the origin. Half-axes a' and b', centre (-h', -k'),
-/// turned by -theta' (4.34).
+/// OBE_i': the image of ellipse i where ellipse j is the unit circle round the origin. Half-axes a' and b', centre
+/// (-h', -k'), turned by -theta' (4.34).
 struct MappedEllipse {
   double a = 0, b = 0, theta = 0, h = 0, k = 0;
 };
@@ -39,8 +40,8 @@ struct EnlargedEllipseContact {
   [[nodiscard]] bool is_contact() const { return judgement <= 0; }
 };
 
-/// Points and angle mean something in contact and near it only; they are numbers everywhere. Not symmetric in i and j but for the
-/// judgement.
+/// Points and angle mean something in contact and near it only; they are numbers everywhere. Not symmetric in i and j
+/// but for the judgement.
 EnlargedEllipseContact enlarged_ellipse_contact(const Ellipse& i, const Ellipse& j, Vec2 branch, AngleReading reading);
 
 }  // namespace equidem

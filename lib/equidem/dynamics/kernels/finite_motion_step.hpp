@@ -3,9 +3,10 @@
 /// One stage of an integrator for finite motions: normals and contact points follow the bodies, by the law of
 /// contact/finite_bond.hpp.
 ///
-/// The law takes two roots, two divisions and an arctangent. Where the neighbour has hardly turned as seen from the body, by
-/// less than 1/64 rad, whatever the body itself has done, one division and short polynomials give the same numbers to rounding
-/// in less than half the time. A group is summed so, and anew by the law itself where one of its contacts is further from rest.
+/// The law takes two roots, two divisions and an arctangent. Where the neighbour has hardly turned as seen from the
+/// body, by less than 1/64 rad, whatever the body itself has done, one division and short polynomials give the same
+/// numbers to rounding in less than half the time. A group is summed so, and anew by the law itself where one of its
+/// contacts is further from rest.
 #pragma once
 
 #include <cstddef>
@@ -49,9 +50,8 @@ struct BondNow {
   Lanes slip;     ///< ds/L = psi - theta
 };
 
-/// The law, for any motion d = u_j - u_i: with e = l² - l0² = d.(l0 + l), dn/|l| = e/(|l| (|l| + |l0|)), and psi the angle
-/// from l0 to l.
-/// \param twist theta_j - theta_i
+/// The law, for any motion d = u_j - u_i: with e = l² - l0² = d.(l0 + l), dn/|l| = e/(|l| (|l| + |l0|)), and psi the
+/// angle from l0 to l. \param twist theta_j - theta_i
 template <LoopKind kind>
 EQUIDEM_INLINE BondNow deform(const double* geometry, const Lanes& dx, const Lanes& dy, const Lanes& theta_i,
                               const Lanes& twist) {
@@ -131,18 +131,16 @@ EQUIDEM_INLINE BondNow deform_little(const double* geometry, const BondSeen& see
   return bond;
 }
 
-/// What discs sum over their contacts: forces f_N n + f_T L/|l| s and moments f_T r_i of stresses f_N and f_T. Equal springs
-/// come out of the sums, where L = |l0|.
+/// What discs sum over their contacts: forces f_N n + f_T L/|l| s and moments f_T r_i of stresses f_N and f_T. Equal
+/// springs come out of the sums, where L = |l0|.
 struct BondSums {
   Lanes normal_x{}, normal_y{};  ///< f_N n, or dn n
   Lanes across_x{}, across_y{};  ///< f_T L/|l| s, or ds L/|l| s
   Lanes moment{};                ///< f_T r_i, or 2 ds r_i
 };
 
-/// Add one slot of springs, or with rates in place of stretch and slip one of dashpots, whose constants lie behind those of the
-/// springs.
-/// \param stretch dn/|l|
-/// \param slip ds/L
+/// Add one slot of springs, or with rates in place of stretch and slip one of dashpots, whose constants lie behind
+/// those of the springs. \param stretch dn/|l| \param slip ds/L
 template <LoopKind kind, bool dashpots>
 EQUIDEM_INLINE void add_stress(const double* geometry, const BondNow& bond, Lanes stretch, Lanes slip, BondSums& sum) {
   constexpr bool tangential = kind.springs != LoopKind::Springs::normal;
@@ -237,8 +235,8 @@ struct GroupBonds {
     }
   }
 
-  /// In two passes, each of which does the same to slots that do not wait for one another: that keeps the processor busy.
-  /// \return whether all are near their rest; if not, the sums mean nothing
+  /// In two passes, each of which does the same to slots that do not wait for one another: that keeps the processor
+  /// busy. \return whether all are near their rest; if not, the sums mean nothing
   EQUIDEM_INLINE bool sum_near() {
     if (last - first > most_seen) return false;
     BondSeen seen[most_seen];

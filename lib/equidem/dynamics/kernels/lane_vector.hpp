@@ -11,8 +11,8 @@
 
 namespace equidem {
 
-/// Memory that begins with a cache line, so that no four numbers lie across two of them; large arrays on huge pages where the
-/// system has them.
+/// Memory that begins with a cache line, so that no four numbers lie across two of them; large arrays on huge pages
+/// where the system has them.
 template <typename T>
 struct LaneAllocator {
   using value_type = T;  // NOLINT(readability-identifier-naming): the standard library asks for this name

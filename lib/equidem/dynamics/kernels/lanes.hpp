@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Four numbers computed on at once. Plain C++ with the vector types of GCC and Clang: the compiler picks the instructions.
+/// Four numbers computed on at once. Plain C++ with the vector types of GCC and Clang: the compiler picks the
+/// instructions.
 #pragma once
 
 #include <cstdint>

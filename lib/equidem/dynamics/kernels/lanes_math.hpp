@@ -26,7 +26,8 @@ EQUIDEM_INLINE Lanes change_sign(const Lanes& x, const Choice& sign) {
 /// Correctly rounded, as IEEE 754 asks. x >= 0.
 EQUIDEM_INLINE Lanes square_root(const Lanes& x) {
 #if defined(__x86_64__)
-  // By halves, which every such processor has; no way through memory, where the halves would have to wait for one another.
+  // By halves, which every such processor has; no way through memory, where the halves would have to wait for one
+  // another.
   const Pair low = _mm_sqrt_pd(__builtin_shufflevector(x, x, 0, 1));
   const Pair high = _mm_sqrt_pd(__builtin_shufflevector(x, x, 2, 3));
   return __builtin_shufflevector(low, high, 0, 1, 2, 3);
@@ -39,8 +40,8 @@ EQUIDEM_INLINE Lanes square_root(const Lanes& x) {
 
 /// The angle of (x, y) in [-pi, pi], as std::atan2 to 2 ulp; 0 of (0, 0). Components between 1e-150 and 1e150 or 0.
 ///
-/// By symmetry to the octant of t = smaller/larger in [0, 1], by tan(a - pi/4) = (t - 1)/(t + 1) to |t| <= tan(pi/8), and there
-/// atan t = t + t z P(z), z = t², P the best polynomial of degree 10 (relative error 2^-59 before rounding).
+/// By symmetry to the octant of t = smaller/larger in [0, 1], by tan(a - pi/4) = (t - 1)/(t + 1) to |t| <= tan(pi/8),
+/// and there atan t = t + t z P(z), z = t², P the best polynomial of degree 10 (relative error 2^-59 before rounding).
 EQUIDEM_INLINE Lanes angle_of(const Lanes& x, const Lanes& y) {
   using std::numbers::pi;
   constexpr double tan_pi_8 = 0.41421356237309505, smallest = 1e-300;
@@ -73,13 +74,14 @@ EQUIDEM_INLINE Lanes without_whole_turns(const Lanes& angle) {
   return angle - turns * (2 * pi);
 }
 
-/// sin and 1 - cos of an angle, both to a few ulp of themselves where the angle is small and of 1 elsewhere. |angle| < 1e15.
+/// sin and 1 - cos of an angle, both to a few ulp of themselves where the angle is small and of 1 elsewhere. |angle| <
+/// 1e15.
 struct SineVersine {
   Lanes sine, versine;
 };
 
-/// Polynomials for a quarter of the angle, in [-pi/4, pi/4] (sin a = a + a z S(z), 1 - cos a = z C(z), z = a²; relative errors
-/// 2^-57 and 2^-64 before rounding), and twice sin 2a = 2 sin a cos a, 1 - cos 2a = 2 sin² a.
+/// Polynomials for a quarter of the angle, in [-pi/4, pi/4] (sin a = a + a z S(z), 1 - cos a = z C(z), z = a²; relative
+/// errors 2^-57 and 2^-64 before rounding), and twice sin 2a = 2 sin a cos a, 1 - cos 2a = 2 sin² a.
 EQUIDEM_INLINE SineVersine sine_versine(const Lanes& angle) {
   const Lanes a = 0.25 * without_whole_turns(angle), z = a * a, z2 = z * z, z4 = z2 * z2;
   const Lanes sine_over =
@@ -93,7 +95,8 @@ EQUIDEM_INLINE SineVersine sine_versine(const Lanes& angle) {
   return {2 * sine_2 * (1 - versine_2), 2 * sine_2 * sine_2};
 }
 
-/// atan of |t| <= 1/64 with z = t²: t + t z P(z), P the best polynomial of degree 2 (relative error 2^-56 before rounding).
+/// atan of |t| <= 1/64 with z = t²: t + t z P(z), P the best polynomial of degree 2 (relative error 2^-56 before
+/// rounding).
 EQUIDEM_INLINE Lanes small_arctangent(const Lanes& t, const Lanes& z) {
   return t + t * z * ((-0x1.55555555551c7p-2 + z * 0x1.99999919a2fd7p-3) - z * z * 0x1.247cf5080565fp-3);
 }

@@ -7,8 +7,8 @@
 
 #include "equidem/dynamics/kernels/lanes.hpp"
 #include "equidem/dynamics/kernels/lanes_math.hpp"
-#include "equidem/dynamics/slot_geometry.hpp"
 #include "equidem/dynamics/kernels/step_kernel.hpp"
+#include "equidem/dynamics/slot_geometry.hpp"
 
 namespace equidem::lanes {
 
@@ -17,8 +17,9 @@ struct Resultant {
   Lanes x{}, y{}, moment{};
 };
 
-/// What discs sum over their contacts. Equal springs come out of the sums: with d = u_j - u_i, l the branch, the contact in its
-/// middle, and e the relative motion of the two bodies there (Abe 1996 (1)-(5): dn = n.d, ds = s.e, n.d = n.e),
+/// What discs sum over their contacts. Equal springs come out of the sums: with d = u_j - u_i, l the branch, the
+/// contact in its middle, and e the relative motion of the two bodies there (Abe 1996 (1)-(5): dn = n.d, ds = s.e, n.d
+/// = n.e),
 ///   force on i = kN dn n + kT ds s = kT sum e + (kN - kT) sum (n.d) n,   moment on i = kT/2 sum l x e.
 /// Where springs differ, x, y and moment are the resultant itself.
 struct ContactSums {
@@ -48,7 +49,8 @@ EQUIDEM_INLINE void add_equal(const double* geometry, const Lanes& dx, const Lan
   }
 }
 
-/// Add one slot whose contacts have springs of their own, lanes of kN and kT at `springs`: F on i = kN dn n + kT ds s, moment kT r_i ds.
+/// Add one slot whose contacts have springs of their own, lanes of kN and kT at `springs`: F on i = kN dn n + kT ds s,
+/// moment kT r_i ds.
 template <LoopKind kind>
 EQUIDEM_INLINE void add_own(const double* geometry, const double* springs, const Lanes& dx, const Lanes& dy,
                             const Lanes& theta_i, const Lanes& theta_j, ContactSums& sum) {
@@ -73,7 +75,8 @@ EQUIDEM_INLINE void add_own(const double* geometry, const double* springs, const
   }
 }
 
-/// One slot of springs, or with velocities in place of motions one of dashpots, whose constants lie behind those of the springs.
+/// One slot of springs, or with velocities in place of motions one of dashpots, whose constants lie behind those of the
+/// springs.
 template <LoopKind kind, bool dashpots>
 EQUIDEM_INLINE void add_contact(const double* geometry, const Lanes& dx, const Lanes& dy, const Lanes& theta_i,
                                 const Lanes& theta_j, ContactSums& sum) {
@@ -112,8 +115,8 @@ EQUIDEM_INLINE double sum_of(const Lanes& lanes) {
   return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
 }
 
-/// The integrator's stage for one group, from the resultant of its springs and, apart, that of its dashpots. Powers are taken with
-/// the mean of the velocities before and after, which makes the balance of leapfrog exact.
+/// The integrator's stage for one group, from the resultant of its springs and, apart, that of its dashpots. Powers are
+/// taken with the mean of the velocities before and after, which makes the balance of leapfrog exact.
 template <LoopKind kind>
 EQUIDEM_INLINE void advance(const LoopData& data, const Stage& stage, int parity, std::int32_t group, Lanes x, Lanes y,
                             Lanes theta, Resultant force, const Resultant& dashpots, DissipationLanes& dissipation) {

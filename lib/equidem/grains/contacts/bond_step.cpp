@@ -8,8 +8,8 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/grain_simulation_implementation.hpp"
 #include "equidem/grains/contacts/move_bodies.hpp"
+#include "equidem/grains/grain_simulation_implementation.hpp"
 
 namespace equidem {
 namespace {
@@ -88,8 +88,8 @@ void give(GrainSystem& system, const TiedPair& bond, const BondModes& impulse) {
   on_j.torque -= bond.frame.lever_j * impulse.tangential - impulse.rolling;
 }
 
-/// One bond after the other, each exact with those before it as they are: what dashpots take, they take from the motion, in
-/// whatever number they hang together.
+/// One bond after the other, each exact with those before it as they are: what dashpots take, they take from the
+/// motion, in whatever number they hang together.
 void resist_exactly(GrainSystem& system, TiedPair& bond, const BondModes& inverse) {
   const double dt = system.dt();
   const BondModes &c = bond.dashpots, &v = bond.rate, &g = bond.gained;
@@ -145,16 +145,19 @@ BondDrift drift_of(const GrainSystem& system, const TiedPair& bond) {
 void check_bond(const GrainScene& scene, const GrainBond& bond) {
   for (const std::size_t grain : {bond.i, bond.j}) {
     if (grain >= scene.grains.size()) {
-      bad_input(fmt::format("a bond ties grain {}", grain),
-                fmt::format("there are {}, counted from 0", counted(static_cast<long long>(scene.grains.size()), "grain")),
-                "Correct the number");
+      bad_input(
+          fmt::format("a bond ties grain {}", grain),
+          fmt::format("there are {}, counted from 0", counted(static_cast<long long>(scene.grains.size()), "grain")),
+          "Correct the number");
     }
     if (scene.grains[grain].shape() == GrainShape::disc) continue;
-    bad_input(fmt::format("a bond ties grain {}, which is no disc", grain), "bonds lie on the line of the centres of discs",
+    bad_input(fmt::format("a bond ties grain {}, which is no disc", grain),
+              "bonds lie on the line of the centres of discs",
               "Tie discs only; clumps of discs are rigid without bonds");
   }
   if (bond.i == bond.j) {
-    bad_input(fmt::format("a bond ties grain {} to itself", bond.i), "it could not move against itself", "Tie two grains");
+    bad_input(fmt::format("a bond ties grain {} to itself", bond.i), "it could not move against itself",
+              "Tie two grains");
   }
   double largest = 0;
   for (const double number : {bond.normal_dashpot, bond.tangential_dashpot, bond.rolling_dashpot, bond.normal_spring,
@@ -165,8 +168,8 @@ void check_bond(const GrainScene& scene, const GrainBond& bond) {
               "negative ones would feed the motion", "Give 0 or more");
   }
   if (largest == 0) {
-    bad_input(fmt::format("the bond of grains {} and {} has neither dashpot nor spring", bond.i, bond.j), "it ties nothing",
-              "Give a normal_dashpot and a tangential_dashpot > 0");
+    bad_input(fmt::format("the bond of grains {} and {} has neither dashpot nor spring", bond.i, bond.j),
+              "it ties nothing", "Give a normal_dashpot and a tangential_dashpot > 0");
   }
   const Grain &i = scene.grains[bond.i], &j = scene.grains[bond.j];
   const double distance = norm(j.position - i.position);
@@ -224,11 +227,11 @@ void tie_bonds(GrainSystem& system, const GrainScene& scene) {
 void refuse_crept_bonds(const GrainSystem& system) {
   for (const TiedPair& bond : system.bonds) {
     if (is_wide(system, bond)) continue;
-    computation_failed(
-        fmt::format("step {}: the centres of the bonded grains {} and {} have crept together", system.step,
-               system.grain_of[static_cast<std::size_t>(bond.i)], system.grain_of[static_cast<std::size_t>(bond.j)]),
-        "dashpots alone give way to a steady force, N/C_n, and bonded discs do not collide",
-        "Use larger dashpots, give normal_spring, or tie the discs as a clump");
+    computation_failed(fmt::format("step {}: the centres of the bonded grains {} and {} have crept together",
+                                   system.step, system.grain_of[static_cast<std::size_t>(bond.i)],
+                                   system.grain_of[static_cast<std::size_t>(bond.j)]),
+                       "dashpots alone give way to a steady force, N/C_n, and bonded discs do not collide",
+                       "Use larger dashpots, give normal_spring, or tie the discs as a clump");
   }
 }
 
@@ -304,7 +307,7 @@ void check_bonds(const GrainScene& scene, const GrainOptions& options) {
   const double limit = bond_step_limit(scene, options.bond_step);
   if (options.time_step < limit) return;
   bad_input(fmt::format("the step of {:.6g} s is {:.4g} times the limit of {:.6g} s that the bonds impose",
-                   options.time_step, options.time_step / limit, limit),
+                        options.time_step, options.time_step / limit, limit),
             "bonded discs would swing ever faster",
             bond_step_limit(scene, GrainOptions::BondStep::exact) > options.time_step
                 ? "Stay below it, use smaller dashpots, or make the step of bonds exact, which dashpots do not limit"

@@ -9,8 +9,8 @@
 
 #include "equidem/contact/finite_bond.hpp"
 #include "equidem/contact/viscous_bond.hpp"
-#include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/grains/grain_simulation.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem {
 
@@ -51,20 +51,23 @@ inline bool are_tied(const std::vector<TiedPair>& bonds, std::size_t& next, std:
 /// \throws Error (computation_failed) where bonded discs have crept into one another until their centres all but meet
 void push_bonds(GrainSystem& system);
 
-/// The Verlet schemes: count what dashpots take in the half kick that opens a step; push_bonds counts that which closes one.
+/// The Verlet schemes: count what dashpots take in the half kick that opens a step; push_bonds counts that which closes
+/// one.
 void count_opening_kick(GrainSystem& system);
 
 /// Energy of the springs of bonds.
 double elastic_of_bonds(const GrainSystem& system);
 
-/// Longest stable step, s; infinite where there is none. Sums over the bonds of each disc of the largest rate of each bond bound
-/// M^-1 C and M^-1 K: exact for pairs of discs and for long chains of equal ones, else on the safe side. Dashpots count where they are
-/// explicit: dt < 2 m_n/C_n, 2 m_s/C_s of a pair.
-/// Contacts with other bodies are not in it.
+/// Longest stable step, s; infinite where there is none. Sums over the bonds of each disc of the largest rate of each
+/// bond bound M^-1 C and M^-1 K: exact for pairs of discs and for long chains of equal ones, else on the safe side.
+/// Dashpots count where they are explicit: dt < 2 m_n/C_n, 2 m_s/C_s of a pair. Contacts with other bodies are not in
+/// it.
 double bond_step_limit(const GrainScene& scene, GrainOptions::BondStep bond_step);
 
-/// \throws Error (bad_input): bodies that are not there, no discs, tied to themselves or twice to one another, centres that coincide,
-///         dashpots and springs that are negative, not finite or all 0, a law that knows no bonds, a step past the limit
+/// \throws Error (bad_input): bodies that are not there, no discs, tied to themselves or twice to one another, centres
+///         that coincide,
+///         dashpots and springs that are negative, not finite or all 0, a law that knows no bonds, a step past the
+///         limit
 void check_bonds(const GrainScene& scene, const GrainOptions& options);
 
 }  // namespace equidem

@@ -29,7 +29,7 @@ constexpr double slow_way = 0.1;
   computation_failed(
       fmt::format("step {}: grain {} would {} {}", system.step, system.grain_of[i], happening, other),
       fmt::format("they move {:.4g} m against each other in a step of {:.4g} s, {:.4g} times the radius of the grain",
-             norm(way), system.dt(), norm(way) / system.bodies[i].radius),
+                  norm(way), system.dt(), norm(way) / system.bodies[i].radius),
       norm(way) > room
           ? fmt::format("Use a step below {:.3g} s, or stiffer contacts if they are pressed through", room / speed)
           : "Use stiffer contacts, or press less: a shorter step would not hold them");

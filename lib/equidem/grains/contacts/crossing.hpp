@@ -12,7 +12,8 @@ namespace equidem {
 void refuse_runaway(const GrainSystem& system, double reach);
 
 /// Compare system.motions with system.next.
-/// \throws Error (computation_failed) where the centre of a grain enters another grain or passes a wall, or a meeting deeper than half
+/// \throws Error (computation_failed) where the centre of a grain enters another grain or passes a wall, or a meeting
+///         deeper than half
 ///         the smaller radius would lie between the two instants unseen
 void refuse_crossings(const GrainSystem& system, double reach);
 

@@ -75,7 +75,8 @@ struct Line {
 };
 
 /// From the way that the bodies go as the sweeps stand: the mean normal n = (r + r')/|r + r'|. The distance changes by
-/// |r'| - |r| = slope n . (r' - r), slope = |r + r'|/(|r| + |r'|), the cosine of half the angle by which the branch turns. Without it each
+/// |r'| - |r| = slope n . (r' - r), slope = |r + r'|/(|r| + |r'|), the cosine of half the angle by which the branch
+/// turns. Without it each
 /// contact that begins in a step would lose energy, by the square of that angle.
 Line line_of(const GrainSystem& system, const Candidate& candidate, const Trial& trial, Vec2 way) {
   if (candidate.j >= 0) {
@@ -95,8 +96,8 @@ Line line_of(const GrainSystem& system, const Candidate& candidate, const Trial&
   return {normal_at(0.5), std::max(0.5, 0.5 * norm(normal_at(0) + normal_at(1)))};
 }
 
-/// Speed of the two bodies and what the step adds to it: velocities are known to so many digits of it, however slowly the bodies
-/// close.
+/// Speed of the two bodies and what the step adds to it: velocities are known to so many digits of it, however slowly
+/// the bodies close.
 double speed_of_bodies(const GrainSystem& system, const Candidate& candidate) {
   const auto speed = [&](std::int32_t body) {
     const auto b = static_cast<std::size_t>(body);
@@ -202,8 +203,8 @@ struct Visit {
 
 void sweep_until_settled(GrainSystem& system, std::vector<Trial>& trials) {
   double change = 0;
-  // A trial that has settled is solved again when another contact has changed what pushes its bodies: contacts that stand alone settle
-  // for themselves, whatever the clusters elsewhere take.
+  // A trial that has settled is solved again when another contact has changed what pushes its bodies: contacts that
+  // stand alone settle for themselves, whatever the clusters elsewhere take.
   std::vector<Visit> visits;
   visits.reserve(trials.size());
   for (const Trial& trial : trials) {
@@ -232,9 +233,10 @@ void sweep_until_settled(GrainSystem& system, std::vector<Trial>& trials) {
   }
   // what oscillates in the last digits is settled as far as numbers go
   if (change <= 1e-9) return;
-  computation_failed(fmt::format("step {}: the contacts find no common solution", system.step),
-                     fmt::format("after {} sweeps the impulses still change by {:.2g} of themselves", most_sweeps, change),
-                     "Use a smaller step: w dt below 1 for every pair, w² the stiffness over the reduced mass");
+  computation_failed(
+      fmt::format("step {}: the contacts find no common solution", system.step),
+      fmt::format("after {} sweeps the impulses still change by {:.2g} of themselves", most_sweeps, change),
+      "Use a smaller step: w dt below 1 for every pair, w² the stiffness over the reduced mass");
 }
 
 void move(GrainSystem& system) {
@@ -298,9 +300,9 @@ void remember(GrainSystem& system, const std::vector<Trial>& trials) {
   }
 }
 
-/// Count contacts that share a body with others and whose step is not stable for every arrangement of them: w dt sqrt(1 + rho)
-/// must stay below pi (exact_contact.hpp), and 1 + rho is at most 1 + m ((z_i - 1)/m_i + (z_j - 1)/m_j), z contacts on a body,
-/// m the reduced mass.
+/// Count contacts that share a body with others and whose step is not stable for every arrangement of them: w dt sqrt(1
+/// + rho) must stay below pi (exact_contact.hpp), and 1 + rho is at most 1 + m ((z_i - 1)/m_i + (z_j - 1)/m_j), z
+/// contacts on a body, m the reduced mass.
 void count_doubtful(GrainSystem& system, const std::vector<Trial>& trials) {
   constexpr double pi = 3.14159265358979323846;
   constexpr double most_contacts = 9;  // so many discs no smaller than it a disc never touches

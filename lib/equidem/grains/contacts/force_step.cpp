@@ -45,7 +45,8 @@ void shift(GrainSystem& system, const Candidate& candidate, Vec2 moment) {
   if (candidate.j >= 0) system.moments[static_cast<std::size_t>(candidate.j)] -= moment;
 }
 
-/// What the pushes of the step before and gravity add in a step to the slip of a contact, its own tangential force aside.
+/// What the pushes of the step before and gravity add in a step to the slip of a contact, its own tangential force
+/// aside.
 double gain_of_slip(const GrainSystem& system, const Candidate& candidate, const Meeting& meeting, double mass) {
   const auto i = static_cast<std::size_t>(candidate.i);
   const GrainBody& bi = system.bodies[i];
@@ -64,8 +65,8 @@ double gain_of_slip(const GrainSystem& system, const Candidate& candidate, const
 
 /// Tangential impulse on j over the step.
 ///
-/// By the midpoint rule, with what other forces do to the slip over the step taken from the step before: a contact that sticks
-/// under a steady load does not creep.
+/// By the midpoint rule, with what other forces do to the slip over the step taken from the step before: a contact that
+/// sticks under a steady load does not creep.
 double slide(GrainSystem& system, Candidate& candidate, const Meeting& meeting, Vec2 relative, double normal_force) {
   const double velocity = slip_velocity(system, candidate, meeting, relative);
   const double dt = system.dt();
@@ -84,7 +85,8 @@ TouchPlace place_of(const Meeting& meeting, bool wall) {
           wall ? Vec2{} : -meeting.lever_j * meeting.normal};
 }
 
-/// The normal turns in a drift, and levers change: to the first order, as in the loop over near pairs; with walls the normal is known.
+/// The normal turns in a drift, and levers change: to the first order, as in the loop over near pairs; with walls the
+/// normal is known.
 ContactDrift drift_of(const GrainSystem& system, const Candidate& candidate, const Meeting& meeting) {
   const double dt = system.dt();
   const GrainMotion& motion = system.motions[static_cast<std::size_t>(candidate.i)];

@@ -11,14 +11,16 @@ namespace equidem {
 
 using CollideFunction = void (*)(GrainSystem&);
 
-/// The loop over contacts compiled for a law, with or without friction: pushes of this step from positions and velocities.
+/// The loop over contacts compiled for a law, with or without friction: pushes of this step from positions and
+/// velocities.
 CollideFunction collide_function(NormalLaw law, bool friction);
 
-/// What the dashpot of a contact takes in a step, J, and where attraction is cut what the spring loses: its force at the mean velocity of
-/// the step, to the second order of the step: what other forces changed in the last step of the contact they change again.
-/// \param candidate as the last step left it
+/// What the dashpot of a contact takes in a step, J, and where attraction is cut what the spring loses: its force at
+/// the mean velocity of the step, to the second order of the step: what other forces changed in the last step of the
+/// contact they change again. \param candidate as the last step left it
 /// \param depth, unit, unit_speed overlap over the length, and the units of step.change as impulse and as speed
-/// \param eccentric the reduced mass over that of the contact points along the normal: 1 where the normal passes through both centres
+/// \param eccentric the reduced mass over that of the contact points along the normal: 1 where the normal passes
+///         through both centres
 template <NormalLaw law>
 double dashpot_heat(const Candidate& candidate, const ContactStep& step, double depth, double closing, double unit,
                     double unit_speed, double eccentric = 1) {

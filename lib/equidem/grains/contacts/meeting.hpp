@@ -7,8 +7,8 @@
 
 namespace equidem {
 
-/// Overlap, normal from i to j, levers from the centres to the contact point. The levers of two grains add up to the distance of
-/// their centres: contact forces keep the angular momentum. That against a wall is the radius.
+/// Overlap, normal from i to j, levers from the centres to the contact point. The levers of two grains add up to the
+/// distance of their centres: contact forces keep the angular momentum. That against a wall is the radius.
 struct Meeting {
   double overlap = 0;
   Vec2 normal;

@@ -94,8 +94,8 @@ void refuse_bowls(const GrainSystem& system) {
     const Vec2 position = system.next[i].position;
     if (norm(position - wall.point - displacement) >= wall.radius) continue;
     if (nearest(wall, displacement, position).distance > system.bodies[i].radius) continue;
-    computation_failed(fmt::format("step {}: grain {}, an ellipse, would come to the inside of the arc \"{}\"", system.step,
-                              system.grain_of[i], wall.name),
+    computation_failed(fmt::format("step {}: grain {}, an ellipse, would come to the inside of the arc \"{}\"",
+                                   system.step, system.grain_of[i], wall.name),
                        "there it may touch in two points at once, which one contact cannot tell",
                        "Make the arc of segments");
   }

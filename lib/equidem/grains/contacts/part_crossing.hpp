@@ -18,10 +18,9 @@ PartWay way_of_parts(const GrainSystem& system, const Candidate& candidate, cons
 /// Whether a part of a pair is an ellipse.
 bool has_ellipse(const GrainSystem& system, const Candidate& candidate, const PartPair& parts);
 
-/// What two ellipses would do in the step that they must not: one comes nearer with its centre in the other, the normal of an overlap turns
-/// round, an overlap of more than half the smaller short half-axis lies unseen between the two instants, or one of more than all of it comes
-/// from none.
-/// \return nullptr: nothing
+/// What two ellipses would do in the step that they must not: one comes nearer with its centre in the other, the normal
+/// of an overlap turns round, an overlap of more than half the smaller short half-axis lies unseen between the two
+/// instants, or one of more than all of it comes from none. \return nullptr: nothing
 const char* crossing_of_ellipses(const GrainSystem& system, const Candidate& candidate, const PartPair& parts);
 
 /// \throws Error (computation_failed) where the step leads an ellipse to the inside of an arc, within reach of it

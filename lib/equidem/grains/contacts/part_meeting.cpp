@@ -50,7 +50,8 @@ PartMeeting meeting_of_grain_parts(const GrainSystem& system, const Candidate& c
           sunk_j};
 }
 
-/// From outside, where refuse_bowls keeps it: against the whole circle where that is met on the arc, else against the nearer end, a point.
+/// From outside, where refuse_bowls keeps it: against the whole circle where that is met on the arc, else against the
+/// nearer end, a point.
 EllipseContact contact_with_arc(const GrainSystem& system, std::int32_t grain, const Ellipse& ellipse,
                                 const GrainWall& wall, Vec2 displacement) {
   const Vec2 position = system.motions[static_cast<std::size_t>(grain)].position;

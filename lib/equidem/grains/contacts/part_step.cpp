@@ -64,7 +64,8 @@ struct Contact {
   return 1 + contact.candidate.reduced_mass * inverse;
 }
 
-/// What the pushes of the step before and gravity add in a step to the slip of a contact, its own tangential force aside.
+/// What the pushes of the step before and gravity add in a step to the slip of a contact, its own tangential force
+/// aside.
 [[gnu::always_inline]] inline double gain_of_slip(const GrainSystem& system, const Contact& contact, double mass) {
   const PartMeeting& meeting = contact.meeting;
   const auto gain_of = [&](const GrainBody& body, const Push& push, Vec2 arm) {

@@ -8,19 +8,21 @@
 namespace equidem {
 namespace {
 
-/// Impulses of spring and dashpot in a part of a drift, over those of a whole kick: of k d^p and c d^q v, d linear in time.
+/// Impulses of spring and dashpot in a part of a drift, over those of a whole kick: of k d^p and c d^q v, d linear in
+/// time.
 struct Shares {
   double spring = 0, dashpot = 0;
 };
 
-/// -zeta(-p, part)/part^p, by Euler and Maclaurin from part + 1 on: what the sum of x^p over part, part + 1, ... lacks at its start of the
-/// integral from 0. By this the trapezoidal rule errs where a force begins or ends.
+/// -zeta(-p, part)/part^p, by Euler and Maclaurin from part + 1 on: what the sum of x^p over part, part + 1, ... lacks
+/// at its start of the integral from 0. By this the trapezoidal rule errs where a force begins or ends.
 /// \param now, next part^p and (part + 1)^p
 double beyond_sum(double part, double power, double now, double next) {
   return (((1 + part) / (power + 1) - 0.5 + power / (12 * (1 + part))) * next - now) / now;
 }
 
-/// From its first instant on the trapezoidal rule is exact for the linear spring; for that of Hertz its error there goes with the part.
+/// From its first instant on the trapezoidal rule is exact for the linear spring; for that of Hertz its error there
+/// goes with the part.
 Shares shares_of(const GrainSystem& system, double part) {
   if (system.options.law != NormalLaw::hertz_dashpot) return {part / 2, part};
   const double seen = std::max(part, 1e-12);  // an overlap of round-off
@@ -54,8 +56,8 @@ Vec2 relative_velocity(const GrainSystem& system, const TouchImpulse& impulse) {
   return other - at(impulse.i, impulse.arm_i);
 }
 
-/// In the part of the drift in which the contact lasts: its spring slackens by the slip, friction bounds it as the normal force falls.
-/// \param given, normal impulses along the normal, in the last whole kick and in the part
+/// In the part of the drift in which the contact lasts: its spring slackens by the slip, friction bounds it as the
+/// normal force falls. \param given, normal impulses along the normal, in the last whole kick and in the part
 double last_tangential(const GrainSystem& system, const TouchInstant& contact, double given, double normal) {
   Candidate candidate;
   candidate.i = contact.i;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Contacts that begin or end between two kicks of the Verlet schemes: their part of the step, and where its energy goes.
+/// Contacts that begin or end between two kicks of the Verlet schemes: their part of the step, and where its energy
+/// goes.
 ///
-/// A half kick gives a contact that begins in the drift before it J/2, J = (k d + c v) dt, though it has pushed only for f dt, f = d/(v dt).
-/// What spring and dashpot did then is f/2 k d dt and c v f dt; without that a spring takes 1/2 k (v dt)² f (1 - f) too much from
-/// the motion, (w dt)²/6 of the energy of an impact in the mean, w² = k/m. The end is the mirror image.
+/// A half kick gives a contact that begins in the drift before it J/2, J = (k d + c v) dt, though it has pushed only
+/// for f dt, f = d/(v dt). What spring and dashpot did then is f/2 k d dt and c v f dt; without that a spring takes 1/2
+/// k (v dt)² f (1 - f) too much from the motion, (w dt)²/6 of the energy of an impact in the mean, w² = k/m. The end is
+/// the mirror image.
 #pragma once
 
 #include <algorithm>
@@ -46,7 +48,8 @@ struct TouchImpulse {
   double GrainLedger::*taken = nullptr;                                   ///< where what `tangential` takes is counted
 };
 
-/// Count what a contact took in the drift in which it began or ended; corrected_verlet: see to it that it gets its part.
+/// Count what a contact took in the drift in which it began or ended; corrected_verlet: see to it that it gets its
+/// part.
 void begin_within_drift(GrainSystem& system, const TouchInstant& contact);
 void end_within_drift(GrainSystem& system, const TouchInstant& contact);
 

@@ -2,8 +2,9 @@
 /// \file
 /// One contact in a step of the Verlet schemes: what it pushes, and what it took in the drift before.
 ///
-/// The kick J of an instant works half with the velocity of the drift before it and half with that of the drift after it: in a drift a
-/// contact takes 0.5 (J_before + J_now) times its speed, less what its springs have stored. Nothing is to be predicted.
+/// The kick J of an instant works half with the velocity of the drift before it and half with that of the drift after
+/// it: in a drift a contact takes 0.5 (J_before + J_now) times its speed, less what its springs have stored. Nothing is
+/// to be predicted.
 #pragma once
 
 #include <algorithm>

@@ -32,8 +32,8 @@ EQUIDEM_ALWAYS_INLINE void columns_of(const Half (&row)[8], Lanes& a, Lanes& b, 
   d = __builtin_shuffle(odd_low, odd_high, second);
 }
 
-/// Decay::mean to 1e-15: the series of decay() at y = x/2^doublings <= 1/2, its even powers beside the odd ones, doubled so many times
-/// by mean(2 y) = mean(y) (1 - y mean(y)/2).
+/// Decay::mean to 1e-15: the series of decay() at y = x/2^doublings <= 1/2, its even powers beside the odd ones,
+/// doubled so many times by mean(2 y) = mean(y) (1 - y mean(y)/2).
 template <int doublings>
 EQUIDEM_ALWAYS_INLINE Lanes mean_by_series(const Lanes& x) {
   const Lanes y = x * (1.0 / (1 << doublings)), square = y * y;
@@ -66,7 +66,8 @@ struct BondLanes {
   Lanes normal_rate, tangential_rate, normal_gain, tangential_gain;
 };
 
-/// What the pushes as they stand add to the rates of bond k: along x, along y, to the speed of the rims by torques and by pushes along them.
+/// What the pushes as they stand add to the rates of bond k: along x, along y, to the speed of the rims by torques and
+/// by pushes along them.
 EQUIDEM_ALWAYS_INLINE Half gain_by_pushes(const BondGroup& group, const Push* pushes, int k) {
   Half push_i, push_j, gain_i, gain_j;
   std::memcpy(&push_i, &pushes[group.i[k]], sizeof push_i);

@@ -2,8 +2,8 @@
 /// \file
 /// Bonds of pairs, eight at a time: dashpots along and across the line of two discs that no other bond ties.
 ///
-/// Where no disc has two bonds, none waits for another: what is done to a bond is known when all contacts have given theirs. Chains,
-/// rolling dashpots, and laws without near pairs go one bond after the other (bond_step.cpp).
+/// Where no disc has two bonds, none waits for another: what is done to a bond is known when all contacts have given
+/// theirs. Chains, rolling dashpots, and laws without near pairs go one bond after the other (bond_step.cpp).
 #pragma once
 
 #include <cstdint>

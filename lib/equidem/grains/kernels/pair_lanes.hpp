@@ -48,8 +48,8 @@ EQUIDEM_ALWAYS_INLINE Lanes square_root(const Lanes& x) {
   return Lanes{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3]),
                std::sqrt(x[4]), std::sqrt(x[5]), std::sqrt(x[6]), std::sqrt(x[7])};
 }
-/// Which lanes are below zero (-0 among them), as bits: choices by bits are joined without a way through scalars, which those of
-/// comparisons take under some compilers.
+/// Which lanes are below zero (-0 among them), as bits: choices by bits are joined without a way through scalars, which
+/// those of comparisons take under some compilers.
 EQUIDEM_ALWAYS_INLINE Choice negative(const Choice& x) {
   return x >> 63;
 }

@@ -17,8 +17,8 @@ namespace {
 using namespace eight;
 
 constexpr Lanes all_one = {1, 1, 1, 1, 1, 1, 1, 1};
-/// So many go through each part of the work before the next begins: a processor sees several of them at a time, and does not wait for the
-/// roots and quotients of one.
+/// So many go through each part of the work before the next begins: a processor sees several of them at a time, and
+/// does not wait for the roots and quotients of one.
 constexpr std::size_t groups_at_once = 8;
 
 /// What a loop does, known where it is compiled.

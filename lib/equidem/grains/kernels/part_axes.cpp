@@ -6,8 +6,8 @@
 
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/kernels/pair_lanes.hpp"
-#include "equidem/grains/neighbours/part_pairs.hpp"
 #include "equidem/grains/kernels/vector_width.hpp"
+#include "equidem/grains/neighbours/part_pairs.hpp"
 
 namespace equidem {
 namespace {

@@ -3,9 +3,9 @@
 /// How eight pairs of parts stand to each other, computed at once.
 #pragma once
 
+#include "equidem/grains/contacts/part_meeting.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/kernels/pair_lanes.hpp"
-#include "equidem/grains/contacts/part_meeting.hpp"
 
 namespace equidem::eight {
 
@@ -156,8 +156,8 @@ struct HardLanes {
   }
 }
 
-/// contact_of_parts(): from the last normal, by Newton's way where it is short and certain to lead to the highest maximum. What comes out in
-/// a lane depends on that lane alone.
+/// contact_of_parts(): from the last normal, by Newton's way where it is short and certain to lead to the highest
+/// maximum. What comes out in a lane depends on that lane alone.
 EQUIDEM_ALWAYS_INLINE Meetings meetings_of_ellipses(PartGroup& group, const Standing& s, const Choice& used,
                                                     const Choice& alive) {
   constexpr int most_steps = 3;

@@ -5,8 +5,8 @@
 #include <tuple>
 
 #include "equidem/contact/collision_stiffness.hpp"
-#include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/contacts/meeting.hpp"
+#include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/neighbours/part_pairs.hpp"
 
 namespace equidem {

@@ -6,16 +6,16 @@
 #include <limits>
 #include <utility>
 
-#include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/contacts/meeting.hpp"
 #include "equidem/grains/contacts/move_bodies.hpp"
+#include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/neighbours/near_parts.hpp"
 
 namespace equidem {
 namespace {
 
-/// Margin of the pairs: of the smallest body; and a multiple of the mean of that and the way in a step, where pairs too many cost as
-/// much as lists found anew.
+/// Margin of the pairs: of the smallest body; and a multiple of the mean of that and the way in a step, where pairs too
+/// many cost as much as lists found anew.
 constexpr double least_margin = 0.02, margin_of_mean = 2.5;
 
 PairLaw law_of(const Candidate& candidate) {

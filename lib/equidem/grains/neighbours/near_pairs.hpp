@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Pairs of discs under a law that gives a force: those that touch or nearly touch, packed by eights for the loop over them.
+/// Pairs of discs under a law that gives a force: those that touch or nearly touch, packed by eights for the loop over
+/// them.
 ///
-/// They are a list within the list of the neighbour finder, with a smaller margin and found anew more often: in a packing at rest it
-/// holds hardly more than the contacts. Discs and walls, and all that meets by other laws, are Candidates.
+/// They are a list within the list of the neighbour finder, with a smaller margin and found anew more often: in a
+/// packing at rest it holds hardly more than the contacts. Discs and walls, and all that meets by other laws, are
+/// Candidates.
 #pragma once
 
 #include <cstddef>
@@ -97,10 +99,12 @@ struct NearPairs {
   }
 };
 
-/// Whether contacts of parts can be computed several at a time: a law that gives a force, no contact that slides always.
+/// Whether contacts of parts can be computed several at a time: a law that gives a force, no contact that slides
+/// always.
 bool go_by_eights(const GrainSystem& system);
 
-/// Margin of lists within that of the neighbour finder, for bodies of a size (of discs the radius) that move by about `reach` in a step.
+/// Margin of lists within that of the neighbour finder, for bodies of a size (of discs the radius) that move by about
+/// `reach` in a step.
 double margin_of_near_pairs(const GrainSystem& system, double size, double reach);
 
 /// Decide whether discs meet in the loop over near pairs, and choose it.

@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/contacts/part_meeting.hpp"
+#include "equidem/grains/grain_system.hpp"
 
 namespace equidem {
 namespace {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Pairs of parts of which not both are whole discs: those that touch or nearly touch, packed by eights for the loops over them.
+/// Pairs of parts of which not both are whole discs: those that touch or nearly touch, packed by eights for the loops
+/// over them.
 ///
-/// One list for each shape of pair: round parts (of clumps, and discs that meet them), and pairs with an ellipse; empty where the scene
-/// has none. As the near pairs of discs they are lists within that of the neighbour finder, found anew more often. The circles round needles
-/// overlap those of many others: between the two stand the close parts, by boxes round both, each looked at again only when bodies have
-/// moved by what lay between them.
+/// One list for each shape of pair: round parts (of clumps, and discs that meet them), and pairs with an ellipse; empty
+/// where the scene has none. As the near pairs of discs they are lists within that of the neighbour finder, found anew
+/// more often. The circles round needles overlap those of many others: between the two stand the close parts, by boxes
+/// round both, each looked at again only when bodies have moved by what lay between them.
 #pragma once
 
 #include <array>
@@ -16,8 +17,8 @@
 #include <vector>
 
 #include "equidem/dynamics/kernels/lane_vector.hpp"
-#include "equidem/grains/scene/grain_parts.hpp"
 #include "equidem/grains/neighbours/near_pairs.hpp"
+#include "equidem/grains/scene/grain_parts.hpp"
 
 namespace equidem {
 
@@ -26,8 +27,8 @@ struct alignas(64) PartBody {
   /// Centre of the part, velocity of the body, and that with half of what its contacts did in the last step.
   Vec2 centre, velocity, middle_velocity, unused = {};
   double spin = 0, middle_spin = 0;
-  Vec2
-      turned;  ///< of an ellipse the axis; of what is round, whose axis does not matter, the offset of the centre from that of the body, m
+  Vec2 turned;  ///< of an ellipse the axis; of what is round, whose axis does not matter, the offset of the centre from
+                ///< that of the body, m
 };
 
 /// Eight pairs of parts, i < j.
@@ -102,10 +103,12 @@ struct NearParts {
   [[nodiscard]] std::size_t bytes() const;
 };
 
-/// Decide whether parts meet in the loops over near parts: a law that gives a force, the exact contact, no contact that slides always.
+/// Decide whether parts meet in the loops over near parts: a law that gives a force, the exact contact, no contact that
+/// slides always.
 void prepare_near_parts(GrainSystem& system);
 
-/// Find the close parts and the pairs anew among those of the neighbour finder, for bodies that move by about `reach` in a step.
+/// Find the close parts and the pairs anew among those of the neighbour finder, for bodies that move by about `reach`
+/// in a step.
 void find_near_parts(GrainSystem& system, double reach);
 
 /// See to it that they hold all that may touch while no point of a body moves further than `reach` from where it is.

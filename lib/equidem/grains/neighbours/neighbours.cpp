@@ -77,7 +77,7 @@ void check(std::span<const Circle> circles, [[maybe_unused]] double margin) {
     assert(!(c.radius < 0));
     if (std::isfinite(c.centre.x) && std::isfinite(c.centre.y) && std::isfinite(c.radius)) continue;
     computation_failed(fmt::format("body {} of radius {:.6g} m is at ({:.6g}, {:.6g}) m", &c - circles.data(), c.radius,
-                              c.centre.x, c.centre.y),
+                                   c.centre.x, c.centre.y),
                        "a position that is no finite number has no neighbours", "Take a smaller time step");
   }
 }

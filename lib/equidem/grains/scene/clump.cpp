@@ -15,9 +15,9 @@ Clump centred_clump(std::vector<Clump::Disc> discs) {
   if (discs.empty()) bad_input("a clump has no discs", "there is nothing to it", "Give at least one");
   for (const Clump::Disc& disc : discs) {
     if (std::isfinite(disc.offset.x + disc.offset.y) && disc.radius > 0 && std::isfinite(disc.radius)) continue;
-    bad_input(
-        fmt::format("a disc of a clump has the radius {} m and is at ({}, {}) m", disc.radius, disc.offset.x, disc.offset.y),
-        "it would touch nothing", "Give a radius > 0 and finite numbers");
+    bad_input(fmt::format("a disc of a clump has the radius {} m and is at ({}, {}) m", disc.radius, disc.offset.x,
+                          disc.offset.y),
+              "it would touch nothing", "Give a radius > 0 and finite numbers");
   }
   for (std::size_t p = 0; p < discs.size(); ++p) {
     for (std::size_t q = 0; q < discs.size(); ++q) {

@@ -12,11 +12,12 @@ namespace equidem {
 
 /// The same discs shifted so that the centre of mass of the area they cover together is the origin.
 /// \param discs anywhere, overlapping or not
-/// \throws Error (bad_input) on no discs, a radius that is not positive, numbers that are not finite, a disc within another
+/// \throws Error (bad_input) on no discs, a radius that is not positive, numbers that are not finite, a disc within
+///         another
 Clump centred_clump(std::vector<Clump::Disc> discs);
 
-/// Of the area that the discs cover together, what several cover once, about its own centre. Exact: an integral along its edge.
-/// \param density kg/m³
+/// Of the area that the discs cover together, what several cover once, about its own centre. Exact: an integral along
+/// its edge. \param density kg/m³
 /// \throws Error (bad_input) where the density is not positive and finite
 Inertia inertia_of_clump(const Clump& clump, double density);
 

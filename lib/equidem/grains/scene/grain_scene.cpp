@@ -27,12 +27,13 @@ bool not_negative(double value) {
 void check_grain(const GrainScene& scene, std::size_t i) {
   const Grain& grain = scene.grains[i];
   if (!positive(grain.radius)) {
-    bad_input(fmt::format("grain {} has the radius {} m", i, grain.radius), "it would touch nothing", "Give a radius > 0");
+    bad_input(fmt::format("grain {} has the radius {} m", i, grain.radius), "it would touch nothing",
+              "Give a radius > 0");
   }
   if (!positive(grain.inertia.mass) || !positive(grain.inertia.moment)) {
-    bad_input(
-        fmt::format("grain {} has the mass {} and the moment of inertia {}", i, grain.inertia.mass, grain.inertia.moment),
-        "a force could not move it by a number", "Give a radius and a density whose mass is a number > 0");
+    bad_input(fmt::format("grain {} has the mass {} and the moment of inertia {}", i, grain.inertia.mass,
+                          grain.inertia.moment),
+              "a force could not move it by a number", "Give a radius and a density whose mass is a number > 0");
   }
   constexpr double most = 1e150;
   for (const double number : {grain.position.x, grain.position.y, grain.radius, grain.velocity.x, grain.velocity.y,
@@ -42,8 +43,8 @@ void check_grain(const GrainScene& scene, std::size_t i) {
               fmt::format("squares of what is above {:.0e} are no numbers", most), "Give smaller numbers");
   }
   if (grain.kind < 0 || grain.kind >= scene.kinds) {
-    bad_input(fmt::format("grain {} is of the kind {}", i, grain.kind), fmt::format("the table of pairs has {}", scene.kinds),
-              "Use kinds from 0 to one less than that");
+    bad_input(fmt::format("grain {} is of the kind {}", i, grain.kind),
+              fmt::format("the table of pairs has {}", scene.kinds), "Use kinds from 0 to one less than that");
   }
 }
 
@@ -55,7 +56,8 @@ void check_pair(const PairProperties& pair, const GrainOptions& options) {
   }
   const double hardness = pair.stiffness != 0 ? pair.stiffness : pair.dimensionless;
   if (!positive(hardness)) {
-    bad_input(fmt::format("a contact has the stiffness {}", hardness), "bodies would not rebound", "Give a stiffness > 0");
+    bad_input(fmt::format("a contact has the stiffness {}", hardness), "bodies would not rebound",
+              "Give a stiffness > 0");
   }
   if (is_map(options.law)) {
     if (!(pair.restitution >= 0 && pair.restitution <= 1)) {
@@ -68,8 +70,8 @@ void check_pair(const PairProperties& pair, const GrainOptions& options) {
     damping_ratio_of(pair.restitution, pair.end);
   }
   if (!not_negative(pair.friction) || !not_negative(pair.tangential_ratio) || !not_negative(pair.tangential_damping)) {
-    bad_input(fmt::format("friction {}, tangential_ratio {}, tangential_damping {}", pair.friction, pair.tangential_ratio,
-                     pair.tangential_damping),
+    bad_input(fmt::format("friction {}, tangential_ratio {}, tangential_damping {}", pair.friction,
+                          pair.tangential_ratio, pair.tangential_damping),
               "negative ones would feed the motion", "Give 0 or more");
   }
   if (pair.tangential_damping > 0 && !(pair.tangential_ratio > 0)) {
@@ -150,7 +152,7 @@ void check_places(const GrainScene& scene, const PlaceOfGrain& where) {
       if (!are_inside_one_another(scene, scene.grains[i], scene.grains[j])) continue;
       refuse_grain(j, where, fmt::format("grains {} and {} start inside one another", i, j),
                    fmt::format("their centres are {:.4g} m apart, their radii {:.4g} m and {:.4g} m", distance,
-                          circles[i].radius, circles[j].radius),
+                               circles[i].radius, circles[j].radius),
                    "Move them apart");
     }
   }
@@ -178,11 +180,11 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
   check_laws_of_shapes(scene, options);
   const bool own_step = is_map(options.law) || options.law == NormalLaw::exact_flow;
   if (own_step && options.verlet()) {
-    bad_input(fmt::format("{} is asked for with the law \"{}\"",
-                     options.scheme == GrainOptions::Scheme::velocity_verlet ? "velocity_verlet" : "corrected_verlet",
-                     to_string(options.law)),
-              "that law says itself how a step is made",
-              "Leave the scheme out, or use linear_dashpot or hertz_dashpot");
+    bad_input(
+        fmt::format("{} is asked for with the law \"{}\"",
+                    options.scheme == GrainOptions::Scheme::velocity_verlet ? "velocity_verlet" : "corrected_verlet",
+                    to_string(options.law)),
+        "that law says itself how a step is made", "Leave the scheme out, or use linear_dashpot or hertz_dashpot");
   }
   if (!std::isfinite(scene.gravity.x + scene.gravity.y)) {
     bad_input("gravity is not a number", "nothing could fall by it", "Give finite numbers");
@@ -206,7 +208,7 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
   for (const Grain& grain : scene.grains) smallest = std::min(smallest, grain.radius);
   if (const auto twice = coinciding_walls(scene.walls, joint_gap * smallest)) {
     bad_input(fmt::format("walls \"{}\" and \"{}\" lie on one another", scene.walls[twice->first].name,
-                     scene.walls[twice->second].name),
+                          scene.walls[twice->second].name),
               "a grain would meet both at once, twice as stiff", "Remove one, or let it end where the other begins");
   }
   check_table(scene, options);

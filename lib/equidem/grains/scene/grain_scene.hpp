@@ -19,10 +19,12 @@ namespace equidem {
 
 enum class GrainShape { disc, ellipse, clump };
 
-/// A body. Units are those of its mass: kg and N for spheres, kg and N per metre of depth for discs, ellipses and clumps.
+/// A body. Units are those of its mass: kg and N for spheres, kg and N per metre of depth for discs, ellipses and
+/// clumps.
 struct Grain {
   Vec2 position;  ///< of the centre of mass, m
-  /// Of the circle round the centre of mass that holds the body, m: the radius of a disc, the long half-axis of an ellipse.
+  /// Of the circle round the centre of mass that holds the body, m: the radius of a disc, the long half-axis of an
+  /// ellipse.
   double radius = 0;
   Inertia inertia;
   Vec2 velocity = {};
@@ -48,8 +50,8 @@ struct Clump {
   std::vector<Disc> discs;
 };
 
-/// Two discs tied by dashpots along and across the line of their centres (Sukegawa 2010, (5.1)-(5.19)), springs where wanted. They do not
-/// collide with each other.
+/// Two discs tied by dashpots along and across the line of their centres (Sukegawa 2010, (5.1)-(5.19)), springs where
+/// wanted. They do not collide with each other.
 struct GrainBond {
   std::size_t i = 0, j = 0;
   double normal_dashpot = 0, tangential_dashpot = 0;  ///< C_n, C_s; N s/m, discs: per metre of depth
@@ -67,8 +69,8 @@ struct PairProperties {
   double restitution = 1;                      ///< of central impacts; eccentric ones of shapes: part_step.hpp
   ContactEnd end = ContactEnd::at_zero_force;  ///< linear_dashpot, hertz_dashpot, exact_flow
   double friction = 0;                         ///< mu
-  /// kT/kN >= 0; hertz_dashpot: kT/(k d_c^(1/2)). With friction > 0 and 0 here the contact slides always, Coulomb's law regularized by
-  /// the step alone.
+  /// kT/kN >= 0; hertz_dashpot: kT/(k d_c^(1/2)). With friction > 0 and 0 here the contact slides always, Coulomb's law
+  /// regularized by the step alone.
   double tangential_ratio = 0;
   double tangential_damping = 0;  ///< zeta_T: dashpot 2 zeta_T sqrt(m kT), m the effective tangential mass
   FrictionCap cap = FrictionCap::whole_force;
@@ -94,9 +96,11 @@ struct GrainOptions {
   NormalLaw law = NormalLaw::exact_flow;
   /// exact_flow and the maps have their own step; the force laws take either.
   enum class Scheme {
-    semi_implicit_euler,  ///< v' = v + a(x, v) dt, x' = x + v' dt; gravity is added after the contact force (the paper's runs)
-    velocity_verlet,  ///< half kick, drift, force with the velocities of the half step, half kick (LAMMPS)
-    corrected_verlet,  ///< the same; contacts that begin or end in the drift get what they push for their part of it (touch_instants.hpp)
+    semi_implicit_euler,  ///< v' = v + a(x, v) dt, x' = x + v' dt; gravity is added after the contact force (the
+                          ///< paper's runs)
+    velocity_verlet,      ///< half kick, drift, force with the velocities of the half step, half kick (LAMMPS)
+    corrected_verlet,     ///< the same; contacts that begin or end in the drift get what they push for their part of it
+                          ///< (touch_instants.hpp)
   } scheme = Scheme::semi_implicit_euler;
   [[nodiscard]] bool verlet() const { return scheme != Scheme::semi_implicit_euler; }
   double time_step = 0;         ///< s, > 0
@@ -110,18 +114,21 @@ struct GrainOptions {
   } ellipse_law = EllipseLaw::exact;
   /// How the dashpots of bonds act over a step.
   enum class BondStep {
-    exact,  ///< decay exp(-C t/m) of each bond under the mean of all other forces, bond after bond: no limit to the step
-    explicit_euler,  ///< by the velocities at the start of the step (Sukegawa 2010, (5.2), (5.8)): limited (bond_step.hpp)
+    exact,  ///< decay exp(-C t/m) of each bond under the mean of all other forces, bond after bond: no limit to the
+            ///< step
+    explicit_euler,  ///< by the velocities at the start of the step (Sukegawa 2010, (5.2), (5.8)): limited
+                     ///< (bond_step.hpp)
   } bond_step = BondStep::exact;
   bool refuse_crossing = true;  ///< false: bodies may pass through one another, for studies of laws that let them
 };
 
 using PlaceOfGrain = std::function<std::string(std::size_t grain)>;
 
-/// \throws Error (bad_input): no grains, radius or mass not positive, numbers not finite or beyond 1e150, kinds and pairs that do not fit, a table that is
-///         not symmetric, neither or both of stiffness and dimensionless, restitution out of range for the law, friction negative,
-///         velocity_verlet with a map, shapes as in shape_check.hpp, the time step not positive, grains that start inside one another (centre within the other) or
-///         with the centre behind a line
+/// \throws Error (bad_input): no grains, radius or mass not positive, numbers not finite or beyond 1e150, kinds and
+///         pairs that do not fit, a table that is
+///         not symmetric, neither or both of stiffness and dimensionless, restitution out of range for the law,
+///         friction negative, velocity_verlet with a map, shapes as in shape_check.hpp, the time step not positive,
+///         grains that start inside one another (centre within the other) or with the centre behind a line
 /// \param where the user wrote a grain, for errors; may be empty
 void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where = {});
 

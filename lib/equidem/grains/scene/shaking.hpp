@@ -13,9 +13,8 @@ namespace equidem {
 constexpr double gal = 0.01;                  ///< m/s²
 constexpr double standard_gravity = 9.80665;  ///< m/s², the acceleration g
 
-/// Harmonic shaking, a cos(2 pi f (t - start)): the displacement a/(2 pi f)² (1 - cos(...)) begins and ends at rest where the box stands,
-/// without drift and without a jump in velocity.
-/// \param acceleration a, m/s²
+/// Harmonic shaking, a cos(2 pi f (t - start)): the displacement a/(2 pi f)² (1 - cos(...)) begins and ends at rest
+/// where the box stands, without drift and without a jump in velocity. \param acceleration a, m/s²
 /// \param frequency f, Hz
 /// \param start s
 /// \param cycles >= 1
@@ -45,9 +44,8 @@ struct GroundMotion {
 GroundMotion integrate_motion(std::span<const double> times, std::span<const double> accelerations, double start,
                               Baseline baseline);
 
-/// A recorded displacement: the cubic spline through its points, at rest at both ends (its acceleration is linear between them). The
-/// first point is where the box stands.
-/// \param displacements m
+/// A recorded displacement: the cubic spline through its points, at rest at both ends (its acceleration is linear
+/// between them). The first point is where the box stands. \param displacements m
 /// \throws Error (bad_input) as integrate_motion
 GroundMotion follow_motion(std::span<const double> times, std::span<const double> displacements, double start);
 

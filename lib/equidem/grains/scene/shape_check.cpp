@@ -22,14 +22,14 @@ void check_clump(const Clump& clump, const Grain& grain, std::size_t i) {
   }
   for (const Clump::Disc& disc : clump.discs) {
     if (disc.radius > 0 && std::isfinite(disc.radius) && std::isfinite(disc.offset.x + disc.offset.y)) continue;
-    bad_input(fmt::format("clump {} has a disc of the radius {} m at ({}, {}) m", grain.clump, disc.radius, disc.offset.x,
-                     disc.offset.y),
+    bad_input(fmt::format("clump {} has a disc of the radius {} m at ({}, {}) m", grain.clump, disc.radius,
+                          disc.offset.x, disc.offset.y),
               "it would touch nothing", "Give a radius > 0 and finite numbers");
   }
   const double reach = radius_of(clump);
   if (reach > grain.radius * (1 + tolerance)) {
     bad_input(fmt::format("grain {} has the radius {:.6g} m, its clump {} reaches {:.6g} m from the centre of mass", i,
-                     grain.radius, grain.clump, reach),
+                          grain.radius, grain.clump, reach),
               "the circle of that radius must hold the body", "Give radius_of(clump)");
   }
   const Vec2 centre = union_of(clump.discs).centre;
@@ -65,16 +65,17 @@ bool run_through_one_another(const GrainPart& p, Vec2 axis_p, const GrainPart& q
 void check_shape(const GrainScene& scene, std::size_t i) {
   const Grain& grain = scene.grains[i];
   if (grain.short_half_axis != 0 && !(grain.short_half_axis > 0 && grain.short_half_axis <= grain.radius)) {
-    bad_input(
-        fmt::format("grain {} has the short half-axis {} m and the long one {} m", i, grain.short_half_axis, grain.radius),
-        "an ellipse has both above 0, the long one along x at angle 0",
-        "Exchange them and add a quarter turn to the angle, or give 0 for a disc");
+    bad_input(fmt::format("grain {} has the short half-axis {} m and the long one {} m", i, grain.short_half_axis,
+                          grain.radius),
+              "an ellipse has both above 0, the long one along x at angle 0",
+              "Exchange them and add a quarter turn to the angle, or give 0 for a disc");
   }
   if (grain.shape() == GrainShape::ellipse) check_arcs(scene, grain, i);
   if (grain.clump < 0) {
     if (grain.clump == -1) return;
   } else if (grain.short_half_axis > 0) {
-    bad_input(fmt::format("grain {} is an ellipse and clump {}", i, grain.clump), "a body has one shape", "Leave out one");
+    bad_input(fmt::format("grain {} is an ellipse and clump {}", i, grain.clump), "a body has one shape",
+              "Leave out one");
   }
   if (grain.clump < 0 || static_cast<std::size_t>(grain.clump) >= scene.clumps.size()) {
     bad_input(fmt::format("grain {} is clump {}", i, grain.clump), fmt::format("the scene has {}", scene.clumps.size()),

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <iterator>
 
-#include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/contacts/part_meeting.hpp"
+#include "equidem/grains/grain_system.hpp"
 
 namespace equidem {
 namespace {

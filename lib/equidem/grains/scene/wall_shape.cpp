@@ -138,8 +138,8 @@ void check_segment(const GrainWall& wall) {
     refuse(wall, fmt::format("ends at ({}, {}) m", wall.end.x, wall.end.y), "it stands nowhere", "Give finite numbers");
   }
   if (norm(wall.end - wall.point) >= shortest) return;
-  refuse(wall, fmt::format("begins and ends at ({}, {}) m", wall.end.x, wall.end.y), "a segment without length has no sides",
-         "Move one of its ends");
+  refuse(wall, fmt::format("begins and ends at ({}, {}) m", wall.end.x, wall.end.y),
+         "a segment without length has no sides", "Move one of its ends");
 }
 
 void check_arc(const GrainWall& wall) {

@@ -135,18 +135,19 @@ double above(double limit) {
   const double nu = target.poisson_ratio;
   const double lowest = poisson_ratio_of(range.greatest, target.plane);
   const double highest = poisson_ratio_of(range.least, target.plane);
-  const std::string why = fmt::format("found for kT/kN from {} to {:.4g}",
-                                 range.closed ? "0" : fmt::format("{:.4g}", range.smallest.ratio), range.largest.ratio);
+  const std::string why =
+      fmt::format("found for kT/kN from {} to {:.4g}", range.closed ? "0" : fmt::format("{:.4g}", range.smallest.ratio),
+                  range.largest.ratio);
   if (highest <= -1) {
     bad_input(fmt::format("this assembly shows no Poisson's ratio in plane {}", plane),
               "its G is at least three times its K, " + why + ", and no isotropic solid has that",
               "Ask in plane stress, or for another assembly");
   }
   const std::string remedy = nu > highest ? fmt::format("Ask for a Poisson's ratio of at most {:.6f}{}", below(highest),
-                                                   negative ? ", or allow kT < 0 with static_only = true" : "")
+                                                        negative ? ", or allow kT < 0 with static_only = true" : "")
                                           : fmt::format("Ask for a Poisson's ratio of at least {:.6f}", above(lowest));
   bad_input(fmt::format("Poisson's ratio {:.9g} in plane {} is out of the range of this assembly, {:.6g} to {:.6g}", nu,
-                   plane, lowest, highest),
+                        plane, lowest, highest),
             why, remedy);
 }
 
@@ -154,9 +155,9 @@ double above(double limit) {
 [[noreturn]] void refuse_unstable(const ElasticModuli& target, const FoundRatio& found) {
   const double highest = poisson_ratio_of(found.at.shear_to_bulk, target.plane);
   bad_input(fmt::format("Poisson's ratio {:.9g} in plane {} is beyond the static limit of this assembly",
-                   target.poisson_ratio, to_string(target.plane)),
-            fmt::format("short of it the highest is {:.6g}, at kT/kN = {:.4g}; it lies at {:.3g}", highest, found.at.ratio,
-                   found.limit),
+                        target.poisson_ratio, to_string(target.plane)),
+            fmt::format("short of it the highest is {:.6g}, at kT/kN = {:.4g}; it lies at {:.3g}", highest,
+                        found.at.ratio, found.limit),
             fmt::format("Ask for a Poisson's ratio of at most {:.6f}", below(highest)));
 }
 
@@ -200,16 +201,16 @@ Calibration search(const Assembly& assembly, const ElasticModuli& target, const 
 }
 
 [[noreturn]] void refuse_negative_lattice(const ElasticModuli& target, double ratio) {
-  bad_input(fmt::format("Poisson's ratio {:.12g} in plane {} needs kT < 0 on the hexagonal lattice", target.poisson_ratio,
-                   to_string(target.plane)),
+  bad_input(fmt::format("Poisson's ratio {:.12g} in plane {} needs kT < 0 on the hexagonal lattice",
+                        target.poisson_ratio, to_string(target.plane)),
             fmt::format("kT/kN = {:.4g} by Abe 1996, eq. 34, and no motion of the discs is stable then", ratio),
             fmt::format("Ask for a Poisson's ratio of at most {}, or allow kT < 0 with static_only = true",
-                   target.plane == Plane::strain ? "1/4" : "1/3"));
+                        target.plane == Plane::strain ? "1/4" : "1/3"));
 }
 
 [[noreturn]] void refuse_unstable_lattice(const ElasticModuli& target, double ratio) {
   bad_input(fmt::format("Poisson's ratio {:.9g} in plane {} is beyond the static limit of the hexagonal lattice",
-                   target.poisson_ratio, to_string(target.plane)),
+                        target.poisson_ratio, to_string(target.plane)),
             fmt::format("it needs kT/kN = {:.6g}, and the infinite lattice gives way at -1/3", ratio),
             fmt::format("Ask for a Poisson's ratio below {}", target.plane == Plane::strain ? "1/3" : "1/2"));
 }

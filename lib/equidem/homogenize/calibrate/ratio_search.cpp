@@ -84,8 +84,8 @@ bool near(double q, double wanted, double tolerance) {
 constexpr int most_steps = 60;
 
 [[noreturn]] void not_followed(double wanted, double below, double above) {
-  computation_failed(fmt::format("G/K = {:.9g} was not reached in {} steps, kT/kN lies between {:.9g} and {:.9g}", wanted,
-                            most_steps, std::min(below, above), std::max(below, above)),
+  computation_failed(fmt::format("G/K = {:.9g} was not reached in {} steps, kT/kN lies between {:.9g} and {:.9g}",
+                                 wanted, most_steps, std::min(below, above), std::max(below, above)),
                      "G/K does not follow kT/kN smoothly there", "Ask for another Poisson's ratio or a larger sample");
 }
 

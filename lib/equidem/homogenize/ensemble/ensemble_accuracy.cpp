@@ -40,7 +40,8 @@ Misses misses_of(const EnsembleStatistics& statistics) {
     const SizeDependence& d = statistics.dependence[q];
     if (!d.scattered) continue;
     const double scale = scale_of(statistics, q);
-    // The scatter is itself known from a few samples: Student's tails, as a normal distribution with that critical value.
+    // The scatter is itself known from a few samples: Student's tails, as a normal distribution with that critical
+    // value.
     const double wider = student_critical_value(0.95, d.freedom) / normal;
     const double n = statistics.sizes.back().mean_discs;
     misses[q].scatter = wider * d.amplitude * std::pow(n, 0.5 - d.exponent) / scale;
@@ -122,7 +123,7 @@ EnsembleSetting cheapest(const Misses& misses, const EnsembleAccuracy& options, 
   while (cheapest(misses, options, reached).samples == 0) reached *= 1.1;
   computation_failed(fmt::format("an accuracy of {:.3g} cannot be reached", options.accuracy),
                      fmt::format("its cells would hold more than {:.0e} discs in all, which reach about {:.2g}",
-                            options.most_discs, reached),
+                                 options.most_discs, reached),
                      "Ask for less");
 }
 
@@ -173,8 +174,9 @@ class Sampling {
       if (size.estimates.front().samples >= 2) continue;
       const auto refused = std::find_if(result_.samples.begin(), result_.samples.end(),
                                         [&](const EnsembleSample& s) { return s.discs == size.discs && s.refused(); });
-      computation_failed(fmt::format("of {} cells of {} discs fewer than two have moduli", result_.plan.samples, size.discs),
-                         refused == result_.samples.end() ? "" : "the first: " + refused->refusal, "");
+      computation_failed(
+          fmt::format("of {} cells of {} discs fewer than two have moduli", result_.plan.samples, size.discs),
+          refused == result_.samples.end() ? "" : "the first: " + refused->refusal, "");
     }
   }
 

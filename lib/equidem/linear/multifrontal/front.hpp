@@ -8,8 +8,8 @@
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/linear/contact_graph.hpp"
-#include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/linear/ordering/symbolic_factor.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
 
 namespace equidem {
 

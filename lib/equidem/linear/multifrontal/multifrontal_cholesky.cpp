@@ -9,8 +9,8 @@
 
 #include "equidem/core/progress.hpp"
 #include "equidem/core/threads.hpp"
-#include "equidem/linear/multifrontal/dense_kernels.hpp"
 #include "equidem/linear/large_buffer.hpp"
+#include "equidem/linear/multifrontal/dense_kernels.hpp"
 #include "equidem/linear/multifrontal/tree_sweep.hpp"
 
 namespace equidem {

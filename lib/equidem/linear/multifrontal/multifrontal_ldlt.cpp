@@ -9,9 +9,9 @@
 
 #include "equidem/core/progress.hpp"
 #include "equidem/core/threads.hpp"
+#include "equidem/linear/large_buffer.hpp"
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
 #include "equidem/linear/multifrontal/indefinite_front.hpp"
-#include "equidem/linear/large_buffer.hpp"
 #include "equidem/linear/multifrontal/tree_sweep.hpp"
 
 namespace equidem {

@@ -116,7 +116,7 @@ void check_whole(const std::filesystem::path& path, const OpenFile& file) {
   if (header.library != library_version()) {
     refuse(path,
            fmt::format("equidem {} wrote it, this is {}, and the bits of two versions may differ", header.library,
-                  library_version()),
+                       library_version()),
            "Go on with the version that wrote it");
   }
 }
@@ -131,8 +131,8 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-/// "line 7: 'kT = 1' there, 'kT = 2' here", up to three lines; past a line that only one of the texts has they no longer
-/// stand side by side, and one is enough.
+/// "line 7: 'kT = 1' there, 'kT = 2' here", up to three lines; past a line that only one of the texts has they no
+/// longer stand side by side, and one is enough.
 std::string first_differences(std::string_view there, std::string_view here) {
   const auto a = lines_of(there), b = lines_of(here);
   const auto show = [](const std::vector<std::string_view>& lines, std::size_t k) {

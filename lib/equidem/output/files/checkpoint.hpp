@@ -13,12 +13,11 @@
 
 namespace equidem {
 
-/// Writes NAME.checkpoint.h5: an HDF5 file after 512 bytes of text that name the format, the version of the library, the length of
-/// the file and a checksum of all of it. Arrays: case (the text of the resolved case), step, motions, previous,
-/// velocities (n, 3): x, y, rotation; sums; ledger/NAME for every term of the energy ledger; energies: step, time and every term
-/// of the samples so far.
-/// A checkpoint is written beside the last one, forced to the disk, and takes its name then: killed at any moment, power
-/// cut or disk full, the last good one is there.
+/// Writes NAME.checkpoint.h5: an HDF5 file after 512 bytes of text that name the format, the version of the library,
+/// the length of the file and a checksum of all of it. Arrays: case (the text of the resolved case), step, motions,
+/// previous, velocities (n, 3): x, y, rotation; sums; ledger/NAME for every term of the energy ledger; energies: step,
+/// time and every term of the samples so far. A checkpoint is written beside the last one, forced to the disk, and
+/// takes its name then: killed at any moment, power cut or disk full, the last good one is there.
 class CheckpointWriter {
  public:
   /// \param case_text the resolved case, by which read_checkpoint knows that a checkpoint belongs to a run
@@ -40,7 +39,8 @@ struct Checkpoint {
 };
 
 /// \param case_text the resolved case that is to go on
-/// \throws Error (bad_input) where there is no such file, it is no checkpoint, it is truncated or altered, another version
+/// \throws Error (bad_input) where there is no such file, it is no checkpoint, it is truncated or altered, another
+///         version
 ///         of the format or the library wrote it, or it belongs to another case (with the first lines that differ)
 Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string& case_text);
 

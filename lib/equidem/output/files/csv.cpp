@@ -76,8 +76,9 @@ Table& Table::add(std::string name, Values values) {
   }
   const std::size_t length = std::visit([](const auto& v) { return v.size(); }, values);
   if (!columns_.empty() && length != rows()) {
-    bad_input(fmt::format("column '{}' has {} but the table has {}", name, counted(length, "value"), counted(rows(), "row")),
-              "columns of a table are equally long", "Give one value per row");
+    bad_input(
+        fmt::format("column '{}' has {} but the table has {}", name, counted(length, "value"), counted(rows(), "row")),
+        "columns of a table are equally long", "Give one value per row");
   }
   columns_.push_back({std::move(name), std::move(values)});
   return *this;
@@ -93,7 +94,8 @@ const Table::Column& Table::column(const std::string& name) const {
   if (found == columns_.end()) {
     std::string names;
     for (const Column& c : columns_) names += (names.empty() ? "" : ", ") + c.name;
-    bad_input(fmt::format("the table has no column '{}'", name), fmt::format("its columns are: {}", names), "Choose one of them");
+    bad_input(fmt::format("the table has no column '{}'", name), fmt::format("its columns are: {}", names),
+              "Choose one of them");
   }
   return *found;
 }

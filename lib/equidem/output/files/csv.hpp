@@ -67,8 +67,9 @@ void write_csv(const std::filesystem::path& path, const Table& table, bool overw
 /// \throws Error (bad_input) as write_file does
 void write_disc_csv(const std::filesystem::path& path, const AssemblyState& state, bool overwrite);
 
-/// One row per contact: i, j, shift_x, shift_y, branch_x_m, branch_y_m, lever_i_m, lever_j_m, [normal_x, normal_y, offset_i_m,
-/// offset_j_m,] [normal_force_N_per_m (tension positive), tangential_force_N_per_m, force_x_N_per_m, force_y_N_per_m (on disc i)].
+/// One row per contact: i, j, shift_x, shift_y, branch_x_m, branch_y_m, lever_i_m, lever_j_m, [normal_x, normal_y,
+/// offset_i_m, offset_j_m,] [normal_force_N_per_m (tension positive), tangential_force_N_per_m, force_x_N_per_m,
+/// force_y_N_per_m (on disc i)].
 /// \throws Error (bad_input) as write_file does
 void write_contact_csv(const std::filesystem::path& path, const AssemblyState& state, bool overwrite);
 

@@ -235,8 +235,8 @@ void FrameWriter::go_on(std::int64_t after) {
     const Hdf5Array& found = layout_[wanted.name];
     if (found.number != wanted.number || found.shape != wanted.shape || room == 0) {
       cannot_continue(path_, fmt::format("its array '{}' is not that of an assembly of {} and {}", wanted.name,
-                                    counted(static_cast<long long>(assembly_.size()), "disc"),
-                                    counted(static_cast<long long>(assembly_.contacts.size()), "contact")));
+                                         counted(static_cast<long long>(assembly_.size()), "disc"),
+                                         counted(static_cast<long long>(assembly_.contacts.size()), "contact")));
     }
   }
   file_.emplace(path_, OpenFile::Mode::update);

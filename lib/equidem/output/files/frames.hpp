@@ -28,8 +28,8 @@ struct FrameOptions {
   /// Frames to leave room for, >= 1. Where more come the file is copied into one of twice the room.
   std::int64_t expected = 100;
   bool overwrite = false;  ///< files of that name
-  /// Of bodies that travel: positions and angles, as `position` and `angle`, in place of displacements and rotations; ParaView shows
-  /// the points where they are.
+  /// Of bodies that travel: positions and angles, as `position` and `angle`, in place of displacements and rotations;
+  /// ParaView shows the points where they are.
   bool travelling = false;
   /// Go on with the files of an earlier run: frames later than this step are dropped.
   std::optional<std::int64_t> continue_after = {};
@@ -37,17 +37,18 @@ struct FrameOptions {
 };
 
 /// Writes frames. NAME.h5 (schema "equidem-frames/1"), n discs, m contacts, room for K frames:
-///   discs/centre (n, 2) and discs/radius (n), m; discs/number (n); what FrameOptions::of_discs adds; contacts/discs (m, 2), contacts/shift (m, 2),
-///   contacts/lever (m, 2), m; period (2), m, where there is one;
-///   frames (1): how many are finished; of the others the arrays hold nothing, and their times are NaN;
-///   time (K), s; step (K); displacement (K, n, 3), m; rotation (K, n), rad; velocity (K, n, 3), m/s; spin (K, n), rad/s;
-///   the third component of vectors is zero, as ParaView wants vectors.
-/// Killed at any moment the file opens and holds all finished frames. NAME.xdmf2 is replaced at once by one that lists the
-/// new frame too; past 200 frames that is done once in every 200th part of them, and in finish().
+///   discs/centre (n, 2) and discs/radius (n), m; discs/number (n); what FrameOptions::of_discs adds; contacts/discs
+///   (m, 2), contacts/shift (m, 2), contacts/lever (m, 2), m; period (2), m, where there is one; frames (1): how many
+///   are finished; of the others the arrays hold nothing, and their times are NaN; time (K), s; step (K); displacement
+///   (K, n, 3), m; rotation (K, n), rad; velocity (K, n, 3), m/s; spin (K, n), rad/s; the third component of vectors is
+///   zero, as ParaView wants vectors.
+/// Killed at any moment the file opens and holds all finished frames. NAME.xdmf2 is replaced at once by one that lists
+/// the new frame too; past 200 frames that is done once in every 200th part of them, and in finish().
 class FrameWriter {
  public:
   /// \param assembly must outlive the writer
-  /// \throws Error (bad_input) where a file exists and neither `overwrite` nor `continue_after` is set, where it cannot be
+  /// \throws Error (bad_input) where a file exists and neither `overwrite` nor `continue_after` is set, where it cannot
+  ///         be
   ///         written, or where the file to go on with holds no frames of this assembly
   FrameWriter(const std::filesystem::path& folder, const std::string& name, const Assembly& assembly,
               const FrameOptions& options);

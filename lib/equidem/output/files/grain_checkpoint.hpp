@@ -21,8 +21,8 @@ struct GrainRecord {
       paths;  ///< places of all grains at each sample; empty where there are too many to draw
 };
 
-/// The same file, with the same guards, as that of other runs (checkpoint.hpp): motions hold positions and angles, velocities those
-/// and spins; everything else stands in sums.
+/// The same file, with the same guards, as that of other runs (checkpoint.hpp): motions hold positions and angles,
+/// velocities those and spins; everything else stands in sums.
 void write_grain_checkpoint(const CheckpointWriter& writer, const GrainState& state, const GrainRecord& record);
 
 struct GrainCheckpoint {

@@ -16,9 +16,9 @@
 
 namespace equidem {
 
-/// A clump is shown as its discs, each with place, velocity, angle and spin of its own. Where there are clumps `discs/body` tells
-/// the number of the body; where there are ellipses `discs/radius` is their long half-axis, which lies along the angle, and
-/// `discs/short_half_axis` the other, of discs the radius.
+/// A clump is shown as its discs, each with place, velocity, angle and spin of its own. Where there are clumps
+/// `discs/body` tells the number of the body; where there are ellipses `discs/radius` is their long half-axis, which
+/// lies along the angle, and `discs/short_half_axis` the other, of discs the radius.
 class GrainFrames {
  public:
   /// \param options expected, overwrite, continue_after

@@ -22,27 +22,31 @@ struct GrainRows {
   std::span<const double> densities;    ///< of each, kg/m³
 };
 
-/// One row per grain: grain, group, x_m, y_m, radius_m, [short_half_axis_m,] vx_m_per_s, vy_m_per_s, spin_rad_per_s, angle_rad,
-/// density_kg_per_m3[, discs_m]. The columns in brackets are there where there are ellipses (empty of other bodies) and clumps
-/// ("x y r; x y r" in the frame of the body, empty of other bodies). A case file reads it back with [grains] path, to the same bits.
+/// One row per grain: grain, group, x_m, y_m, radius_m, [short_half_axis_m,] vx_m_per_s, vy_m_per_s, spin_rad_per_s,
+/// angle_rad, density_kg_per_m3[, discs_m]. The columns in brackets are there where there are ellipses (empty of other
+/// bodies) and clumps
+/// ("x y r; x y r" in the frame of the body, empty of other bodies). A case file reads it back with [grains] path, to
+/// the same bits.
 /// \throws Error (bad_input) as write_file does
 void write_grain_csv(const std::filesystem::path& path, const GrainRows& rows, bool overwrite);
 
-/// One row per contact of the last step: i, j (empty where it is a wall), wall (its name), overlap_m, closing_m_per_s, normal_x,
-/// normal_y (from i), normal_force_N, tangential_force_N (of discs _N_per_m, compression positive), mode, steps.
+/// One row per contact of the last step: i, j (empty where it is a wall), wall (its name), overlap_m, closing_m_per_s,
+/// normal_x, normal_y (from i), normal_force_N, tangential_force_N (of discs _N_per_m, compression positive), mode,
+/// steps.
 /// \throws Error (bad_input) as write_file does
 void write_grain_contact_csv(const std::filesystem::path& path, std::span<const GrainContact> contacts,
                              std::span<const GrainWall> walls, Body body, bool overwrite);
 
-/// One row per moment: step, time_s, every term of the ledger as TERM_J (of discs TERM_J_per_m), error_J, what its balance lacks.
+/// One row per moment: step, time_s, every term of the ledger as TERM_J (of discs TERM_J_per_m), error_J, what its
+/// balance lacks.
 /// \throws Error (bad_input) as write_file does
 void write_grain_energy_csv(const std::filesystem::path& path, std::span<const GrainEnergySample> energies, Body body,
                             bool overwrite);
 
-/// One row per bond: i, j, normal_dashpot, tangential_dashpot, rolling_dashpot, normal_spring, tangential_spring (units: GrainBond), and where
-/// `drifts` are given what each has drifted since the start: distance_drift, slip_drift (over the sum of the radii), roll_rad. A case
-/// file reads it back with [bonds] path; springs are then as long as the bonds are there.
-/// \param drifts of the same bonds in the same order, or none
+/// One row per bond: i, j, normal_dashpot, tangential_dashpot, rolling_dashpot, normal_spring, tangential_spring
+/// (units: GrainBond), and where `drifts` are given what each has drifted since the start: distance_drift, slip_drift
+/// (over the sum of the radii), roll_rad. A case file reads it back with [bonds] path; springs are then as long as the
+/// bonds are there. \param drifts of the same bonds in the same order, or none
 /// \throws Error (bad_input) as write_file does
 void write_bond_csv(const std::filesystem::path& path, std::span<const GrainBond> bonds,
                     std::span<const BondDrift> drifts, bool overwrite);

@@ -75,14 +75,15 @@ void GrowingCsv::go_on(std::int64_t after) {
   const std::string text = read_file(path_);
   if (!text.starts_with(header_)) {
     cannot_continue(path_, fmt::format("its columns are '{}', not '{}'", text.substr(0, text.find('\n')),
-                                  header_.substr(0, header_.size() - 1)));
+                                       header_.substr(0, header_.size() - 1)));
   }
   end_ = header_.size();
   for (std::size_t end = text.find('\n', end_); end != std::string::npos; end = text.find('\n', end_)) {
     std::int64_t step = 0;
     const auto [rest, failed] = std::from_chars(text.data() + end_, text.data() + end, step);
     if (failed != std::errc() || *rest != ',' || step <= last_step_) {
-      cannot_continue(path_, fmt::format("'{}' is no row of it", text.substr(end_, std::min<std::size_t>(end - end_, 40))));
+      cannot_continue(path_,
+                      fmt::format("'{}' is no row of it", text.substr(end_, std::min<std::size_t>(end - end_, 40))));
     }
     if (step > after) break;
     last_step_ = step;

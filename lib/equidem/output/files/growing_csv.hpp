@@ -26,7 +26,8 @@ struct GrowingCsvOptions {
 class GrowingCsv {
  public:
   /// \param columns the first is the step
-  /// \throws Error (bad_input) where the file exists and neither `overwrite` nor `continue_after` is set, where it cannot be written,
+  /// \throws Error (bad_input) where the file exists and neither `overwrite` nor `continue_after` is set, where it
+  ///         cannot be written,
   ///         or where the file to go on with has other columns
   GrowingCsv(std::filesystem::path path, std::vector<std::string> columns, const GrowingCsvOptions& options);
   /// Writes what is left; errors are lost: flush() before.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// HDF5 files whose arrays have fixed places. The HDF5 library lays a file out once; numbers are then written and read in
-/// place like those of any file, and nothing of the structure is ever touched again: a program killed while it writes
-/// numbers leaves a file that every reader opens. (HDF5 itself rewrites its indices in place as a file grows, and a kill
-/// in between can cost the whole file. The price: arrays cannot grow and are not compressed.)
+/// HDF5 files whose arrays have fixed places. The HDF5 library lays a file out once; numbers are then written and read
+/// in place like those of any file, and nothing of the structure is ever touched again: a program killed while it
+/// writes numbers leaves a file that every reader opens. (HDF5 itself rewrites its indices in place as a file grows,
+/// and a kill in between can cost the whole file. The price: arrays cannot grow and are not compressed.)
 #pragma once
 
 #include <cstdint>
@@ -44,7 +44,8 @@ struct Hdf5Layout {
 Hdf5Layout write_hdf5_layout(const std::filesystem::path& path, Hdf5Layout layout);
 
 /// Where the arrays of those names lie, and all attributes of the file that are texts.
-/// \throws Error (bad_input) where the file is no HDF5 file, lacks one of the arrays, or keeps one in pieces or in a type
+/// \throws Error (bad_input) where the file is no HDF5 file, lacks one of the arrays, or keeps one in pieces or in a
+///         type
 ///         that is not the one of this machine (as a file does that another program has rewritten)
 Hdf5Layout read_hdf5_layout(const std::filesystem::path& path, const std::vector<std::string>& names);
 

@@ -60,7 +60,8 @@ class JsonObject {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// The number at a path of keys and positions such as "poisson_ratio.plane_strain" or "stress.0" in a JSON text; none where there is none.
+/// The number at a path of keys and positions such as "poisson_ratio.plane_strain" or "stress.0" in a JSON text; none
+/// where there is none.
 std::optional<double> number_in_json(std::string_view text, const std::string& path);
 
 /// The version of the library, "0.1.0".
@@ -71,8 +72,8 @@ std::string library_version();
 void add_common(JsonObject& object, const std::string& status, const std::string& report, const StageTimes& times,
                 const Effects& effects);
 
-/// unknowns, relative_residual, rounded_residual, negative_pivots and unstable_modes (null where unknown), refinements, pivot_growth, factor_nonzeros,
-/// factor_bytes, solver, energy (N).
+/// unknowns, relative_residual, rounded_residual, negative_pivots and unstable_modes (null where unknown), refinements,
+/// pivot_growth, factor_nonzeros, factor_bytes, solver, energy (N).
 void add_equilibrium(JsonObject& object, const Equilibrium& equilibrium);
 
 /// poisson_ratio, stiffness_ratio, strain and stress (Voigt), fitted_poisson_ratio, displacement_gradient (fitted),

@@ -20,12 +20,14 @@ void check(const std::vector<Probe>& probes, std::size_t discs) {
                 "Rename one of them");
     }
     if (probe.discs.empty()) {
-      bad_input(fmt::format("the probe '{}' holds no disc", probe.name), "nothing has no mean", "Choose at least one disc");
+      bad_input(fmt::format("the probe '{}' holds no disc", probe.name), "nothing has no mean",
+                "Choose at least one disc");
     }
     for (const std::int32_t disc : probe.discs) {
       if (disc < 0 || static_cast<std::size_t>(disc) >= discs) {
         bad_input(fmt::format("the probe '{}' names disc {}", probe.name, disc),
-                  fmt::format("the discs are 0 to {}", static_cast<long long>(discs) - 1), "Choose discs that are there");
+                  fmt::format("the discs are 0 to {}", static_cast<long long>(discs) - 1),
+                  "Choose discs that are there");
       }
     }
   }

@@ -36,15 +36,16 @@ struct ProbeOptions {
   std::optional<std::int64_t> continue_after = {};
 };
 
-/// Writes rows: step, time_s; for every probe what it asks for: NAME_ux_m, NAME_uy_m; NAME_rotation_rad; NAME_vx_m_per_s,
-/// NAME_vy_m_per_s; NAME_spin_rad_per_s; then every term of the ledger, TERM_J_per_m, and error_J_per_m, what its balance
-/// lacks.
+/// Writes rows: step, time_s; for every probe what it asks for: NAME_ux_m, NAME_uy_m; NAME_rotation_rad;
+/// NAME_vx_m_per_s, NAME_vy_m_per_s; NAME_spin_rad_per_s; then every term of the ledger, TERM_J_per_m, and
+/// error_J_per_m, what its balance lacks.
 class ProbeWriter {
  public:
   /// \param discs of the assembly
-  /// \throws Error (bad_input) where two probes share a name or one has no disc or one that is not there, where the file
-  ///         exists and neither `overwrite` nor `continue_after` is set, where it cannot be written, or where the file to go on
-  ///         with has other columns
+  /// \throws Error (bad_input) where two probes share a name or one has no disc or one that is not there, where the
+  ///         file
+  ///         exists and neither `overwrite` nor `continue_after` is set, where it cannot be written, or where the file
+  ///         to go on with has other columns
   ProbeWriter(std::filesystem::path path, std::vector<Probe> probes, std::size_t discs, const ProbeOptions& options);
 
   /// Add a row.

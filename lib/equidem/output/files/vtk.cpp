@@ -30,7 +30,8 @@ constexpr const char* vtk_type() {
 class PolyData {
  public:
   PolyData(std::size_t points, std::size_t vertices, std::size_t lines)
-      : counts_(fmt::format("NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\"", points, vertices, lines)) {}
+      : counts_(
+            fmt::format("NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\"", points, vertices, lines)) {}
 
   /// value(tuple, component) for every tuple in [0, tuples).
   template <class Number, class Value>

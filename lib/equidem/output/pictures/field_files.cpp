@@ -10,8 +10,8 @@
 
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/pictures/canvas.hpp"
 #include "equidem/output/files/csv.hpp"
+#include "equidem/output/pictures/canvas.hpp"
 
 namespace equidem {
 namespace {
@@ -75,8 +75,8 @@ std::string image_text(const CoarseFields& fields) {
     numbers.append(bytes, sizeof number);
   };
   for (const Column& column : columns_of(fields)) {
-    text += fmt::format("        <DataArray type=\"Float64\" Name=\"{}\" format=\"appended\" offset=\"{}\"/>\n", column.name,
-                   numbers.size());
+    text += fmt::format("        <DataArray type=\"Float64\" Name=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
+                        column.name, numbers.size());
     append(std::uint64_t{8 * column.values.size()});
     for (const double value : column.values) append(value);
   }
@@ -126,8 +126,8 @@ void draw_map(Canvas& canvas, const CoarseGrid& grid, const Column& column, cons
   for (const double tick : nice_ticks(low * prefix.factor, high * prefix.factor, 4)) {
     const double y = corner.y + h * (1 - (tick / prefix.factor - scale.low) / (scale.high - scale.low));
     canvas.line({left + bar, y}, {left + bar + 4, y}, 0.8, black);
-    canvas.text(fmt::format("{:.4g}{}", tick, prefix.prefix.empty() ? "" : " " + prefix.prefix), {left + bar + 7, y + 4}, 11,
-                TextAnchor::left, black);
+    canvas.text(fmt::format("{:.4g}{}", tick, prefix.prefix.empty() ? "" : " " + prefix.prefix),
+                {left + bar + 7, y + 4}, 11, TextAnchor::left, black);
   }
 }
 

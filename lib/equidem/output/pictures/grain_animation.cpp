@@ -294,11 +294,11 @@ std::string grain_animation_html(const GrainAnimation& animation) {
   const double bar = scale_bar_length(0.2 * size.x);
   const UnitPrefix prefix = unit_prefix(bar);
   std::string text = fmt::format(page_start, escaped(animation.title), escaped(animation.caption), scale * size.x,
-                            scale * size.y + bar_room, speed_text(animation.speed));
+                                 scale * size.y + bar_room, speed_text(animation.speed));
   text += fmt::format("const low = {}, size = {}, span = {:.6g}, speed = {:g};\n", list({view.low.x, view.low.y}, 6),
-                 list({size.x, size.y}, 6), view.span(), animation.speed);
+                      list({size.x, size.y}, 6), view.span(), animation.speed);
   text += fmt::format("const room = {:g}, bar = {:g}, bar_text = '{:.3g} {}m';\n", bar_room, bar, bar * prefix.factor,
-                 prefix.prefix);
+                      prefix.prefix);
   text += "const parts = " + parts_of(animation) + ";\n";
   std::vector<double> groups(animation.groups.begin(), animation.groups.end()), times;
   groups.resize(animation.shapes.size(), 0);

@@ -9,9 +9,9 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/output/files/placed_discs.hpp"
 #include "equidem/output/pictures/canvas.hpp"
 #include "equidem/output/pictures/picture.hpp"
-#include "equidem/output/files/placed_discs.hpp"
 #include "equidem/output/pictures/scene.hpp"
 
 namespace equidem {
@@ -185,8 +185,8 @@ void draw_ties(Canvas& canvas, const PageFrame& frame, const Grain& grain, std::
                 colour);
 }
 
-/// A mark shows how far a grain has turned, where any has: of a disc from the centre to the edge, of an ellipse along the long
-/// half-axis, of a clump in its first disc.
+/// A mark shows how far a grain has turned, where any has: of a disc from the centre to the edge, of an ellipse along
+/// the long half-axis, of a clump in its first disc.
 void draw_grains(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
   constexpr double width = 0.8;
   const bool any_turned =
@@ -275,8 +275,8 @@ void draw_legend(Canvas& canvas, const PageFrame& frame, const GrainPicture& pic
   canvas.line({margin, y}, {right, y}, 1.4, ink);
   for (const double x : {margin, right}) canvas.line({x, y - 5}, {x, y + 5}, 1.4, ink);
   const UnitPrefix prefix = unit_prefix(length);
-  canvas.text(fmt::format("{:.3g} {}m", length * prefix.factor, prefix.prefix), {0.5 * (margin + right), y - 9}, text_size,
-              TextAnchor::centre, ink);
+  canvas.text(fmt::format("{:.3g} {}m", length * prefix.factor, prefix.prefix), {0.5 * (margin + right), y - 9},
+              text_size, TextAnchor::centre, ink);
   std::string caption =
       fmt::format("{}, t = {:.6g} s", counted(static_cast<long long>(picture.grains.size()), "grain"), picture.time);
   if (!picture.paths.empty()) caption += ", paths from the pale circles";

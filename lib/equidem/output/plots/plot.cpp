@@ -50,16 +50,17 @@ void check_plot(const Plot& plot) {
   bool any_point = false;
   for (const Series& series : plot.series) {
     if (series.x.size() != series.y.size()) {
-      bad_input(fmt::format("series '{}' of a plot has {} of x and {} of y", series.label, counted(series.x.size(), "value"),
-                       counted(series.y.size(), "value")),
+      bad_input(fmt::format("series '{}' of a plot has {} of x and {} of y", series.label,
+                            counted(series.x.size(), "value"), counted(series.y.size(), "value")),
                 "each point has both", "Give as many x as y");
     }
     for (std::size_t k = 0; k < series.x.size(); ++k) {
       if (!std::isfinite(series.x[k]) || !std::isfinite(series.y[k])) continue;
       any_point = true;
       if ((plot.x.logarithmic && series.x[k] <= 0) || (plot.y.logarithmic && series.y[k] <= 0)) {
-        bad_input(fmt::format("point {} of series '{}' of a plot is ({}, {})", k, series.label, series.x[k], series.y[k]),
-                  "a logarithmic axis shows positive values only", "Leave it out, or use a linear axis");
+        bad_input(
+            fmt::format("point {} of series '{}' of a plot is ({}, {})", k, series.label, series.x[k], series.y[k]),
+            "a logarithmic axis shows positive values only", "Leave it out, or use a linear axis");
       }
     }
   }
@@ -91,9 +92,9 @@ PlotResult write_plot(const std::filesystem::path& folder, const std::string& na
     result.message = fmt::format("The plot is in '{}' and '{}'.", path(".svg").string(), path(".png").string());
   } else {
     for (const char* extension : {".svg", ".png"}) std::filesystem::remove(path(extension), ignored);
-    result.message =
-        fmt::format("No picture was drawn ({}): data and script are in '{}' and '{}'.",
-               run.reason.empty() ? "gnuplot wrote no file" : run.reason, path(".csv").string(), path(".gp").string());
+    result.message = fmt::format("No picture was drawn ({}): data and script are in '{}' and '{}'.",
+                                 run.reason.empty() ? "gnuplot wrote no file" : run.reason, path(".csv").string(),
+                                 path(".gp").string());
   }
   return result;
 }

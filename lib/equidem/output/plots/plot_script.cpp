@@ -69,16 +69,17 @@ std::vector<std::string> plot_clauses(const Plot& plot, const Series& series, co
   const std::string columns = fmt::format("data using \"{}\":\"{}\"", place.x, place.y);
   const std::string title = series.label.empty() ? "notitle" : "title " + quoted(series.label) + plain;
   const std::string face = fmt::format("with points pt {} ps marker", point_type(series.marker, true));
-  const std::string outline =
-      fmt::format("with points pt {} ps marker lw 1.6 lc rgb '{}'", point_type(series.marker, false), hex(series.colour));
+  const std::string outline = fmt::format("with points pt {} ps marker lw 1.6 lc rgb '{}'",
+                                          point_type(series.marker, false), hex(series.colour));
   std::vector<std::string> clauses;
   if (series.style == SeriesStyle::line || series.style == SeriesStyle::dashed_line) {
     clauses.push_back(fmt::format("{} with lines lw 1.8{} lc rgb '{}' {}", columns,
-                             series.style == SeriesStyle::dashed_line ? " dt (8,5)" : "", hex(series.colour), title));
+                                  series.style == SeriesStyle::dashed_line ? " dt (8,5)" : "", hex(series.colour),
+                                  title));
   }
   if (series.style == SeriesStyle::line_with_points) {
     clauses.push_back(fmt::format("{} with linespoints pt {} ps marker lw 1.6 lc rgb '{}' {}", columns,
-                             point_type(series.marker, series.filled), hex(series.colour), title));
+                                  point_type(series.marker, series.filled), hex(series.colour), title));
     if (!series.filled) {
       clauses.push_back(fmt::format("{} {} lc rgb '#ffffff' notitle", columns, face));
       clauses.push_back(fmt::format("{} {} notitle", columns, outline));
@@ -113,11 +114,11 @@ std::vector<std::string> plot_clauses(const Plot& plot, const Series& series, co
 std::string vertical_line(const VerticalLine& line, const LineLabelPlace& place, const std::string& plain) {
   std::string text =
       fmt::format("set arrow from first {0}, graph 0 to first {0}, graph 1 nohead back lw 1.1 dt (5,4) lc rgb '{1}'\n",
-             line.x, hex(line.colour));
+                  line.x, hex(line.colour));
   if (!line.label.empty()) {
     text += fmt::format("set label {} at first {}, graph {} {} rotate by 90 offset char {},0 tc rgb '{}' front{}\n",
-                   quoted(line.label), line.x, place.top ? 0.985 : 0.015, place.top ? "right" : "left",
-                   place.right ? 1 : -1, hex(line.colour), plain);
+                        quoted(line.label), line.x, place.top ? 0.985 : 0.015, place.top ? "right" : "left",
+                        place.right ? 1 : -1, hex(line.colour), plain);
   }
   return text;
 }
@@ -192,10 +193,11 @@ std::string plot_script(const std::string& name, const Plot& plot, const PlotDat
       "set border 3 lw 0.8 lc rgb '#333333'\nset tics out nomirror scale 0.7 tc rgb '#222222'\n"
       "set title {2} offset 0,-0.2{3}\nset xlabel {4}{3}\nset ylabel {5}{3}\n",
       name, quoted(name + ".csv"), quoted(plot.title), plain, quoted(plot.x.label), quoted(plot.y.label));
-  text += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", layout.x.min, layout.x.max, layout.y.min, layout.y.max);
+  text +=
+      fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", layout.x.min, layout.x.max, layout.y.min, layout.y.max);
   text += axis_scale('x', plot.x, layout.x) + axis_scale('y', plot.y, layout.y);
   text += fmt::format("set key {} Left reverse samplen 2.2 spacing 1.25 width 1{}\n",
-                 layout.legend == "below" ? "below horizontal" : "inside " + layout.legend, plain);
+                      layout.legend == "below" ? "below horizontal" : "inside " + layout.legend, plain);
   for (const Band& band : plot.bands) {
     text += fmt::format(
         "set object rectangle from first {}, graph 0 to first {}, graph 1 fc rgb '#eef2f6' fs solid noborder "
@@ -203,7 +205,7 @@ std::string plot_script(const std::string& name, const Plot& plot, const PlotDat
         band.from, band.to);
     if (!band.label.empty()) {
       text += fmt::format("set label {} at first {}, graph 0.965 center tc rgb '#666666'{}\n", quoted(band.label),
-                     plot.x.logarithmic ? std::sqrt(band.from * band.to) : 0.5 * (band.from + band.to), plain);
+                          plot.x.logarithmic ? std::sqrt(band.from * band.to) : 0.5 * (band.from + band.to), plain);
     }
   }
   for (std::size_t k = 0; k < plot.vertical_lines.size(); ++k) {
