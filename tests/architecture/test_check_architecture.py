@@ -17,7 +17,7 @@ GOOD = {
     "lib/equidem/core/text.hpp": "#include <fmt/format.h>\n",
     "lib/equidem/contact/spring.cpp": '#include "equidem/core/error.hpp"\n#include <sys/mman.h>\n',
     "lib/equidem/output/picture.cpp": '#include "equidem/contact/spring.hpp"\n#include <cairo/cairo.h>\n',
-    "tools/equidem/main.cpp": '#include "equidem/output/pictures/picture.hpp"\n#include <CLI/CLI.hpp>\n#include "verb.hpp"\n',
+    "tools/equidem/main.cpp": '#include "equidem/output/picture.hpp"\n#include <CLI/CLI.hpp>\n#include "verb.hpp"\n',
     "tests/support/catch.hpp": "#include <catch2/catch.hpp>\n",
     "README.md": "Run tools/demo; see https://example.org/work/home.\n",
 }
@@ -51,7 +51,7 @@ class TheCheck(unittest.TestCase):
                         "lib/equidem/core/error.cpp:2", "'contact' comes after it")
 
     def test_rejects_output_included_from_elsewhere(self):
-        self.fails_with({"lib/equidem/contact/law.hpp": '#  include "equidem/output/pictures/picture.hpp"\n'},
+        self.fails_with({"lib/equidem/contact/law.hpp": '#  include "equidem/output/picture.hpp"\n'},
                         "room 'contact' includes 'equidem/output/picture.hpp'")
 
     def test_rejects_an_include_of_a_room_in_angle_brackets(self):

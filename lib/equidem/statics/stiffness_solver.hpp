@@ -15,6 +15,7 @@
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/factorization.hpp"
 #include "equidem/linear/linear_solver.hpp"
+#include "equidem/statics/assemble_stiffness.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 #include "equidem/statics/solver_choice.hpp"
@@ -39,8 +40,8 @@ struct Solution {
   [[nodiscard]] double relative_residual() const { return scale > 0 ? residual / scale : 0.0; }
 };
 
-/// Rounding error of the unit normal of a contact over 2^-52: of its division and, across a period, of the sum that its
-/// branch is.
+/// Rounding error of the unit normal of a contact over 2^-52: of its division and, across a period, of the sum that
+/// its branch is.
 double normal_rounding(const Assembly& assembly, const Contact& contact);
 
 /// A motion of least resistance.
@@ -68,21 +69,21 @@ class StiffnessSolver {
   /// Deformation of every contact, imposed one included.
   [[nodiscard]] std::vector<ContactDeformation> deformations(const RightHandSide& given,
                                                              const PreciseMotion& motion) const;
-  /// By inverse iteration from `start` (empty: from a fixed rough vector), which finds the softest motion that `start`
-  /// has a part in.
+  /// By inverse iteration from `start` (empty: from a fixed rough vector), which finds the softest motion that
+  /// `start` has a part in.
   [[nodiscard]] SoftestMotion softest_motion(std::span<const double> start = {}) const;
   /// The following two measure each component by its row of K, D = diag(sum_j |K_ij|), so that soft rotations beside
-  /// stiff translations (small kT) are no errors: |D^-1/2 K D^-1/2| <= 1, and the energy of what a motion misses is at
-  /// most scaled_residual² scaled_inverse_norm. |D^-1/2 (f - f_int)|, square root of N.
+  /// stiff translations (small kT) are no errors: |D^-1/2 K D^-1/2| <= 1, and the energy of what a motion misses is
+  /// at most scaled_residual² scaled_inverse_norm. |D^-1/2 (f - f_int)|, square root of N.
   [[nodiscard]] double scaled_residual(const RightHandSide& given, const PreciseMotion& motion) const;
-  /// The same, or where rows are alike (within a factor of 100) a bound on it that costs nothing: the residual over the
-  /// root of the smallest row.
+  /// The same, or where rows are alike (within a factor of 100) a bound on it that costs nothing: the residual over
+  /// the root of the smallest row.
   [[nodiscard]] double scaled_residual_bound(const RightHandSide& given, const Solution& solution) const;
   /// |D^1/2 K^-1 D^1/2| as softest_motion finds it: a lower bound, mostly within a factor of 2; 0 where nothing is
   /// free.
   [[nodiscard]] double scaled_inverse_norm(std::span<const double> start) const;
-  /// Bound on |v^T dK u|, N, where the normals of contacts are wrong by their rounding (normal_rounding): what rounding
-  /// of the geometry does to the motion u along v.
+  /// Bound on |v^T dK u|, N, where the normals of contacts are wrong by their rounding (normal_rounding): what
+  /// rounding of the geometry does to the motion u along v.
   [[nodiscard]] double rounding_work(const RightHandSide& given, const PreciseMotion& motion,
                                      std::span<const double> v) const;
   /// |K| (largest sum of the magnitudes of a row), Pa.

@@ -17,7 +17,7 @@ std::string shown(double value, int digits) {
   return std::isnan(value) ? "-" : fmt::format("{:.{}g}", value, digits);
 }
 
-std::string percent(double share) {
+std::string rounded_percent(double share) {
   return fmt::format("{:.3g} %", 100 * share);
 }
 
@@ -31,7 +31,7 @@ std::string table_of(const EnsembleStatistics& statistics, std::size_t quantity)
     const double relative = e.mean != 0 ? e.standard_deviation / std::abs(e.mean) : MeanEstimate::unknown;
     text += fmt::format("  {:>7}  {:>5}  {:>14}   {:>12} .. {:<12}  {:>15}   {:>7}\n", size.discs, e.samples,
                         shown(e.mean, 7), shown(e.low(), 6), shown(e.high(), 6), shown(e.standard_deviation, 3),
-                        std::isnan(relative) ? "-" : percent(relative));
+                        std::isnan(relative) ? "-" : rounded_percent(relative));
   }
   return text;
 }
@@ -89,15 +89,15 @@ std::string describe_need(const EnsembleResult& result, std::size_t quantity) {
     text += fmt::format(
         "  with {} confidence one cell of {:.0f} discs lies within {:.2g}{} of the mean, the mean of {} within "
         "{:.2g}{}\n",
-        percent(confidence), largest.mean_discs, one, unit, result.plan.samples, one / std::sqrt(result.plan.samples),
-        unit);
+        rounded_percent(confidence), largest.mean_discs, one, unit, result.plan.samples,
+        one / std::sqrt(result.plan.samples), unit);
   }
   if (!result.accuracy) return text;
   const auto alone = needed_discs(statistics, quantity, *result.accuracy, 1);
   const auto averaged = needed_discs(statistics, quantity, *result.accuracy, result.plan.samples);
   if (!alone || !averaged) {
     return text + fmt::format("  {} is 0 within its error, or its scatter does not fall: no size reaches {} of it\n",
-                              symbol, percent(*result.accuracy));
+                              symbol, rounded_percent(*result.accuracy));
   }
   const auto smallest = std::find_if(statistics.sizes.begin(), statistics.sizes.end(),
                                      [&](const EnsembleSize& size) { return size.estimates[quantity].samples > 0; });
@@ -105,8 +105,8 @@ std::string describe_need(const EnsembleResult& result, std::size_t quantity) {
     return fmt::format("{} discs{}", needed, static_cast<double>(needed) < smallest->mean_discs + 1 ? " at most" : "");
   };
   return text + fmt::format("  {} of {} with {} confidence needs one cell of {}, or the mean of {} cells of {}\n",
-                            percent(*result.accuracy), symbol, percent(confidence), discs(*alone), result.plan.samples,
-                            discs(*averaged));
+                            rounded_percent(*result.accuracy), symbol, rounded_percent(confidence), discs(*alone),
+                            result.plan.samples, discs(*averaged));
 }
 
 std::string describe_refusals(const EnsembleResult& result) {

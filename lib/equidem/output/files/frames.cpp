@@ -84,7 +84,7 @@ bool holds(const OpenFile& file, const Hdf5Array& array, const std::vector<Entry
   return std::ranges::equal(found, std::as_bytes(std::span(wanted)));
 }
 
-[[noreturn]] void cannot_continue(const std::filesystem::path& path, const std::string& why) {
+[[noreturn]] void cannot_add_frames(const std::filesystem::path& path, const std::string& why) {
   bad_input(fmt::format("cannot add frames to '{}'", path.string()), why,
             "Go on where the frames of this very run lie, or start it afresh under another name");
 }
@@ -222,34 +222,34 @@ void FrameWriter::resize(std::int64_t room) {
 
 void FrameWriter::go_on(std::int64_t after) {
   std::error_code ignored;
-  if (!std::filesystem::exists(path_, ignored)) cannot_continue(path_, "there is no such file");
+  if (!std::filesystem::exists(path_, ignored)) cannot_add_frames(path_, "there is no such file");
   std::vector<std::string> names;
   for (const Hdf5Array& array : layout_of(1).arrays) names.push_back(array.name);
   layout_ = read_hdf5_layout(path_, names);
   if (layout_.attributes["schema"] != schema) {
-    cannot_continue(path_, fmt::format("its schema is '{}', not '{}'", layout_.attributes["schema"], schema));
+    cannot_add_frames(path_, fmt::format("its schema is '{}', not '{}'", layout_.attributes["schema"], schema));
   }
   const std::vector<std::uint64_t> time_shape = layout_["time"].shape;
   const std::uint64_t room = time_shape.size() == 1 ? time_shape[0] : 0;
   for (const Hdf5Array& wanted : layout_of(static_cast<std::int64_t>(room)).arrays) {
     const Hdf5Array& found = layout_[wanted.name];
     if (found.number != wanted.number || found.shape != wanted.shape || room == 0) {
-      cannot_continue(path_, fmt::format("its array '{}' is not that of an assembly of {} and {}", wanted.name,
-                                         counted(static_cast<long long>(assembly_.size()), "disc"),
-                                         counted(static_cast<long long>(assembly_.contacts.size()), "contact")));
+      cannot_add_frames(path_, fmt::format("its array '{}' is not that of an assembly of {} and {}", wanted.name,
+                                           counted(static_cast<long long>(assembly_.size()), "disc"),
+                                           counted(static_cast<long long>(assembly_.contacts.size()), "contact")));
     }
   }
   file_.emplace(path_, OpenFile::Mode::update);
   if (!holds(*file_, layout_["discs/centre"], assembly_.centres) ||
       !holds(*file_, layout_["discs/radius"], assembly_.radii)) {
-    cannot_continue(path_, "its discs have other places or radii");
+    cannot_add_frames(path_, "its discs have other places or radii");
   }
   for (const DiscNumbers& added : of_discs_)
     if (!holds(*file_, layout_["discs/" + added.name], added.values))
-      cannot_continue(path_, fmt::format("its discs have others of '{}'", added.name));
+      cannot_add_frames(path_, fmt::format("its discs have others of '{}'", added.name));
   const std::int64_t finished = read_numbers<std::int64_t>(*file_, layout_["frames"], 1)[0];
   if (finished < 0 || static_cast<std::uint64_t>(finished) > room) {
-    cannot_continue(path_, fmt::format("it says that {} of {} frames are finished", finished, room));
+    cannot_add_frames(path_, fmt::format("it says that {} of {} frames are finished", finished, room));
   }
   steps_ = read_numbers<std::int64_t>(*file_, layout_["step"], static_cast<std::uint64_t>(finished));
   times_ = read_numbers<double>(*file_, layout_["time"], static_cast<std::uint64_t>(finished));

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t written_at_once = 1 << 16;  // bytes
 
-[[noreturn]] void cannot_continue(const std::filesystem::path& path, const std::string& why) {
+[[noreturn]] void cannot_add_rows(const std::filesystem::path& path, const std::string& why) {
   bad_input(fmt::format("cannot add rows to '{}'", path.string()), why,
             "Go on where the files of this very run lie, or start it afresh under another name");
 }
@@ -74,7 +74,7 @@ void GrowingCsv::sync() {
 void GrowingCsv::go_on(std::int64_t after) {
   const std::string text = read_file(path_);
   if (!text.starts_with(header_)) {
-    cannot_continue(path_, fmt::format("its columns are '{}', not '{}'", text.substr(0, text.find('\n')),
+    cannot_add_rows(path_, fmt::format("its columns are '{}', not '{}'", text.substr(0, text.find('\n')),
                                        header_.substr(0, header_.size() - 1)));
   }
   end_ = header_.size();
@@ -82,7 +82,7 @@ void GrowingCsv::go_on(std::int64_t after) {
     std::int64_t step = 0;
     const auto [rest, failed] = std::from_chars(text.data() + end_, text.data() + end, step);
     if (failed != std::errc() || *rest != ',' || step <= last_step_) {
-      cannot_continue(path_,
+      cannot_add_rows(path_,
                       fmt::format("'{}' is no row of it", text.substr(end_, std::min<std::size_t>(end - end_, 40))));
     }
     if (step > after) break;
