@@ -51,7 +51,7 @@ def files_of(root):
         inside = os.path.relpath(folder, root)
         folders[:] = sorted(f for f in folders if f not in (".git", "__pycache__")
                             and not (inside == "." and f in ("build", "out", ".cache")))
-        for name in sorted(names):
+        for name in sorted(set(names) - {".git"}):  # a file in a worktree
             yield os.path.normpath(os.path.join(inside, name))
 
 
