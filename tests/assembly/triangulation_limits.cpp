@@ -121,9 +121,9 @@ TEST_CASE("lengths_whose_squares_leave_the_range_of_a_double_are_refused_and_oth
     CAPTURE(radius);
     const DelaunayOptions options{
         .discs = 100, .seed = 1, .radii = {.smallest = radius, .largest = radius}, .periodic = periodic};
-    CHECK_THROWS_WITH(delaunay_assembly(options), Catch::Matchers::Contains("it must lie between 1e-70 and 1e+70 m"));
+    CHECK_THROWS_WITH(delaunay_assembly(options), Catch::Contains("it must lie between 1e-70 and 1e+70 m"));
     CHECK_THROWS_WITH(hexagonal_lattice({.columns = 4, .rows = 4, .radius = radius, .periodic = periodic}),
-                      Catch::Matchers::Contains("it must lie between 1e-70 and 1e+70 m"));
+                      Catch::Contains("it must lie between 1e-70 and 1e+70 m"));
   }
   Assembly tiny = hexagonal_lattice({.columns = 4, .rows = 4, .radius = 1, .periodic = true});
   tiny.period->x = 1e-300;

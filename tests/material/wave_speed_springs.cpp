@@ -96,7 +96,8 @@ TEST_CASE("steps_below_the_limit_are_stable_and_steps_above_are_not") {
       CHECK((growth(1 - w * w / 2, w * (1 + v) / 2, -w, v) <= 1) == stable);
     }
   }
-  for (const auto& row : reference()["scheme"]) {
+  const auto rows = reference()["scheme"];
+  for (const auto& row : rows) {
     if (std::abs(row["zeta"].get<double>() - zeta) > 1e-9) continue;
     // found there on a grid of steps
     CHECK(semi_implicit_limit(zeta) == Approx(row["semi"][1].get<double>()).epsilon(2e-3));

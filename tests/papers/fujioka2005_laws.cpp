@@ -120,7 +120,8 @@ TEST_CASE(
 }
 
 TEST_CASE("fujioka_2005_mode_2_as_printed_would_lose_energy_beyond_a_slope") {
-  for (const auto& row : reference()["mode2_literal_loss"]) {
+  const auto rows = reference()["mode2_literal_loss"];
+  for (const auto& row : rows) {
     const double a = row["a"], slope = row["s_star"], e = 0.7;
     const auto last_mode = [&](double s) {
       Ball ball{.depth = 1 / s, .closing = 1};

@@ -81,23 +81,23 @@ std::int32_t integer(const Json& value, const std::string& entry) {
   return value.get<std::int32_t>();
 }
 
-const Json& list(const Json& value, const std::string& entry) {
+void check_list(const Json& value, const std::string& entry) {
   if (!value.is_array()) wrong_kind(value, "a list", entry);
-  return value;
 }
 
 /// A list of exactly as many entries as `names` names, separated by commas.
-const Json& row(const Json& value, std::size_t count, const char* names, const std::string& entry) {
-  list(value, entry);
-  if (value.size() == count) return value;
+void check_row(const Json& value, std::size_t count, const char* names, const std::string& entry) {
+  check_list(value, entry);
+  if (value.size() == count) return;
   refuse(fmt::format("{} {} where {} are expected", counted(static_cast<long long>(value.size()), "number"),
                      value.size() == 1 ? "stands" : "stand", count),
          fmt::format("an entry is [{}]", names), "Correct the entry", entry);
 }
 
-const Json& list_per(const char* what, const Json& value, std::size_t count, const std::string& entry) {
-  list(value, entry);
-  if (value.size() == count) return value;
+/// A list of `count` entries, one for each `what`.
+void check_list_per(const char* what, const Json& value, std::size_t count, const std::string& entry) {
+  check_list(value, entry);
+  if (value.size() == count) return;
   refuse(fmt::format("{} for {}", counted(static_cast<long long>(value.size()), "entry", "entries"),
                      counted(static_cast<long long>(count), what)),
          "there must be one for each", "Correct the list or remove it", entry);
@@ -108,10 +108,12 @@ template <typename Take>
 void read_pairs(const Json& file, const char* key, const char* names, const char* what, std::size_t count,
                 const Take& take) {
   if (!file.contains(key)) return;
-  const Json& pairs = list_per(what, file[key], count, key);
+  const Json& pairs = file[key];
+  check_list_per(what, pairs, count, key);
   for (std::size_t k = 0; k < count; ++k) {
     const std::string entry = fmt::format("{}[{}]", key, k);
-    const Json& pair = row(pairs[k], 2, names, entry);
+    const Json& pair = pairs[k];
+    check_row(pair, 2, names, entry);
     take(k, number(pair[0], entry), number(pair[1], entry));
   }
 }
@@ -140,22 +142,27 @@ void check_keys(const Json& file) {
 
 void read_discs(const Json& file, Assembly& assembly) {
   if (file.contains("cell") && !file["cell"].is_null()) {
-    const Json& cell = row(file["cell"], 2, "Lx, Ly", "cell");
+    const Json& cell = file["cell"];
+    check_row(cell, 2, "Lx, Ly", "cell");
     assembly.period = Vec2{number(cell[0], "cell[0]"), number(cell[1], "cell[1]")};
   }
   if (file.contains("box")) {
-    const Json& corners = row(file["box"], 2, "[x, y], [x, y]", "box");
+    const Json& corners = file["box"];
+    check_row(corners, 2, "[x, y], [x, y]", "box");
     const auto corner = [&](std::size_t k) {
       const std::string entry = fmt::format("box[{}]", k);
-      const Json& place = row(corners[k], 2, "x, y", entry);
+      const Json& place = corners[k];
+      check_row(place, 2, "x, y", entry);
       return Vec2{number(place[0], entry), number(place[1], entry)};
     };
     assembly.box = Rectangle{.low = corner(0), .high = corner(1)};
   }
-  const Json& discs = list(file["discs"], "discs");
+  const Json& discs = file["discs"];
+  check_list(discs, "discs");
   for (std::size_t k = 0; k < discs.size(); ++k) {
     const std::string entry = fmt::format("discs[{}]", k);
-    const Json& disc = row(discs[k], 3, "x, y, radius", entry);
+    const Json& disc = discs[k];
+    check_row(disc, 3, "x, y, radius", entry);
     assembly.centres.push_back({number(disc[0], entry), number(disc[1], entry)});
     assembly.radii.push_back(number(disc[2], entry));
   }
@@ -190,10 +197,12 @@ void read_contacts(const Json& file, Assembly& assembly) {
     assembly.contacts = touching_discs(assembly);
     return;
   }
-  const Json& contacts = list(file["contacts"], "contacts");
+  const Json& contacts = file["contacts"];
+  check_list(contacts, "contacts");
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const std::string entry = fmt::format("contacts[{}]", k);
-    const Json& contact = row(contacts[k], 4, "i, j, shift x, shift y", entry);
+    const Json& contact = contacts[k];
+    check_row(contact, 4, "i, j, shift x, shift y", entry);
     assembly.contacts.push_back({.i = integer(contact[0], entry),
                                  .j = integer(contact[1], entry),
                                  .shift_x = integer(contact[2], entry),
@@ -251,8 +260,9 @@ DiscGroup read_group(const Json& value, const std::string& entry) {
     if (!value.contains("discs")) refuse("the key 'discs' is missing", "", "Add the list of discs", entry);
     discs = &value["discs"];
   }
-  list(*discs, entry);
-  if (lengths != nullptr && list(*lengths, entry).size() != discs->size()) {
+  check_list(*discs, entry);
+  if (lengths != nullptr) check_list(*lengths, entry);
+  if (lengths != nullptr && lengths->size() != discs->size()) {
     refuse(fmt::format("{} for {}", counted(static_cast<long long>(lengths->size()), "tributary length"),
                        counted(static_cast<long long>(discs->size()), "disc")),
            "there must be one for each", "Correct the list or remove it", entry);

@@ -35,12 +35,11 @@ struct Block {
     };
     bool corner = false;  // the bottom row holds uy of its first disc already
     for (const Support& support : setup.supports) {
-      TimedSupport timed;
+      TimedSupport& timed = scene.supports.emplace_back();
       timed.group = support.group;
       if (support.ux) timed.ux = always(*support.ux);
       if (support.uy && !corner) timed.uy = always(*support.uy);
       corner = corner || support.uy.has_value();
-      scene.supports.push_back(timed);
     }
     for (const Load& load : setup.loads) scene.loads.push_back({load, always(1)});
   }

@@ -60,6 +60,7 @@ void find_slopes(Schedule& table) {
   const auto& t = table.times;
   const auto& x = table.values;
   const std::size_t n = t.size();
+  if (n < 3) return;
   std::vector<double> upper(n, 0.0), right(n, 0.0);  // of the eliminated rows
   for (std::size_t k = 1; k + 1 < n; ++k) {
     const double before = t[k] - t[k - 1], after = t[k + 1] - t[k];
