@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Sukegawa (2010), chapter 8: what `equidem reproduce sukegawa2010` stands on.
+/// Sukegawa (2010), chapter 8: what `equidem-papers sukegawa2010` stands on.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

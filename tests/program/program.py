@@ -39,7 +39,7 @@ class ProgramTest(unittest.TestCase):
         """One sentence on stderr, nothing on stdout."""
         self.assertEqual(done.returncode, exit_code, done.stderr)
         self.assertEqual(done.stdout, "")
-        self.assertTrue(done.stderr.startswith("equidem: "), done.stderr)
+        self.assertTrue(done.stderr.startswith(pathlib.Path(PROGRAM).name + ": "), done.stderr)
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
         for word in words:
             self.assertIn(word, done.stderr)

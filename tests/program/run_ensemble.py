@@ -122,28 +122,5 @@ class Ensemble(ProgramTest):
         self.assertEqual(result["unknowns"], [60, 180])
 
 
-class RandomStudy(ProgramTest):
-    def test_quick_study_answers_in_sentences_tables_and_plots(self):
-        out = self.folder / "out"
-        report = self.check_done(equidem("reproduce", "abe1996_random", "--quick", "--out", out)).stdout
-        for words in ("By how much the mean field errs", "The correction (11)", "Best for nu"):
-            self.assertIn(words, report)
-        points = parse_json((out / "result.json").read_text())["points"]
-        self.assertEqual(len(points), len(rows(out / "mean_field.csv")))
-        for point in points:
-            if point["points"] == "perturbed_hexagonal" and point["disorder"] == 0:
-                self.assertAlmostEqual(point["poisson_ratio_error"]["mean"], 0, places=12)
-                self.assertAlmostEqual(point["shear_modulus_error"]["mean"], 0, places=12)
-            if point["weighting"] == "voronoi":
-                self.assertAlmostEqual(point["bulk_modulus_error"]["mean"], 0, places=12)
-        for name in ("poisson_ratio_uniform", "error_poisson_ratio_voronoi", "error_shear_modulus_contact_density"):
-            self.assertTrue((out / (name + ".png")).exists(), name)
-
-    def test_options_of_the_other_study_are_refused(self):
-        self.check_error(equidem("reproduce", "abe1996", "--quick"), 2, "--quick", "abe1996")
-        self.check_error(equidem("reproduce", "abe1996_random", "--rows", "9"), 2, "--rows", "abe1996_random")
-        self.check_error(equidem("reproduce", "abe1997"), 2, "abe1997", "abe1996_random")
-
-
 if __name__ == "__main__":
     unittest.main()

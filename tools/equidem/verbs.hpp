@@ -4,16 +4,10 @@
 #pragma once
 
 #include <array>
-#include <functional>
 
-namespace CLI {
-class App;
-}
+#include "program.hpp"
 
 namespace equidem {
-
-/// Carries out a verb once the command line is read; returns the exit code.
-using Run = std::function<int()>;
 
 Run declare_solve(CLI::App& command);
 Run declare_homogenize(CLI::App& command);
@@ -23,13 +17,6 @@ Run declare_pack(CLI::App& command);
 Run declare_run(CLI::App& command);
 Run declare_sweep(CLI::App& command);
 Run declare_study(CLI::App& command);
-Run declare_reproduce(CLI::App& command);
-
-struct Verb {
-  const char* name;
-  const char* summary;                ///< one line of the help
-  Run (*declare)(CLI::App& command);  ///< adds its options to the command line
-};
 
 inline constexpr std::array verbs{
     Verb{"solve", "equilibrium under supports and loads, or Abe's tension test", declare_solve},
@@ -40,8 +27,6 @@ inline constexpr std::array verbs{
     Verb{"run", "dynamics: bonded discs stepped in time or relaxed to rest, or bodies that collide", declare_run},
     Verb{"sweep", "solve over a range of one key: the curves", declare_sweep},
     Verb{"study", "error against time: the order of a method, the cheapest setting for an accuracy", declare_study},
-    Verb{"reproduce", "a paper's tables and figures beside ours: abe1996, abe1996_random, fujioka2005",
-         declare_reproduce},
 };
 
 }  // namespace equidem

@@ -17,8 +17,6 @@
 #include "equidem/output/files/json.hpp"
 #include "equidem/output/plots/plot.hpp"
 
-#include "command.hpp"
-
 namespace equidem::mean_field {
 
 /// Random assemblies of one kind: periodic Delaunay cells of equal discs.
@@ -104,8 +102,5 @@ Table table(const Result& result);
 void add_result(JsonObject& object, const Result& result);
 /// Names and plots, of each weighting: nu against kT/kN, errors of nu and G against the scatter of branch lengths.
 std::vector<std::pair<std::string, Plot>> plots(const Result& result);
-
-/// equidem reproduce abe1996_random.
-int reproduce(const CommonOptions& options, bool quick);
 
 }  // namespace equidem::mean_field

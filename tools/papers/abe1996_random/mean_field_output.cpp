@@ -2,13 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "equidem/core/file.hpp"
-#include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/core/threads.hpp"
 #include "equidem/material/spring_relations.hpp"
 
 #include "abe1996_random/mean_field.hpp"
+#include "papers.hpp"
 
 namespace equidem::mean_field {
 namespace {
@@ -103,15 +101,6 @@ JsonObject moduli_json(const Moduli& m) {
   return object;
 }
 
-void check_outputs(const CommonOptions& options) {
-  const OutputPlan plan(options);
-  plan.expect_json();
-  for (std::size_t w = 0; w < weightings.size(); ++w)
-    for (const char* what : {poisson_name, poisson_error_name, shear_error_name})
-      for (const char* end : {".csv", ".gp", ".svg", ".png"}) plan.expect(plot_name(what, w) + end);
-  for (const char* name : {"mean_field.csv", "report.txt", "result.json"}) plan.expect(name);
-}
-
 }  // namespace
 
 std::vector<std::pair<std::string, Plot>> plots(const Result& result) {
@@ -167,7 +156,7 @@ Table table(const Result& result) {
 }
 
 void add_result(JsonObject& object, const Result& result) {
-  object.set("paper", "abe1996_random").set("discs", result.plan.discs).set("samples", result.plan.samples);
+  object.set("discs", result.plan.discs).set("samples", result.plan.samples);
   object.set("refusals", result.refusals);
   std::vector<JsonObject> points;
   for (const Point& p : result.points) {
@@ -187,27 +176,26 @@ void add_result(JsonObject& object, const Result& result) {
   object.set("points", points);
 }
 
-int reproduce(const CommonOptions& options, bool quick) {
-  if (options.threads > 0) set_thread_count(options.threads);
-  set_progress_shown(!options.quiet);
-  check_outputs(options);
-  Result result = compute(quick ? quick_plan() : full_plan());
-  std::string text = report(result);
-  if (options.out) {
-    Stopwatch watch;
-    write_file(*options.out / "report.txt", text, options.overwrite);
-    write_csv(*options.out / "mean_field.csv", table(result), options.overwrite);
-    text += "\n";
-    for (const auto& [name, plot] : plots(result))
-      text += write_plot(*options.out, name, plot, options.overwrite).message + "\n";
-    result.times.add("files", watch.lap());
-  }
-  JsonObject object;
-  add_common(object, "done", text, result.times, derive_effects(ContactSprings({1, 1}), Rotation::free));
-  add_result(object, result);
-  deliver(options, text, object);
-  if (options.out) say(options, fmt::format("written to {}", options.out->string()));
-  return 0;
+Run declare(CLI::App& command) {
+  return declare_with_quick(command,
+                            "What the paper leaves open: the mean field (21), (22) and the correction (11) beside the "
+                            "exact moduli\nof random assemblies, over disorder, kT/kN and weightings.",
+                            [](const CommonOptions& options, bool quick) {
+                              std::vector<std::string> names;
+                              for (std::size_t w = 0; w < weightings.size(); ++w)
+                                for (const char* what : {poisson_name, poisson_error_name, shear_error_name})
+                                  names.push_back(plot_name(what, w));
+                              start_paper(options, names, {"mean_field.csv"});
+                              const Result result = compute(quick ? quick_plan() : full_plan());
+                              return finish_paper(
+                                  options, {.paper = "abe1996_random",
+                                            .report = report(result),
+                                            .times = result.times,
+                                            .effects = derive_effects(ContactSprings({1, 1}), Rotation::free),
+                                            .add_numbers = [&](JsonObject& object) { add_result(object, result); },
+                                            .tables = {{"mean_field", table(result)}},
+                                            .plots = plots(result)});
+                            });
 }
 
 }  // namespace equidem::mean_field

@@ -1,24 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fujioka2005/fujioka2005.hpp"
 
-#include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/csv.hpp"
+
+#include "papers.hpp"
 
 namespace equidem::fujioka2005 {
 namespace {
 
 constexpr std::array plot_names{"figure4",      "figure5",   "figure6", "figure7", "figure10", "figure11",
                                 "stacked_cost", "ball_cost", "rest",    "column",  "lossless"};
-
-void check_outputs(const CommonOptions& options) {
-  const OutputPlan plan(options);
-  plan.expect_json();
-  for (const char* name : plot_names) {
-    for (const char* end : {".csv", ".gp", ".svg", ".png"}) plan.expect(std::string(name) + end);
-  }
-  for (const char* name : {"table1.csv", "table2.csv", "report.txt", "result.json"}) plan.expect(name);
-}
 
 Reproduction compute(bool quick) {
   Reproduction result;
@@ -115,11 +106,8 @@ JsonObject curve_of(const typename Laws::value_type& law, std::initializer_list<
   return object;
 }
 
-JsonObject as_json(const Reproduction& result, const std::string& text) {
-  JsonObject object;
-  const Variant first = variants(1).front();
-  add_common(object, "done", text, result.times, start(stacked(first), first, 1e-3).effects());
-  object.set("paper", "fujioka2005").set("quick", result.quick);
+void add_numbers(JsonObject& object, const Reproduction& result) {
+  object.set("quick", result.quick);
   std::vector<JsonObject> table1, table2, stacked_laws, ball;
   for (const Table1Row& row : result.table1.rows) {
     table1.push_back(json_of(row.variant));
@@ -156,29 +144,27 @@ JsonObject as_json(const Reproduction& result, const std::string& text) {
     lossless.back().set("energy_change", law.energies.back() / law.energies.front() - 1);
   }
   object.set("lossless", lossless);
-  return object;
 }
 
 }  // namespace
 
-int reproduce(const CommonOptions& options, bool quick) {
-  set_progress_shown(!options.quiet);
-  check_outputs(options);
-  const Reproduction result = compute(quick);
-  std::string text = report(result);
-  if (options.out) {
-    const auto& folder = *options.out;
-    write_file(folder / "report.txt", text, options.overwrite);
-    write_csv(folder / "table1.csv", csv_of(result.table1), options.overwrite);
-    write_csv(folder / "table2.csv", csv_of(result.table2), options.overwrite);
-    text += "\n";
-    for (const auto& [name, plot] : plots(result)) {
-      text += write_plot(folder, name, plot, options.overwrite).message + "\n";
-    }
-  }
-  deliver(options, text, as_json(result, text));
-  if (options.out) say(options, fmt::format("written to {}", options.out->string()));
-  return 0;
+Run declare(CLI::App& command) {
+  return declare_with_quick(
+      command,
+      "Tables 1, 2 and Figs. 4 to 7, 10, 11 of normal contact in collisions, the law exact_flow beside the paper's;\n"
+      "and what the paper does not try: coming to rest, time of computing for an accuracy.",
+      [](const CommonOptions& options, bool quick) {
+        start_paper(options, {plot_names.begin(), plot_names.end()}, {"table1.csv", "table2.csv"});
+        const Reproduction result = compute(quick);
+        const Variant first = variants(1).front();
+        return finish_paper(options, {.paper = "fujioka2005",
+                                      .report = report(result),
+                                      .times = result.times,
+                                      .effects = start(stacked(first), first, 1e-3).effects(),
+                                      .add_numbers = [&](JsonObject& object) { add_numbers(object, result); },
+                                      .tables = {{"table1", csv_of(result.table1)}, {"table2", csv_of(result.table2)}},
+                                      .plots = plots(result)});
+      });
 }
 
 }  // namespace equidem::fujioka2005

@@ -16,8 +16,6 @@
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/output/plots/plot.hpp"
 
-#include "command.hpp"
-
 namespace equidem::fujioka2005 {
 
 // Section 5.1.
@@ -148,7 +146,5 @@ std::vector<Rest> come_to_rest(int balls, double duration, double e = restitutio
 
 std::string report(const Reproduction& result);
 std::vector<std::pair<std::string, Plot>> plots(const Reproduction& result);
-/// Compute everything, write it.
-int reproduce(const CommonOptions& options, bool quick);
 
 }  // namespace equidem::fujioka2005

@@ -2,10 +2,9 @@
 #include "sukegawa2010/sukegawa2010.hpp"
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/file.hpp"
-#include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/core/threads.hpp"
+
+#include "papers.hpp"
 
 namespace equidem::sukegawa2010 {
 namespace {
@@ -22,26 +21,10 @@ JsonObject json_of(const Done& done) {
   return object;
 }
 
-JsonObject as_json(const Reproduction& result, const std::string& text) {
-  JsonObject object;
-  const Fill fill = result.runs.empty() ? plan(result.quick).front().fill : result.runs.front().run.fill;
-  const GrainScene scene = start_of(fill);
-  add_common(object, result.complete() ? "done" : "incomplete", text, result.times,
-             GrainSimulation(scene, options_of(scene, fill)).effects());
-  object.set("paper", "sukegawa2010").set("quick", result.quick);
-  object.set("planned", static_cast<std::int64_t>(result.planned));
-  std::vector<JsonObject> runs;
-  for (const Done& done : result.runs) runs.push_back(json_of(done));
-  object.set("runs", runs);
-  return object;
-}
-
-}  // namespace
-
 int reproduce(const CommonOptions& options, bool quick) {
-  if (options.threads > 0) set_thread_count(options.threads);
-  set_progress_shown(!options.quiet);
-  OutputPlan(options).expect_json();
+  CommonOptions without_folder = options;
+  without_folder.out.reset();  // its files may be there: compute() checks that they belong to the same runs
+  start_paper(without_folder, {}, {});
   Reproduction result;
   result.quick = quick;
   Stopwatch watch;
@@ -53,33 +36,43 @@ int reproduce(const CommonOptions& options, bool quick) {
     stopped = error;
   }
   result.times.add("runs", watch.lap());
-  // What is there is of the same settings (compute checks it), or to be replaced.
-  CommonOptions common = options;
-  common.overwrite = true;
-  std::string text = report(result);
-  if (options.out && !result.runs.empty()) {
-    for (const auto& [name, table] : tables(result)) write_csv(*options.out / (name + ".csv"), table, true);
-    std::string drawn;
-    std::size_t number = 0;
-    for (const auto& [name, plot] : plots(result, options.out)) {
-      const PlotResult written = write_plot(*options.out, name, plot, true);
-      ++number;
-      if (!written.drawn) drawn = written.message + "\n";
-    }
-    if (drawn.empty())
-      drawn = fmt::format("{} are in '{}'\n", counted(static_cast<long long>(number), "plot"), options.out->string());
-    write_file(*options.out / "report.txt", text, true);
-    if (!stopped) text += "\n" + drawn;
+  if (!stopped || options.out) {
+    CommonOptions common = options;
+    common.overwrite = true;
+    const Fill fill = result.runs.empty() ? plan(quick).front().fill : result.runs.front().run.fill;
+    const GrainScene scene = start_of(fill);
+    const bool any = !result.runs.empty();
+    finish_paper(common, {.paper = "sukegawa2010",
+                          .report = report(result),
+                          .times = result.times,
+                          .effects = GrainSimulation(scene, options_of(scene, fill)).effects(),
+                          .add_numbers =
+                              [&](JsonObject& object) {
+                                object.set("quick", quick).set("planned", static_cast<std::int64_t>(result.planned));
+                                std::vector<JsonObject> runs;
+                                for (const Done& done : result.runs) runs.push_back(json_of(done));
+                                object.set("runs", runs);
+                              },
+                          .tables = any ? tables(result) : Named<Table>{},
+                          .plots = any ? plots(result, options.out) : Named<Plot>{},
+                          .status = result.complete() ? "done" : "incomplete"});
   }
-  if (!stopped || options.out) deliver(common, text, as_json(result, text));
-  if (options.out) say(options, fmt::format("written to {}", options.out->string()));
-  if (stopped) {
-    throw Error(
-        ErrorKind::interrupted, "stopped as asked",
-        fmt::format("{} of {} runs are done", result.runs.size(), result.planned),
-        options.out ? "Give the same command again to do the rest" : "With --out DIR the runs done would be kept");
-  }
-  return 0;
+  if (!stopped) return 0;
+  throw Error(
+      ErrorKind::interrupted, "stopped as asked",
+      fmt::format("{} of {} runs are done", result.runs.size(), result.planned),
+      options.out ? "Give the same command again to do the rest" : "With --out DIR the runs done would be kept");
+}
+
+}  // namespace
+
+equidem::Run declare(CLI::App& command) {
+  return declare_with_quick(
+      command,
+      "Chapter 8: a box of 3000 discs, ellipses or bonded pairs filled and shaken; void ratios over seeds beside the\n"
+      "printed ones, surface, grains thrown, pictures, an animation; which shaking compacts best, and whether the box\n"
+      "resonates. Stopped, it goes on where it was when the same command is given again.",
+      reproduce);
 }
 
 }  // namespace equidem::sukegawa2010

@@ -207,7 +207,4 @@ std::vector<std::pair<std::string, Table>> tables(const Reproduction& result);
 std::vector<std::pair<std::string, Plot>> plots(const Reproduction& result,
                                                 const std::optional<std::filesystem::path>& folder);
 
-/// Deliver all.
-int reproduce(const CommonOptions& options, bool quick);
-
 }  // namespace equidem::sukegawa2010

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""equidem reproduce sukegawa2010, as a user does: run_reproduce_sukegawa.py PROGRAM SOURCE_FOLDER [unittest options]."""
+"""equidem-papers sukegawa2010, as a user does: run_papers_sukegawa2010.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import csv
 import json
 import unittest
@@ -18,7 +18,7 @@ def numbers(result):
 class Sukegawa2010(ProgramTest):
     def test_tables_pictures_and_going_on(self):
         out = self.folder / "out"
-        command = ("reproduce", "sukegawa2010", "--quick", "--out", out, "--json", "-")
+        command = ("sukegawa2010", "--quick", "--out", out, "--json", "-")
         result = parse_json(self.check_done(equidem(*command)).stdout)
         self.assertEqual(result["status"], "done")
         self.assertEqual(len(result["runs"]), result["planned"])
@@ -63,11 +63,11 @@ class Sukegawa2010(ProgramTest):
         self.check_error(equidem(*command), 2, "other settings", "discs_3_400gal_10Hz.json", "--out")
 
     def test_options_of_other_papers_are_refused(self):
-        self.check_error(equidem("reproduce", "sukegawa2010", "--rows", "5"), 2, "--rows", "sukegawa2010")
+        self.check_error(equidem("sukegawa2010", "--rows", "5"), 2, "--rows", "sukegawa2010")
 
     def test_interrupted_it_stops_soon_and_can_go_on(self):
         out = self.folder / "out"
-        stdout, stderr = self.interrupt("reproduce", "sukegawa2010", "--out", out, "--quiet", when=lambda seconds: seconds > 2)
+        stdout, stderr = self.interrupt("sukegawa2010", "--out", out, "--quiet", when=lambda seconds: seconds > 2)
         self.assertEqual(stdout, "")
         self.assertIn("same command again", stderr)
 

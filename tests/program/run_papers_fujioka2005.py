@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""equidem reproduce fujioka2005, as a user does: run_fujioka.py PROGRAM SOURCE_FOLDER [unittest options]."""
+"""equidem-papers fujioka2005, as a user does: run_papers_fujioka2005.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import csv
 import unittest
 
@@ -14,7 +14,7 @@ class Fujioka2005(ProgramTest):
     def test_tables_and_figures(self):
         out = self.folder / "out"
         result = parse_json(self.check_done(
-            equidem("reproduce", "fujioka2005", "--quick", "--out", out, "--json", "-")).stdout)
+            equidem("fujioka2005", "--quick", "--out", out, "--json", "-")).stdout)
         self.assertEqual(result["status"], "done")
 
         of_paper = {row["letter"]: row for row in reversed(result["table2"])}
@@ -62,11 +62,11 @@ class Fujioka2005(ProgramTest):
         self.assertEqual((out / "report.txt").read_text(encoding="utf-8")[:8], "Fujioka ")
 
     def test_options_of_other_papers_are_refused(self):
-        self.check_error(equidem("reproduce", "fujioka2005", "--rows", "5"), 2, "--rows", "fujioka2005")
-        self.check_error(equidem("reproduce", "fujioka2006"), 2, "fujioka2005")
+        self.check_error(equidem("fujioka2005", "--rows", "5"), 2, "--rows", "fujioka2005")
+        self.check_error(equidem("fujioka2006"), 2, "fujioka2005")
 
     def test_interrupted_it_stops_soon(self):
-        stdout, _ = self.interrupt("reproduce", "fujioka2005", when=lambda seconds: seconds > 1)
+        stdout, _ = self.interrupt("fujioka2005", when=lambda seconds: seconds > 1)
         self.assertEqual(stdout, "")
 
 

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <memory>
+#include <new>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <unistd.h>
+
+#include "equidem/casefile/toml.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/nearest.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/output/files/json.hpp"
+
+namespace equidem {
+namespace {
+
+/// Usage: PROGRAM VERB OPERANDS [OPTIONS].
+class HelpText : public CLI::Formatter {
+ public:
+  explicit HelpText(const Program& program) : program_(program) {}
+  std::string make_usage(const CLI::App* command, std::string) const override {
+    if (command->get_parent() == nullptr) return fmt::format("Usage: {} {}\n", program_.name, program_.usage);
+    std::string usage = fmt::format("Usage: {} {}", program_.name, command->get_name());
+    for (const CLI::Option* option : command->get_options())
+      if (option->get_positional()) usage += " " + option->get_name();
+    return usage + " [OPTIONS]\n";
+  }
+
+ private:
+  const Program& program_;
+};
+
+std::string version_text() {
+#ifdef NDEBUG
+  const char* assertions = "assertions off";
+#else
+  const char* assertions = "assertions on";
+#endif
+#ifdef __OPTIMIZE__
+  const char* optimized = "optimized";
+#else
+  const char* optimized = "not optimized";
+#endif
+  return fmt::format("equidem {}\n{}, {}, compiler {}\nCLI11 {}, fmt {}.{}.{}, {}\n", library_version(), optimized,
+                     assertions, __VERSION__, CLI11_VERSION, FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
+                     FMT_VERSION % 100, toml_parser());
+}
+
+/// \param last a word beside the names of the commands
+std::vector<std::string> names_of(const Program& program, const char* last) {
+  std::vector<std::string> names;
+  for (const Verb& verb : program.verbs) names.emplace_back(verb.name);
+  names.emplace_back(last);
+  return names;
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+/// Without line breaks and control characters: words of a file may hold any bytes.
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  const auto is_control = [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; };
+  std::replace_if(text.begin(), text.end(), is_control, '?');
+  return text;
+}
+
+[[noreturn]] void usage_error(const std::string& problem, const std::string& why, const std::string& remedy) {
+  throw Error(ErrorKind::bad_input, problem, why, remedy);
+}
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& names, const std::string& otherwise) {
+  const auto meant = nearest(word, names);
+  return meant ? fmt::format("Did you mean '{}'?", *meant) : otherwise;
+}
+
+void check_refusals(const Program& program, const std::string& word) {
+  for (const Refusal& refusal : program.refusals)
+    if (word == refusal.word) usage_error(refusal.problem, refusal.why, refusal.remedy);
+}
+
+/// Report an error of CLI11 as one of the program.
+[[noreturn]] void parse_failure(const Program& program, const CLI::App& verb, const CLI::ParseError& error) {
+  const std::string help = fmt::format("'{} {} --help' lists its options", program.name, verb.get_name());
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    std::vector<std::string> options;
+    for (const CLI::Option* option : verb.get_options()) options.push_back(option->get_name());
+    for (const std::string& extra : verb.remaining()) {
+      check_refusals(program, extra.substr(0, extra.find('=')));
+      if (extra.starts_with("-"))
+        usage_error(fmt::format("unknown option '{}'", extra), "", did_you_mean(extra, options, help));
+      usage_error(fmt::format("'{}' is one argument too many", extra), "", help);
+    }
+  }
+  std::string problem = one_line(error.what());
+  if (problem.starts_with("CASE ")) problem = "the case file is missing";
+  while (!problem.empty() && problem.back() == '.') problem.pop_back();
+  usage_error(problem, "", help);
+}
+
+void show_help(const Program& program, const CLI::App& app, const std::vector<std::string>& arguments) {
+  if (arguments.size() < 2) {
+    std::fputs(app.help().c_str(), stdout);
+    return;
+  }
+  std::vector<std::string> topics;
+  for (const HelpTopic& topic : program.topics) {
+    if (arguments[1] == topic.name) {
+      std::fputs(topic.text().c_str(), stdout);
+      return;
+    }
+    topics.emplace_back(topic.name);
+  }
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (arguments[1] == command->get_name()) {
+      std::fputs(command->help(program.name).c_str(), stdout);
+      return;
+    }
+    topics.push_back(command->get_name());
+  }
+  usage_error(fmt::format("there is no help on '{}'", arguments[1]), "",
+              did_you_mean(arguments[1], topics, fmt::format("There is help on {}", listed(topics))));
+}
+
+int run(const Program& program, const std::vector<std::string>& arguments) {
+  CLI::App app(program.description, program.name);
+  app.formatter(std::make_shared<HelpText>(program));
+  app.footer(program.footer);
+  app.set_version_flag("--version", version_text());
+  app.require_subcommand(1);
+  std::vector<Run> runs;
+  std::vector<CLI::App*> commands;
+  std::string group = fmt::format("{}s", program.noun);
+  group[0] = static_cast<char>(group[0] - 'a' + 'A');
+  for (const Verb& verb : program.verbs) {
+    commands.push_back(app.add_subcommand(verb.name, verb.summary));
+    commands.back()->group(group);
+    runs.push_back(verb.declare(*commands.back()));
+  }
+  const std::vector<std::string> names = names_of(program, "help");
+  const std::string examples = fmt::format("'{} --help' shows examples", program.name);
+  if (!arguments.empty() && arguments[0] == "help") {
+    show_help(program, app, arguments);
+    return 0;
+  }
+  const std::string known = fmt::format("the {}s are {}", program.noun, listed(names));
+  if (arguments.empty()) usage_error(fmt::format("a {} is missing", program.noun), known, examples);
+  const auto verb = std::find_if(commands.begin(), commands.end(),
+                                 [&](auto* command) { return arguments[0] == command->get_name(); });
+  if (!arguments[0].starts_with("-") && verb == commands.end()) {
+    check_refusals(program, arguments[0]);
+    usage_error(fmt::format("unknown {} '{}'", program.noun, arguments[0]), known,
+                did_you_mean(arguments[0], names, examples));
+  }
+
+  try {
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::CallForHelp&) {
+    const bool of_verb = verb != commands.end() && (*verb)->parsed();
+    std::fputs((of_verb ? (*verb)->help(program.name) : app.help()).c_str(), stdout);
+    return 0;
+  } catch (const CLI::CallForVersion&) {
+    std::fputs(version_text().c_str(), stdout);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    if (verb != commands.end()) parse_failure(program, **verb, error);
+    usage_error(fmt::format("unknown option '{}'", arguments[0]), "", examples);
+  }
+  return verb == commands.end() ? 2 : runs[static_cast<std::size_t>(verb - commands.begin())]();
+}
+
+/// OpenBLAS starts threads when it is loaded, before main, and they spin beside ours, although every call here runs on
+/// one thread. Only its environment can prevent that: where the user leaves it unset, set it and start again.
+void start_without_blas_threads(char** argv) {
+  constexpr const char* variable = "OPENBLAS_NUM_THREADS";
+  if (std::getenv(variable) != nullptr || setenv(variable, "1", 0) != 0) return;
+  execv("/proc/self/exe", argv);  // returns only where that is not possible: then the program is merely slower
+}
+
+}  // namespace
+
+int run_program(const Program& program, int argc, char** argv) {
+  const auto fail = [&](const std::string& sentence, int exit_code) {
+    std::fprintf(stderr, "%s: %s\n", program.name, one_line(sentence).c_str());
+    return exit_code;
+  };
+  start_without_blas_threads(argv);
+  catch_interrupts();
+  try {
+    const int code = run(program, std::vector<std::string>(argv + 1, argv + argc));
+    if (std::fflush(stdout) != 0) return fail("cannot write to stdout.", 2);
+    return code;
+  } catch (const Error& error) {
+    std::fflush(stdout);
+    return fail(error.what(), error.exit_code());
+  } catch (const std::bad_alloc&) {
+    return fail("there is too little memory. Make the assembly smaller; --dry-run says what it needs.", 1);
+  } catch (const std::exception& error) {
+    return fail(fmt::format("this is a defect of equidem: {}. Please report it with the case file.", error.what()), 1);
+  }
+}
+
+}  // namespace equidem

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The main function of a program that is a list of commands: command line, help, exit codes.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace equidem {
+
+/// Carries out a command once its options are read; returns the exit code.
+using Run = std::function<int()>;
+
+/// A command is one file with one declare function, and one line in the list of its program.
+struct Verb {
+  const char* name;
+  const char* summary;                ///< one line of the help
+  Run (*declare)(CLI::App& command);  ///< adds its options to the command line
+};
+
+/// An option or command that is not accepted, with the message for it.
+struct Refusal {
+  const char* word;
+  const char* problem;
+  const char* why;
+  const char* remedy;
+};
+
+/// A page of help beside those of the commands.
+struct HelpTopic {
+  const char* name;
+  std::string (*text)();
+};
+
+struct Program {
+  const char* name;
+  const char* description;  ///< one line of the help
+  const char* noun;         ///< of a command: "verb"
+  const char* usage;        ///< what follows the name of the program
+  const char* footer;       ///< examples and exit codes
+  std::span<const Verb> verbs;
+  std::vector<HelpTopic> topics = {};
+  std::vector<Refusal> refusals = {};  ///< in place of "unknown verb" and "unknown option"
+};
+
+/// Read the command line, carry out its command, report an error as one line on stderr.
+/// \return the exit code: 0 done; 1 the computation failed; 2 bad input or usage; 130 interrupted
+int run_program(const Program& program, int argc, char** argv);
+
+}  // namespace equidem

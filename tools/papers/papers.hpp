@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The papers of the program equidem-papers, and the steps that all of them share. A paper is one folder with one
+/// declare function, and one line in the list of main.cpp.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "equidem/core/stopwatch.hpp"
+#include "equidem/output/files/csv.hpp"
+#include "equidem/output/files/json.hpp"
+#include "equidem/output/plots/plot.hpp"
+
+#include "command.hpp"
+#include "program.hpp"
+
+namespace equidem {
+
+template <class Item>
+using Named = std::vector<std::pair<std::string, Item>>;
+
+namespace abe1996 {
+equidem::Run declare(CLI::App& command);
+}
+namespace mean_field {
+equidem::Run declare(CLI::App& command);
+}
+namespace fujioka2005 {
+equidem::Run declare(CLI::App& command);
+}
+namespace sukegawa2010 {
+equidem::Run declare(CLI::App& command);
+}
+
+/// Options of a paper with a full and a quick computation: those of results, and --quick.
+Run declare_with_quick(CLI::App& command, const std::string& footer,
+                       int (*reproduce)(const CommonOptions& options, bool quick));
+
+/// Apply threads and quiet, and check before the computation that every file of it can be written.
+/// \param files beside report.txt and result.json
+/// \throws Error (bad_input) where a file cannot be written
+void start_paper(const CommonOptions& options, const std::vector<std::string>& plots,
+                 const std::vector<std::string>& files);
+
+/// What the computation of a paper gave.
+struct PaperResult {
+  std::string paper;
+  std::string report;
+  StageTimes times;
+  Effects effects;
+  std::function<void(JsonObject&)> add_numbers;  ///< keys of this paper alone
+  Named<Table> tables = {};                      ///< NAME.csv in --out
+  Named<Plot> plots = {};                        ///< files of write_plot in --out
+  std::string status = "done";
+};
+
+/// Write tables, plots and report.txt into --out, and deliver report and JSON.
+/// \return exit code 0
+/// \throws Error (bad_input) where a file cannot be written
+int finish_paper(const CommonOptions& options, const PaperResult& result);
+
+}  // namespace equidem
