@@ -152,10 +152,10 @@ TEST_CASE("options_out_of_range_are_refused") {
   CHECK_THROWS_WITH(delaunay_assembly({.radii = {.smallest = 1, .largest = 0.5}}),
                     Catch::Matchers::StartsWith("the largest radius is 0.5 m"));
   CHECK_THROWS_WITH(delaunay_assembly({.aspect = -1}), Catch::Matchers::StartsWith("aspect = -1 ("));
-  CHECK_THROWS_WITH(point_process_from("sobol"),
-                    "there are no points of the kind 'sobol' (the kinds are poisson_disc, perturbed_hexagonal and "
-                    "random). Choose one of them.");
+  CHECK_THROWS_WITH(enum_from<PointProcess>("sobol"),
+                    "unknown kind of points 'sobol' (it must be \"poisson_disc\", \"perturbed_hexagonal\" or "
+                    "\"random\"). Choose one of them.");
   for (const char* name : {"poisson_disc", "perturbed_hexagonal", "random"}) {
-    CHECK(to_string(point_process_from(name)) == name);
+    CHECK(to_string(enum_from<PointProcess>(name)) == name);
   }
 }

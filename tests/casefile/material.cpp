@@ -38,7 +38,7 @@ TEST_CASE("the_four_ways_to_give_a_material_mean_the_same") {
   const std::string plane = GENERATE(as<std::string>{}, "strain", "stress");
   const double nu = GENERATE(-0.3, 0.0, 0.2);
   const double density = 1800;
-  const ElasticModuli m{.shear_modulus = 1.3e9, .poisson_ratio = nu, .plane = plane_from(plane)};
+  const ElasticModuli m{.shear_modulus = 1.3e9, .poisson_ratio = nu, .plane = enum_from<Plane>(plane)};
   CAPTURE(plane, nu);
   const double K = m.bulk_modulus_2d(), G = m.shear_modulus;
   const std::vector<std::string> ways = {

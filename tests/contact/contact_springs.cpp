@@ -227,7 +227,7 @@ TEST_CASE("bad_springs_are_refused_with_the_contact_and_the_value") {
 
 TEST_CASE("weightings_have_the_names_of_the_case_file") {
   for (const std::string name : {"uniform", "contact_density", "voronoi"}) {
-    CHECK(to_string(spring_weighting_from(name)) == name);
+    CHECK(to_string(enum_from<SpringWeighting>(name)) == name);
   }
-  CHECK_THROWS_WITH(spring_weighting_from("Voronoi"), Catch::Contains("\"contact_density\" or \"voronoi\""));
+  CHECK_THROWS_WITH(enum_from<SpringWeighting>("Voronoi"), Catch::Contains("\"contact_density\" or \"voronoi\""));
 }

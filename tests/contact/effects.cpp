@@ -46,8 +46,8 @@ TEST_CASE("every_inactive_effect_says_why") {
 }
 
 TEST_CASE("rotation_has_the_names_of_the_case_file") {
-  CHECK(rotation_from("from_scene") == Rotation::from_scene);
-  CHECK(rotation_from("free") == Rotation::free);
-  CHECK(rotation_from("restrained") == Rotation::restrained);
-  CHECK_THROWS_WITH(rotation_from("fixed"), Catch::Contains("'fixed'") && Catch::Contains("\"restrained\""));
+  CHECK(enum_from<Rotation>("from_scene") == Rotation::from_scene);
+  CHECK(enum_from<Rotation>("free") == Rotation::free);
+  CHECK(enum_from<Rotation>("restrained") == Rotation::restrained);
+  CHECK_THROWS_WITH(enum_from<Rotation>("fixed"), Catch::Contains("'fixed'") && Catch::Contains("\"restrained\""));
 }

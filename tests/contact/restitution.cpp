@@ -108,7 +108,7 @@ TEST_CASE("a_restitution_that_no_dashpot_gives_is_refused") {
 
 TEST_CASE("ends_of_contact_have_names") {
   for (const ContactEnd end : {ContactEnd::at_zero_overlap, ContactEnd::at_zero_force}) {
-    CHECK(contact_end_from(to_string(end)) == end);
+    CHECK(enum_from<ContactEnd>(to_string(end)) == end);
   }
-  CHECK_THROWS_WITH(contact_end_from("never"), Catch::Contains("zero_overlap or zero_force"));
+  CHECK_THROWS_WITH(enum_from<ContactEnd>("never"), Catch::Contains("\"zero_overlap\" or \"zero_force\""));
 }

@@ -147,7 +147,7 @@ TEST_CASE("steps_that_cannot_work_are_refused_with_the_limit") {
   CHECK(refused({.fraction = 0}).says("(0, 1]"));
   CHECK(refused({.step = -1.0}).says("-1"));
   CHECK(refused({}, {.integrator = Integrator::thesis}).says("no time step is stable"));
-  CHECK(refusal_of([] { (void)time_step_rule_from("guess"); }).says("lanczos, bound, thesis"));
+  CHECK(refusal_of([] { (void)enum_from<TimeStepRule>("guess"); }).says("\"lanczos\", \"bound\" or \"thesis\""));
   const Scene growing{.assembly = assembly, .springs = pushing, .inertia = scene.inertia};
   CHECK(refusal_of([&] { (void)choose_time_step(growing, {}); }).says("whatever the step"));
   const TimeStep allowed = choose_time_step(growing, {}, {.allow_unstable = true});

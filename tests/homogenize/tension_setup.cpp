@@ -222,6 +222,6 @@ TEST_CASE("a_tension_test_that_cannot_be_made_is_refused_with_its_reason") {
   CAPTURE(too_few);
   CHECK(contains(too_few, "4 mean spacings each way"));
 
-  CHECK_THROWS_AS(gauge_placement_from("center"), Error);
-  for (const GaugePlacement placement : placements) CHECK(gauge_placement_from(to_string(placement)) == placement);
+  CHECK_THROWS_AS(enum_from<GaugePlacement>("center"), Error);
+  for (const GaugePlacement placement : placements) CHECK(enum_from<GaugePlacement>(to_string(placement)) == placement);
 }

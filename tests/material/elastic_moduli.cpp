@@ -104,9 +104,10 @@ TEST_CASE("moduli_out_of_range_are_refused_with_value_and_bound") {
 }
 
 TEST_CASE("planes_have_the_names_of_the_case_file") {
-  CHECK(plane_from("strain") == Plane::strain);
-  CHECK(plane_from("stress") == Plane::stress);
+  CHECK(enum_from<Plane>("strain") == Plane::strain);
+  CHECK(enum_from<Plane>("stress") == Plane::stress);
   CHECK(to_string(Plane::strain) == "strain");
   CHECK(to_string(Plane::stress) == "stress");
-  CHECK_THROWS_WITH(plane_from("Strain"), Catch::Contains("'Strain' is no plane") && Catch::Contains("\"stress\""));
+  CHECK_THROWS_WITH(enum_from<Plane>("Strain"),
+                    Catch::Contains("unknown plane 'Strain'") && Catch::Contains("\"stress\""));
 }

@@ -119,7 +119,7 @@ TEST_CASE("a_picture_that_cannot_be_drawn_is_refused") {
   MadeUpState lost = stretched_block(3, 2);
   lost.motions[1].u.y = NAN;
   refused(lost.view(), {}, "disc 1");
-  CHECK_THROWS_WITH(disc_colour_from("pressure"), Catch::Contains("'pressure'") && Catch::Contains("mean_stress"));
-  CHECK(disc_colour_from("stress_xy") == DiscColour::stress_xy);
+  CHECK_THROWS_WITH(enum_from<DiscColour>("pressure"), Catch::Contains("'pressure'") && Catch::Contains("mean_stress"));
+  CHECK(enum_from<DiscColour>("stress_xy") == DiscColour::stress_xy);
   CHECK(folder.files() == 0);
 }

@@ -191,8 +191,8 @@ TEST_CASE("probes_that_cannot_measure_are_refused") {
   write_file(folder / "probes.csv", "mine", false);
   CHECK(start(probes).says("exists already"));
   CHECK(read_file(folder / "probes.csv") == "mine");
-  CHECK(refusal_of([] { probe_quantity_from("speed"); }).says("'speed' is nothing that a probe measures"));
-  CHECK(probe_quantity_from("spin") == ProbeQuantity::spin);
+  CHECK(refusal_of([] { enum_from<ProbeQuantity>("speed"); }).says("unknown quantity of a probe 'speed'"));
+  CHECK(enum_from<ProbeQuantity>("spin") == ProbeQuantity::spin);
 }
 
 TEST_CASE("a_full_disk_is_told") {

@@ -288,7 +288,7 @@ TEST_CASE("needles_and_single_bodies_are_packed_and_what_cannot_be_is_refused") 
   options = usual;
   options.shape.kind = Kind::rigid_pair;
   CHECK_THAT(problem(options), Catch::Contains("times the area"));
-  CHECK_THROWS_AS(packing_shape_from("elipse"), Error);
+  CHECK_THROWS_AS(enum_from<PackingShape::Kind>("elipse"), Error);
 }
 
 // Their images across the period are no partners: a body that reached its own would pass through it unseen.

@@ -50,27 +50,6 @@ std::int64_t nearest_multiple(double x, std::int64_t step, std::int64_t least) {
 
 }  // namespace
 
-PointProcess point_process_from(const std::string& name) {
-  for (const PointProcess process :
-       {PointProcess::poisson_disc, PointProcess::perturbed_hexagonal, PointProcess::uniform}) {
-    if (name == to_string(process)) return process;
-  }
-  bad_input(fmt::format("there are no points of the kind '{}'", name),
-            "the kinds are poisson_disc, perturbed_hexagonal and random", "Choose one of them");
-}
-
-std::string to_string(PointProcess process) {
-  switch (process) {
-    case PointProcess::poisson_disc:
-      return "poisson_disc";
-    case PointProcess::perturbed_hexagonal:
-      return "perturbed_hexagonal";
-    case PointProcess::uniform:
-      break;
-  }
-  return "random";
-}
-
 PointSet uniform_points(const PointOptions& options, Random& random) {
   PointSet set;
   set.extent = wanted_extent(options);

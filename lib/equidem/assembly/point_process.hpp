@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "equidem/core/names.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/vector.hpp"
 
@@ -20,10 +21,13 @@ enum class PointProcess {
   uniform,              ///< independent uniform points (Poisson process conditioned on its count)
 };
 
-/// "poisson_disc" | "perturbed_hexagonal" | "random".
-/// \throws Error (bad_input) naming the choices
-PointProcess point_process_from(const std::string& name);
-std::string to_string(PointProcess process);
+template <>
+struct EnumNames<PointProcess> {
+  static constexpr const char* what = "kind of points";
+  static constexpr NamedValue<PointProcess> list[] = {{PointProcess::poisson_disc, "poisson_disc"},
+                                                      {PointProcess::perturbed_hexagonal, "perturbed_hexagonal"},
+                                                      {PointProcess::uniform, "random"}};
+};
 
 struct PointOptions {
   std::int64_t count = 10000;  ///< wanted

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 AssemblyCase read_assembly_table(TomlValue& table, const fs::path& folder) {
   AssemblyCase result;
   if (const TomlValue* density = table.find("density")) result.density = density->real;
-  result.body = body_from(text(table, "body"));
+  result.body = enum_from<Body>(text(table, "body"));
   const std::string& kind = text(table, "kind");
   if (kind == "file") {
     result.kind = AssemblyKind::file;
@@ -39,7 +39,7 @@ AssemblyCase read_assembly_table(TomlValue& table, const fs::path& folder) {
   result.kind = AssemblyKind::delaunay;
   DelaunayOptions& options = result.delaunay;
   options.discs = table.find("discs")->integer;
-  options.points = point_process_from(text(table, "points"));
+  options.points = enum_from<PointProcess>(text(table, "points"));
   if (const TomlValue* disorder = table.find("disorder")) options.disorder = disorder->real;
   options.seed = static_cast<std::uint64_t>(table.find("seed")->integer);
   options.aspect = number(table, "aspect");
@@ -162,7 +162,7 @@ void resolve_springs_file(TomlValue& root, const fs::path& folder) {
 HomogenizeCase read_homogenize(const TomlValue& table) {
   HomogenizeCase result;
   if (const std::string& boundary = text(table, "boundary"); boundary != "auto")
-    result.boundary = boundary_from(boundary);
+    result.boundary = enum_from<Boundary>(boundary);
   const std::string& bounds = text(table, "bounds");
   if (bounds != "auto") result.bounds = bounds == "affine" ? BoundsWanted::affine : BoundsWanted::all;
   return result;
@@ -235,14 +235,16 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
   result.assembly = read_assembly_table(*root.find("assembly"), folder);
   check_contradictions(root, result.assembly);
   for (const char* source : {"springs", "material"})
-    if (const TomlValue* table = root.find(source)) result.weighting = spring_weighting_from(text(*table, "weighting"));
+    if (const TomlValue* table = root.find(source))
+      result.weighting = enum_from<SpringWeighting>(text(*table, "weighting"));
   if (const TomlValue* springs = root.find("springs"))
     result.springs = SpringConstants{number(*springs, "kN"), number(*springs, "kT")};
   if (const TomlValue* material = root.find("material")) result.material = read_material(*material);
   if (const TomlValue* rotation = root.find("effects")->find("rotation"))
     result.rotation = rotation->text == "free" ? Rotation::free : Rotation::restrained;
   if (const TomlValue* test = root.find("test"))
-    result.test = TensionTest{.stress = number(*test, "stress"), .gauge = gauge_placement_from(text(*test, "gauge"))};
+    result.test =
+        TensionTest{.stress = number(*test, "stress"), .gauge = enum_from<GaugePlacement>(text(*test, "gauge"))};
   for (const char* list : {"group", "schedule", "wall", "probe"}) check_names(root, list);
   for (const TomlValue& table : repeated(root, "group")) result.groups.push_back(read_group(table));
   for (const TomlValue& table : repeated(root, "support")) result.supports.push_back(read_support(table));

@@ -256,7 +256,7 @@ void read_grain_table(const TomlValue& table, std::optional<double> common_densi
 GrainBodies read_bodies(TomlValue& root, const fs::path& folder) {
   TomlValue& common = *root.find("grains");
   GrainBodies bodies;
-  bodies.body = body_from(text(common, "body"));
+  bodies.body = enum_from<Body>(text(common, "body"));
   GrainShapes shapes(bodies.body);
   const std::optional<double> density = optional_number(common, "density");
   if (TomlValue* path = common.find("path")) {

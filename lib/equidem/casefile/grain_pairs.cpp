@@ -214,7 +214,7 @@ PairCase pair_of(const Terms& terms, const GrainCase& result, const Meeting& mee
   PairProperties& properties = pair.properties;
   // That of hertz_dashpot is exact for this end.
   properties.end = result.law == NormalLaw::hertz_dashpot ? ContactEnd::at_zero_overlap : ContactEnd::at_zero_force;
-  if (terms.end != nullptr) properties.end = contact_end_from(terms.end->text);
+  if (terms.end != nullptr) properties.end = enum_from<ContactEnd>(terms.end->text);
   const double tangential_zeta = read_dashpots(terms, result, meeting.on_wall, properties);
   properties.friction = terms.friction->real;
   if (properties.friction > 0) {

@@ -89,7 +89,7 @@ MaterialCase read_material(const TomlValue& table) {
   const auto set = std::find_if(sets.begin(), sets.end(), same);
   if (set == sets.end()) fail_set(table, given);
   MaterialCase result;
-  const Plane plane = plane_from(text(table, "plane"));
+  const Plane plane = enum_from<Plane>(text(table, "plane"));
   try {
     switch (set - sets.begin()) {
       case 0:

@@ -56,7 +56,7 @@ SpringConstants read_springs(const TomlValue& table, double density) {
 
 PackingShape read_shape(const TomlValue& table) {
   PackingShape shape;
-  shape.kind = packing_shape_from(text(table, "kind"));
+  shape.kind = enum_from<PackingShape::Kind>(text(table, "kind"));
   if (shape.kind == PackingShape::Kind::ellipse) shape.aspect = number(table, "aspect");
   if (shape.kind == PackingShape::Kind::clump) {
     for (const TomlValue& disc : table.find("discs")->items)

@@ -9,7 +9,7 @@ namespace equidem {
 namespace {
 
 TimeStepOptions read_time_step(const TomlValue& run, const std::optional<double>& duration) {
-  TimeStepOptions result{.rule = time_step_rule_from(text(run, "step_rule")),
+  TimeStepOptions result{.rule = enum_from<TimeStepRule>(text(run, "step_rule")),
                          .fraction = number(run, "step_fraction"),
                          .step = {},
                          .duration = duration.value_or(0),

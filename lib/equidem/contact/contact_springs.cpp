@@ -14,14 +14,6 @@
 namespace equidem {
 namespace {
 
-struct NamedWeighting {
-  const char* name;
-  SpringWeighting weighting;
-};
-constexpr std::array<NamedWeighting, 3> weightings{{{"uniform", SpringWeighting::uniform},
-                                                    {"contact_density", SpringWeighting::contact_density},
-                                                    {"voronoi", SpringWeighting::voronoi}}};
-
 std::string name_of(const Assembly& assembly, std::size_t contact) {
   const Contact& c = assembly.contacts[contact];
   return fmt::format("contact {} (discs {} and {})", contact, c.i, c.j);
@@ -81,20 +73,6 @@ std::vector<double> weights(const Assembly& assembly, SpringWeighting weighting)
 }
 
 }  // namespace
-
-SpringWeighting spring_weighting_from(const std::string& name) {
-  for (const NamedWeighting& known : weightings) {
-    if (name == known.name) return known.weighting;
-  }
-  bad_input(fmt::format("'{}' is no weighting of springs", name), "",
-            "Write \"uniform\", \"contact_density\" or \"voronoi\"");
-}
-
-std::string to_string(SpringWeighting weighting) {
-  return std::find_if(weightings.begin(), weightings.end(),
-                      [&](const NamedWeighting& known) { return known.weighting == weighting; })
-      ->name;
-}
 
 bool ContactSprings::any_tangential() const {
   if (uniform()) return uniform_.kT != 0;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/core/names.hpp"
 #include "equidem/material/spring_constants.hpp"
 
 namespace equidem {
@@ -21,9 +22,13 @@ enum class SpringWeighting {
   voronoi,          ///< k h/l, shared cell edge over centre distance (Bolander & Saito 1998)
 };
 
-/// \throws Error (bad_input) naming the choices
-SpringWeighting spring_weighting_from(const std::string& name);
-std::string to_string(SpringWeighting weighting);
+template <>
+struct EnumNames<SpringWeighting> {
+  static constexpr const char* what = "weighting of springs";
+  static constexpr NamedValue<SpringWeighting> list[] = {{SpringWeighting::uniform, "uniform"},
+                                                         {SpringWeighting::contact_density, "contact_density"},
+                                                         {SpringWeighting::voronoi, "voronoi"}};
+};
 
 /// One pair of springs for all contacts, or one for each; the first stores two numbers.
 class ContactSprings {

@@ -35,14 +35,6 @@ Effects derive(const ContactSprings& springs, bool off_lines, Rotation rotation)
 
 }  // namespace
 
-Rotation rotation_from(const std::string& name) {
-  if (name == "from_scene") return Rotation::from_scene;
-  if (name == "free") return Rotation::free;
-  if (name == "restrained") return Rotation::restrained;
-  bad_input(fmt::format("'{}' says nothing about rotation", name), "",
-            "Write \"free\" or \"restrained\", or \"from_scene\" to let the scene decide");
-}
-
 std::string Effects::report() const {
   std::string active;
   std::string inactive;

@@ -8,6 +8,7 @@
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
+#include "equidem/core/names.hpp"
 
 namespace equidem {
 
@@ -17,8 +18,12 @@ enum class Rotation {
   restrained,
 };
 
-/// \throws Error (bad_input) naming the choices
-Rotation rotation_from(const std::string& name);
+template <>
+struct EnumNames<Rotation> {
+  static constexpr const char* what = "setting of rotation";
+  static constexpr NamedValue<Rotation> list[] = {
+      {Rotation::from_scene, "from_scene"}, {Rotation::free, "free"}, {Rotation::restrained, "restrained"}};
+};
 
 /// The effects of a scene, each active or inactive with the reason.
 struct Effects {

@@ -46,17 +46,6 @@ double damping_at_zero_force(double loss) {
 
 }  // namespace
 
-ContactEnd contact_end_from(const std::string& name) {
-  if (name == "zero_overlap") return ContactEnd::at_zero_overlap;
-  if (name == "zero_force") return ContactEnd::at_zero_force;
-  bad_input(fmt::format("\"{}\" is not an end of a contact", name), "a contact ends at zero overlap or at zero force",
-            "Choose zero_overlap or zero_force");
-}
-
-std::string to_string(ContactEnd end) {
-  return end == ContactEnd::at_zero_overlap ? "zero_overlap" : "zero_force";
-}
-
 double contact_phase_of(double damping_ratio, ContactEnd end) {
   const double zeta = damping_ratio;
   assert(zeta >= 0);

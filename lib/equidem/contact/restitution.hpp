@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "equidem/core/names.hpp"
+
 namespace equidem {
 
 /// When a contact of spring and dashpot ends; the same dashpot gives another restitution.
@@ -13,10 +15,12 @@ enum class ContactEnd {
   at_zero_force,    ///< the force is never attractive (Schwager & Poeschel 2007)
 };
 
-/// "zero_overlap" | "zero_force".
-/// \throws Error (bad_input)
-ContactEnd contact_end_from(const std::string& name);
-std::string to_string(ContactEnd end);
+template <>
+struct EnumNames<ContactEnd> {
+  static constexpr const char* what = "end of a contact";
+  static constexpr NamedValue<ContactEnd> list[] = {{ContactEnd::at_zero_overlap, "zero_overlap"},
+                                                    {ContactEnd::at_zero_force, "zero_force"}};
+};
 
 /// Duration of an impact of linear spring and dashpot, without gravity, times sqrt(k/m): at zero overlap pi/sqrt(1 -
 /// zeta²), infinite from zeta = 1 on; at zero force 2 acos(zeta)/sqrt(1 - zeta²) for zeta < 1, 2 at 1, 2

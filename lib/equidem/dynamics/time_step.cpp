@@ -17,7 +17,6 @@
 namespace equidem {
 namespace {
 
-constexpr std::array all_rules = {TimeStepRule::lanczos, TimeStepRule::bound, TimeStepRule::thesis};
 constexpr double infinite = std::numeric_limits<double>::infinity();
 /// Lanczos takes some hundred products with K, each the work of a few steps; the bound costs a quarter of the steps.
 constexpr double steps_worth_lanczos = 2000;
@@ -219,27 +218,6 @@ void refuse_unstable(const TimeStep& result, const SimulationOptions& options) {
 }
 
 }  // namespace
-
-TimeStepRule time_step_rule_from(const std::string& name) {
-  std::string known;
-  for (const TimeStepRule rule : all_rules) {
-    if (name == to_string(rule)) return rule;
-    known += (known.empty() ? "" : ", ") + to_string(rule);
-  }
-  bad_input(fmt::format("'{}' is no rule for the time step", name), "", fmt::format("Choose one of {}", known));
-}
-
-std::string to_string(TimeStepRule rule) {
-  switch (rule) {
-    case TimeStepRule::lanczos:
-      return "lanczos";
-    case TimeStepRule::bound:
-      return "bound";
-    case TimeStepRule::thesis:
-      return "thesis";
-  }
-  return "";
-}
 
 TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, const TimeStepOptions& wanted) {
   check(wanted);

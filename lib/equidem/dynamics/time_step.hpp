@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "equidem/core/names.hpp"
 #include "equidem/dynamics/simulation.hpp"
 
 namespace equidem {
@@ -19,10 +20,12 @@ enum class TimeStepRule {
             ///< guarantee
 };
 
-/// "lanczos" | "bound" | "thesis".
-/// \throws Error (bad_input) naming the choices
-TimeStepRule time_step_rule_from(const std::string& name);
-std::string to_string(TimeStepRule rule);
+template <>
+struct EnumNames<TimeStepRule> {
+  static constexpr const char* what = "rule for the time step";
+  static constexpr NamedValue<TimeStepRule> list[] = {
+      {TimeStepRule::lanczos, "lanczos"}, {TimeStepRule::bound, "bound"}, {TimeStepRule::thesis, "thesis"}};
+};
 
 struct TimeStepOptions {
   TimeStepRule rule = TimeStepRule::lanczos;

@@ -169,25 +169,6 @@ TractionSample load_sides(const Assembly& assembly, const ContactSprings& spring
 
 }  // namespace
 
-Boundary boundary_from(const std::string& name) {
-  for (const Boundary boundary : {Boundary::periodic, Boundary::displacement, Boundary::traction}) {
-    if (name == to_string(boundary)) return boundary;
-  }
-  bad_input(fmt::format("'{}' is no kind of boundary", name), "", "Choose one of periodic, displacement, traction");
-}
-
-std::string to_string(Boundary boundary) {
-  switch (boundary) {
-    case Boundary::periodic:
-      return "periodic";
-    case Boundary::displacement:
-      return "displacement";
-    case Boundary::traction:
-      return "traction";
-  }
-  return "";
-}
-
 std::vector<std::uint8_t> boundary_discs(const Assembly& assembly) {
   std::vector<std::uint8_t> at_boundary(assembly.size(), 0);
   if (assembly.periodic()) {

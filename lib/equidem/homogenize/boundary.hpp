@@ -11,6 +11,7 @@
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
+#include "equidem/core/names.hpp"
 #include "equidem/core/vector.hpp"
 
 namespace equidem {
@@ -23,10 +24,12 @@ enum class Boundary {
   traction,      ///< the boundary carries the tractions of a uniform stress
 };
 
-/// "periodic" | "displacement" | "traction".
-/// \throws Error (bad_input)
-Boundary boundary_from(const std::string& name);
-std::string to_string(Boundary boundary);
+template <>
+struct EnumNames<Boundary> {
+  static constexpr const char* what = "kind of boundary";
+  static constexpr NamedValue<Boundary> list[] = {
+      {Boundary::periodic, "periodic"}, {Boundary::displacement, "displacement"}, {Boundary::traction, "traction"}};
+};
 
 /// 1 for discs at the boundary: of a free assembly those of its sides (groups left, right, bottom, top), of a periodic
 /// cell those with a contact that crosses the period.

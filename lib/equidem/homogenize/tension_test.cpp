@@ -189,25 +189,6 @@ double mean_normal_spring(const Assembly& assembly, const ContactSprings& spring
 
 }  // namespace
 
-GaugePlacement gauge_placement_from(const std::string& name) {
-  for (const GaugePlacement placement : {GaugePlacement::centre, GaugePlacement::quarter, GaugePlacement::ends})
-    if (name == to_string(placement)) return placement;
-  bad_input(fmt::format("gauge = \"{}\"", name), "there is no such placement of the strain gauges",
-            "Choose \"centre\", \"quarter\" or \"ends\"");
-}
-
-std::string to_string(GaugePlacement placement) {
-  switch (placement) {
-    case GaugePlacement::centre:
-      return "centre";
-    case GaugePlacement::quarter:
-      return "quarter";
-    case GaugePlacement::ends:
-      break;
-  }
-  return "ends";
-}
-
 TensionSetup tension_setup(const Assembly& assembly, const TensionTest& test) {
   if (!std::isfinite(test.stress) || test.stress == 0) {
     bad_input(fmt::format("the tension test pulls with a stress of {} Pa", test.stress),

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "equidem/contact/contact_springs.hpp"
+#include "equidem/core/names.hpp"
 #include "equidem/homogenize/strain.hpp"
 #include "equidem/statics/equilibrium.hpp"
 
@@ -24,10 +25,12 @@ enum class GaugePlacement {
   ends,     ///< from side to side through the middle
 };
 
-/// "centre" | "quarter" | "ends".
-/// \throws Error (bad_input)
-GaugePlacement gauge_placement_from(const std::string& name);
-std::string to_string(GaugePlacement placement);
+template <>
+struct EnumNames<GaugePlacement> {
+  static constexpr const char* what = "placement of strain gauges";
+  static constexpr NamedValue<GaugePlacement> list[] = {
+      {GaugePlacement::centre, "centre"}, {GaugePlacement::quarter, "quarter"}, {GaugePlacement::ends, "ends"}};
+};
 
 struct TensionTest {
   double stress = 1e6;  ///< s11, Pa; not zero

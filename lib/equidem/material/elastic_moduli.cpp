@@ -33,17 +33,6 @@ void check_poisson_ratio(double nu, Plane plane) {
 
 }  // namespace
 
-Plane plane_from(const std::string& name) {
-  if (name == "strain") return Plane::strain;
-  if (name == "stress") return Plane::stress;
-  bad_input(fmt::format("'{}' is no plane", name), "Poisson's ratio is read in plane strain or in plane stress",
-            "Write \"strain\" or \"stress\"");
-}
-
-std::string to_string(Plane plane) {
-  return plane == Plane::strain ? "strain" : "stress";
-}
-
 ElasticModuli ElasticModuli::read_as(Plane other) const {
   if (other == plane) return *this;
   const double nu = poisson_ratio;

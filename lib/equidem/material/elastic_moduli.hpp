@@ -6,14 +6,17 @@
 
 #include <string>
 
+#include "equidem/core/names.hpp"
+
 namespace equidem {
 
 enum class Plane { strain, stress };
 
-/// "strain" | "stress".
-/// \throws Error (bad_input)
-Plane plane_from(const std::string& name);
-std::string to_string(Plane plane);
+template <>
+struct EnumNames<Plane> {
+  static constexpr const char* what = "plane";
+  static constexpr NamedValue<Plane> list[] = {{Plane::strain, "strain"}, {Plane::stress, "stress"}};
+};
 
 /// G and nu with the reading of nu.
 struct ElasticModuli {

@@ -21,17 +21,6 @@ void check_density(double density, const char* bodies) {
 
 }  // namespace
 
-Body body_from(const std::string& name) {
-  if (name == "disc") return Body::disc;
-  if (name == "sphere") return Body::sphere;
-  bad_input(fmt::format("'{}' is no body", name), "mass and moment of inertia are those of a disc or of a sphere",
-            "Write \"disc\" or \"sphere\"");
-}
-
-std::string to_string(Body body) {
-  return body == Body::disc ? "disc" : "sphere";
-}
-
 double inertia_factor(Body body) {
   return body == Body::disc ? 0.5 : 0.4;
 }

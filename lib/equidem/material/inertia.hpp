@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "equidem/core/names.hpp"
+
 namespace equidem {
 
 /// The body that a disc of the model stands for.
@@ -14,10 +16,11 @@ enum class Body {
   sphere,  ///< m = rho 4/3 pi r³ (kg), I = 2 m r²/5
 };
 
-/// "disc" | "sphere".
-/// \throws Error (bad_input)
-Body body_from(const std::string& name);
-std::string to_string(Body body);
+template <>
+struct EnumNames<Body> {
+  static constexpr const char* what = "body";
+  static constexpr NamedValue<Body> list[] = {{Body::disc, "disc"}, {Body::sphere, "sphere"}};
+};
 
 /// I/(m r²): 1/2 of a disc, 2/5 of a sphere (beta of F9, F10).
 double inertia_factor(Body body);

@@ -2,13 +2,11 @@
 #include "equidem/packing/packing_shape.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/nearest.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/clipped_area.hpp"
 #include "equidem/grains/scene/clump.hpp"
@@ -17,19 +15,6 @@ namespace equidem {
 namespace {
 
 using Kind = PackingShape::Kind;
-
-struct Name {
-  Kind kind;
-  const char* name;
-  const char* noun;
-};
-constexpr std::array names{Name{Kind::disc, "disc", "disc"}, Name{Kind::ellipse, "ellipse", "ellipse"},
-                           Name{Kind::bonded_pair, "bonded_pair", "pair"}, Name{Kind::rigid_pair, "rigid_pair", "pair"},
-                           Name{Kind::clump, "clump", "clump"}};
-
-const Name& name_of(Kind kind) {
-  return *std::find_if(names.begin(), names.end(), [&](const Name& name) { return name.kind == kind; });
-}
 
 /// By it moments are divided while bodies are pushed apart. What is nearly round would be turned far by its small
 /// moments, so that it never came to rest; what is round but for rounding of its centre does not turn.
@@ -70,27 +55,6 @@ UnitBody unit_clump(std::vector<Clump::Disc> discs, double area) {
 }
 
 }  // namespace
-
-Kind packing_shape_from(const std::string& name) {
-  std::vector<std::string> known;
-  std::string list;
-  for (const Name& entry : names) {
-    if (name == entry.name) return entry.kind;
-    known.emplace_back(entry.name);
-    list += (list.empty() ? "" : ", ") + known.back();
-  }
-  const auto meant = nearest(name, known);
-  bad_input(fmt::format("there is no shape '{}' to pack", name), "they are " + list,
-            meant ? fmt::format("Did you mean '{}'?", *meant) : "Name one of them");
-}
-
-std::string to_string(Kind kind) {
-  return name_of(kind).name;
-}
-
-std::string noun_of(Kind kind) {
-  return name_of(kind).noun;
-}
 
 UnitBody unit_body_of(const PackingShape& shape) {
   constexpr double pi = std::numbers::pi;

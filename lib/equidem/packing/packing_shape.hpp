@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "equidem/core/names.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem {
@@ -27,11 +28,24 @@ struct PackingShape {
   [[nodiscard]] bool is_disc() const { return kind == Kind::disc; }
 };
 
-/// \throws Error (bad_input) naming the choices
-PackingShape::Kind packing_shape_from(const std::string& name);
-std::string to_string(PackingShape::Kind kind);
-/// "disc", "ellipse", "pair", "clump"; plural with s.
-std::string noun_of(PackingShape::Kind kind);
+template <>
+struct EnumNames<PackingShape::Kind> {
+  struct Entry {
+    PackingShape::Kind value;
+    const char* name;
+    const char* noun;  ///< for reports; plural with s
+  };
+  using Kind = PackingShape::Kind;
+  static constexpr const char* what = "shape to pack";
+  static constexpr Entry list[] = {{Kind::disc, "disc", "disc"},
+                                   {Kind::ellipse, "ellipse", "ellipse"},
+                                   {Kind::bonded_pair, "bonded_pair", "pair"},
+                                   {Kind::rigid_pair, "rigid_pair", "pair"},
+                                   {Kind::clump, "clump", "clump"}};
+};
+inline std::string noun_of(PackingShape::Kind kind) {
+  return entry_of(kind).noun;
+}
 
 /// A body for the radius 1 at the angle 0, its centre of mass in the origin.
 struct UnitBody {

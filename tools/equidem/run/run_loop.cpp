@@ -119,7 +119,7 @@ class RunLoop {
       Probe probe{.name = wanted.name, .discs = group(setup_.problem.assembly, wanted.group).discs, .quantities = {}};
       for (const std::string& word : wanted.quantities) {
         if (word != "energy")
-          probe.quantities.push_back(probe_quantity_from(word));  // energies have columns of their own
+          probe.quantities.push_back(enum_from<ProbeQuantity>(word));  // energies have columns of their own
       }
       if (!probe.quantities.empty()) probes.push_back(std::move(probe));
     }

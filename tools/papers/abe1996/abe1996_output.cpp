@@ -161,7 +161,7 @@ struct Options {
 
 int reproduce(const Options& options) {
   Block block = options.block;
-  block.test.gauge = gauge_placement_from(options.gauge);
+  block.test.gauge = enum_from<GaugePlacement>(options.gauge);
   start_paper(options.common, {"figure7", "figure8", "error_by_size"},
               {"tension.svg", "tension.png", "tension.vtm", "tension_discs.vtp", "tension_contacts.vtp"});
   const Reproduction result = reproduce(block);

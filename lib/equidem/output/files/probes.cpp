@@ -77,15 +77,6 @@ std::vector<Probe> checked(std::vector<Probe> probes, std::size_t discs) {
 
 }  // namespace
 
-ProbeQuantity probe_quantity_from(const std::string& name) {
-  if (name == "displacement") return ProbeQuantity::displacement;
-  if (name == "rotation") return ProbeQuantity::rotation;
-  if (name == "velocity") return ProbeQuantity::velocity;
-  if (name == "spin") return ProbeQuantity::spin;
-  bad_input(fmt::format("'{}' is nothing that a probe measures", name), "",
-            "Write \"displacement\", \"rotation\", \"velocity\" or \"spin\"");
-}
-
 ProbeWriter::ProbeWriter(std::filesystem::path path, std::vector<Probe> probes, std::size_t discs,
                          const ProbeOptions& options)
     : probes_(checked(std::move(probes), discs)),

@@ -11,15 +11,21 @@
 #include <vector>
 
 #include "equidem/contact/frame.hpp"
+#include "equidem/core/names.hpp"
 #include "equidem/dynamics/simulation.hpp"
 #include "equidem/output/files/growing_csv.hpp"
 
 namespace equidem {
 
 enum class ProbeQuantity { displacement, rotation, velocity, spin };
-/// "displacement" | "rotation" | "velocity" | "spin".
-/// \throws Error (bad_input) naming the choices
-ProbeQuantity probe_quantity_from(const std::string& name);
+template <>
+struct EnumNames<ProbeQuantity> {
+  static constexpr const char* what = "quantity of a probe";
+  static constexpr NamedValue<ProbeQuantity> list[] = {{ProbeQuantity::displacement, "displacement"},
+                                                       {ProbeQuantity::rotation, "rotation"},
+                                                       {ProbeQuantity::velocity, "velocity"},
+                                                       {ProbeQuantity::spin, "spin"}};
+};
 
 /// The mean of some discs.
 struct Probe {

@@ -27,17 +27,6 @@ std::string draw(const PictureScene& scene, PageFormat page) {
 
 }  // namespace
 
-DiscColour disc_colour_from(const std::string& name) {
-  if (name == "none") return DiscColour::none;
-  if (name == "mean_stress") return DiscColour::mean_stress;
-  if (name == "stress_xx") return DiscColour::stress_xx;
-  if (name == "stress_yy") return DiscColour::stress_yy;
-  if (name == "stress_xy") return DiscColour::stress_xy;
-  if (name == "displacement") return DiscColour::displacement;
-  bad_input(fmt::format("discs cannot be coloured by '{}'", name), "no such quantity",
-            "Choose none, mean_stress, stress_xx, stress_yy, stress_xy or displacement");
-}
-
 PictureResult write_picture(const std::filesystem::path& folder, const std::string& name, const AssemblyState& state,
                             const PictureOptions& options, bool overwrite) {
   const PictureScene scene = plan_scene(state, options);

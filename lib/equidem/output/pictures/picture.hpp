@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "equidem/core/names.hpp"
 #include "equidem/core/vector.hpp"
 #include "equidem/output/files/state.hpp"
 
@@ -17,9 +18,14 @@ namespace equidem {
 /// What the colour of a disc stands for.
 enum class DiscColour { none, mean_stress, stress_xx, stress_yy, stress_xy, displacement };
 
-/// "none" | "mean_stress" | "stress_xx" | "stress_yy" | "stress_xy" | "displacement".
-/// \throws Error (bad_input)
-DiscColour disc_colour_from(const std::string& name);
+template <>
+struct EnumNames<DiscColour> {
+  static constexpr const char* what = "colouring of discs";
+  static constexpr NamedValue<DiscColour> list[] = {
+      {DiscColour::none, "none"},           {DiscColour::mean_stress, "mean_stress"},
+      {DiscColour::stress_xx, "stress_xx"}, {DiscColour::stress_yy, "stress_yy"},
+      {DiscColour::stress_xy, "stress_xy"}, {DiscColour::displacement, "displacement"}};
+};
 
 /// An arrow at a disc.
 struct DrawnLoad {

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Names of the values of an enum, written once, beside the enum:
+///
+///   enum class Plane { strain, stress };
+///   template <>
+///   struct EnumNames<Plane> {
+///     static constexpr const char* what = "plane";
+///     static constexpr NamedValue<Plane> list[] = {{Plane::strain, "strain"}, {Plane::stress, "stress"}};
+///   };
+///
+/// Conversions, error messages and the choices of the case file follow from the list. Its entries may be of any type
+/// with members `value` and `name`, so that a list can also hold what else distinguishes the values.
+#pragma once
+
+#include <cassert>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace equidem {
+
+/// Specialized for every enum whose values have names: `what` is the noun of a value, `list` its entries.
+template <class Enum>
+struct EnumNames;
+
+template <class Enum>
+struct NamedValue {
+  Enum value;
+  const char* name;
+};
+
+template <class Enum>
+concept NamedEnum = requires {
+  EnumNames<Enum>::what;
+  EnumNames<Enum>::list;
+};
+
+/// "uniform", "contact_density" or "voronoi".
+std::string alternatives(std::span<const std::string> names);
+
+/// \throws Error (bad_input) always: `name` is none of `known`; suggests the nearest
+[[noreturn]] void refuse_name(std::string_view name, const char* what, std::span<const std::string> known);
+
+/// The names of all entries, in their order.
+template <class List>
+std::vector<std::string> names_in(const List& list) {
+  std::vector<std::string> names;
+  for (const auto& entry : list) names.emplace_back(entry.name);
+  return names;
+}
+
+/// The entry with this name.
+/// \throws Error (bad_input) naming the choices
+template <class List>
+const auto& entry_named(const List& list, std::string_view name, const char* what) {
+  for (const auto& entry : list)
+    if (name == entry.name) return entry;
+  refuse_name(name, what, names_in(list));
+}
+
+/// The entry of a value, which must be in the list.
+template <NamedEnum Enum>
+constexpr const auto& entry_of(Enum value) {
+  const auto* found = &EnumNames<Enum>::list[0];
+  for (const auto& entry : EnumNames<Enum>::list)
+    if (entry.value == value) found = &entry;
+  assert(found->value == value);
+  return *found;
+}
+
+template <NamedEnum Enum>
+std::string to_string(Enum value) {
+  return entry_of(value).name;
+}
+
+/// \throws Error (bad_input) naming the choices
+template <NamedEnum Enum>
+Enum enum_from(std::string_view name) {
+  return entry_named(EnumNames<Enum>::list, name, EnumNames<Enum>::what).value;
+}
+
+/// The names of all values, in the order of the list: the choices of a key.
+template <NamedEnum Enum>
+std::vector<std::string> names_of() {
+  return names_in(EnumNames<Enum>::list);
+}
+
+}  // namespace equidem
