@@ -55,7 +55,7 @@ TEST_CASE("a_hertz_impact_is_the_integrated_one") {
       for (const double speed : {1.0, 0.03, 20.0}) {
         // Length L = (m v²/k)^(2/5), time L/v, force k L^(3/2).
         const double length = std::pow(mass * speed * speed / k, 0.4);
-        const HertzImpact impact = hertz_impact(k, mass, speed);
+        const ElasticImpact impact = hertz_impact(k, mass, speed);
         CAPTURE(k, mass, speed);
         CHECK(impact.overlap == Approx(unit.overlap * length).epsilon(1e-10));
         CHECK(impact.force == Approx(k * std::pow(unit.overlap * length, 1.5)).epsilon(1e-10));
@@ -82,7 +82,7 @@ TEST_CASE(
     const double mass = sphere_mass(row.density, row.radius);
     const double k = row.wall ? hertz_stiffness_on_rigid_wall(row.young, row.poisson, row.radius)
                               : hertz_stiffness(row.young, row.poisson, row.radius, row.young, row.poisson, row.radius);
-    const HertzImpact impact = hertz_impact(k, row.wall ? mass : mass / 2, row.wall ? row.speed : 2 * row.speed);
+    const ElasticImpact impact = hertz_impact(k, row.wall ? mass : mass / 2, row.wall ? row.speed : 2 * row.speed);
     CAPTURE(row.name, k, impact.overlap, impact.force, impact.duration);
     CHECK(std::abs(impact.overlap * 1e6 - row.overlap_um) < 0.51e-2);
     CHECK(std::abs(impact.force * 1e-3 - row.force_kN) < 0.51 * row.force_digit);

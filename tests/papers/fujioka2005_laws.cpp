@@ -10,12 +10,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "equidem/contact/collision_laws.hpp"
-#include "equidem/contact/restitution.hpp"
-
 #include "support/catch.hpp"
+#include "support/contact_steps.hpp"
 
 using namespace equidem;
+using equidem::test::step_of;
 
 namespace {
 
@@ -25,16 +24,7 @@ struct Law {
   double a = 0, restitution = 0.7;
 
   [[nodiscard]] ContactStep step(double depth, double closing) const {
-    switch (law) {
-      case NormalLaw::linear_dashpot:
-        return linear_dashpot_step(depth, closing, a, damping_ratio_of(restitution, ContactEnd::at_zero_overlap), true);
-      case NormalLaw::hertz_dashpot:
-        return hertz_dashpot_step(depth, closing, a, hertz_damping_of(restitution), true);
-      case NormalLaw::five_case_map:
-        return five_case_map_step(depth, closing, a, restitution);
-      default:
-        return energy_map_step(depth, closing, a, restitution);
-    }
+    return step_of(law, depth, closing, a, restitution);
   }
 };
 
@@ -137,7 +127,7 @@ TEST_CASE("fujioka_2005_mode_2_as_printed_would_lose_energy_beyond_a_slope") {
     for (int i = 0; i < 2000; ++i) {
       double depth = (i + 0.5) / 2000 / slope, closing = 1;
       for (int n = 0;; ++n) {
-        const ContactStep step = energy_map_step(depth, closing, a, e);
+        const ContactStep step = step_of(NormalLaw::energy_map, depth, closing, a, e);
         if (step.mode == 2 && depth + closing + step.change <= 0) {
           const double printed =
               -(a * depth + std::sqrt(a * a * depth * depth + (1 + a) * closing * closing)) / (1 + a);

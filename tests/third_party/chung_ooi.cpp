@@ -48,14 +48,14 @@ double stiffness_of(const Elastic& impact) {
   return hertz_stiffness(material.young, material.poisson, r, material.young, material.poisson, r);
 }
 
-HertzImpact exact(const Elastic& impact) {
+ElasticImpact exact(const Elastic& impact) {
   const double mass = inertia_of(impact.radius, impact.material.density, Body::sphere).mass;
   return impact.wall ? hertz_impact(stiffness_of(impact), mass, impact.speed)
                      : hertz_impact(stiffness_of(impact), mass / 2, 2 * impact.speed);
 }
 
 /// Duration is known to a step: contacts are counted in steps.
-HertzImpact computed(const Elastic& impact, Scheme scheme, double step) {
+ElasticImpact computed(const Elastic& impact, Scheme scheme, double step) {
   const auto& [material, r, speed, wall] = impact;
   PairProperties pair;
   pair.stiffness = stiffness_of(impact);
@@ -68,7 +68,7 @@ HertzImpact computed(const Elastic& impact, Scheme scheme, double step) {
                      {}, pair);
   }
   GrainSimulation simulation(scene, options_of({NormalLaw::hertz_dashpot, scheme}, step));
-  HertzImpact result;
+  ElasticImpact result;
   std::int64_t steps = 0;
   do {
     simulation.advance(1);
@@ -84,8 +84,8 @@ HertzImpact computed(const Elastic& impact, Scheme scheme, double step) {
 
 /// Largest error of overlap and force, relative.
 double error_of(const Elastic& impact, Scheme scheme, int steps) {
-  const HertzImpact truth = exact(impact);
-  const HertzImpact result = computed(impact, scheme, truth.duration / steps);
+  const ElasticImpact truth = exact(impact);
+  const ElasticImpact result = computed(impact, scheme, truth.duration / steps);
   return std::max(std::abs(result.overlap / truth.overlap - 1), std::abs(result.force / truth.force - 1));
 }
 
@@ -98,10 +98,10 @@ const std::vector<Elastic> elastic_impacts{{{"glass pair", 48e9, 0.20, 2800}, 0.
 
 TEST_CASE("chung_ooi_1_and_2_hertz_spheres_are_pressed_as_deep_and_as_long_as_hertz_says") {
   for (const Elastic& impact : elastic_impacts) {
-    const HertzImpact truth = exact(impact);
+    const ElasticImpact truth = exact(impact);
     for (const Scheme scheme : {Scheme::semi_implicit_euler, Scheme::velocity_verlet}) {
       const int steps = 2000;
-      const HertzImpact result = computed(impact, scheme, truth.duration / steps);
+      const ElasticImpact result = computed(impact, scheme, truth.duration / steps);
       CAPTURE(impact, static_cast<int>(scheme), truth.overlap, truth.force, truth.duration,
               result.overlap / truth.overlap - 1, result.force / truth.force - 1, result.duration / truth.duration - 1);
       CHECK(std::abs(result.overlap / truth.overlap - 1) < 1e-3);
@@ -137,7 +137,7 @@ Rebound rebound(const Material& material, const PairProperties& asked, Stepping 
   const Vec2 velocity = speed * Vec2{std::sin(angle), -std::cos(angle)};
   const double mass = inertia_of(radius, material.density, Body::sphere).mass;
   const Elastic impact{material, radius, -velocity.y, true};
-  const HertzImpact truth = exact(impact);
+  const ElasticImpact truth = exact(impact);
   PairProperties pair = asked;
   pair.stiffness = stiffness_of(impact);
   if (stepping.law != NormalLaw::hertz_dashpot) {

@@ -28,11 +28,10 @@ void check_letters(const TomlValue& root) {
   const TomlValue* collisions = root.find("collisions");
   const TomlValue* law = collisions == nullptr ? nullptr : collisions->find("law");
   if (law == nullptr) return;
-  for (const NormalLaw meant : {NormalLaw::linear_dashpot, NormalLaw::hertz_dashpot, NormalLaw::five_case_map,
-                                NormalLaw::energy_map, NormalLaw::exact_flow})
-    if (law->text == letter_of(meant))
+  for (const LawDescription& meant : normal_laws())
+    if (law->text == meant.letter)
       fail_at(*law, "collisions.law", fmt::format("{} is the letter of a law", law->shown()),
-              "laws go by their names here", fmt::format("Write law = \"{}\"", to_string(meant)));
+              "laws go by their names here", fmt::format("Write law = \"{}\"", meant.name));
 }
 
 Vec2 direction(const TomlValue& table, const char* key, const std::string& use) {
@@ -156,17 +155,12 @@ void read_ellipse_contact(const TomlValue& collisions, GrainCase& result) {
                                                    : enlarged_as_printed;
 }
 
-double usual_steps_per_contact(NormalLaw law) {
-  if (law == NormalLaw::exact_flow) return 3.141592653589793;  // omega dt = 1
-  return is_map(law) ? 10 : 50;
-}
-
 void read_run(const TomlValue& run, GrainCase& result) {
   result.duration = number(run, "duration");
   result.gravity = vector(run, "gravity");
   const TomlValue& step = *run.find("time_step");
   const TomlValue* per_contact = run.find("steps_per_contact");
-  result.steps_per_contact = per_contact != nullptr ? per_contact->real : usual_steps_per_contact(result.law);
+  result.steps_per_contact = per_contact != nullptr ? per_contact->real : describe(result.law).steps_per_contact;
   if (step.is_number()) {
     result.time_step = step.real;
     if (per_contact != nullptr)
@@ -179,9 +173,10 @@ void read_run(const TomlValue& run, GrainCase& result) {
   }
   const TomlValue* scheme = run.find("scheme");
   if (scheme == nullptr) return;
-  if (is_map(result.law) || result.law == NormalLaw::exact_flow)
+  if (!gives_force(result.law))
     fail_at(*scheme, "run.scheme", fmt::format("{} has a step of its own", to_string(result.law)),
-            "scheme is for linear_dashpot and hertz_dashpot", "Remove it, or change collisions.law");
+            "scheme is for the laws that give a force: " + names_of_laws(LawKind::force),
+            "Remove it, or change collisions.law");
   if (scheme->text == "velocity_verlet") result.scheme = GrainOptions::Scheme::velocity_verlet;
   if (scheme->text == "corrected_verlet") result.scheme = GrainOptions::Scheme::corrected_verlet;
 }

@@ -163,15 +163,14 @@ std::vector<KeySpec> keys_of_motion() {
        .type = number,
        .fallback = none,
        .range = {.low = 2},
-       .help = "of an automatic step; left out: 50 for linear_dashpot and hertz_dashpot, 10 for the maps, pi (that is "
-               "omega dt = 1) for "
-               "exact_flow"},
+       .help = "of an automatic step; left out: 50 for laws that give a force, 10 for the maps, pi (that is omega dt = "
+               "1) for exact_flow"},
       {.table = "run",
        .name = "scheme",
        .type = choice,
        .fallback = none,
        .choices = {"semi_implicit_euler", "velocity_verlet", "corrected_verlet"},
-       .help = "of linear_dashpot and hertz_dashpot; semi_implicit_euler (default): first order, contacts that stick "
+       .help = "of laws that give a force; semi_implicit_euler (default): first order, contacts that stick "
                "do not creep; velocity_verlet: second order, as LAMMPS steps; corrected_verlet: the same motion, but "
                "contacts that begin or end within a step push for their part of it only: for impacts, and where the "
                "balance of energy counts"},

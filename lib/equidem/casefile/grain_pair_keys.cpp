@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/grain_pair_keys.hpp"
 
+#include "equidem/contact/laws/normal_law.hpp"
+#include "equidem/core/text.hpp"
+
 namespace equidem {
 namespace {
 
@@ -8,10 +11,44 @@ using enum KeyType;
 
 constexpr const char* none = KeySpec::none;
 
+/// The names of the laws that have a property.
+template <class Property>
+std::vector<std::string> laws_with(const Property& property) {
+  std::vector<std::string> names;
+  for (const LawDescription& law : normal_laws()) {
+    if (property(law)) names.emplace_back(law.name);
+  }
+  return names;
+}
+
+bool is_linear(const LawDescription& law) {
+  return law.spring_power == 1;
+}
+
+/// "N/m (hertz_dashpot N/m^1.5; discs: per m of depth)"
+std::string unit_of_stiffness() {
+  std::string others;
+  for (const LawDescription& law : normal_laws()) {
+    if (!is_linear(law)) others += fmt::format("{} {}; ", law.name, law.stiffness_unit);
+  }
+  return fmt::format("N/m ({}discs: per m of depth)", others);
+}
+
+/// Name, letter, reference and summary of every law.
+std::string help_of_laws() {
+  std::string help;
+  for (const LawDescription& law : normal_laws()) {
+    const std::string source = *law.source ? std::string(", ") + law.source : "";
+    help += fmt::format("{}{} ({}{}): {}", help.empty() ? "" : "; ", law.name, law.letter, source, law.summary);
+  }
+  return help;
+}
+
 /// What may be said of the contacts of every pair of bodies.
 /// \param base the table says it for all: then restitution is needed, friction has a default, and keys are explained
 std::vector<KeySpec> keys_of_contacts(const char* table, bool base) {
   const auto fallback = [&](const char* value) { return base ? value : none; };
+  static const std::string stiffness_unit = unit_of_stiffness();
   std::vector<KeySpec> keys{
       {.table = table,
        .name = "restitution",
@@ -26,7 +63,7 @@ std::vector<KeySpec> keys_of_contacts(const char* table, bool base) {
        .range = {.low = 0, .high = 10, .low_open = true},
        .help =
            "h of the dashpots 2 h sqrt(m k), along and across, m the mass of a disc, as in [settling] of a packing; of "
-           "exact_flow and linear_dashpot"},
+           "laws with linear springs and dashpots"},
       {.table = table,
        .name = "contact_end",
        .type = choice,
@@ -37,7 +74,7 @@ std::vector<KeySpec> keys_of_contacts(const char* table, bool base) {
       {.table = table,
        .name = "stiffness",
        .type = number,
-       .unit = "N/m (hertz_dashpot N/m^1.5; discs: per m of depth)",
+       .unit = stiffness_unit.c_str(),
        .fallback = none,
        .range = Range::positive(),
        .help = "k; give it or one of the next keys"},
@@ -46,14 +83,15 @@ std::vector<KeySpec> keys_of_contacts(const char* table, bool base) {
        .type = number,
        .fallback = none,
        .range = Range::positive(),
-       .help = "a = k dt²/m, m the reduced mass: held whatever the step and the masses; hertz_dashpot: k d^0.5 dt²/m"},
+       .help =
+           "a = k dt²/m, m the reduced mass: held whatever the step and the masses; a force k u^p: k d^(p - 1) dt²/m"},
       {.table = table,
        .name = "contact_duration",
        .type = number,
        .unit = "s",
        .fallback = none,
        .range = Range::positive(),
-       .help = "until the overlap is zero again, the same for all masses; not hertz_dashpot"},
+       .help = "until the overlap is zero again, the same for all masses; of linear springs"},
       {.table = table,
        .name = "largest_overlap",
        .type = number,
@@ -67,7 +105,8 @@ std::vector<KeySpec> keys_of_contacts(const char* table, bool base) {
        .unit = "m/s",
        .fallback = none,
        .range = Range::positive(),
-       .help = "of the fastest impact expected; for largest_overlap, and for an automatic step of hertz_dashpot"},
+       .help = "of the fastest impact expected; for largest_overlap, and for an automatic step with springs that are "
+               "not linear"},
       {.table = table,
        .name = "friction",
        .type = number,
@@ -103,18 +142,15 @@ std::vector<KeySpec> keys_of_contacts(const char* table, bool base) {
 }  // namespace
 
 std::vector<KeySpec> keys_of_collisions() {
-  const std::vector<std::string> hertz = {"hertz_dashpot"};
+  static const std::string help = help_of_laws();
+  const auto nonlinear = laws_with([](const LawDescription& law) { return !is_linear(law); });
   std::vector<KeySpec> keys{
       {.table = "collisions",
        .name = "law",
        .type = choice,
        .fallback = "\"exact_flow\"",
-       .choices = {"exact_flow", "linear_dashpot", "hertz_dashpot", "five_case_map", "energy_map"},
-       .help =
-           "exact_flow: linear spring and dashpot solved exactly within the step, all contacts together; "
-           "linear_dashpot (C of Fujioka & Ushijima 2005): the same by the scheme of [run]; hertz_dashpot (T): Hertz "
-           "spring; five_case_map (F), energy_map (P): restitution at the first step of a contact, energy kept "
-           "after it"},
+       .choices = laws_with([](const LawDescription&) { return true; }),
+       .help = help.c_str()},
       {.table = "collisions",
        .name = "young_modulus",
        .type = number,
@@ -122,7 +158,7 @@ std::vector<KeySpec> keys_of_collisions() {
        .fallback = none,
        .range = Range::positive(),
        .when_key = "law",
-       .when = hertz,
+       .when = laws_with([](const LawDescription& law) { return law.hertz_spring; }),
        .help = "of all spheres, walls being rigid: k by Hertz; with poisson_ratio, instead of stiffness"},
       {.table = "collisions",
        .name = "poisson_ratio",
@@ -137,7 +173,7 @@ std::vector<KeySpec> keys_of_collisions() {
        .fallback = none,
        .range = Range::positive(),
        .when_key = "law",
-       .when = {"exact_flow", "linear_dashpot", "five_case_map", "energy_map"},
+       .when = laws_with(is_linear),
        .help = "Vs of all discs: kT = pi/4 rho Vs², kN = pi/4 rho Vp²; with poisson_ratio, instead of stiffness"},
       {.table = "collisions",
        .name = "ellipse_contact",
@@ -155,7 +191,7 @@ std::vector<KeySpec> keys_of_collisions() {
        .fallback = none,
        .range = Range::positive(),
        .when_key = "law",
-       .when = hertz,
+       .when = nonlinear,
        .help = "d of dimensionless_stiffness; left out: twice the largest radius"},
   };
   const auto append = [&](std::vector<KeySpec> more) { keys.insert(keys.end(), more.begin(), more.end()); };

@@ -48,8 +48,17 @@ struct Meeting {
   SpringConstants by_wave_speeds;  ///< Pa; where they are given
 };
 
-bool has_end(NormalLaw law) {
-  return !is_map(law);
+bool is_linear(NormalLaw law) {
+  return describe(law).spring_power == 1;
+}
+
+/// "Give restitution, or the law exact_flow or linear_dashpot"
+std::string linear_laws_with_dashpot() {
+  std::string names;
+  for (const LawDescription& law : normal_laws()) {
+    if (law.has_dashpot && law.spring_power == 1) names += (names.empty() ? "" : " or ") + std::string(law.name);
+  }
+  return names;
 }
 
 void check_damping(const TomlValue& table, const std::string& key, NormalLaw law) {
@@ -57,10 +66,10 @@ void check_damping(const TomlValue& table, const std::string& key, NormalLaw law
   if (table.find("restitution") != nullptr)
     fail_at(damping, key + ".damping", "restitution and damping are both given", "each says how strong the dashpot is",
             "Remove one of them");
-  if (law != NormalLaw::exact_flow && law != NormalLaw::linear_dashpot)
+  if (!describe(law).has_dashpot || !is_linear(law))
     fail_at(damping, key + ".damping", fmt::format("{} has no use for damping", to_string(law)),
             "it is h of the dashpots 2 h sqrt(m k) of linear springs",
-            "Give restitution, or the law exact_flow or linear_dashpot");
+            "Give restitution, or the law " + linear_laws_with_dashpot());
 }
 
 /// `terms` with what a table says instead.
@@ -88,15 +97,16 @@ Terms with(Terms terms, const TomlValue& table, const std::string& key, NormalLa
     earlier = terms.stiffness = found;
     terms.by = way;
   }
-  if (const TomlValue* end = table.find("contact_end"); end != nullptr && !has_end(law))
+  if (const TomlValue* end = table.find("contact_end"); end != nullptr && !describe(law).has_dashpot)
     fail_at(*end, key + ".contact_end", fmt::format("{} has no use for contact_end", to_string(law)),
             "it has no dashpot", "Remove it");
   if (table.find("damping") != nullptr) check_damping(table, key, law);
-  if (const TomlValue* duration = table.find("contact_duration");
-      duration != nullptr && law == NormalLaw::hertz_dashpot)
-    fail_at(*duration, key + ".contact_duration", "a Hertz contact lasts the shorter the faster it is",
+  if (const TomlValue* duration = table.find("contact_duration"); duration != nullptr && !is_linear(law))
+    fail_at(*duration, key + ".contact_duration",
+            fmt::format("a contact of {} lasts the shorter the faster it is", to_string(law)),
             "a duration says nothing of its stiffness",
-            "Give stiffness, young_modulus, or largest_overlap with closing_speed");
+            fmt::format("Give stiffness, {}or largest_overlap with closing_speed",
+                        describe(law).hertz_spring ? "young_modulus, " : ""));
   return terms;
 }
 
@@ -106,7 +116,7 @@ void check_springs_of_moduli(const TomlValue& table, const GrainCase& result) {
   const TomlValue* poisson = table.find("poisson_ratio");
   if (young == nullptr && shear == nullptr) {
     if (poisson == nullptr) return;
-    const bool hertz = result.law == NormalLaw::hertz_dashpot;
+    const bool hertz = describe(result.law).hertz_spring;
     fail_at(*poisson, "collisions.poisson_ratio",
             fmt::format("poisson_ratio is given without {}", hertz ? "young_modulus" : "shear_wave_speed"),
             "both make the stiffness of a contact",
@@ -146,11 +156,13 @@ void check_base(const TomlValue& table, const Terms& base, const GrainCase& resu
             "Add restitution = ... from 0 to 1, or damping = ... of the dashpots");
   check_springs_of_moduli(table, result);
   if (base.stiffness != nullptr) return;
-  const bool hertz = result.law == NormalLaw::hertz_dashpot;
-  fail_at(table, "collisions.stiffness", "it is not said how stiff contacts are", "there is no default for it",
-          hertz ? "Add stiffness, or young_modulus with poisson_ratio, or largest_overlap with closing_speed"
-                : "Add contact_duration = ... in s, or stiffness, or largest_overlap with closing_speed, or "
-                  "shear_wave_speed with poisson_ratio");
+  const LawDescription& law = describe(result.law);
+  fail_at(
+      table, "collisions.stiffness", "it is not said how stiff contacts are", "there is no default for it",
+      law.spring_power == 1 ? "Add contact_duration = ... in s, or stiffness, or largest_overlap with closing_speed, "
+                              "or shear_wave_speed with poisson_ratio"
+      : law.hertz_spring ? "Add stiffness, or young_modulus with poisson_ratio, or largest_overlap with closing_speed"
+                         : "Add stiffness, or largest_overlap with closing_speed");
 }
 
 /// The restitution, and zeta of the tangential dashpot where nothing else is said of it.
@@ -170,7 +182,7 @@ double read_dashpots(const Terms& terms, const GrainCase& result, bool on_wall, 
 /// The dashpot that gives the restitution exists, and numbers resolve what it does.
 void check_restitution(const Terms& terms, NormalLaw law, const PairProperties& pair) {
   constexpr double least = 1e-12;  // a dashpot a million times the critical one
-  if (is_map(law) || pair.end == ContactEnd::at_zero_overlap || pair.restitution >= least) return;
+  if (!describe(law).has_dashpot || pair.end == ContactEnd::at_zero_overlap || pair.restitution >= least) return;
   assert(terms.damping == nullptr);
   fail_at(*terms.restitution, terms.key + ".restitution",
           fmt::format("restitution = {} of contacts that end at zero force", terms.restitution->shown()),
@@ -199,9 +211,8 @@ void set_stiffness(const Terms& terms, const GrainCase& result, const Meeting& m
               "the overlap depends on the speed", "Add closing_speed = ... in m/s");
     const double speed = terms.closing_speed->real;
     const double mass = meeting.masses ? meeting.masses->largest : 1;
-    properties.stiffness = result.law == NormalLaw::hertz_dashpot
-                               ? 1.25 * mass * speed * speed / std::pow(value, 2.5)  // (5 m v²/(4 k))^(2/5), undamped
-                               : stiffness_from_overlap(value, speed, mass, damping_ratio(result.law, properties));
+    properties.stiffness =
+        describe(result.law).stiffness_from_overlap(value, speed, mass, damping_ratio(result.law, properties));
   } else if (by == "young_modulus") {
     properties.stiffness = meeting.stiffness_by_hertz();
   } else {
@@ -212,8 +223,7 @@ void set_stiffness(const Terms& terms, const GrainCase& result, const Meeting& m
 PairCase pair_of(const Terms& terms, const GrainCase& result, const Meeting& meeting) {
   PairCase pair;
   PairProperties& properties = pair.properties;
-  // That of hertz_dashpot is exact for this end.
-  properties.end = result.law == NormalLaw::hertz_dashpot ? ContactEnd::at_zero_overlap : ContactEnd::at_zero_force;
+  properties.end = describe(result.law).usual_end;
   if (terms.end != nullptr) properties.end = enum_from<ContactEnd>(terms.end->text);
   const double tangential_zeta = read_dashpots(terms, result, meeting.on_wall, properties);
   properties.friction = terms.friction->real;
@@ -384,9 +394,7 @@ std::optional<ReducedMasses> reduced_masses(const std::vector<KindMasses>& kinds
 }
 
 double damping_ratio(NormalLaw law, const PairProperties& pair) {
-  if (is_map(law)) return 0;
-  if (law == NormalLaw::hertz_dashpot) return hertz_damping_of(pair.restitution, pair.end) / std::sqrt(5.0);
-  return damping_ratio_of(pair.restitution, pair.end);
+  return describe(law).damping_ratio(pair.restitution, pair.end);
 }
 
 }  // namespace equidem

@@ -34,8 +34,7 @@ struct ReducedMasses {
 /// Of all pairs of two kinds; none where no two such bodies are there.
 std::optional<ReducedMasses> reduced_masses(const std::vector<KindMasses>& kinds, int a, int b);
 
-/// zeta of the dashpot of a pair; 0 where the law has none. hertz_dashpot: that of the linear oscillator which it
-/// becomes.
+/// LawDescription::damping_ratio of a pair; 0 where the law has no dashpot.
 double damping_ratio(NormalLaw law, const PairProperties& pair);
 
 }  // namespace equidem

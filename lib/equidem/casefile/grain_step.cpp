@@ -61,6 +61,7 @@ std::vector<double> agility_of_kinds(const GrainCase& resolved) {
 /// \throws Error where the contact of some pair has no known duration
 Shortest shortest_contact(const GrainCase& resolved, double step) {
   Shortest shortest;
+  const LawDescription& law = describe(resolved.law);
   const auto masses = masses_of_kinds(resolved);
   const auto agility = agility_of_kinds(resolved);
   for (int a = 0; a < resolved.kind_count(); ++a) {
@@ -80,13 +81,13 @@ Shortest shortest_contact(const GrainCase& resolved, double step) {
         bad_input("time_step = \"auto\" with dimensionless_stiffness", "the step is what makes the stiffness",
                   "Give time_step = ... in s, or another stiffness");
       }
-      // exact_flow: omega dt = 1 by default, whatever the damping; else by the faster of the two rates of decay
+      // simultaneous laws: omega dt = 1 by default, whatever the damping; else by the faster of the two rates of decay
       const double haste = zeta > 1 ? zeta + std::sqrt(zeta * zeta - 1) : 1;
-      if (resolved.law == NormalLaw::hertz_dashpot) {
+      if (law.spring_power != 1) {
         if (pair.closing_speed == 0) {
           if (step > 0) return Shortest{.duration = 0, .any = true};
-          bad_input("time_step = \"auto\" of hertz_dashpot without closing_speed",
-                    "a Hertz contact lasts the shorter the faster it is",
+          bad_input(fmt::format("time_step = \"auto\" of {} without closing_speed", law.name),
+                    "a contact of this law lasts the shorter the faster it is",
                     "Add closing_speed = ... in m/s to [collisions], or give time_step = ... in s");
         }
         double length = resolved.reference_length;
@@ -94,10 +95,10 @@ Shortest shortest_contact(const GrainCase& resolved, double step) {
           for (const Grain& grain : resolved.grains) length = std::max(length, 2 * grain.radius);
         const double k = properties.stiffness > 0
                              ? properties.stiffness
-                             : properties.dimensionless * reduced->smallest / (step * step * std::sqrt(length));
-        const HertzImpact impact = hertz_impact(k, reduced->smallest, pair.closing_speed);
+                             : properties.dimensionless * reduced->smallest / (step * step * law.length_factor(length));
+        const ElasticImpact impact = law.elastic_impact(k, reduced->smallest, pair.closing_speed);
         duration = impact.duration / faster;
-        omega = faster * std::sqrt(1.5 * k * std::sqrt(impact.overlap) / reduced->smallest);
+        omega = faster * std::sqrt(law.spring_power * k * law.length_factor(impact.overlap) / reduced->smallest);
       } else {
         const double still = damping_ratio(resolved.law, properties);
         omega = faster * (pair.duration > 0          ? pi / (pair.duration * std::sqrt(1 - still * still))
@@ -105,7 +106,7 @@ Shortest shortest_contact(const GrainCase& resolved, double step) {
                                                      : std::sqrt(properties.dimensionless) / step);
         duration = pi / (omega * swing);
       }
-      const double detail = resolved.law == NormalLaw::exact_flow ? pi / omega : duration / haste;
+      const double detail = law.kind == LawKind::simultaneous ? pi / omega : duration / haste;
       if (detail < shortest.detail) {
         shortest = {.duration = duration, .detail = detail, .omega = omega, .zeta = zeta, .a = a, .b = b, .any = true};
       }
@@ -123,9 +124,9 @@ void limit_by_bonds(const GrainCase& resolved, GrainStep& result) {
     check_bonds(build_grain_scene(resolved, result.step), grain_options(resolved, result.step));
   } catch (const Error& error) {
     const char* table = resolved.document.find("bonds") != nullptr ? "bonds" : "bond";
-    throw error.at(resolved.where(resolved.law == NormalLaw::exact_flow ? "collisions.law"
-                                  : result.step >= limit                ? "run.time_step"
-                                                                        : table));
+    throw error.at(resolved.where(is_simultaneous(resolved.law) ? "collisions.law"
+                                  : result.step >= limit        ? "run.time_step"
+                                                                : table));
   }
 }
 
@@ -151,13 +152,8 @@ GrainStep choose_grain_step(const GrainCase& resolved) {
   result.between = fmt::format("{} and {}", resolved.kinds[static_cast<std::size_t>(shortest.a)],
                                resolved.kinds[static_cast<std::size_t>(shortest.b)]);
   result.omega_step = shortest.omega * result.step;
-  // hertz_dashpot: the dashpot 2 zeta sqrt(5/4 m k) d^(1/4) over the critical one of the tangent stiffness 3/2 k
-  // d^(1/2)
-  const double zeta = resolved.law == NormalLaw::hertz_dashpot ? std::sqrt(5.0 / 6) * shortest.zeta : shortest.zeta;
-  const bool has_limit = resolved.law == NormalLaw::linear_dashpot || resolved.law == NormalLaw::hertz_dashpot;
-  if (has_limit) result.limit = 2 / (std::sqrt(1 + zeta * zeta) + zeta);
-  if (is_map(resolved.law)) result.limit = 1;
-  if (has_limit && result.omega_step > result.limit) {
+  result.limit = describe(resolved.law).stable_step(shortest.zeta);
+  if (gives_force(resolved.law) && result.omega_step > result.limit) {
     throw Error(ErrorKind::bad_input,
                 fmt::format("the step of {:.6g} s is {:.4g} times the limit of stability of a contact of {}",
                             result.step, result.omega_step / result.limit, result.between),

@@ -73,13 +73,21 @@ double hertz_stiffness_on_rigid_wall(double young, double poisson, double radius
   return 4.0 / 3 / compliance(young, poisson) * std::sqrt(positive(radius, "radius", "m"));
 }
 
-HertzImpact hertz_impact(double stiffness, double reduced_mass, double speed) {
+ElasticImpact linear_impact(double stiffness, double reduced_mass, double speed) {
+  positive(stiffness, "stiffness", "N/m");
+  positive(reduced_mass, "reduced mass", "kg");
+  positive(speed, "closing speed", "m/s");
+  const double frequency = std::sqrt(stiffness / reduced_mass);
+  return {speed / frequency, stiffness * (speed / frequency), std::numbers::pi / frequency};
+}
+
+ElasticImpact hertz_impact(double stiffness, double reduced_mass, double speed) {
   positive(stiffness, "stiffness", "N/m^(3/2)");
   positive(reduced_mass, "reduced mass", "kg");
   positive(speed, "closing speed", "m/s");
   // twice the integral of 1/sqrt(1 - x^(5/2)) over 0..1
   static const double passage = 0.8 * std::sqrt(std::numbers::pi) * std::tgamma(0.4) / std::tgamma(0.9);
-  HertzImpact impact;
+  ElasticImpact impact;
   impact.overlap = std::pow(1.25 * reduced_mass * speed * speed / stiffness, 0.4);
   impact.force = stiffness * impact.overlap * std::sqrt(impact.overlap);
   impact.duration = passage * impact.overlap / speed;

@@ -27,14 +27,20 @@ double hertz_stiffness(double young_i, double poisson_i, double radius_i, double
 /// The same against a rigid flat wall: R* = radius, 1/E* = (1 - nu²)/E.
 double hertz_stiffness_on_rigid_wall(double young, double poisson, double radius);
 
-/// Elastic impact of Hertz springs.
-struct HertzImpact {
-  double overlap = 0;   ///< largest, m: (5 m v²/(4 k))^(2/5)
+/// Elastic impact of two bodies without gravity.
+struct ElasticImpact {
+  double overlap = 0;   ///< largest, m
   double force = 0;     ///< largest, N
-  double duration = 0;  ///< s: (4/5) sqrt(pi) Gamma(2/5)/Gamma(9/10) overlap/v = 2.9433 overlap/v
+  double duration = 0;  ///< s
 };
+/// Of linear springs: overlap v/w, duration pi/w, w = sqrt(k/m).
+/// \param stiffness k of F = k overlap, N/m
+/// \param speed closing, m/s
+ElasticImpact linear_impact(double stiffness, double reduced_mass, double speed);
+/// Of Hertz springs: overlap (5 m v²/(4 k))^(2/5), duration (4/5) sqrt(pi) Gamma(2/5)/Gamma(9/10) overlap/v =
+/// 2.9433 overlap/v.
 /// \param stiffness k of F = k overlap^(3/2), N/m^(3/2)
 /// \param speed closing, m/s
-HertzImpact hertz_impact(double stiffness, double reduced_mass, double speed);
+ElasticImpact hertz_impact(double stiffness, double reduced_mass, double speed);
 
 }  // namespace equidem

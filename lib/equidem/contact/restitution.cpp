@@ -16,11 +16,7 @@ using std::numbers::pi;
 
 /// -ln e, +0 at e = 1.
 double logarithmic_loss(double restitution) {
-  if (!(restitution >= 0 && restitution <= 1)) {
-    bad_input(fmt::format("the coefficient of restitution is {:.6g}", restitution),
-              "it is the ratio of two speeds, at most 1 where no energy is added", "Give a number from 0 to 1");
-  }
-  return 0 - std::log(restitution);
+  return 0 - std::log(checked_restitution(restitution));
 }
 
 /// zeta of exp(-pi zeta/sqrt(1 - zeta²)) = exp(-loss); written so that loss = infinity gives 1.
@@ -45,6 +41,14 @@ double damping_at_zero_force(double loss) {
 }
 
 }  // namespace
+
+double checked_restitution(double restitution) {
+  if (!(restitution >= 0 && restitution <= 1)) {
+    bad_input(fmt::format("the coefficient of restitution is {:.6g}", restitution),
+              "it is the ratio of two speeds, at most 1 where no energy is added", "Give a number from 0 to 1");
+  }
+  return restitution;
+}
 
 double contact_phase_of(double damping_ratio, ContactEnd end) {
   const double zeta = damping_ratio;

@@ -35,6 +35,10 @@ double restitution_of(double damping_ratio, ContactEnd end);
 ///         infinite dashpot)
 double damping_ratio_of(double restitution, ContactEnd end);
 
+/// \return the restitution
+/// \throws Error (bad_input) where it is outside [0, 1]
+double checked_restitution(double restitution);
+
 /// alpha of a Hertz spring k d^(3/2) with the dashpot alpha sqrt(m k) d^(1/4) (Tanaka): sqrt(5) damping_ratio_of(e,
 /// end), exact for either end, because velocity against d^(5/4) is that of a linear spring and dashpot with zeta =
 /// alpha/sqrt(5). At zero overlap it is the paper's -sqrt(5) ln e/sqrt(pi² + ln² e), sqrt(5) at e = 0.

@@ -29,18 +29,14 @@ double GrainSimulation::Implementation::kinetic() const {
 }
 
 std::pair<double, double> GrainSimulation::Implementation::elastic() const {
-  // a map or exact_flow counts the spring from its first step on; a force is there wherever bodies overlap
-  const bool holds_from_first_step = !collide || is_map(system.options.law);
+  // a force acts wherever bodies overlap; other laws count the spring from the first step of the contact on
+  const bool holds_from_first_step = !gives_force(system.options.law);
   auto [normal, tangential] = elastic_of_near_pairs(system);
   const auto add = [&, &normal = normal, &tangential = tangential](const Candidate& candidate, double overlap) {
     tangential += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
     if (holds_from_first_step && (!candidate.touching || candidate.parted)) return;
     if (!(overlap > 0)) return;
-    if (system.options.law == NormalLaw::hertz_dashpot) {
-      normal += 0.4 * candidate.stiffness * overlap * overlap * std::sqrt(overlap);
-    } else {
-      normal += 0.5 * candidate.stiffness * overlap * overlap;
-    }
+    normal += system.law().energy(candidate.stiffness, overlap);
   };
   for (const NearParts::List& list : system.near_parts.lists) {
     for (std::size_t p = 0; p < list.count; ++p) {

@@ -51,30 +51,26 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   self.bond_limit = bond_step_limit(scene, options.bond_step);
   system.friction =
       std::any_of(scene.pairs.begin(), scene.pairs.end(), [](const PairProperties& pair) { return pair.friction > 0; });
-  double largest = 0;
   system.smallest_radius = std::numeric_limits<double>::infinity();
   double fastest = 0;
   for (const Grain& grain : scene.grains) {
-    largest = std::max(largest, grain.radius);
     system.smallest_radius = std::min(system.smallest_radius, grain.radius);
     fastest = std::max(
         fastest, norm(grain.velocity) + (grain.shape() == GrainShape::disc ? 0 : std::abs(grain.spin) * grain.radius));
   }
-  system.length = options.reference_length > 0 ? options.reference_length : 2 * largest;
+  system.length = reference_length(scene, options);
   double smallest_size = system.smallest_radius;
   for (const GrainPart& part : system.parts) {
     smallest_size = std::min(smallest_size, part.size);
     system.smallest_radius = std::min(system.smallest_radius, part.b);
   }
   system.next = system.motions;
-  if (!system.parts.empty()) {
-    self.collide = collide_parts_function(options.law, system.friction);
-  } else if (options.law != NormalLaw::exact_flow) {
-    self.collide = collide_function(options.law, system.friction);
-  }
+  self.collide = system.parts.empty() ? collide_function(options.law, system.friction)
+                                      : collide_parts_function(options.law, system.friction);
+  self.flow = flow_function(options.law);
   if (self.collide && system.friction) system.pushes_before.resize(system.pushes.size());
-  if (!self.collide || is_map(options.law)) system.moments.resize(system.pushes.size());
-  find_strengths(system);
+  if (!gives_force(options.law)) system.moments.resize(system.pushes.size());
+  find_dissipations(system);
   place_walls(system);
   prepare_near_pairs(system);
   pack_bonds(system);
@@ -114,7 +110,7 @@ void GrainSimulation::Implementation::push() {
 
 void GrainSimulation::Implementation::make_step() {
   if (!verlet()) system.deepest = 0;  // verlet has found the overlaps at the end of the last step
-  if (!collide) {
+  if (flow) {
     flow(system);
   } else {
     if (verlet()) {

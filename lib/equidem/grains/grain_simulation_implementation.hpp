@@ -3,6 +3,7 @@
 /// The parts of a GrainSimulation.
 #pragma once
 
+#include "equidem/grains/contacts/flow_step.hpp"
 #include "equidem/grains/contacts/force_step.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/grain_system.hpp"
@@ -12,7 +13,8 @@ namespace equidem {
 struct GrainSimulation::Implementation {
   GrainSystem system;
   Effects effects;
-  CollideFunction collide = nullptr;  ///< none: exact_flow
+  CollideFunction collide = nullptr;  ///< force laws and maps
+  FlowFunction flow = nullptr;        ///< simultaneous laws
   double potential_at_start = 0, energy_at_start = 0;
   double bond_limit = 0;  ///< step that bonds impose, s
   GrainState kept;        ///< a state not long ago, to come back to

@@ -49,8 +49,9 @@ struct Candidate {
   bool covered = false;     // with the end of a wall, where another wall goes on: does nothing (wall_joints.hpp)
   int mode = 0;
   double reduced_mass = 0;
-  double a = 0;         // dimensionless stiffness
-  double strength = 0;  // zeta, alpha or the restitution, by the law
+  double a = 0;  // dimensionless stiffness
+  /// Force laws: dashpot coefficient over m/dt, Law::dissipation sqrt(a); others: Law::dissipation.
+  double dissipation = 0;
   std::int64_t steps = 0;
   // of the last step
   double overlap = 0, closing = 0;
@@ -75,8 +76,8 @@ struct WallPlace {
 struct GrainSystem {
   GrainScene scene;  ///< walls and grains in the order of their places
   GrainOptions options;
-  double length = 0;              ///< d_c
-  std::vector<double> strengths;  ///< of scene.pairs
+  double length = 0;                 ///< d_c
+  std::vector<double> dissipations;  ///< Law::dissipation of scene.pairs
   bool friction = false;
   std::vector<std::size_t> grain_of, wall_of;  ///< caller's number of the k-th
   std::vector<std::int32_t> place_of_grain, place_of_wall;
@@ -118,6 +119,7 @@ struct GrainSystem {
   GrainLedger lost;            ///< losses and work since the start
   GrainCounters counters;
 
+  [[nodiscard]] const LawDescription& law() const { return describe(options.law); }
   [[nodiscard]] double dt() const { return options.time_step; }
   [[nodiscard]] double time() const { return static_cast<double>(step) * options.time_step; }
   [[nodiscard]] const PairProperties& properties(const Candidate& candidate) const {
@@ -125,13 +127,19 @@ struct GrainSystem {
                                        : scene.walls[static_cast<std::size_t>(~candidate.j)].kind;
     return scene.between(bodies[static_cast<std::size_t>(candidate.i)].kind, other);
   }
+  [[nodiscard]] double dissipation(const Candidate& candidate) const {
+    return dissipations[static_cast<std::size_t>(&properties(candidate) - scene.pairs.data())];
+  }
 };
 
 /// Put grains and walls in the order of their places, so that the caller's order changes no bit.
 void order_by_place(GrainSystem& system, const GrainScene& scene);
 
-/// Restitution, zeta or alpha of the pairs of kinds, by the law.
-void find_strengths(GrainSystem& system);
+/// Law::dissipation of the pairs of kinds.
+void find_dissipations(GrainSystem& system);
+
+/// Coefficient of the normal dashpot of a pair under a force law: Law::dissipation sqrt(k m).
+double dashpot_of(const GrainSystem& system, const Candidate& candidate);
 
 /// Fill in what the law needs of a pair.
 void set_constants(const GrainSystem& system, Candidate& candidate);

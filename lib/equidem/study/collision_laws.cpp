@@ -20,7 +20,7 @@ struct Law {
   double a;  ///< dimensionless stiffness of section 5.1, as Table 2 gives it away
   const char* name;
 };
-constexpr Law laws[] = {
+constexpr Law compared[] = {
     {NormalLaw::linear_dashpot, 0.10, "C linear_dashpot"},  {NormalLaw::hertz_dashpot, 4.62, "T hertz_dashpot"},
     {NormalLaw::five_case_map, 0.10, "F five_case_map"},    {NormalLaw::energy_map, 0.10, "P energy_map"},
     {NormalLaw::exact_flow, 0.10, "X exact_flow, a = 0.1"}, {NormalLaw::exact_flow, 4, "X exact_flow, a = 4"}};
@@ -133,7 +133,7 @@ Study collision_laws_study(bool quick) {
                               .label = "relative error of the parting time T0",
                               .source = "integral (30) of Fujioka & Ushijima (2005), its singular end included"}},
               .tasks = {}};
-  for (const Law& law : laws) {
+  for (const Law& law : compared) {
     for (int k = 8; k <= (quick ? 16 : 18); ++k) study.tasks.push_back(one_impact(law, watched / std::pow(2.0, k - 3)));
     for (int k = 12; k <= (quick ? 18 : 22); ++k)
       study.tasks.push_back(stacked_spheres(law, std::pow(10.0, -0.25 * k)));

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "equidem/contact/collision_laws.hpp"
 #include "equidem/contact/exact_contact.hpp"
+#include "equidem/contact/laws/normal_law.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
@@ -26,23 +26,15 @@ struct State {
   bool first;
 };
 
-struct LinearDashpot {
-  double zeta = damping_ratio_of(restitution, ContactEnd::at_zero_overlap);
-  ContactStep operator()(const State& s) const { return linear_dashpot_step(s.depth, s.closing, 0.1, zeta, true); }
+template <class Law>
+struct Force {
+  double a;
+  double c = Law::dissipation(restitution, ContactEnd::at_zero_overlap) * std::sqrt(a);
+  ContactStep operator()(const State& s) const { return force_step<Law>(s.depth, s.closing, a, c, true); }
 };
-struct HertzDashpot {
-  double alpha = hertz_damping_of(restitution);
-  ContactStep operator()(const State& s) const { return hertz_dashpot_step(s.depth, s.closing, 4.62, alpha, true); }
-};
-struct FiveCaseMap {
-  ContactStep operator()(const State& s) const {
-    return five_case_map_step(s.depth, s.closing, 0.1, restitution, s.first);
-  }
-};
-struct EnergyMap {
-  ContactStep operator()(const State& s) const {
-    return energy_map_step(s.depth, s.closing, 0.1, restitution, s.first);
-  }
+template <class Law>
+struct Map {
+  ContactStep operator()(const State& s) const { return Law::step(s.depth, s.closing, 0.1, restitution, s.first); }
 };
 /// In units of reduced mass, step and d_c.
 struct ExactFlow {
@@ -116,10 +108,10 @@ std::string text(const Range& range, const char* digits) {
 std::string compare_laws(int impacts, int rounds) {
   std::vector<Entry> entries;
   std::vector<double> sizes;
-  add(entries, sizes, "C", LinearDashpot{}, impacts);
-  add(entries, sizes, "T", HertzDashpot{}, impacts);
-  add(entries, sizes, "F", FiveCaseMap{}, impacts);
-  add(entries, sizes, "P", EnergyMap{}, impacts);
+  add(entries, sizes, "C", Force<laws::LinearDashpot>{0.1}, impacts);
+  add(entries, sizes, "T", Force<laws::HertzDashpot>{4.62}, impacts);
+  add(entries, sizes, "F", Map<laws::FiveCaseMap>{}, impacts);
+  add(entries, sizes, "P", Map<laws::EnergyMap>{}, impacts);
   add(entries, sizes, "X", ExactFlow(0.1), impacts);
   add(entries, sizes, "X, a = 4", ExactFlow(4), impacts);
   add(entries, sizes, "X, a = 1000", ExactFlow(1000), impacts);

@@ -116,14 +116,14 @@ std::string describe_bodies(const GrainCase& resolved) {
 std::string describe_pair(const GrainCase& resolved, const PairCase& pair) {
   const PairProperties& p = pair.properties;
   std::string text = fmt::format("restitution {}", p.restitution);
-  if (!is_map(resolved.law) && p.restitution < 1)
+  if (describe(resolved.law).has_dashpot && p.restitution < 1)
     text += p.end == ContactEnd::at_zero_force ? " (never pulls)" : " (may pull at the end)";
   if (pair.duration > 0) {
     text += fmt::format(", contacts of {:.6g} s", pair.duration);
   } else if (p.dimensionless > 0) {
     text += fmt::format(", k dt²/m = {:.6g}", p.dimensionless);
   } else {
-    text += fmt::format(", k = {:.6g} N/m{}", p.stiffness, resolved.law == NormalLaw::hertz_dashpot ? "^1.5" : "");
+    text += fmt::format(", k = {:.6g} {}", p.stiffness, describe(resolved.law).stiffness_unit);
   }
   if (p.friction == 0) return text + ", no friction";
   text += fmt::format(", friction {}, kT/kN {:.6g}", p.friction, p.tangential_ratio);
@@ -161,26 +161,14 @@ std::string describe_pairs(const GrainCase& resolved) {
 }
 
 std::string describe_law(const GrainCase& resolved) {
-  const std::string letter = letter_of(resolved.law);
-  const std::string name = fmt::format("{} ({})", to_string(resolved.law), letter);
-  switch (resolved.law) {
-    case NormalLaw::exact_flow:
-      return name + ": linear spring and dashpot solved exactly within the step, all contacts together";
-    case NormalLaw::linear_dashpot:
-    case NormalLaw::hertz_dashpot:
-      return fmt::format("{}: {} spring and dashpot, {}", name,
-                         resolved.law == NormalLaw::linear_dashpot ? "linear" : "Hertz",
-                         resolved.scheme == GrainOptions::Scheme::semi_implicit_euler ? "semi-implicit Euler"
-                         : resolved.scheme == GrainOptions::Scheme::velocity_verlet
-                             ? "velocity Verlet"
-                             : "velocity Verlet, contacts that begin or end within a step corrected");
-    case NormalLaw::five_case_map:
-      return name + ": restitution at the first step of a contact, energy kept after it";
-    case NormalLaw::energy_map:
-      return name +
-             ": restitution at the first step of a contact, corrected to its true beginning; energy kept after it";
-  }
-  return name;
+  const LawDescription& law = describe(resolved.law);
+  const std::string text = fmt::format("{} ({}): {}", law.name, law.letter, law.summary);
+  if (law.kind != LawKind::force) return text;
+  return fmt::format("{}, {}", text,
+                     resolved.scheme == GrainOptions::Scheme::semi_implicit_euler ? "semi-implicit Euler"
+                     : resolved.scheme == GrainOptions::Scheme::velocity_verlet
+                         ? "velocity Verlet"
+                         : "velocity Verlet, contacts that begin or end within a step corrected");
 }
 
 /// A map turns the approach of two bodies round as if nothing else acted on them: summed at one body, that is too much.
@@ -202,8 +190,7 @@ std::string advice_on_balance(const GrainSetup& setup, const GrainSimulation& si
         std::abs(ledger.error()), energy_unit(resolved.body),
         ledger.error() > 0 ? "came from nothing" : "vanished uncounted");
   }
-  const bool euler =
-      resolved.law != NormalLaw::exact_flow && resolved.scheme == GrainOptions::Scheme::semi_implicit_euler;
+  const bool euler = gives_force(resolved.law) && resolved.scheme == GrainOptions::Scheme::semi_implicit_euler;
   if (euler && !simulation.effects().tangential_springs && ledger.lost_slip > std::abs(ledger.error())) {
     return "contacts without tangential springs that nearly stick count too large a loss by slip in "
            "semi_implicit_euler; take velocity_verlet, or a tangential_ratio above 0";
@@ -219,8 +206,8 @@ std::string describe_step(const GrainSetup& setup) {
                                        step.steps_in_contact(), step.between));
   } else {
     out += report_line("", "how long contacts last is not known: " +
-                               std::string(setup.resolved.law == NormalLaw::hertz_dashpot
-                                               ? "that of a Hertz spring depends on the speed (closing_speed says it)"
+                               std::string(describe(setup.resolved.law).spring_power != 1
+                                               ? "with this law it depends on the speed (give closing_speed)"
                                                : "no two bodies can meet"));
   }
   if (step.omega_step > 0 && step.limit > 0) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "equidem/contact/exact_contact.hpp"
+#include "equidem/contact/laws/visit.hpp"
 
 #include "fujioka2005/fujioka2005.hpp"
 
@@ -18,24 +18,21 @@ struct Sample {
   double depth, closing;
 };
 
-/// One step of the law, dimensionless.
-template <NormalLaw law>
-ContactStep step_of(const Variant& variant, double strength, const Sample& at) {
-  if constexpr (law == NormalLaw::linear_dashpot) {
-    return linear_dashpot_step(at.depth, at.closing, variant.a, strength, true);
-  } else if constexpr (law == NormalLaw::hertz_dashpot) {
-    return hertz_dashpot_step(at.depth, at.closing, variant.a, strength, true);
-  } else if constexpr (law == NormalLaw::five_case_map) {
-    return five_case_map_step(at.depth, at.closing, variant.a, strength);
-  } else {
-    return energy_map_step(at.depth, at.closing, variant.a, strength);
-  }
+/// What the law loses energy by: the restitution of maps, the dimensionless dashpot coefficient of forces.
+template <class Law>
+double dissipation_of(const Variant& variant) {
+  const double dissipation = Law::dissipation(restitution, ContactEnd::at_zero_overlap);
+  return Law::kind == LawKind::map ? dissipation : dissipation * std::sqrt(variant.a);
 }
 
-double strength_of(NormalLaw law) {
-  if (law == NormalLaw::linear_dashpot) return damping_ratio_of(restitution, ContactEnd::at_zero_overlap);
-  if (law == NormalLaw::hertz_dashpot) return hertz_damping_of(restitution);
-  return restitution;
+/// One step of the law, dimensionless.
+template <class Law>
+ContactStep step_of(const Variant& variant, double dissipation, const Sample& at) {
+  if constexpr (Law::kind == LawKind::force) {
+    return force_step<Law>(at.depth, at.closing, variant.a, dissipation, true);
+  } else {
+    return Law::step(at.depth, at.closing, variant.a, dissipation, at.closing >= at.depth);
+  }
 }
 
 constexpr std::size_t sample_count = 4096;
@@ -45,15 +42,15 @@ double phase_of(std::size_t k) {
 }
 
 /// States that impacts of all phases go through.
-template <NormalLaw law>
+template <class Law>
 std::vector<Sample> samples_of(const Variant& variant) {
   std::vector<Sample> samples;
-  const double strength = strength_of(law);
+  const double dissipation = dissipation_of<Law>(variant);
   for (std::size_t impact = 0; samples.size() < sample_count; ++impact) {
     Sample at{std::max(1e-6, phase_of(impact)) * sample_closing, sample_closing};
     while (at.depth > 0) {
       samples.push_back(at);
-      const ContactStep step = step_of<law>(variant, strength, at);
+      const ContactStep step = step_of<Law>(variant, dissipation, at);
       at.closing += step.change;
       at.depth += step.shift + at.closing;
     }
@@ -74,11 +71,11 @@ double nanoseconds(int repeats, Evaluate evaluate) {
   return std::isfinite(sum) ? seconds * 1e9 / (repeats * static_cast<double>(sample_count)) : never;
 }
 
-template <NormalLaw law>
+template <class Law>
 double nanoseconds_of(const Variant& variant) {
-  const std::vector<Sample> samples = samples_of<law>(variant);
-  const double strength = strength_of(law);
-  return nanoseconds(20, [&](std::size_t k) { return step_of<law>(variant, strength, samples[k]).change; });
+  const std::vector<Sample> samples = samples_of<Law>(variant);
+  const double dissipation = dissipation_of<Law>(variant);
+  return nanoseconds(20, [&](std::size_t k) { return step_of<Law>(variant, dissipation, samples[k]).change; });
 }
 
 /// Unit mass and step; gravity as an outside acceleration of a thousandth of the closing speed.
@@ -108,31 +105,26 @@ double nanoseconds_of_exact(const Variant& variant) {
 }
 
 double evaluation_nanoseconds(const Variant& variant) {
-  switch (variant.law) {
-    case NormalLaw::linear_dashpot:
-      return nanoseconds_of<NormalLaw::linear_dashpot>(variant);
-    case NormalLaw::hertz_dashpot:
-      return nanoseconds_of<NormalLaw::hertz_dashpot>(variant);
-    case NormalLaw::five_case_map:
-      return nanoseconds_of<NormalLaw::five_case_map>(variant);
-    case NormalLaw::energy_map:
-      return nanoseconds_of<NormalLaw::energy_map>(variant);
-    default:
+  return visit_law(variant.law, [&]<class Law>(std::type_identity<Law>) {
+    if constexpr (Law::kind == LawKind::simultaneous) {
       return nanoseconds_of_exact(variant);
-  }
+    } else {
+      return nanoseconds_of<Law>(variant);
+    }
+  });
 }
 
 /// The paper's run by a plain loop that adds gravity before the contact force.
-template <NormalLaw law>
+template <class Law>
 std::int64_t evaluations_with_gravity_first(const Variant& variant, double step, std::int64_t steps) {
-  const double strength = strength_of(law), fall = gravity * step * step / diameter;
+  const double dissipation = dissipation_of<Law>(variant), fall = gravity * step * step / diameter;
   Sample at{-drop, 0};
   std::int64_t count = 0;
   for (std::int64_t n = 0; n < steps; ++n) {
     at.closing += fall;
     if (at.depth > 0) {
       ++count;
-      const ContactStep change = step_of<law>(variant, strength, at);
+      const ContactStep change = step_of<Law>(variant, dissipation, at);
       at.closing += change.change;
       at.depth += change.shift;
     }
@@ -142,18 +134,13 @@ std::int64_t evaluations_with_gravity_first(const Variant& variant, double step,
 }
 
 std::int64_t gravity_first(const Variant& variant, double step, std::int64_t steps) {
-  switch (variant.law) {
-    case NormalLaw::linear_dashpot:
-      return evaluations_with_gravity_first<NormalLaw::linear_dashpot>(variant, step, steps);
-    case NormalLaw::hertz_dashpot:
-      return evaluations_with_gravity_first<NormalLaw::hertz_dashpot>(variant, step, steps);
-    case NormalLaw::five_case_map:
-      return evaluations_with_gravity_first<NormalLaw::five_case_map>(variant, step, steps);
-    case NormalLaw::energy_map:
-      return evaluations_with_gravity_first<NormalLaw::energy_map>(variant, step, steps);
-    default:
+  return visit_law(variant.law, [&]<class Law>(std::type_identity<Law>) -> std::int64_t {
+    if constexpr (Law::kind == LawKind::simultaneous) {
       return 0;
-  }
+    } else {
+      return evaluations_with_gravity_first<Law>(variant, step, steps);
+    }
+  });
 }
 
 /// 16 balls side by side, apart.

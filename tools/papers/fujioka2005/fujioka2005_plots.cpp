@@ -21,18 +21,14 @@ struct Look {
 
 /// One look for each law in all figures.
 Look look_of(const Variant& variant) {
-  switch (variant.law) {
-    case NormalLaw::linear_dashpot:
-      return {PlotColour::orange, Marker::square, true};
-    case NormalLaw::hertz_dashpot:
-      return {PlotColour::green, Marker::triangle, true};
-    case NormalLaw::five_case_map:
-      return {PlotColour::sky_blue, Marker::diamond, false};
-    case NormalLaw::energy_map:
-      return {PlotColour::blue, Marker::circle, true};
-    default:
-      return {variant.label == "X" ? PlotColour::vermilion : PlotColour::black, Marker::circle, variant.label != "X"};
-  }
+  static const std::map<NormalLaw, Look> look_of_law = {
+      {NormalLaw::linear_dashpot, {PlotColour::orange, Marker::square, true}},
+      {NormalLaw::hertz_dashpot, {PlotColour::green, Marker::triangle, true}},
+      {NormalLaw::five_case_map, {PlotColour::sky_blue, Marker::diamond, false}},
+      {NormalLaw::energy_map, {PlotColour::blue, Marker::circle, true}},
+      {NormalLaw::exact_flow, {PlotColour::vermilion, Marker::circle, false}}};
+  if (variant.label == "X stiff") return {PlotColour::black, Marker::circle, true};
+  return look_of_law.at(variant.law);
 }
 
 std::string name_of(const Variant& variant) {

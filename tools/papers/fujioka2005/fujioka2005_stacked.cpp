@@ -69,8 +69,8 @@ double seconds_of(const Variant& variant, double step) {
 /// of the old velocity along the new normal.
 Slide slide_with_closing_from_overlap(double step) {
   constexpr double r = stacked_radius;
-  const double zeta = damping_ratio_of(restitution, ContactEnd::at_zero_overlap);
   const Variant law = variants(stiff_for_x)[0];
+  const double dashpot = laws::LinearDashpot::dissipation(restitution, ContactEnd::at_zero_overlap) * std::sqrt(law.a);
   Vec2 b{r, r}, vb{};
   double c = (1 + std::sqrt(3.0)) * r, vc = 0;
   double pair_before = 0, floor_before = 0;
@@ -84,12 +84,14 @@ Slide slide_with_closing_from_overlap(double step) {
     double on_c = 0;
     if (pair > 0) {
       // of the closing speed, shared by two equal masses; C feels the mirror image of B as well
-      const double push = -0.5 * linear_dashpot_step(pair, pair - pair_before, law.a, zeta, true).change / step;
+      const double push =
+          -0.5 * force_step<laws::LinearDashpot>(pair, pair - pair_before, law.a, dashpot, true).change / step;
       change += push * normal;
       on_c = -2 * push * normal.y;
       result.parting = static_cast<double>(n) * step;
     }
-    if (floor > 0) change.y -= linear_dashpot_step(floor, floor - floor_before, law.a, zeta, true).change / step;
+    if (floor > 0)
+      change.y -= force_step<laws::LinearDashpot>(floor, floor - floor_before, law.a, dashpot, true).change / step;
     pair_before = pair;
     floor_before = floor;
     vb += change + Vec2{0, -gravity * step};

@@ -298,7 +298,7 @@ double bond_step_limit(const GrainScene& scene, GrainOptions::BondStep bond_step
 
 void check_bonds(const GrainScene& scene, const GrainOptions& options) {
   if (scene.bonds.empty()) return;
-  if (options.law == NormalLaw::exact_flow) {
+  if (is_simultaneous(options.law)) {
     bad_input(fmt::format("bonds are asked for with the law \"{}\"", to_string(options.law)),
               "it solves all contacts together and knows no bonds", "Use the law linear_dashpot");
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "equidem/contact/laws/visit.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/contacts/crossing.hpp"
@@ -108,6 +109,7 @@ double speed_of_bodies(const GrainSystem& system, const Candidate& candidate) {
 
 /// Solve one contact with all others as they stand.
 /// \return change of its impulses, relative
+template <class Law>
 double solve(GrainSystem& system, Trial& trial) {
   const Candidate& candidate = system.candidates[trial.candidate];
   const double dt = system.dt();
@@ -128,8 +130,8 @@ double solve(GrainSystem& system, Trial& trial) {
   const double closing = -slope * dot(relative, normal);
   const double a = -slope * dot(outside.velocity, normal) / dt;
   const double b = -2 * slope * dot(outside.way, normal) / (dt * dt);
-  trial.normal_step = exact_step(system.exact_pairs[trial.candidate], trial.overlap, closing, candidate.touching,
-                                 3 * b - 2 * a, 6 * (a - b) / dt);
+  trial.normal_step = Law::step(system.exact_pairs[trial.candidate], trial.overlap, closing, candidate.touching,
+                                3 * b - 2 * a, 6 * (a - b) / dt);
   trial.impulse = trial.normal_step.impulse / slope;
   trial.moment = trial.normal_step.moment / slope;
   trial.closing = closing;
@@ -201,6 +203,7 @@ struct Visit {
   std::int64_t when = 0;
 };
 
+template <class Law>
 void sweep_until_settled(GrainSystem& system, std::vector<Trial>& trials) {
   double change = 0;
   // A trial that has settled is solved again when another contact has changed what pushes its bodies: contacts that
@@ -221,7 +224,7 @@ void sweep_until_settled(GrainSystem& system, std::vector<Trial>& trials) {
       std::int64_t& on_i = pushed[static_cast<std::size_t>(visit.i)];
       std::int64_t& on_j = visit.j < 0 ? on_i : pushed[static_cast<std::size_t>(visit.j)];
       if (visit.quiet && on_i <= visit.when && on_j <= visit.when) continue;
-      const double own = solve(system, trials[t]);
+      const double own = solve<Law>(system, trials[t]);
       visit.quiet = own <= settled;
       visit.when = ++now;
       if (!visit.quiet) on_i = on_j = now;
@@ -334,8 +337,7 @@ void count_doubtful(GrainSystem& system, const std::vector<Trial>& trials) {
   }
 }
 
-}  // namespace
-
+template <class Law>
 void flow(GrainSystem& system) {
   std::vector<Trial> trials;
   double reach = 0;
@@ -346,7 +348,7 @@ void flow(GrainSystem& system) {
       move_freely(system);
     } else {
       sum_pushes(system, trials);
-      sweep_until_settled(system, trials);
+      sweep_until_settled<Law>(system, trials);
       sum_pushes(system, trials);
       move(system);
     }
@@ -357,6 +359,18 @@ void flow(GrainSystem& system) {
   if (system.options.refuse_crossing) refuse_crossings(system, reach);
   count_doubtful(system, trials);
   remember(system, trials);
+}
+
+}  // namespace
+
+FlowFunction flow_function(NormalLaw law) {
+  return visit_law(law, []<class Law>(std::type_identity<Law>) -> FlowFunction {
+    if constexpr (Law::kind == LawKind::simultaneous) {
+      return flow<Law>;
+    } else {
+      return nullptr;
+    }
+  });
 }
 
 }  // namespace equidem

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A step of exact_flow: all contacts together.
+/// A step of a simultaneous law (exact_flow): all contacts together.
 ///
 /// Each contact is solved exactly over the step (exact_contact.hpp) under an outside force that is linear in time and
 /// has the impulse and the first moment of all other forces on its two bodies; sweeps over the contacts repeat that
@@ -13,10 +13,12 @@
 
 namespace equidem {
 
-/// system.next, and what the contacts remember.
+/// The step compiled for a simultaneous law: system.next, and what the contacts remember. Null for other laws. The step
+/// throws:
 /// \throws Error (computation_failed) where sweeps do not settle or bodies would pass through one another; the contacts
 ///         remember
 ///         what they did
-void flow(GrainSystem& system);
+using FlowFunction = void (*)(GrainSystem&);
+FlowFunction flow_function(NormalLaw law);
 
 }  // namespace equidem

@@ -2,8 +2,8 @@
 #include "equidem/grains/contacts/force_step.hpp"
 
 #include <algorithm>
-#include <array>
 
+#include "equidem/contact/laws/visit.hpp"
 #include "equidem/grains/contacts/meeting.hpp"
 #include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/contacts/verlet_contact.hpp"
@@ -11,17 +11,13 @@
 namespace equidem {
 namespace {
 
-template <NormalLaw law>
+template <class Law>
 ContactStep normal_step(const Candidate& candidate, double depth, double closing) {
-  const bool first = !candidate.touching;
-  if constexpr (law == NormalLaw::linear_dashpot) {
-    return linear_dashpot_step(depth, closing, candidate.a, candidate.strength, candidate.attraction);
-  } else if constexpr (law == NormalLaw::hertz_dashpot) {
-    return hertz_dashpot_step(depth, closing, candidate.a, candidate.strength, candidate.attraction);
-  } else if constexpr (law == NormalLaw::five_case_map) {
-    return five_case_map_step(depth, closing, candidate.a, candidate.strength, first);
+  if constexpr (Law::kind == LawKind::force) {
+    return force_step<Law>(depth, closing, candidate.a, candidate.dissipation, candidate.attraction);
   } else {
-    return energy_map_step(depth, closing, candidate.a, candidate.strength, first);
+    static_assert(Law::kind == LawKind::map);
+    return Law::step(depth, closing, candidate.a, candidate.dissipation, !candidate.touching);
   }
 }
 
@@ -107,13 +103,13 @@ ContactDrift drift_of(const GrainSystem& system, const Candidate& candidate, con
 }
 
 /// By a Verlet scheme, when the pairs that are near have had their turn.
-template <NormalLaw law, bool friction>
+template <class Law, bool friction>
 void collide_candidates_by_verlet(GrainSystem& system) {
   for (Candidate& candidate : system.candidates) {
     const Meeting meeting = meeting_of(system, candidate);
     const TouchPlace place = place_of(meeting, candidate.j < 0);
     if (!(meeting.overlap > 0)) {
-      if (candidate.touching) end_contact<law>(system, candidate, place, drift_of(system, candidate, meeting));
+      if (candidate.touching) end_contact<Law>(system, candidate, place, drift_of(system, candidate, meeting));
       continue;
     }
     system.free_flight = false;
@@ -125,18 +121,19 @@ void collide_candidates_by_verlet(GrainSystem& system) {
       const double mass = tangential_mass(system, candidate, meeting);
       return SlipByOthers{gain_of_slip(system, candidate, meeting, mass), mass};
     };
-    const Vec2 impulse = step_contact<law, friction>(system, candidate, place, -dot(relative, meeting.normal),
+    const Vec2 impulse = step_contact<Law, friction>(system, candidate, place, -dot(relative, meeting.normal),
                                                      slip_velocity(system, candidate, meeting, relative),
                                                      drift_of(system, candidate, meeting), candidate.sliding, others);
     push<friction>(system, candidate, meeting, impulse, candidate.tangential_impulse);
   }
 }
 
-template <NormalLaw law, bool friction>
+template <class Law, bool friction>
 void collide_by(GrainSystem& system) {
   if constexpr (friction) system.pushes_before.swap(system.pushes);
   if (friction || !system.free_flight) std::fill(system.pushes.begin(), system.pushes.end(), Push{});
-  if (is_map(law) && !system.free_flight) std::fill(system.moments.begin(), system.moments.end(), Vec2{});
+  constexpr bool map = Law::kind == LawKind::map;
+  if (map && !system.free_flight) std::fill(system.moments.begin(), system.moments.end(), Vec2{});
   system.free_flight = true;
   if (system.near.active) {
     system.near.loop(system);
@@ -144,8 +141,8 @@ void collide_by(GrainSystem& system) {
       for (std::size_t i = 0; i < system.bodies.size(); ++i) turn_rims(system.pushes[i], system.bodies[i]);
     }
   }
-  if constexpr (!is_map(law)) {
-    if (system.options.verlet()) return collide_candidates_by_verlet<law, friction>(system);
+  if constexpr (!map) {
+    if (system.options.verlet()) return collide_candidates_by_verlet<Law, friction>(system);
   }
   const double dt = system.dt();
   const double length = system.length;
@@ -156,7 +153,7 @@ void collide_by(GrainSystem& system) {
       if (candidate.touching) let_go(system, candidate);
       continue;
     }
-    if constexpr (is_map(law)) {
+    if constexpr (map) {
       if (candidate.parted) let_go(system, candidate);
     }
     system.free_flight = false;
@@ -166,10 +163,10 @@ void collide_by(GrainSystem& system) {
     const double closing = -dot(relative, meeting.normal);
     const double depth = meeting.overlap * per_length;
     const double sigma = closing * per_speed;
-    const ContactStep step = normal_step<law>(candidate, depth, sigma);
+    const ContactStep step = normal_step<Law>(candidate, depth, sigma);
     const double unit = candidate.reduced_mass * unit_speed;
-    if constexpr (!is_map(law))
-      system.lost.lost_dashpot += dashpot_heat<law>(candidate, step, depth, closing, unit, unit_speed);
+    if constexpr (!map)
+      system.lost.lost_dashpot += dashpot_heat<Law>(candidate, step, depth, closing, unit, unit_speed);
     candidate.touching = true;
     ++candidate.steps;
     candidate.mode = step.mode;
@@ -179,7 +176,7 @@ void collide_by(GrainSystem& system) {
     candidate.normal = meeting.normal;
     candidate.impulse = -step.change * unit;
     Vec2 impulse = candidate.impulse * meeting.normal;
-    if constexpr (is_map(law)) {
+    if constexpr (map) {
       candidate.parted = depth + step.shift + sigma + step.change <= 0;
       system.lost.lost_restitution += step.loss * unit * unit_speed;
       if (step.shift != 0) shift(system, candidate, (step.shift * length * candidate.reduced_mass) * meeting.normal);
@@ -195,24 +192,16 @@ void collide_by(GrainSystem& system) {
   }
 }
 
-template <NormalLaw law>
-CollideFunction choose(bool friction) {
-  return friction ? collide_by<law, true> : collide_by<law, false>;
-}
-
 }  // namespace
 
 CollideFunction collide_function(NormalLaw law, bool friction) {
-  switch (law) {
-    case NormalLaw::linear_dashpot:
-      return choose<NormalLaw::linear_dashpot>(friction);
-    case NormalLaw::hertz_dashpot:
-      return choose<NormalLaw::hertz_dashpot>(friction);
-    case NormalLaw::five_case_map:
-      return choose<NormalLaw::five_case_map>(friction);
-    default:
-      return choose<NormalLaw::energy_map>(friction);
-  }
+  return visit_law(law, [&]<class Law>(std::type_identity<Law>) -> CollideFunction {
+    if constexpr (Law::kind == LawKind::simultaneous) {
+      return nullptr;
+    } else {
+      return friction ? collide_by<Law, true> : collide_by<Law, false>;
+    }
+  });
 }
 
 void move_by_euler(GrainSystem& system) {

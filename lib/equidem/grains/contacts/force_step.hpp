@@ -11,8 +11,8 @@ namespace equidem {
 
 using CollideFunction = void (*)(GrainSystem&);
 
-/// The loop over contacts compiled for a law, with or without friction: pushes of this step from positions and
-/// velocities.
+/// The loop over contacts compiled for a force law or a map, with or without friction: pushes of this step from
+/// positions and velocities. Null for a simultaneous law.
 CollideFunction collide_function(NormalLaw law, bool friction);
 
 /// What the dashpot of a contact takes in a step, J, and where attraction is cut what the spring loses: its force at
@@ -21,10 +21,10 @@ CollideFunction collide_function(NormalLaw law, bool friction);
 /// \param depth, unit, unit_speed overlap over the length, and the units of step.change as impulse and as speed
 /// \param eccentric the reduced mass over that of the contact points along the normal: 1 where the normal passes
 ///         through both centres
-template <NormalLaw law>
+template <class Law>
 double dashpot_heat(const Candidate& candidate, const ContactStep& step, double depth, double closing, double unit,
                     double unit_speed, double eccentric = 1) {
-  const double spring = -candidate.a * depth * (law == NormalLaw::hertz_dashpot ? std::sqrt(depth) : 1.0);
+  const double spring = -Law::spring(candidate.a, depth);
   const double by_others =
       candidate.steps > 0 ? closing - candidate.closing + eccentric * candidate.impulse / candidate.reduced_mass : 0;
   return (spring - step.change) * unit * (closing + 0.5 * (eccentric * step.change * unit_speed + by_others));

@@ -2,9 +2,9 @@
 #include "equidem/grains/contacts/part_step.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
+#include "equidem/contact/laws/visit.hpp"
 #include "equidem/grains/contacts/force_step.hpp"
 #include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/contacts/part_meeting.hpp"
@@ -136,7 +136,7 @@ ContactDrift drift_of(const GrainSystem& system, const Candidate& candidate, con
   }
 }
 
-template <NormalLaw law, bool friction>
+template <class Law, bool friction>
 void collide_parts(GrainSystem& system) {
   load_part_bodies(system);
   if constexpr (friction) system.pushes_before.swap(system.pushes);
@@ -161,7 +161,7 @@ void collide_parts(GrainSystem& system) {
       if (!candidate.touching) continue;
       if (verlet) {
         const TouchPlace place = place_before(candidate, pair);
-        end_contact<law>(system, candidate, place, drift_of(system, candidate, place, place));
+        end_contact<Law>(system, candidate, place, drift_of(system, candidate, place, place));
       } else {
         let_go(system, candidate);
       }
@@ -184,18 +184,17 @@ void collide_parts(GrainSystem& system) {
         return SlipByOthers{gain_of_slip(system, contact, mass), mass};
       };
       push(system, contact,
-           step_contact<law, friction>(system, candidate, place, -dot(relative, meeting.normal),
+           step_contact<Law, friction>(system, candidate, place, -dot(relative, meeting.normal),
                                        dot(relative, contact.tangent()), drift, sliding_of(candidate, pair, contact),
                                        others));
       continue;
     }
     const double closing = -dot(relative, meeting.normal);
     const double depth = meeting.overlap * per_length, sigma = closing * per_speed;
-    const auto normal_step = law == NormalLaw::hertz_dashpot ? hertz_dashpot_step : linear_dashpot_step;
-    const ContactStep step = normal_step(depth, sigma, candidate.a, candidate.strength, candidate.attraction);
+    const ContactStep step = force_step<Law>(depth, sigma, candidate.a, candidate.dissipation, candidate.attraction);
     const double unit = candidate.reduced_mass * unit_speed;
     system.lost.lost_dashpot +=
-        dashpot_heat<law>(candidate, step, depth, closing, unit, unit_speed, eccentricity(contact));
+        dashpot_heat<Law>(candidate, step, depth, closing, unit, unit_speed, eccentricity(contact));
     candidate.touching = true;
     ++candidate.steps;
     candidate.overlap = meeting.overlap;
@@ -217,17 +216,16 @@ void collide_parts(GrainSystem& system) {
   }
 }
 
-template <NormalLaw law>
-CollideFunction choose(bool friction) {
-  return friction ? collide_parts<law, true> : collide_parts<law, false>;
-}
-
 }  // namespace
 
 CollideFunction collide_parts_function(NormalLaw law, bool friction) {
-  assert(law == NormalLaw::linear_dashpot || law == NormalLaw::hertz_dashpot);
-  return law == NormalLaw::hertz_dashpot ? choose<NormalLaw::hertz_dashpot>(friction)
-                                         : choose<NormalLaw::linear_dashpot>(friction);
+  return visit_law(law, [&]<class Law>(std::type_identity<Law>) -> CollideFunction {
+    if constexpr (Law::kind == LawKind::force) {
+      return friction ? collide_parts<Law, true> : collide_parts<Law, false>;
+    } else {
+      return nullptr;
+    }
+  });
 }
 
 }  // namespace equidem

@@ -7,7 +7,7 @@
 
 namespace equidem {
 
-/// The loop over contacts of parts compiled for a law that gives a force, with or without friction.
+/// The loop over contacts of parts compiled for a force law, with or without friction; null for other laws.
 ///
 /// An impulse p in the contact point turns both bodies by arm x p; velocities are those of the bodies' material there.
 /// Stiffness and dashpot are those of a central impact: c = 2 zeta sqrt(m k) with 1/m = 1/m_i + 1/m_j, without the arms

@@ -8,29 +8,6 @@
 namespace equidem {
 namespace {
 
-/// Impulses of spring and dashpot in a part of a drift, over those of a whole kick: of k d^p and c d^q v, d linear in
-/// time.
-struct Shares {
-  double spring = 0, dashpot = 0;
-};
-
-/// -zeta(-p, part)/part^p, by Euler and Maclaurin from part + 1 on: what the sum of x^p over part, part + 1, ... lacks
-/// at its start of the integral from 0. By this the trapezoidal rule errs where a force begins or ends.
-/// \param now, next part^p and (part + 1)^p
-double beyond_sum(double part, double power, double now, double next) {
-  return (((1 + part) / (power + 1) - 0.5 + power / (12 * (1 + part))) * next - now) / now;
-}
-
-/// From its first instant on the trapezoidal rule is exact for the linear spring; for that of Hertz its error there
-/// goes with the part.
-Shares shares_of(const GrainSystem& system, double part) {
-  if (system.options.law != NormalLaw::hertz_dashpot) return {part / 2, part};
-  const double seen = std::max(part, 1e-12);  // an overlap of round-off
-  const double now = std::sqrt(seen), next = std::sqrt(1 + seen);
-  return {0.5 + beyond_sum(seen, 1.5, seen * now, (1 + seen) * next),
-          0.5 + beyond_sum(seen, 0.25, std::sqrt(now), std::sqrt(next))};
-}
-
 bool corrects(const GrainSystem& system) {
   return system.options.scheme == GrainOptions::Scheme::corrected_verlet;
 }
@@ -84,7 +61,7 @@ void begin_within_drift(GrainSystem& system, const TouchInstant& contact) {
     lost.lost_tangential_dashpot -= 0.5 * contact.tangential_dashpot * contact.slip;
   }
   if (!corrects(system)) return;
-  Shares share = shares_of(system, contact.part);
+  DriftShares share = system.law().shares_of_drift(contact.part);
   share.dashpot /= 1 + 0.5 * share.dashpot * contact.decay;
   TouchImpulse impulse = impulse_on(contact);
   impulse.spring = (share.spring - 0.5) * contact.spring;
@@ -103,7 +80,7 @@ void begin_within_drift(GrainSystem& system, const TouchInstant& contact) {
 
 void end_within_drift(GrainSystem& system, const TouchInstant& contact) {
   GrainLedger& lost = system.lost;
-  const Shares share = shares_of(system, contact.part);
+  const DriftShares share = system.law().shares_of_drift(contact.part);
   const double given = contact.spring + contact.dashpot;
   double true_one = given != 0 ? share.spring * contact.spring + share.dashpot * contact.dashpot : 0;
   if (!contact.pulls) true_one = std::max(true_one, 0.0);

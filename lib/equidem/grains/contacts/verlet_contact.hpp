@@ -32,12 +32,11 @@ struct SlipByOthers {
 };
 
 /// Impulse of the spring in a whole kick.
-template <NormalLaw law>
+template <class Law>
 [[gnu::always_inline]] inline double spring_impulse(const GrainSystem& system, const Candidate& candidate,
                                                     double overlap) {
   const double depth = std::max(overlap, 0.0) / system.length;
-  const double spring = candidate.a * depth * (law == NormalLaw::hertz_dashpot ? std::sqrt(depth) : 1.0);
-  return spring * candidate.reduced_mass * (system.length / system.dt());
+  return Law::spring(candidate.a, depth) * candidate.reduced_mass * (system.length / system.dt());
 }
 
 inline Vec2 impulse_of(const Candidate& candidate) {
@@ -49,7 +48,7 @@ inline Vec2 passed_velocity(const GrainSystem& system, const Candidate& candidat
 }
 
 /// The end of a contact; it is let go without a further loss.
-template <NormalLaw law>
+template <class Law>
 void end_contact(GrainSystem& system, Candidate& candidate, const TouchPlace& place, const ContactDrift& drift) {
   TouchInstant end;
   end.i = candidate.i;
@@ -60,7 +59,7 @@ void end_contact(GrainSystem& system, Candidate& candidate, const TouchPlace& pl
   end.closing = drift.closing;
   end.slip = drift.slip;
   end.part = part_of_drift(drift.overlap, -drift.closing, system.dt());
-  end.spring = spring_impulse<law>(system, candidate, drift.overlap);
+  end.spring = spring_impulse<Law>(system, candidate, drift.overlap);
   end.dashpot = candidate.impulse - end.spring;
   end.tangential = candidate.tangential_impulse;
   end.stored = 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
@@ -75,17 +74,16 @@ void end_contact(GrainSystem& system, Candidate& candidate, const TouchPlace& pl
 /// \param closing, slip that the law sees
 /// \param others gives SlipByOthers: friction without a spring halts a slip, and does not turn it round
 /// \return impulse on j
-template <NormalLaw law, bool friction, class Others>
+template <class Law, bool friction, class Others>
 [[gnu::always_inline]] inline Vec2 step_contact(GrainSystem& system, Candidate& candidate, const TouchPlace& now,
                                                 double closing, double slip, const ContactDrift& drift,
                                                 const Sliding& sliding, const Others& others) {
   const double dt = system.dt();
   const bool begins = !candidate.touching;
   const double depth = now.overlap / system.length, sigma = closing * dt / system.length;
-  const auto normal_step = law == NormalLaw::hertz_dashpot ? hertz_dashpot_step : linear_dashpot_step;
-  const ContactStep step = normal_step(depth, sigma, candidate.a, candidate.strength, candidate.attraction);
+  const ContactStep step = force_step<Law>(depth, sigma, candidate.a, candidate.dissipation, candidate.attraction);
   const double impulse = -step.change * candidate.reduced_mass * (system.length / dt);
-  const double spring = spring_impulse<law>(system, candidate, now.overlap);
+  const double spring = spring_impulse<Law>(system, candidate, now.overlap);
   const Vec2 pushed_before = begins ? Vec2{} : impulse_of(candidate);
 
   const double part = begins ? part_of_drift(now.overlap, drift.closing, dt) : 1;
@@ -120,15 +118,14 @@ template <NormalLaw law, bool friction, class Others>
     begin.part = part;
     begin.spring = spring;
     begin.dashpot = impulse - spring;
-    begin.decay = law == NormalLaw::hertz_dashpot ? candidate.strength * std::sqrt(candidate.a * std::sqrt(depth))
-                                                  : 2 * candidate.strength * std::sqrt(candidate.a);
+    begin.decay = Law::dashpot(candidate.dissipation, depth);
     begin.tangential = tangential;
     begin.tangential_dashpot = slide.slides ? 0 : -sliding.dashpot * slip * dt;
     begin.stored = 0.5 * sliding.stiffness * candidate.stretch * candidate.stretch;
     begin.slides = slide.slides;
     begin_within_drift(system, begin);
   } else {
-    const double spring_before = spring_impulse<law>(system, candidate, drift.overlap);
+    const double spring_before = spring_impulse<Law>(system, candidate, drift.overlap);
     system.lost.lost_dashpot += 0.5 * drift.closing * ((candidate.impulse - spring_before) + (impulse - spring));
     if constexpr (friction) {
       const double released =

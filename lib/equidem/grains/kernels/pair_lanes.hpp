@@ -8,6 +8,8 @@
 #include <cstring>
 #include <limits>
 
+#include "equidem/core/square_root.hpp"
+
 namespace equidem::eight {
 
 using Lanes = double __attribute__((vector_size(64)));
@@ -42,11 +44,6 @@ EQUIDEM_ALWAYS_INLINE Lanes magnitude(const Lanes& x) {
 EQUIDEM_ALWAYS_INLINE Lanes with_sign(const Lanes& size, const Lanes& sign) {
   return reinterpret_cast<Lanes>(reinterpret_cast<Choice>(size) |
                                  (reinterpret_cast<Choice>(sign) & std::numeric_limits<long long>::min()));
-}
-/// Correctly rounded. The compiler makes one instruction of it where there is one.
-EQUIDEM_ALWAYS_INLINE Lanes square_root(const Lanes& x) {
-  return Lanes{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3]),
-               std::sqrt(x[4]), std::sqrt(x[5]), std::sqrt(x[6]), std::sqrt(x[7])};
 }
 /// Which lanes are below zero (-0 among them), as bits: choices by bits are joined without a way through scalars, which
 /// those of comparisons take under some compilers.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "equidem/contact/laws/visit.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/kernels/lane_sums.hpp"
 #include "equidem/grains/kernels/pair_lanes.hpp"
@@ -23,7 +24,6 @@ constexpr std::size_t groups_at_once = 8;
 
 /// What a loop does, known where it is compiled.
 struct PairLoopKind {
-  bool hertz = false;
   bool friction = false;
   bool equal = false;   ///< one law for all pairs, where the dashpot rests while contacts slide
   bool verlet = false;  ///< friction by the explicit step, else by the midpoint rule
@@ -106,7 +106,7 @@ EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const PairGroup& grou
   }
 }
 
-template <PairLoopKind kind>
+template <class Law, PairLoopKind kind>
 EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers& numbers, const Geometry& geometry, PairGroup& group,
                                    PairSlips* slips, const PairLaws* laws, PairRecords* records, LaneSums& sums,
                                    Outcome& outcome) {
@@ -136,15 +136,7 @@ EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers& numbers, const Geometry& g
   const LawLanes law = law_of<kind>(numbers, laws);
   const Lanes dashpot = load(group.dashpot);
   const Lanes deep = only(touch, overlap);
-  Lanes elastic, drag;
-  if constexpr (kind.hertz) {
-    const Lanes root = square_root(deep);
-    elastic = law.stiffness * deep * root;
-    drag = dashpot * square_root(root) * closing;
-  } else {
-    elastic = law.stiffness * deep;
-    drag = dashpot * closing;
-  }
+  const Lanes elastic = Law::spring(law.stiffness, deep), drag = Law::dashpot(dashpot, deep) * closing;
   const Lanes force = only(touch, larger(elastic + drag, law.least));
   const Lanes impulse = force * dt;
   const Lanes mass = load(group.mass), impulse_before = load(group.impulse);
@@ -154,8 +146,7 @@ EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers& numbers, const Geometry& g
     // over the drift, in which the normal turns; the dashpot gives half of the kicks before and after it each
     mean_closing = closing + (0.5 * dt) * inverse * geometry.along * geometry.along;
     deep_before = larger(overlap - mean_closing * dt, zero);
-    elastic_before = law.stiffness * deep_before;
-    if constexpr (kind.hertz) elastic_before *= square_root(deep_before);
+    elastic_before = Law::spring(law.stiffness, deep_before);
     normal_loss =
         only(touch & alive, 0.5 * mean_closing * ((impulse_before - elastic_before * dt) + (force - elastic) * dt));
   } else {
@@ -285,7 +276,7 @@ EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome& outcome, 
   }
 }
 
-template <PairLoopKind kind>
+template <class Law, PairLoopKind kind>
 EQUIDEM_ALWAYS_INLINE void collide_all(GrainSystem& system) {
   NearPairs& near = system.near;
   const bool verlet = system.options.verlet();
@@ -312,64 +303,66 @@ EQUIDEM_ALWAYS_INLINE void collide_all(GrainSystem& system) {
     const std::size_t here = std::min(groups_at_once, count - first);
     for (std::size_t g = 0; g < here; ++g) measure<kind>(bodies, groups[first + g], geometry[g]);
     for (std::size_t g = 0; g < here; ++g) {
-      respond<kind>(numbers, geometry[g], groups[first + g], kind.friction ? slips + (first + g) : nullptr,
-                    kind.equal ? nullptr : laws + (first + g), near.record ? records + (first + g) : nullptr, sums,
-                    outcome[g]);
+      respond<Law, kind>(numbers, geometry[g], groups[first + g], kind.friction ? slips + (first + g) : nullptr,
+                         kind.equal ? nullptr : laws + (first + g), near.record ? records + (first + g) : nullptr, sums,
+                         outcome[g]);
     }
     for (std::size_t g = 0; g < here; ++g) give<kind>(groups[first + g], outcome[g], pushes, sums);
   }
   add(sums, system);
 }
 
-template <PairLoopKind kind>
+template <class Law, PairLoopKind kind>
 void collide_plain(GrainSystem& system) {
-  collide_all<kind>(system);
+  collide_all<Law, kind>(system);
 }
 
 #if defined(__x86_64__)
 /// No products and sums fused: the same bits on every machine.
-template <PairLoopKind kind>
+template <class Law, PairLoopKind kind>
 __attribute__((target("avx2"))) void collide_by_fours(GrainSystem& system) {
-  collide_all<kind>(system);
+  collide_all<Law, kind>(system);
 }
-template <PairLoopKind kind>
+template <class Law, PairLoopKind kind>
 __attribute__((target("avx2,avx512f,avx512vl,avx512dq,prefer-vector-width=512"))) void collide_by_eights(
     GrainSystem& system) {
-  collide_all<kind>(system);
+  collide_all<Law, kind>(system);
 }
 #endif
 
-template <PairLoopKind kind>
+template <class Law, PairLoopKind kind>
 NearPairs::Loop choose() {
 #if defined(__x86_64__)
-  if (vector_width() == VectorWidth::bits_512) return collide_by_eights<kind>;
-  if (vector_width() == VectorWidth::bits_256) return collide_by_fours<kind>;
+  if (vector_width() == VectorWidth::bits_512) return collide_by_eights<Law, kind>;
+  if (vector_width() == VectorWidth::bits_256) return collide_by_fours<Law, kind>;
 #endif
-  return collide_plain<kind>;
+  return collide_plain<Law, kind>;
 }
 
-template <bool hertz, bool equal>
+template <class Law, bool equal>
 NearPairs::Loop choose(const GrainSystem& system) {
   if (system.near.rigid) {
-    return system.options.verlet() ? choose<PairLoopKind{hertz, true, equal, true, true}>()
-                                   : choose<PairLoopKind{hertz, true, equal, false, true}>();
+    return system.options.verlet() ? choose<Law, PairLoopKind{true, equal, true, true}>()
+                                   : choose<Law, PairLoopKind{true, equal, false, true}>();
   }
   if (system.options.verlet()) {
-    return system.friction ? choose<PairLoopKind{hertz, true, equal, true}>()
-                           : choose<PairLoopKind{hertz, false, equal, true}>();
+    return system.friction ? choose<Law, PairLoopKind{true, equal, true}>()
+                           : choose<Law, PairLoopKind{false, equal, true}>();
   }
-  return system.friction ? choose<PairLoopKind{hertz, true, equal, false}>()
-                         : choose<PairLoopKind{hertz, false, equal, false}>();
+  return system.friction ? choose<Law, PairLoopKind{true, equal, false}>()
+                         : choose<Law, PairLoopKind{false, equal, false}>();
 }
 
 }  // namespace
 
 NearPairs::Loop near_pair_loop(const GrainSystem& system) {
-  const bool equal = system.near.equal;
-  if (system.options.law == NormalLaw::hertz_dashpot) {
-    return equal ? choose<true, true>(system) : choose<true, false>(system);
-  }
-  return equal ? choose<false, true>(system) : choose<false, false>(system);
+  return visit_law(system.options.law, [&]<class Law>(std::type_identity<Law>) -> NearPairs::Loop {
+    if constexpr (Law::kind == LawKind::force) {
+      return system.near.equal ? choose<Law, true>(system) : choose<Law, false>(system);
+    } else {
+      return nullptr;
+    }
+  });
 }
 
 }  // namespace equidem

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "equidem/contact/laws/visit.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/kernels/lane_sums.hpp"
 #include "equidem/grains/kernels/part_lanes.hpp"
@@ -23,7 +24,7 @@ struct PartLoopKind {
 struct LoopNumbers {
   double dt = 0;
   std::int64_t now = 0;  ///< step before the one being made
-  bool hertz = false, corrected = false, record = false;
+  bool corrected = false, record = false;
   GrainSystem* system = nullptr;
 };
 
@@ -42,7 +43,7 @@ EQUIDEM_ALWAYS_INLINE LawLanes law_of(const PartGroup& group) {
           load(group.numbers[PartGroup::beyond_cap]), 1 / (spring > 0 ? spring : all(1))};
 }
 
-template <PartLoopKind kind>
+template <class Law, PartLoopKind kind>
 EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PartBody* bodies,
                                          const std::int32_t* body_of_part, Push* pushes, PartGroup& group,
                                          LaneSums& sums) {
@@ -79,12 +80,7 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PartB
   const Lanes stiffness = load(group.numbers[PartGroup::stiffness]), least = load(group.numbers[PartGroup::least]);
   const Lanes dashpot = load(group.numbers[PartGroup::dashpot]);
   const Lanes deep = only(touch, at.overlap);
-  Lanes elastic = stiffness * deep, drag = dashpot * closing;
-  if (numbers.hertz) {
-    const Lanes root = square_root(deep);
-    elastic *= root;
-    drag *= square_root(root);
-  }
+  const Lanes elastic = Law::spring(stiffness, deep), drag = Law::dashpot(dashpot, deep) * closing;
   const Lanes force = only(touch, larger(elastic + drag, least));
   const Lanes impulse = force * dt, impulse_before = load(group.numbers[PartGroup::impulse]);
   store(impulse, group.numbers[PartGroup::impulse]);
@@ -97,8 +93,7 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PartB
     mean_closing = choose(begun, closing, closing_of(s, normal_before, arm_i_before, arm_j_before));
     mean_closing = choose(ended, mean_closing, 0.5 * (closing + mean_closing));
     deep_before = larger(load(group.numbers[PartGroup::overlap]), Lanes{});
-    elastic_before = stiffness * deep_before;
-    if (numbers.hertz) elastic_before *= square_root(deep_before);
+    elastic_before = Law::spring(stiffness, deep_before);
     normal_loss =
         only(touch & alive, 0.5 * mean_closing * ((impulse_before - elastic_before * dt) + (force - elastic) * dt));
   } else {
@@ -217,63 +212,66 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PartB
   }
 }
 
-template <PartLoopKind kind>
+template <class Law, PartLoopKind kind>
 EQUIDEM_ALWAYS_INLINE void collide_all(GrainSystem& system, NearParts::List& list) {
-  const LoopNumbers numbers{system.dt(),
-                            system.step - (kind.verlet ? 1 : 0),
-                            system.options.law == NormalLaw::hertz_dashpot,
-                            system.options.scheme == GrainOptions::Scheme::corrected_verlet,
-                            system.near.record,
+  const LoopNumbers numbers{system.dt(), system.step - (kind.verlet ? 1 : 0),
+                            system.options.scheme == GrainOptions::Scheme::corrected_verlet, system.near.record,
                             &system};
   LaneSums sums;
   for (PartGroup& group : list.groups) {
-    collide_group<kind>(numbers, system.near_parts.bodies.data(), system.body_of_part.data(), system.pushes.data(),
-                        group, sums);
+    collide_group<Law, kind>(numbers, system.near_parts.bodies.data(), system.body_of_part.data(), system.pushes.data(),
+                             group, sums);
   }
   add(sums, system);
 }
 
-template <PartLoopKind kind>
+template <class Law, PartLoopKind kind>
 void collide_plain(GrainSystem& system, NearParts::List& list) {
-  collide_all<kind>(system, list);
+  collide_all<Law, kind>(system, list);
 }
 
 #if defined(__x86_64__)
 /// No products and sums fused: the same bits on every machine.
-template <PartLoopKind kind>
+template <class Law, PartLoopKind kind>
 __attribute__((target("avx2"))) void collide_by_fours(GrainSystem& system, NearParts::List& list) {
-  collide_all<kind>(system, list);
+  collide_all<Law, kind>(system, list);
 }
-template <PartLoopKind kind>
+template <class Law, PartLoopKind kind>
 __attribute__((target("avx2,avx512f,avx512vl,avx512dq,prefer-vector-width=512"))) void collide_by_eights(
     GrainSystem& system, NearParts::List& list) {
-  collide_all<kind>(system, list);
+  collide_all<Law, kind>(system, list);
 }
 #endif
 
-template <PartLoopKind kind>
+template <class Law, PartLoopKind kind>
 NearParts::List::Loop choose_loop() {
 #if defined(__x86_64__)
-  if (vector_width() == VectorWidth::bits_512) return collide_by_eights<kind>;
-  if (vector_width() == VectorWidth::bits_256) return collide_by_fours<kind>;
+  if (vector_width() == VectorWidth::bits_512) return collide_by_eights<Law, kind>;
+  if (vector_width() == VectorWidth::bits_256) return collide_by_fours<Law, kind>;
 #endif
-  return collide_plain<kind>;
+  return collide_plain<Law, kind>;
 }
 
-template <bool round>
+template <class Law, bool round>
 NearParts::List::Loop choose_loop(const GrainSystem& system) {
   if (system.options.verlet()) {
-    return system.friction ? choose_loop<PartLoopKind{round, true, true}>()
-                           : choose_loop<PartLoopKind{round, false, true}>();
+    return system.friction ? choose_loop<Law, PartLoopKind{round, true, true}>()
+                           : choose_loop<Law, PartLoopKind{round, false, true}>();
   }
-  return system.friction ? choose_loop<PartLoopKind{round, true, false}>()
-                         : choose_loop<PartLoopKind{round, false, false}>();
+  return system.friction ? choose_loop<Law, PartLoopKind{round, true, false}>()
+                         : choose_loop<Law, PartLoopKind{round, false, false}>();
 }
 
 }  // namespace
 
 NearParts::List::Loop near_part_loop(const GrainSystem& system, bool round) {
-  return round ? choose_loop<true>(system) : choose_loop<false>(system);
+  return visit_law(system.options.law, [&]<class Law>(std::type_identity<Law>) -> NearParts::List::Loop {
+    if constexpr (Law::kind == LawKind::force) {
+      return round ? choose_loop<Law, true>(system) : choose_loop<Law, false>(system);
+    } else {
+      return nullptr;
+    }
+  });
 }
 
 }  // namespace equidem

@@ -3,12 +3,10 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 #include "equidem/grains/kernels/touch_lanes.hpp"
 
-#include <cmath>
-
 namespace equidem::eight {
 
 void count_instants(GrainSystem& system, const TouchLanes& lanes) {
-  const bool hertz = system.options.law == NormalLaw::hertz_dashpot;
+  const auto dashpot = system.law().dashpot;
   for (int k = 0; k < 8; ++k) {
     if (lanes.begun[k] == 0 && lanes.ended[k] == 0) continue;
     TouchInstant contact;
@@ -22,8 +20,7 @@ void count_instants(GrainSystem& system, const TouchLanes& lanes) {
     contact.part = part_of_drift(lanes.deep[k], lanes.begun[k] != 0 ? contact.closing : -contact.closing, system.dt());
     contact.spring = lanes.spring[k];
     contact.dashpot = lanes.impulse[k] - lanes.spring[k];
-    contact.decay = lanes.dashpot[k] * lanes.mobility[k] * system.dt();
-    if (hertz) contact.decay *= std::sqrt(std::sqrt(lanes.deep[k]));
+    contact.decay = dashpot(lanes.dashpot[k] * lanes.mobility[k] * system.dt(), lanes.deep[k]);
     contact.tangential = lanes.tangential[k];
     contact.tangential_dashpot = lanes.tangential_dashpot[k];
     contact.stored = lanes.stored[k];

@@ -13,8 +13,8 @@ namespace equidem {
 namespace {
 
 ExactPair exact_pair_of(const GrainSystem& system, const Candidate& candidate) {
-  return exact_pair(candidate.reduced_mass, candidate.stiffness, candidate.strength, system.properties(candidate).end,
-                    system.dt());
+  return system.law().prepare(candidate.reduced_mass, candidate.stiffness, candidate.dissipation,
+                              system.properties(candidate).end, system.dt());
 }
 
 /// The dashpot across the normal by the spring alone: the mass is that of the arms at the time.
@@ -31,16 +31,14 @@ std::uint32_t rank(std::int32_t j) {
 
 }  // namespace
 
-void find_strengths(GrainSystem& system) {
+void find_dissipations(GrainSystem& system) {
   for (const PairProperties& pair : system.scene.pairs) {
-    if (is_map(system.options.law)) {
-      system.strengths.push_back(pair.restitution);
-    } else if (system.options.law == NormalLaw::hertz_dashpot) {
-      system.strengths.push_back(hertz_damping_of(pair.restitution, pair.end));
-    } else {
-      system.strengths.push_back(damping_ratio_of(pair.restitution, pair.end));
-    }
+    system.dissipations.push_back(system.law().dissipation(pair.restitution, pair.end));
   }
+}
+
+double dashpot_of(const GrainSystem& system, const Candidate& candidate) {
+  return system.dissipation(candidate) * std::sqrt(candidate.stiffness * candidate.reduced_mass);
 }
 
 void set_constants(const GrainSystem& system, Candidate& candidate) {
@@ -50,17 +48,18 @@ void set_constants(const GrainSystem& system, Candidate& candidate) {
   const PairProperties& properties = system.properties(candidate);
   const double dt = system.dt();
   const double m = candidate.reduced_mass = 1 / inverse_mass;
-  const bool hertz = system.options.law == NormalLaw::hertz_dashpot;
-  const double root_length = hertz ? std::sqrt(system.length) : 1;
+  const double length_factor = system.law().length_factor(system.length);
   candidate.stiffness = properties.stiffness > 0
                             ? properties.stiffness
-                            : stiffness_from_dimensionless(properties.dimensionless, m, dt) / root_length;
-  candidate.a = properties.stiffness > 0 ? properties.stiffness * root_length * dt * dt / m : properties.dimensionless;
+                            : stiffness_from_dimensionless(properties.dimensionless, m, dt) / length_factor;
+  candidate.a =
+      properties.stiffness > 0 ? properties.stiffness * length_factor * dt * dt / m : properties.dimensionless;
   candidate.attraction = properties.end == ContactEnd::at_zero_overlap;
-  candidate.strength = system.strengths[static_cast<std::size_t>(&properties - system.scene.pairs.data())];
+  candidate.dissipation = system.dissipation(candidate);
+  if (gives_force(system.options.law)) candidate.dissipation *= std::sqrt(candidate.a);
   if (system.friction && properties.friction > 0) {
     candidate.sliding.coefficient = properties.friction;
-    candidate.sliding.stiffness = properties.tangential_ratio * candidate.stiffness * root_length;
+    candidate.sliding.stiffness = properties.tangential_ratio * candidate.stiffness * length_factor;
     candidate.sliding.cap = properties.cap;
     // of bodies that just touch: it must not depend on where they were when they were found
     const Meeting meeting{
@@ -83,7 +82,7 @@ void find_candidates(GrainSystem& system) {
   before.swap(system.candidates);
   pairs_before.swap(system.exact_pairs);
   parts_before.swap(system.part_pairs);
-  const bool exact = system.options.law == NormalLaw::exact_flow;
+  const bool exact = is_simultaneous(system.options.law);
   std::size_t k = 0;
   const bool shapes = !system.parts.empty();
   const auto add = [&](std::int32_t i, std::int32_t j, const PartPair* parts = nullptr) {

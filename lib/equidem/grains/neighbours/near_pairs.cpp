@@ -39,10 +39,6 @@ std::vector<const PairProperties*> pairs_of_grains(const GrainScene& scene) {
   return pairs;
 }
 
-bool gives_force(const GrainSystem& system) {
-  return system.options.law == NormalLaw::linear_dashpot || system.options.law == NormalLaw::hertz_dashpot;
-}
-
 /// Which pairs of grains with friction there are.
 struct Rubbing {
   bool with_springs = false, without_springs = false;
@@ -104,9 +100,7 @@ class PairLists {
     near_.groups.back().since[k] = PairGroup::apart;
     near_.groups.back().reach[k] =
         system_.bodies[static_cast<std::size_t>(i)].radius + system_.bodies[static_cast<std::size_t>(j)].radius;
-    const bool hertz = system_.options.law == NormalLaw::hertz_dashpot;
-    near_.groups.back().dashpot[k] =
-        (hertz ? 1 : 2) * candidate.strength * std::sqrt(candidate.stiffness * candidate.reduced_mass);
+    near_.groups.back().dashpot[k] = dashpot_of(system_, candidate);
     const GrainBody &bi = system_.bodies[static_cast<std::size_t>(i)],
                     &bj = system_.bodies[static_cast<std::size_t>(j)];
     near_.groups.back().mass[k] = bi.inverse_mass + bj.inverse_mass;
@@ -193,7 +187,7 @@ std::size_t NearPairs::bytes() const {
 }
 
 bool go_by_eights(const GrainSystem& system) {
-  return gives_force(system) && !rubbing_of(system.scene).without_springs;
+  return gives_force(system.options.law) && !rubbing_of(system.scene).without_springs;
 }
 
 double margin_of_near_pairs(const GrainSystem& system, double size, double reach) {
@@ -206,7 +200,7 @@ void prepare_near_pairs(GrainSystem& system) {
   const std::vector<Grain>& grains = system.scene.grains;
   const auto discs =
       std::count_if(grains.begin(), grains.end(), [](const Grain& grain) { return grain.shape() == GrainShape::disc; });
-  if (discs < 2 || !gives_force(system)) return;
+  if (discs < 2 || !gives_force(system.options.law)) return;
   const Rubbing rubbing = rubbing_of(system.scene);
   if (rubbing.without_springs && (rubbing.with_springs || !system.parts.empty())) return;
   near.rigid = rubbing.without_springs;
@@ -305,7 +299,7 @@ Candidate candidate_of(const GrainSystem& system, std::size_t p) {
 
 std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system) {
   const NearPairs& near = system.near;
-  const bool hertz = system.options.law == NormalLaw::hertz_dashpot;
+  const auto energy = system.law().energy;
   double normal = 0, tangential = 0;
   for (std::size_t p = 0; p < near.count; ++p) {
     const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
@@ -318,7 +312,7 @@ std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system) {
     const double overlap = near.groups[g].reach[k] - norm(branch);
     if (!(overlap > 0)) continue;
     const double stiffness = near.equal ? near.law.stiffness : near.laws[g].stiffness[k];
-    normal += (hertz ? 0.4 * std::sqrt(overlap) : 0.5) * stiffness * overlap * overlap;
+    normal += energy(stiffness, overlap);
   }
   return {normal, tangential};
 }

@@ -61,7 +61,6 @@ class NewList {
                     &part_j = system_.parts[static_cast<std::size_t>(j)];
     const GrainBody &body_i = system_.bodies[static_cast<std::size_t>(candidate.i)],
                     &body_j = system_.bodies[static_cast<std::size_t>(candidate.j)];
-    const bool hertz = system_.options.law == NormalLaw::hertz_dashpot;
     const std::size_t k = make_room(i, j);
     PartGroup& group = list_.groups.back();
     group.since[k] = PairGroup::apart;
@@ -79,8 +78,7 @@ class NewList {
     set(PartGroup::inverse_moment_i, body_i.inverse_moment);
     set(PartGroup::inverse_moment_j, body_j.inverse_moment);
     set(PartGroup::stiffness, candidate.stiffness);
-    set(PartGroup::dashpot,
-        (hertz ? 1 : 2) * candidate.strength * std::sqrt(candidate.stiffness * candidate.reduced_mass));
+    set(PartGroup::dashpot, dashpot_of(system_, candidate));
     set(PartGroup::least, candidate.attraction ? -std::numeric_limits<double>::infinity() : 0);
     set(PartGroup::friction, candidate.sliding.coefficient);
     set(PartGroup::tangential_stiffness, candidate.sliding.stiffness);

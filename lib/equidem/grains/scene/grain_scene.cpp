@@ -59,16 +59,7 @@ void check_pair(const PairProperties& pair, const GrainOptions& options) {
     bad_input(fmt::format("a contact has the stiffness {}", hardness), "bodies would not rebound",
               "Give a stiffness > 0");
   }
-  if (is_map(options.law)) {
-    if (!(pair.restitution >= 0 && pair.restitution <= 1)) {
-      bad_input(fmt::format("the restitution is {}", pair.restitution), "an impact cannot gain energy or pass through",
-                "Give a number from 0 to 1");
-    }
-  } else if (options.law == NormalLaw::hertz_dashpot) {
-    hertz_damping_of(pair.restitution, pair.end);
-  } else {
-    damping_ratio_of(pair.restitution, pair.end);
-  }
+  describe(options.law).dissipation(pair.restitution, pair.end);
   if (!not_negative(pair.friction) || !not_negative(pair.tangential_ratio) || !not_negative(pair.tangential_damping)) {
     bad_input(fmt::format("friction {}, tangential_ratio {}, tangential_damping {}", pair.friction,
                           pair.tangential_ratio, pair.tangential_damping),
@@ -99,9 +90,12 @@ std::vector<Lightest> lightest_of_kinds(const GrainScene& scene) {
   return kinds;
 }
 
-/// a = k dt²/m of the lightest bodies that meet so: five_case_map is limited by it.
-void check_five_case(const GrainScene& scene, const GrainOptions& options) {
+/// The range of the law, by a of the lightest bodies of every two kinds.
+void check_range(const GrainScene& scene, const GrainOptions& options) {
   const std::vector<Lightest> kinds = lightest_of_kinds(scene);
+  const LawDescription& law = describe(options.law);
+  const double per_stiffness =
+      law.length_factor(reference_length(scene, options)) * options.time_step * options.time_step;
   for (int a = 0; a < scene.kinds; ++a) {
     for (int b = a; b < scene.kinds; ++b) {
       const Lightest& first = kinds[static_cast<std::size_t>(a)];
@@ -110,8 +104,8 @@ void check_five_case(const GrainScene& scene, const GrainOptions& options) {
       const double inverse = first.inverse + (a == b ? first.second : other.inverse);
       if (inverse == 0) continue;  // two walls
       const PairProperties& pair = scene.between(a, b);
-      const double stiffness = pair.stiffness * options.time_step * options.time_step * inverse;
-      check_five_case_range(pair.stiffness > 0 ? stiffness : pair.dimensionless, pair.restitution);
+      const double dimensionless = pair.stiffness > 0 ? pair.stiffness * per_stiffness * inverse : pair.dimensionless;
+      law.check_range(dimensionless, pair.restitution);
     }
   }
 }
@@ -131,7 +125,7 @@ void check_table(const GrainScene& scene, const GrainOptions& options) {
       }
     }
   }
-  if (options.law == NormalLaw::five_case_map) check_five_case(scene, options);
+  check_range(scene, options);
 }
 
 [[noreturn]] void refuse_grain(std::size_t grain, const PlaceOfGrain& where, std::string problem, std::string why,
@@ -168,6 +162,13 @@ void check_places(const GrainScene& scene, const PlaceOfGrain& where) {
 
 }  // namespace
 
+double reference_length(const GrainScene& scene, const GrainOptions& options) {
+  if (options.reference_length > 0) return options.reference_length;
+  double largest = 0;
+  for (const Grain& grain : scene.grains) largest = std::max(largest, grain.radius);
+  return 2 * largest;
+}
+
 void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where) {
   if (scene.grains.empty()) bad_input("the scene has no grains", "there is nothing to move", "Add a grain");
   if (!positive(options.time_step)) {
@@ -178,13 +179,12 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
               "lengths are not negative", "Give 0 to have them chosen");
   }
   check_laws_of_shapes(scene, options);
-  const bool own_step = is_map(options.law) || options.law == NormalLaw::exact_flow;
-  if (own_step && options.verlet()) {
+  if (!gives_force(options.law) && options.verlet()) {
     bad_input(
         fmt::format("{} is asked for with the law \"{}\"",
                     options.scheme == GrainOptions::Scheme::velocity_verlet ? "velocity_verlet" : "corrected_verlet",
                     to_string(options.law)),
-        "that law says itself how a step is made", "Leave the scheme out, or use linear_dashpot or hertz_dashpot");
+        "that law makes the step itself", "Leave the scheme out, or use " + names_of_laws(LawKind::force));
   }
   if (!std::isfinite(scene.gravity.x + scene.gravity.y)) {
     bad_input("gravity is not a number", "nothing could fall by it", "Give finite numbers");

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "equidem/contact/collision_laws.hpp"
+#include "equidem/contact/laws/normal_law.hpp"
 #include "equidem/contact/restitution.hpp"
 #include "equidem/contact/sliding.hpp"
 #include "equidem/grains/scene/wall_shape.hpp"
@@ -121,6 +121,9 @@ struct GrainOptions {
   } bond_step = BondStep::exact;
   bool refuse_crossing = true;  ///< false: bodies may pass through one another, for studies of laws that let them
 };
+
+/// d_c, m: options.reference_length, or twice the largest radius where it is 0.
+double reference_length(const GrainScene& scene, const GrainOptions& options);
 
 using PlaceOfGrain = std::function<std::string(std::size_t grain)>;
 

@@ -88,10 +88,10 @@ void check_shape(const GrainScene& scene, std::size_t i) {
 
 void check_laws_of_shapes(const GrainScene& scene, const GrainOptions& options) {
   if (!has_shapes(scene)) return;
-  if (is_map(options.law) || options.law == NormalLaw::exact_flow) {
+  if (!gives_force(options.law)) {
     bad_input(fmt::format("the law \"{}\" is asked for with ellipses or clumps", to_string(options.law)),
               "it solves a contact along the line of two centres, but their contacts turn the bodies as well",
-              "Use linear_dashpot or hertz_dashpot");
+              "Use " + names_of_laws(LawKind::force));
   }
   for (std::size_t i = 0; i < scene.grains.size(); ++i) {
     const Grain& grain = scene.grains[i];

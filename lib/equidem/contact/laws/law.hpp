@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The pieces of a law of normal contact.
+///
+/// A law is a struct without data in a file of its own and one line of laws/list.hpp; linear_dashpot.hpp is a model to
+/// copy. check_law() names a missing piece when the law is compiled.
+///
+/// A force law is F = spring(k, d) + dashpot(c, d) v with the overlap d and the closing speed v. Loops over eight
+/// contacts at a time evaluate it in SI units; loops over single contacts evaluate it without dimensions, as the maps
+/// (Fujioka & Ushijima 2005, section 2): depth = d/d_c, sigma = v dt/d_c, a = k length_factor(d_c) dt²/m, forces in
+/// units of m d_c/dt², m the reduced mass.
+#pragma once
+
+#include <concepts>
+
+#include "equidem/contact/collision_stiffness.hpp"
+#include "equidem/contact/exact_contact.hpp"
+#include "equidem/contact/restitution.hpp"
+#include "equidem/core/square_root.hpp"
+
+namespace equidem {
+
+enum class LawKind {
+  force,         ///< a force from overlap and closing speed; GrainOptions::Scheme makes the step
+  map,           ///< the velocity after a step in place of a force, each contact by itself
+  simultaneous,  ///< the law solves the step, all contacts together
+};
+
+/// Change of one contact in one step, without dimensions.
+struct ContactStep {
+  /// Maps: 1 first step (10, 11: five_case_map, 1a and 1b), 2 deepening, 3 still touching, 4 parting; else 0.
+  int mode = 0;
+  double change = 0;  ///< f, of sigma
+  double shift = 0;   ///< of the depth before the step, d^ - d: positions move by it (energy_map, mode 1; else 0)
+  /// Energy lost by restitution or dashpot, >= 0, in units of m d_c²/dt²; maps: exact, forces: power at the start.
+  double loss = 0;
+};
+
+/// Impulses of spring and dashpot in the part of a drift of a Verlet scheme in which a contact lasts, over those of a
+/// whole kick with the overlap at the end of that part.
+struct DriftShares {
+  double spring = 0, dashpot = 0;
+};
+
+/// One step of a force law.
+/// \param c dimensionless dashpot coefficient, Law::dissipation sqrt(a)
+/// \param attraction whether the force may pull; else it is cut at 0
+template <class Law>
+inline ContactStep force_step(double depth, double closing, double a, double c, bool attraction) {
+  const double spring = -Law::spring(a, depth);
+  double change = spring - Law::dashpot(c, depth) * closing;
+  if (!attraction && change > 0) change = 0;
+  return {0, change, 0, (spring - change) * closing};
+}
+
+namespace laws {
+
+/// The linear spring F = k d, common to all laws but those of spheres.
+struct LinearSpring {
+  static constexpr double spring_power = 1;
+  static constexpr const char* stiffness_unit = "N/m";
+  static constexpr bool hertz_spring = false;
+  static constexpr ContactEnd usual_end = ContactEnd::at_zero_force;
+
+  static double length_factor(double /*length*/) { return 1; }
+  /// W = k d²/2
+  static double energy(double k, double d) { return 0.5 * k * d * d; }
+  static ElasticImpact elastic_impact(double k, double m, double v) { return linear_impact(k, m, v); }
+  static double stiffness_from_overlap(double overlap, double speed, double m, double damping_ratio) {
+    return equidem::stiffness_from_overlap(overlap, speed, m, damping_ratio);
+  }
+};
+
+/// Shares of a force law whose dashpot goes with d^((p - 1)/2) where its spring goes with d^p, p > 1; d is linear in
+/// time.
+///
+/// The trapezoidal rule errs where a force begins or ends: its unit steps give x^p, summed from the first node
+/// at x = part on, -zeta(-p, part) less than the integral from 0 (Hurwitz's zeta, here by Euler and Maclaurin from
+/// part + 1 on).
+template <class Law>
+DriftShares shares_of_power_law(double part) {
+  const double seen = part > 1e-12 ? part : 1e-12;  // an overlap of round-off
+  const auto beyond_sum = [&](double power, double now, double next) {
+    return (((1 + seen) / (power + 1) - 0.5 + power / (12 * (1 + seen))) * next - now) / now;
+  };
+  DriftShares shares{0.5 + beyond_sum(Law::spring_power, Law::spring(1.0, seen), Law::spring(1.0, 1 + seen)), 0};
+  if constexpr (Law::has_dashpot) {
+    shares.dashpot =
+        0.5 + beyond_sum((Law::spring_power - 1) / 2, Law::dashpot(1.0, seen), Law::dashpot(1.0, 1 + seen));
+  }
+  return shares;
+}
+
+}  // namespace laws
+
+/// Compiles where a law has every piece that its kind needs.
+template <class Law>
+consteval bool check_law() {
+#define EQUIDEM_LAW_NEEDS(expression, type, message) \
+  static_assert(                                     \
+      requires(double x, ContactEnd end) {           \
+        { expression } -> std::convertible_to<type>; \
+      },                                             \
+      message)
+  EQUIDEM_LAW_NEEDS(Law::name, const char*, "a law needs `name`, its word in case files");
+  EQUIDEM_LAW_NEEDS(Law::letter, const char*, "a law needs `letter`, its short name in tables");
+  EQUIDEM_LAW_NEEDS(Law::source, const char*, "a law needs `source`, a reference");
+  EQUIDEM_LAW_NEEDS(Law::summary, const char*, "a law needs `summary`, a phrase for help and reports");
+  EQUIDEM_LAW_NEEDS(Law::kind, LawKind, "a law needs `kind`");
+  EQUIDEM_LAW_NEEDS(Law::has_dashpot, bool, "a law needs `has_dashpot`: then it has a contact end as well");
+  EQUIDEM_LAW_NEEDS(Law::usual_end, ContactEnd, "a law needs `usual_end` of its contacts");
+  EQUIDEM_LAW_NEEDS(Law::spring_power, double, "a law needs `spring_power`, p of F = k d^p");
+  EQUIDEM_LAW_NEEDS(Law::stiffness_unit, const char*, "a law needs `stiffness_unit`");
+  EQUIDEM_LAW_NEEDS(Law::hertz_spring, bool, "a law needs `hertz_spring`: whether k follows from Young's modulus");
+  EQUIDEM_LAW_NEEDS(Law::steps_per_contact, double, "a law needs `steps_per_contact` of an automatic step");
+  EQUIDEM_LAW_NEEDS(Law::length_factor(x), double, "a law needs `length_factor(d_c)`, d_c^(p - 1)");
+  EQUIDEM_LAW_NEEDS(Law::energy(x, x), double, "a law needs `energy(k, d)` of its spring");
+  EQUIDEM_LAW_NEEDS(Law::elastic_impact(x, x, x), ElasticImpact, "a law needs `elastic_impact(k, m, v)`");
+  EQUIDEM_LAW_NEEDS(Law::stiffness_from_overlap(x, x, x, x), double,
+                    "a law needs `stiffness_from_overlap(overlap, speed, m, damping_ratio)`");
+  EQUIDEM_LAW_NEEDS(Law::dissipation(x, end), double, "a law needs `dissipation(restitution, end)`");
+  EQUIDEM_LAW_NEEDS(Law::damping_ratio(x, end), double, "a law needs `damping_ratio(restitution, end)`");
+  EQUIDEM_LAW_NEEDS(Law::stable_step(x), double, "a law needs `stable_step(damping_ratio)`");
+  static_assert(
+      requires(double x) { Law::check_range(x, x); },
+      "a law needs `check_range(a, restitution)`, its limits of validity");
+  if constexpr (Law::kind == LawKind::force) {
+    EQUIDEM_LAW_NEEDS(Law::spring(x, x), double, "a force law needs `spring(k, d)`");
+    EQUIDEM_LAW_NEEDS(Law::dashpot(x, x), double, "a force law needs `dashpot(c, d)`");
+    EQUIDEM_LAW_NEEDS(Law::shares_of_drift(x), DriftShares, "a force law needs `shares_of_drift(part)`");
+  } else if constexpr (Law::kind == LawKind::map) {
+    EQUIDEM_LAW_NEEDS(Law::step(x, x, x, x, true), ContactStep,
+                      "a map needs `step(depth, closing, a, restitution, first)`");
+  } else {
+    static_assert(Law::kind == LawKind::simultaneous);
+    EQUIDEM_LAW_NEEDS(Law::prepare(x, x, x, end, x), ExactPair,
+                      "a simultaneous law needs `prepare(m, k, dissipation, end, dt)`");
+    EQUIDEM_LAW_NEEDS(Law::step(ExactPair{}, x, x, true, x, x), ExactStep,
+                      "a simultaneous law needs `step(pair, overlap, closing, touching, h0, h1)`");
+  }
+#undef EQUIDEM_LAW_NEEDS
+  return true;
+}
+
+}  // namespace equidem

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Linear spring and dashpot: F = k d + c v, c = 2 zeta sqrt(m k) (Cundall & Strack 1979; the law C of Fujioka &
+/// Ushijima 2005).
+#pragma once
+
+#include <cmath>
+
+#include "equidem/contact/laws/law.hpp"
+
+namespace equidem::laws {
+
+struct LinearDashpot : LinearSpring {
+  static constexpr const char* name = "linear_dashpot";
+  static constexpr const char* letter = "C";
+  static constexpr const char* source = "Cundall & Strack 1979";
+  static constexpr const char* summary = "linear spring and dashpot";
+  static constexpr LawKind kind = LawKind::force;
+  static constexpr bool has_dashpot = true;
+  static constexpr double steps_per_contact = 50;
+
+  template <class Number>
+  [[gnu::always_inline]] static Number spring(const Number& k, const Number& d) {
+    return k * d;
+  }
+  template <class Number>
+  [[gnu::always_inline]] static Number dashpot(const Number& c, const Number& /*d*/) {
+    return c;
+  }
+  /// The trapezoidal rule is exact for a linear force from its first instant on.
+  static DriftShares shares_of_drift(double part) { return {part / 2, part}; }
+
+  /// c/sqrt(m k) = 2 zeta
+  static double dissipation(double restitution, ContactEnd end) { return 2 * damping_ratio(restitution, end); }
+  static double damping_ratio(double restitution, ContactEnd end) { return damping_ratio_of(restitution, end); }
+  /// Largest omega dt of one contact: 2/(sqrt(1 + zeta²) + zeta), omega² = k/m.
+  static double stable_step(double damping_ratio) {
+    return 2 / (std::sqrt(1 + damping_ratio * damping_ratio) + damping_ratio);
+  }
+  static void check_range(double /*a*/, double /*restitution*/) {}
+};
+
+}  // namespace equidem::laws

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/contact/laws/normal_law.hpp"
+
+#include <array>
+#include <string_view>
+
+#include "equidem/core/names.hpp"
+
+namespace equidem {
+namespace {
+
+template <class Law>
+constexpr LawDescription description_of(NormalLaw law) {
+  static_assert(check_law<Law>());
+  LawDescription d;
+  d.law = law;
+  d.name = Law::name;
+  d.letter = Law::letter;
+  d.source = Law::source;
+  d.summary = Law::summary;
+  d.kind = Law::kind;
+  d.has_dashpot = Law::has_dashpot;
+  d.usual_end = Law::usual_end;
+  d.spring_power = Law::spring_power;
+  d.stiffness_unit = Law::stiffness_unit;
+  d.hertz_spring = Law::hertz_spring;
+  d.steps_per_contact = Law::steps_per_contact;
+  d.length_factor = Law::length_factor;
+  d.energy = Law::energy;
+  d.elastic_impact = Law::elastic_impact;
+  d.stiffness_from_overlap = Law::stiffness_from_overlap;
+  d.dissipation = Law::dissipation;
+  d.damping_ratio = Law::damping_ratio;
+  d.stable_step = Law::stable_step;
+  d.check_range = Law::check_range;
+  if constexpr (Law::kind == LawKind::force) {
+    d.dashpot = [](double c, double depth) { return Law::dashpot(c, depth); };
+    d.shares_of_drift = Law::shares_of_drift;
+  }
+  if constexpr (Law::kind == LawKind::simultaneous) d.prepare = Law::prepare;
+  return d;
+}
+
+#define EQUIDEM_CHECK_NAME(listed, Law) static_assert(std::string_view(#listed) == laws::Law::name);
+EQUIDEM_LAWS(EQUIDEM_CHECK_NAME)
+#define EQUIDEM_ENTRY(listed, Law) description_of<laws::Law>(NormalLaw::listed),
+constexpr std::array descriptions{EQUIDEM_LAWS(EQUIDEM_ENTRY)};
+
+}  // namespace
+
+std::span<const LawDescription> normal_laws() {
+  return descriptions;
+}
+
+const LawDescription& describe(NormalLaw law) {
+  return descriptions[static_cast<std::size_t>(law)];
+}
+
+NormalLaw normal_law_from(const std::string& name) {
+  return entry_named(normal_laws(), name, "law of normal contact").law;
+}
+
+std::string to_string(NormalLaw law) {
+  return describe(law).name;
+}
+
+std::string letter_of(NormalLaw law) {
+  return describe(law).letter;
+}
+
+std::string names_of_laws(LawKind kind) {
+  std::string names;
+  for (const LawDescription& law : descriptions) {
+    if (law.kind == kind) names += (names.empty() ? "" : " or ") + std::string(law.name);
+  }
+  return names;
+}
+
+}  // namespace equidem

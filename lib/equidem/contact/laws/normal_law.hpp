@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The laws of normal contact by name, with all that is not evaluated in a loop over contacts.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "equidem/contact/laws/list.hpp"
+
+namespace equidem {
+
+#define EQUIDEM_ENUMERATOR(listed, Law) listed,
+/// One for each line of laws/list.hpp.
+enum class NormalLaw { EQUIDEM_LAWS(EQUIDEM_ENUMERATOR) };
+#undef EQUIDEM_ENUMERATOR
+
+/// The members of a law's struct (laws/law.hpp). Functions that only some kinds have are null for the others.
+struct LawDescription {
+  NormalLaw law = {};
+  const char *name = "", *letter = "", *source = "", *summary = "";
+  LawKind kind = LawKind::force;
+  bool has_dashpot = false;
+  ContactEnd usual_end = ContactEnd::at_zero_force;
+  double spring_power = 1;
+  const char* stiffness_unit = "";
+  bool hertz_spring = false;
+  double steps_per_contact = 0;
+  double (*length_factor)(double length) = nullptr;
+  double (*energy)(double k, double d) = nullptr;
+  ElasticImpact (*elastic_impact)(double k, double m, double v) = nullptr;
+  double (*stiffness_from_overlap)(double overlap, double speed, double m, double damping_ratio) = nullptr;
+  double (*dissipation)(double restitution, ContactEnd end) = nullptr;
+  double (*damping_ratio)(double restitution, ContactEnd end) = nullptr;
+  double (*stable_step)(double damping_ratio) = nullptr;
+  void (*check_range)(double a, double restitution) = nullptr;
+  double (*dashpot)(double c, double d) = nullptr;                                                    ///< force
+  DriftShares (*shares_of_drift)(double part) = nullptr;                                              ///< force
+  ExactPair (*prepare)(double m, double k, double dissipation, ContactEnd end, double dt) = nullptr;  ///< simultaneous
+};
+
+/// All laws, in the order of the list.
+std::span<const LawDescription> normal_laws();
+const LawDescription& describe(NormalLaw law);
+
+/// \throws Error (bad_input) naming the choices
+NormalLaw normal_law_from(const std::string& name);
+std::string to_string(NormalLaw law);
+/// "C", "T", "F", "P", "X".
+std::string letter_of(NormalLaw law);
+inline LawKind kind_of(NormalLaw law) {
+  return describe(law).kind;
+}
+inline bool gives_force(NormalLaw law) {
+  return kind_of(law) == LawKind::force;
+}
+inline bool is_map(NormalLaw law) {
+  return kind_of(law) == LawKind::map;
+}
+inline bool is_simultaneous(NormalLaw law) {
+  return kind_of(law) == LawKind::simultaneous;
+}
+/// "linear_dashpot or hertz_dashpot": the laws of a kind.
+std::string names_of_laws(LawKind kind);
+
+}  // namespace equidem
