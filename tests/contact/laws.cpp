@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What every law of the list promises. tests/laws runs these tests for a longer list as well.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "equidem/contact/laws/visit.hpp"
+
+#include "support/catch.hpp"
+#include "support/contact_steps.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+/// Calls test(std::type_identity<Law>()) for the laws of a kind.
+template <class Test>
+void for_each_force_law(const Test& test) {
+  for (const LawDescription& law : normal_laws()) {
+    visit_law(law.law, [&]<class Law>(std::type_identity<Law> type) {
+      if constexpr (Law::kind == LawKind::force) test(type);
+    });
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the_force_of_a_spring_is_the_derivative_of_its_energy") {
+  for_each_force_law([]<class Law>(std::type_identity<Law>) {
+    for (const double depth : {1e-6, 0.01, 1.0, 30.0}) {
+      const double k = 7e4, h = 1e-4 * depth;
+      const double slope = (Law::energy(k, depth + h) - Law::energy(k, depth - h)) / (2 * h);
+      CAPTURE(Law::name, depth, slope, Law::spring(k, depth));
+      CHECK(slope == Approx(Law::spring(k, depth)).epsilon(1e-7));
+      CHECK(Law::spring(k, depth) == Approx(k * depth * Law::length_factor(depth)).epsilon(1e-14));
+      CHECK(Law::spring(k, depth) == Approx(k * std::pow(depth, Law::spring_power)).epsilon(1e-14));
+    }
+  });
+}
+
+TEST_CASE("an_elastic_impact_turns_the_energy_of_motion_into_that_of_the_spring_and_back") {
+  const double k = 3e3, m = 0.2, v = 1.7;
+  for (const LawDescription& law : normal_laws()) {
+    const ElasticImpact impact = law.elastic_impact(k, m, v);
+    CAPTURE(law.name, impact.overlap, impact.force, impact.duration);
+    CHECK(law.energy(k, impact.overlap) == Approx(m * v * v / 2).epsilon(1e-12));
+    CHECK(impact.force == Approx(k * impact.overlap * law.length_factor(impact.overlap)).epsilon(1e-12));
+    const double stiffness = law.stiffness_from_overlap(impact.overlap, v, m, 0);
+    CHECK(stiffness == Approx(k).epsilon(1e-12));
+  }
+  for_each_force_law([&]<class Law>(std::type_identity<Law>) {
+    const ElasticImpact impact = Law::elastic_impact(k, m, v);
+    const int steps = 20000;
+    const double dt = impact.duration / steps;
+    double depth = 0, closing = v;
+    for (int n = 0; n < steps; ++n) {
+      depth += 0.5 * dt * closing;
+      closing -= dt / m * Law::spring(k, std::max(depth, 0.0));
+      depth += 0.5 * dt * closing;
+    }
+    CAPTURE(Law::name, depth / impact.overlap, closing / v);
+    CHECK(std::abs(depth) < 1e-6 * impact.overlap);
+    CHECK(closing == Approx(-v).epsilon(1e-6));
+  });
+}
+
+TEST_CASE("a_law_with_a_dashpot_gives_the_restitution_asked_for") {
+  for_each_force_law([]<class Law>(std::type_identity<Law>) {
+    if (!Law::has_dashpot) return;
+    for (const double e : {0.2, 0.7, 0.95}) {
+      for (const ContactEnd end : {ContactEnd::at_zero_overlap, ContactEnd::at_zero_force}) {
+        const double dt = 1e-4, a = dt * dt, c = Law::dissipation(e, end) * dt;
+        double depth = 1e-12, closing = dt;
+        while (depth > 0) {
+          const ContactStep step = force_step<Law>(depth, closing, a, c, end == ContactEnd::at_zero_overlap);
+          closing += step.change;
+          depth += closing;
+        }
+        CAPTURE(Law::name, e, to_string(end), -closing / dt);
+        CHECK(-closing / dt == Approx(e).margin(1e-3));
+      }
+    }
+  });
+}
+
+TEST_CASE("a_whole_drift_of_contact_counts_as_much_as_the_trapezoidal_rule_says") {
+  // far from its beginning a force that grows with time changes little within a drift
+  for_each_force_law([]<class Law>(std::type_identity<Law>) {
+    const DriftShares short_contact = Law::shares_of_drift(1e-9), whole = Law::shares_of_drift(1);
+    CAPTURE(Law::name, short_contact.spring, short_contact.dashpot, whole.spring, whole.dashpot);
+    CHECK(whole.spring == Approx(0.5).margin(0.05));
+    if (!Law::has_dashpot) return;
+    CHECK(whole.dashpot >= 0.5);
+    CHECK(whole.dashpot <= 1);
+  });
+}
