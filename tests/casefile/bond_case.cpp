@@ -53,26 +53,26 @@ grains = [2, 1]
 normal_dashpot = 5.0
 normal_spring = 3.0
 )");
-  REQUIRE(made.bonds.bonds.size() == 2);
-  const GrainBond &first = made.bonds.bonds[0], &second = made.bonds.bonds[1];
+  REQUIRE(made.scene.bonds.size() == 2);
+  const GrainBond &first = made.scene.bonds[0], &second = made.scene.bonds[1];
   CHECK((first.i == 0 && first.j == 1 && second.i == 2 && second.j == 1));
   CHECK((first.normal_dashpot == 20 && first.tangential_dashpot == 10 && first.normal_spring == 0));
   CHECK((second.normal_dashpot == 5 && second.tangential_dashpot == 10 && second.normal_spring == 3));
-  CHECK(made.bonds.step == GrainOptions::BondStep::exact);
+  CHECK(made.options.bond_step == GrainOptions::BondStep::exact);
   CHECK(build_grain_scene(made, 1e-4).bonds.size() == 2);
-  CHECK(parsed_bonds("").bonds.bonds.empty());
+  CHECK(parsed_bonds("").scene.bonds.empty());
 }
 
 TEST_CASE("an_automatic_step_keeps_to_half_the_limit_of_explicit_bonds") {
   const std::string bond = "[bonds]\nstep = \"explicit\"\n[[bond]]\ngrains = [0, 1]\n";
   const double mass = 1000 * 3.141592653589793 * 0.01, dashpot = 1e7;
   const GrainCase made = parsed_bonds(bond + "normal_dashpot = 1e7\n");
-  const GrainStep step = choose_grain_step(made);
+  const GrainTimeStep step = choose_grain_step(made);
   CAPTURE(step.step, step.bond_limit);
   CHECK(step.bond_limit == Approx(2 * (mass / 2) / dashpot));
   CHECK(step.step == 0.5 * step.bond_limit);
   // exact bonds leave the step to the contacts
-  const GrainStep free = choose_grain_step(parsed_bonds(bond + "normal_dashpot = 1e7\n", {"bonds.step=exact"}));
+  const GrainTimeStep free = choose_grain_step(parsed_bonds(bond + "normal_dashpot = 1e7\n", {"bonds.step=exact"}));
   CHECK(free.bond_limit == 0);
   CHECK(free.step > 10 * step.step);
   CHECK_THROWS_WITH(
@@ -86,13 +86,13 @@ TEST_CASE("a_file_of_bonds_ties_grains_by_number") {
   const auto write = [&](const std::string& text) { std::ofstream(path) << text; };
   write("i,j,distance_drift\n0,1,0.5\n# none\n 1 , 2 ,0\n");
   const GrainCase made = parsed_bonds(table);
-  REQUIRE(made.bonds.bonds.size() == 2);
-  CHECK((made.bonds.bonds[1].i == 1 && made.bonds.bonds[1].j == 2 && made.bonds.bonds[1].normal_dashpot == 1));
+  REQUIRE(made.scene.bonds.size() == 2);
+  CHECK((made.scene.bonds[1].i == 1 && made.scene.bonds[1].j == 2 && made.scene.bonds[1].normal_dashpot == 1));
   write("i,j,distance_drift,normal_spring,normal_dashpot\n0,1,0.5,7,3\n1,2,0,,\n");
   const GrainCase own = parsed_bonds(table);
-  REQUIRE(own.bonds.bonds.size() == 2);
-  CHECK((own.bonds.bonds[0].normal_dashpot == 3 && own.bonds.bonds[0].normal_spring == 7));
-  CHECK((own.bonds.bonds[1].normal_dashpot == 1 && own.bonds.bonds[1].normal_spring == 0));
+  REQUIRE(own.scene.bonds.size() == 2);
+  CHECK((own.scene.bonds[0].normal_dashpot == 3 && own.scene.bonds[0].normal_spring == 7));
+  CHECK((own.scene.bonds[1].normal_dashpot == 1 && own.scene.bonds[1].normal_spring == 0));
   for (const auto& [text, said] : {std::pair{"i,j,normal_dashpot\n0,1,-1\n", ":2: '-1' is no normal_dashpot"},
                                    std::pair{"i,j,normal_dashpot\n0,1,inf\n", ":2: 'inf' is no normal_dashpot"},
                                    std::pair{"i,j,normal_dashpot\n0,1,0\n", ":2: the bond has no dashpot"},

@@ -41,7 +41,7 @@ TEST_CASE("an_automatic_step_follows_strong_dashpots") {
           case_of(ball_with(fmt::format("law = \"{}\"\nrestitution = {}\nstiffness = 1.0e6\nclosing_speed = 1.0\n"
                                         "contact_end = \"zero_force\"",
                                         law, restitution)));
-      const GrainStep step = choose_grain_step(given);
+      const GrainTimeStep step = choose_grain_step(given);
       GrainSimulation simulation(build_grain_scene(given, step.step), grain_options(given, step.step));
       simulation.advance(count_steps(given, step.step));
       CAPTURE(law, restitution, step.step, step.omega_step, step.limit);
@@ -59,7 +59,7 @@ TEST_CASE("a_step_that_makes_hertz_contacts_gain_energy_is_refused") {
   } catch (const Error& error) {
     CHECK(error.problem().find("limit of stability") != std::string::npos);
   }
-  const GrainStep known = choose_grain_step(case_of(ball_with(contact)));
+  const GrainTimeStep known = choose_grain_step(case_of(ball_with(contact)));
   CHECK(known.omega_step < 0.2 * known.limit);
 }
 
@@ -68,8 +68,9 @@ TEST_CASE("friction_of_the_maps_is_slip_unless_a_spring_is_asked_for") {
     CAPTURE(law);
     const std::string contact = fmt::format("law = \"{}\"\nrestitution = 0.9\nstiffness = 1.0e6\nfriction = 0.3", law);
     const double usual = std::string(law).ends_with("map") ? 0 : 2.0 / 7;
-    CHECK(case_of(ball_with(contact)).between(0, 1).properties.tangential_ratio == usual);
-    CHECK(case_of(ball_with(contact + "\ntangential_ratio = 0.5")).between(0, 1).properties.tangential_ratio == 0.5);
+    CHECK(case_of(ball_with(contact)).contacts.between(0, 1).properties.tangential_ratio == usual);
+    CHECK(case_of(ball_with(contact + "\ntangential_ratio = 0.5")).contacts.between(0, 1).properties.tangential_ratio ==
+          0.5);
   }
 }
 
@@ -89,7 +90,7 @@ TEST_CASE("errors_of_grains_name_the_line_of_the_grain") {
   const std::string text = ball_with("restitution = 0.5\nstiffness = 1.0e6");
   const GrainCase given =
       parse_grain_case(changed(text, "density = 2500.0", "density = 2500.0\npath = \"g.csv\""), "case.toml", folder);
-  CHECK(given.grains[1].position.y == 1);
+  CHECK(given.scene.grains[1].position.y == 1);
   CHECK(given.where_grain(1) == (folder / "g.csv").string() + ":4");
   CHECK(given.where_grain(2) == "case.toml:5: grain");
 }

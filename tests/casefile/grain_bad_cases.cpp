@@ -130,9 +130,9 @@ TEST_CASE("a_file_of_grains_is_read_line_by_line") {
   };
   const std::string rest = "1,0.1,0.02,grains\n2,0.1,0.02,steel\n";
   const GrainCase c = read("# two\nx, y_m, radius, group\n" + rest);
-  REQUIRE(c.grains.size() == 2);
-  CHECK(c.grains[1].position == Vec2{2, 0.1});
-  CHECK(c.kinds[1] == "steel");
+  REQUIRE(c.scene.grains.size() == 2);
+  CHECK(c.scene.grains[1].position == Vec2{2, 0.1});
+  CHECK(c.contacts.kinds[1] == "steel");
   CHECK(c.densities[0] == 2500);
   struct Bad {
     std::string rows;

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "equidem/casefile/echo.hpp"
-#include "equidem/casefile/grain_pairs.hpp"
 #include "equidem/casefile/grain_step.hpp"
 #include "equidem/casefile/keys.hpp"
 #include "equidem/core/text.hpp"
@@ -40,28 +39,28 @@ std::vector<fs::path> example_files() {
 TEST_CASE("a_case_of_grains_says_what_its_file_says") {
   const GrainCase c = grains(grain_case);
   CHECK(c.body == Body::sphere);
-  REQUIRE(c.grains.size() == 3);
-  CHECK(c.grains[0].velocity == Vec2{1, -2});
-  CHECK(c.grains[0].spin == 3);
-  CHECK(c.grains[1].inertia.mass == inertia_of(0.02, 7800, Body::sphere).mass);
-  CHECK(c.grains[2].inertia.moment == inertia_of(0.03, 2500, Body::sphere).moment);
-  CHECK(c.kinds == std::vector<std::string>{"grains", "steel", "walls", "floor"});
-  CHECK(c.law == NormalLaw::linear_dashpot);
-  CHECK(c.scheme == GrainOptions::Scheme::velocity_verlet);
+  REQUIRE(c.scene.grains.size() == 3);
+  CHECK(c.scene.grains[0].velocity == Vec2{1, -2});
+  CHECK(c.scene.grains[0].spin == 3);
+  CHECK(c.scene.grains[1].inertia.mass == inertia_of(0.02, 7800, Body::sphere).mass);
+  CHECK(c.scene.grains[2].inertia.moment == inertia_of(0.03, 2500, Body::sphere).moment);
+  CHECK(c.contacts.kinds == std::vector<std::string>{"grains", "steel", "walls", "floor"});
+  CHECK(c.options.law == NormalLaw::linear_dashpot);
+  CHECK(c.options.scheme == GrainOptions::Scheme::velocity_verlet);
   CHECK(c.duration == 0.5);
-  CHECK(c.time_step == 1e-5);
-  CHECK(c.gravity == Vec2{0, -9.81});
-  REQUIRE(c.walls.size() == 3);
-  CHECK(c.walls[0].normal == Vec2{0, 1});
-  CHECK(c.walls[0].kind == 3);
-  CHECK(c.walls[1].kind == 2);
-  CHECK(c.walls[1].end == Vec2{-1, 1});
-  CHECK_FALSE(c.walls[0].moves());
-  CHECK(c.walls[1].move_x.value == Approx(0.06));
-  CHECK(c.walls[1].move_y.value == Approx(0.08));
-  CHECK(c.walls[1].move_y.frequency == 5);
-  CHECK(c.walls[2].shape == GrainWall::Shape::arc);
-  CHECK(c.walls[2].to == 5.5);
+  CHECK(c.step.time_step == 1e-5);
+  CHECK(c.scene.gravity == Vec2{0, -9.81});
+  REQUIRE(c.scene.walls.size() == 3);
+  CHECK(c.scene.walls[0].normal == Vec2{0, 1});
+  CHECK(c.scene.walls[0].kind == 3);
+  CHECK(c.scene.walls[1].kind == 2);
+  CHECK(c.scene.walls[1].end == Vec2{-1, 1});
+  CHECK_FALSE(c.scene.walls[0].moves());
+  CHECK(c.scene.walls[1].move_x.value == Approx(0.06));
+  CHECK(c.scene.walls[1].move_y.value == Approx(0.08));
+  CHECK(c.scene.walls[1].move_y.frequency == 5);
+  CHECK(c.scene.walls[2].shape == GrainWall::Shape::arc);
+  CHECK(c.scene.walls[2].to == 5.5);
   REQUIRE(c.probes.size() == 1);
   CHECK(c.probes[0].grains == std::vector<std::int32_t>{0, 2});
   CHECK(c.probes[0].quantities == std::vector<std::string>{"velocity", "spin"});
@@ -70,8 +69,8 @@ TEST_CASE("a_case_of_grains_says_what_its_file_says") {
 
 TEST_CASE("later_tables_of_collisions_say_what_differs") {
   const GrainCase c = grains(grain_case);
-  const PairProperties base = c.between(0, 1).properties, wall = c.between(0, 2).properties,
-                       floor = c.between(0, 3).properties, steel = c.between(1, 3).properties;
+  const PairProperties base = c.contacts.between(0, 1).properties, wall = c.contacts.between(0, 2).properties,
+                       floor = c.contacts.between(0, 3).properties, steel = c.contacts.between(1, 3).properties;
   CHECK(base.restitution == 0.8);
   CHECK(base.friction == 0.3);
   CHECK(base.tangential_ratio == Approx(2.0 / 7));
@@ -82,9 +81,10 @@ TEST_CASE("later_tables_of_collisions_say_what_differs") {
   CHECK(steel.restitution == 0.6);
   CHECK(steel.friction == 0);
   CHECK(steel.stiffness == 0);
-  CHECK(c.between(1, 3).duration == 1e-3);
-  for (int a = 0; a < c.kind_count(); ++a)
-    for (int b = 0; b < c.kind_count(); ++b) CHECK(c.between(a, b).properties == c.between(b, a).properties);
+  CHECK(c.contacts.between(1, 3).duration == 1e-3);
+  for (int a = 0; a < c.contacts.kind_count(); ++a)
+    for (int b = 0; b < c.contacts.kind_count(); ++b)
+      CHECK(c.contacts.between(a, b).properties == c.contacts.between(b, a).properties);
   CHECK_NOTHROW(check(build_grain_scene(c, 1e-5), grain_options(c, 1e-5)));
 }
 
@@ -105,7 +105,7 @@ TEST_CASE("a_duration_and_an_overlap_are_those_of_the_contact") {
     const GrainScene scene = build_grain_scene(c, 1e-5);
     const PairProperties& pair = scene.between(0, 1);
     // The half period of the damped oscillator, whatever the masses: a = (w dt)².
-    const double zeta = damping_ratio(c.law, pair);
+    const double zeta = damping_ratio(c.options.law, pair);
     CHECK(std::numbers::pi / (std::sqrt(pair.dimensionless) / 1e-5 * std::sqrt(1 - zeta * zeta)) == Approx(2e-4));
     CHECK(choose_grain_step(c).contact == Approx(2e-4));
     CHECK(choose_grain_step(c).steps_in_contact() == Approx(20));
@@ -115,8 +115,8 @@ TEST_CASE("a_duration_and_an_overlap_are_those_of_the_contact") {
     overrides.emplace_back("collisions.largest_overlap=1e-4");
     overrides.emplace_back("collisions.closing_speed=2.0");
     const GrainCase c = grains(text, overrides);
-    const double k = c.between(0, 1).properties.stiffness;
-    const double m = 1 / (1 / c.grains[1].inertia.mass + 1 / c.grains[2].inertia.mass);  // the heaviest two
+    const double k = c.contacts.between(0, 1).properties.stiffness;
+    const double m = 1 / (1 / c.scene.grains[1].inertia.mass + 1 / c.scene.grains[2].inertia.mass);  // the heaviest two
     const double undamped = m * 2.0 * 2.0 / (1e-4 * 1e-4);
     CAPTURE(k, undamped);
     if (e == 1 || law == "energy_map") {
@@ -135,16 +135,16 @@ TEST_CASE("an_automatic_step_gives_the_shortest_contact_the_steps_asked_for") {
   text.erase(text.find("scheme"), text.find("gravity") - text.find("scheme"));
   std::vector<std::string> overrides{"run.time_step=auto", "collisions.law=" + law, "collisions.closing_speed=1.5",
                                      "collisions.restitution=1", "collisions.walls.restitution=1"};
-  const GrainStep usual = choose_grain_step(grains(text, overrides));
+  const GrainTimeStep usual = choose_grain_step(grains(text, overrides));
   CHECK(usual.automatic);
   if (law == "exact_flow") CHECK(usual.omega_step == Approx(1));
   overrides.emplace_back("run.steps_per_contact=17");
   const GrainCase c = grains(text, overrides);
-  const GrainStep step = choose_grain_step(c);
+  const GrainTimeStep step = choose_grain_step(c);
   CHECK(step.steps_in_contact() == Approx(17));
   CHECK(step.contact == Approx(usual.contact));
   if (law == "hertz_dashpot") return;
-  const double lightest = 1 / (1 / c.grains[0].inertia.mass + 1 / c.grains[1].inertia.mass);
+  const double lightest = 1 / (1 / c.scene.grains[0].inertia.mass + 1 / c.scene.grains[1].inertia.mass);
   CHECK(step.contact == Approx(std::numbers::pi * std::sqrt(lightest / 1e5)));
 }
 
@@ -153,47 +153,13 @@ TEST_CASE("a_hertz_stiffness_follows_from_the_moduli_for_every_pair_of_radii") {
   text.erase(text.find("contact_duration"), 26);
   const GrainCase c = grains(text, {"collisions.law=hertz_dashpot"});
   // kinds: one for each radius of each group, then walls
-  REQUIRE(c.kinds == std::vector<std::string>{"grains", "steel", "grains", "walls", "floor"});
+  REQUIRE(c.contacts.kinds == std::vector<std::string>{"grains", "steel", "grains", "walls", "floor"});
   const double contact_modulus = 7e10 / (2 * (1 - 0.09));
   const auto stiffness = [&](double r, double s) { return 4.0 / 3 * contact_modulus * std::sqrt(r * s / (r + s)); };
-  CHECK(c.between(0, 1).properties.stiffness == Approx(stiffness(0.01, 0.02)));
-  CHECK(c.between(0, 2).properties.stiffness == Approx(stiffness(0.01, 0.03)));
-  CHECK(c.between(2, 3).properties.stiffness == Approx(4.0 / 3 * 7e10 / (1 - 0.09) * std::sqrt(0.03)));
-  CHECK(c.between(0, 1).properties.end == ContactEnd::at_zero_overlap);
-}
-
-TEST_CASE("reduced_masses_span_all_pairs_of_two_kinds") {
-  GrainCase c;
-  c.kinds = {"a", "b", "walls"};
-  const std::vector<double> masses{5, 2, 7, 3, 11};
-  const std::vector<int> kinds{0, 0, 1, 0, 1};
-  for (std::size_t g = 0; g < masses.size(); ++g) {
-    Grain grain;
-    grain.inertia.mass = masses[g];
-    grain.kind = kinds[g];
-    c.grains.push_back(grain);
-  }
-  const auto of_kinds = masses_of_kinds(c);
-  for (int a = 0; a < 3; ++a) {
-    for (int b = 0; b < 3; ++b) {
-      double smallest = INFINITY, largest = 0;
-      for (std::size_t i = 0; i < masses.size(); ++i) {
-        if (kinds[i] == a && b == 2) smallest = std::min(smallest, masses[i]), largest = std::max(largest, masses[i]);
-        if (kinds[i] == b && a == 2) smallest = std::min(smallest, masses[i]), largest = std::max(largest, masses[i]);
-        for (std::size_t j = 0; j < masses.size(); ++j) {
-          if (i == j || kinds[i] != a || kinds[j] != b) continue;
-          const double reduced = masses[i] * masses[j] / (masses[i] + masses[j]);
-          smallest = std::min(smallest, reduced), largest = std::max(largest, reduced);
-        }
-      }
-      CAPTURE(a, b);
-      const auto found = reduced_masses(of_kinds, a, b);
-      REQUIRE(found.has_value() == (largest > 0));
-      if (!found) continue;
-      CHECK(found->smallest == Approx(smallest));
-      CHECK(found->largest == Approx(largest));
-    }
-  }
+  CHECK(c.contacts.between(0, 1).properties.stiffness == Approx(stiffness(0.01, 0.02)));
+  CHECK(c.contacts.between(0, 2).properties.stiffness == Approx(stiffness(0.01, 0.03)));
+  CHECK(c.contacts.between(2, 3).properties.stiffness == Approx(4.0 / 3 * 7e10 / (1 - 0.09) * std::sqrt(0.03)));
+  CHECK(c.contacts.between(0, 1).properties.end == ContactEnd::at_zero_overlap);
 }
 
 TEST_CASE("examples_of_grains_are_read_and_written_back") {
@@ -203,12 +169,12 @@ TEST_CASE("examples_of_grains_are_read_and_written_back") {
     CAPTURE(file);
     REQUIRE(describes_grains(file));
     const GrainCase c = read_grain_case(file);
-    const GrainStep step = choose_grain_step(c);
+    const GrainTimeStep step = choose_grain_step(c);
     CHECK_NOTHROW(check(build_grain_scene(c, step.step), grain_options(c, step.step)));
     const std::string echo = to_toml(c.document, file.parent_path());
     const GrainCase again = parse_grain_case(echo, "echo.toml", file.parent_path());
     CHECK(to_toml(again.document, file.parent_path()) == echo);
-    CHECK(again.grains.size() == c.grains.size());
+    CHECK(again.scene.grains.size() == c.scene.grains.size());
   }
 }
 

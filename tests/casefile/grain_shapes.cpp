@@ -66,23 +66,23 @@ std::string refused(const std::string& text) {
 
 TEST_CASE("grains_have_the_shapes_of_their_keys") {
   const GrainCase c = grains(soil);
-  REQUIRE(c.grains.size() == 3);
-  CHECK(c.grains[0].shape() == GrainShape::disc);
-  CHECK(c.grains[1].shape() == GrainShape::ellipse);
-  CHECK(c.grains[1].radius == 0.02);
-  CHECK(c.grains[1].short_half_axis == 0.01);
-  CHECK(c.grains[1].inertia.mass == Approx(2480 * std::numbers::pi * 0.02 * 0.01));
-  CHECK(c.grains[1].inertia.moment == Approx(c.grains[1].inertia.mass * (0.02 * 0.02 + 0.01 * 0.01) / 4));
-  REQUIRE(c.grains[2].shape() == GrainShape::clump);
-  const Clump& clump = c.clumps[static_cast<std::size_t>(c.grains[2].clump)];
+  REQUIRE(c.scene.grains.size() == 3);
+  CHECK(c.scene.grains[0].shape() == GrainShape::disc);
+  CHECK(c.scene.grains[1].shape() == GrainShape::ellipse);
+  CHECK(c.scene.grains[1].radius == 0.02);
+  CHECK(c.scene.grains[1].short_half_axis == 0.01);
+  CHECK(c.scene.grains[1].inertia.mass == Approx(2480 * std::numbers::pi * 0.02 * 0.01));
+  CHECK(c.scene.grains[1].inertia.moment == Approx(c.scene.grains[1].inertia.mass * (0.02 * 0.02 + 0.01 * 0.01) / 4));
+  REQUIRE(c.scene.grains[2].shape() == GrainShape::clump);
+  const Clump& clump = c.scene.clumps[static_cast<std::size_t>(c.scene.grains[2].clump)];
   CHECK(clump.discs[0].offset.x == Approx(-0.0075));
   CHECK(clump.discs[1].offset.x == Approx(0.0075));
   CHECK(std::abs(clump.discs[1].offset.y) < 1e-15);
-  CHECK(c.grains[2].radius == Approx(0.0175));
+  CHECK(c.scene.grains[2].radius == Approx(0.0175));
   // Two discs without the lens that they share.
   const double r = 0.01, d = 0.015;
   const double lens = 2 * r * r * std::acos(d / (2 * r)) - 0.5 * d * std::sqrt(4 * r * r - d * d);
-  CHECK(c.grains[2].inertia.mass == Approx(2480 * (2 * std::numbers::pi * r * r - lens)));
+  CHECK(c.scene.grains[2].inertia.mass == Approx(2480 * (2 * std::numbers::pi * r * r - lens)));
 }
 
 TEST_CASE("the_settings_of_a_packing_are_those_of_a_run") {
@@ -90,7 +90,7 @@ TEST_CASE("the_settings_of_a_packing_are_those_of_a_run") {
   const SpringConstants springs = springs_of_wave_speeds(2480, wave_speeds_from_shear(150, 0.25));
   for (const bool at_wall : {false, true}) {
     CAPTURE(at_wall);
-    const PairProperties& pair = c.between(0, at_wall ? 1 : 0).properties;
+    const PairProperties& pair = c.contacts.between(0, at_wall ? 1 : 0).properties;
     // Dashpots 2 h sqrt(m k) (2.27); m/2 moves along the normal, at a wall m; a third of it along the tangent of a
     // disc.
     const double mass = 3.0, moved = at_wall ? mass : mass / 2;
@@ -135,7 +135,7 @@ TEST_CASE("springs_of_wave_speeds_need_one_density_and_no_other_ratio") {
 
 TEST_CASE("ellipses_meet_by_the_test_asked_for") {
   using enum GrainOptions::EllipseLaw;
-  CHECK(grains(soil).ellipse_law == exact);
+  CHECK(grains(soil).options.ellipse_law == exact);
   for (const auto& [word, law] :
        {std::pair{"exact", exact}, {"enlarged", enlarged_mended}, {"enlarged_as_printed", enlarged_as_printed}}) {
     const GrainCase c = grains(soil, {fmt::format("collisions.ellipse_contact={}", word)});

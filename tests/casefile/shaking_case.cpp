@@ -65,7 +65,7 @@ TEST_CASE("all_walls_move_alike_with_the_acceleration_in_its_unit") {
                 std::string(unit) + "\"\n"));
     REQUIRE(resolved.shaking);
     CHECK(resolved.shaking->motion.peak_acceleration == Approx(0.4 * factor));
-    for (const GrainWall& wall : resolved.walls) {
+    for (const GrainWall& wall : resolved.scene.walls) {
       const double t = 0.4, h = 1e-4;
       const auto x = [&](double time) { return Vec2{wall.move_x.at(time), wall.move_y.at(time)}; };
       const Vec2 a = (x(t + h) - 2 * x(t) + x(t - h)) / (h * h);
@@ -82,8 +82,8 @@ TEST_CASE("a_box_shakes_to_the_end_where_nothing_else_is_said_and_walls_may_stan
   const GrainCase resolved =
       grains(shaking("acceleration = 4.0\nfrequency = 5.0\nstart = 0.5\n"), {"wall.1.shaken=false"});
   CHECK(resolved.shaking->cycles == 8);
-  CHECK(resolved.walls[0].moves());
-  CHECK_FALSE(resolved.walls[1].moves());
+  CHECK(resolved.scene.walls[0].moves());
+  CHECK_FALSE(resolved.scene.walls[1].moves());
   CHECK(grains(shaking("acceleration = 4.0\nfrequency = 5.0\nduration = 0.6\n")).shaking->cycles == 3);
   CHECK_FALSE(grains(box).shaking);
 }
@@ -93,7 +93,7 @@ TEST_CASE("a_record_moves_the_box_from_rest_to_rest") {
   const std::string keys = "record = \"" + file.path() + "\"\nunit = \"gal\"\nscale = 2.0\nstart = 0.2\n";
   for (const std::string baseline : {"rest", "velocity"}) {
     const GrainCase resolved = grains(shaking(keys + "baseline = \"" + baseline + "\"\n"));
-    const Schedule& motion = resolved.walls[0].move_x;
+    const Schedule& motion = resolved.scene.walls[0].move_x;
     const double h = 1e-6;
     CAPTURE(baseline, resolved.shaking->motion.correction);
     CHECK(motion.at(0.1) == 0);
@@ -103,8 +103,8 @@ TEST_CASE("a_record_moves_the_box_from_rest_to_rest") {
   }
   const TemporaryFile way("time,displacement\n0,0.5\n0.1,0.51\n0.3,0.49\n0.5,0.5\n");
   const GrainCase followed = grains(shaking("record = \"" + way.path() + "\"\nquantity = \"displacement\"\n"));
-  CHECK(followed.walls[0].move_x.at(0.1) == Approx(0.01));
-  CHECK(followed.walls[0].move_x.at(0.3) == Approx(-0.01));
+  CHECK(followed.scene.walls[0].move_x.at(0.1) == Approx(0.01));
+  CHECK(followed.scene.walls[0].move_x.at(0.3) == Approx(-0.01));
 }
 
 TEST_CASE("shakings_without_a_meaning_are_refused_with_their_line_and_a_way_out") {

@@ -70,11 +70,11 @@ TEST_CASE("a_table_of_grains_is_read_back_to_the_same_bits") {
       "schema = \"equidem/1\"\n[grains]\npath = \"grains.csv\"\n[collisions]\nrestitution = 0.5\nstiffness = 1e6\n"
       "[run]\nduration = 1.0\n",
       "case.toml", folder.path());
-  REQUIRE(found.grains.size() == bodies.grains.size());
-  CHECK(found.clumps.size() == 2);
+  REQUIRE(found.scene.grains.size() == bodies.grains.size());
+  CHECK(found.scene.clumps.size() == 2);
   for (std::size_t g = 0; g < bodies.grains.size(); ++g) {
     CAPTURE(g);
-    const Grain &a = bodies.grains[g], &b = found.grains[g];
+    const Grain &a = bodies.grains[g], &b = found.scene.grains[g];
     CHECK(b.shape() == a.shape());
     CHECK(b.position == a.position);
     CHECK(b.velocity == a.velocity);
@@ -87,7 +87,7 @@ TEST_CASE("a_table_of_grains_is_read_back_to_the_same_bits") {
     CHECK(found.densities[g] == bodies.densities[g]);
     if (a.shape() != GrainShape::clump) continue;
     const auto &wanted = bodies.shapes.clumps()[static_cast<std::size_t>(a.clump)].discs,
-               &discs = found.clumps[static_cast<std::size_t>(b.clump)].discs;
+               &discs = found.scene.clumps[static_cast<std::size_t>(b.clump)].discs;
     REQUIRE(discs.size() == wanted.size());
     for (std::size_t d = 0; d < discs.size(); ++d) {
       CHECK(discs[d].offset == wanted[d].offset);

@@ -141,7 +141,8 @@ Rebound rebound(const Material& material, const PairProperties& asked, Stepping 
   PairProperties pair = asked;
   pair.stiffness = stiffness_of(impact);
   if (stepping.law != NormalLaw::hertz_dashpot) {
-    pair.stiffness = stiffness_from_duration(truth.duration, mass, 0);  // a linear spring of the same duration
+    const double omega = std::numbers::pi / truth.duration;  // a linear spring of the same duration
+    pair.stiffness = mass * omega * omega;
   }
   const double step = truth.duration / steps;
   GrainSimulation simulation(scene_of({sphere(material, radius, {0, radius - 0.41 * velocity.y * step}, velocity)},

@@ -146,23 +146,24 @@ void read_ellipse_contact(const TomlValue& collisions, GrainCase& result) {
   const TomlValue* given = collisions.find("ellipse_contact");
   if (given == nullptr) return;
   const auto is_ellipse = [](const Grain& grain) { return grain.shape() == GrainShape::ellipse; };
-  if (std::ranges::none_of(result.grains, is_ellipse))
+  if (std::ranges::none_of(result.scene.grains, is_ellipse))
     fail_at(*given, "collisions.ellipse_contact", "ellipse_contact is given without ellipses",
             "discs have no need of it", "Remove it, or give grains half_axes");
   using enum GrainOptions::EllipseLaw;
-  result.ellipse_law = given->text == "exact"      ? exact
-                       : given->text == "enlarged" ? enlarged_mended
-                                                   : enlarged_as_printed;
+  result.options.ellipse_law = given->text == "exact"      ? exact
+                               : given->text == "enlarged" ? enlarged_mended
+                                                           : enlarged_as_printed;
 }
 
 void read_run(const TomlValue& run, GrainCase& result) {
   result.duration = number(run, "duration");
-  result.gravity = vector(run, "gravity");
+  result.scene.gravity = vector(run, "gravity");
   const TomlValue& step = *run.find("time_step");
   const TomlValue* per_contact = run.find("steps_per_contact");
-  result.steps_per_contact = per_contact != nullptr ? per_contact->real : describe(result.law).steps_per_contact;
+  result.step.longest = result.duration;
+  result.step.steps_per_contact = optional_number(run, "steps_per_contact");
   if (step.is_number()) {
-    result.time_step = step.real;
+    result.step.time_step = step.real;
     if (per_contact != nullptr)
       fail_at(*per_contact, "run.steps_per_contact", "time_step and steps_per_contact are both given",
               "each says how long a step is", "Remove one of them");
@@ -173,12 +174,12 @@ void read_run(const TomlValue& run, GrainCase& result) {
   }
   const TomlValue* scheme = run.find("scheme");
   if (scheme == nullptr) return;
-  if (!gives_force(result.law))
-    fail_at(*scheme, "run.scheme", fmt::format("{} has a step of its own", to_string(result.law)),
+  if (!gives_force(result.options.law))
+    fail_at(*scheme, "run.scheme", fmt::format("{} has a step of its own", to_string(result.options.law)),
             "scheme is for the laws that give a force: " + names_of_laws(LawKind::force),
             "Remove it, or change collisions.law");
-  if (scheme->text == "velocity_verlet") result.scheme = GrainOptions::Scheme::velocity_verlet;
-  if (scheme->text == "corrected_verlet") result.scheme = GrainOptions::Scheme::corrected_verlet;
+  if (scheme->text == "velocity_verlet") result.options.scheme = GrainOptions::Scheme::velocity_verlet;
+  if (scheme->text == "corrected_verlet") result.options.scheme = GrainOptions::Scheme::corrected_verlet;
 }
 
 }  // namespace
@@ -206,22 +207,24 @@ GrainCase parse_grain_case(std::string_view content, const std::string& name, co
   for (const char* list : {"wall", "schedule", "probe"}) check_names(root, list);
   GrainBodies bodies = read_bodies(root, folder);
   result.body = bodies.body;
-  result.grains = std::move(bodies.grains);
+  result.scene.grains = std::move(bodies.grains);
   result.densities = std::move(bodies.densities);
-  result.clumps = std::move(bodies.clumps);
+  result.scene.clumps = std::move(bodies.clumps);
   result.grain_file = std::move(bodies.file);
   result.grain_lines = std::move(bodies.lines);
-  result.bonds = read_bonds(root, folder, result.grains.size());
+  BondCase bonds = read_bonds(root, folder, result.scene.grains.size());
+  result.scene.bonds = std::move(bonds.bonds);
+  result.options.bond_step = bonds.step;
   check_names_of_kinds(root, bodies.groups);
   const auto schedules = read_schedules(root, folder);
-  for (const TomlValue& table : repeated(root, "wall")) result.walls.push_back(read_wall(table, schedules));
+  for (const TomlValue& table : repeated(root, "wall")) result.scene.walls.push_back(read_wall(table, schedules));
   const TomlValue& collisions = *root.find("collisions");
-  result.law = normal_law_from(text(collisions, "law"));
+  result.options.law = normal_law_from(text(collisions, "law"));
   read_ellipse_contact(collisions, result);
-  result.reference_length = optional_number(collisions, "reference_length").value_or(0);
+  result.options.reference_length = optional_number(collisions, "reference_length").value_or(0);
   read_collisions(root, bodies.groups, result);
   read_run(*root.find("run"), result);
-  if (root.find("shaking") != nullptr) result.shaking = read_shaking(root, folder, result.duration, result.walls);
+  if (root.find("shaking") != nullptr) result.shaking = read_shaking(root, folder, result.duration, result.scene.walls);
   if (const TomlValue* table = root.find("measures")) result.measures = read_measures(*table, result.body);
   for (const TomlValue& table : repeated(root, "probe")) result.probes.push_back(read_probe(table, bodies.groups));
   const TomlValue& output = *root.find("output");

@@ -16,18 +16,9 @@
 #include "equidem/casefile/measure_case.hpp"
 #include "equidem/casefile/shaking_case.hpp"
 #include "equidem/casefile/toml.hpp"
-#include "equidem/grains/scene/grain_scene.hpp"
+#include "equidem/grains/scene/grain_time_step.hpp"
 
 namespace equidem {
-
-/// How bodies of two kinds meet, as the case says it.
-struct PairCase {
-  /// Without stiffness and dimensionless where these follow from `duration`.
-  PairProperties properties;
-  /// s, of a contact; 0: not given. Then omega = sqrt(k/m) is the same for all masses, and a = (omega dt)².
-  double duration = 0;
-  double closing_speed = 0;  ///< m/s; 0: not given
-};
 
 /// [[probe]]: a history of grains.
 struct GrainProbe {
@@ -41,25 +32,14 @@ struct GrainProbe {
 struct GrainCase {
   std::string title;
   Body body = Body::disc;
-  std::vector<Grain> grains;      ///< those of the file, then those of the case
-  std::vector<double> densities;  ///< kg/m³, of each
-  std::vector<Clump> clumps;      ///< shapes, each once
+  GrainScene scene;               ///< bodies: those of the file, then those of the case; without its pairs
+  std::vector<double> densities;  ///< kg/m³, of each grain
   std::string grain_file;         ///< that of [grains] path; empty: none
   std::vector<int> grain_lines;   ///< of its grains, in that file
-  BondCase bonds;
-  std::vector<GrainWall> walls;
-  /// Of the scene, by name: groups of grains, "walls", walls with a pair of their own; with young_modulus a group
-  /// counts once for each radius.
-  std::vector<std::string> kinds;
-  std::vector<PairCase> pairs;  ///< of the kinds of the scene, row by row, symmetric
-  NormalLaw law = NormalLaw::exact_flow;
-  GrainOptions::EllipseLaw ellipse_law = GrainOptions::EllipseLaw::exact;
-  double reference_length = 0;      ///< m; 0: twice the largest radius
-  double duration = 0;              ///< s
-  std::optional<double> time_step;  ///< s; none: by steps_per_contact
-  double steps_per_contact = 0;
-  GrainOptions::Scheme scheme = GrainOptions::Scheme::semi_implicit_euler;
-  Vec2 gravity;                        ///< m/s²
+  ContactTable contacts;
+  GrainOptions options;                ///< without its time step
+  GrainStepOptions step;               ///< how that is chosen
+  double duration = 0;                 ///< s
   std::optional<ShakingCase> shaking;  ///< its motion is in the walls
   std::optional<MeasureCase> measures;
   std::vector<GrainProbe> probes;
@@ -72,10 +52,6 @@ struct GrainCase {
   [[nodiscard]] std::string where(std::string_view key) const;
   /// The same of a grain: "cases/a.toml:12: grain", "cases/grains.csv:3".
   [[nodiscard]] std::string where_grain(std::size_t grain) const;
-  [[nodiscard]] int kind_count() const { return static_cast<int>(kinds.size()); }
-  [[nodiscard]] const PairCase& between(int a, int b) const {
-    return pairs[static_cast<std::size_t>(a * kind_count() + b)];
-  }
 };
 
 /// Whether a case file describes bodies that collide.

@@ -42,17 +42,6 @@ double stiffness_from_dimensionless(double a, double reduced_mass, double step) 
   return positive(a, "dimensionless stiffness", "") * positive(reduced_mass, "reduced mass", "kg") / (step * step);
 }
 
-double stiffness_from_duration(double duration, double reduced_mass, double damping_ratio, ContactEnd end) {
-  check_damping(damping_ratio);
-  const double phase = contact_phase_of(damping_ratio, end);
-  if (!std::isfinite(phase)) {
-    bad_input(fmt::format("the damping ratio is {:.6g} for a contact that ends at zero overlap", damping_ratio),
-              "from 1 on such a contact never ends", "Give one below 1, or end contacts at zero force");
-  }
-  const double frequency = phase / positive(duration, "duration of contact", "s");
-  return positive(reduced_mass, "reduced mass", "kg") * frequency * frequency;
-}
-
 double stiffness_from_overlap(double largest_overlap, double closing_speed, double reduced_mass, double damping_ratio) {
   check_damping(damping_ratio);
   const double rate =

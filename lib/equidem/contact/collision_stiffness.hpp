@@ -13,10 +13,6 @@ namespace equidem {
 
 /// k = a m/dt², N/m.
 double stiffness_from_dimensionless(double a, double reduced_mass, double step);
-/// k of a linear spring whose contact lasts so long: m (phase/duration)², phase = contact_phase_of(damping_ratio, end).
-/// \throws Error (bad_input) also where a contact that ends at zero overlap never ends: damping_ratio >= 1
-double stiffness_from_duration(double duration, double reduced_mass, double damping_ratio,
-                               ContactEnd end = ContactEnd::at_zero_overlap);
 /// The smallest k of a linear spring whose overlap u stays below the given one at the given closing speed v, however
 /// the contact ends: e m v²/u², e = restitution_of(damping_ratio, at_zero_force), for u = v/w exp(-zeta
 /// acos(zeta)/sqrt(1 - zeta²)).

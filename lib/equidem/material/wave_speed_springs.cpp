@@ -61,25 +61,9 @@ ContactDamping contact_damping_of(double damping, bool at_wall, double inertia_f
   return {normal, normal * std::sqrt(1 + 1 / inertia_factor)};
 }
 
-double natural_period(double mass, double stiffness) {
-  need_positive("mass", mass);
-  need_positive("stiffness", stiffness);
-  return 2 * std::numbers::pi * std::sqrt(mass / stiffness);
-}
-
-double time_step_of_period(double shortest_period) {
-  need_positive("shortest period", shortest_period);
-  return shortest_period / 8;
-}
-
 double semi_implicit_limit(double damping_ratio) {
   need_damping(damping_ratio);
   return 2 / (std::sqrt(1 + damping_ratio * damping_ratio) + damping_ratio);
-}
-
-double averaged_velocity_limit(double damping_ratio) {
-  need_damping(damping_ratio);
-  return damping_ratio > 0 ? std::min(4 * damping_ratio, 1 / damping_ratio) : 0;
 }
 
 }  // namespace equidem

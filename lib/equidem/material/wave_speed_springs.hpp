@@ -37,16 +37,8 @@ struct ContactDamping {
 /// \param inertia_factor I/(m r²)
 ContactDamping contact_damping_of(double damping, bool at_wall, double inertia_factor);
 
-/// T = 2 pi sqrt(m/k), s; of a disc on its wave-speed spring 4 pi r/Vp.
-double natural_period(double mass, double stiffness);
-/// The thesis's rule: at most an eighth of the shortest natural period, s.
-double time_step_of_period(double shortest_period);
-
-/// Largest omega dt at which x'' = -omega² x - 2 zeta omega x' is stable. v' is v + a(x, v) dt.
-/// x' = x + v' dt: 2 (sqrt(1 + zeta²) - zeta).
+/// Largest omega dt at which v' = v + a(x, v) dt, x' = x + v' dt is stable for x'' = -omega² x - 2 zeta omega x':
+/// 2 (sqrt(1 + zeta²) - zeta).
 double semi_implicit_limit(double damping_ratio);
-/// x' = x + (v + v')/2 dt, as printed in (3.14)-(3.17): min(4 zeta, 1/zeta); 0 without damping, when every step is
-/// unstable.
-double averaged_velocity_limit(double damping_ratio);
 
 }  // namespace equidem

@@ -7,6 +7,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/scene/grain_time_step.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/material/wave_speed_springs.hpp"
 
@@ -44,17 +45,6 @@ void check(const SettlingOptions& options) {
                           options.time_step),
               "the ratio lies between 1e-12 and 1, times are positive", "Correct it");
   }
-}
-
-/// The longest arm that a force along the normal has about the centre of a body, m.
-double longest_lever(const Grain& grain, std::span<const Clump> clumps) {
-  if (grain.shape() == GrainShape::ellipse) return grain.radius - grain.short_half_axis;
-  double lever = 0;
-  if (grain.shape() == GrainShape::clump) {
-    for (const Clump::Disc& disc : clumps[static_cast<std::size_t>(grain.clump)].discs)
-      lever = std::max(lever, norm(disc.offset));
-  }
-  return lever;
 }
 
 /// A quarter of the limit of one contact: several at a body lower it, dashpots in proportion to their number.
@@ -121,17 +111,13 @@ GrainScene scene_of_box(double width, const SettlingOptions& options) {
   scene.walls = walls_of_box(width);
   scene.gravity = {0, -options.gravity};
   scene.kinds = 2;
-  const auto pair = [&](bool at_wall, double friction) {
-    const ContactDamping damping = contact_damping_of(options.damping, at_wall, moment_of_disc);
-    PairProperties made;
-    made.stiffness = options.springs.kN;
-    made.restitution = restitution_of(damping.normal, ContactEnd::at_zero_force);
-    made.friction = friction;
-    if (friction > 0 && options.springs.kT > 0) {
-      made.tangential_ratio = options.springs.ratio();
-      made.tangential_damping = damping.tangential;
-    }
-    return made;
+  const auto pair = [&](bool on_wall, double friction) {
+    return contact_of({.stiffness = SpringStiffness{options.springs.kN},
+                       .rebound = DashpotDamping{options.damping},
+                       .friction = friction,
+                       .tangential_ratio = options.springs.ratio()},
+                      NormalLaw::linear_dashpot, {.on_wall = on_wall})
+        .properties;
   };
   const PairProperties bodies = pair(false, options.friction), walls = pair(true, options.wall_friction);
   scene.pairs = {bodies, walls, walls, walls};

@@ -10,10 +10,10 @@
 namespace equidem {
 
 std::string describe_bonds(const GrainSetup& setup) {
-  const BondCase& bonds = setup.resolved.bonds;
-  if (bonds.bonds.empty()) return {};
-  const bool exact = bonds.step == GrainOptions::BondStep::exact;
-  std::string out = report_line("bonds", fmt::format("{}, {}", grouped(static_cast<std::int64_t>(bonds.bonds.size())),
+  const std::vector<GrainBond>& bonds = setup.resolved.scene.bonds;
+  if (bonds.empty()) return {};
+  const bool exact = setup.resolved.options.bond_step == GrainOptions::BondStep::exact;
+  std::string out = report_line("bonds", fmt::format("{}, {}", grouped(static_cast<std::int64_t>(bonds.size())),
                                                      exact ? "each decays exactly over a step"
                                                            : "dashpots by the velocities at the start of a step"));
   const double limit = setup.step.bond_limit;

@@ -83,26 +83,28 @@ void write_state(const std::filesystem::path& folder, const GrainSetup& setup, c
   std::vector<std::string> groups;
   std::vector<int> colours;
   for (const Grain& grain : grains) {
-    groups.push_back(resolved.kinds[static_cast<std::size_t>(grain.kind)]);
+    groups.push_back(resolved.contacts.kinds[static_cast<std::size_t>(grain.kind)]);
     // Kinds of one group may differ by radius: the first of them lends its colour.
-    colours.push_back(static_cast<int>(std::find(resolved.kinds.begin(), resolved.kinds.end(), groups.back()) -
-                                       resolved.kinds.begin()));
+    colours.push_back(
+        static_cast<int>(std::find(resolved.contacts.kinds.begin(), resolved.contacts.kinds.end(), groups.back()) -
+                         resolved.contacts.kinds.begin()));
   }
   if (resolved.output.csv) {
-    write_grain_csv(folder / "grains.csv", {grains, resolved.clumps, groups, resolved.densities}, overwrite);
-    write_grain_contact_csv(folder / "contacts.csv", simulation.contacts(), resolved.walls, resolved.body, overwrite);
+    write_grain_csv(folder / "grains.csv", {grains, resolved.scene.clumps, groups, resolved.densities}, overwrite);
+    write_grain_contact_csv(folder / "contacts.csv", simulation.contacts(), resolved.scene.walls, resolved.body,
+                            overwrite);
   }
-  if (resolved.output.csv && !resolved.bonds.bonds.empty())
-    write_bond_csv(folder / "bonds.csv", resolved.bonds.bonds, simulation.bond_drifts(), overwrite);
+  if (resolved.output.csv && !resolved.scene.bonds.empty())
+    write_bond_csv(folder / "bonds.csv", resolved.scene.bonds, simulation.bond_drifts(), overwrite);
   if (resolved.output.picture) {
     write_grain_picture(folder, "picture",
                         {.title = resolved.title,
                          .time = simulation.time(),
                          .grains = grains,
-                         .clumps = resolved.clumps,
+                         .clumps = resolved.scene.clumps,
                          .groups = colours,
-                         .bonds = resolved.bonds.bonds,
-                         .walls = resolved.walls,
+                         .bonds = resolved.scene.bonds,
+                         .walls = resolved.scene.walls,
                          .paths = run.record.paths},
                         overwrite);
     write_grain_energy_plot(folder, setup, run, overwrite);

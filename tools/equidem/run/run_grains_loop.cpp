@@ -31,22 +31,22 @@ constexpr std::int64_t moments = 200, moments_of_few = 1000;  // of the record, 
 /// Tells whether files that a case names are still what they were.
 std::string checksum_of(const GrainCase& resolved) {
   Checksum sum;
-  for (std::size_t g = 0; g < resolved.grains.size(); ++g) {
-    const Grain& grain = resolved.grains[g];
+  for (std::size_t g = 0; g < resolved.scene.grains.size(); ++g) {
+    const Grain& grain = resolved.scene.grains[g];
     for (const double value : {grain.position.x, grain.position.y, grain.radius, grain.velocity.x, grain.velocity.y,
                                grain.spin, grain.angle, resolved.densities[g], static_cast<double>(grain.kind),
                                grain.short_half_axis, static_cast<double>(grain.clump)})
       sum.add(value);
   }
-  for (const GrainBond& bond : resolved.bonds.bonds)
+  for (const GrainBond& bond : resolved.scene.bonds)
     for (const double value :
          {static_cast<double>(bond.i), static_cast<double>(bond.j), bond.normal_dashpot, bond.tangential_dashpot,
           bond.rolling_dashpot, bond.normal_spring, bond.tangential_spring})
       sum.add(value);
-  for (const Clump& clump : resolved.clumps)
+  for (const Clump& clump : resolved.scene.clumps)
     for (const Clump::Disc& disc : clump.discs)
       for (const double value : {disc.offset.x, disc.offset.y, disc.radius}) sum.add(value);
-  for (const GrainWall& wall : resolved.walls)
+  for (const GrainWall& wall : resolved.scene.walls)
     for (const Schedule* schedule : {&wall.move_x, &wall.move_y})
       for (const auto* numbers : {&schedule->times, &schedule->values, &schedule->rates}) sum.add(*numbers);
   return sum.text();
@@ -107,7 +107,7 @@ double rounding_of_energy(const GrainSetup& setup, const std::vector<Grain>& gra
   for (const Grain& grain : grains) {
     const double lost_way = rounding * norm(grain.position) / setup.step.step;
     sum += grain.inertia.mass *
-           (lost_way * lost_way + 1e3 * rounding * norm(setup.resolved.gravity) * norm(grain.position));
+           (lost_way * lost_way + 1e3 * rounding * norm(setup.resolved.scene.gravity) * norm(grain.position));
   }
   return sum;
 }
@@ -136,7 +136,7 @@ class GrainLoop {
       : setup_(setup),
         simulation_(simulation),
         measures_(measures),
-        draws_paths_(setup.resolved.grains.size() <= most_drawn_paths),
+        draws_paths_(setup.resolved.scene.grains.size() <= most_drawn_paths),
         stride_(static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(
             std::max<std::int64_t>(1, setup.steps / (draws_paths_ ? moments_of_few : moments)))))),
         frame_times_(setup.resolved.output.frame_interval, setup.step.step),
@@ -197,7 +197,7 @@ class GrainLoop {
     const std::filesystem::path path = folder / "run.checkpoint.h5";
     std::optional<std::int64_t> after;
     if (files.resume) {
-      GrainCheckpoint checkpoint = read_grain_checkpoint(path, setup_.fingerprint(), resolved.grains);
+      GrainCheckpoint checkpoint = read_grain_checkpoint(path, setup_.fingerprint(), resolved.scene.grains);
       after = checkpoint.state.step;
       if (*after > setup_.steps) {
         bad_input(fmt::format("the checkpoint '{}' lies past the end of the run", path.string()),
@@ -212,7 +212,7 @@ class GrainLoop {
       const double steps = static_cast<double>(setup_.steps);
       const double count = std::min(steps, steps * setup_.step.step / *resolved.output.frame_interval);
       frames_ = std::make_unique<GrainFrames>(
-          folder, "frames", resolved.grains, resolved.clumps,
+          folder, "frames", resolved.scene.grains, resolved.scene.clumps,
           FrameOptions{
               .expected = static_cast<std::int64_t>(count) + 2, .overwrite = files.overwrite, .continue_after = after});
     }
@@ -275,10 +275,10 @@ class GrainLoop {
 };
 
 /// What moves faster than steps can follow.
-void check_events(const GrainCase& resolved, const GrainStep& step) {
+void check_events(const GrainCase& resolved, const GrainTimeStep& step) {
   constexpr double most = 0.5;
-  for (std::size_t k = 0; k < resolved.walls.size(); ++k) {
-    for (const Schedule* schedule : {&resolved.walls[k].move_x, &resolved.walls[k].move_y}) {
+  for (std::size_t k = 0; k < resolved.scene.walls.size(); ++k) {
+    for (const Schedule* schedule : {&resolved.scene.walls[k].move_x, &resolved.scene.walls[k].move_y}) {
       const MissedEvent missed = missed_event(*schedule, step.step, resolved.duration);
       if (missed.share <= most) continue;
       throw Error(

@@ -22,7 +22,7 @@ struct GrainSetup {
   explicit GrainSetup(GrainCase given);
 
   GrainCase resolved;
-  GrainStep step;
+  GrainTimeStep step;
   std::int64_t steps = 0;  ///< of the whole duration
 
   /// \throws Error as GrainSimulation does, with its place in the case

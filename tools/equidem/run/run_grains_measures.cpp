@@ -71,15 +71,15 @@ std::vector<std::vector<double>> rows_of(const std::filesystem::path& path, std:
 
 GrainMeasures::GrainMeasures(const GrainCase& resolved)
     : resolved_(resolved),
-      start_(box_of(resolved.walls, resolved.grains, 0)),
+      start_(box_of(resolved.scene.walls, resolved.scene.grains, 0)),
       shaken_from_(start_of_shaking(resolved)),
-      diameter_(mean_diameter(resolved.grains, resolved.clumps)),
+      diameter_(mean_diameter(resolved.scene.grains, resolved.scene.clumps)),
       columns_(resolved.measures->columns),
-      throws_(resolved.grains.size()) {
+      throws_(resolved.scene.grains.size()) {
   check_cells();
   if (columns_ > 0) return;
   double largest = 0;
-  for (const Grain& grain : resolved.grains) largest = std::max(largest, grain.radius);
+  for (const Grain& grain : resolved.scene.grains) largest = std::max(largest, grain.radius);
   constexpr double most = 10'000;
   const double fitting = (start_.inside.high.x - start_.inside.low.x) / (4 * largest);
   columns_ = static_cast<std::size_t>(std::clamp(fitting, 2.0, most));
@@ -146,7 +146,7 @@ void GrainMeasures::go_on(std::int64_t after) {
 void GrainMeasures::record(std::int64_t step, double time, const std::vector<Grain>& grains) {
   const MeasureCase& asked = *resolved_.measures;
   const Vec2 moved = displacement(time);
-  const GrainBox box = box_of(resolved_.walls, grains, time);
+  const GrainBox box = box_of(resolved_.scene.walls, grains, time);
   const std::vector<char> heap = heap_of(grains, asked.thrown_gap * diameter_);
   MeasuredMoment moment;
   moment.step = step;
@@ -156,15 +156,15 @@ void GrainMeasures::record(std::int64_t step, double time, const std::vector<Gra
   if (asked.region) {
     region = Region{asked.region->low + moved, asked.region->high + moved};
   } else {
-    region = measured_region(grains, resolved_.clumps, box, heap);
+    region = measured_region(grains, resolved_.scene.clumps, box, heap);
   }
   if (region) {
-    const SolidMeasures solids = measure_solids(grains, resolved_.clumps, *region);
+    const SolidMeasures solids = measure_solids(grains, resolved_.scene.clumps, *region);
     moment.void_ratio = solids.void_ratio;
     moment.porosity = solids.porosity;
   }
-  last_ = surface_of(grains, resolved_.clumps, start_.inside.low.x + moved.x, start_.inside.high.x + moved.x, columns_,
-                     heap);
+  last_ = surface_of(grains, resolved_.scene.clumps, start_.inside.low.x + moved.x, start_.inside.high.x + moved.x,
+                     columns_, heap);
   last_.left = start_.inside.low.x;
   for (double& height : last_.heights) height -= moved.y;
   if (moments_.empty() || time <= shaken_from_) before_ = last_;

@@ -51,7 +51,7 @@ GrainMeasures::Sloshing GrainMeasures::sloshing() const {
   Sloshing result;
   result.period = result.theory = not_measured;
   const double width = start_.inside.high.x - start_.inside.low.x;
-  const double depth = before().surface.height - start_.inside.low.y, gravity = -resolved_.gravity.y;
+  const double depth = before().surface.height - start_.inside.low.y, gravity = -resolved_.scene.gravity.y;
   if (gravity > 0 && depth > 0 && width > 0) result.theory = sloshing_period(width, depth, gravity);
   // Free motion says more than what is forced: two periods of it suffice.
   const double end = end_of_shaking(resolved_), last = moments_.back().time;
@@ -176,15 +176,15 @@ void GrainMeasures::write_files(const std::filesystem::path& folder, const Grain
   }
   if (!resolved_.measures->cell) return;
   const std::vector<Grain> grains = simulation.grains();
-  const GrainBox box = box_of(resolved_.walls, grains, simulation.time());
+  const GrainBox box = box_of(resolved_.scene.walls, grains, simulation.time());
   Region region = box.inside;
   if (!box.lid)
     region.high.y = *std::max_element(last_.heights.begin(), last_.heights.end(),
                                       [](double a, double b) { return std::isnan(a) ? !std::isnan(b) : a < b; });
-  write_fields(
-      folder, "fields",
-      coarse_fields(grains, resolved_.clumps, simulation.contacts(), grid_over(region, *resolved_.measures->cell)),
-      overwrite);
+  write_fields(folder, "fields",
+               coarse_fields(grains, resolved_.scene.clumps, simulation.contacts(),
+                             grid_over(region, *resolved_.measures->cell)),
+               overwrite);
 }
 
 std::string describe_shaking(const GrainCase& resolved) {

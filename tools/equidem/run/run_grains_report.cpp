@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "equidem/casefile/grain_pairs.hpp"
+#include "equidem/grains/scene/kinds.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/grain_energy.hpp"
 #include "equidem/output/plots/plot.hpp"
@@ -23,7 +23,7 @@ constexpr double balance_to_doubt = 0.1;
 
 double grain_steps_per_second(const GrainSetup& setup, const GrainRun& run) {
   if (!(run.seconds > 0)) return 0;
-  return static_cast<double>(run.steps_done) * static_cast<double>(setup.resolved.grains.size()) / run.seconds;
+  return static_cast<double>(run.steps_done) * static_cast<double>(setup.resolved.scene.grains.size()) / run.seconds;
 }
 
 /// What the balance is held against: the most energy that there was.
@@ -49,7 +49,7 @@ std::string range(double smallest, double largest) {
 /// How many bodies have each shape, in the order of GrainShape.
 std::array<std::int64_t, 3> counts_of_shapes(const GrainCase& resolved) {
   std::array<std::int64_t, 3> counts{};
-  for (const Grain& grain : resolved.grains) ++counts[static_cast<std::size_t>(grain.shape())];
+  for (const Grain& grain : resolved.scene.grains) ++counts[static_cast<std::size_t>(grain.shape())];
   return counts;
 }
 
@@ -77,11 +77,11 @@ const char* describe_ellipse_contact(GrainOptions::EllipseLaw law) {
 std::string describe_bodies(const GrainCase& resolved) {
   double mass = 0, smallest = INFINITY, largest = 0;
   std::map<std::string, std::int64_t> groups;
-  for (const Grain& grain : resolved.grains) {
+  for (const Grain& grain : resolved.scene.grains) {
     mass += grain.inertia.mass;
     smallest = std::min(smallest, grain.radius);
     largest = std::max(largest, grain.radius);
-    ++groups[resolved.kinds[static_cast<std::size_t>(grain.kind)]];
+    ++groups[resolved.contacts.kinds[static_cast<std::size_t>(grain.kind)]];
   }
   const auto [round, ellipses, clumps] = counts_of_shapes(resolved);
   std::string out = report_line(
@@ -89,8 +89,8 @@ std::string describe_bodies(const GrainCase& resolved) {
                             ellipses + clumps == 0 ? "radius" : "radius of the circle around each",
                             range(smallest, largest), mass, resolved.body == Body::disc ? "kg per m of depth" : "kg"));
   if (clumps > 0) {
-    std::size_t fewest = resolved.clumps.front().discs.size(), most = fewest;
-    for (const Clump& clump : resolved.clumps) {
+    std::size_t fewest = resolved.scene.clumps.front().discs.size(), most = fewest;
+    for (const Clump& clump : resolved.scene.clumps) {
       fewest = std::min(fewest, clump.discs.size());
       most = std::max(most, clump.discs.size());
     }
@@ -98,14 +98,14 @@ std::string describe_bodies(const GrainCase& resolved) {
                                        fewest == most ? fmt::format("{}", most) : fmt::format("{} to {}", fewest, most),
                                        most == 1 ? "disc" : "discs"));
   }
-  if (ellipses > 0) out += report_line("", describe_ellipse_contact(resolved.ellipse_law));
+  if (ellipses > 0) out += report_line("", describe_ellipse_contact(resolved.options.ellipse_law));
   if (groups.size() > 1) {
     std::string list;
     for (const auto& [name, members] : groups) list += fmt::format("{}{} {}", list.empty() ? "" : ", ", name, members);
     out += report_line("groups", list);
   }
   std::string walls;
-  for (const GrainWall& wall : resolved.walls) {
+  for (const GrainWall& wall : resolved.scene.walls) {
     constexpr const char* shapes[] = {"line", "segment", "arc"};
     walls += fmt::format("{}{} ({}{})", walls.empty() ? "" : ", ", wall.name, shapes[static_cast<int>(wall.shape)],
                          wall.moves() ? ", moves" : "");
@@ -113,17 +113,17 @@ std::string describe_bodies(const GrainCase& resolved) {
   return walls.empty() ? out : out + report_line("walls", walls);
 }
 
-std::string describe_pair(const GrainCase& resolved, const PairCase& pair) {
+std::string describe_pair(const GrainCase& resolved, const PairContact& pair) {
   const PairProperties& p = pair.properties;
   std::string text = fmt::format("restitution {}", p.restitution);
-  if (describe(resolved.law).has_dashpot && p.restitution < 1)
+  if (describe(resolved.options.law).has_dashpot && p.restitution < 1)
     text += p.end == ContactEnd::at_zero_force ? " (never pulls)" : " (may pull at the end)";
   if (pair.duration > 0) {
     text += fmt::format(", contacts of {:.6g} s", pair.duration);
   } else if (p.dimensionless > 0) {
     text += fmt::format(", k dt²/m = {:.6g}", p.dimensionless);
   } else {
-    text += fmt::format(", k = {:.6g} {}", p.stiffness, describe(resolved.law).stiffness_unit);
+    text += fmt::format(", k = {:.6g} {}", p.stiffness, describe(resolved.options.law).stiffness_unit);
   }
   if (p.friction == 0) return text + ", no friction";
   text += fmt::format(", friction {}, kT/kN {:.6g}", p.friction, p.tangential_ratio);
@@ -135,17 +135,17 @@ std::string describe_pair(const GrainCase& resolved, const PairCase& pair) {
 /// Every two kinds that can meet; those that meet alike on one line.
 std::string describe_pairs(const GrainCase& resolved) {
   std::vector<std::pair<std::string, std::string>> lines;  // what, who
-  const auto masses = masses_of_kinds(resolved);
+  const auto masses = masses_of_kinds(resolved.scene.grains, resolved.scene.kinds);
   constexpr int most_kinds = 8;
-  if (resolved.kind_count() > most_kinds)
+  if (resolved.contacts.kind_count() > most_kinds)
     return report_line("contacts",
-                       fmt::format("{} kinds of bodies, each pair with its own stiffness", resolved.kind_count()));
-  for (int a = 0; a < resolved.kind_count(); ++a) {
-    for (int b = a; b < resolved.kind_count(); ++b) {
+                       fmt::format("{} kinds of bodies, each pair with its own stiffness", resolved.contacts.kind_count()));
+  for (int a = 0; a < resolved.contacts.kind_count(); ++a) {
+    for (int b = a; b < resolved.contacts.kind_count(); ++b) {
       if (!reduced_masses(masses, a, b)) continue;
-      const std::string what = describe_pair(resolved, resolved.between(a, b));
-      const std::string who = fmt::format("{} and {}", resolved.kinds[static_cast<std::size_t>(a)],
-                                          resolved.kinds[static_cast<std::size_t>(b)]);
+      const std::string what = describe_pair(resolved, resolved.contacts.between(a, b));
+      const std::string who = fmt::format("{} and {}", resolved.contacts.kinds[static_cast<std::size_t>(a)],
+                                          resolved.contacts.kinds[static_cast<std::size_t>(b)]);
       const auto at = std::find_if(lines.begin(), lines.end(), [&](const auto& line) { return line.first == what; });
       if (at == lines.end()) {
         lines.emplace_back(what, who);
@@ -161,19 +161,19 @@ std::string describe_pairs(const GrainCase& resolved) {
 }
 
 std::string describe_law(const GrainCase& resolved) {
-  const LawDescription& law = describe(resolved.law);
+  const LawDescription& law = describe(resolved.options.law);
   const std::string text = fmt::format("{} ({}): {}", law.name, law.letter, law.summary);
   if (law.kind != LawKind::force) return text;
   return fmt::format("{}, {}", text,
-                     resolved.scheme == GrainOptions::Scheme::semi_implicit_euler ? "semi-implicit Euler"
-                     : resolved.scheme == GrainOptions::Scheme::velocity_verlet
+                     resolved.options.scheme == GrainOptions::Scheme::semi_implicit_euler ? "semi-implicit Euler"
+                     : resolved.options.scheme == GrainOptions::Scheme::velocity_verlet
                          ? "velocity Verlet"
                          : "velocity Verlet, contacts that begin or end within a step corrected");
 }
 
 /// A map turns the approach of two bodies round as if nothing else acted on them: summed at one body, that is too much.
 std::string describe_limit_of_maps(const GrainCase& resolved) {
-  if (!is_map(resolved.law) || resolved.grains.size() + resolved.walls.size() <= 2) return "";
+  if (!is_map(resolved.options.law) || resolved.scene.grains.size() + resolved.scene.walls.size() <= 2) return "";
   return report_line(
       "",
       "for bodies that meet two by two: each contact is taken as if nothing else acted on its bodies, and where they "
@@ -183,14 +183,14 @@ std::string describe_limit_of_maps(const GrainCase& resolved) {
 /// Where a balance that lacks much comes from, and what to do.
 std::string advice_on_balance(const GrainSetup& setup, const GrainSimulation& simulation, const GrainLedger& ledger) {
   const GrainCase& resolved = setup.resolved;
-  if (is_map(resolved.law)) {
+  if (is_map(resolved.options.law)) {
     return fmt::format(
         "{:.3g} {} {}, as this law takes each contact as if nothing else acted on its bodies; take exact_flow or "
         "linear_dashpot where they press on one another",
         std::abs(ledger.error()), energy_unit(resolved.body),
         ledger.error() > 0 ? "came from nothing" : "vanished uncounted");
   }
-  const bool euler = gives_force(resolved.law) && resolved.scheme == GrainOptions::Scheme::semi_implicit_euler;
+  const bool euler = gives_force(resolved.options.law) && resolved.options.scheme == GrainOptions::Scheme::semi_implicit_euler;
   if (euler && !simulation.effects().tangential_springs && ledger.lost_slip > std::abs(ledger.error())) {
     return "contacts without tangential springs that nearly stick count too large a loss by slip in "
            "semi_implicit_euler; take velocity_verlet, or a tangential_ratio above 0";
@@ -199,21 +199,21 @@ std::string advice_on_balance(const GrainSetup& setup, const GrainSimulation& si
 }
 
 std::string describe_step(const GrainSetup& setup) {
-  const GrainStep& step = setup.step;
+  const GrainTimeStep& step = setup.step;
   std::string out = report_line("time step", fmt::format("{:.6g} s{}", step.step, step.automatic ? ", automatic" : ""));
   if (step.contact > 0) {
     out += report_line("", fmt::format("the shortest contact lasts {:.4g} s, {:.3g} steps ({})", step.contact,
                                        step.steps_in_contact(), step.between));
   } else {
     out += report_line("", "how long contacts last is not known: " +
-                               std::string(describe(setup.resolved.law).spring_power != 1
+                               std::string(describe(setup.resolved.options.law).spring_power != 1
                                                ? "with this law it depends on the speed (give closing_speed)"
                                                : "no two bodies can meet"));
   }
   if (step.omega_step > 0 && step.limit > 0) {
     out += report_line("", fmt::format("omega dt = {:.4g}, {:.3g} of {:.4g}, {}", step.omega_step,
                                        step.omega_step / step.limit, step.limit,
-                                       is_map(setup.resolved.law)
+                                       is_map(setup.resolved.options.law)
                                            ? "past which a contact is over in a step"
                                            : "the limit of stability of one contact; several at a body lower it"));
   } else if (step.omega_step > 0) {
@@ -297,7 +297,7 @@ std::string describe_grain_run(const GrainSetup& setup, const GrainSimulation& s
   return out + report_line("times", fmt::format("{:.2g} s in all{}", times.total(), stages));
 }
 
-void add_grain_step(JsonObject& object, const GrainStep& step) {
+void add_grain_step(JsonObject& object, const GrainTimeStep& step) {
   const auto set_known = [&](const char* key, double value) {
     if (value > 0) {
       object.set(key, value);
@@ -320,10 +320,10 @@ void add_grain_run(JsonObject& object, const GrainSetup& setup, const GrainSimul
   shapes.set(to_string(resolved.body) + "s", round).set("ellipses", ellipses).set("clumps", clumps);
   object.set("title", resolved.title)
       .set("body", to_string(resolved.body))
-      .set("grains", resolved.grains.size())
+      .set("grains", resolved.scene.grains.size())
       .set("shapes", shapes)
-      .set("walls", resolved.walls.size())
-      .set("law", to_string(resolved.law))
+      .set("walls", resolved.scene.walls.size())
+      .set("law", to_string(resolved.options.law))
       .set("steps", simulation.step())
       .set("time", simulation.time());
   add_grain_step(object, setup.step);

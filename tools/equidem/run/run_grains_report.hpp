@@ -21,7 +21,7 @@ std::string describe_grain_run(const GrainSetup& setup, const GrainSimulation& s
                                const StageTimes& times);
 
 /// time_step, contact_duration, steps_in_contact, omega_time_step, critical_time_step; null where unknown.
-void add_grain_step(JsonObject& object, const GrainStep& step);
+void add_grain_step(JsonObject& object, const GrainTimeStep& step);
 /// title, grains, walls, body, law, steps, time, energy {...}, contacts (begun), touching, evaluations, ...
 void add_grain_run(JsonObject& object, const GrainSetup& setup, const GrainSimulation& simulation, const GrainRun& run);
 

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Time step of colliding bodies: how long their contacts last, which step is stable.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "equidem/grains/scene/kinds.hpp"
+
+namespace equidem {
+
+/// Longest lever of a normal force about the mass centre of a body, m: a - b of an ellipse, 0 of a disc.
+double longest_lever(const Grain& grain, std::span<const Clump> clumps);
+
+struct GrainStepOptions {
+  std::optional<double> time_step = {};                      ///< s; none: by steps_per_contact
+  std::optional<double> steps_per_contact = {};              ///< none: LawDescription::steps_per_contact
+  double longest = std::numeric_limits<double>::infinity();  ///< of a chosen step, s: the duration of the run
+};
+
+/// The step of a run beside the shortest of its contacts.
+struct GrainTimeStep {
+  double step = 0;      ///< s
+  double contact = 0;   ///< s, the shortest contact; 0: not known (no closing_speed, or no two bodies)
+  std::string between;  ///< its kinds, "grains and walls"
+  /// omega dt of it, omega = sqrt(k/m), the root of a; springs that are not linear: by the tangent stiffness at the
+  /// largest overlap; 0: not known.
+  double omega_step = 0;
+  double limit = 0;       ///< LawDescription::stable_step, the largest omega dt; 0: none
+  double bond_limit = 0;  ///< s, of bonds; 0: none
+  bool automatic = false;
+
+  [[nodiscard]] double steps_in_contact() const { return contact / step; }
+};
+
+/// The step given, or a share of the shortest contact and at most half the limit of bonds (there the dashpots of a pair
+/// bring it to rest in one step).
+/// \param scene with kinds set, pairs are not read
+/// \param options time_step is not read
+/// \throws Error (bad_input), its place the name of the option ("time_step", "law", "bonds"): a step that cannot be
+///         chosen (DimensionlessStiffness, a spring that is not linear without closing_speed, no two bodies that can
+///         meet), a step at which a force law is unstable even for one contact, bonds that check_bonds refuses
+GrainTimeStep choose_time_step(const GrainScene& scene, const ContactTable& contacts, const GrainOptions& options,
+                               const GrainStepOptions& wanted = {});
+
+/// Steps of the whole duration.
+/// \param duration, step s
+/// \throws Error (bad_input) where they are more than 1e15
+std::int64_t count_steps(double duration, double step);
+
+}  // namespace equidem

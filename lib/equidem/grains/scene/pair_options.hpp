@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Contact of two bodies as a user describes it, and the constants that follow from it.
+#pragma once
+
+#include <optional>
+#include <variant>
+
+#include "equidem/grains/scene/grain_scene.hpp"
+#include "equidem/material/inertia.hpp"
+
+namespace equidem {
+
+/// k: linear laws N/m, hertz_dashpot N/m^(3/2), each per metre of depth for discs.
+struct SpringStiffness {
+  double value = 0;
+};
+/// a = k dt²/m, kept for every step and every reduced mass m; hertz_dashpot: k d_c^(1/2) dt²/m.
+struct DimensionlessStiffness {
+  double value = 0;
+};
+/// Time until the overlap is zero again, s, the same for all masses. Not hertz_dashpot: its contacts last the shorter
+/// the faster they are.
+struct ContactDuration {
+  double value = 0;
+};
+/// Overlap, m, that no two bodies exceed which meet at PairOptions::closing_speed.
+struct LargestOverlap {
+  double value = 0;
+};
+/// Elastic spheres, rigid walls: k by Hertz, for each pair of radii. hertz_dashpot only.
+struct HertzModuli {
+  double young_modulus = 0;  ///< Pa
+  double poisson_ratio = 0;  ///< in (-1, 0.5]
+};
+/// Discs as squares of a continuum in plane strain: kN = pi/4 rho Vp², kT = pi/4 rho Vs² (Sukegawa 2010, (2.26)). Not
+/// hertz_dashpot.
+struct WaveSpeedStiffness {
+  double density = 0;           ///< rho, kg/m³
+  double shear_wave_speed = 0;  ///< Vs, m/s
+  double poisson_ratio = 0;     ///< in (-1, 0.5)
+};
+/// One of these must be given.
+using StiffnessOptions = std::variant<std::monostate, SpringStiffness, DimensionlessStiffness, ContactDuration,
+                                      LargestOverlap, HertzModuli, WaveSpeedStiffness>;
+
+/// Ratio of the speeds after and before a central impact without gravity, 0 to 1.
+struct Restitution {
+  double value = 1;
+};
+/// h of the dashpots 2 h sqrt(m k) along and across, m the mass of a disc (Sukegawa 2010, (2.27)). exact_flow and
+/// linear_dashpot only.
+struct DashpotDamping {
+  double value = 0;
+};
+/// One of these must be given.
+using ReboundOptions = std::variant<std::monostate, Restitution, DashpotDamping>;
+
+/// Contact of two bodies.
+struct PairOptions {
+  StiffnessOptions stiffness = {};
+  ReboundOptions rebound = {};
+  /// Laws with a dashpot; none: LawDescription::usual_end.
+  std::optional<ContactEnd> contact_end = {};
+  double closing_speed = 0;  ///< of the fastest impact expected, m/s; 0: not known
+  double friction = 0;       ///< mu
+  /// kT/kN with friction; none: 2/7, that of the wave speeds with WaveSpeedStiffness, and 0 for the maps: they give all
+  /// of an impulse in one or two steps, in which no spring is stretched to the force of friction.
+  std::optional<double> tangential_ratio = {};
+  /// zeta of the tangential dashpot, with a tangential spring; none: 0, with DashpotDamping that of its dashpot.
+  std::optional<double> tangential_damping = {};
+  FrictionCap friction_cap = FrictionCap::whole_force;
+};
+
+/// The two kinds of bodies that meet.
+struct MeetingBodies {
+  Body body = Body::disc;
+  bool on_wall = false;
+  double largest_reduced_mass = 1;  ///< of all pairs of the two kinds, kg; for LargestOverlap
+  double radius_i = 0;              ///< m; for HertzModuli
+  double radius_j = 0;              ///< m; not used on a wall
+};
+
+/// Constants of the contact of two kinds of bodies.
+struct PairContact {
+  /// Without stiffness and dimensionless where these follow from `duration`.
+  PairProperties properties;
+  double duration = 0;       ///< s; 0: not given
+  double closing_speed = 0;  ///< m/s; 0: not known
+};
+
+/// \throws Error (bad_input), its place the name of the option: no stiffness or rebound, options that the law or the
+///         body does not have, numbers out of range, a restitution that no dashpot gives
+PairContact contact_of(const PairOptions& options, NormalLaw law, const MeetingBodies& bodies);
+
+/// The constants for a time step: ContactDuration keeps omega = sqrt(k/m) for all masses, a = (omega dt)².
+/// \param step s
+PairProperties properties_at(const PairContact& contact, NormalLaw law, double step);
+
+/// LawDescription::damping_ratio of a pair; 0 for laws without a dashpot.
+double damping_ratio(NormalLaw law, const PairProperties& pair);
+
+}  // namespace equidem
