@@ -44,7 +44,7 @@ class Abe1996Random(ProgramTest):
     def test_quick_study_answers_in_sentences_tables_and_plots(self):
         out = self.folder / "out"
         report = self.check_done(equidem("abe1996_random", "--quick", "--out", out)).stdout
-        for words in ("By how much the mean field errs", "The correction (11)", "Best for nu"):
+        for words in ("Errors of the mean field", "The correction (11)", "Best for nu"):
             self.assertIn(words, report)
         points = parse_json((out / "result.json").read_text())["points"]
         self.assertEqual(len(points), len(rows(out / "mean_field.csv")))

@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
   constexpr std::array papers{
       Verb{"abe1996", "Abe (1996): tension test of a lattice, macroscopic stress", abe1996::declare},
       Verb{"abe1996_random", "Abe (1996): the mean field against exact moduli of random assemblies",
-           mean_field::declare},
+           abe1996_random::declare},
       Verb{"fujioka2005", "Fujioka & Ushijima (2005): normal contact laws in collisions", fujioka2005::declare},
       Verb{"sukegawa2010", "Sukegawa (2010), chapter 8: a box of grains, filled and shaken", sukegawa2010::declare},
   };

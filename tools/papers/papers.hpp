@@ -25,7 +25,7 @@ using Named = std::vector<std::pair<std::string, Item>>;
 namespace abe1996 {
 equidem::Run declare(CLI::App& command);
 }
-namespace mean_field {
+namespace abe1996_random {
 equidem::Run declare(CLI::App& command);
 }
 namespace fujioka2005 {

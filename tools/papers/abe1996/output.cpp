@@ -14,40 +14,35 @@
 
 #include "abe1996/abe1996.hpp"
 #include "papers.hpp"
+#include "tables.hpp"
 
 namespace equidem::abe1996 {
 namespace {
 
 constexpr double shown_ratio = 0.5;  // kT/kN of the picture and of the file for ParaView
 
-Series theory_line(double from, double to, double (*formula)(double), const std::string& label) {
-  Series line{.label = label, .style = SeriesStyle::line};
-  constexpr int pieces = 100;
-  for (int k = 0; k <= pieces; ++k) {
-    line.x.push_back(from + (to - from) * k / pieces);
-    line.y.push_back(formula(line.x.back()));
-  }
-  return line;
+std::string title_of(const char* figure, const Block& block) {
+  return fmt::format("Abe (1996), {}: {} rows of {} and {} discs", figure, block.rows, block.columns,
+                     block.columns - 1);
 }
 
 Plot figure7(const Reproduction& result) {
-  Series stable{
-      .label = "computed, stable", .style = SeriesStyle::points, .colour = PlotColour::blue, .column = "nu_stable"};
-  Series unstable{.label = "computed, unstable",
-                  .style = SeriesStyle::points,
-                  .colour = PlotColour::vermilion,
-                  .filled = false,
-                  .column = "nu_unstable"};
-  for (const auto& p : result.points) {
-    Series& series = p.stable() ? stable : unstable;
-    series.x.push_back(p.ratio);
-    series.y.push_back(p.poisson_ratio);
-  }
-  Plot plot{.title = fmt::format("Abe (1996), Fig. 7: {} rows of {} and {} discs", result.block.rows,
-                                 result.block.columns, result.block.columns - 1),
+  std::vector<RatioPoint> stable, unstable;
+  for (const RatioPoint& p : result.points) (p.stable() ? stable : unstable).push_back(p);
+  const auto computed = [](const char* label, const char* column, PlotColour colour, const auto& points) {
+    return with_points({.label = label,
+                        .style = SeriesStyle::points,
+                        .colour = colour,
+                        .filled = colour == PlotColour::blue,
+                        .column = column},
+                       points, &RatioPoint::ratio, &RatioPoint::poisson_ratio);
+  };
+  Plot plot{.title = title_of("Fig. 7", result.block),
             .x = {.label = "kT/kN", .min = -1, .max = 1},
             .y = {.label = "Poisson's ratio (plane strain)", .min = -0.2, .max = 0.8}};
-  plot.series = {theory_line(-1, 1, poisson_ratio_of_ratio, "eq. (22): (1 - kT/kN)/4"), stable, unstable};
+  plot.series = {curve({.label = "eq. (22): (1 - kT/kN)/4"}, -1, 1, poisson_ratio_of_ratio),
+                 computed("computed, stable", "nu_stable", PlotColour::blue, stable),
+                 computed("computed, unstable", "nu_unstable", PlotColour::vermilion, unstable)};
   plot.vertical_lines = {
       {result.lattice_limit, "infinite lattice: -1/3", PlotColour::black},
       {result.block_limit, fmt::format("this block: {:.4f}", result.block_limit), PlotColour::vermilion}};
@@ -55,17 +50,15 @@ Plot figure7(const Reproduction& result) {
 }
 
 Plot figure8(const Reproduction& result) {
-  Series computed{.label = "computed, eq. (36)", .style = SeriesStyle::points, .colour = PlotColour::blue};
-  for (const auto& p : result.points) {
-    if (p.ratio < 0) continue;
-    computed.x.push_back(p.ratio);
-    computed.y.push_back(p.stiffness_ratio);
-  }
-  Plot plot{.title = fmt::format("Abe (1996), Fig. 8: {} rows of {} and {} discs", result.block.rows,
-                                 result.block.columns, result.block.columns - 1),
+  std::vector<RatioPoint> points = result.points;
+  std::erase_if(points, [](const RatioPoint& p) { return p.ratio < 0; });
+  Plot plot{.title = title_of("Fig. 8", result.block),
             .x = {.label = "kT/kN", .min = 0, .max = 1},
             .y = {.label = "2G/((1 - nu) kN)", .min = 1, .max = 2}};
-  plot.series = {theory_line(0, 1, hexagonal_stiffness_ratio, "eq. (37)"), computed};
+  plot.series = {
+      curve({.label = "eq. (37)"}, 0, 1, hexagonal_stiffness_ratio),
+      with_points({.label = "computed, eq. (36)", .style = SeriesStyle::points, .colour = PlotColour::blue}, points,
+                  &RatioPoint::ratio, &RatioPoint::stiffness_ratio)};
   return plot;
 }
 
@@ -73,34 +66,23 @@ Plot error_by_size(const Reproduction& result) {
   Plot plot{.title = "Abe's tension test: error against size",
             .x = {.label = "rows", .logarithmic = true},
             .y = {.label = "error", .logarithmic = true}};
-  constexpr std::array colours{PlotColour::orange, PlotColour::blue, PlotColour::vermilion};
-  std::size_t colour = 0;
-  for (const auto& convergence : result.convergence) {
-    if (convergence.ratio == 0) continue;  // exact: round-off has no place on this plot
-    Series nu{.label = fmt::format("nu, kT/kN = {}", convergence.ratio),
+  constexpr std::array colours{PlotColour::black, PlotColour::orange, PlotColour::blue, PlotColour::vermilion};
+  for (std::size_t k = 0; k < result.convergence.size(); ++k) {
+    const Convergence& c = result.convergence[k];
+    if (c.ratio == 0) continue;  // exact: round-off has no place on this plot
+    Series nu{.label = fmt::format("nu, kT/kN = {}", c.ratio),
               .style = SeriesStyle::line_with_points,
-              .colour = colours[colour]};
-    Series stiffness{.label = fmt::format("(36), kT/kN = {}", convergence.ratio),
-                     .style = SeriesStyle::line_with_points,
-                     .colour = colours[colour],
-                     .marker = Marker::square,
-                     .filled = false};
-    for (const auto& p : convergence.points) {
-      nu.x.push_back(p.rows);
-      nu.y.push_back(p.poisson_ratio_error);
-      stiffness.x.push_back(p.rows);
-      stiffness.y.push_back(p.stiffness_ratio_error);
-    }
-    plot.series.push_back(nu);
-    plot.series.push_back(stiffness);
-    ++colour;
+              .colour = colours[k]};
+    Series stiffness = nu;
+    stiffness.label = fmt::format("(36), kT/kN = {}", c.ratio);
+    stiffness.marker = Marker::square;
+    stiffness.filled = false;
+    plot.series.push_back(with_points(nu, c.points, &SizePoint::rows, &SizePoint::poisson_ratio_error));
+    plot.series.push_back(with_points(stiffness, c.points, &SizePoint::rows, &SizePoint::stiffness_ratio_error));
   }
-  Series guide{.label = "1/rows", .style = SeriesStyle::dashed_line};
-  for (const auto& p : result.convergence.front().points) {
-    guide.x.push_back(p.rows);
-    guide.y.push_back(0.2 / p.rows);
-  }
-  plot.series.push_back(guide);
+  plot.series.push_back(with_points({.label = "1/rows", .style = SeriesStyle::dashed_line},
+                                    result.convergence.front().points, &SizePoint::rows,
+                                    [](const SizePoint& p) { return 0.2 / p.rows; }));
   return plot;
 }
 

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Rows of results as text, CSV columns and curves.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "equidem/output/files/csv.hpp"
+#include "equidem/output/plots/plot.hpp"
+
+namespace equidem {
+
+/// A table of a report: columns as wide as their widest cell, the first one aligned to the left, the others to the
+/// right.
+class TextTable {
+ public:
+  explicit TextTable(std::vector<std::string> head) : rows_{std::move(head)} {}
+  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+  [[nodiscard]] bool empty() const { return rows_.size() < 2; }
+  [[nodiscard]] std::string text() const;
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+/// Add a CSV column with one value per row. \param take member or function of a row: a number or a text
+template <class Rows, class Take>
+void add_column(Table& table, const std::string& name, const Rows& rows, Take take) {
+  std::vector<std::decay_t<std::invoke_result_t<Take, decltype(*rows.begin())>>> values;
+  for (const auto& row : rows) values.push_back(std::invoke(take, row));
+  table.add(name, std::move(values));
+}
+
+/// The series with one point per row. \param x, y members or functions of a row
+template <class Rows, class X, class Y>
+Series with_points(Series series, const Rows& rows, X x, Y y) {
+  for (const auto& row : rows) {
+    series.x.push_back(static_cast<double>(std::invoke(x, row)));
+    series.y.push_back(static_cast<double>(std::invoke(y, row)));
+  }
+  return series;
+}
+
+/// A curve of 100 pieces. \param formula y(x)
+template <class Formula>
+Series curve(Series series, double from, double to, Formula formula) {
+  for (int k = 0; k <= 100; ++k) {
+    series.x.push_back(from + (to - from) * k / 100);
+    series.y.push_back(formula(series.x.back()));
+  }
+  return series;
+}
+
+}  // namespace equidem
