@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "papers/fujioka2005_scenes.hpp"
+#include "scenes/fujioka2005_scenes.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;

@@ -3,7 +3,7 @@
 /// Where the laws of Fujioka & Ushijima (2005) end: rest and clusters, beside exact_flow.
 #include <cmath>
 
-#include "papers/fujioka2005_scenes.hpp"
+#include "scenes/fujioka2005_scenes.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;

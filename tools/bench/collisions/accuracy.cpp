@@ -13,6 +13,7 @@
 #include "hard_discs.hpp"
 #include "processor_time.hpp"
 #include "scenes.hpp"
+#include "scenes/fujioka2005_scenes.hpp"
 #include "variants.hpp"
 
 namespace equidem::bench {
@@ -26,20 +27,6 @@ struct Study {
   std::function<double(const std::vector<Grain>&)> error;
 };
 
-/// Height of the lowest point of a ball dropped from `height`, after time.
-double bouncing_height(double height, double restitution, double time) {
-  constexpr double g = 9.8;
-  double speed = std::sqrt(2 * g * height);
-  time -= speed / g;
-  if (time < 0) return height - 0.5 * g * (time + speed / g) * (time + speed / g);
-  speed *= restitution;
-  while (time > 2 * speed / g) {
-    time -= 2 * speed / g;
-    speed *= restitution;
-  }
-  return time * (speed - 0.5 * g * time);
-}
-
 double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
   return values[values.size() / 2];
@@ -47,20 +34,20 @@ double median(std::vector<double> values) {
 
 Study ball() {
   constexpr double time = 2.5, drop = 2.25, e = 0.7;
-  const double truth = bouncing_height(drop, e, time);
+  const double truth = fujioka2005::rigid_height(drop, e, time);
   return {"A ball dropped from 2.25 m, e = 0.7, after three impacts: error of its height at 2.5 s over 2.25 m",
-          [](const Variant& variant) { return dropped_ball(pair_of(variant, e)); }, time, 0.02,
+          [](const Variant& variant) { return fujioka2005::column(pair_of(variant, e), 1, 1, drop); }, time, 0.02,
           [=](const std::vector<Grain>& grains) {
             return std::abs(grains[0].position.y - grains[0].radius - truth) / drop;
           }};
 }
 
 Study stack() {
-  constexpr double parting = 0.106736872469562, speed = 0.271462651012440;  // T0, d' (28), (30)
   return {"One sphere on two (section 5.6), e = 0.7: relative error of d' at 1.3 T0",
-          [](const Variant& variant) { return stacked_spheres(pair_of(variant, 0.7)); }, 1.3 * parting, 2e-3,
+          [](const Variant& variant) { return fujioka2005::stacked(pair_of(variant, 0.7)); },
+          1.3 * fujioka2005::exact_parting, 2e-3,
           [=](const std::vector<Grain>& grains) {
-            return std::abs(grains[1].velocity.x / std::sqrt(4 * 9.8 * 0.02) / speed - 1);
+            return std::abs(fujioka2005::dimensionless_speed(grains[1].velocity.x) / fujioka2005::exact_speed - 1);
           }};
 }
 

@@ -53,23 +53,6 @@ GrainScene gas(int discs, double fraction, const PairProperties& pair) {
   return scene;
 }
 
-GrainScene dropped_ball(const PairProperties& pair) {
-  GrainScene scene = scene_of(pair, {0, -gravity});
-  scene.grains = {body({0, 1.125 + 2.25}, 1.125, Body::sphere)};
-  scene.walls = {line("floor", {0, 0}, {0, 1})};
-  return scene;
-}
-
-GrainScene stacked_spheres(const PairProperties& pair) {
-  constexpr double r = 0.02;
-  GrainScene scene = scene_of(pair, {0, -gravity});
-  for (const Vec2 place : {Vec2{-r, r}, Vec2{r, r}, Vec2{0, (1 + std::numbers::sqrt3) * r}}) {
-    scene.grains.push_back(body(place, r, Body::sphere));
-  }
-  scene.walls = {line("floor", {0, 0}, {0, 1})};
-  return scene;
-}
-
 GrainScene free_flight(int discs) {
   GrainScene scene = gas(discs, 0.03, {.dimensionless = 0.1});
   scene.walls.clear();

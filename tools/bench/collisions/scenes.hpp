@@ -11,12 +11,6 @@ namespace equidem::bench {
 /// velocities of 1 m/s.
 GrainScene gas(int discs, double fraction, const PairProperties& pair);
 
-/// The paper's sphere of 2.25 m, 2.25 m above a floor.
-GrainScene dropped_ball(const PairProperties& pair);
-
-/// The paper's three spheres of 2 cm, one on two (section 5.6).
-GrainScene stacked_spheres(const PairProperties& pair);
-
 /// Discs on a wide grid that fall and drift apart and touch nothing.
 GrainScene free_flight(int discs);
 

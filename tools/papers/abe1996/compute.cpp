@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "abe1996/abe1996.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,6 +11,8 @@
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/material/spring_relations.hpp"
 #include "equidem/statics/critical_ratio.hpp"
+
+#include "abe1996/abe1996.hpp"
 
 namespace equidem::abe1996 {
 namespace {

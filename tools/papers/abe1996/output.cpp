@@ -55,10 +55,9 @@ Plot figure8(const Reproduction& result) {
   Plot plot{.title = title_of("Fig. 8", result.block),
             .x = {.label = "kT/kN", .min = 0, .max = 1},
             .y = {.label = "2G/((1 - nu) kN)", .min = 1, .max = 2}};
-  plot.series = {
-      curve({.label = "eq. (37)"}, 0, 1, hexagonal_stiffness_ratio),
-      with_points({.label = "computed, eq. (36)", .style = SeriesStyle::points, .colour = PlotColour::blue}, points,
-                  &RatioPoint::ratio, &RatioPoint::stiffness_ratio)};
+  plot.series = {curve({.label = "eq. (37)"}, 0, 1, hexagonal_stiffness_ratio),
+                 with_points({.label = "computed, eq. (36)", .style = SeriesStyle::points, .colour = PlotColour::blue},
+                             points, &RatioPoint::ratio, &RatioPoint::stiffness_ratio)};
   return plot;
 }
 
@@ -70,9 +69,8 @@ Plot error_by_size(const Reproduction& result) {
   for (std::size_t k = 0; k < result.convergence.size(); ++k) {
     const Convergence& c = result.convergence[k];
     if (c.ratio == 0) continue;  // exact: round-off has no place on this plot
-    Series nu{.label = fmt::format("nu, kT/kN = {}", c.ratio),
-              .style = SeriesStyle::line_with_points,
-              .colour = colours[k]};
+    Series nu{
+        .label = fmt::format("nu, kT/kN = {}", c.ratio), .style = SeriesStyle::line_with_points, .colour = colours[k]};
     Series stiffness = nu;
     stiffness.label = fmt::format("(36), kT/kN = {}", c.ratio);
     stiffness.marker = Marker::square;

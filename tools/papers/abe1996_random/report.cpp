@@ -270,7 +270,7 @@ std::string conclude_bounds(const Result& result) {
       constexpr double rounding = 1e-12;
       if (p->mean(exact, shear) <= p->mean(voigt, shear) * (1 + rounding)) ++below_voigt;
       if (p->mean(exact, shear) >= p->mean(uniform_stress, shear) * (1 - rounding)) ++above_estimate;
-      const auto [low, high] = std::minmax(p->mean(voigt, poisson), p->mean(uniform_stress, poisson));
+      const auto [low, high] = std::minmax({p->mean(voigt, poisson), p->mean(uniform_stress, poisson)});
       if (low - rounding <= p->mean(exact, poisson) && p->mean(exact, poisson) <= high + rounding) ++between;
     }
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Table 1, and what a bouncing ball costs at a given accuracy.
+/// \file
+/// Table 1, and the time of computing of a bouncing ball for an accuracy.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -41,7 +42,7 @@ double phase_of(std::size_t k) {
   return std::fmod(0.618033988749895 * (static_cast<double>(k) + 0.5), 1.0);
 }
 
-/// States that impacts of all phases go through.
+/// States during impacts that begin at all phases of a step.
 template <class Law>
 std::vector<Sample> samples_of(const Variant& variant) {
   std::vector<Sample> samples;
@@ -67,7 +68,7 @@ double nanoseconds(int repeats, Evaluate evaluate) {
     for (std::size_t k = 0; k < sample_count; ++k) sum += evaluate(k);
   }
   const double seconds = watch.seconds();
-  // the sum is asked for, so that nothing is left out
+  // the compiler must not remove the unused evaluations
   return std::isfinite(sum) ? seconds * 1e9 / (repeats * static_cast<double>(sample_count)) : never;
 }
 
@@ -80,7 +81,7 @@ double nanoseconds_of(const Variant& variant) {
 
 /// Unit mass and step; gravity as an outside acceleration of a thousandth of the closing speed.
 double nanoseconds_of_exact(const Variant& variant) {
-  const PairProperties properties = pair_of(variant);
+  const PairProperties properties = variant.pair();
   const ExactPair pair = exact_pair(1, variant.a, damping_ratio_of(restitution, properties.end), properties.end, 1);
   struct Start {
     Sample at;
@@ -114,7 +115,7 @@ double evaluation_nanoseconds(const Variant& variant) {
   });
 }
 
-/// The paper's run by a plain loop that adds gravity before the contact force.
+/// Evaluations in the paper's run where gravity is added before the contact force.
 template <class Law>
 std::int64_t evaluations_with_gravity_first(const Variant& variant, double step, std::int64_t steps) {
   const double dissipation = dissipation_of<Law>(variant), fall = gravity * step * step / diameter;
@@ -143,9 +144,9 @@ std::int64_t gravity_first(const Variant& variant, double step, std::int64_t ste
   });
 }
 
-/// 16 balls side by side, apart.
+/// 16 balls side by side without contact.
 GrainScene row_of_balls(const Variant& variant) {
-  GrainScene scene = column(variant, 1, drop);
+  GrainScene scene = column(variant.pair(), 1);
   for (int k = 1; k < balls_of_table1; ++k) {
     scene.grains.push_back(scene.grains.front());
     scene.grains.back().position.x = 1.5 * diameter * k;
@@ -153,40 +154,28 @@ GrainScene row_of_balls(const Variant& variant) {
   return scene;
 }
 
-/// A rigid ball dropped from rest: its height above the floor.
-double rigid_height(double time) {
-  const double height = drop * diameter;
-  double speed = std::sqrt(2 * gravity * height), left = time - speed / gravity;
-  if (left < 0) return height - 0.5 * gravity * time * time;
-  speed *= restitution;
-  while (left > 2 * speed / gravity) {
-    left -= 2 * speed / gravity;
-    speed *= restitution;
-  }
-  return speed * left - 0.5 * gravity * left * left;
-}
+constexpr double sampling = 0.1;  // s
+constexpr int samples = 30;
 
-constexpr double looked_at = 0.1;  // s
-constexpr int looks = 30;
-
-BallPoint follow_ball(Variant variant, double a, double step) {
+CurvePoint follow_ball(Variant variant, double a, double step) {
   variant.a = a;
-  const auto between = static_cast<std::int64_t>(std::llround(looked_at / step));
-  BallPoint point{.step = step, .a = a};
+  const auto between = static_cast<std::int64_t>(std::llround(sampling / step));
+  CurvePoint point{.step = step, .a = a};
   double squares = 0, least = never, all = 0;
   for (int round = 0; round < 3 || (all < 0.005 && round < 200); ++round) {
     squares = 0;
-    GrainSimulation run = start(column(variant, 1, drop), variant, step);
+    GrainSimulation run = start(column(variant.pair(), 1), variant.law, step);
     Stopwatch watch;
-    for (int k = 1; k <= looks; ++k) {
+    for (int k = 1; k <= samples; ++k) {
       run.advance(between);
-      const double error = run.grains()[0].position.y - 0.5 * diameter - rigid_height(k * looked_at);
+      const double error =
+          run.grains()[0].position.y - 0.5 * diameter - rigid_height(drop * diameter, restitution, k * sampling);
       squares += error * error;
     }
     least = std::min(least, watch.seconds());
     all += watch.seconds();
   }
-  point.error = std::sqrt(squares / looks) / (drop * diameter);
+  point.error = std::sqrt(squares / samples) / (drop * diameter);
   point.seconds = least;
   return point;
 }
@@ -198,14 +187,14 @@ Table1 measure_table1(bool quick, Progress& progress) {
   table.rest_time = std::sqrt(2 * drop * diameter / gravity) * (1 + restitution) / (1 - restitution);
   constexpr int slices = 50;
   std::vector<GrainSimulation> runs;
-  for (const Variant& variant : variants(very_stiff_for_x)) {
+  for (const Variant& variant : variants(very_stiff)) {
     Table1Row row{.variant = variant, .step = variant.label == "X stiff" ? paper_step : table.step};
     row.evaluation_nanoseconds = never;
     row.gravity_first = gravity_first(variant, row.step, std::llround(table.duration / row.step));
-    runs.push_back(start(row_of_balls(variant), variant, row.step));
+    runs.push_back(start(row_of_balls(variant), variant.law, row.step));
     table.rows.push_back(row);
   }
-  // turn by turn, so that what else the machine does falls on all alike
+  // by turns, so that other load of the machine affects all laws alike
   for (int slice = 0; slice < slices; ++slice) {
     for (std::size_t k = 0; k < runs.size(); ++k) {
       Table1Row& row = table.rows[k];
@@ -223,15 +212,15 @@ Table1 measure_table1(bool quick, Progress& progress) {
   return table;
 }
 
-std::vector<BallCost> cost_of_ball(bool quick, Progress& progress) {
+std::vector<Curve> cost_of_ball(bool quick, Progress& progress) {
   std::vector<double> steps{1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4};
   if (!quick) steps.insert(steps.end(), {5e-5, 2e-5, 1e-5});
-  std::vector<BallCost> all;
+  std::vector<Curve> all;
   for (const Variant& variant : variants(0)) {
-    const bool stiff = variant.a == 0;
-    BallCost cost{.variant = variant, .label = stiff ? "X, step 0.1 s" : variant.label, .points = {}};
-    if (stiff) {
-      for (double a = 1e4; a <= 1.1e12; a *= 10) cost.points.push_back(follow_ball(variant, a, looked_at));
+    const bool one_step = variant.a == 0;
+    Curve cost{.variant = variant, .label = one_step ? "X, step 0.1 s" : variant.label, .points = {}};
+    if (one_step) {
+      for (double a = 1e4; a <= 1.1e12; a *= 10) cost.points.push_back(follow_ball(variant, a, sampling));
     } else {
       for (const double step : steps) cost.points.push_back(follow_ball(variant, variant.a, step));
     }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
 /// Table 2, Figs. 4 to 7: one ball on a floor.
 #include <cmath>
 
@@ -14,14 +15,14 @@ double gap(const Grain& ball) {
   return ball.position.y - radius;
 }
 
-/// Energy per mass above that of the ball on the floor. By semi-implicit Euler the velocity is half a step behind the
-/// position; v²/2 + g (gap - v dt/2) is what its flights keep.
+/// Energy per mass above that of the ball on the floor. In semi-implicit Euler the velocity is half a step behind the
+/// position; its flights conserve v²/2 + g (gap - v dt/2).
 double energy(const Variant& variant, const Grain& ball, double dt) {
   const double lag = variant.of_paper() ? 0.5 * dt * ball.velocity.y : 0;
   return 0.5 * ball.velocity.y * ball.velocity.y + gravity * (gap(ball) - lag);
 }
 
-/// The flight up and down again to some steps above the floor, at once: by the formula that its steps follow.
+/// The flight up and down again to some steps above the floor in one move, by the closed form of its steps.
 void leap(const Variant& variant, Grain& ball, double dt) {
   const double n = std::floor(2 * ball.velocity.y / (gravity * dt)) - 3;
   if (n < 100) return;
@@ -35,8 +36,8 @@ Impacts watch_impacts(const Variant& variant, GrainScene scene, double dt, bool 
   Impacts seen{.variant = variant, .ratio = {}, .paths = {}};
   Grain ball = scene.grains[0];
   double before = energy(variant, ball, dt);
-  std::optional<GrainSimulation> run = start(scene, variant, dt, false);
-  bool met = false;  // the floor, since the last flight
+  std::optional<GrainSimulation> run = start(scene, variant.law, dt, false);
+  bool met = false;  // contact with the floor since the last flight
   for (std::int64_t step = 0; step < most_steps && seen.ratio.size() < impacts_shown; ++step) {
     const std::int64_t contacts = run->counters().contacts;
     run->advance(1);
@@ -59,7 +60,7 @@ Impacts watch_impacts(const Variant& variant, GrainScene scene, double dt, bool 
     if (leaps) {
       leap(variant, ball, dt);
       scene.grains[0] = ball;
-      run = start(scene, variant, dt, false);
+      run = start(scene, variant.law, dt, false);
     }
   }
   return seen;
@@ -69,10 +70,10 @@ Impacts watch_impacts(const Variant& variant, GrainScene scene, double dt, bool 
 
 std::vector<Table2Row> count_table2() {
   std::vector<Table2Row> rows;
-  for (const Variant& variant : variants(very_stiff_for_x)) {
+  for (const Variant& variant : variants(very_stiff)) {
     Table2Row row{.variant = variant};
     for (std::size_t k = 0; k < table2_steps.size(); ++k) {
-      GrainSimulation run = start(column(variant, 1, drop), variant, table2_steps[k]);
+      GrainSimulation run = start(column(variant.pair(), 1), variant.law, table2_steps[k]);
       for (bool parted = false; !parted;) {
         const std::int64_t evaluations = run.counters().evaluations;
         run.advance(1);
@@ -86,20 +87,12 @@ std::vector<Table2Row> count_table2() {
   return rows;
 }
 
-std::vector<Impacts> slow_impacts() {
+std::vector<Impacts> impacts(bool fast) {
   std::vector<Impacts> all;
-  for (const Variant& variant : variants(very_stiff_for_x)) {
-    all.push_back(watch_impacts(variant, column(variant, 1, drop), paper_step, false, 8000));
-  }
-  return all;
-}
-
-std::vector<Impacts> fast_impacts() {
-  std::vector<Impacts> all;
-  for (const Variant& variant : variants(very_stiff_for_x)) {
-    GrainScene scene = column(variant, 1, drop);
-    scene.grains[0].velocity.y = -fast_speed;
-    all.push_back(watch_impacts(variant, scene, paper_step, true, 100000));
+  for (const Variant& variant : variants(very_stiff)) {
+    GrainScene scene = column(variant.pair(), 1);
+    if (fast) scene.grains[0].velocity.y = -fast_speed;
+    all.push_back(watch_impacts(variant, scene, paper_step, fast, fast ? 100000 : 8000));
   }
   return all;
 }

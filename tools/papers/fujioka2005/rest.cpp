@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Bodies that come to rest under gravity: what the paper does not try.
+/// \file
+/// Bodies that come to rest under gravity; not in the paper.
 #include <algorithm>
 #include <cmath>
 
@@ -8,9 +9,9 @@
 namespace equidem::fujioka2005 {
 namespace {
 
-constexpr int traced = 400;
+constexpr int history_points = 400;
 
-/// The contacts of a column, the floor's first.
+/// Springs of the contacts of a column; contact 0 is that with the floor.
 class Springs {
  public:
   Springs(const Variant& variant, const GrainScene& scene, double step)
@@ -26,7 +27,7 @@ class Springs {
     return stiffness(contact) * (hertz_ ? 0.4 * std::pow(overlap, 2.5) : 0.5 * overlap * overlap);
   }
 
-  /// Kinetic, elastic and potential. Semi-implicit Euler has velocities half a step behind: all is taken there.
+  /// Kinetic, elastic and potential energy, at the instant of the velocities: half a step back in semi-implicit Euler.
   [[nodiscard]] double energy(const std::vector<Grain>& grains, double lag) const {
     double sum = 0, below = -0.5 * diameter;  // centre of a ball that would just touch, less the diameter
     for (std::size_t k = 0; k < grains.size(); ++k) {
@@ -47,7 +48,7 @@ class Springs {
   }
 
  private:
-  /// Held with the dimensionless one: two balls have half the mass of a ball and the floor.
+  /// From the dimensionless one: the reduced mass of two balls is half that of a ball and the floor.
   [[nodiscard]] double stiffness(std::size_t contact) const { return contact == 0 ? stiffness_ : 0.5 * stiffness_; }
 
   bool hertz_;
@@ -55,19 +56,19 @@ class Springs {
 };
 
 Rest settle(const Variant& variant, int balls, double duration, double e) {
-  const GrainScene scene = column(variant, balls, drop, e);
+  const GrainScene scene = column(variant.pair(e), balls);
   const double step = paper_step, weight = balls * gravity * scene.grains[0].inertia.mass;
   const Springs springs(variant, scene, step);
   const double still = springs.energy_at_rest(scene.grains.size()), expected = springs.overlap(0, weight);
 
   Rest rest{.variant = variant, .balls = balls, .times = {}, .energies = {}};
-  GrainSimulation run = start(scene, variant, step);
+  GrainSimulation run = start(scene, variant.law, step);
   const auto last = static_cast<std::int64_t>(std::llround(duration / step)), late = last - last / 10;
   double speeds = 0, overlaps = 0;
   std::int64_t touched = 0;
   while (run.step() < last) {
     run.advance(1);
-    if (run.step() % (last / traced) == 0) {
+    if (run.step() % (last / history_points) == 0) {
       stop_if_interrupted();
       const double energy = springs.energy(run.grains(), variant.of_paper() ? 0.5 * step : 0);
       rest.times.push_back(run.time());
@@ -90,7 +91,7 @@ Rest settle(const Variant& variant, int balls, double duration, double e) {
 
 std::vector<Rest> come_to_rest(int balls, double duration, double e) {
   std::vector<Rest> all;
-  for (const Variant& variant : variants(stiff_for_x)) all.push_back(settle(variant, balls, duration, e));
+  for (const Variant& variant : variants(stiff)) all.push_back(settle(variant, balls, duration, e));
   return all;
 }
 

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/core/text.hpp"
+
+#include "fujioka2005/fujioka2005.hpp"
+#include "tables.hpp"
+
+namespace equidem::fujioka2005 {
+namespace {
+
+/// Law and stiffness.
+std::vector<std::string> cells_of(const Variant& variant) {
+  return {variant.label, fmt::format("{:g}", variant.a)};
+}
+
+std::string table_1(const Table1& table1) {
+  struct Printed {
+    double run, evaluation;  ///< s, microseconds
+    double count;
+  };
+  constexpr std::array printed{Printed{423, 1.88, 1.87e7}, Printed{341, 1.91, 1.26e7}, Printed{269, 1.95, 5.62e6},
+                               Printed{306, 1.96, 1.07e7}};
+  TextTable table({"law", "a", "step", "evaluations", "gravity first", "run", "law alone", "printed: evaluations",
+                   "run", "one evaluation"});
+  const std::vector<Table1Row>& rows = table1.rows;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const Table1Row& row = rows[k];
+    std::vector<std::string> cells = cells_of(row.variant);
+    cells.insert(cells.end(),
+                 {fmt::format("{:.0e} s", row.step), fmt::format("{:.3g}", double(row.evaluations)),
+                  row.gravity_first > 0 ? fmt::format("{:.3g}", double(row.gravity_first)) : "-",
+                  fmt::format("{:.3g} s", row.run_seconds), fmt::format("{:.3g} ns", row.evaluation_nanoseconds)});
+    if (k < printed.size())
+      cells.insert(cells.end(), {fmt::format("{:.3g}", printed[k].count), fmt::format("{} s", printed[k].run),
+                                 fmt::format("{:.2f} µs", printed[k].evaluation)});
+    table.add(cells);
+  }
+  const double c = printed[0].count;
+  return fmt::format("Table 1: 16 balls fall and come to rest, {:g} s\n", table1.duration) + table.text() +
+         fmt::format(
+             "  The paper states a step of 1e-5 s and 5e6 steps, 50 s. A rigid ball is at rest from {:.4f} s on; 16\n"
+             "  balls in contact at every later step make {:.3g} evaluations in 5 s with a step of 1e-6 s, which is\n"
+             "  the printed number of C, but {:.3g} in 50 s with 1e-5 s: the run was of 5 s and 1e-6 s{}.\n"
+             "  C itself comes to rest sooner here, since its ratio is low at most phases of the impact.\n"
+             "  With gravity after the contact force (as Table 2 requires) F and P come to rest like C. The printed\n"
+             "  counts of F and P, {:.2f} and {:.2f} of that of C, need balls that continue to bounce; with gravity\n"
+             "  before the contact force they do, in the same proportion of P to F ({:.2f}, printed 1.90), though not\n"
+             "  with the same counts. The printed count of T follows from neither order.\n"
+             "  X needs no small step: \"X stiff\" makes the same run with 1e-3 s.\n"
+             "  An evaluation of P costs {:+.0f} % against C here (the paper: +4 %): {:.1f} ns of about {:.0f} ns per\n"
+             "  ball and step.\n",
+             table1.rest_time, 16 * (table1.duration - table1.rest_time) / 1e-6, 16 * (50 - table1.rest_time) / 1e-5,
+             table1.step > 1e-6 ? fmt::format(" (here {:g} s)", table1.step) : "", printed[2].count / c,
+             printed[3].count / c, double(rows[3].gravity_first) / double(rows[2].gravity_first),
+             100 * (rows[3].evaluation_nanoseconds / rows[0].evaluation_nanoseconds - 1),
+             rows[3].evaluation_nanoseconds, rows[3].run_seconds * 1e9 / (16 * table1.duration / table1.step));
+}
+
+std::string table_2(const std::vector<Table2Row>& rows) {
+  TextTable table({"law", "a", "1e-3 s", "1e-4 s", "1e-5 s", "printed"});
+  constexpr std::array printed{"9, 10, 10", "14, 23, 37", "2, 1, 1", "3, 3, 3"};
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    std::vector<std::string> cells = cells_of(rows[k].variant);
+    for (const std::int64_t steps : rows[k].steps) cells.push_back(fmt::format("{}", steps));
+    if (k < printed.size()) cells.emplace_back(printed[k]);
+    table.add(cells);
+  }
+  return "Table 2: steps in contact at three time steps, first impact of the slow ball\n" + table.text();
+}
+
+std::string table_of(const std::vector<Impacts>& laws) {
+  constexpr std::array<std::size_t, 6> shown{1, 2, 5, 10, 15, 20};
+  std::vector<std::string> head{"law", "a", "impacts"};
+  for (const std::size_t n : shown) head.push_back(fmt::format("N = {}", n));
+  head.insert(head.end(), {"worst |ratio - 0.49|", "deepest", ""});
+  TextTable table(head);
+  for (const Impacts& law : laws) {
+    std::vector<std::string> cells = cells_of(law.variant);
+    cells.push_back(fmt::format("{}{}", law.ratio.size(), law.ratio.size() == 20 ? "+" : " "));
+    for (const std::size_t n : shown)
+      cells.push_back(n <= law.ratio.size() ? fmt::format("{:.5f}", law.ratio[n - 1]) : "-");
+    double worst = 0;
+    for (const double ratio : law.ratio) worst = std::max(worst, std::abs(ratio - restitution * restitution));
+    cells.insert(cells.end(),
+                 {fmt::format("{:.1e}", worst), fmt::format("{:.2g} d", law.deepest), law.ran_away ? "unstable" : ""});
+    table.add(cells);
+  }
+  return table.text();
+}
+
+/// The point at a step; null: none.
+const CurvePoint* point_at(const Curve& curve, double step) {
+  const auto at = std::find_if(curve.points.begin(), curve.points.end(),
+                               [&](const CurvePoint& p) { return std::abs(p.step / step - 1) < 0.01; });
+  return at == curve.points.end() ? nullptr : &*at;
+}
+
+std::string stacked_spheres(const std::vector<Curve>& curves) {
+  TextTable table({"law", "a", "d': 1e-3 s", "1e-4 s", "1e-5 s", "1e-6 s", "order", "T0: 1e-3 s", "1e-4 s", "1e-5 s",
+                   "1e-6 s", "order"});
+  for (const Curve& curve : curves) {
+    std::vector<std::string> cells{curve.label, fmt::format("{:g}", curve.variant.a)};
+    for (const auto error : {&CurvePoint::speed_error, &CurvePoint::parting_error}) {
+      for (const double step : {1e-3, 1e-4, 1e-5, 1e-6}) {
+        const CurvePoint* at = point_at(curve, step);
+        cells.push_back(at == nullptr ? "-" : fmt::format("{:.1e}", at->*error));
+      }
+      cells.push_back(
+          fmt::format("{:.2f}", error == &CurvePoint::speed_error ? curve.speed_order : curve.parting_order));
+    }
+    table.add(cells);
+  }
+  return fmt::format(
+             "Figs. 10, 11: stacked spheres; exact d' = {:.12f}, T0 = {:.12f} s (the paper's sum (31) is low by {:g})\n"
+             "  Relative errors of d' and T0 by the time step\n",
+             exact_speed, exact_parting, printed_parting_error) +
+         table.text() +
+         fmt::format(
+             "  Sweeps of X in a step of 1e-4 s: {:.1f} (a = 0.1), {:.1f} (a = 4).\n"
+             "  C stops converging (orders near 0, as printed): its closing speed is the velocity of the previous "
+             "step\n"
+             "  along the normal of this step, low by (v_t²/L) dt/2. The damping per step is kept with a, so that the\n"
+             "  dashpot turns this error into an adhesion that no time step removes. With the closing speed from\n"
+             "  d_j - d_(j-1) (last line) it vanishes. T has no such error: its damping vanishes with d^(1/4). F and "
+             "P\n"
+             "  coincide, since the contacts last and only their first steps differ; in the paper they differ, and F\n"
+             "  is often the better one. T0 is the time of the step in which B and C part: order 1 at best.\n",
+             point_at(curves[4], 1e-4)->sweeps, point_at(curves[5], 1e-4)->sweeps);
+}
+
+/// Times of the cheapest point with at most the wanted error.
+std::string costs(const std::string& title, const std::vector<Curve>& curves, double CurvePoint::*error,
+                  std::initializer_list<double> wanted) {
+  std::vector<std::string> head{"law", "a"};
+  for (const double accuracy : wanted) head.push_back(fmt::format("{:.0e}", accuracy));
+  TextTable table(head);
+  for (const Curve& curve : curves) {
+    if (curve.points.front().seconds <= 0) continue;
+    std::vector<std::string> cells = cells_of(curve.variant);
+    if (curve.label != curve.variant.label) cells = {curve.label, "any"};
+    for (const double accuracy : wanted) {
+      double least = INFINITY;
+      for (const CurvePoint& point : curve.points)
+        if (point.seconds > 0 && point.*error <= accuracy) least = std::min(least, point.seconds);
+      cells.push_back(std::isfinite(least) ? fmt::format("{:.2g} s", least) : "-");
+    }
+    table.add(cells);
+  }
+  return title + "\n" + table.text();
+}
+
+std::string at_rest(const std::string& title, const std::vector<Rest>& laws) {
+  TextTable table({"law", "a", "speed, of g dt", "energy above rest, of weight x d",
+                   "overlap at the floor, of the static one", "steps in contact"});
+  for (const Rest& law : laws) {
+    std::vector<std::string> cells = cells_of(law.variant);
+    cells.insert(cells.end(),
+                 {fmt::format("{:.2g}", law.speed), fmt::format("{:.1e}", std::max(0.0, law.energies.back())),
+                  fmt::format("{:.6f}", law.overlap), fmt::format("{:.1f} %", 100 * law.contact)});
+    table.add(cells);
+  }
+  return title + " at rest (not in the paper)\n" + table.text();
+}
+
+std::string lossless(const std::vector<Rest>& laws) {
+  TextTable table({"law", "a", "at the end", "largest"});
+  for (const Rest& law : laws) {
+    double largest = 0;
+    for (std::size_t k = 0; k < law.energies.size(); ++k) largest = std::max(largest, std::abs(law.change(k)));
+    std::vector<std::string> cells = cells_of(law.variant);
+    cells.insert(cells.end(),
+                 {fmt::format("{:+.1e}", law.change(law.energies.size() - 1)), fmt::format("{:.1e}", largest)});
+    table.add(cells);
+  }
+  return fmt::format(
+             "A column of {} balls without loss, e = 1, bounces for {:.0f} s: relative change of the energy (not in "
+             "the paper)\n",
+             laws.front().balls, laws.front().times.back()) +
+         table.text();
+}
+
+constexpr const char* introduction =
+    "Fujioka & Ushijima (2005): normal contact with energy conservation\n"
+    "\n"
+    "C: Cundall's spring and dashpot (linear_dashpot), T: Tanaka's Hertz spring (hertz_dashpot), F: the\n"
+    "authors' earlier model (five_case_map), P: the paper's (energy_map), X: exact_flow, not in the paper.\n"
+    "e = 0.7, g = 9.8 m/s², spheres of 225 m, step 1e-3 s unless stated.\n"
+    "Not stated in the paper, but deduced from Table 2: the dimensionless stiffness a = k dt²/m is kept while\n"
+    "the step changes, 0.10 for C, F and P, 4.62 for T (k d_c^(1/2) dt²/m); velocities are updated first, then\n"
+    "positions (semi-implicit Euler); gravity is added after the contact force; contacts of C and T last while\n"
+    "the bodies overlap, e = exp(-pi zeta/sqrt(1 - zeta²)), although the force is then attractive at the end.\n"
+    "Contacts of X end where the force is zero.\n";
+
+constexpr const char* about_x =
+    "X, the law that is more accurate at rest and in clusters\n"
+    "  During a step all other forces on a contact (gravity, the other contacts of its bodies) are replaced by\n"
+    "  a force linear in time, m (h0 + h1 t), with the same impulse and first moment. Spring and dashpot obey\n"
+    "  u'' + 2 zeta w u' + w² u = h0 + h1 t, and u'' = h0 + h1 t while apart, both solved in closed form; a\n"
+    "  contact begins and ends inside the step, at the instants of these solutions. The impulse of the contact\n"
+    "  changes the velocities of its bodies, its first moment their positions; the contacts are solved in turn\n"
+    "  until all agree. One contact is exact at any step and stiffness (any e, any energy, to round-off);\n"
+    "  straight clusters with e = 1 follow a symplectic map of fourth order, whose energy does not drift and\n"
+    "  which is stable for w dt < 2.25 in a chain; rest is exact, at m g/k, since a constant force is linear.\n"
+    "  A contact that begins or ends within the step makes a kink in its force on its neighbours: this is the\n"
+    "  remaining error of colliding clusters, largest for stiff contacts (a = 4).\n"
+    "  P moves on an ellipse of the energy of one contact, without gravity and other contacts: one ball comes\n"
+    "  to rest at (1 + a)/2 of m g/k, a column never.\n"
+    "  An evaluation of X costs more (Table 1), and a step takes several sweeps over a cluster. For one contact\n"
+    "  this is repaid a hundredfold, since the step need not resolve the contact; for the stacked spheres it\n"
+    "  is not: P is cheaper there at equal error of d'.\n";
+
+}  // namespace
+
+std::string report(const Reproduction& r) {
+  const std::vector<std::string> parts{
+      introduction,
+      table_1(r.table1),
+      table_2(r.table2),
+      "Fig. 4: energy ratio of slow impacts (theory 0.49), ball dropped by 0.01 diameters\n" + table_of(r.slow) +
+          "  Where flights last only a few steps, gravity in the step of contact changes the ratio of C, F, P. X at\n"
+          "  a = 0.1 is the exact answer of the soft spring under gravity; stiff, it follows the rigid ball.\n",
+      "Figs. 5 to 7: fast impacts, 1e5 m/s, 0.444 diameters in a step\n" + table_of(r.fast) +
+          "  C penetrates more than a diameter in the first impact and returns, since the floor is a half space; in\n"
+          "  the paper it is lost at the second. T with the stiffness of Table 2 is unstable here: it returns more\n"
+          "  energy than it received. Flights are computed in one move, by the closed form of their steps.\n",
+      stacked_spheres(r.stacked),
+      costs("Stacked spheres: least time of computing for a relative error of d'", r.stacked, &CurvePoint::speed_error,
+            {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}),
+      costs("Bouncing ball, 3 s: least time of computing for an rms error of the height over the drop", r.ball,
+            &CurvePoint::error, {1e-1, 1e-2, 1e-3, 1e-4, 1e-6}),
+      at_rest("One ball", r.rest),
+      at_rest(fmt::format("A column of {} balls", r.column.front().balls), r.column),
+      lossless(r.lossless),
+      about_x};
+  return fmt::format("{}", fmt::join(parts, "\n"));
+}
+
+}  // namespace equidem::fujioka2005
