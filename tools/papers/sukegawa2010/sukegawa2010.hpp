@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Sukegawa (2010), chapter 8, computed again: a box filled with discs, ellipses and pairs of discs, at rest and
-/// shaken; and what section 9.2 leaves open, which shaking compacts best and whether the box resonates.
+/// shaken; and two questions that section 9.2 leaves open, which shaking compacts best and whether the box resonates.
 #pragma once
 
 #include <array>
@@ -10,16 +10,14 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "equidem/core/statistics.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/grains/grain_simulation.hpp"
-#include "equidem/output/files/csv.hpp"
-#include "equidem/output/plots/plot.hpp"
 #include "equidem/packing/packing_shape.hpp"
 
-#include "command.hpp"
+#include "papers.hpp"
 
 namespace equidem::sukegawa2010 {
 
@@ -43,19 +41,16 @@ inline constexpr std::array printed_void_ratios{
     Printed{Shape::disc, 0.213, 0.198}, Printed{Shape::ellipse, 0.160, 0.139},
     Printed{Shape::bonded_pair, 0.220, 0.205}, Printed{Shape::rigid_pair, 0, 0}};
 
-/// The start: rows of places `cell` apart, every other row shifted by half of it, in a box as wide as they take. 40
-/// columns, 75 rows and
-/// 3 cm give the thesis's box: width 40.5 x 3 cm = 1.215 m, height 75 x 3 cm = 2.25 m, 3000 bodies; its numbers 485,
-/// 500, 515 and
-/// so on stand left, in the middle and right in rows 13, 38 and 63.
+/// The start: rows of places at the distance `cell`, every other row shifted by half of it, in a box of their width. 40
+/// columns, 75 rows and 3 cm give the thesis's box: width 40.5 x 3 cm = 1.215 m, height 75 x 3 cm = 2.25 m, 3000
+/// bodies; its numbers 485, 500, 515 and so on lie at the left, middle and right of rows 13, 38 and 63.
 struct StartGrid {
   std::int64_t columns = 40, rows = 75;
 
   [[nodiscard]] std::int64_t places() const { return columns * rows; }
   [[nodiscard]] double width() const { return cell * (static_cast<double>(columns) + 0.5); }
   static constexpr double cell = 0.03;       ///< m
-  static constexpr double pair_row = 0.041;  ///< m, rows of pairs: each takes two places of a row, in any direction
-  bool operator==(const StartGrid&) const = default;
+  static constexpr double pair_row = 0.041;  ///< m, rows of pairs: each takes two places of a row
 };
 
 /// a cos(2 pi f t), along x.
@@ -64,7 +59,7 @@ struct Shaking {
   std::int64_t cycles = 0;
 };
 
-/// How a box is filled.
+/// A filling of the box.
 struct Fill {
   Shape shape = Shape::disc;
   StartGrid grid = {};
@@ -73,56 +68,60 @@ struct Fill {
   double damping = 1;                        ///< h of (2.27)
   double friction = sukegawa2010::friction;  ///< between grains
   double step_share = 0.5;                   ///< of the limit of the two lightest bodies
-  std::optional<double> step = {};           ///< s, in place of a share of it
+  std::optional<double> step = {};           ///< s, in place of step_share
   double bond_step = printed_step;           ///< s: dashpots of bonds C_n = m_r/bond_step, C_s = C_n/3
   FrictionCap cap = FrictionCap::whole_force;
   EllipseLaw ellipse_law = EllipseLaw::exact;
-  double row_share = 1;      ///< height of the rows of the start, of the thesis's
-  std::string variant = {};  ///< in names; empty: as the thesis, but for the step
+  double row_share = 1;      ///< height of the rows at the start over that of the thesis
+  std::string variant = {};  ///< part of names; empty: as in the thesis, except for the step
 
   [[nodiscard]] std::string name() const;  ///< "discs_1"
 };
 
-/// 5 s and 20 s at 10 Hz: the thesis does not say for how long it shakes.
+/// Cycles of 5 s and 20 s at 10 Hz: the thesis does not state the duration of the shaking.
 inline constexpr std::array<std::int64_t, 2> long_shakings{50, 200};
 
-/// A box filled, and shaken where there are cycles.
+/// A box filled, and shaken where `shaking` is given.
 struct Run {
   Fill fill;
   std::optional<Shaking> shaking = {};
-  bool shown = false;     ///< pictures; where it is filled also paths and histories
-  bool animated = false;  ///< the same as animation
-  bool mapped = false;    ///< of the table over amplitudes and frequencies (sections 8.6 to 9.2)
+  bool shown = false;     ///< pictures, and paths of nine grains
+  bool animated = false;  ///< an animation of the shaking
+  bool mapped = false;    ///< part of the table over amplitudes and frequencies (sections 8.6 to 9.2)
 
   [[nodiscard]] std::string name() const;  ///< "discs_1_400gal_10Hz"
 };
 
-/// What a run gave. Lengths in m. NaN: not measured.
+/// Results of a run. Lengths in m. NaN: not measured.
 struct Outcome {
   double void_ratio_before = 0, void_ratio = 0;  ///< away from walls and surface
-  double whole_before = 0, whole = 0;            ///< all solid over the box below the mean surface
-  double height_before = 0, height = 0;          ///< of the surface, mean
-  double roughness_before = 0, roughness = 0;    ///< standard deviation about a straight line
-  double centre_before = 0, centre = 0;          ///< of mass, height
-  double slope = 0;                              ///< of the surface: the largest while shaking
-  double swing = 0;            ///< amplitude of the centre of mass along x in the box at the frequency of shaking
-  double thrown = 0;           ///< bodies that were apart from the heap by a mean diameter at any moment
-  double coordination = 0;     ///< contacts of a body
-  double creep = 0, roll = 0;  ///< bonds: mean drift in distance over the sum of radii, in relative rotation, rad
-  double overlap = 0;          ///< the largest, over the smallest radius
+  double whole_before = 0, whole = 0;            ///< void ratio between the walls below the mean surface
+  double height_before = 0, height = 0;          ///< mean height of the surface
+  double roughness_before = 0, roughness = 0;    ///< standard deviation of the surface about a straight line
+  double centre_before = 0, centre = 0;          ///< height of the centre of mass
+  double slope = 0;                              ///< largest slope of the surface during the shaking
+  double swing = 0;         ///< amplitude of the centre of mass along x in the box at the frequency of shaking
+  double thrown = 0;        ///< bodies that at any moment were a mean diameter away from the heap
+  double coordination = 0;  ///< contacts per body
+  double creep = 0;         ///< bonds: mean drift of the distance over the sum of radii
+  double roll = 0;          ///< bonds: mean relative rotation, rad
+  double overlap = 0;       ///< the largest, over the smallest radius
   double time_step = 0, steps = 0, time = 0;  ///< s, -, s of motion
-  double energy_error = 0;                    ///< of the balance, over the potential energy lost
+  double energy_error = 0;                    ///< of the energy balance, over the potential energy lost
   double seconds = 0;                         ///< of computing
+
+  [[nodiscard]] double change() const { return void_ratio - void_ratio_before; }
+  [[nodiscard]] double whole_change() const { return whole - whole_before; }
 };
 
-/// Names in files and places of all numbers of an outcome.
+/// A number of an outcome and its name in files.
 struct OutcomeKey {
   const char* name;
   double Outcome::*value;
 };
 const std::vector<OutcomeKey>& outcome_keys();
 
-/// A run with what it gave.
+/// A run with its results.
 struct Done {
   Run run;
   Outcome outcome;
@@ -139,13 +138,13 @@ struct Reproduction {
 
 /// All runs, the most important first.
 std::vector<Run> plan(bool quick);
-/// Estimate of the time to compute, in units of its own.
+/// Estimate of the time of computing, in arbitrary units.
 double cost_of(const Run& run);
 
 std::string plural_of(Shape shape);
-/// A name of a file in words: '_' are spaces.
+/// The text with spaces in place of '_'.
 std::string words(std::string name);
-/// The grain of the thesis's number 485, 500, ..., 2515, or of the same place in another grid.
+/// The grains of the thesis's numbers 485, 500, ..., 2515, or those in the same places of another grid.
 std::array<std::size_t, 9> followed(const StartGrid& grid, Shape shape);
 std::string label_of_followed(const StartGrid& grid, std::size_t k);
 
@@ -155,7 +154,7 @@ GrainScene start_of(const Fill& fill);
 double step_of(const GrainScene& scene, const Fill& fill);
 GrainOptions options_of(const GrainScene& scene, const Fill& fill);
 
-/// Where files of runs go; nowhere without a folder.
+/// Folder of the files of runs; empty: no files.
 struct RunFiles {
   std::optional<std::filesystem::path> folder;
   bool overwrite = true;
@@ -166,34 +165,37 @@ struct FilledBox {
   GrainState state;
   Outcome outcome;
 };
-/// Let them fall and come to rest.
-/// \param tick called now and then with the share done
+/// Let the bodies fall and come to rest.
+/// \param tick called with the share done, several times in a run
 FilledBox fill_box(const Fill& fill, bool shown, const RunFiles& files, const std::function<void(double)>& tick);
 /// Shake a box at rest and let it come to rest again.
 Outcome shake_box(const Run& run, const FilledBox& filled, const RunFiles& files,
                   const std::function<void(double)>& tick);
 
-/// All runs that are not yet in the folder, on all threads.
-/// \throws Error (bad_input) where the folder holds runs of other settings; (interrupted), what is done is in the
+/// Compute all runs that are not yet in the folder, on all threads.
+/// \throws Error (bad_input) where the folder holds runs of other settings; (interrupted): the runs done are in the
 ///         result
 void compute(const CommonOptions& options, Reproduction& result);
 
-/// Runs alike but for the seed.
+/// Runs that differ only in the seed.
 struct Kind {
   Shape shape = Shape::disc;
   double gal = 400, frequency = 10;
   std::string variant = {};
   std::int64_t cycles = 10;
 };
-struct Sample {
-  std::vector<double> values;
-  [[nodiscard]] double mean() const;       ///< NaN of none
-  [[nodiscard]] double deviation() const;  ///< standard deviation; NaN of fewer than two
-};
-/// A finite number of each of them.
-Sample sample_of(const Reproduction& result, const Kind& kind, const std::function<double(const Outcome&)>& value);
+/// Finite values over the runs of a kind, and their mean and scatter.
+std::vector<double> values_of(const Reproduction& result, const Kind& kind,
+                              const std::function<double(const Outcome&)>& value);
+MeanEstimate sample_of(const Reproduction& result, const Kind& kind,
+                       const std::function<double(const Outcome&)>& value);
 
-/// T1 by linear theory, of the width of the box and the depth of what lies in it, s.
+/// The mapped runs of a shape, in the order of the plan.
+std::vector<Done> mapped(const Reproduction& result, Shape shape);
+/// The mapped runs of discs shaken by 400 gal, by ascending period.
+std::vector<Done> resonance_runs(const Reproduction& result);
+
+/// First period of sloshing, s, by linear theory, for the width of the box and the depth of the heap.
 double first_period(const Done& done);
 /// The same by (7.2) as printed, s: omega² = (pi g/l) tanh(2 pi h/l).
 double printed_formula_period(double width, double depth);
@@ -203,8 +205,6 @@ double amplification_of(const Done& done);
 double liquid_amplification(double period, double width, double depth);
 
 std::string report(const Reproduction& result);
-std::vector<std::pair<std::string, Table>> tables(const Reproduction& result);
-std::vector<std::pair<std::string, Plot>> plots(const Reproduction& result,
-                                                const std::optional<std::filesystem::path>& folder);
+Named<Plot> plots(const Reproduction& result, const std::optional<std::filesystem::path>& folder);
 
 }  // namespace equidem::sukegawa2010

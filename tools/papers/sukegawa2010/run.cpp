@@ -20,18 +20,18 @@ namespace equidem::sukegawa2010 {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double look_every = 0.01, frame_every = 0.04;  // s
-/// Kinetic energy of bodies at rest, of what they would gain by falling the smallest radius; pairs go on creeping.
+constexpr double sample_interval = 0.01, frame_interval = 0.04;  // s
+/// Kinetic energy of bodies at rest, over the energy of a fall by the smallest radius; bonded pairs keep creeping.
 constexpr double resting = 1e-6, creeping = 3e-4;
 constexpr double longest_fall = 4, longest_rest = 1.5;  // s
 
-/// The library behind pictures and checkpoints is not made for several threads.
+/// The library that draws pictures is not safe for several threads.
 std::mutex& drawing() {
   static std::mutex mutex;
   return mutex;
 }
 
-/// What is read off a box at a moment; places in the box.
+/// Measures of a box at a moment; positions relative to the box.
 struct Moment {
   double void_ratio = unknown, whole = unknown;
   SurfaceShape surface;
@@ -39,7 +39,7 @@ struct Moment {
   std::vector<char> heap;
 };
 
-Moment look_at(const GrainScene& scene, const std::vector<Grain>& grains, double time, double diameter) {
+Moment measure(const GrainScene& scene, const std::vector<Grain>& grains, double time, double diameter) {
   Moment moment;
   const GrainBox box = box_of(scene.walls, grains, time);
   moment.heap = heap_of(grains, diameter);
@@ -57,7 +57,7 @@ Moment look_at(const GrainScene& scene, const std::vector<Grain>& grains, double
   return moment;
 }
 
-/// Five layers of the start in colours, bonded grains in one.
+/// Layer of each grain at the start, 0 to 4, by which it is coloured; the two of a bond in one layer.
 std::vector<int> layers_of(const GrainScene& scene) {
   const std::size_t bodies = scene.grains.size() - scene.bonds.size(), grains = scene.bonds.empty() ? 1 : 2;
   std::vector<int> layers;
@@ -65,7 +65,13 @@ std::vector<int> layers_of(const GrainScene& scene) {
   return layers;
 }
 
-/// One loop for filling and shaking.
+std::string title_of(const Run& run, const std::string& when) {
+  std::string text = fmt::format("{}, seed {}", words(plural_of(run.fill.shape)), run.fill.seed);
+  if (run.shaking) text += fmt::format(", {:g} gal {:.3g} Hz", run.shaking->gal, run.shaking->frequency);
+  return text + ": " + when;
+}
+
+/// Filling or shaking of a box.
 class BoxRun {
  public:
   BoxRun(const Run& run, GrainScene scene, bool shown, const RunFiles& files)
@@ -90,24 +96,25 @@ class BoxRun {
   void start() {
     zero_ = simulation_.time();
     computing_.lap();
-    look();
+    sample();
     first_ = last_;
   }
 
-  /// \param from, end s: not before and not after
+  /// Advance until the bodies are at rest.
+  /// \param from, end s since the start: earliest and latest end
   void until_rest(double from, double end, const std::function<void(double)>& tick) {
-    const auto block = std::max<std::int64_t>(1, std::llround(look_every / step_of(scene_, run_.fill)));
+    const auto block = std::max<std::int64_t>(1, std::llround(sample_interval / step_of(scene_, run_.fill)));
     while (simulation_.time() - zero_ < end) {
       for (std::int64_t done = 0; done < block; done += 50) {
         simulation_.advance(std::min<std::int64_t>(50, block - done));
         tick(std::min(1.0, (simulation_.time() - zero_) / end));
       }
-      look();
+      sample();
       if (simulation_.time() - zero_ > from && simulation_.energy().kinetic < rest_energy_) return;
     }
   }
 
-  Outcome finish() {
+  Outcome outcome() {
     Outcome o;
     o.void_ratio_before = first_.void_ratio, o.void_ratio = last_.void_ratio;
     o.whole_before = first_.whole, o.whole = last_.whole;
@@ -143,7 +150,7 @@ class BoxRun {
     write_csv(*files_.folder / "runs" / (name + ".csv"), history, files_.overwrite);
   }
 
-  /// Amplitude of the centre of mass along x at a frequency, in the box, over the last two cycles.
+  /// Amplitude of the centre of mass along x in the box at the frequency of shaking, over its last two cycles.
   double swing(const Shaking& shaking) const {
     std::vector<double> times, places;
     for (std::size_t k = 0; k < times_.size(); ++k) {
@@ -155,29 +162,18 @@ class BoxRun {
     return times.size() < 8 ? unknown : amplitude_spectrum(times, places, std::array{shaking.frequency}).front();
   }
 
-  void draw(const std::string& name, const std::string& title, const std::vector<Grain>& grains, double time) const {
-    if (!shown_) return;
-    const std::lock_guard lock(drawing());
-    write_grain_picture(*files_.folder, name,
-                        {.title = title,
-                         .time = time,
-                         .grains = grains,
-                         .clumps = scene_.clumps,
-                         .groups = layers_,
-                         .bonds = scene_.bonds,
-                         .walls = scene_.walls},
-                        files_.overwrite);
+  /// The bodies now. \param when part of the title
+  void draw(const std::string& name, const std::string& when) const {
+    draw(name, when, simulation_.grains(), simulation_.time());
   }
-  void draw_now(const std::string& name, const std::string& title) const {
-    draw(name, title, simulation_.grains(), simulation_.time());
+  /// The bodies when their centre of mass was displaced farthest.
+  void draw_farthest(const std::string& name, const std::string& when) const {
+    if (!farthest_.empty()) draw(name, when, farthest_, farthest_time_);
   }
-  void draw_farthest(const std::string& name, const std::string& title) const {
-    if (!farthest_.empty()) draw(name, title, farthest_, farthest_time_);
-  }
-  void animate(const std::string& name, const std::string& title) const {
+  void animate(const std::string& name) const {
     if (!files_.folder || !run_.animated) return;
     write_grain_animation(*files_.folder / (name + ".html"),
-                          {.title = title,
+                          {.title = title_of(run_, "shaken"),
                            .caption = "Colours: five layers of the grid that the box was filled from.",
                            .shapes = scene_.grains,
                            .clumps = scene_.clumps,
@@ -188,10 +184,24 @@ class BoxRun {
   }
 
  private:
-  void look() {
+  void draw(const std::string& name, const std::string& when, const std::vector<Grain>& grains, double time) const {
+    if (!shown_) return;
+    const std::lock_guard lock(drawing());
+    write_grain_picture(*files_.folder, name,
+                        {.title = title_of(run_, when),
+                         .time = time,
+                         .grains = grains,
+                         .clumps = scene_.clumps,
+                         .groups = layers_,
+                         .bonds = scene_.bonds,
+                         .walls = scene_.walls},
+                        files_.overwrite);
+  }
+
+  void sample() {
     const std::vector<Grain> grains = simulation_.grains();
     const double time = simulation_.time();
-    last_ = look_at(scene_, grains, time, diameter_);
+    last_ = measure(scene_, grains, time, diameter_);
     for (std::size_t g = 0; g < grains.size(); ++g)
       if (!last_.heap[g]) ever_[g] = 1;
     if (times_.empty()) swings_from_ = last_.centre.x;
@@ -205,7 +215,7 @@ class BoxRun {
       farthest_time_ = time;
     }
     record(grains, time - zero_);
-    if (run_.animated && run_.shaking && time - zero_ >= static_cast<double>(frames_.size()) * frame_every)
+    if (run_.animated && run_.shaking && time - zero_ >= static_cast<double>(frames_.size()) * frame_interval)
       frames_.push_back(frame_of(grains, time));
   }
 
@@ -253,25 +263,19 @@ class BoxRun {
   Stopwatch computing_;
 };
 
-std::string title_of(const Run& run, const std::string& when) {
-  std::string text = fmt::format("{}, seed {}", words(plural_of(run.fill.shape)), run.fill.seed);
-  if (run.shaking) text += fmt::format(", {:g} gal {:.3g} Hz", run.shaking->gal, run.shaking->frequency);
-  return text + ": " + when;
-}
-
 }  // namespace
 
 FilledBox fill_box(const Fill& fill, bool shown, const RunFiles& files, const std::function<void(double)>& tick) {
   const Run run{.fill = fill};
   BoxRun box(run, start_of(fill), shown, files);
-  box.draw_now(fill.name() + "_start", title_of(run, "the start"));
+  box.draw(run.name() + "_start", "the start");
   box.start();
   box.until_rest(0.5, longest_fall, tick);
-  FilledBox filled{.state = box.simulation().save(), .outcome = box.finish()};
-  Outcome& o = filled.outcome;  // nothing lies in the box at the start
+  FilledBox filled{.state = box.simulation().save(), .outcome = box.outcome()};
+  Outcome& o = filled.outcome;  // the box was empty before
   o.void_ratio_before = o.whole_before = o.height_before = o.roughness_before = o.slope = o.swing = o.thrown = unknown;
-  box.write(fill.name());
-  box.draw_now(fill.name() + "_filled", title_of(run, "filled, at rest"));
+  box.write(run.name());
+  box.draw(run.name() + "_filled", "filled, at rest");
   return filled;
 }
 
@@ -286,13 +290,13 @@ Outcome shake_box(const Run& run, const FilledBox& filled, const RunFiles& files
   box.simulation().restore(filled.state);
   box.start();
   box.until_rest(duration, duration + longest_rest, tick);
-  Outcome outcome = box.finish();
+  Outcome outcome = box.outcome();
   outcome.swing = box.swing(shaking);
   outcome.steps -= static_cast<double>(filled.state.step);
   box.write(run.name());
-  box.draw_farthest(run.name() + "_during", title_of(run, "at its farthest"));
-  box.draw_now(run.name() + "_after", title_of(run, "at rest again"));
-  box.animate(run.name(), title_of(run, "shaken"));
+  box.draw_farthest(run.name() + "_during", "largest displacement");
+  box.draw(run.name() + "_after", "at rest again");
+  box.animate(run.name());
   return outcome;
 }
 

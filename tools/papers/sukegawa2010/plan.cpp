@@ -10,7 +10,7 @@
 namespace equidem::sukegawa2010 {
 namespace {
 
-/// As short as one second and two cycles.
+/// Whole cycles of at least one second, at least two.
 Shaking whole_cycles(double gal, double frequency) {
   return {gal, frequency, std::max<std::int64_t>(2, std::llround(frequency))};
 }
@@ -19,7 +19,7 @@ Run shaken(const Fill& fill, double gal, double frequency, bool shown = false) {
   return {.fill = fill, .shaking = whole_cycles(gal, frequency), .shown = shown};
 }
 
-/// One thing changed at a time.
+/// Fillings that differ from `base` in one parameter.
 std::vector<Fill> variants_of(const Fill& base) {
   const auto made = [&](const char* name, auto change) {
     Fill fill = base;
@@ -32,7 +32,7 @@ std::vector<Fill> variants_of(const Fill& base) {
           made("smooth", [](Fill& f) { f.friction = 0; }),        made("rough", [](Fill& f) { f.friction = 0.5; })};
 }
 
-/// Friction caps the spring alone (2.16): the law as printed.
+/// With the law as printed: friction limits the spring alone (2.16).
 Fill as_printed(Shape shape, std::uint64_t seed = 1) {
   return {.shape = shape, .seed = seed, .step_share = 0.25, .cap = FrictionCap::spring_alone, .variant = "printed_cap"};
 }
@@ -71,7 +71,7 @@ std::vector<Run> plan(bool quick) {
   const auto shakings = [&](Shape shape) {
     for (const double frequency : {1, 2, 10}) {
       for (const double gal : {1200, 800, 400}) {
-        if (gal == 400 && frequency == 10) continue;  // with the seeds
+        if (gal == 400 && frequency == 10) continue;  // among the seeds above
         runs.push_back(shaken({.shape = shape}, gal, frequency, true));
         runs.back().animated = shape == Shape::disc && gal == 1200 && frequency == 1;
       }
@@ -105,8 +105,8 @@ std::vector<Run> plan(bool quick) {
   long_shaken({}, 1);
   long_shaken(as_printed(Shape::disc), 1);
   runs.push_back(shaken({.step = printed_step, .variant = "printed_step"}, 400, 10));
-  // The thesis's test goes contact by contact, twenty times as slowly: fewer and softer grains. As printed it overlooks
-  // overlaps until grains are pressed into each other, which stops the fall: only mended.
+  // The thesis's contact test for ellipses is twenty times as slow: fewer and softer grains. As printed it misses
+  // overlaps until grains are locked in each other, which stops the fall: only the corrected test is run.
   for (const auto& [law, name] :
        {std::pair{EllipseLaw::exact, "small"}, std::pair{EllipseLaw::enlarged_mended, "mended_test"}}) {
     runs.push_back(shaken({.shape = Shape::ellipse,

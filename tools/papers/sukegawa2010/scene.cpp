@@ -29,13 +29,13 @@ SettlingOptions material_of(const Fill& fill) {
   return options;
 }
 
-/// A pair takes two places of a row.
+/// Positions, radii and turns of the bodies at the start; a pair takes two places of a row.
 Bodies placed(const Fill& fill) {
   const StartGrid& grid = fill.grid;
   const bool pairs = is_pair(fill.shape);
   const std::int64_t columns = pairs ? grid.columns / 2 : grid.columns;
   const double wide = StartGrid::cell * (pairs ? 2 : 1), high = pairs ? StartGrid::pair_row : StartGrid::cell;
-  // An even row of pairs begins at the wall, an odd one ends there.
+  // Even rows of pairs begin at the left wall, odd rows end at the right one.
   const double shift = pairs ? StartGrid::cell / 2 : wide / 2;
   Random random(fill.seed);
   Bodies bodies;
@@ -61,7 +61,7 @@ GrainScene start_of(const Fill& fill) {
   scene.bonds = std::move(packing.bonds);
   for (GrainBond& bond : scene.bonds) {
     bond.normal_dashpot = 0.5 * scene.grains[bond.i].inertia.mass / fill.bond_step;
-    bond.tangential_dashpot = bond.normal_dashpot / 3;  // a push along the tangent moves a disc three times as easily
+    bond.tangential_dashpot = bond.normal_dashpot / 3;  // a tangential force also turns the disc: a third of its mass
   }
   return scene;
 }
@@ -77,7 +77,7 @@ double step_of(const GrainScene& scene, const Fill& fill) {
       const double damping = fill.damping * std::sqrt(mass / moved);  // of c = 2 h sqrt(m k) (2.27)
       return semi_implicit_limit(damping) / std::sqrt(stiffness / moved);
     };
-    double arm = 0;  // the longest of a force along the normal
+    double arm = 0;  // largest lever of a normal force
     if (grain.shape() == GrainShape::ellipse) arm = grain.radius - grain.short_half_axis;
     if (grain.shape() == GrainShape::clump) arm = 0.5 * grain.radius;
     limit = std::min({limit, bound(springs.kN, arm), bound(springs.kT, grain.radius)});

@@ -1,13 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sukegawa2010/sukegawa2010.hpp"
-
+/// \file
+/// Table, JSON and command line.
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 
 #include "papers.hpp"
+#include "sukegawa2010/sukegawa2010.hpp"
+#include "tables.hpp"
 
 namespace equidem::sukegawa2010 {
 namespace {
+
+Table table_of(const Reproduction& result) {
+  const auto& runs = result.runs;
+  Table table;
+  add_column(table, "run", runs, [](const Done& d) { return d.run.name(); });
+  add_column(table, "shape", runs, [](const Done& d) { return plural_of(d.run.fill.shape); });
+  add_column(table, "variant", runs, [](const Done& d) { return d.run.fill.variant; });
+  add_column(table, "seed", runs, [](const Done& d) { return static_cast<std::int64_t>(d.run.fill.seed); });
+  add_column(table, "acceleration_gal", runs, [](const Done& d) { return d.run.shaking->gal; });
+  add_column(table, "frequency_Hz", runs, [](const Done& d) { return d.run.shaking->frequency; });
+  add_column(table, "cycles", runs, [](const Done& d) { return d.run.shaking->cycles; });
+  for (const OutcomeKey& key : outcome_keys())
+    add_column(table, key.name, runs, [&](const Done& d) { return d.outcome.*key.value; });
+  return table;
+}
 
 JsonObject json_of(const Done& done) {
   JsonObject object;
@@ -53,7 +70,7 @@ int reproduce(const CommonOptions& options, bool quick) {
                                 for (const Done& done : result.runs) runs.push_back(json_of(done));
                                 object.set("runs", runs);
                               },
-                          .tables = any ? tables(result) : Named<Table>{},
+                          .tables = any ? Named<Table>{{"runs", table_of(result)}} : Named<Table>{},
                           .plots = any ? plots(result, options.out) : Named<Plot>{},
                           .status = result.complete() ? "done" : "incomplete"});
   }
@@ -71,7 +88,7 @@ equidem::Run declare(CLI::App& command) {
       command,
       "Chapter 8: a box of 3000 discs, ellipses or bonded pairs filled and shaken; void ratios over seeds beside the\n"
       "printed ones, surface, grains thrown, pictures, an animation; which shaking compacts best, and whether the box\n"
-      "resonates. Stopped, it goes on where it was when the same command is given again.",
+      "resonates. An interrupted computation is continued when the same command is given again.",
       reproduce);
 }
 

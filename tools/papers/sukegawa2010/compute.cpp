@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cassert>
+#include <exception>
 #include <limits>
 #include <map>
 #include <memory>
@@ -45,26 +46,15 @@ const std::vector<OutcomeKey>& outcome_keys() {
 
 namespace {
 
-const char* name_of(EllipseLaw law) {
-  switch (law) {
-    case EllipseLaw::exact:
-      return "exact";
-    case EllipseLaw::enlarged_as_printed:
-      return "printed";
-    case EllipseLaw::enlarged_mended:
-      break;
-  }
-  return "mended";
-}
-
-/// All that a fill depends on: the name of the loop and the settings.
+/// All settings that a filling depends on.
 std::string settings_of(const Fill& fill) {
   return fmt::format(
       "{} columns {} rows {} seed {} softness {} damping {} friction {} step {} bonds {} rows {} cap {} ellipses {} "
       "version {}",
       plural_of(fill.shape), fill.grid.columns, fill.grid.rows, fill.seed, fill.softness, fill.damping, fill.friction,
       fill.step ? fmt::format("{} s", *fill.step) : fmt::format("{}", fill.step_share), fill.bond_step, fill.row_share,
-      fill.cap == FrictionCap::whole_force ? "whole" : "spring", name_of(fill.ellipse_law), library_version());
+      fill.cap == FrictionCap::whole_force ? "whole" : "spring",
+      fill.ellipse_law == EllipseLaw::exact ? "exact" : "mended", library_version());
 }
 std::string settings_of(const Run& run) {
   std::string text = settings_of(run.fill);
@@ -82,8 +72,9 @@ class Store {
     if (!folder_ || overwrite_ || !std::filesystem::exists(path)) return {};
     const std::string text = read_file(path);
     if (text.find("\"" + settings + "\"") == std::string::npos) {
-      throw Error(ErrorKind::bad_input, "the run there has other settings", "they would not fit together",
-                  "Choose another --out, or pass --overwrite to begin anew", path.string());
+      throw Error(ErrorKind::bad_input, "the run there has other settings",
+                  "results of different settings must not be mixed",
+                  "Choose another --out, or give --overwrite to start again", path.string());
     }
     Outcome outcome;
     for (const OutcomeKey& key : outcome_keys())
@@ -117,14 +108,15 @@ class Store {
   }
   std::optional<std::filesystem::path> folder_;
   bool overwrite_;
-  mutable std::mutex mutex_;  // of HDF5
+  mutable std::mutex mutex_;  // HDF5 is not safe for several threads
 };
 
-/// Fraction of all work done, told by several threads.
+/// Progress over all threads.
 class Work {
  public:
   explicit Work(double total) : total_(total) {}
-  void tell(double& counted, double now) {
+  /// \param counted of `now`, the work done by the calling thread, what is in the total already
+  void add(double& counted, double now) {
     const std::lock_guard lock(mutex_);
     done_ += now - counted;
     counted = now;
@@ -156,7 +148,7 @@ void compute(const CommonOptions& options, Reproduction& result) {
   double total = 0;
   for (const Run& run : runs) {
     [[maybe_unused]] const auto [known, is_new] = names.emplace(run.fill.name(), settings_of(run.fill));
-    assert((is_new || known->second == settings_of(run.fill)) && "a name stands for one filling");
+    assert((is_new || known->second == settings_of(run.fill)) && "one filling per name");
     outcomes.push_back(store.find(run.name(), settings_of(run)));
     if (outcomes.back()) continue;
     total += cost_of(run);
@@ -173,13 +165,13 @@ void compute(const CommonOptions& options, Reproduction& result) {
     const Run& run = runs[k];
     double counted = 0, base = 0;
     const auto tick = [&](double cost) {
-      return [&work, &counted, &base, cost](double share) { work.tell(counted, base + share * cost); };
+      return [&work, &counted, &base, cost](double share) { work.add(counted, base + share * cost); };
     };
     SharedFill& fill = *fills.at(run.fill.name());
     {
       const std::lock_guard lock(fill.mutex);
-      const double cost = cost_of({.fill = run.fill});
       if (!fill.box) {
+        const double cost = cost_of({.fill = run.fill});
         const std::string settings = settings_of(run.fill);
         const auto outcome = store.find(run.fill.name(), settings);
         auto state = outcome ? store.find_state(run.fill, settings) : std::nullopt;
@@ -190,27 +182,23 @@ void compute(const CommonOptions& options, Reproduction& result) {
           store.keep_state(run.fill, settings, fill.box->state);
           store.keep(run.fill.name(), settings, fill.box->outcome);
         }
-        work.tell(counted, base = cost);
+        work.add(counted, base = cost);
       }
     }
-    const double cost = cost_of(run);
-    const Outcome outcome = shake_box(run, *fill.box, files, tick(cost));
-    work.tell(counted, base + cost);
-    store.keep(run.name(), settings_of(run), outcome);
-    outcomes[k] = outcome;
+    outcomes[k] = shake_box(run, *fill.box, files, tick(cost_of(run)));
+    work.add(counted, base + cost_of(run));
+    store.keep(run.name(), settings_of(run), *outcomes[k]);
   };
-  const auto gather = [&] {
-    for (std::size_t k = 0; k < runs.size(); ++k)
-      if (outcomes[k]) result.runs.push_back({runs[k], *outcomes[k]});
-  };
+  std::exception_ptr interruption;
   try {
     parallel_tasks(runs.size(), one);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::interrupted) throw;
-    gather();
-    throw;
+    interruption = std::current_exception();
   }
-  gather();
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    if (outcomes[k]) result.runs.push_back({runs[k], *outcomes[k]});
+  if (interruption) std::rethrow_exception(interruption);
 }
 
 }  // namespace equidem::sukegawa2010

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Selections of runs, and sloshing of a liquid.
+#include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <numbers>
 
 #include "equidem/fields/spectrum.hpp"
@@ -11,22 +12,9 @@
 
 namespace equidem::sukegawa2010 {
 
-double Sample::mean() const {
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
-double Sample::deviation() const {
-  const double middle = mean();
-  double squares = 0;
-  for (const double value : values) squares += (value - middle) * (value - middle);
-  return values.size() < 2 ? std::numeric_limits<double>::quiet_NaN()
-                           : std::sqrt(squares / static_cast<double>(values.size() - 1));
-}
-
-Sample sample_of(const Reproduction& result, const Kind& kind, const std::function<double(const Outcome&)>& value) {
-  Sample sample;
+std::vector<double> values_of(const Reproduction& result, const Kind& kind,
+                              const std::function<double(const Outcome&)>& value) {
+  std::vector<double> values;
   for (const Done& done : result.runs) {
     const Fill& fill = done.run.fill;
     const Shaking& shaking = *done.run.shaking;
@@ -34,9 +22,29 @@ Sample sample_of(const Reproduction& result, const Kind& kind, const std::functi
         shaking.frequency != kind.frequency || shaking.cycles != kind.cycles)
       continue;
     const double number = value(done.outcome);
-    if (std::isfinite(number)) sample.values.push_back(number);
+    if (std::isfinite(number)) values.push_back(number);
   }
-  return sample;
+  return values;
+}
+
+MeanEstimate sample_of(const Reproduction& result, const Kind& kind,
+                       const std::function<double(const Outcome&)>& value) {
+  return estimate_mean(values_of(result, kind, value), 0.95);
+}
+
+std::vector<Done> mapped(const Reproduction& result, Shape shape) {
+  std::vector<Done> runs;
+  for (const Done& done : result.runs)
+    if (done.run.mapped && done.run.fill.shape == shape) runs.push_back(done);
+  return runs;
+}
+
+std::vector<Done> resonance_runs(const Reproduction& result) {
+  std::vector<Done> runs = mapped(result, Shape::disc);
+  std::erase_if(runs, [](const Done& done) { return done.run.shaking->gal != 400; });
+  std::sort(runs.begin(), runs.end(),
+            [](const Done& a, const Done& b) { return a.run.shaking->frequency > b.run.shaking->frequency; });
+  return runs;
 }
 
 double first_period(const Done& done) {
@@ -51,8 +59,8 @@ double amplification_of(const Done& done) {
 }
 
 double liquid_amplification(double period, double width, double depth) {
-  // Modes 1, 3, 5, ... of a box whose floor and walls accelerate: each answers the uniform acceleration as an
-  // oscillator; their shares of the static shift of the centre of mass are those of 1/n^4 (long waves).
+  // Modes 1, 3, 5, ... of an accelerated box are oscillators under a uniform acceleration; their shares of the static
+  // shift of the centre of mass are proportional to 1/n^4 (long waves).
   double sum = 0, all = 0;
   for (int n = 1; n < 20; n += 2) {
     const double share = 1.0 / (n * n * n * n);
@@ -64,7 +72,6 @@ double liquid_amplification(double period, double width, double depth) {
 }
 
 double printed_formula_period(double width, double depth) {
-  // (7.2) as printed: omega_1^2 = (pi g/l) tanh(2 pi h/l).
   const double k = std::numbers::pi / width;
   return 2 * std::numbers::pi / std::sqrt(gravity * k * std::tanh(2 * k * depth));
 }
