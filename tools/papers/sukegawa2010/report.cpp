@@ -160,7 +160,8 @@ std::string periods(const Reproduction& result) {
   }
   return "First sloshing period T1 of a tank of the same width\n" + table.text() +
          fmt::format(
-             "  The printed 1.85 s follows from neither; 1.25 s, the value of both for h = 2.25 m, may have been misread. "
+             "  The printed 1.85 s follows from neither; 1.25 s, the value of both for h = 2.25 m, may have been "
+             "misread. "
              "2.25 m is\n  75 rows of 3 cm, the height from which the grains fall; the depth of the heap is {:.2f} "
              "m.\n",
              depth) +
