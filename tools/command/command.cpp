@@ -9,7 +9,6 @@
 
 #include "equidem/casefile/toml.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/file.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
@@ -40,12 +39,20 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   add_result_options(command, options);
 }
 
-Case read_case(const CommonOptions& options) {
+void prepare(const CommonOptions& options) {
   if (options.threads > 0) set_thread_count(options.threads);
   set_progress_shown(!options.quiet);
+}
+
+std::vector<std::string> overrides_of(const CommonOptions& options, const std::string& seed_key) {
   std::vector<std::string> overrides = options.set;
-  if (options.seed) overrides.push_back(fmt::format("assembly.seed={}", *options.seed));
-  return read_case(options.case_file, overrides);
+  if (options.seed) overrides.push_back(fmt::format("{}={}", seed_key, *options.seed));
+  return overrides;
+}
+
+Case read_case(const CommonOptions& options) {
+  prepare(options);
+  return read_case(options.case_file, overrides_of(options, "assembly.seed"));
 }
 
 void OutputPlan::expect(const std::string& name) const {
@@ -65,6 +72,15 @@ void OutputPlan::expect_json() const {
   if (options_.json && *options_.json != "-") expect_file(*options_.json);
 }
 
+void OutputPlan::expect_results() const {
+  expect_json();
+  for (const char* name : {"result.json", "case.toml"}) expect(name);
+}
+
+void OutputPlan::expect_plot(const std::string& name) const {
+  for (const char* end : {".csv", ".gp", ".svg", ".png"}) expect(name + end);
+}
+
 namespace {
 
 void print(const std::string& text) {
@@ -74,15 +90,52 @@ void print(const std::string& text) {
 
 }  // namespace
 
-void deliver(const CommonOptions& options, const std::string& report, const JsonObject& object) {
+void deliver(const CommonOptions& options, const std::string& report, const Results& object) {
   const bool to_stdout = options.json && *options.json == "-";
   if (to_stdout) {
-    print(object.text());
+    print(object.json());
   } else if (!options.quiet) {
     print(report);
   }
-  if (options.json && !to_stdout) write_file(*options.json, object.text(), options.overwrite);
-  if (options.out) write_file(*options.out / "result.json", object.text(), options.overwrite);
+  if (options.json && !to_stdout) write_file(*options.json, object.json(), options.overwrite);
+  if (options.out) write_file(*options.out / "result.json", object.json(), options.overwrite);
+}
+
+void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times) {
+  Results all = results;
+  if (!options.dry_run) {
+    all.line("times", fmt::format("{:.2g} s in all", times.total()));
+    constexpr double visible = 0.02;  // of all; shorter stages are left to the JSON
+    for (const auto& [stage, seconds] : times.stages())
+      if (seconds >= visible * times.total()) all.note(fmt::format(", {} {:.2g} s", stage, seconds));
+  }
+  const std::string report = all.report();
+  Results seconds, object;
+  for (const auto& [stage, time] : times.stages()) seconds.set(stage, time);
+  object.set("status", status).set("report", report).set("times", seconds).set("version", library_version());
+  CommonOptions written = options;
+  written.overwrite = true;  // the files were found writable before the computation
+  if (options.dry_run) written.out.reset();
+  deliver(written, report, object.append(results));
+  if (written.out) say(options, fmt::format("written to {}", written.out->string()));
+}
+
+void throw_stopped(const CommonOptions& options, const std::string& done, const std::string& again) {
+  throw Error(ErrorKind::interrupted, "stopped as asked", done,
+              options.out ? again : "With --out DIR what is done would be kept");
+}
+
+std::string build_description() {
+#ifdef __OPTIMIZE__
+  const std::string optimized = "optimized";
+#else
+  const std::string optimized = "not optimized";
+#endif
+#ifdef NDEBUG
+  return optimized + ", assertions off";
+#else
+  return optimized + ", assertions on";
+#endif
 }
 
 std::string without_full_stop(std::string sentence) {

@@ -10,7 +10,11 @@
 #include <vector>
 
 #include "equidem/casefile/case.hpp"
+#include "equidem/casefile/echo.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/output/files/json.hpp"
+#include "equidem/output/results.hpp"
 
 namespace CLI {
 class App;
@@ -36,6 +40,10 @@ void add_result_options(CLI::App& command, CommonOptions& options);
 /// The case file, its overrides, and add_result_options.
 void add_common_options(CLI::App& command, CommonOptions& options);
 
+/// Applies --threads and --quiet.
+void prepare(const CommonOptions& options);
+/// --set, and --seed as an assignment of the key.
+std::vector<std::string> overrides_of(const CommonOptions& options, const std::string& seed_key);
 /// Apply threads and quiet, and read the case with its overrides.
 Case read_case(const CommonOptions& options);
 
@@ -53,6 +61,10 @@ class OutputPlan {
   /// The file of --json, if there is one.
   /// \throws Error (bad_input)
   void expect_json() const;
+  /// The files of deliver, and the case.
+  void expect_results() const;
+  /// NAME.csv, .gp, .svg and .png, which write_plot writes.
+  void expect_plot(const std::string& name) const;
   [[nodiscard]] bool has_folder() const { return options_.out.has_value(); }
   [[nodiscard]] const std::filesystem::path& folder() const { return *options_.out; }
 
@@ -62,7 +74,28 @@ class OutputPlan {
 
 /// Report on stdout (unless quiet, or stdout is taken by the JSON), the object to --json and to OUT/result.json.
 /// \throws Error (bad_input) where they cannot be written
-void deliver(const CommonOptions& options, const std::string& report, const JsonObject& object);
+void deliver(const CommonOptions& options, const std::string& report, const Results& object);
+
+/// Report and JSON of a list of results, with the times of the stages, to stdout, --json and OUT/result.json; then the
+/// folder on stderr. A dry run leaves the folder alone.
+/// \param status the first key of the JSON: "solved", "dry_run", ...
+/// \throws Error (bad_input) where they cannot be written
+void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times);
+
+/// case.toml in --out, if there is one, from which the verb computes the same again.
+/// \param resolved a Case or the document of another kind of case
+template <typename Resolved>
+void write_case(const CommonOptions& options, const Resolved& resolved) {
+  if (options.out) write_file(*options.out / "case.toml", to_toml(resolved, *options.out), true);
+}
+
+/// \param done "3 of 12 points are done"
+/// \param again how a run with --out goes on, "Run the same command with --resume to do the rest"
+/// \throws Error (interrupted)
+[[noreturn]] void throw_stopped(const CommonOptions& options, const std::string& done, const std::string& again);
+
+/// "optimized, assertions off".
+std::string build_description();
 
 /// A sentence to go into another one.
 std::string without_full_stop(std::string sentence);

@@ -39,18 +39,8 @@ class HelpText : public CLI::Formatter {
 };
 
 std::string version_text() {
-#ifdef NDEBUG
-  const char* assertions = "assertions off";
-#else
-  const char* assertions = "assertions on";
-#endif
-#ifdef __OPTIMIZE__
-  const char* optimized = "optimized";
-#else
-  const char* optimized = "not optimized";
-#endif
-  return fmt::format("equidem {}\n{}, {}, compiler {}\nCLI11 {}, fmt {}.{}.{}, {}\n", library_version(), optimized,
-                     assertions, __VERSION__, CLI11_VERSION, FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
+  return fmt::format("equidem {}\n{}, compiler {}\nCLI11 {}, fmt {}.{}.{}, {}\n", library_version(),
+                     build_description(), __VERSION__, CLI11_VERSION, FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
                      FMT_VERSION % 100, toml_parser());
 }
 
@@ -60,10 +50,6 @@ std::vector<std::string> names_of(const Program& program, const char* last) {
   for (const Verb& verb : program.verbs) names.emplace_back(verb.name);
   names.emplace_back(last);
   return names;
-}
-
-std::string listed(const std::vector<std::string>& words) {
-  return fmt::format("{}", fmt::join(words, ", "));
 }
 
 /// Without line breaks and control characters: words of a file may hold any bytes.
@@ -128,7 +114,7 @@ void show_help(const Program& program, const CLI::App& app, const std::vector<st
     topics.push_back(command->get_name());
   }
   usage_error(fmt::format("there is no help on '{}'", arguments[1]), "",
-              did_you_mean(arguments[1], topics, fmt::format("There is help on {}", listed(topics))));
+              did_you_mean(arguments[1], topics, fmt::format("There is help on {}", joined(topics))));
 }
 
 int run(const Program& program, const std::vector<std::string>& arguments) {
@@ -152,7 +138,7 @@ int run(const Program& program, const std::vector<std::string>& arguments) {
     show_help(program, app, arguments);
     return 0;
   }
-  const std::string known = fmt::format("the {}s are {}", program.noun, listed(names));
+  const std::string known = fmt::format("the {}s are {}", program.noun, joined(names));
   if (arguments.empty()) usage_error(fmt::format("a {} is missing", program.noun), known, examples);
   const auto verb = std::find_if(commands.begin(), commands.end(),
                                  [&](auto* command) { return arguments[0] == command->get_name(); });

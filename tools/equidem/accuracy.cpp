@@ -7,19 +7,17 @@
 #include "equidem/core/text.hpp"
 #include "equidem/study/evaluate.hpp"
 
-#include "solve/report.hpp"
-
 namespace equidem {
 namespace {
 
 std::string text_of(const AccuracySetting& setting) {
-  std::string text;
-  for (const auto& [key, value] : setting) text += fmt::format("{}{} = {:.6g}", text.empty() ? "" : ", ", key, value);
-  return text;
+  std::vector<std::string> parts;
+  for (const auto& [key, value] : setting) parts.push_back(fmt::format("{} = {:.6g}", key, value));
+  return joined(parts);
 }
 
-JsonObject json_of(const AccuracySetting& setting) {
-  JsonObject object;
+Results json_of(const AccuracySetting& setting) {
+  Results object;
   for (const auto& [key, value] : setting) object.set(key, value);
   return object;
 }
@@ -41,32 +39,36 @@ void refuse_dry_run_with_accuracy(const CommonOptions& options, bool accuracy) {
               "settings are chosen by computing coarser ones, and a dry run computes nothing", "Leave one of them out");
 }
 
-std::string describe_accuracy(const ReachedAccuracy& reached) {
+Results accuracy_results(const ReachedAccuracy& reached) {
   const auto& more = reached.ten_times_more;
-  std::string text = report_line("accuracy", fmt::format("asked {:.3g}, estimated to be reached {:.2g}: {}",
-                                                         reached.requested, reached.estimated, reached.of));
-  if (!reached.knob.empty())
-    text += report_line("", fmt::format("chosen: {}, {}", reached.knob, text_of(reached.value)));
-  if (!reached.pilots.empty())
-    text += report_line("", fmt::format("to choose it took {}: {:.2g} times the work of what was chosen, beside it",
-                                        reached.pilots, reached.pilots_factor));
-  text += report_line("", more.note.empty()
-                              ? fmt::format("ten times more accuracy ({:.3g}): about {:.3g} times the time, {}; {}",
-                                            reached.requested / 10, more.time_factor, readable_seconds(more.seconds),
-                                            text_of(more.value))
-                              : fmt::format("ten times more accuracy ({:.3g}): {}", reached.requested / 10, more.note));
-  return text;
-}
-
-void add_accuracy(JsonObject& object, const ReachedAccuracy& reached) {
-  const auto& more = reached.ten_times_more;
-  JsonObject ten, accuracy;
+  Results results;
+  results.line("accuracy")
+      .add("accuracy/requested", "asked", reached.requested, "", {.digits = 3})
+      .add("accuracy/estimated", "estimated to be reached", reached.estimated, "", {.digits = 2})
+      .note(": " + reached.of);
+  results.set("accuracy/of", reached.of).set("accuracy/knob", reached.knob);
+  results.set("accuracy/value", json_of(reached.value)).set("accuracy/pilots", reached.pilots);
+  if (!reached.knob.empty()) results.line("", fmt::format("chosen: {}, {}", reached.knob, text_of(reached.value)));
+  if (!reached.pilots.empty()) results.line("", fmt::format("to choose it took {}: ", reached.pilots));
+  reached.pilots.empty() ? results.set("accuracy/pilots_factor", reached.pilots_factor)
+                         : results.add("accuracy/pilots_factor", "", reached.pilots_factor,
+                                       "times the work of what was chosen, beside it", {.digits = 2});
+  results.line("", fmt::format("ten times more accuracy ({:.3g}): ", reached.requested / 10));
+  results.note(more.note.empty() ? fmt::format("about {:.3g} times the time, {}; {}", more.time_factor,
+                                               readable_seconds(more.seconds), text_of(more.value))
+                                 : more.note);
+  Results ten;
   ten.set("time_factor", more.time_factor).set("seconds", more.seconds).set("value", json_of(more.value));
   if (!more.note.empty()) ten.set("note", more.note);
-  accuracy.set("requested", reached.requested).set("estimated", reached.estimated).set("of", reached.of);
-  accuracy.set("knob", reached.knob).set("value", json_of(reached.value));
-  accuracy.set("pilots", reached.pilots).set("pilots_factor", reached.pilots_factor).set("ten_times_more", ten);
-  object.set("accuracy", accuracy);
+  return results.set("accuracy/ten_times_more", ten);
+}
+
+std::string describe_accuracy(const ReachedAccuracy& reached) {
+  return accuracy_results(reached).report();
+}
+
+void add_accuracy(Results& object, const ReachedAccuracy& reached) {
+  object.append(accuracy_results(reached));
 }
 
 }  // namespace equidem

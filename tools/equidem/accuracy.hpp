@@ -43,9 +43,10 @@ void add_accuracy_option(CLI::App& command, std::optional<double>& accuracy, con
 /// \throws Error (bad_input) where both are given: settings are chosen by computing, and a dry run computes nothing
 void refuse_dry_run_with_accuracy(const CommonOptions& options, bool accuracy);
 
-std::string describe_accuracy(const ReachedAccuracy& reached);
 /// accuracy: {requested, estimated, of, knob, value, pilots, pilots_factor, ten_times_more: {time_factor, seconds,
 /// value, note}}.
-void add_accuracy(JsonObject& object, const ReachedAccuracy& reached);
+Results accuracy_results(const ReachedAccuracy& reached);
+std::string describe_accuracy(const ReachedAccuracy& reached);
+void add_accuracy(Results& object, const ReachedAccuracy& reached);
 
 }  // namespace equidem

@@ -5,6 +5,9 @@
 #include <thread>
 
 #include "equidem/core/text.hpp"
+#include "equidem/output/files/json.hpp"
+
+#include "command.hpp"
 
 namespace equidem {
 namespace {
@@ -27,28 +30,20 @@ std::string Machine::text() const {
                      counted(cores, "core"), version, build, compiler);
 }
 
-JsonObject Machine::json() const {
-  JsonObject object;
-  object.set("processor", processor).set("cores", cores);
-  object.set("compiler", compiler).set("build", build).set("version", version);
-  return object;
+Results Machine::results() const {
+  return Results()
+      .set("processor", processor)
+      .set("cores", cores)
+      .set("compiler", compiler)
+      .set("build", build)
+      .set("version", version);
 }
 
 Machine this_machine() {
-#ifdef __OPTIMIZE__
-  const std::string optimized = "optimized";
-#else
-  const std::string optimized = "not optimized";
-#endif
-#ifdef NDEBUG
-  const std::string assertions = ", assertions off";
-#else
-  const std::string assertions = ", assertions on";
-#endif
   return {.processor = processor_name(),
           .cores = static_cast<int>(std::thread::hardware_concurrency()),
           .compiler = __VERSION__,
-          .build = optimized + assertions,
+          .build = build_description(),
           .version = library_version()};
 }
 

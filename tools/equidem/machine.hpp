@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "equidem/output/files/json.hpp"
+#include "equidem/output/results.hpp"
 
 namespace equidem {
 
@@ -17,7 +17,7 @@ struct Machine {
   std::string version;
 
   [[nodiscard]] std::string text() const;
-  [[nodiscard]] JsonObject json() const;
+  [[nodiscard]] Results results() const;
 };
 
 Machine this_machine();

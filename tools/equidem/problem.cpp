@@ -27,33 +27,38 @@ double outer_moment(const Problem& problem, const LoadCase& loads, const Equilib
 
 }  // namespace
 
-Problem build_problem(Case resolved, std::optional<Assembly> given) {
-  const bool acts = resolved.test || !resolved.supports.empty() || !resolved.load_cases.front().loads.empty();
-  if (!acts) {
-    throw Error(ErrorKind::bad_input, "nothing pulls or holds the assembly", "it would stay as it is",
-                "Add [test], or [[support]] and [[load]]", resolved.document.where());
-  }
+Problem problem_of(Case resolved, std::optional<Assembly> given) {
   StageTimes times;
   Stopwatch watch;
   Assembly assembly = given ? std::move(*given) : build_assembly(resolved);
   times.add("assembly", watch.lap());
   BuiltSprings springs = build_springs(resolved, assembly);
   times.add("springs", watch.lap());
+  return {std::move(resolved), std::move(assembly), std::move(springs), {}, {}, {}, std::move(times)};
+}
 
-  std::optional<TensionSetup> tension;
-  std::vector<Support> supports = resolved.supports;
-  std::vector<NamedLoads> load_cases = resolved.load_cases;
-  if (resolved.test) {
-    try {
-      tension = tension_setup(assembly, *resolved.test);
-    } catch (const Error& error) {
-      throw error.at(resolved.where("test"));
-    }
-    supports = tension->supports;
-    load_cases = {{"", tension->loads}};
+bool acts(const Case& resolved) {
+  return resolved.test || !resolved.supports.empty() || !resolved.load_cases.front().loads.empty();
+}
+
+Problem build_problem(Case resolved, std::optional<Assembly> given) {
+  if (!acts(resolved)) {
+    throw Error(ErrorKind::bad_input, "nothing pulls or holds the assembly", "it would stay as it is",
+                "Add [test], or [[support]] and [[load]]", resolved.document.where());
   }
-  return {std::move(resolved), std::move(assembly),   std::move(springs), std::move(tension),
-          std::move(supports), std::move(load_cases), std::move(times)};
+  Problem problem = problem_of(std::move(resolved), std::move(given));
+  problem.supports = problem.resolved.supports;
+  problem.load_cases = problem.resolved.load_cases;
+  if (problem.resolved.test) {
+    try {
+      problem.tension = tension_setup(problem.assembly, *problem.resolved.test);
+    } catch (const Error& error) {
+      throw error.at(problem.resolved.where("test"));
+    }
+    problem.supports = problem.tension->supports;
+    problem.load_cases = {{"", problem.tension->loads}};
+  }
+  return problem;
 }
 
 SolvedCase solve_case(const Problem& problem, const EquilibriumSolver& solver, const NamedLoads& loads) {
@@ -86,6 +91,68 @@ std::optional<TensionTheory> tension_theory(const Problem& problem) {
     default:
       return {};
   }
+}
+
+ResultValue known(std::int64_t count) {
+  return count < 0 ? ResultValue(nullptr) : ResultValue(count);
+}
+
+Results problem_results(const Problem& problem, const Effects& effects, AssemblyKeys keys) {
+  const Assembly& a = problem.assembly;
+  const auto key = [&](const char* name) { return keys == AssemblyKeys::all ? name : ""; };
+  Results results;
+  results.set("title", problem.resolved.title);
+  if (!problem.resolved.title.empty()) results.block(problem.resolved.title + "\n\n");
+  results.line("assembly", a.kind)
+      .add("discs", "", a.size(), "disc", {Shown::count})
+      .add("contacts", "", a.contacts.size(), "contact", {Shown::count})
+      .add(key("coordination_number"), "z =", a.coordination_number(), "", {.digits = 4});
+  if (a.periodic() || !a.cell_areas.empty()) {
+    results.line("")
+        .add(key("area"), "area", a.area(), "m²")
+        .add(key("solid_fraction"), "solid fraction", a.solid_fraction())
+        .note(a.periodic() ? ", periodic" : "");
+  }
+  if (!a.periodic() && !a.box && !a.cell_areas.empty() && !a.sections.empty()) {
+    results.line("",
+                 "The area is that of the rectangle around the discs of equal area: the file gives no \"box\", and the "
+                 "outlines of the bodies are not known.");
+  }
+  results.line("springs", problem.springs.report);
+  if (problem.springs.constants && keys == AssemblyKeys::all)
+    results.set("kN", problem.springs.constants->kN).set("kT", problem.springs.constants->kT);
+  add_effects(results, effects);
+  return results;
+}
+
+Results estimate_results(const SolveEstimate& e) {
+  Results results;
+  results.line("unknowns").add("unknowns", "", e.unknowns, "", {Shown::count});
+  results.line("memory")
+      .add("peak_bytes", "", e.peak_bytes, "at the peak", {Shown::bytes})
+      .add("factor_bytes", "", e.factor_bytes, "of it for the factor", {Shown::bytes})
+      .add("factor_nonzeros", "", e.factor_nonzeros, "entries in the factor", {.digits = 3});
+  results.line("work").add("operations", "", e.operations, "multiplications and additions to factorize", {.digits = 3});
+  return results.block("nothing was solved (--dry-run)\n");
+}
+
+Results moduli_results(const EffectiveModuli& m, const std::string& name, bool of_solid) {
+  Results results;
+  results.line(name)
+      .add("bulk_modulus_2d", "K =", m.bulk_modulus_2d, "Pa (two-dimensional bulk modulus)", {.digits = 9})
+      .add("shear_modulus", "G =", m.shear_modulus, "Pa", {.digits = 9});
+  if (of_solid && m.poisson_strain <= -1) {
+    results.line("  plane strain", no_solid);
+    results.set("poisson_ratio/plane_strain", nullptr).set("young_modulus/plane_strain", nullptr);
+  } else {
+    results.line("  plane strain")
+        .add("poisson_ratio/plane_strain", "nu =", m.poisson_strain, "", {.digits = 9})
+        .add("young_modulus/plane_strain", "E =", m.young_strain, "Pa", {.digits = 9});
+  }
+  results.line("  plane stress")
+      .add("poisson_ratio/plane_stress", "nu =", m.poisson_stress, "", {.digits = 9})
+      .add("young_modulus/plane_stress", "E =", m.young_stress, "Pa", {.digits = 9});
+  return results;
 }
 
 }  // namespace equidem

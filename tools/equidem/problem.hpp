@@ -11,7 +11,9 @@
 #include "equidem/casefile/case.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/vector.hpp"
+#include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/homogenize/tension_test.hpp"
+#include "equidem/output/results.hpp"
 #include "equidem/statics/equilibrium.hpp"
 
 namespace equidem {
@@ -30,6 +32,14 @@ struct Problem {
     return {.rotation = resolved.rotation, .solver = resolved.solver};
   }
 };
+
+/// Assembly and springs of the case, without supports and loads.
+/// \param assembly to use instead of building it; empty: build
+/// \throws Error (bad_input) as build_assembly and build_springs
+Problem problem_of(Case resolved, std::optional<Assembly> assembly = {});
+
+/// Whether the case has supports or loads, those of a tension test among them.
+bool acts(const Case& resolved);
 
 /// \param assembly to use instead of building it; empty: build
 /// \throws Error (bad_input) as build_assembly and build_springs do; neither [test] nor anything that acts
@@ -61,5 +71,31 @@ struct TensionTheory {
   double stiffness_ratio = 0;
 };
 std::optional<TensionTheory> tension_theory(const Problem& problem);
+
+/// The stability where the solver cannot judge it.
+inline constexpr const char* stability_not_known =
+    "NOT KNOWN: this solver does not count the negative pivots that would tell; method = \"auto\" does";
+
+/// A count, or null where it is negative: not known.
+ResultValue known(std::int64_t count);
+
+/// Keys of the assembly in the JSON.
+enum class AssemblyKeys {
+  size,  ///< title, discs, contacts
+  all,   ///< also coordination_number, area, solid_fraction, kN, kT
+};
+/// Title, assembly, springs, effects.
+Results problem_results(const Problem& problem, const Effects& effects, AssemblyKeys keys = AssemblyKeys::all);
+
+/// Size, memory and work of a factorization that was not done.
+Results estimate_results(const SolveEstimate& estimate);
+
+/// K <= G/3, that is nu <= -1 in plane strain.
+inline constexpr const char* no_solid = "no isotropic solid has these moduli: K <= G/3";
+
+/// Two-dimensional moduli, with Poisson's ratio and Young's modulus in plane strain and in plane stress.
+/// \param name of the line of the report
+/// \param of_solid null in plane strain where no solid has these moduli
+Results moduli_results(const EffectiveModuli& moduli, const std::string& name = "moduli", bool of_solid = false);
 
 }  // namespace equidem

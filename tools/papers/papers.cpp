@@ -6,9 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "equidem/core/file.hpp"
-#include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/core/threads.hpp"
 
 namespace equidem {
 
@@ -27,12 +25,10 @@ Run declare_with_quick(CLI::App& command, const std::string& footer,
 
 void start_paper(const CommonOptions& options, const std::vector<std::string>& plots,
                  const std::vector<std::string>& files) {
-  if (options.threads > 0) set_thread_count(options.threads);
-  set_progress_shown(!options.quiet);
+  prepare(options);
   const OutputPlan plan(options);
   plan.expect_json();
-  for (const std::string& name : plots)
-    for (const char* end : {".csv", ".gp", ".svg", ".png"}) plan.expect(name + end);
+  for (const std::string& name : plots) plan.expect_plot(name);
   for (const std::string& name : files) plan.expect(name);
   for (const char* name : {"report.txt", "result.json"}) plan.expect(name);
 }
@@ -53,12 +49,11 @@ int finish_paper(const CommonOptions& options, const PaperResult& result) {
     text += "\n" + (failure.empty() ? fmt::format("{} in '{}'", plots, options.out->string()) : failure) + "\n";
     times.add("files", watch.lap());
   }
-  JsonObject object;
-  add_common(object, result.status, text, times, result.effects);
-  object.set("paper", result.paper);
-  result.add_numbers(object);
-  deliver(options, text, object);
-  if (options.out) say(options, fmt::format("written to {}", options.out->string()));
+  Results results, effects;
+  add_effects(effects, result.effects);
+  results.block(text).set("paper", result.paper).append(effects.hidden());
+  result.add_numbers(results);
+  deliver(options, result.status, results, times);
   return 0;
 }
 

@@ -51,9 +51,9 @@ struct PaperResult {
   std::string report;
   StageTimes times;
   Effects effects;
-  std::function<void(JsonObject&)> add_numbers;  ///< keys of this paper alone
-  Named<Table> tables = {};                      ///< NAME.csv in --out
-  Named<Plot> plots = {};                        ///< files of write_plot in --out
+  std::function<void(Results&)> add_numbers;  ///< keys of this paper alone
+  Named<Table> tables = {};                   ///< NAME.csv in --out
+  Named<Plot> plots = {};                     ///< files of write_plot in --out
   std::string status = "done";
 };
 

@@ -291,8 +291,7 @@ void check(const Assembly& assembly) {
 const DiscGroup& group(const Assembly& assembly, const std::string& name) {
   const auto found = assembly.groups.find(name);
   if (found != assembly.groups.end()) return found->second;
-  std::string names;
-  for (const auto& [known, discs] : assembly.groups) names += (names.empty() ? "" : ", ") + known;
+  const std::string names = joined(assembly.groups, [](const auto& known) { return known.first; });
   bad_input(fmt::format("the assembly has no group '{}'", name),
             names.empty() ? std::string("it has no groups at all") : "its groups are " + names,
             assembly.periodic() ? "Name one of them; a periodic cell has no sides of its own" : "Name one of them");

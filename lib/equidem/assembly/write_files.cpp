@@ -27,13 +27,6 @@ std::string pair_of(double first, double second) {
   return fmt::format("[{}, {}]", shortest(first), shortest(second));
 }
 
-template <typename Values, typename Write>
-std::string joined(const Values& values, const Write& write) {
-  std::string text = "[";
-  for (const auto& value : values) text += (text.size() > 1 ? ", " : "") + write(value);
-  return text + "]";
-}
-
 std::string text_of(const Assembly& assembly) {
   std::string text = fmt::format("{{\"schema\": \"{}\"", assembly_schema);
   text += ",\n\"title\": " + quoted_json(assembly.kind);
@@ -72,10 +65,11 @@ std::string text_of(const Assembly& assembly) {
   if (!assembly.groups.empty()) {
     std::string separator = ",\n\"groups\": {\n";
     for (const auto& [name, members] : assembly.groups) {
-      const std::string discs = joined(members.discs, [](std::int32_t disc) { return fmt::format("{}", disc); });
+      const std::string discs =
+          fmt::format("[{}]", joined(members.discs, [](std::int32_t disc) { return fmt::format("{}", disc); }));
       text += separator + quoted_json(name) + ": ";
       text += members.tributary_lengths.empty() ? discs
-                                                : fmt::format("{{\"discs\": {}, \"tributary_lengths\": {}}}", discs,
+                                                : fmt::format("{{\"discs\": {}, \"tributary_lengths\": [{}]}}", discs,
                                                               joined(members.tributary_lengths, shortest));
       separator = ",\n";
     }

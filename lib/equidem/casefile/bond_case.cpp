@@ -12,6 +12,7 @@
 
 #include "equidem/casefile/read_value.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/text.hpp"
 
 namespace equidem {
 namespace {
@@ -37,12 +38,6 @@ constexpr Strength strengths[] = {
      "back to the distance at the start; 0 in the thesis: bonds creep"},
     {"tangential_spring", &GrainBond::tangential_spring, "N/m (discs: per m of depth)", "the same across"},
 };
-
-std::string_view trimmed(std::string_view text) {
-  constexpr const char* space = " \t\r";
-  text.remove_prefix(std::min(text.find_first_not_of(space), text.size()));
-  return text.substr(0, text.find_last_not_of(space) + 1);
-}
 
 /// Takes the first cell off a row.
 std::string_view next_cell(std::string_view& row) {
@@ -104,9 +99,7 @@ std::vector<const Strength*> strengths_of_columns(std::string_view row) {
 /// Rows "i,j,..." under a row of names.
 void read_file_of_bonds(const fs::path& path, const GrainBond& common, Pairs& pairs, BondCase& result) {
   const std::string content = read_file(path);
-  std::string_view rest = content;
-  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-  if (rest.starts_with(byte_order_mark)) rest.remove_prefix(byte_order_mark.size());
+  std::string_view rest = without_byte_order_mark(content);
   bool heading = true;
   std::vector<const Strength*> columns;
   for (int line = 1; !rest.empty(); ++line) {

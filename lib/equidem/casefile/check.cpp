@@ -12,18 +12,12 @@
 namespace equidem {
 namespace {
 
-std::string joined(const std::string& path, const std::string& name) {
+std::string key_path(const std::string& path, const std::string& name) {
   return path.empty() ? name : path + "." + name;
 }
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-std::string listed(const std::vector<std::string>& words) {
-  std::string list;
-  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
-  return list;
 }
 
 /// Walks a document beside its table of keys.
@@ -103,7 +97,7 @@ class Checker {
 
   [[noreturn]] void fail_missing(const std::string& path, const TomlValue& table, const KeySpec& key) const {
     const std::string why = fmt::format("{} is needed", expected(key));
-    fail(table, joined(path, key.name), "missing key", why,
+    fail(table, key_path(path, key.name), "missing key", why,
          path.empty() ? fmt::format("Add {} = ... at the top of the file", key.name)
                       : fmt::format("Add {} = ... to {}", key.name, bracketed(path)));
   }
@@ -126,7 +120,7 @@ class Checker {
       const bool directly_below = full.starts_with(prefix) && full.find('.', prefix.size()) == std::string::npos;
       if (directly_below && !contains(here, full.substr(prefix.size()))) here.push_back(full.substr(prefix.size()));
     }
-    std::string remedy = fmt::format("Known here: {}", listed(here));
+    std::string remedy = fmt::format("Known here: {}", joined(here));
     if (const auto meant = nearest(name, here)) {
       remedy = fmt::format("Did you mean '{}'?", *meant);
     } else {
@@ -138,7 +132,7 @@ class Checker {
       }
     }
     const bool as_table = value.is_table() || (value.is_array() && !value.items.empty() && value.items[0].is_table());
-    fail(value, joined(path, name), as_table ? "unknown table" : "unknown key",
+    fail(value, key_path(path, name), as_table ? "unknown table" : "unknown key",
          fmt::format("the {} is strict", spec_.noun), remedy);
   }
 
@@ -146,7 +140,7 @@ class Checker {
     const std::string full = spec.name;
     if (!applies(path, outer, spec.when_key, spec.when)) {
       fail(value, full, "this table does not apply here",
-           fmt::format("it is for {} = {}", spec.when_key, listed(spec.when)), "Remove it");
+           fmt::format("it is for {} = {}", spec.when_key, joined(spec.when)), "Remove it");
     }
     if (spec.repeated) {
       if (!value.is_array()) {
@@ -173,7 +167,7 @@ class Checker {
 
   void check_table(const std::string& path, TomlValue& table) {
     for (auto& [name, value] : table.entries) {
-      const TableSpec* inner = table_spec(joined(path, name));
+      const TableSpec* inner = table_spec(key_path(path, name));
       const auto keys = key_specs(path, name);
       const bool meant_as_key = !keys.empty() && (inner == nullptr || value.type == TomlValue::Type::text);
       if (inner != nullptr && !meant_as_key) {
@@ -198,7 +192,7 @@ class Checker {
     const std::string problem = chosen.empty()
                                     ? fmt::format("this key does not apply here")
                                     : fmt::format("this key does not apply to {} = \"{}\"", selecting, chosen);
-    fail(value, joined(path, name), problem, fmt::format("it is for {}", listed(kinds)),
+    fail(value, key_path(path, name), problem, fmt::format("it is for {}", joined(kinds)),
          fmt::format("Remove it, or change {}", selecting));
   }
 

@@ -17,9 +17,7 @@ namespace {
 using Type = TomlValue::Type;
 
 std::string quoted_list(const std::vector<std::string>& words) {
-  std::string list;
-  for (const std::string& word : words) list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", word);
-  return list;
+  return joined(words, [](const std::string& word) { return fmt::format("\"{}\"", word); });
 }
 
 std::string full_name(const KeySpec& key) {

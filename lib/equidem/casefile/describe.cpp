@@ -37,12 +37,6 @@ void append_wrapped(std::string& out, const std::string& words, std::size_t inde
   out += line + "\n";
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string list;
-  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
-  return list;
-}
-
 void append_key(std::string& out, const KeySpec& key) {
   constexpr std::size_t indent = 2 + name_width + 1;
   const std::string name = key.name;

@@ -13,17 +13,12 @@
 #include "equidem/casefile/read_value.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/nearest.hpp"
+#include "equidem/core/text.hpp"
 
 namespace equidem {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string_view trimmed(std::string_view text) {
-  constexpr const char* space = " \t\r";
-  text.remove_prefix(std::min(text.find_first_not_of(space), text.size()));
-  return text.substr(0, text.find_last_not_of(space) + 1);
-}
 
 std::vector<std::string_view> cells_of(std::string_view row) {
   std::vector<std::string_view> cells;
@@ -69,9 +64,7 @@ class GrainFile {
 
   void read(std::optional<double> common_density, GrainShapes& shapes, GrainBodies& bodies) {
     const std::string content = read_file(path_);
-    std::string_view rest = content;
-    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-    if (rest.starts_with(byte_order_mark)) rest.remove_prefix(byte_order_mark.size());
+    std::string_view rest = without_byte_order_mark(content);
     for (line_ = 1; !rest.empty(); ++line_) {
       const std::size_t end = std::min(rest.find('\n'), rest.size());
       const std::string_view row = trimmed(rest.substr(0, end));

@@ -9,17 +9,12 @@
 #include "equidem/casefile/read_value.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/nearest.hpp"
+#include "equidem/core/text.hpp"
 
 namespace equidem {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string_view trimmed(std::string_view text) {
-  constexpr const char* space = " \t\r";
-  text.remove_prefix(std::min(text.find_first_not_of(space), text.size()));
-  return text.substr(0, text.find_last_not_of(space) + 1);
-}
 
 bool read_number(std::string_view text, double& value) {
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -75,9 +70,7 @@ Schedule read_schedule(TomlValue& table, const fs::path& folder) {
 
 void read_points(const fs::path& path, Schedule& table, std::string_view column) {
   const std::string content = read_file(path);
-  std::string_view rest = content;
-  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-  if (rest.starts_with(byte_order_mark)) rest.remove_prefix(byte_order_mark.size());
+  std::string_view rest = without_byte_order_mark(content);
   bool first = true;
   for (int line = 1; !rest.empty(); ++line) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());

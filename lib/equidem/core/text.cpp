@@ -1,7 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/core/text.hpp"
 
+#include <algorithm>
+
 namespace equidem {
+
+std::string joined(const std::vector<std::string>& words, std::string_view separator) {
+  std::string text;
+  for (const std::string& word : words) text.append(&word == words.data() ? "" : separator).append(word);
+  return text;
+}
+
+std::string grouped(std::int64_t value) {
+  std::string digits = fmt::format("{}", value);
+  for (auto k = static_cast<std::ptrdiff_t>(digits.size()) - 3; k > (value < 0 ? 1 : 0); k -= 3)
+    digits.insert(static_cast<std::size_t>(k), 1, ' ');
+  return digits;
+}
+
+std::string percent(double share, int digits) {
+  return fmt::format("{:.{}g} %", 100 * share, digits);
+}
 
 std::string readable_bytes(double bytes) {
   const char* units[] = {"B", "kB", "MB", "GB", "TB"};
@@ -12,6 +31,21 @@ std::string readable_bytes(double bytes) {
     ++unit;
   }
   return fmt::format("{:.{}f} {}", bytes, bytes < 9.95 && unit > 0 ? 1 : 0, units[unit]);
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r";
+  const std::size_t first = text.find_first_not_of(blanks);
+  return first == std::string_view::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::string_view without_byte_order_mark(std::string_view text) {
+  return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
+}
+
+std::size_t columns_of(std::string_view text) {
+  const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; };
+  return text.size() - static_cast<std::size_t>(std::ranges::count_if(text, continues));
 }
 
 }  // namespace equidem

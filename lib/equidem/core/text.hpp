@@ -3,7 +3,12 @@
 /// Formatting of text; the only place that includes fmt.
 #pragma once
 
+#include <concepts>
+#include <cstdint>
+#include <ranges>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -14,7 +19,32 @@ inline std::string counted(long long count, const std::string& singular, const s
   return fmt::format("{} {}", count, count == 1 ? singular : plural.empty() ? singular + "s" : plural);
 }
 
+/// The words with a separator between them.
+std::string joined(const std::vector<std::string>& words, std::string_view separator = ", ");
+/// The words word_of(element) of the elements of a range, with a separator between them.
+template <std::ranges::input_range Range, std::invocable<std::ranges::range_reference_t<const Range>> WordOf>
+std::string joined(const Range& range, const WordOf& word_of, std::string_view separator = ", ") {
+  std::vector<std::string> words;
+  for (const auto& element : range) words.emplace_back(word_of(element));
+  return joined(words, separator);
+}
+
+/// The digits in groups of three: "1 293 000".
+std::string grouped(std::int64_t value);
+
+/// A share in percent: "1.25 %".
+std::string percent(double share, int digits = 3);
+
 /// A number of bytes as a person reads it: "5.7 GB".
 std::string readable_bytes(double bytes);
+
+/// Without spaces, tabs and carriage returns at both ends.
+std::string_view trimmed(std::string_view text);
+
+/// Without the mark that some programs put before a UTF-8 text.
+std::string_view without_byte_order_mark(std::string_view text);
+
+/// How many characters a UTF-8 text has.
+std::size_t columns_of(std::string_view text);
 
 }  // namespace equidem

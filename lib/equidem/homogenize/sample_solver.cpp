@@ -31,8 +31,7 @@ void SampleSolver::prune(const std::vector<std::uint8_t>& held, EffectiveStiffne
   result.removed = network_.sentences;
   result.times.add("network", watch.lap());
   if (options_.boundary == Boundary::traction || (network_.spanned == 2 && network_.pieces > 0)) return;
-  std::string removed;
-  for (const std::string& sentence : network_.sentences) removed += (removed.empty() ? "" : "; ") + sentence;
+  const std::string removed = joined(network_.sentences, "; ");
   bad_input(network_.spanned == 0 || network_.pieces == 0 ? "no piece of the network spans the cell"
                                                           : "the network spans the cell in one direction only",
             removed.empty() ? "some mean strain costs it no energy" : removed,

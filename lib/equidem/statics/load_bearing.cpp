@@ -267,13 +267,13 @@ class Pruning {
   void tell(LoadBearingNetwork& network) const {
     const auto add = [&](Fate fate, const char* name, const char* one, const char* several) {
       std::int64_t count = 0;
-      std::string names;
+      std::vector<std::string> names;
       for (std::size_t d = 0; d < assembly_.size(); ++d) {
         if (fate_[d] != fate || ++count > 3) continue;
-        names += (names.empty() ? "" : ", ") + describe_disc(assembly_, d);
+        names.push_back(describe_disc(assembly_, d));
       }
       if (count > 0) {
-        network.sentences.push_back(fmt::format("{} ({}{}) {} left out", counted(count, name), names,
+        network.sentences.push_back(fmt::format("{} ({}{}) {} left out", counted(count, name), joined(names),
                                                 count > 3 ? ", ..." : "", count == 1 ? one : several));
       }
       return count;

@@ -273,12 +273,11 @@ class Description {
 
   [[nodiscard]] std::string describe_local() const {
     const auto about = std::max(1LL, std::llround(participants_));
-    std::string names;
-    for (std::size_t k = 0; k < std::min<std::size_t>({5, static_cast<std::size_t>(about), moving_.size()}); ++k) {
-      names += (k == 0 ? "" : ", ") + describe_disc(assembly_, largest_first_[k]);
-    }
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < std::min<std::size_t>({5, static_cast<std::size_t>(about), moving_.size()}); ++k)
+      names.push_back(describe_disc(assembly_, largest_first_[k]));
     return fmt::format("a local motion of about {} of {}: {}{}{}", about, counted(as_count(assembly_.size()), "disc"),
-                       names, about > 5 ? ", ..." : "", describe_contacts());
+                       joined(names), about > 5 ? ", ..." : "", describe_contacts());
   }
 
   /// "a nearly uniform shear ", "a nearly uniform strain " or "": images of one disc move alike, which strain forbids.

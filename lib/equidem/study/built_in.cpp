@@ -30,14 +30,12 @@ std::span<const BuiltInStudy> built_in_studies() {
 
 Study built_in_study(const std::string& name, bool quick) {
   std::vector<std::string> names;
-  std::string list;
   for (const BuiltInStudy& study : studies) {
     if (study.name == name) return study.make(quick);
     names.emplace_back(study.name);
-    list += fmt::format("{}{}", list.empty() ? "" : ", ", study.name);
   }
   const auto meant = nearest(name, names);
-  bad_input(fmt::format("there is no study '{}'", name), "the built-in ones are " + list,
+  bad_input(fmt::format("there is no study '{}'", name), "the built-in ones are " + joined(names),
             meant ? fmt::format("Did you mean '{}'?", *meant) : "Choose one of them, or give a study file (.toml)");
 }
 

@@ -145,10 +145,10 @@ std::string tables(const Comparison& comparison) {
                      ratios_table(comparison));
 }
 
-JsonObject json(const Comparison& comparison) {
-  std::vector<JsonObject> list;
+Results json(const Comparison& comparison) {
+  std::vector<Results> list;
   for (const Series& series : comparison.series) {
-    JsonObject entry;
+    Results entry;
     entry.set("solver", series.trial.solver).set("threads", series.trial.threads);
     for (const Field& field : fields) {
       std::vector<double> values;
@@ -157,7 +157,7 @@ JsonObject json(const Comparison& comparison) {
     }
     list.push_back(entry);
   }
-  JsonObject object;
+  Results object;
   object.set("kind", comparison.kind).set("series", list);
   return object;
 }

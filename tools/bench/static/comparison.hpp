@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "equidem/output/files/json.hpp"
+#include "equidem/output/results.hpp"
 
 #include "measurement.hpp"
 
@@ -44,7 +44,7 @@ std::string explain_tables();
 /// Medians (and the range of totals), and the ratios of equidem to CHOLMOD with its own orderings: medians of
 /// the ratios within each round. Two Markdown tables, aligned to be read as they are.
 std::string tables(const Comparison& comparison);
-JsonObject json(const Comparison& comparison);
+Results json(const Comparison& comparison);
 /// Processor, number of cores, compiler.
 std::string describe_machine();
 

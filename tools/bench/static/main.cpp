@@ -44,7 +44,7 @@ void write(const std::string& path, const std::string& text) {
 void run(const Request& request) {
   std::string report = fmt::format("equidem {}, {}\n\n{}", library_version(), describe_machine(), explain_tables());
   std::printf("%s", report.c_str());
-  std::vector<JsonObject> comparisons;
+  std::vector<Results> comparisons;
   for (const std::string& kind : request.kinds) {
     for (const double discs : request.discs) {
       ComparisonOptions options{
@@ -70,9 +70,9 @@ void run(const Request& request) {
   }
   if (!request.markdown_file.empty()) write(request.markdown_file, "# Static solves\n" + report);
   if (!request.json_file.empty()) {
-    JsonObject object;
+    Results object;
     object.set("version", library_version()).set("machine", describe_machine());
-    write(request.json_file, object.set("comparisons", comparisons).text());
+    write(request.json_file, object.set("comparisons", comparisons).json());
   }
 }
 

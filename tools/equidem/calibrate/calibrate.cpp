@@ -16,7 +16,6 @@
 
 #include "calibrate/calibrated.hpp"
 #include "command.hpp"
-#include "solve/report.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
@@ -37,9 +36,7 @@ struct CalibrateVerb {
 void check_outputs(const CalibrateVerb& options) {
   const CommonOptions& common = options.common;
   const OutputPlan plan(common);
-  plan.expect_json();
-  plan.expect("result.json");
-  plan.expect("case.toml");
+  plan.expect_results();
   const auto path = options.springs_path();
   if (!path) return;
   options.springs ? plan.expect_file(*path) : check_writable(*path, common.overwrite);
@@ -117,90 +114,14 @@ std::string text_of_springs(const Case& resolved, const Assembly& assembly, cons
                       comment + fmt::format("\nBy equidem calibrate, {}.", found.method));
 }
 
-/// Of a sheet that is no solid in plane strain only the reading in plane stress.
-JsonObject both_readings(bool solid, double strain, double stress) {
-  JsonObject object;
-  solid ? object.set("plane_strain", strain) : object.set_null("plane_strain");
-  object.set("plane_stress", stress);
-  return object;
-}
-
-JsonObject moduli_object(const EffectiveModuli& m) {
-  const bool solid = m.poisson_strain > -1;
-  JsonObject object;
-  object.set("shear_modulus", m.shear_modulus)
-      .set("bulk_modulus_2d", m.bulk_modulus_2d)
-      .set("poisson_ratio", both_readings(solid, m.poisson_strain, m.poisson_stress))
-      .set("young_modulus", both_readings(solid, m.young_strain, m.young_stress))
-      .set("anisotropy", m.anisotropy);
-  return object;
-}
-
-std::vector<double> range_of(const Calibration& found, Plane plane) {
-  return {found.lowest_poisson_ratio(plane), found.highest_poisson_ratio(plane)};
-}
-
-void add_calibrated(JsonObject& object, const Calibrated& c) {
-  const Calibration& found = c.found;
-  const ElasticModuli& m = c.wanted();
-  JsonObject target;
-  target.set("shear_modulus", m.shear_modulus)
-      .set("bulk_modulus_2d", m.bulk_modulus_2d())
-      .set("poisson_ratio", m.poisson_ratio)
-      .set("plane", to_string(m.plane));
-  JsonObject achieved = moduli_object(found.moduli);
-  achieved.set("relative_error", found.relative_error);
-  JsonObject feasible;
-  feasible.set("plane_strain", range_of(found, Plane::strain)).set("plane_stress", range_of(found, Plane::stress));
-  object.set("title", c.problem.resolved.title)
-      .set("discs", c.problem.assembly.size())
-      .set("contacts", c.problem.assembly.contacts.size())
-      .set("kN", found.springs.kN)
-      .set("kT", found.springs.kT)
-      .set("ratio", found.springs.ratio())
-      .set("weighting", to_string(c.problem.resolved.weighting))
-      .set("target", target)
-      .set("achieved", achieved)
-      .set("verified", found.verified)
-      .set("method", found.method)
-      .set("iterations", found.iterations)
-      .set("factorizations", found.factorizations)
-      .set("feasible_poisson_ratio", range_of(found, m.plane))
-      .set("feasible_poisson_ratios", feasible)
-      .set("scanned", found.scanned)
-      .set("monotonic", found.rising);
-  if (found.verified) object.set("boundary", to_string(found.achieved.boundary));
-  if (!c.mean_field) return;
-  JsonObject guess;
-  if (c.mean_field->springs.kN > 0) guess.set("kN", c.mean_field->springs.kN).set("kT", c.mean_field->springs.kT);
-  if (c.mean_field->moduli) {
-    guess.set("achieved", moduli_object(*c.mean_field->moduli));
-  } else {
-    guess.set("missing", c.mean_field->missing);
-  }
-  object.set("mean_field", guess);
-}
-
 int dry_run_calibration(const CommonOptions& options, const Problem& problem) {
   const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
-  const SolveEstimate size = estimate_solve(problem.assembly, problem.springs.springs, {}, problem.options());
-  const std::string report = describe_problem(problem, effects) +
-                             report_line("factorizations",
-                                         "six or fewer of this size, some thirty where nu does not fall throughout "
-                                         "with kT/kN, and one more to judge the mean field") +
-                             describe_estimate(size);
-  JsonObject object;
-  add_common(object, "dry_run", report, problem.times, effects);
-  object.set("discs", problem.assembly.size())
-      .set("contacts", problem.assembly.contacts.size())
-      .set("unknowns", size.unknowns)
-      .set("factor_nonzeros", size.factor_nonzeros)
-      .set("factor_bytes", size.factor_bytes)
-      .set("peak_bytes", size.peak_bytes)
-      .set("operations", size.operations);
-  CommonOptions without_folder = options;
-  without_folder.out.reset();
-  deliver(without_folder, report, object);
+  Results results = problem_results(problem, effects, AssemblyKeys::size);
+  results.line("factorizations",
+               "six or fewer of this size, some thirty where nu does not fall throughout with kT/kN, and one more to "
+               "judge the mean field");
+  results.append(estimate_results(estimate_solve(problem.assembly, problem.springs.springs, {}, problem.options())));
+  deliver(options, "dry_run", results, problem.times);
   return 0;
 }
 
@@ -241,16 +162,16 @@ int calibrate(const CalibrateVerb& options) {
   const std::string file = text_of_springs(resolved, problem.assembly, found);
   const auto path = options.springs_path();
   if (path) write_file(*path, file, common.overwrite);
-  if (common.out) write_file(*common.out / "case.toml", to_toml(resolved, *common.out), common.overwrite);
+  write_case(common, resolved);
 
   const Effects effects = derive_effects(problem.assembly, problem.springs.springs, resolved.rotation);
-  std::string report = describe_problem(problem, effects) + describe_calibrated(calibrated);
-  report += path ? report_line("springs file", path->string()) : "\nsprings file (--springs FILE writes it):\n" + file;
-  JsonObject object;
-  add_common(object, "calibrated", report, calibrated.times, effects);
-  add_calibrated(object, calibrated);
-  path ? object.set("springs_file", path->string()) : object.set_null("springs_file");
-  deliver(common, report, object);
+  Results results = calibrated_results(calibrated, effects);
+  if (path) {
+    results.line("springs file").add("springs_file", "", path->string());
+  } else {
+    results.block("\nsprings file (--springs FILE writes it):\n" + file + "\n").set("springs_file", nullptr);
+  }
+  deliver(common, "calibrated", results, calibrated.times);
   if (path) say(common, fmt::format("springs written to {}", path->string()));
   return 0;
 }

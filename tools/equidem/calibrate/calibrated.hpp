@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A case that was calibrated: what report and JSON of `equidem calibrate` are made of.
+/// A case that was calibrated: the numbers of `equidem calibrate`.
 #pragma once
 
 #include <optional>
@@ -28,7 +28,7 @@ struct Calibrated {
   [[nodiscard]] const ElasticModuli& wanted() const { return problem.resolved.material->moduli; }
 };
 
-/// The report for people, after describe_problem.
-std::string describe_calibrated(const Calibrated& calibrated);
+/// Report and JSON of the verb.
+Results calibrated_results(const Calibrated& calibrated, const Effects& effects);
 
 }  // namespace equidem

@@ -14,7 +14,6 @@
 
 #include "homogenize/ensemble_report.hpp"
 #include "homogenize/ensemble_table.hpp"
-#include "solve/report.hpp"
 
 namespace equidem {
 namespace {
@@ -75,27 +74,23 @@ std::vector<EnsembleSample> with_kept(const std::vector<EnsembleSample>& done,
 }
 
 std::string describe_plan(const EnsemblePlan& plan, double confidence) {
-  std::string sizes;
-  for (const std::int64_t discs : plan.discs) sizes += fmt::format("{}{}", sizes.empty() ? "" : ", ", discs);
+  const std::string sizes = joined(plan.discs, [](std::int64_t discs) { return fmt::format("{}", discs); });
   return fmt::format("{} of {} discs each, seeds {} to {}; intervals of {:.4g} % confidence",
                      counted(plan.samples, "cell"), sizes, plan.first_seed,
                      plan.first_seed + static_cast<std::uint64_t>(plan.samples) - 1, 100 * confidence);
 }
 
-int dry_run(const CommonOptions& options, const EnsemblePlan& plan, const EnsemblePreamble& preamble) {
-  std::string text = preamble.text;
+int dry_run(const CommonOptions& options, const Case& resolved, const EnsemblePlan& plan, Results results) {
+  const BuiltSprings springs = build_springs(resolved, build_cell(resolved, plan.discs.front(), plan.first_seed));
+  const int unknowns_per_disc = derive_effects(springs.springs, resolved.rotation).unknowns_per_disc();
   std::vector<std::int64_t> unknowns;
   for (const std::int64_t discs : plan.discs) {
-    unknowns.push_back(discs * preamble.effects.unknowns_per_disc());
-    text += report_line("unknowns", fmt::format("about {} in each cell of {} discs", unknowns.back(), discs));
+    unknowns.push_back(discs * unknowns_per_disc);
+    results.line("unknowns", fmt::format("about {} in each cell of {} discs", unknowns.back(), discs));
   }
-  text += "nothing was solved (--dry-run)\n";
-  JsonObject object;
-  add_common(object, "dry_run", text, {}, preamble.effects);
-  object.set("samples", plan.samples).set("discs", plan.discs).set("unknowns", unknowns);
-  CommonOptions without_folder = options;
-  without_folder.out.reset();
-  deliver(without_folder, text, object);
+  results.block("nothing was solved (--dry-run)\n");
+  results.set("samples", plan.samples).set("discs", plan.discs).set("unknowns", unknowns);
+  deliver(options, "dry_run", results, {});
   return 0;
 }
 
@@ -116,25 +111,36 @@ HomogenizedCell homogenize_cell(const Case& resolved, std::int64_t discs, std::u
 }
 
 void check_ensemble_outputs(const CommonOptions& options) {
-  OutputPlan(options).expect_json();
   const OutputPlan plan(options);
-  for (const char* name : {samples_name, statistics_name, case_name, "result.json"}) plan.expect(name);
-  for (const char* name : ensemble_plot_names)
-    for (const char* end : {".csv", ".gp", ".svg", ".png"}) plan.expect(std::string(name) + end);
+  plan.expect_results();
+  for (const char* name : {samples_name, statistics_name}) plan.expect(name);
+  for (const char* name : ensemble_plot_names) plan.expect_plot(name);
 }
 
-EnsemblePreamble describe_cells(const Case& resolved, std::int64_t discs, std::uint64_t seed, const std::string& plan) {
+Results cell_results(const Case& resolved, std::int64_t discs, std::uint64_t seed, const std::string& plan) {
   const Assembly first = build_cell(resolved, discs, seed);
   const BuiltSprings springs = build_springs(resolved, first);
-  EnsemblePreamble preamble{.text = resolved.title.empty() ? "" : resolved.title + "\n\n",
-                            .effects = derive_effects(springs.springs, resolved.rotation)};
-  if (!plan.empty()) preamble.text += report_line("ensemble", plan);
-  preamble.text += report_line(
-      "cells", fmt::format("{}, points = \"{}\", boundary = \"{}\"", first.kind,
+  Results results;
+  if (!resolved.title.empty()) results.block(resolved.title + "\n\n");
+  results.line("ensemble", plan);
+  results.line("cells",
+               fmt::format("{}, points = \"{}\", boundary = \"{}\"", first.kind,
                            to_string(resolved.assembly.delaunay.points), to_string(options_of(resolved).boundary)));
-  preamble.text += report_line("springs", springs.report + (resolved.material ? " (of the first cell)" : ""));
-  preamble.text += report_line("effects", preamble.effects.report());
-  return preamble;
+  results.line("springs", springs.report + (resolved.material ? " (of the first cell)" : ""));
+  add_effects(results, derive_effects(springs.springs, resolved.rotation));
+  return results;
+}
+
+void deliver_ensemble(const CommonOptions& options, const EnsembleResult& result, Results results,
+                      const std::string& status, StageTimes times) {
+  if (options.out && status != "interrupted") {
+    const Stopwatch watch;
+    write_csv(*options.out / statistics_name, statistics_table(result.statistics), true);
+    for (const auto& [name, plot] : ensemble_plots(result))
+      results.block(write_plot(*options.out, name, plot, true).message + "\n");
+    times.add("files", watch.seconds());
+  }
+  deliver(options, status, results.set("complete", status != "interrupted"), times);
 }
 
 int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool resume) {
@@ -146,17 +152,16 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
       .samples = {},
       .statistics = {}};
   const EnsemblePlan& plan = result.plan;
-  const EnsemblePreamble preamble =
-      describe_cells(resolved, plan.discs.front(), plan.first_seed, describe_plan(plan, asked.confidence));
-  if (options.dry_run) return dry_run(options, plan, preamble);
+  Results results = cell_results(resolved, plan.discs.front(), plan.first_seed, describe_plan(plan, asked.confidence));
+  OutputPlan(options).expect_json();
+  if (options.dry_run) return dry_run(options, resolved, plan, std::move(results));
   CommonOptions written = options;
   written.overwrite = options.overwrite || resume;
-  OutputPlan(options).expect_json();
   check_ensemble_outputs(written);
   const std::vector<EnsembleSample> kept = samples_to_keep(options, resume);
 
   const auto& folder = options.out;
-  if (folder) write_file(*folder / case_name, to_toml(resolved, *folder), true);
+  write_case(options, resolved);
   const auto save = [&](const std::vector<EnsembleSample>& done) {
     if (folder) write_file(*folder / samples_name, samples_csv(with_kept(done, kept)), true);
   };
@@ -169,35 +174,19 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
   result.samples = std::move(sampled.samples);
   result.statistics = analyze_ensemble(result.plan, result.samples, asked.confidence);
 
-  std::string report = preamble.text + "\n" + describe_ensemble(result);
+  results.append(ensemble_results(result));
   const std::size_t wanted = result.plan.discs.size() * static_cast<std::size_t>(result.plan.samples);
   if (sampled.stopped)
-    report += fmt::format("INCOMPLETE: stopped after {} of {} cells\n", result.samples.size(), wanted);
-  if (folder && !sampled.stopped) {
-    write_csv(*folder / statistics_name, statistics_table(result.statistics), true);
-    for (const auto& [name, plot] : ensemble_plots(result))
-      report += write_plot(*folder, name, plot, true).message + "\n";
-    times.add("files", watch.lap());
-  }
-  const bool all_refused = std::all_of(result.samples.begin(), result.samples.end(),
-                                       [](const EnsembleSample& sample) { return sample.refused(); });
-  JsonObject object;
-  add_common(object,
-             sampled.stopped ? "interrupted"
-             : all_refused   ? "failed"
-                             : "done",
-             report, times, preamble.effects);
-  object.set("title", resolved.title).set("complete", !sampled.stopped);
-  add_ensemble(object, result);
-  CommonOptions common = options;
-  common.overwrite = true;
-  deliver(common, report, object);
-  if (folder) say(options, fmt::format("written to {}", folder->string()));
+    results.block(fmt::format("INCOMPLETE: stopped after {} of {} cells\n", result.samples.size(), wanted));
+  const bool all_refused = std::ranges::all_of(result.samples, &EnsembleSample::refused);
+  deliver_ensemble(options, result, std::move(results),
+                   sampled.stopped ? "interrupted"
+                   : all_refused   ? "failed"
+                                   : "done",
+                   std::move(times));
   if (sampled.stopped) {
-    throw Error(
-        ErrorKind::interrupted, "stopped as asked",
-        fmt::format("{} of {} cells are done", result.samples.size(), wanted),
-        folder ? "Run the same command with --resume to do the rest" : "With --out DIR the cells done would be kept");
+    throw_stopped(options, fmt::format("{} of {} cells are done", result.samples.size(), wanted),
+                  "Run the same command with --resume to do the rest");
   }
   if (all_refused)
     computation_failed("none of the cells has moduli",

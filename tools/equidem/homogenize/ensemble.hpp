@@ -7,10 +7,10 @@
 #include <string>
 
 #include "equidem/casefile/case.hpp"
-#include "equidem/contact/effects.hpp"
 #include "equidem/homogenize/ensemble/ensemble.hpp"
 
 #include "command.hpp"
+#include "homogenize/ensemble_report.hpp"
 
 namespace equidem {
 
@@ -34,13 +34,12 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
 HomogenizedCell homogenize_cell(const Case& resolved, std::int64_t discs, std::uint64_t seed);
 
 /// Title, cells, springs and effects; those of the first cell stand for all.
-struct EnsemblePreamble {
-  std::string text;
-  Effects effects;
-};
 /// \param plan what is sampled, in words; empty: left out
-EnsemblePreamble describe_cells(const Case& resolved, std::int64_t discs, std::uint64_t seed,
-                                const std::string& plan = {});
+Results cell_results(const Case& resolved, std::int64_t discs, std::uint64_t seed, const std::string& plan = {});
+
+/// Writes statistics and plots into --out, and delivers the results.
+void deliver_ensemble(const CommonOptions& options, const EnsembleResult& result, Results results,
+                      const std::string& status, StageTimes times);
 
 /// \throws Error (bad_input) where a file of an ensemble could not be written
 void check_ensemble_outputs(const CommonOptions& options);

@@ -11,9 +11,7 @@
 
 #include "accuracy.hpp"
 #include "homogenize/ensemble.hpp"
-#include "homogenize/ensemble_report.hpp"
 #include "homogenize/ensemble_table.hpp"
-#include "solve/report.hpp"
 
 namespace equidem {
 namespace {
@@ -41,12 +39,13 @@ ReachedAccuracy reached_by(const AccurateEnsemble& sampled, const EnsembleAccura
       .value = setting_of(sampled.chosen),
       .pilots = {},
       .ten_times_more = {}};
+  std::vector<std::string> pilots;
   for (const std::int64_t discs : sampled.plan.discs) {
     if (discs == sampled.chosen.discs) continue;
-    const auto cells = std::count_if(sampled.samples.begin(), sampled.samples.end(),
-                                     [&](const EnsembleSample& sample) { return sample.discs == discs; });
-    reached.pilots += fmt::format("{}{} cells of {} discs", reached.pilots.empty() ? "" : ", ", cells, discs);
+    const auto cells = std::ranges::count(sampled.samples, discs, &EnsembleSample::discs);
+    pilots.push_back(fmt::format("{} cells of {} discs", cells, discs));
   }
+  reached.pilots = joined(pilots);
   reached.pilots_factor = work_of(sampled) / sampled.chosen.work() - 1;
   auto& more = reached.ten_times_more;
   more.time_factor = sampled.ten_times_more.work() / sampled.chosen.work();
@@ -71,7 +70,7 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
   const EnsembleAccuracy wanted{.accuracy = accuracy,
                                 .confidence = resolved.ensemble ? resolved.ensemble->confidence : 0.95,
                                 .first_seed = resolved.assembly.delaunay.seed};
-  EnsemblePreamble preamble = describe_cells(resolved, wanted.smallest, wanted.first_seed);
+  Results results = cell_results(resolved, wanted.smallest, wanted.first_seed);
   const auto& folder = options.out;
   const auto save = [&](const std::vector<EnsembleSample>& done) {
     if (folder) write_file(*folder / "samples.csv", samples_csv(done), true);
@@ -92,26 +91,14 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
                         .accuracy = accuracy,
                         .samples = std::move(sampled.samples),
                         .statistics = std::move(sampled.statistics)};
-  std::string report = preamble.text + "\n" + describe_ensemble(result) + describe_accuracy(reached);
   if (folder) {
     CommonOptions chosen = options;
     chosen.set.push_back(fmt::format("ensemble={{discs = [{}], samples = {}, accuracy = {}, confidence = {}}}",
                                      sampled.chosen.discs, sampled.chosen.samples, accuracy, wanted.confidence));
-    write_file(*folder / "case.toml", to_toml(read_case(chosen), *folder), true);
-    write_csv(*folder / "ensemble.csv", statistics_table(result.statistics), true);
-    for (const auto& [name, plot] : ensemble_plots(result))
-      report += write_plot(*folder, name, plot, true).message + "\n";
-    times.add("files", watch.lap());
+    write_case(options, read_case(chosen));
   }
-  JsonObject object;
-  add_common(object, "done", report, times, preamble.effects);
-  object.set("title", resolved.title).set("complete", true);
-  add_ensemble(object, result);
-  add_accuracy(object, reached);
-  CommonOptions common = options;
-  common.overwrite = true;
-  deliver(common, report, object);
-  if (folder) say(options, fmt::format("written to {}", folder->string()));
+  results.append(ensemble_results(result)).append(accuracy_results(reached));
+  deliver_ensemble(options, result, std::move(results), "done", std::move(times));
   return 0;
 }
 

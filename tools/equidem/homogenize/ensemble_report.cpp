@@ -13,27 +13,31 @@ namespace {
 constexpr std::size_t told_quantities = 3;
 constexpr std::size_t anisotropy_index = ensemble_quantities.size() - 1;
 
-std::string shown(double value, int digits) {
-  return std::isnan(value) ? "-" : fmt::format("{:.{}g}", value, digits);
-}
+/// Keys of ensemble_quantities in the JSON, those of `equidem homogenize`.
+constexpr std::array quantity_keys{"bulk_modulus_2d",
+                                   "shear_modulus",
+                                   "poisson_ratio/plane_strain",
+                                   "poisson_ratio/plane_stress",
+                                   "young_modulus/plane_strain",
+                                   "young_modulus/plane_stress",
+                                   "anisotropy"};
 
-std::string rounded_percent(double share) {
-  return fmt::format("{:.3g} %", 100 * share);
-}
-
-std::string table_of(const EnsembleStatistics& statistics, std::size_t quantity) {
+void add_table(Results& out, const EnsembleStatistics& statistics, std::size_t quantity) {
   const EnsembleQuantity& q = ensemble_quantities[quantity];
-  std::string text = fmt::format("{}{}\n", q.symbol, q.modulus ? ", Pa" : "");
-  text += fmt::format("    discs  cells            mean   {:>4} % interval of the mean    sd of one cell   sd/mean\n",
-                      fmt::format("{:.4g}", 100 * statistics.confidence));
+  const std::string interval = fmt::format("{} interval of the mean", percent(statistics.confidence, 4));
+  std::vector<Results> rows;
   for (const EnsembleSize& size : statistics.sizes) {
     const MeanEstimate& e = size.estimates[quantity];
     const double relative = e.mean != 0 ? e.standard_deviation / std::abs(e.mean) : MeanEstimate::unknown;
-    text += fmt::format("  {:>7}  {:>5}  {:>14}   {:>12} .. {:<12}  {:>15}   {:>7}\n", size.discs, e.samples,
-                        shown(e.mean, 7), shown(e.low(), 6), shown(e.high(), 6), shown(e.standard_deviation, 3),
-                        std::isnan(relative) ? "-" : rounded_percent(relative));
+    rows.push_back(Results()
+                       .add("", "  discs", size.discs)
+                       .add("", "cells", e.samples)
+                       .add("", "mean", e.mean, "", {.digits = 7})
+                       .add("", interval, std::vector{e.low(), e.high()})
+                       .add("", "sd of one cell", e.standard_deviation, "", {.digits = 3})
+                       .add("", "sd/mean", relative, "", {Shown::percent, 3}));
   }
-  return text;
+  out.block(fmt::format("{}{}\n", q.symbol, q.modulus ? ", Pa" : "")).table("", std::move(rows));
 }
 
 std::string describe_scatter(const SizeDependence& d, double confidence) {
@@ -89,15 +93,15 @@ std::string describe_need(const EnsembleResult& result, std::size_t quantity) {
     text += fmt::format(
         "  with {} confidence one cell of {:.0f} discs lies within {:.2g}{} of the mean, the mean of {} within "
         "{:.2g}{}\n",
-        rounded_percent(confidence), largest.mean_discs, one, unit, result.plan.samples,
-        one / std::sqrt(result.plan.samples), unit);
+        percent(confidence), largest.mean_discs, one, unit, result.plan.samples, one / std::sqrt(result.plan.samples),
+        unit);
   }
   if (!result.accuracy) return text;
   const auto alone = needed_discs(statistics, quantity, *result.accuracy, 1);
   const auto averaged = needed_discs(statistics, quantity, *result.accuracy, result.plan.samples);
   if (!alone || !averaged) {
     return text + fmt::format("  {} is 0 within its error, or its scatter does not fall: no size reaches {} of it\n",
-                              symbol, rounded_percent(*result.accuracy));
+                              symbol, percent(*result.accuracy));
   }
   const auto smallest = std::find_if(statistics.sizes.begin(), statistics.sizes.end(),
                                      [&](const EnsembleSize& size) { return size.estimates[quantity].samples > 0; });
@@ -105,123 +109,88 @@ std::string describe_need(const EnsembleResult& result, std::size_t quantity) {
     return fmt::format("{} discs{}", needed, static_cast<double>(needed) < smallest->mean_discs + 1 ? " at most" : "");
   };
   return text + fmt::format("  {} of {} with {} confidence needs one cell of {}, or the mean of {} cells of {}\n",
-                            rounded_percent(*result.accuracy), symbol, rounded_percent(confidence), discs(*alone),
-                            result.plan.samples, discs(*averaged));
+                            percent(*result.accuracy), symbol, percent(confidence), discs(*alone), result.plan.samples,
+                            discs(*averaged));
 }
 
-std::string describe_refusals(const EnsembleResult& result) {
+void add_refusals(Results& out, const EnsembleResult& result) {
+  constexpr std::size_t named = 5;
+  std::vector<Results> refusals;
   std::string text;
-  int refused = 0;
-  constexpr int named = 5;
   for (const EnsembleSample& sample : result.samples) {
     if (!sample.refused()) continue;
-    if (refused++ < named) text += fmt::format("  {} discs, seed {}: {}\n", sample.discs, sample.seed, sample.refusal);
+    refusals.push_back(Results().set("discs", sample.discs).set("seed", sample.seed).set("why", sample.refusal));
+    if (refusals.size() <= named)
+      text += fmt::format("  {} discs, seed {}: {}\n", sample.discs, sample.seed, sample.refusal);
   }
-  if (refused == 0) return "";
-  if (refused > named) text += fmt::format("  and {} more, named in samples.csv\n", refused - named);
-  return fmt::format("{} of {} have no moduli; the means are those of the others, not of all such cells:\n",
-                     counted(refused, "cell"), result.samples.size()) +
-         text + "\n";
+  out.set("refusals", refusals);
+  if (refusals.empty()) return;
+  if (refusals.size() > named) text += fmt::format("  and {} more, named in samples.csv\n", refusals.size() - named);
+  out.block(fmt::format("{} of {} have no moduli; the means are those of the others, not of all such cells:\n{}\n",
+                        counted(std::ssize(refusals), "cell"), result.samples.size(), text));
 }
 
-JsonObject estimate_json(const MeanEstimate& e) {
-  JsonObject object;
-  object.set("mean", e.mean).set("standard_deviation", e.standard_deviation).set("standard_error", e.standard_error);
-  object.set("confidence_interval", std::vector<double>{e.low(), e.high()});
-  return object;
+void add_sizes(Results& out, const EnsembleStatistics& statistics) {
+  std::vector<Results> sizes;
+  for (const EnsembleSize& size : statistics.sizes) {
+    Results one;
+    one.set("discs", size.discs).set("mean_discs", size.mean_discs);
+    one.set("samples", size.estimates.front().samples).set("refused", size.refused);
+    for (std::size_t q = 0; q < quantity_keys.size(); ++q) {
+      const MeanEstimate& e = size.estimates[q];
+      one.set(quantity_keys[q], Results()
+                                    .set("mean", e.mean)
+                                    .set("standard_deviation", e.standard_deviation)
+                                    .set("standard_error", e.standard_error)
+                                    .set("confidence_interval", std::vector{e.low(), e.high()}));
+    }
+    sizes.push_back(std::move(one));
+  }
+  out.set("ensemble", sizes);
 }
 
-/// One value for each quantity, under the keys of `equidem homogenize`.
-template <typename Value>
-void set_by_quantity(JsonObject& object, const Value& value, bool with_anisotropy) {
-  object.set("bulk_modulus_2d", value(0)).set("shear_modulus", value(1));
-  object.set("poisson_ratio", JsonObject().set("plane_strain", value(2)).set("plane_stress", value(3)));
-  object.set("young_modulus", JsonObject().set("plane_strain", value(4)).set("plane_stress", value(5)));
-  if (with_anisotropy) object.set("anisotropy", value(anisotropy_index));
+/// How a quantity depends on the size of the cell, and the size it needs.
+void add_dependence(Results& out, const EnsembleResult& result, std::size_t quantity) {
+  const SizeDependence& d = result.statistics.dependence[quantity];
+  const std::string key = std::string("/") + quantity_keys[quantity];
+  const auto if_known = [](bool is_known, double value) { return is_known ? value : MeanEstimate::unknown; };
+  out.set("scatter_exponent" + key,
+          Results()
+              .set("value", d.measured_exponent)
+              .set("standard_error", if_known(d.measured_exponent.has_value(), d.exponent_error))
+              .set("used", d.exponent));
+  const bool limit = d.limit.has_value();
+  out.set("size_limit" + key, Results()
+                                  .set("value", d.limit)
+                                  .set("standard_error", if_known(limit, d.limit_error))
+                                  .set("drift", if_known(limit, d.drift))
+                                  .set("drift_standard_error", if_known(limit, d.drift_error))
+                                  .set("drifts", d.drifts));
+  const auto needed = [&](std::int64_t samples) {
+    return result.accuracy ? needed_discs(result.statistics, quantity, *result.accuracy, samples) : std::nullopt;
+  };
+  out.set("needed_discs" + key,
+          Results().set("one_cell", needed(1)).set("mean_of_samples", needed(result.plan.samples)));
 }
 
 }  // namespace
 
-std::string describe_ensemble(const EnsembleResult& result) {
+Results ensemble_results(const EnsembleResult& result) {
   const EnsembleStatistics& statistics = result.statistics;
-  std::string text = describe_refusals(result);
+  Results out;
+  out.block("\n").set("title", result.title).set("confidence", statistics.confidence).set("accuracy", result.accuracy);
+  add_refusals(out, result);
   for (std::size_t q = 0; q < ensemble_quantities.size(); ++q) {
-    text += table_of(statistics, q);
+    add_table(out, statistics, q);
     if (q < told_quantities) {
-      text += describe_scatter(statistics.dependence[q], statistics.confidence);
-      text += describe_drift(statistics, q);
-      text += describe_need(result, q);
+      out.block(describe_scatter(statistics.dependence[q], statistics.confidence) + describe_drift(statistics, q) +
+                describe_need(result, q));
     }
-    text += "\n";
+    out.block("\n");
+    if (q != anisotropy_index) add_dependence(out, result, q);
   }
-  return text;
-}
-
-void add_ensemble(JsonObject& object, const EnsembleResult& result) {
-  const EnsembleStatistics& statistics = result.statistics;
-  object.set("confidence", statistics.confidence);
-  if (result.accuracy)
-    object.set("accuracy", *result.accuracy);
-  else
-    object.set_null("accuracy");
-  std::vector<JsonObject> sizes;
-  for (const EnsembleSize& size : statistics.sizes) {
-    JsonObject one;
-    one.set("discs", size.discs).set("mean_discs", size.mean_discs);
-    one.set("samples", size.estimates.front().samples).set("refused", size.refused);
-    set_by_quantity(
-        one, [&](std::size_t q) { return estimate_json(size.estimates[q]); }, true);
-    sizes.push_back(std::move(one));
-  }
-  object.set("ensemble", sizes);
-
-  JsonObject exponent, limit, needed;
-  set_by_quantity(
-      exponent,
-      [&](std::size_t q) {
-        const SizeDependence& d = statistics.dependence[q];
-        JsonObject one;
-        one.set("value", d.measured_exponent.value_or(MeanEstimate::unknown));
-        one.set("standard_error", d.measured_exponent ? d.exponent_error : MeanEstimate::unknown);
-        return one.set("used", d.exponent);
-      },
-      false);
-  set_by_quantity(
-      limit,
-      [&](std::size_t q) {
-        const SizeDependence& d = statistics.dependence[q];
-        const double unknown = MeanEstimate::unknown;
-        JsonObject one;
-        one.set("value", d.limit.value_or(unknown)).set("standard_error", d.limit ? d.limit_error : unknown);
-        one.set("drift", d.limit ? d.drift : unknown);
-        one.set("drift_standard_error", d.limit ? d.drift_error : unknown);
-        return one.set("drifts", d.drifts);
-      },
-      false);
-  set_by_quantity(
-      needed,
-      [&](std::size_t q) {
-        JsonObject one;
-        const auto add = [&](const char* key, std::int64_t samples) {
-          const auto discs = result.accuracy ? needed_discs(statistics, q, *result.accuracy, samples) : std::nullopt;
-          if (discs)
-            one.set(key, *discs);
-          else
-            one.set_null(key);
-        };
-        add("one_cell", 1);
-        add("mean_of_samples", result.plan.samples);
-        return one;
-      },
-      false);
-  object.set("scatter_exponent", exponent).set("size_limit", limit).set("needed_discs", needed);
-
-  std::vector<JsonObject> refusals;
-  for (const EnsembleSample& sample : result.samples) {
-    if (!sample.refused()) continue;
-    refusals.push_back(JsonObject().set("discs", sample.discs).set("seed", sample.seed).set("why", sample.refusal));
-  }
-  object.set("refusals", refusals);
+  add_sizes(out, statistics);
+  return out;
 }
 
 }  // namespace equidem

@@ -3,6 +3,7 @@
 /// The statistics of an ensemble for people, as JSON and as plots.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,8 +11,8 @@
 
 #include "equidem/homogenize/ensemble/ensemble.hpp"
 #include "equidem/homogenize/ensemble/ensemble_statistics.hpp"
-#include "equidem/output/files/json.hpp"
 #include "equidem/output/plots/plot.hpp"
+#include "equidem/output/results.hpp"
 
 namespace equidem {
 
@@ -24,12 +25,10 @@ struct EnsembleResult {
   EnsembleStatistics statistics;
 };
 
-std::string describe_ensemble(const EnsembleResult& result);
-
-/// ensemble: list of {discs, mean_discs, samples, refused, the quantities of `homogenize`, each {mean,
+/// Keys: ensemble: list of {discs, mean_discs, samples, refused, the quantities of `homogenize`, each {mean,
 /// standard_deviation, standard_error, confidence_interval}}; scatter_exponent, size_limit and needed_discs of each
-/// quantity but the anisotropy; confidence, accuracy, refusals.
-void add_ensemble(JsonObject& object, const EnsembleResult& result);
+/// quantity but the anisotropy; title, confidence, accuracy, refusals.
+Results ensemble_results(const EnsembleResult& result);
 
 /// Names that ensemble_plots may use.
 inline constexpr std::array ensemble_plot_names{"shear_modulus", "poisson_ratio", "scatter"};

@@ -6,8 +6,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-
-#include "csv_cells.hpp"
+#include "equidem/output/files/csv.hpp"
 
 namespace equidem {
 namespace {

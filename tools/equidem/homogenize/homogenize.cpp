@@ -10,21 +10,17 @@
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/affine.hpp"
 #include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/stress.hpp"
-#include "equidem/output/files/csv.hpp"
-#include "equidem/output/files/vtk.hpp"
-#include "equidem/output/pictures/picture.hpp"
 #include "equidem/statics/load_bearing.hpp"
 
 #include "command.hpp"
 #include "homogenize/ensemble.hpp"
 #include "homogenize/homogenized.hpp"
-#include "solve/report.hpp"
 #include "solve/solve_accuracy.hpp"
+#include "state_files.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
@@ -39,43 +35,22 @@ struct HomogenizeVerb {
 /// Discs up to which the bounds that need a solution of their own are found unasked.
 constexpr std::size_t most_discs_for_bounds = 20000;
 
-/// Strains of the states that are written, and their names.
+/// Strains of the states that are written, and the names of their files.
 constexpr double written_strain = 1e-3;
 struct WrittenState {
-  const char* name;
+  const char* suffix;  ///< of the names of its files
   const char* label;
   Tensor2 gradient;
 };
 constexpr std::array written_states{
-    WrittenState{"strain_xx", "strain xx", {.xx = written_strain}},
-    WrittenState{"strain_yy", "strain yy", {.yy = written_strain}},
-    WrittenState{"strain_xy", "shear strain", {.xy = written_strain / 2, .yx = written_strain / 2}}};
+    WrittenState{"_strain_xx", "strain xx", {.xx = written_strain}},
+    WrittenState{"_strain_yy", "strain yy", {.yy = written_strain}},
+    WrittenState{"_strain_xy", "shear strain", {.xy = written_strain / 2, .yx = written_strain / 2}}};
 
 void check_outputs(const CommonOptions& options, const OutputCase& wanted) {
   const OutputPlan plan(options);
-  plan.expect_json();
-  plan.expect("result.json");
-  plan.expect("case.toml");
-  for (const WrittenState& state : written_states) {
-    const std::string name = state.name;
-    if (wanted.csv)
-      for (const char* stem : {"discs_", "contacts_"}) plan.expect(stem + name + ".csv");
-    if (wanted.vtk)
-      for (const char* end : {".vtm", "_discs.vtp", "_contacts.vtp"}) plan.expect("state_" + name + end);
-    if (wanted.picture)
-      for (const char* end : {".svg", ".png"}) plan.expect("picture_" + name + end);
-  }
-}
-
-/// The case without what acts: the mean strain does.
-Problem problem_of(Case resolved) {
-  StageTimes times;
-  Stopwatch watch;
-  Assembly assembly = build_assembly(resolved);
-  times.add("assembly", watch.lap());
-  BuiltSprings springs = build_springs(resolved, assembly);
-  times.add("springs", watch.lap());
-  return {std::move(resolved), std::move(assembly), std::move(springs), {}, {}, {}, std::move(times)};
+  plan.expect_results();
+  for (const WrittenState& state : written_states) expect_state(plan, wanted, state.suffix);
 }
 
 EffectiveStiffness homogenize_with(const Problem& problem, Boundary boundary) {
@@ -181,7 +156,6 @@ std::vector<ContactForce> state_forces(const Problem& problem, const Tensor2& gr
 void write_states(const CommonOptions& options, const Homogenized& homogenized) {
   const Problem& problem = homogenized.problem;
   const Assembly& assembly = problem.assembly;
-  const auto& folder = *options.out;
   const OutputCase& wanted = problem.resolved.output;
   const LoadBearingNetwork bearing =
       homogenized.result.discs_removed > 0
@@ -191,7 +165,7 @@ void write_states(const CommonOptions& options, const Homogenized& homogenized) 
       !assembly.cell_areas.empty() &&
       std::all_of(assembly.cell_areas.begin(), assembly.cell_areas.end(), [](double v) { return v > 0; });
   for (std::size_t k = 0; k < written_states.size() && k < homogenized.result.fluctuations.size(); ++k) {
-    const auto& [name, label, gradient] = written_states[k];
+    const auto& [suffix, label, gradient] = written_states[k];
     std::vector<DiscMotion> motions = homogenized.result.fluctuations[k];
     for (DiscMotion& motion : motions) motion = {written_strain * motion.u, written_strain * motion.theta};
     const std::vector<ContactForce> forces = state_forces(problem, gradient, motions, bearing);
@@ -199,49 +173,28 @@ void write_states(const CommonOptions& options, const Homogenized& homogenized) 
     const std::vector<DiscMotion> fluctuations = motions;
     for (std::size_t d = 0; d < motions.size(); ++d) motions[d].u += gradient * assembly.centres[d];
     AssemblyState state{.assembly = assembly, .motions = motions, .contact_forces = forces, .stresses = stresses};
-    if (wanted.csv) {
-      write_disc_csv(folder / fmt::format("discs_{}.csv", name), state, options.overwrite);
-      write_contact_csv(folder / fmt::format("contacts_{}.csv", name), state, options.overwrite);
-    }
-    if (wanted.vtk) write_vtk(folder, fmt::format("state_{}", name), state, options.overwrite);
-    if (wanted.picture) {
-      // A periodic cell is drawn undeformed but for what repeats with it: its images would have to move along.
-      if (assembly.periodic()) state.motions = fluctuations;
-      const std::string& title = problem.resolved.title;
-      const PictureOptions picture{
-          .title = fmt::format("{}{}{} = {}{}", title, title.empty() ? "" : ": ", label, written_strain,
-                               assembly.periodic() ? ", discs moved beside the mean strain" : ""),
-          .colour = gradient.xy != 0 ? DiscColour::stress_xy : DiscColour::mean_stress};
-      write_picture(folder, fmt::format("picture_{}", name), state, picture, options.overwrite);
-    }
+    write_state(options, wanted, suffix, state);
+    // A periodic cell is drawn undeformed but for what repeats with it: its images would have to move along.
+    if (assembly.periodic()) state.motions = fluctuations;
+    const std::string& title = problem.resolved.title;
+    write_state_picture(options, wanted, suffix, state,
+                        {.title = fmt::format("{}{}{} = {}{}", title, title.empty() ? "" : ": ", label, written_strain,
+                                              assembly.periodic() ? ", discs moved beside the mean strain" : ""),
+                         .colour = gradient.xy != 0 ? DiscColour::stress_xy : DiscColour::mean_stress});
   }
 }
 
 int dry_run_homogenization(const CommonOptions& options, const Problem& problem) {
   const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
-  const SolveEstimate size = estimate_solve(problem.assembly, problem.springs.springs, {}, problem.options());
-  const auto boundaries = boundaries_of(problem);
-  std::string names;
-  for (const Boundary boundary : boundaries) names += (names.empty() ? "" : ", ") + to_string(boundary);
-  const std::string report =
-      describe_problem(problem, effects) +
-      report_line("mean strain", fmt::format("boundaries {}: one factorization and three solutions for "
-                                             "each, every one about as large as this",
-                                             names)) +
-      describe_estimate(size);
-  JsonObject object;
-  add_common(object, "dry_run", report, problem.times, effects);
-  object.set("discs", problem.assembly.size())
-      .set("contacts", problem.assembly.contacts.size())
-      .set("factorizations", boundaries.size())
-      .set("unknowns", size.unknowns)
-      .set("factor_nonzeros", size.factor_nonzeros)
-      .set("factor_bytes", size.factor_bytes)
-      .set("peak_bytes", size.peak_bytes)
-      .set("operations", size.operations);
-  CommonOptions without_folder = options;
-  without_folder.out.reset();
-  deliver(without_folder, report, object);
+  std::vector<std::string> names;
+  for (const Boundary boundary : boundaries_of(problem)) names.push_back(to_string(boundary));
+  Results results = problem_results(problem, effects);
+  results.line("mean strain", fmt::format("boundaries {}: one factorization and three solutions for each, every one "
+                                          "about as large as this",
+                                          joined(names)));
+  results.set("factorizations", names.size());
+  results.append(estimate_results(estimate_solve(problem.assembly, problem.springs.springs, {}, problem.options())));
+  deliver(options, "dry_run", results, problem.times);
   return 0;
 }
 
@@ -268,32 +221,23 @@ int homogenize(const HomogenizeVerb& options) {
   std::optional<ReachedAccuracy> reached;
   if (options.accuracy) {
     const EffectiveStiffness& result = homogenized.result;
-    double largest = 0;
-    for (const auto& row : result.stiffness)
-      for (const double entry : row) largest = std::max(largest, std::abs(entry));
-    reached =
-        solver_accuracy(*options.accuracy, result.error_bound / largest, result.condition, homogenized.times.total());
+    reached = solver_accuracy(*options.accuracy, result.error_bound / largest_entry(result.stiffness), result.condition,
+                              homogenized.times.total());
   }
   if (common.out) {
     Stopwatch watch;
     write_states(common, homogenized);
-    write_file(*common.out / "case.toml", to_toml(problem.resolved, *common.out), common.overwrite);
+    write_case(common, problem.resolved);
     homogenized.times.add("files", watch.lap());
   }
-  std::string report = describe_problem(problem, homogenized.result.effects) + describe_homogenized(homogenized);
-  if (reached) report += describe_accuracy(*reached);
-  JsonObject object;
-  add_common(object, homogenized.status(), report, homogenized.times, homogenized.result.effects);
-  add_homogenized(object, homogenized);
-  object.set("strain_of_states", written_strain);
-  if (reached) add_accuracy(object, *reached);
-  deliver(common, report, object);
-  if (common.out) {
-    const bool states = !homogenized.result.fluctuations.empty();
-    say(common, fmt::format("written to {}{}", common.out->string(),
-                            states ? fmt::format("; states are those of strains of {}", written_strain)
-                                   : ", without states: those are of prescribed strains"));
-  }
+  Results results = homogenized_results(homogenized);
+  results.set("strain_of_states", written_strain);
+  if (reached) results.append(accuracy_results(*reached));
+  if (common.out && homogenized.result.fluctuations.empty())
+    results.line("files", "without states: those are of prescribed strains");
+  else if (common.out)
+    results.line("files", fmt::format("states are those of strains of {}", written_strain));
+  deliver(common, homogenized.status(), results, homogenized.times);
   return 0;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A case that was homogenized: what report and JSON of `equidem homogenize` are made of.
+/// A case that was homogenized: the numbers of `equidem homogenize`.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/homogenize/fabric.hpp"
-#include "equidem/output/files/json.hpp"
+#include "equidem/output/results.hpp"
 
 #include "problem.hpp"
 
@@ -67,10 +67,7 @@ struct StiffnessAxes {
 };
 StiffnessAxes stiffness_axes(const Matrix3& stiffness);
 
-/// The report for people, after describe_problem.
-std::string describe_homogenized(const Homogenized& homogenized);
-
-/// The keys of the verb.
-void add_homogenized(JsonObject& object, const Homogenized& homogenized);
+/// Report and JSON of the verb.
+Results homogenized_results(const Homogenized& homogenized);
 
 }  // namespace equidem

@@ -6,32 +6,21 @@
 #include "equidem/casefile/pack_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
-#include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/core/threads.hpp"
 #include "equidem/output/files/grain_tables.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"
 #include "equidem/packing/network.hpp"
 
 #include "command.hpp"
-#include "pack/pack_report.hpp"
+#include "pack/pack_results.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
 namespace {
 
-PackCase read(const CommonOptions& common) {
-  if (common.threads > 0) set_thread_count(common.threads);
-  set_progress_shown(!common.quiet);
-  std::vector<std::string> overrides = common.set;
-  if (common.seed) overrides.push_back(fmt::format("packing.seed={}", *common.seed));
-  return read_pack_case(common.case_file, overrides);
-}
-
 void check_outputs(const CommonOptions& common, const PackCase& resolved) {
   const OutputPlan plan(common);
-  plan.expect_json();
-  for (const char* name : {"result.json", "case.toml"}) plan.expect(name);
+  plan.expect_results();
   plan.expect("assembly.json");
   if (!resolved.packing.box.periodic()) plan.expect("assembly_with_walls.json");
   if (resolved.csv) {
@@ -78,18 +67,6 @@ void write_files(const CommonOptions& common, const PackCase& resolved, const Gr
                          .walls = walls},
                         common.overwrite);
   }
-  write_file(folder / "case.toml", to_toml(resolved.document, folder), common.overwrite);
-}
-
-int dry_run(const CommonOptions& common, const PackCase& resolved) {
-  JsonObject object;
-  const std::string report = describe_pack_case(resolved);
-  add_common(object, "dry_run", report, {}, {});
-  object.set("grains", resolved.packing.radii.size());
-  CommonOptions without_folder = common;
-  without_folder.out.reset();
-  deliver(without_folder, report, object);
-  return 0;
 }
 
 /// Bodies that settled stay what they are where statics cannot judge them: a network may have motions without
@@ -121,9 +98,13 @@ auto located(const PackCase& resolved, const char* key, const Task& task) {
 }
 
 int run(const CommonOptions& common) {
-  const PackCase resolved = read(common);
+  prepare(common);
+  const PackCase resolved = read_pack_case(common.case_file, overrides_of(common, "packing.seed"));
   check_outputs(common, resolved);
-  if (common.dry_run) return dry_run(common, resolved);
+  if (common.dry_run) {
+    deliver(common, "dry_run", pack_case_results(resolved).set("grains", resolved.packing.radii.size()), {});
+    return 0;
+  }
   StageTimes times;
   Stopwatch watch;
   const GrainPacking packing = located(resolved, "method", [&] { return pack(resolved.packing); });
@@ -133,13 +114,9 @@ int run(const CommonOptions& common) {
   const std::optional<ConfirmedRest> rest = confirmed(resolved, packing);
   times.add("statics", watch.lap());
   if (common.out) write_files(common, resolved, packing);
+  write_case(common, resolved.document);
   times.add("files", watch.lap());
-  const std::string report = describe_pack_case(resolved) + describe_packing(resolved, packing, measures, rest, times);
-  JsonObject object;
-  add_common(object, "done", report, times, {});
-  add_packing(object, resolved, packing, measures, rest);
-  deliver(common, report, object);
-  if (common.out) say(common, fmt::format("written to {}", common.out->string()));
+  deliver(common, "done", packing_results(resolved, packing, measures, rest), times);
   return 0;
 }
 

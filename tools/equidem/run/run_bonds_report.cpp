@@ -39,7 +39,7 @@ void add_bonds(JsonObject& object, const GrainSetup& setup, const BondReport& bo
   if (setup.step.bond_limit > 0) {
     entry.set("critical_time_step", setup.step.bond_limit);
   } else {
-    entry.set_null("critical_time_step");
+    entry.set("critical_time_step", nullptr);
   }
   for (const auto& [name, drift] : {std::pair{"distance_drift", &bonds.distance}, std::pair{"slip_drift", &bonds.slip},
                                     std::pair{"roll_drift", &bonds.roll}}) {

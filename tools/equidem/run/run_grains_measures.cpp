@@ -11,8 +11,6 @@
 #include "equidem/fields/coarse_fields.hpp"
 #include "equidem/output/files/csv.hpp"
 
-#include "csv_cells.hpp"
-
 namespace equidem {
 namespace {
 

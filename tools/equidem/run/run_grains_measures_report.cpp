@@ -9,10 +9,10 @@
 #include "equidem/core/text.hpp"
 #include "equidem/fields/coarse_fields.hpp"
 #include "equidem/fields/spectrum.hpp"
+#include "equidem/output/files/csv.hpp"
 #include "equidem/output/pictures/field_files.hpp"
 #include "equidem/output/plots/plot.hpp"
 
-#include "csv_cells.hpp"
 #include "run/run_grains_measures.hpp"
 #include "solve/report.hpp"
 
@@ -25,7 +25,7 @@ std::string shown(double value, const char* unit = "") {
 
 void set_known(JsonObject& object, const std::string& key, double value) {
   if (std::isnan(value)) {
-    object.set_null(key);
+    object.set(key, nullptr);
   } else {
     object.set(key, value);
   }

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "equidem/grains/scene/kinds.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/scene/kinds.hpp"
 #include "equidem/output/files/grain_energy.hpp"
 #include "equidem/output/plots/plot.hpp"
 
@@ -138,8 +138,8 @@ std::string describe_pairs(const GrainCase& resolved) {
   const auto masses = masses_of_kinds(resolved.scene.grains, resolved.scene.kinds);
   constexpr int most_kinds = 8;
   if (resolved.contacts.kind_count() > most_kinds)
-    return report_line("contacts",
-                       fmt::format("{} kinds of bodies, each pair with its own stiffness", resolved.contacts.kind_count()));
+    return report_line("contacts", fmt::format("{} kinds of bodies, each pair with its own stiffness",
+                                               resolved.contacts.kind_count()));
   for (int a = 0; a < resolved.contacts.kind_count(); ++a) {
     for (int b = a; b < resolved.contacts.kind_count(); ++b) {
       if (!reduced_masses(masses, a, b)) continue;
@@ -190,7 +190,8 @@ std::string advice_on_balance(const GrainSetup& setup, const GrainSimulation& si
         std::abs(ledger.error()), energy_unit(resolved.body),
         ledger.error() > 0 ? "came from nothing" : "vanished uncounted");
   }
-  const bool euler = gives_force(resolved.options.law) && resolved.options.scheme == GrainOptions::Scheme::semi_implicit_euler;
+  const bool euler =
+      gives_force(resolved.options.law) && resolved.options.scheme == GrainOptions::Scheme::semi_implicit_euler;
   if (euler && !simulation.effects().tangential_springs && ledger.lost_slip > std::abs(ledger.error())) {
     return "contacts without tangential springs that nearly stick count too large a loss by slip in "
            "semi_implicit_euler; take velocity_verlet, or a tangential_ratio above 0";
@@ -302,7 +303,7 @@ void add_grain_step(JsonObject& object, const GrainTimeStep& step) {
     if (value > 0) {
       object.set(key, value);
     } else {
-      object.set_null(key);
+      object.set(key, nullptr);
     }
   };
   object.set("time_step", step.step).set("time_step_automatic", step.automatic);

@@ -30,22 +30,6 @@ Case with_run(Case resolved) {
   return resolved;
 }
 
-Problem problem_of(Case resolved) {
-  StageTimes times;
-  Stopwatch watch;
-  Assembly assembly = build_assembly(resolved);
-  times.add("assembly", watch.lap());
-  BuiltSprings springs = build_springs(resolved, assembly);
-  times.add("springs", watch.lap());
-  return {.resolved = std::move(resolved),
-          .assembly = std::move(assembly),
-          .springs = std::move(springs),
-          .tension = {},
-          .supports = {},
-          .load_cases = {},
-          .times = std::move(times)};
-}
-
 TimeStep step_of(Problem& problem, const Scene& scene, const std::optional<KeptStep>& kept) {
   const RunCase& run = *problem.resolved.run;
   Stopwatch watch;

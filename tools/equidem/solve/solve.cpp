@@ -7,40 +7,28 @@
 
 #include <CLI/CLI.hpp>
 
-#include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/csv.hpp"
-#include "equidem/output/files/vtk.hpp"
-#include "equidem/output/pictures/picture.hpp"
 
 #include "command.hpp"
 #include "problem.hpp"
-#include "solve/report.hpp"
 #include "solve/solve_accuracy.hpp"
+#include "solve/solve_results.hpp"
+#include "state_files.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
 namespace {
 
-/// "discs" or, of a named load case, "discs_NAME".
-std::string file_stem(const std::string& stem, const std::string& load_case) {
-  return load_case.empty() ? stem : stem + "_" + load_case;
+/// Of the names of the files of a load case.
+std::string suffix_of(const std::string& load_case) {
+  return load_case.empty() ? "" : "_" + load_case;
 }
 
-/// Every file that will be written, asked for before anything is computed.
+/// Every file that will be written, checked before the computation.
 void check_outputs(const CommonOptions& options, const Case& resolved) {
   const OutputPlan plan(options);
-  plan.expect_json();
-  plan.expect("result.json");
-  plan.expect("case.toml");
-  for (const NamedLoads& loads : resolved.load_cases) {
-    if (resolved.output.csv)
-      for (const char* stem : {"discs", "contacts"}) plan.expect(file_stem(stem, loads.name) + ".csv");
-    if (resolved.output.vtk)
-      for (const char* end : {".vtm", "_discs.vtp", "_contacts.vtp"}) plan.expect(file_stem("state", loads.name) + end);
-    if (resolved.output.picture)
-      for (const char* end : {".svg", ".png"}) plan.expect(file_stem("picture", loads.name) + end);
-  }
+  plan.expect_results();
+  for (const NamedLoads& loads : resolved.load_cases) expect_state(plan, resolved.output, suffix_of(loads.name));
 }
 
 /// The force on each loaded disc.
@@ -78,79 +66,26 @@ std::vector<DrawnSupport> drawn_supports(const Problem& problem) {
 
 void write_outputs(const CommonOptions& options, const Problem& problem, const LoadCase& loads,
                    const SolvedCase& result) {
-  const auto& folder = *options.out;
   const OutputCase& wanted = problem.resolved.output;
   const AssemblyState state{.assembly = problem.assembly,
                             .motions = result.equilibrium.motions,
                             .contact_forces = result.equilibrium.contact_forces,
                             .stresses = result.stresses};
-  if (wanted.csv) {
-    write_disc_csv(folder / (file_stem("discs", result.name) + ".csv"), state, options.overwrite);
-    write_contact_csv(folder / (file_stem("contacts", result.name) + ".csv"), state, options.overwrite);
-  }
-  if (wanted.vtk) write_vtk(folder, file_stem("state", result.name), state, options.overwrite);
-  if (wanted.picture) {
-    PictureOptions picture{.title = problem.resolved.title};
-    picture.loads = drawn_loads(problem, loads);
-    picture.supports = drawn_supports(problem);
-    write_picture(folder, file_stem("picture", result.name), state, picture, options.overwrite);
-  }
-}
-
-/// The keys of one load case.
-void add_result(JsonObject& object, const Problem& problem, const SolvedCase& result) {
-  add_equilibrium(object, result.equilibrium);
-  if (result.stress) {
-    object.set("stress", voigt_stress(*result.stress));
-    object.set("stress_tensor", *result.stress);
-    object.set("stress_asymmetry", asymmetry(*result.stress));
-    object.set("moment_per_area", result.moment_per_area);
-  }
-
-  if (result.tension) {
-    add_tension(object, *problem.resolved.test, *problem.tension, *result.tension);
-    if (const auto theory = tension_theory(problem)) {
-      JsonObject expected;
-      expected.set("poisson_ratio", theory->poisson_ratio).set("stiffness_ratio", theory->stiffness_ratio);
-      object.set("theory", expected);
-    }
-  }
-}
-
-void add_problem(JsonObject& object, const Problem& problem) {
-  object.set("title", problem.resolved.title);
-  object.set("discs", problem.assembly.size());
-  object.set("contacts", problem.assembly.contacts.size());
-  object.set("coordination_number", problem.assembly.coordination_number());
-  if (problem.assembly.periodic() || !problem.assembly.cell_areas.empty()) {
-    object.set("area", problem.assembly.area());
-    object.set("solid_fraction", problem.assembly.solid_fraction());
-  }
-  if (problem.springs.constants) {
-    object.set("kN", problem.springs.constants->kN);
-    object.set("kT", problem.springs.constants->kT);
-  }
+  write_state(options, wanted, suffix_of(result.name), state);
+  PictureOptions picture{.title = problem.resolved.title};
+  picture.loads = drawn_loads(problem, loads);
+  picture.supports = drawn_supports(problem);
+  write_state_picture(options, wanted, suffix_of(result.name), state, picture);
 }
 
 int dry_run_solution(const CommonOptions& options, const Problem& problem) {
   const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
   StageTimes times = problem.times;
-  Stopwatch watch;
-  const SolveEstimate size =
-      estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options());
-  times.add("analysis", watch.lap());
-  const std::string report = describe_problem(problem, effects) + describe_estimate(size);
-  JsonObject object;
-  add_common(object, "dry_run", report, times, effects);
-  add_problem(object, problem);
-  object.set("unknowns", size.unknowns);
-  object.set("factor_nonzeros", size.factor_nonzeros);
-  object.set("factor_bytes", size.factor_bytes);
-  object.set("peak_bytes", size.peak_bytes);
-  object.set("operations", size.operations);
-  CommonOptions without_folder = options;
-  without_folder.out.reset();
-  deliver(without_folder, report, object);
+  const Stopwatch watch;
+  const Results estimate =
+      estimate_results(estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options()));
+  times.add("analysis", watch.seconds());
+  deliver(options, "dry_run", problem_results(problem, effects).append(estimate), times);
   return 0;
 }
 
@@ -189,31 +124,13 @@ bool solve_once(const CommonOptions& options, const Problem& problem, const std:
   if (options.out) {
     for (std::size_t k = 0; k < results.size(); ++k)
       write_outputs(options, problem, problem.load_cases[k].loads, results[k]);
-    write_file(*options.out / "case.toml", to_toml(problem.resolved, *options.out), options.overwrite);
+    write_case(options, problem.resolved);
     times.add("files", watch.lap());
   }
 
-  const Effects& effects = solver.effects();
-  std::string report = describe_problem(problem, effects) + describe_results(problem, results, times);
-  if (reached) report += describe_accuracy(*reached);
-  JsonObject object;
-  add_common(object, results.front().status(), report, times, effects);
-  add_problem(object, problem);
-  if (results.size() == 1 && results.front().name.empty()) {
-    add_result(object, problem, results.front());
-  } else {
-    std::vector<JsonObject> cases;
-    for (const SolvedCase& result : results) {
-      JsonObject one;
-      one.set("case", result.name);
-      add_result(one, problem, result);
-      cases.push_back(std::move(one));
-    }
-    object.set("load_cases", cases);
-  }
-  if (reached) add_accuracy(object, *reached);
-  deliver(options, report, object);
-  if (options.out) say(options, fmt::format("written to {}", options.out->string()));
+  Results all = solve_results(problem, solver.effects(), results);
+  if (reached) all.append(accuracy_results(*reached));
+  deliver(options, results.front().status(), all, times);
   return true;
 }
 

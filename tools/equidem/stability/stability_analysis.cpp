@@ -47,7 +47,7 @@ CriticalMotion critical_of_large_cell(const Problem& problem, bool rotation) {
   const Vec2 period = *problem.assembly.period;
   CriticalMotion critical{.ratio = -std::numeric_limits<double>::infinity()};
   const bool antiperiodic = problem.assembly.size() <= most_discs_of_antiperiodic;
-  std::string searched;
+  std::vector<std::string> searched;
   for (const auto& [x, y] :
        {std::pair{false, false}, std::pair{true, false}, std::pair{false, true}, std::pair{true, true}}) {
     if ((x || y) && !antiperiodic) continue;
@@ -62,7 +62,7 @@ CriticalMotion critical_of_large_cell(const Problem& problem, bool rotation) {
       if (error.kind() != ErrorKind::computation_failed || !(x || y)) throw;
       continue;  // gears that turn from cell to cell: this wave stays unsearched
     }
-    searched += (searched.empty() ? "" : ", ") + wave.name;
+    searched.push_back(wave.name);
     if (ratio <= critical.ratio) continue;
     critical.ratio = ratio;
     critical.wave = wave;
@@ -71,7 +71,7 @@ CriticalMotion critical_of_large_cell(const Problem& problem, bool rotation) {
   critical.searched = fmt::format(
       "by inertia, of the waves of the given cell: {} (Gamma: repeats with the cell; X, Y, S: changes "
       "sign along x, y, both). Other waves were not searched",
-      searched);
+      joined(searched));
   return critical;
 }
 
@@ -135,15 +135,7 @@ double Stability::growth_rate() const {
 }
 
 Problem stability_problem(Case resolved) {
-  const bool acts = resolved.test || !resolved.supports.empty() || !resolved.load_cases.front().loads.empty();
-  if (acts) return build_problem(std::move(resolved));
-  StageTimes times;
-  Stopwatch watch;
-  Assembly assembly = build_assembly(resolved);
-  times.add("assembly", watch.lap());
-  BuiltSprings springs = build_springs(resolved, assembly);
-  times.add("springs", watch.lap());
-  return {std::move(resolved), std::move(assembly), std::move(springs), {}, {}, {}, std::move(times)};
+  return acts(resolved) ? build_problem(std::move(resolved)) : problem_of(std::move(resolved));
 }
 
 Stability analyze_stability(const Problem& problem) {

@@ -10,13 +10,14 @@
 #include <vector>
 
 #include "equidem/core/stopwatch.hpp"
-#include "equidem/output/files/json.hpp"
+#include "equidem/output/results.hpp"
 #include "equidem/statics/critical_ratio.hpp"
 #include "equidem/statics/mechanisms.hpp"
 #include "equidem/waves/sound.hpp"
 #include "equidem/waves/vibration.hpp"
 #include "equidem/waves/wave_survey.hpp"
 
+#include "command.hpp"
 #include "problem.hpp"
 
 namespace equidem {
@@ -70,14 +71,17 @@ Stability analyze_stability(const Problem& problem);
 /// kg/m³ of the case, or 1.
 double density_of(const Case& resolved);
 
-std::string describe_stability(const Stability& stability);
-JsonObject stability_json(const Stability& stability, const std::string& report);
+/// omega of omega², or the growth rate with a minus sign: spectra with unstable branches are drawn so.
+double signed_root(double squared);
+
+/// Report and JSON of the verb.
+Results stability_results(const Stability& stability);
 
 /// \name Tables and plots of the survey.
 /// \{
 void write_survey(const std::filesystem::path& folder, const Stability& stability, bool overwrite);
-/// Names of the files that write_survey writes.
-std::vector<std::string> survey_files();
+/// \throws Error (bad_input) where a file of write_survey could not be written
+void expect_survey(const OutputPlan& plan);
 /// \}
 
 }  // namespace equidem

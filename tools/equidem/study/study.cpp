@@ -15,7 +15,7 @@
 
 #include "command.hpp"
 #include "study/study_file.hpp"
-#include "study/study_report.hpp"
+#include "study/study_results.hpp"
 #include "study/study_samples.hpp"
 #include "verbs.hpp"
 
@@ -67,9 +67,7 @@ void check_outputs(const StudyVerb& verb, const Study& study, bool continues) {
   common.overwrite = common.overwrite || continues;
   const OutputPlan plan(common);
   for (const char* name : {samples_name, "study.csv", "result.json"}) plan.expect(name);
-  for (const std::string& name : study_plot_names(study)) {
-    for (const char* end : {".csv", ".gp", ".svg", ".png"}) plan.expect(name + end);
-  }
+  for (const std::string& name : study_plot_names(study)) plan.expect_plot(name);
 }
 
 void check(const StudyVerb& verb) {
@@ -107,6 +105,7 @@ int run_verb(const StudyVerb& verb) {
     return 0;
   }
   check(verb);
+  const Stopwatch watch;
   set_thread_count(verb.common.threads > 0 ? verb.common.threads : 1);
   set_progress_shown(!verb.common.quiet);
   const Study study =
@@ -137,21 +136,20 @@ int run_verb(const StudyVerb& verb) {
                      .accuracy = verb.accuracy,
                      .recommendations = {}};
   if (verb.accuracy) report.recommendations = recommend(study, report.result, *verb.accuracy);
-  std::string text = describe_study(report);
+  Results results = study_results(report);
   if (samples.stopped)
-    text += fmt::format("INCOMPLETE: stopped after {} of all settings\n", counted(samples.rounds(), "round"));
+    results.block(fmt::format("INCOMPLETE: stopped after {} of all settings\n", counted(samples.rounds(), "round")));
   if (folder) {
     write_csv(*folder / "study.csv", study_table(report), true);
-    for (const auto& [name, plot] : study_plots(report)) text += write_plot(*folder, name, plot, true).message + "\n";
+    for (const auto& [name, plot] : study_plots(report))
+      results.block(write_plot(*folder, name, plot, true).message + "\n");
   }
-  CommonOptions common = verb.common;
-  common.overwrite = common.overwrite || folder.has_value();
-  deliver(common, text, study_json(report, text));
-  if (folder) say(verb.common, fmt::format("written to {}", folder->string()));
+  StageTimes times;
+  times.add("study", watch.seconds());
+  deliver(verb.common, report.result.complete ? "done" : "interrupted", results, times);
   if (samples.stopped) {
-    throw Error(ErrorKind::interrupted, "stopped as asked",
-                fmt::format("{} of all settings are done", counted(samples.rounds(), "round")),
-                folder ? "Run the same command to go on" : "With --out DIR what is done would be kept");
+    throw_stopped(verb.common, fmt::format("{} of all settings are done", counted(samples.rounds(), "round")),
+                  "Run the same command to go on");
   }
   refuse_all_failed(report);
   if (verb.accuracy) refuse_unreached(report);

@@ -6,7 +6,7 @@
 
 #include "equidem/core/text.hpp"
 
-#include "study/study_report.hpp"
+#include "study/study_results.hpp"
 
 namespace equidem {
 namespace {

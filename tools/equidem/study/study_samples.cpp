@@ -8,8 +8,6 @@
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/csv.hpp"
 
-#include "csv_cells.hpp"
-
 namespace equidem {
 namespace {
 

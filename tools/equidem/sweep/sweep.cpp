@@ -18,7 +18,6 @@
 
 #include "command.hpp"
 #include "problem.hpp"
-#include "solve/report.hpp"
 #include "sweep/sweep_table.hpp"
 #include "verbs.hpp"
 
@@ -31,7 +30,7 @@ struct SweepOptions {
   std::optional<double> from, to;
   int steps = 11;
   std::vector<double> values;
-  std::string verb = "solve";
+  std::string verb;  ///< no longer taken
   bool resume = false;
 };
 
@@ -204,8 +203,7 @@ void check_outputs(const SweepOptions& options) {
   common.overwrite = common.overwrite || options.resume;
   const OutputPlan plan(common);
   for (const char* name : {table_name, case_name, "result.json"}) plan.expect(name);
-  for (const char* name : curve_names)
-    for (const char* end : {".csv", ".gp", ".svg", ".png"}) plan.expect(std::string(name) + end);
+  for (const char* name : curve_names) plan.expect_plot(name);
   OutputPlan(options.common).expect_json();
 }
 
@@ -236,17 +234,13 @@ void check_key(const SweepOptions& options, const Case& base, double first) {
 int dry_run(const SweepOptions& options, const Case& base, const std::vector<double>& values) {
   const Problem problem = build_problem(base);
   const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
-  const std::string report =
-      fmt::format("{} of {}, each about as large as this one:\n\n",
-                  counted(static_cast<long long>(values.size()), "point"), options.key) +
-      describe_problem(problem, effects) +
-      describe_estimate(estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options()));
-  JsonObject object;
-  add_common(object, "dry_run", report, problem.times, effects);
-  object.set("key", options.key).set("values", values);
-  CommonOptions without_folder = options.common;
-  without_folder.out.reset();
-  deliver(without_folder, report, object);
+  Results results;
+  results.block(
+      fmt::format("{} of {}, each about as large as this one:\n\n", counted(std::ssize(values), "point"), options.key));
+  results.append(problem_results(problem, effects));
+  results.append(
+      estimate_results(estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options())));
+  deliver(options.common, "dry_run", results.set("key", options.key).set("values", values), problem.times);
   return 0;
 }
 
@@ -290,9 +284,7 @@ Progressed compute_points(const SweepOptions& options, const Case& base, const s
 }
 
 int sweep(const SweepOptions& options) {
-  if (options.verb != "solve")
-    refuse_sweep(fmt::format("--verb {} cannot be swept", options.verb), "this version sweeps solve",
-                 "Leave out --verb");
+  if (!options.verb.empty()) refuse_sweep("'equidem sweep' takes no --verb", "a sweep solves", "Leave it out");
   const std::vector<double> values = values_of(options);
   const Case base = read_case(options.common);
   check_key(options, base, values.front());
@@ -309,28 +301,22 @@ int sweep(const SweepOptions& options) {
       std::count_if(points.begin(), points.end(), [](const SweepPoint& point) { return point.status == "failed"; }));
   const bool all_failed = failed == points.size();
 
-  std::string report = base.title.empty() ? "" : base.title + "\n\n";
-  report += describe_sweep(options.key, points);
-  if (failed > 0)
-    report +=
-        fmt::format("{} failed, {} done\n", counted(static_cast<long long>(failed), "point"), points.size() - failed);
-  if (run.stopped) report += fmt::format("INCOMPLETE: stopped after {} of {} points\n", done, values.size());
-  if (folder && !run.stopped && base.test) report += plot_curves(options, base, points, true);
-
-  JsonObject object;
-  add_common(object, run.stopped ? "interrupted" : all_failed ? "failed" : "done", report, run.times, run.effects);
-  object.set("key", options.key).set("complete", !run.stopped);
-  std::vector<JsonObject> rows;
-  for (const SweepPoint& point : points) rows.push_back(sweep_json("value", point));
-  object.set("points", rows);
-  CommonOptions common = options.common;
-  common.overwrite = true;
-  deliver(common, report, object);
-  if (folder) say(options.common, fmt::format("written to {}", folder->string()));
+  Results results;
+  if (!base.title.empty()) results.block(base.title + "\n\n");
+  results.set("key", options.key).set("complete", !run.stopped).table("points", sweep_rows(options.key, points));
+  if (failed > 0) {
+    results.block(
+        fmt::format("{} failed, {} done\n", counted(static_cast<long long>(failed), "point"), points.size() - failed));
+  }
+  if (run.stopped) results.block(fmt::format("INCOMPLETE: stopped after {} of {} points\n", done, values.size()));
+  if (folder && !run.stopped && base.test) results.block(plot_curves(options, base, points, true));
+  Results effects;
+  add_effects(effects, run.effects);
+  results.append(effects.hidden());
+  deliver(options.common, run.stopped ? "interrupted" : all_failed ? "failed" : "done", results, run.times);
   if (run.stopped) {
-    throw Error(
-        ErrorKind::interrupted, "stopped as asked", fmt::format("{} of {} points are done", done, values.size()),
-        folder ? "Run the same command with --resume to do the rest" : "With --out DIR the points done would be kept");
+    throw_stopped(options.common, fmt::format("{} of {} points are done", done, values.size()),
+                  "Run the same command with --resume to do the rest");
   }
   if (all_failed)
     computation_failed("none of the points could be computed",
@@ -355,7 +341,7 @@ Run declare_sweep(CLI::App& command) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("A,B,C");
-  command.add_option("--verb", options->verb, "what is done at each value: solve")->type_name("VERB");
+  command.add_option("--verb", options->verb)->group("");
   command.add_flag("--resume", options->resume, "keep the points that lie in --out, compute the others");
   command.footer(
       "Examples:\n"

@@ -8,8 +8,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-
-#include "csv_cells.hpp"
+#include "equidem/output/files/csv.hpp"
 
 namespace equidem {
 namespace {
@@ -17,17 +16,33 @@ namespace {
 struct NumberColumn {
   const char* name;
   double SweepPoint::*member;
+  const char* label;  ///< in the report; empty: left out
+  const char* unit = "";
+  Shown shown = {.digits = 8};
+  bool of_tension = false;
 };
 
 constexpr std::array number_columns{
-    NumberColumn{"poisson_ratio", &SweepPoint::poisson_ratio},
-    NumberColumn{"stiffness_ratio", &SweepPoint::stiffness_ratio},
-    NumberColumn{"theory_poisson_ratio", &SweepPoint::theory_poisson_ratio},
-    NumberColumn{"theory_stiffness_ratio", &SweepPoint::theory_stiffness_ratio},
-    NumberColumn{"energy", &SweepPoint::energy},
-    NumberColumn{"relative_residual", &SweepPoint::relative_residual},
-    NumberColumn{"negative_pivots", &SweepPoint::negative_pivots},
-    NumberColumn{"unstable_modes", &SweepPoint::unstable_modes},
+    NumberColumn{.name = "poisson_ratio", .member = &SweepPoint::poisson_ratio, .label = "nu", .of_tension = true},
+    NumberColumn{.name = "stiffness_ratio",
+                 .member = &SweepPoint::stiffness_ratio,
+                 .label = "2G/((1-nu)kN)",
+                 .of_tension = true},
+    NumberColumn{.name = "theory_poisson_ratio",
+                 .member = &SweepPoint::theory_poisson_ratio,
+                 .label = "nu theory",
+                 .of_tension = true},
+    NumberColumn{.name = "theory_stiffness_ratio",
+                 .member = &SweepPoint::theory_stiffness_ratio,
+                 .label = "2G/((1-nu)kN) theory",
+                 .of_tension = true},
+    NumberColumn{.name = "energy", .member = &SweepPoint::energy, .label = "energy", .unit = "N"},
+    NumberColumn{.name = "relative_residual",
+                 .member = &SweepPoint::relative_residual,
+                 .label = "residual",
+                 .shown = {Shown::power, 1}},
+    NumberColumn{.name = "negative_pivots", .member = &SweepPoint::negative_pivots, .label = ""},
+    NumberColumn{.name = "unstable_modes", .member = &SweepPoint::unstable_modes, .label = "unstable"},
 };
 
 std::vector<std::string> column_names(const std::string& key) {
@@ -35,10 +50,6 @@ std::vector<std::string> column_names(const std::string& key) {
   for (const NumberColumn& column : number_columns) names.emplace_back(column.name);
   names.emplace_back("message");
   return names;
-}
-
-std::string shown(double value) {
-  return std::isnan(value) ? "-" : fmt::format("{:.8g}", value);
 }
 
 }  // namespace
@@ -92,34 +103,21 @@ std::vector<SweepPoint> read_sweep_csv(const std::filesystem::path& path, const 
   return points;
 }
 
-JsonObject sweep_json(const std::string& key, const SweepPoint& point) {
-  JsonObject object;
-  object.set(key, point.value).set("status", point.status);
-  for (const NumberColumn& column : number_columns) object.set(column.name, point.*column.member);
-  if (!point.message.empty()) object.set("message", point.message);
-  return object;
-}
-
-std::string describe_sweep(const std::string& key, const std::vector<SweepPoint>& points) {
-  const bool tension =
-      std::any_of(points.begin(), points.end(), [](const SweepPoint& p) { return !std::isnan(p.poisson_ratio); });
-  const auto moduli = [&](const auto& nu, const auto& nu_theory, const auto& stiffness, const auto& stiffness_theory) {
-    return tension ? fmt::format("{:>14} {:>14} {:>14} {:>14} ", nu, nu_theory, stiffness, stiffness_theory)
-                   : std::string();
-  };
-  std::string out = fmt::format("{:>14}  {:<8} {}{:>14}  {:>9} {:>9}\n", key, "status",
-                                moduli("nu", "theory", "2G/((1-nu)kN)", "theory"), "energy, N", "residual", "unstable");
-  for (const SweepPoint& p : points) {
-    out += fmt::format("{:>14.8g}  {:<8} ", p.value, p.status);
-    if (p.status == "failed") {
-      out += p.message + "\n";
-      continue;
+std::vector<Results> sweep_rows(const std::string& key, const std::vector<SweepPoint>& points) {
+  const bool tension = std::ranges::any_of(points, [](const SweepPoint& p) { return !std::isnan(p.poisson_ratio); });
+  std::vector<Results> rows;
+  for (const SweepPoint& point : points) {
+    Results row;
+    row.add("value", key, point.value, "", {.digits = 8}).add("status", "status", point.status);
+    for (const NumberColumn& column : number_columns) {
+      const bool shown = *column.label != '\0' && (tension || !column.of_tension) && point.status != "failed";
+      shown ? row.add(column.name, column.label, point.*column.member, column.unit, column.shown)
+            : row.set(column.name, point.*column.member);
     }
-    out += moduli(shown(p.poisson_ratio), shown(p.theory_poisson_ratio), shown(p.stiffness_ratio),
-                  shown(p.theory_stiffness_ratio));
-    out += fmt::format("{:>14}  {:>9.1e} {:>9}\n", shown(p.energy), p.relative_residual, shown(p.unstable_modes));
+    if (!point.message.empty()) row.set("message", point.message).note(point.message);
+    rows.push_back(std::move(row));
   }
-  return out;
+  return rows;
 }
 
 }  // namespace equidem

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "equidem/output/files/csv.hpp"
-#include "equidem/output/files/json.hpp"
+#include "equidem/output/results.hpp"
 
 namespace equidem {
 
@@ -38,9 +38,7 @@ std::string sweep_csv(const std::string& key, const std::vector<SweepPoint>& poi
 /// \throws Error (bad_input) where the file is another table or damaged
 std::vector<SweepPoint> read_sweep_csv(const std::filesystem::path& path, const std::string& key);
 
-JsonObject sweep_json(const std::string& key, const SweepPoint& point);
-
-/// The table as people read it.
-std::string describe_sweep(const std::string& key, const std::vector<SweepPoint>& points);
+/// One row for each point: value (labelled by the key), status, the numbers, message.
+std::vector<Results> sweep_rows(const std::string& key, const std::vector<SweepPoint>& points);
 
 }  // namespace equidem

@@ -100,13 +100,13 @@ void show_block(const Block& block, const CommonOptions& options) {
   write_picture(*options.out, "tension", state, picture, options.overwrite);
 }
 
-void add_numbers(JsonObject& object, const Reproduction& result) {
+void add_numbers(Results& object, const Reproduction& result) {
   object.set("columns", result.block.columns).set("rows", result.block.rows);
   object.set("height", result.height).set("gauge_length", result.gauge_length).set("gauge_height", result.gauge_height);
   object.set("critical_ratio_lattice", result.lattice_limit).set("critical_ratio_block", result.block_limit);
-  std::vector<JsonObject> points, convergence;
+  std::vector<Results> points, convergence;
   for (const auto& p : result.points) {
-    JsonObject point;
+    Results point;
     point.set("ratio", p.ratio).set("poisson_ratio", p.poisson_ratio).set("stiffness_ratio", p.stiffness_ratio);
     point.set("negative_pivots", p.negative_pivots).set("unstable_modes", p.unstable_modes);
     point.set("relative_residual", p.relative_residual).set("stable", p.stable());
@@ -117,14 +117,14 @@ void add_numbers(JsonObject& object, const Reproduction& result) {
   object.set("points", points);
   for (const auto& c : result.convergence) {
     for (const auto& p : c.points) {
-      JsonObject point;
+      Results point;
       point.set("ratio", c.ratio).set("rows", p.rows).set("poisson_ratio_error", p.poisson_ratio_error);
       point.set("stiffness_ratio_error", p.stiffness_ratio_error);
       convergence.push_back(std::move(point));
     }
   }
   object.set("convergence", convergence);
-  JsonObject stress;
+  Results stress;
   stress.set("free_rotation_deviation", result.stress.free_rotation);
   stress.set("restrained_rotation_deviation", result.stress.restrained_rotation);
   stress.set("asymmetry", result.stress.asymmetry).set("expected_asymmetry", result.stress.expected_asymmetry);
@@ -151,7 +151,7 @@ int reproduce(const Options& options) {
                                        .report = report(result),
                                        .times = result.times,
                                        .effects = derive_effects(springs, Rotation::from_scene),
-                                       .add_numbers = [&](JsonObject& object) { add_numbers(object, result); },
+                                       .add_numbers = [&](Results& object) { add_numbers(object, result); },
                                        .plots = {{"figure7", figure7(result)},
                                                  {"figure8", figure8(result)},
                                                  {"error_by_size", error_by_size(result)}}});

@@ -121,21 +121,21 @@ Table table(const Result& result) {
   return all;
 }
 
-void add_estimate(JsonObject& object, const std::string& key, const MeanEstimate& e) {
-  JsonObject one;
+void add_estimate(Results& object, const std::string& key, const MeanEstimate& e) {
+  Results one;
   one.set("mean", e.mean).set("standard_error", e.standard_error).set("standard_deviation", e.standard_deviation);
   object.set(key, one);
 }
 
-JsonObject json_of(const Result& result, const Point& p) {
+Results json_of(const Result& result, const Point& p) {
   const Family& family = result.family_of(p);
-  JsonObject object;
+  Results object;
   object.set("points", to_string(family.points)).set("disorder", family.disorder).set("stretch", family.stretch);
   object.set("branch_scatter", result.disorder[p.family].branch_scatter);
   object.set("weighting", to_string(p.weighting)).set("ratio", p.ratio);
   for (const auto& [answer, name] :
        {std::pair{exact, "exact"}, {mean_field, "mean_field"}, {voigt, "voigt"}, {uniform_stress, "uniform_stress"}}) {
-    JsonObject moduli;
+    Results moduli;
     for (const auto& [modulus, key] :
          {std::pair{bulk, "bulk_modulus_2d"}, {shear, "shear_modulus"}, {poisson, "poisson_ratio"}})
       add_estimate(moduli, key, p.numbers[number_of(answer, modulus)]);
@@ -159,10 +159,10 @@ int reproduce(const CommonOptions& options, bool quick) {
                                 .times = result.times,
                                 .effects = derive_effects(ContactSprings({1, 1}), Rotation::free),
                                 .add_numbers =
-                                    [&](JsonObject& object) {
+                                    [&](Results& object) {
                                       object.set("discs", result.plan.discs).set("samples", result.plan.samples);
                                       object.set("refusals", result.refusals);
-                                      std::vector<JsonObject> points;
+                                      std::vector<Results> points;
                                       for (const Point& p : result.points) points.push_back(json_of(result, p));
                                       object.set("points", points);
                                     },

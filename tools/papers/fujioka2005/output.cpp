@@ -68,10 +68,10 @@ Table csv_of(const std::vector<Table2Row>& rows) {
 
 /// One object per row: law, letter, a, and what `add` sets.
 template <class Row, class Add>
-std::vector<JsonObject> json_of(const std::vector<Row>& rows, Add add) {
-  std::vector<JsonObject> all;
+std::vector<Results> json_of(const std::vector<Row>& rows, Add add) {
+  std::vector<Results> all;
   for (const Row& row : rows) {
-    JsonObject object;
+    Results object;
     object.set("law", to_string(row.variant.law)).set("letter", letter_of(row.variant.law)).set("a", row.variant.a);
     add(object, row);
     all.push_back(std::move(object));
@@ -79,7 +79,7 @@ std::vector<JsonObject> json_of(const std::vector<Row>& rows, Add add) {
   return all;
 }
 
-void add_curve(JsonObject& object, const Curve& curve,
+void add_curve(Results& object, const Curve& curve,
                std::initializer_list<std::pair<const char*, double CurvePoint::*>> keys) {
   object.set("label", curve.label);
   for (const auto& [key, member] : keys) {
@@ -89,27 +89,27 @@ void add_curve(JsonObject& object, const Curve& curve,
   }
 }
 
-void add_numbers(JsonObject& object, const Reproduction& result) {
+void add_numbers(Results& object, const Reproduction& result) {
   using P = CurvePoint;
-  const auto add_impacts = [](JsonObject& o, const Impacts& law) {
+  const auto add_impacts = [](Results& o, const Impacts& law) {
     o.set("energy_ratios", law.ratio).set("deepest", law.deepest).set("ran_away", law.ran_away);
   };
-  const auto add_rest = [](JsonObject& o, const Rest& law) {
+  const auto add_rest = [](Results& o, const Rest& law) {
     o.set("balls", law.balls).set("speed_of_g_dt", law.speed).set("overlap_of_static", law.overlap);
     o.set("share_of_steps_in_contact", law.contact).set("energy_above_rest", law.energies.back());
   };
   object.set("quick", result.quick);
-  object.set("table1", json_of(result.table1.rows, [](JsonObject& o, const Table1Row& row) {
+  object.set("table1", json_of(result.table1.rows, [](Results& o, const Table1Row& row) {
                o.set("time_step", row.step).set("evaluations", row.evaluations).set("run_seconds", row.run_seconds);
                o.set("law_alone_nanoseconds", row.evaluation_nanoseconds);
                if (row.gravity_first > 0) o.set("evaluations_gravity_first", row.gravity_first);
              }));
-  object.set("table2", json_of(result.table2, [](JsonObject& o, const Table2Row& row) {
+  object.set("table2", json_of(result.table2, [](Results& o, const Table2Row& row) {
                o.set("steps", std::vector<std::int64_t>(row.steps.begin(), row.steps.end()));
              }));
   object.set("slow_impacts", json_of(result.slow, add_impacts)).set("fast_impacts", json_of(result.fast, add_impacts));
   object.set("exact_speed", exact_speed).set("exact_parting_time", exact_parting);
-  object.set("stacked", json_of(result.stacked, [](JsonObject& o, const Curve& curve) {
+  object.set("stacked", json_of(result.stacked, [](Results& o, const Curve& curve) {
                add_curve(o, curve,
                          {{"time_step", &P::step},
                           {"speed_error", &P::speed_error},
@@ -119,11 +119,11 @@ void add_numbers(JsonObject& object, const Reproduction& result) {
                o.set("speed_order", curve.speed_order).set("parting_order", curve.parting_order);
              }));
   object.set(
-      "bouncing_ball", json_of(result.ball, [](JsonObject& o, const Curve& curve) {
+      "bouncing_ball", json_of(result.ball, [](Results& o, const Curve& curve) {
         add_curve(o, curve, {{"time_step", &P::step}, {"a", &P::a}, {"error", &P::error}, {"seconds", &P::seconds}});
       }));
   object.set("rest", json_of(result.rest, add_rest)).set("column", json_of(result.column, add_rest));
-  object.set("lossless", json_of(result.lossless, [](JsonObject& o, const Rest& law) {
+  object.set("lossless", json_of(result.lossless, [](Results& o, const Rest& law) {
                o.set("energy_change", law.change(law.energies.size() - 1));
              }));
 }
@@ -139,7 +139,7 @@ int reproduce(const CommonOptions& options, bool quick) {
                                 .report = report(result),
                                 .times = result.times,
                                 .effects = start(stacked(first.pair()), first.law, 1e-3).effects(),
-                                .add_numbers = [&](JsonObject& object) { add_numbers(object, result); },
+                                .add_numbers = [&](Results& object) { add_numbers(object, result); },
                                 .tables = {{"table1", csv_of(result.table1.rows)}, {"table2", csv_of(result.table2)}},
                                 .plots = plots(result)});
 }

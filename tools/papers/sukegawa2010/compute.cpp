@@ -84,7 +84,7 @@ class Store {
 
   void keep(const std::string& name, const std::string& settings, const Outcome& outcome) const {
     if (!folder_) return;
-    JsonObject object;
+    Results object;
     object.set("settings", settings);
     for (const OutcomeKey& key : outcome_keys()) object.set(key.name, outcome.*key.value);
     write_file(file(name, ".json"), object.text(), true);

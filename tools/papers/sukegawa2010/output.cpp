@@ -26,8 +26,8 @@ Table table_of(const Reproduction& result) {
   return table;
 }
 
-JsonObject json_of(const Done& done) {
-  JsonObject object;
+Results json_of(const Done& done) {
+  Results object;
   object.set("name", done.run.name()).set("shape", plural_of(done.run.fill.shape));
   object.set("variant", done.run.fill.variant).set("seed", static_cast<std::int64_t>(done.run.fill.seed));
   if (done.run.shaking) {
@@ -64,9 +64,9 @@ int reproduce(const CommonOptions& options, bool quick) {
                           .times = result.times,
                           .effects = GrainSimulation(scene, options_of(scene, fill)).effects(),
                           .add_numbers =
-                              [&](JsonObject& object) {
+                              [&](Results& object) {
                                 object.set("quick", quick).set("planned", static_cast<std::int64_t>(result.planned));
-                                std::vector<JsonObject> runs;
+                                std::vector<Results> runs;
                                 for (const Done& done : result.runs) runs.push_back(json_of(done));
                                 object.set("runs", runs);
                               },

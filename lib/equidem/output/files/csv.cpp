@@ -92,8 +92,7 @@ std::size_t Table::rows() const {
 const Table::Column& Table::column(const std::string& name) const {
   const auto found = std::find_if(columns_.begin(), columns_.end(), [&](const Column& c) { return c.name == name; });
   if (found == columns_.end()) {
-    std::string names;
-    for (const Column& c : columns_) names += (names.empty() ? "" : ", ") + c.name;
+    const std::string names = joined(columns_, [](const Column& c) { return c.name; });
     bad_input(fmt::format("the table has no column '{}'", name), fmt::format("its columns are: {}", names),
               "Choose one of them");
   }
@@ -183,6 +182,56 @@ void write_contact_csv(const std::filesystem::path& path, const AssemblyState& s
     text.end_row();
   }
   write_file(path, text.text(), overwrite);
+}
+
+namespace {
+
+template <typename Number>
+std::optional<Number> whole_cell(const std::string& cell) {
+  Number value = 0;
+  const auto [end, problem] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (problem != std::errc() || end != cell.data() + cell.size()) return {};
+  return value;
+}
+
+}  // namespace
+
+std::vector<std::vector<std::string>> csv_cells(const std::string& text) {
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> row(1);
+  bool quoted = false;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const char c = text[k];
+    if (quoted) {
+      if (c == '"' && k + 1 < text.size() && text[k + 1] == '"') {
+        row.back() += '"';
+        ++k;
+      } else if (c == '"') {
+        quoted = false;
+      } else {
+        row.back() += c;
+      }
+    } else if (c == '"') {
+      quoted = true;
+    } else if (c == ',') {
+      row.emplace_back();
+    } else if (c == '\n') {
+      rows.push_back(std::move(row));
+      row.assign(1, {});
+    } else if (c != '\r') {
+      row.back() += c;
+    }
+  }
+  if (row.size() > 1 || !row.front().empty()) rows.push_back(std::move(row));
+  return rows;
+}
+
+std::optional<double> csv_number(const std::string& cell) {
+  return cell.empty() ? std::numeric_limits<double>::quiet_NaN() : whole_cell<double>(cell);
+}
+
+std::optional<std::int64_t> csv_integer(const std::string& cell) {
+  return whole_cell<std::int64_t>(cell);
 }
 
 }  // namespace equidem

@@ -73,4 +73,12 @@ void write_disc_csv(const std::filesystem::path& path, const AssemblyState& stat
 /// \throws Error (bad_input) as write_file does
 void write_contact_csv(const std::filesystem::path& path, const AssemblyState& state, bool overwrite);
 
+/// Cells of a CSV text (RFC 4180), row by row.
+std::vector<std::vector<std::string>> csv_cells(const std::string& text);
+
+/// The number of a whole cell; NaN where it is empty, nothing where it is no number.
+std::optional<double> csv_number(const std::string& cell);
+/// The integer of a whole cell; nothing where it is none.
+std::optional<std::int64_t> csv_integer(const std::string& cell);
+
 }  // namespace equidem

@@ -14,10 +14,8 @@ namespace equidem {
 namespace {
 
 std::string discs_in_a_cell(const Clump& clump) {
-  std::string cell;
-  for (const Clump::Disc& disc : clump.discs)
-    cell += fmt::format("{}{} {} {}", cell.empty() ? "" : "; ", disc.offset.x, disc.offset.y, disc.radius);
-  return cell;
+  const auto numbers = [](const Clump::Disc& d) { return fmt::format("{} {} {}", d.offset.x, d.offset.y, d.radius); };
+  return joined(clump.discs, numbers, "; ");
 }
 
 }  // namespace

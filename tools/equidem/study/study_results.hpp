@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "equidem/output/files/csv.hpp"
-#include "equidem/output/files/json.hpp"
 #include "equidem/output/plots/plot.hpp"
+#include "equidem/output/results.hpp"
 #include "equidem/study/evaluate.hpp"
 #include "equidem/study/run_study.hpp"
 
@@ -31,8 +31,8 @@ struct StudyReport {
   std::vector<Recommendation> recommendations;  ///< where an accuracy is asked for
 };
 
-std::string describe_study(const StudyReport& report);
-JsonObject study_json(const StudyReport& report, const std::string& text);
+/// Report and JSON of the verb.
+Results study_results(const StudyReport& report);
 /// One row per setting: problem, method, varied values, resolution, times, and of each quantity value, error and
 /// assured error.
 Table study_table(const StudyReport& report);

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The results of a computation as one list of (key, label, unit, value), from which the report and the JSON are
+/// printed.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "equidem/core/matrix.hpp"
+#include "equidem/core/vector.hpp"
+
+namespace equidem {
+
+class Results;
+struct Effects;
+
+/// The value of a result: number, integer, text, flag, vector, matrix, sub-results, a list of them, or null with the
+/// reason why it is not known.
+class ResultValue {
+ public:
+  struct Null {
+    std::string why = {};
+  };
+  using Variant = std::variant<Null, bool, std::int64_t, double, std::string, std::vector<double>,
+                               std::vector<std::int64_t>, std::vector<std::string>, std::vector<std::vector<double>>,
+                               std::shared_ptr<const Results>, std::vector<Results>>;
+
+  template <typename Given>
+  requires std::constructible_from<Variant, std::in_place_type_t<std::remove_cvref_t<Given>>, Given> &&
+      (!std::integral<std::remove_cvref_t<Given>>)ResultValue(Given&& given)
+      : value(std::in_place_type<std::remove_cvref_t<Given>>, std::forward<Given>(given)) {}
+  ResultValue(bool flag) : value(flag) {}
+  template <std::integral Integer>
+  requires(!std::same_as<Integer, bool>) ResultValue(Integer integer) : value(static_cast<std::int64_t>(integer)) {}
+  ResultValue(std::nullptr_t) : value(Null{}) {}
+  ResultValue(const char* text) : value(std::string(text)) {}
+  ResultValue(std::string_view text) : value(std::string(text)) {}
+  ResultValue(const Voigt& v) : value(std::vector<double>{v.xx, v.yy, v.xy}) {}  ///< [xx, yy, xy]
+  ResultValue(const Vec2& v) : value(std::vector<double>{v.x, v.y}) {}
+  ResultValue(const Tensor2& t)  ///< [[xx, xy], [yx, yy]]
+      : value(std::vector<std::vector<double>>{{t.xx, t.xy}, {t.yx, t.yy}}) {}
+  template <std::size_t N>
+  ResultValue(const SquareMatrix<N>& matrix) : value(std::vector<std::vector<double>>{}) {
+    for (const auto& row : matrix)
+      std::get<std::vector<std::vector<double>>>(value).emplace_back(row.begin(), row.end());
+  }
+  /// Null where it is empty.
+  template <typename Given>
+  ResultValue(const std::optional<Given>& given) : value(Null{}) {
+    if (given) *this = ResultValue(*given);
+  }
+  ResultValue(const Results& results);
+
+  Variant value;
+};
+
+/// How the report shows a number.
+struct Shown {
+  enum As {
+    number,      ///< that many significant digits
+    decimals,    ///< that many digits after the point
+    power,       ///< as a power of ten, that many digits after the point: 1.2e-15
+    percent,     ///< a share, in %
+    degrees,     ///< an angle in rad, in °
+    bytes,       ///< "5.7 GB"
+    count,       ///< digits in groups of three; the unit is a noun, in the plural where the count is not 1
+    components,  ///< of a tensor, "xx 1, yy 2, xy 0", to that many digits; round-off beside the largest is 0
+  };
+  As as = number;
+  int digits = 6;
+};
+
+/// A part of a list of results.
+struct Result {
+  enum class Part {
+    value,  ///< of both, or of the JSON alone where it is hidden, or of the report alone where the key is empty
+    line,   ///< the report begins a line; label: its name
+    note,   ///< text of the report after the values before it
+    block,  ///< lines of the report as they are
+    table,  ///< a list of results: a table of the report
+    list,   ///< a list of results: their reports, one below the other
+  };
+  Part part = Part::value;
+  std::string key = {};  ///< with '/' between the keys of nested objects
+  std::string label = {};
+  std::string unit = {};
+  ResultValue value = nullptr;
+  Shown shown = {};
+  bool hidden = false;  ///< left out of the report
+};
+
+/// An ordered list of results. Values that are added stand on the last line of the report, with commas between them, as
+/// "label value unit".
+class Results {
+ public:
+  /// A value of both. \param key empty: of the report alone
+  Results& add(std::string key, std::string label, ResultValue value, std::string unit = {}, Shown shown = {});
+  /// A value of the JSON alone.
+  Results& set(std::string key, ResultValue value);
+  /// Begins a line of the report. \param name its first column; empty: the line continues the one above
+  Results& line(std::string name, const std::string& text = {});
+  /// Text of the report that follows on the line, as it is.
+  Results& note(std::string text);
+  /// Lines of the report as they are.
+  Results& block(std::string text);
+  /// A list of results, one row each: a column for each label. \param key empty: of the report alone
+  Results& table(std::string key, std::vector<Results> rows);
+  /// A list of results whose reports follow one another. \param key empty: of the report alone
+  Results& list(std::string key, std::vector<Results> items);
+  /// All parts of another list.
+  Results& append(const Results& others);
+
+  /// With the keys in a nested object of the JSON.
+  [[nodiscard]] Results under(const std::string& object) const;
+  /// The values for the JSON alone.
+  [[nodiscard]] Results hidden() const;
+
+  [[nodiscard]] const std::vector<Result>& parts() const { return parts_; }
+  /// Whether there is a value of that key.
+  [[nodiscard]] bool contains(const std::string& key) const;
+  /// The report: a name in a column of its own, its line broken into lines of about 110 columns beside it.
+  [[nodiscard]] std::string report() const;
+  /// The JSON object, indented by two spaces, arrays of numbers on one line, with a final line break. Keys keep their
+  /// order, a later value replaces an earlier one of its key. Numbers are written in the shortest form that reads back
+  /// to the same bits; NaN and infinity, which JSON lacks, become null. Text that is not UTF-8 has its bad bytes
+  /// replaced.
+  [[nodiscard]] std::string json() const;
+
+ private:
+  std::vector<Result> parts_;
+};
+
+/// effects {active: [names], inactive: {name: why}}.
+void add_effects(Results& results, const Effects& effects);
+
+/// A line of a report: the name in a column of its own, the value broken into lines beside it.
+std::string report_line(const std::string& name, const std::string& value);
+
+}  // namespace equidem

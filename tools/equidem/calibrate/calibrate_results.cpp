@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include "equidem/core/text.hpp"
+
+#include "calibrate/calibrated.hpp"
+
+namespace equidem {
+namespace {
+
+std::string percent_beside(double value, double wanted) {
+  constexpr double rounding = 1e-12;
+  const double off = value / wanted - 1;
+  return std::abs(off) < rounding ? "as wanted" : fmt::format("{:+.3g} %", 100 * off);
+}
+
+std::string shown_springs(const SpringConstants& k) {
+  return fmt::format("kN = {:.9g} Pa, kT = {:.9g} Pa (kT/kN = {:.6g})", k.kN, k.kT, k.ratio());
+}
+
+void add_wanted(Results& out, const ElasticModuli& m) {
+  const Plane other = m.plane == Plane::strain ? Plane::stress : Plane::strain;
+  out.line("wanted")
+      .add("target/shear_modulus", "G =", m.shear_modulus, "Pa", {.digits = 9})
+      .add("target/bulk_modulus_2d", "K =", m.bulk_modulus_2d(), "Pa", {.digits = 9})
+      .add("target/poisson_ratio", "nu =", m.poisson_ratio, "in plane", {.digits = 9})
+      .note(" " + to_string(m.plane));
+  out.set("target/plane", to_string(m.plane));
+  const double nu = m.read_as(other).poisson_ratio;
+  out.line("", nu > -1 ? fmt::format("the same body in plane {}: nu = {:.9g}", to_string(other), nu)
+                       : fmt::format("in plane {} {}", to_string(other), no_solid));
+}
+
+void add_method(Results& out, const Calibration& found) {
+  out.line("method").add("method", "", found.method);
+  if (found.iterations > 0) {
+    out.note(": ").add("iterations", "", found.iterations, "step", {Shown::count});
+    out.add("factorizations", "", found.factorizations, "factorization", {Shown::count})
+        .note(found.scanned ? " in all with a scan of the range" : " in all with the two ends of the range");
+  } else {
+    out.note(found.verified ? "; checked by one factorization of this cell" : "");
+    out.set("iterations", found.iterations).set("factorizations", found.factorizations);
+  }
+  out.set("verified", found.verified);
+  if (!found.verified) {
+    out.line(
+        "",
+        "It is that of the infinite lattice: a block with free edges is softer near them, and its own stiffness is "
+        "what equidem homogenize says");
+    if (found.springs.kT < 0)
+      out.line("", "WARNING: with free edges it gives way already at kT/kN near -0.26; see equidem stability");
+    return;
+  }
+  const std::string boundary = to_string(found.achieved.boundary);
+  out.set("boundary", boundary);
+  if (found.achieved.boundary == Boundary::periodic) return;
+  out.line("boundary",
+           fmt::format("{}: the sample is not periodic, so the moduli are those of this sample with {}", boundary,
+                       found.achieved.boundary == Boundary::displacement
+                           ? "a uniform displacement gradient at its boundary, stiffer than the large sample"
+                           : "the tractions of a uniform stress at its boundary, softer than the large "
+                             "sample"));
+}
+
+/// Moduli of an assembly with their keys alone.
+Results moduli_keys(const EffectiveModuli& m) {
+  return moduli_results(m, "", true).set("anisotropy", m.anisotropy);
+}
+
+void add_reached(Results& out, const Calibration& found) {
+  out.append(moduli_results(found.moduli, found.verified ? "reached" : "lattice", true).under("achieved"));
+  out.set("achieved/anisotropy", found.moduli.anisotropy);
+  if (found.verified) {
+    out.line("").add("achieved/relative_error", "relative error", found.relative_error, "", {Shown::power, 1});
+  } else {
+    out.set("achieved/relative_error", found.relative_error).line("", "of the lattice where it has no edges");
+  }
+  const double anisotropy = found.moduli.anisotropy;
+  out.line("anisotropy", anisotropy < 1e-9
+                             ? "none, to round-off"
+                             : fmt::format("{}; the moduli are the mean over all directions", percent(anisotropy)));
+  if (found.springs.kT < 0)
+    out.line("statics only", "kT < 0: this equilibrium exists, and no motion of the discs is stable");
+}
+
+void add_range(Results& out, const Calibration& found, Plane wanted) {
+  std::vector<std::string> ranges;
+  for (const Plane plane : {Plane::strain, Plane::stress}) {
+    const std::vector<double> range{found.lowest_poisson_ratio(plane), found.highest_poisson_ratio(plane)};
+    ranges.push_back(fmt::format("{:.6g} to {:.6g} in plane {}", range[0], range[1], to_string(plane)));
+    out.set("feasible_poisson_ratios/plane_" + to_string(plane), range);
+    if (plane == wanted) out.set("feasible_poisson_ratio", range);
+  }
+  out.line("feasible nu", found.scanned ? "" : "at least ").note(joined(ranges) + ", without negative springs");
+  out.set("scanned", found.scanned).set("monotonic", found.rising);
+  if (found.iterations == 0) return;
+  if (found.scanned) {
+    out.line("", "These are the extremes over all kT/kN up to 1e6");
+    if (!found.rising)
+      out.note("; nu does not fall throughout with kT/kN here, so that other springs may give the same moduli");
+    return;
+  }
+  out.line("", "The ends are those of tangential springs much stiffer than the normal ones, and of none; ")
+      .note(found.rising ? "nu fell with kT/kN wherever it was tried"
+                         : "between them nu does not always fall with kT/kN here, so other springs may give the same "
+                           "moduli");
+}
+
+void add_mean_field(Results& out, const Calibrated& c) {
+  const MeanFieldGuess& guess = *c.mean_field;
+  if (!guess.moduli) out.set("mean_field/missing", guess.missing);
+  if (guess.springs.kN == 0) {
+    out.line("mean field", "no springs for this: " + guess.missing);
+    return;
+  }
+  out.set("mean_field/kN", guess.springs.kN).set("mean_field/kT", guess.springs.kT);
+  out.line("mean field", "Abe (1996), eqs. (21) and (22), advise " + shown_springs(guess.springs));
+  if (!guess.moduli) {
+    out.line("", guess.missing);
+    return;
+  }
+  const EffectiveModuli& m = *guess.moduli;
+  const ElasticModuli& wanted = c.wanted();
+  out.set("mean_field/achieved", moduli_keys(m));
+  out.line("",
+           fmt::format("with them this assembly has G = {:.6g} Pa ({}), K = {:.6g} Pa ({}), nu = {:.6g} in plane {} "
+                       "in place of {:.6g}",
+                       m.shear_modulus, percent_beside(m.shear_modulus, wanted.shear_modulus), m.bulk_modulus_2d,
+                       percent_beside(m.bulk_modulus_2d, wanted.bulk_modulus_2d()),
+                       wanted.plane == Plane::strain ? m.poisson_strain : m.poisson_stress, to_string(wanted.plane),
+                       wanted.poisson_ratio));
+}
+
+/// Eq. (53) beside the springs of a lattice whose discs do not turn.
+void add_operator(Results& out, const Calibrated& c) {
+  const SpringConstants k = springs_for(c.wanted(), Packing::hexagonal_restrained, {}, NegativeTangential::static_only);
+  out.line("displacements", fmt::format("eq. (53) advises {}: it fits wave speeds and problems in which all of the "
+                                        "boundary is displaced, not the stress, which is calibrated here",
+                                        shown_springs(k)));
+}
+
+}  // namespace
+
+Results calibrated_results(const Calibrated& c, const Effects& effects) {
+  const SpringConstants& k = c.found.springs;
+  const Case& resolved = c.problem.resolved;
+  Results out = problem_results(c.problem, effects, AssemblyKeys::size);
+  out.set("kN", k.kN).set("kT", k.kT).set("ratio", k.ratio()).set("weighting", to_string(resolved.weighting));
+  add_wanted(out, c.wanted());
+  add_method(out, c.found);
+  add_reached(out, c.found);
+  add_range(out, c.found, c.wanted().plane);
+  if (c.mean_field) add_mean_field(out, c);
+  if (resolved.assembly.kind == AssemblyKind::hexagonal && resolved.rotation == Rotation::restrained)
+    add_operator(out, c);
+  return out;
+}
+
+}  // namespace equidem

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "equidem/core/text.hpp"
+
+#include "homogenize/homogenized.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr double visible_anisotropy = 1e-9;
+
+std::string boundary_condition(Boundary boundary) {
+  switch (boundary) {
+    case Boundary::periodic:
+      return "the cell repeats for ever, its images move with the mean strain";
+    case Boundary::displacement:
+      return "the discs at the boundary follow the mean strain";
+    case Boundary::traction:
+      return "the boundary carries the tractions of a uniform stress";
+  }
+  return {};
+}
+
+void add_mean_strain(Results& out, const Homogenized& h) {
+  const std::string boundary = to_string(h.result.boundary);
+  out.line("mean strain").add("boundary", "", boundary).note(": " + boundary_condition(h.result.boundary));
+  if (!h.problem.assembly.periodic()) {
+    out.line("",
+             "A free sample lacks the contacts across its boundary: it is softer than its bulk by about the share of "
+             "the cells there.");
+  }
+  std::vector<std::string> unused;
+  for (const char* table : {"test", "support", "load"}) {
+    const TomlValue* given = h.problem.resolved.document.find(table);
+    if (given != nullptr)
+      unused.push_back(given->is_array() ? fmt::format("[[{}]]", table) : fmt::format("[{}]", table));
+  }
+  if (!unused.empty()) out.line("not used", joined(unused) + ": the mean strain takes their place");
+}
+
+void add_rigidity(Results& out, const EffectiveStiffness& r) {
+  std::vector<std::string> lines = r.removed;
+  if (r.discs_removed > 0) lines.emplace_back("without them every force is the same, and so is the stiffness");
+  std::vector<Results> described;
+  for (const HarmlessMotion& motion : r.motions) {
+    lines.push_back(fmt::format("{}: {}", motion.kind, motion.description));
+    described.push_back(Results().set("kind", motion.kind).set("description", motion.description));
+  }
+  const std::int64_t motions = r.gear_modes + r.local_mechanisms;
+  if (motions > 0) {
+    lines.push_back(fmt::format(
+        "{} without energy ({}, {}){} held: no mean strain drives {}, so the stiffness is the same",
+        counted(motions, "motion"), counted(r.gear_modes, "gear mode"), counted(r.local_mechanisms, "local mechanism"),
+        motions > std::ssize(described) ? fmt::format(", {} of them named above,", described.size()) : "",
+        motions == 1 ? "it" : "them"));
+  }
+  if (r.discs_removed == 0 && motions == 0)
+    lines.emplace_back(r.unstable_modes > 0 ? "every disc carries load"
+                                            : "every disc carries load, and every motion costs energy");
+  if (r.self_stresses >= 0) {
+    lines.push_back(fmt::format("{} of self-stress: {}",
+                                counted(r.self_stresses, "independent state", "independent states"),
+                                r.self_stresses == 0 ? "statically determinate, forces do not depend on the springs"
+                                                     : "so many springs more than rigidity needs"));
+  }
+  if (r.unstable_modes > 0) {
+    lines.push_back(fmt::format("UNSTABLE: {} by which the network would give way; this stiffness is no state of rest",
+                                counted(r.unstable_modes, "mode")));
+    if (r.unstable_strains > 0) {
+      lines.push_back(fmt::format("{} of the stiffness {} negative: such a mean strain gives energy back",
+                                  counted(r.unstable_strains, "eigenvalue"), r.unstable_strains == 1 ? "is" : "are"));
+    }
+  } else if (r.unstable_modes < 0) {
+    lines.push_back(fmt::format("stability {}", stability_not_known));
+  }
+  for (const std::string& text : lines) out.line(&text == lines.data() ? "rigidity" : "", text);
+  out.set("rattlers", r.rattlers)
+      .set("discs_removed", r.discs_removed)
+      .set("left_out", r.removed)
+      .set("mechanisms", described)
+      .set("gear_modes", r.gear_modes)
+      .set("local_mechanisms", r.local_mechanisms)
+      .set("self_stresses", known(r.self_stresses))
+      .set("negative_pivots", known(r.negative_pivots))
+      .set("unstable_modes", known(r.unstable_modes))
+      .set("unstable_strains", r.unstable_strains);
+}
+
+void add_stiffness(Results& out, const EffectiveStiffness& r) {
+  out.block("\n").line("stiffness").add("stiffness", "", r.stiffness, "Pa", {.digits = 9});
+  out.line("", "rows: stress, columns: strain, both xx, yy, xy with engineering shear");
+  out.line("error bound")
+      .add("error_bound", "", r.error_bound, "Pa for an entry", {Shown::power, 1})
+      .add("", "", r.error_bound / largest_entry(r.stiffness), "of the largest", {Shown::power, 0})
+      .note(": ")
+      .add("relative_residual", "residual", r.relative_residual, "", {Shown::power, 1})
+      .add("condition", "condition", r.condition, "", {Shown::power, 1})
+      .note("; ")
+      .add("hill_mandel", "macroscopic and microscopic power differ by", r.hill_mandel, "", {Shown::power, 0});
+  out.set("tangential_part", r.tangential_part).set("normal_part", r.normal_part);
+}
+
+void add_anisotropy(Results& out, const Homogenized& h) {
+  const double anisotropy = h.moduli.anisotropy;
+  const StiffnessAxes axes = stiffness_axes(h.result.stiffness);
+  out.line("anisotropy")
+      .add("anisotropy", "isotropic to", anisotropy, "", {anisotropy < 1e-4 ? Shown::power : Shown::percent, 3})
+      .note(anisotropy <= visible_anisotropy ? ", round-off" : "; the moduli are the mean over all directions");
+  std::vector<std::string> directions;
+  const auto shown = [](double angle) { return fmt::format("{:.1f}°", angle * 180 / std::numbers::pi); };
+  if (axes.one_axis > visible_anisotropy) {
+    directions.push_back(
+        fmt::format("along {} by {} (across it softer)", shown(axes.one_direction), percent(axes.one_axis)));
+  }
+  if (axes.two_axes > visible_anisotropy) {
+    directions.push_back(fmt::format("along {} and at right angles to it by {} (between them softer)",
+                                     shown(axes.two_directions), percent(axes.two_axes)));
+  }
+  if (anisotropy > visible_anisotropy && !directions.empty())
+    out.line("", "stretch meets more stiffness " + joined(directions, ", and "));
+  out.set("stiffness_axes", Results()
+                                .set("one_axis", axes.one_axis)
+                                .set("one_direction", axes.one_direction)
+                                .set("two_axes", axes.two_axes)
+                                .set("two_directions", axes.two_directions));
+}
+
+void add_fabric(Results& out, const Fabric& f) {
+  out.line("fabric").add("fabric/mean_branch", "mean branch", f.mean_branch, "m").note("; contacts prefer ");
+  const auto axis = [&](const std::string& which, const char* label, double anisotropy, double direction) {
+    const bool shown = anisotropy > visible_anisotropy;
+    if (shown) out.add("", label, anisotropy, "", {Shown::percent, 3}).add("", "at", direction, "", {Shown::degrees});
+    out.set("fabric/anisotropy_" + which, anisotropy).set("fabric/direction_" + which, direction);
+    return shown;
+  };
+  const bool one = axis("2", "one axis by", f.anisotropy_2, f.direction_2);
+  const bool two = axis("4", "two axes at right angles by", f.anisotropy_4, f.direction_4);
+  if (!one && !two) out.note("no axis");
+  out.set("fabric/normal", f.normal).set("fabric/branch", f.branch);
+}
+
+Results table_row(const std::string& name, double bulk, double shear) {
+  return Results()
+      .add("", "bounds and estimates", "  " + name)
+      .add("", "K", bulk, "Pa", {.digits = 8})
+      .add("", "G", shear, "Pa", {.digits = 8})
+      .add("", "nu strain", (bulk - shear) / (2 * bulk), "", {Shown::decimals, 5})
+      .add("", "nu stress", (bulk - shear) / (bulk + shear), "", {Shown::decimals, 5});
+}
+
+void add_order(Results& out, const Homogenized& h) {
+  const std::vector<StiffnessBeside> order = h.ordered();
+  std::vector<Results> steps;
+  std::vector<std::string> names, margins;
+  bool holds = true;
+  for (const StiffnessBeside& one : order) {
+    names.push_back(one.key);
+    if (names.size() == 1) continue;
+    const StiffnessBeside& lower = *(&one - 1);
+    const double m = margin(*lower.stiffness, *one.stiffness);
+    holds = holds && m >= -1e-9;
+    margins.push_back(std::abs(m) <= 1e-12 ? "0" : fmt::format("{:.2g}", m));
+    steps.push_back(Results().set("lower", lower.key).set("upper", one.key).set("margin", m));
+  }
+  if (order.size() > 1) {
+    out.line("order",
+             fmt::format("{} as quadratic forms: {}; least eigenvalues of the differences over the larger: {}",
+                         joined(names, " <= "), holds ? "holds" : "BROKEN, do not trust this result", joined(margins)));
+  } else if (h.problem.springs.springs.any_negative()) {
+    out.line("order", "kT < 0: energies are no minima, and nothing above is a bound");
+  }
+  out.set("order", steps);
+}
+
+void add_bounds(Results& out, const Homogenized& h) {
+  Results bounds, missing;
+  const std::string own = to_string(h.result.boundary);
+  const bool other_boundary = std::ranges::any_of(h.beside, [](const StiffnessBeside& one) {
+    return one.key == to_string(Boundary::displacement) || one.key == to_string(Boundary::traction);
+  });
+  std::vector<StiffnessBeside> all = h.beside;
+  all.push_back({own, own + " <- this result", h.result.stiffness, {}});
+  std::vector<Results> rows;
+  for (const std::string key : {"traction", "periodic", "displacement", "voigt", "uniform_stress_estimate"}) {
+    for (const StiffnessBeside& one : all) {
+      if (one.key != key) continue;
+      if (one.stiffness) {
+        const EffectiveModuli m = effective_moduli(*one.stiffness);
+        rows.push_back(table_row(one.name, m.bulk_modulus_2d, m.shear_modulus));
+        if (key != own || other_boundary) bounds.set(key, *one.stiffness);
+      } else {
+        bounds.set(key, nullptr);
+        missing.set(key, one.missing);
+      }
+    }
+  }
+  if (h.relation) rows.push_back(table_row(h.relation->name, h.relation->bulk_modulus_2d, h.relation->shear_modulus));
+  out.block("\n").table("", rows);
+  for (const StiffnessBeside& one : h.beside)
+    if (!one.stiffness) out.line(one.name.substr(0, one.name.find(':')), "none: " + one.missing);
+  out.set("bounds", bounds);
+  if (!missing.parts().empty()) out.set("bounds_missing", missing);
+  add_order(out, h);
+  if (!h.relation) return;
+  const double K = h.relation->bulk_modulus_2d, G = h.relation->shear_modulus;
+  out.set("relation",
+          Results().set("name", h.relation->name).append(moduli_results(effective_moduli(isotropic_stiffness(K, G)))));
+}
+
+void add_restrained(Results& out, const EffectiveStiffness& r) {
+  const DisplacementOperator o = displacement_operator(r);
+  out.block("\nrotation restrained: moments hold the discs, and the stress is not symmetric\n");
+  out.line("  stress of").add("gradient_stiffness", "", r.gradient_stiffness, "Pa", {.digits = 9});
+  out.line("  gradients", "rows s_xx, s_yy, s_xy, s_yx, columns u_x,x u_y,y u_x,y u_y,x; |s_xy - s_yx| is up to ")
+      .add("", "", r.stress_asymmetry, "of the largest entry", {Shown::percent, 3});
+  out.line("  displacements", "see ")
+      .add("", "G' =", o.shear_modulus, "Pa", {.digits = 9})
+      .add("", "K' =", o.bulk_modulus_2d, "Pa", {.digits = 9});
+  if (o.bulk_modulus_2d > 0)
+    out.add("", "nu' =", (o.bulk_modulus_2d - o.shear_modulus) / (2 * o.bulk_modulus_2d), "in plane strain");
+  out.note(" (hexagonal lattice: Abe 1996, eq. 53)");
+  out.line("",
+           "These fit wave speeds and problems in which all of the boundary is displaced, not the stress: a uniaxial "
+           "test still shows the moduli of the table above, nu = (1 - kT/kN)/4 on the hexagonal lattice, and the "
+           "antisymmetric stress needs moments that a body without them does not have.");
+  const EffectiveModuli moduli = effective_moduli(isotropic_stiffness(o.bulk_modulus_2d, o.shear_modulus));
+  out.set("displacement_operator", moduli_results(moduli));
+}
+
+}  // namespace
+
+Results homogenized_results(const Homogenized& h) {
+  const EffectiveStiffness& r = h.result;
+  Results out = problem_results(h.problem, r.effects);
+  add_mean_strain(out, h);
+  add_rigidity(out, r);
+  add_stiffness(out, r);
+  out.append(moduli_results(h.moduli));
+  add_anisotropy(out, h);
+  add_fabric(out, h.fabric);
+  add_bounds(out, h);
+  if (r.effects.restrained && r.boundary != Boundary::traction) add_restrained(out, r);
+  out.set("stress_asymmetry", r.stress_asymmetry);
+  out.block("\n").line("unknowns").add("unknowns", "", r.unknowns, "", {Shown::count});
+  return out.add("solver", "solver", r.solver).add("factor_bytes", "factor", r.factor_bytes, "", {Shown::bytes});
+}
+
+}  // namespace equidem

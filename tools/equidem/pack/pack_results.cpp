@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pack/pack_results.hpp"
+
+#include <algorithm>
+
+#include "equidem/core/text.hpp"
+
+#include "problem.hpp"
+
+namespace equidem {
+namespace {
+
+const PackingMethodEntry& entry_of(PackingMethod method) {
+  const auto table = packing_methods();
+  return *std::find_if(table.begin(), table.end(), [&](const auto& entry) { return entry.method == method; });
+}
+
+const char* name_of(PackingBox::Sides sides) {
+  switch (sides) {
+    case PackingBox::Sides::walls:
+      return "walls";
+    case PackingBox::Sides::open_top:
+      return "walls and an open top";
+    case PackingBox::Sides::periodic:
+      return "periodic";
+  }
+  return "";
+}
+
+void add_rest(Results& out, const GrainPacking& packing, const ConfirmedRest& rest, const std::string& noun) {
+  const SettlingReport& settling = packing.settling;
+  out.line("rest")
+      .add("time", "after", settling.time, "s in", {.digits = 4})
+      .note(" ")
+      .add("steps", "", settling.steps, "step", {Shown::count})
+      .note(" of ")
+      .add("time_step", "", settling.time_step, "s by corrected_verlet", {.digits = 4});
+  out.line("", "unbalanced force ")
+      .add("unbalanced_force_ratio", "", settling.unbalanced, "of the mean contact force", {.digits = 2})
+      .add("largest_unbalanced_force_ratio", "of one " + noun, settling.largest_unbalanced, "", {.digits = 2});
+  out.set("energy_error", settling.ledger.error() / settling.ledger.lost());
+  if (rest.confirmation) {
+    out.line("", "statics on the same contacts would move nothing further than ")
+        .add("static_motion_over_overlap", "", rest.confirmation->share(), "of the mean overlap", {.digits = 2});
+  } else {
+    out.set("static_motion_over_overlap", nullptr).line("", "statics does not confirm it: " + rest.why_not);
+  }
+  const BondReport& bonds = settling.bonds;
+  if (bonds.number == 0) return;
+  out.line("bonds", "the dashpots let pairs drift by ")
+      .add("bond_drift", "", bonds.distance.mean, "of their length in the mean", {.digits = 2})
+      .add("largest_bond_drift", "", bonds.distance.largest, "at most", {.digits = 2})
+      .note("; ")
+      .add("largest_bond_slip", "surfaces slipped by", bonds.slip.largest, "at most", {.digits = 2});
+}
+
+}  // namespace
+
+Results pack_case_results(const PackCase& resolved) {
+  const PackingOptions& options = resolved.packing;
+  const SpringConstants& springs = options.settling.springs;
+  const auto [low, high] = std::ranges::minmax(options.radii);
+  const bool open = options.box.sides == PackingBox::Sides::open_top;
+  Results out;
+  if (!resolved.title.empty()) out.block(resolved.title + "\n\n");
+  out.line(noun_of(options.shape.kind) + "s")
+      .add("", "", options.radii.size(), "", {Shown::count})
+      .add("", "radius", low, "to")
+      .note(fmt::format(" {:.6g} m", high));
+  out.line("box", open ? fmt::format("{:.6g} m wide, {}", options.box.size.x, name_of(options.box.sides))
+                       : fmt::format("{:.6g} m by {:.6g} m, {}", options.box.size.x, options.box.size.y,
+                                     name_of(options.box.sides)));
+  out.line("method", to_string(options.method));
+  add_effects(out, {});
+  return out.line("springs").add("", "kN =", springs.kN, "Pa").add("", "kT =", springs.kT, "Pa");
+}
+
+Results packing_results(const PackCase& resolved, const GrainPacking& packing, const PackingMeasures& measures,
+                        const std::optional<ConfirmedRest>& rest) {
+  const PackingOptions& options = resolved.packing;
+  const std::string noun = noun_of(options.shape.kind);
+  Results out = pack_case_results(resolved);
+  out.set("title", resolved.title).set("method", to_string(options.method)).set("shape", to_string(packing.shape));
+  out.set("grains", packing.size()).set("complete", packing.complete).set("box", packing.box.size);
+  if (!packing.complete) {
+    out.line("packed", packing.size() < options.radii.size()
+                           ? fmt::format("{} of {}", packing.size(), options.radii.size())
+                           : fmt::format("radii {:.6g} of those asked for", packing.radii[0] / options.radii[0]));
+  }
+  const Region& region = measures.region;
+  out.line("solid fraction")
+      .add("solid_fraction", "", measures.solid_fraction)
+      .add("porosity", "porosity", measures.porosity)
+      .add("void_ratio", "void ratio", measures.void_ratio);
+  out.line("", fmt::format("measured from ({:.4g}, {:.4g}) to ({:.4g}, {:.4g}) m", region.low.x, region.low.y,
+                           region.high.x, region.high.y));
+  out.set("region", std::vector<double>{region.low.x, region.low.y, region.high.x, region.high.y});
+  out.line("contacts")
+      .add("contacts", "", measures.contacts, "of " + noun + "s", {Shown::number})
+      .add("wall_contacts", "", measures.wall_contacts, "with walls")
+      .note("; ")
+      .add("coordination_number", "", measures.coordination, "of each", {.digits = 4})
+      .add("coordination_number_without_rattlers", "", measures.coordination_without_rattlers, "without", {.digits = 4})
+      .note(" ")
+      .add("rattlers", "", measures.rattlers, "rattler", {Shown::count});
+  out.line("overlap").add("largest_overlap", "at most", measures.largest_overlap, "of the smaller radius",
+                          {.digits = 3});
+  if (rest) add_rest(out, packing, *rest, noun);
+  return out.line("work").add("work", "", packing.work, entry_of(options.method).unit_of_work);
+}
+
+}  // namespace equidem

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Report and JSON of `equidem pack`.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "equidem/casefile/pack_case.hpp"
+#include "equidem/output/results.hpp"
+#include "equidem/packing/measures.hpp"
+#include "equidem/packing/network.hpp"
+
+namespace equidem {
+
+/// What statics says of bodies that settled.
+struct ConfirmedRest {
+  std::optional<RestConfirmation> confirmation;
+  std::string why_not = {};  ///< where there is none
+};
+
+/// What is to be packed; the report alone.
+Results pack_case_results(const PackCase& resolved);
+
+/// Report and JSON of the verb.
+Results packing_results(const PackCase& resolved, const GrainPacking& packing, const PackingMeasures& measures,
+                        const std::optional<ConfirmedRest>& rest);
+
+}  // namespace equidem

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/solve_results.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+/// What the inertia of K says about the answer.
+std::string stability(const Problem& problem, const Equilibrium& result) {
+  if (result.unstable_modes < 0) {
+    return stability_not_known;
+  }
+  if (result.unstable_modes > 0) {
+    return fmt::format(
+        "UNSTABLE: {} beyond one for each rotation; the assembly would give way by so many modes, this "
+        "equilibrium is no state of rest",
+        counted(result.unstable_modes, "negative pivot"));
+  }
+  if (result.negative_pivots == 0) return "stable: no negative pivot";
+  return fmt::format("stable: {}, one for each rotation{}", counted(result.negative_pivots, "negative pivot"),
+                     problem.springs.springs.any_negative() ? " (kT < 0; static-only)" : "");
+}
+
+void add_stress(Results& out, const SolvedCase& result) {
+  out.line("stress");
+  if (!result.stress) {
+    out.note("not known: the assembly has no cell areas");
+    return;
+  }
+  const Tensor2& s = *result.stress;
+  const double largest = std::max({std::abs(s.xx), std::abs(s.yy), std::abs(s.xy), std::abs(s.yx)});
+  const bool symmetric = std::abs(asymmetry(s)) <= 1e-9 * largest;
+  out.set("stress", voigt_stress(s)).set("stress_tensor", s);
+  if (symmetric) {
+    out.add("", "", voigt_stress(s), "Pa", {Shown::components}).note(", mean over the assembly");
+    out.set("stress_asymmetry", asymmetry(s)).set("moment_per_area", result.moment_per_area);
+    return;
+  }
+  out.add("", "", s, "Pa", {Shown::components}).note(", mean over the assembly");
+  out.line("", "not symmetric: ")
+      .add("stress_asymmetry", "xy - yx =", asymmetry(s), "Pa (Abe 1996, eq. 55)")
+      .note(". The moments that restrained rotation, supports and loads put on the discs are ")
+      .add("moment_per_area", "", result.moment_per_area, "N m per m²");
+}
+
+void add_tension(Results& out, const Problem& problem, const SolvedCase& result) {
+  const TensionResult& t = *result.tension;
+  const TensionSetup& setup = *problem.tension;
+  const auto theory = tension_theory(problem);
+  const TomlValue& test = *problem.resolved.document.find("test");
+  const auto discs = [](const StrainGauge& gauge) { return std::vector<std::int64_t>{gauge.first, gauge.second}; };
+  out.line("tension test")
+      .add("", "s11 =", t.stress.xx, "Pa")
+      .add("height", "height", setup.height, "m")
+      .note(fmt::format(", gauge \"{}\": discs {}-{} along x, {}-{} along y", test.find("gauge")->text,
+                        setup.horizontal.first, setup.horizontal.second, setup.vertical.first, setup.vertical.second));
+  out.set("gauge/placement", to_string(problem.resolved.test->gauge));
+  out.set("gauge/horizontal", discs(setup.horizontal)).set("gauge/vertical", discs(setup.vertical));
+  out.set("strain", t.strain).set("stress", t.stress).set("displacement_gradient", t.fitted_gradient);
+  out.line("  strain")
+      .add("", "e11 =", t.strain.xx, "", {.digits = 9})
+      .add("", "e22 =", t.strain.yy, "", {.digits = 9});
+  const auto compare = [&](const std::string& key, const std::string& name, double value, double expected) {
+    out.line("  " + name).add(key, "", value, "", {.digits = 9});
+    if (!theory) return;
+    out.add("theory/" + key, "theory", expected, "", {.digits = 9})
+        .add("", "difference", value - expected, "", {Shown::power, 2});
+  };
+  compare("poisson_ratio", "nu, (35)", t.poisson_ratio, theory ? theory->poisson_ratio : 0);
+  compare("stiffness_ratio", "2G/((1-nu)kN)", t.stiffness_ratio, theory ? theory->stiffness_ratio : 0);
+  out.line("  whole field")
+      .add("fitted_poisson_ratio", "nu =", t.fitted_poisson_ratio, "", {.digits = 9})
+      .note(", fitted to the inner half of the block");
+}
+
+/// Of the factorization, which all load cases share.
+Results solver_results(const Problem& problem, const Equilibrium& e) {
+  Results out;
+  out.line("unknowns").add("unknowns", "", e.unknowns, "", {Shown::count});
+  out.line("solver")
+      .add("solver", "", e.solver)
+      .add("factor_nonzeros", "", e.factor_nonzeros, "entries in the factor", {.digits = 3})
+      .add("factor_bytes", "", e.factor_bytes, "", {Shown::bytes});
+  out.line("stability", stability(problem, e));
+  out.set("negative_pivots", known(e.negative_pivots)).set("unstable_modes", known(e.unstable_modes));
+  return out.set("pivot_growth", e.pivot_growth);
+}
+
+Results load_case_results(const Problem& problem, const SolvedCase& result, bool show_solver) {
+  const Equilibrium& e = result.equilibrium;
+  const Results solver = solver_results(problem, e);
+  Results out = show_solver ? solver : solver.hidden();
+  if (!result.name.empty()) out.set("case", result.name).block(fmt::format("\nload case {}\n", result.name));
+  out.line("residual")
+      .add("relative_residual", "", e.relative_residual, "relative", {Shown::power, 1})
+      .add("refinements", "after", e.refinements, "step", {Shown::count})
+      .note(" of refinement; ")
+      .add("rounded_residual", "", e.rounded_residual, "for the motions rounded to double", {Shown::power, 1});
+  if (e.condition > 0) {
+    out.line("error bound")
+        .add("error_bound", "", e.error_bound, "of the motions", {Shown::power, 1})
+        .add("condition", "from the residual and a condition of about", e.condition, "", {Shown::power, 1});
+  } else {
+    out.set("error_bound", e.error_bound).set("condition", e.condition);
+  }
+  constexpr double doubtful = 1e-10;
+  if (e.relative_residual > doubtful)
+    out.line("", "WARNING: K is nearly singular; do not trust more digits than the residual leaves");
+  out.line("energy").add("energy", "", e.energy, "N (J per m of depth, per m)");
+  add_stress(out, result);
+  if (result.tension) add_tension(out, problem, result);
+  return out;
+}
+
+}  // namespace
+
+Results solve_results(const Problem& problem, const Effects& effects, std::span<const SolvedCase> results) {
+  Results out = problem_results(problem, effects);
+  const Case& resolved = problem.resolved;
+  if (resolved.run || !resolved.schedules.empty()) {
+    out.line("not used",
+             "what belongs to a run: schedules (loads and supports act in full), gravity, walls, velocities, damping");
+  }
+  if (results.size() == 1 && results.front().name.empty())
+    return out.append(load_case_results(problem, results.front(), true));
+  std::vector<Results> cases;
+  for (const SolvedCase& result : results)
+    cases.push_back(load_case_results(problem, result, &result == &results.front()));
+  return out.list("load_cases", std::move(cases));
+}
+
+}  // namespace equidem

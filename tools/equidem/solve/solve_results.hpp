@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Report and JSON of `equidem solve`.
+#pragma once
+
+#include <span>
+
+#include "problem.hpp"
+
+namespace equidem {
+
+/// Assembly, solver, and of each load case residual, energy, stress and, of the tension test, the moduli beside theory.
+Results solve_results(const Problem& problem, const Effects& effects, std::span<const SolvedCase> results);
+
+}  // namespace equidem

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "state_files.hpp"
+
+#include "equidem/output/files/csv.hpp"
+#include "equidem/output/files/vtk.hpp"
+
+namespace equidem {
+
+void expect_state(const OutputPlan& plan, const OutputCase& wanted, const std::string& suffix) {
+  if (wanted.csv)
+    for (const char* stem : {"discs", "contacts"}) plan.expect(stem + suffix + ".csv");
+  if (wanted.vtk)
+    for (const char* end : {".vtm", "_discs.vtp", "_contacts.vtp"}) plan.expect("state" + suffix + end);
+  if (wanted.picture)
+    for (const char* end : {".svg", ".png"}) plan.expect("picture" + suffix + end);
+}
+
+void write_state(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix,
+                 const AssemblyState& state) {
+  if (wanted.csv) {
+    write_disc_csv(*options.out / ("discs" + suffix + ".csv"), state, options.overwrite);
+    write_contact_csv(*options.out / ("contacts" + suffix + ".csv"), state, options.overwrite);
+  }
+  if (wanted.vtk) write_vtk(*options.out, "state" + suffix, state, options.overwrite);
+}
+
+void write_state_picture(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix,
+                         const AssemblyState& state, const PictureOptions& picture) {
+  if (wanted.picture) write_picture(*options.out, "picture" + suffix, state, picture, options.overwrite);
+}
+
+}  // namespace equidem

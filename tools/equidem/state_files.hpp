@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The files of one state of an assembly: discsSUFFIX.csv, contactsSUFFIX.csv, stateSUFFIX.vtm, pictureSUFFIX.svg.
+#pragma once
+
+#include <string>
+
+#include "equidem/casefile/case.hpp"
+#include "equidem/output/files/state.hpp"
+#include "equidem/output/pictures/picture.hpp"
+
+#include "command.hpp"
+
+namespace equidem {
+
+/// \throws Error (bad_input) where a file could not be written
+void expect_state(const OutputPlan& plan, const OutputCase& wanted, const std::string& suffix);
+
+/// Tables and files for ParaView that [output] asks for.
+void write_state(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix,
+                 const AssemblyState& state);
+
+/// The picture, where [output] asks for it.
+void write_state_picture(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix,
+                         const AssemblyState& state, const PictureOptions& picture);
+
+}  // namespace equidem
