@@ -366,7 +366,7 @@ TEST_CASE("contacts_off_the_line_of_centres_survive_a_file_bit_for_bit_and_what_
   CHECK_THAT(refusal(head + contacts + arms + offsets + R"(, "sections": [[3, 1.5]]})"),
              Catch::Contains("1 entry for 2 discs"));
   CHECK_THAT(refusal(head + R"("sections": [[3, 1.5], [3, 1.5]]})"), Catch::Contains("sections but no contacts"));
-  // The same place twice, from either end.
+  // One place twice, from either end.
   CHECK_THAT(refusal(head + contacts + R"("levers": [[1.25, 0.75], [0.75, 1.25]], "normals": [[1, 0], [-1, 0]],
                      "offsets": [[0.7, -0.2], [-0.2, 0.7]]})"),
              Catch::Contains("contacts 0 and 1 are the same, of discs 0 and 1"));

@@ -11,7 +11,7 @@ using namespace equidem;
 
 namespace {
 
-/// Of a point to the nearest other, across the sides where periodic; plain.
+/// Distance of a point to the nearest other, across the sides where periodic; by comparing all.
 double nearest(const PointSet& set, std::size_t k, bool periodic) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t j = 0; j < set.points.size(); ++j) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What the tests of triangulated assemblies share.
+/// Samples shared by the tests of triangulated assemblies.
 #pragma once
 
 #include <numeric>

@@ -17,7 +17,8 @@ TEST_CASE("a_case_says_what_its_file_says") {
   const Case c = parsed(tension_case);
 
   CHECK(c.title == "Abe 1996, Fig. 6");
-  CHECK(c.assembly.kind == AssemblyKind::hexagonal);
+  CHECK(c.assembly.kind == AssemblyKind::lattice);
+  CHECK(c.assembly.arrangement == find_lattice("hexagonal"));
   CHECK(c.assembly.lattice.columns == 21);
   CHECK(c.assembly.lattice.rows == 21);
   CHECK(c.assembly.lattice.radius == 0.005);

@@ -64,7 +64,7 @@ TEST_CASE("every_integrator_converges_with_its_order") {
   const double order = sxy / sxx;
   CAPTURE(to_string(integrator), static_cast<int>(motion), damping.mass, damping.contact, order,
           std::exp(errors.front()), std::exp(errors.back()));
-  CHECK(order == Approx(late ? order_with_late_velocities : facts_of(integrator).order).margin(0.1));
+  CHECK(order == Approx(late ? order_with_late_velocities : scheme_of(integrator).order).margin(0.1));
 }
 
 // q_n = cos(n theta) with sin(theta/2) = omega h/2: one disc on a spring, stepped many times.

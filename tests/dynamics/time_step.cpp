@@ -86,7 +86,8 @@ TEST_CASE("stiffness_damping_has_the_closed_limit_of_the_highest_mode") {
   const TimeStep chosen = choose_time_step(scene, {.damping = {.stiffness = beta}});
   const double zeta = 0.5 * beta * chosen.omega_max;
   CAPTURE(beta, zeta, chosen.critical);
-  CHECK(chosen.critical * chosen.omega_max == Approx(stability_limit(Integrator::leapfrog, zeta)).epsilon(1e-9));
+  CHECK(chosen.critical * chosen.omega_max ==
+        Approx(scheme_of(Integrator::leapfrog).stability_limit(zeta)).epsilon(1e-9));
   CHECK(chosen.ratio() == Approx(0.8).epsilon(1e-14));
 }
 

@@ -113,10 +113,10 @@ TEST_CASE("one_grain_falls_rebounds_and_rests") {
     table.note("at rest on the floor, " + name_of(kind), "force and stiffness times overlap are the weight to 1e-9",
                digits(lack));
   }
-  for (const PackingMethodEntry& entry : packing_methods()) {
+  for (const auto& entry : EnumNames<PackingMethod>::list) {
     PackingOptions options;
-    options.method = entry.method;
-    const bool falls = entry.method == PackingMethod::falling;
+    options.method = entry.value;
+    const bool falls = entry.value == PackingMethod::falling;
     options.box = {{5, falls ? 0.0 : 5}, falls ? PackingBox::Sides::open_top : PackingBox::Sides::walls};
     options.radii = {1};
     options.settling.springs = {1e7, 5e6};

@@ -60,7 +60,7 @@ TEST_CASE("gauges_of_a_lattice_lie_along_the_axes_about_its_middle") {
         if (rows % 2 != 0 || kind == "square") {
           REQUIRE(std::abs(0.5 * (C.y + D.y) - middle.y) < 1e-9 * a);
         }
-        // Of the two middle rows of an even number, the one with a disc in its middle is taken.
+        // With an even number of rows, the middle one with a disc in its middle is taken.
         if (rows % 2 == 0 && kind == "hexagonal") REQUIRE(std::lround((B.x - A.x) / (2 * a)) % 2 == 0);
         const double row_length = 2 * a * (columns - 1);
         const double width = B.x - A.x, height = D.y - C.y;

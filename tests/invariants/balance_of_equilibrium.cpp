@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What every state of rest obeys, whatever solver found it: forces and moments balance, energy is work, load cases
+/// Laws that every equilibrium obeys, whichever solver found it: forces and moments balance, energy is work, load cases
 /// are reciprocal and superpose.
 #include <algorithm>
 #include <cmath>
@@ -58,7 +58,7 @@ bool turns(const HeldScene& scene) {
   return derive_effects(scene.springs, scene.options.rotation).rotation;
 }
 
-/// Of all forces on the body, with their moments about the origin.
+/// Sum of all forces on the body, and of their moments about the origin.
 struct Balance {
   Vec2 force;
   double moment = 0, sum_of_forces = 0, sum_of_moments = 0;

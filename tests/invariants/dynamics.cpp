@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What motion keeps: momentum in free flight, rest at rest, forces that are those of the matrix.
+/// Invariants of motion: momentum in free flight, rest at rest, forces that are those of the matrix.
 #include <algorithm>
 #include <cmath>
 

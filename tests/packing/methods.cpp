@@ -16,7 +16,7 @@ struct Reached {
   PackingMethod method;
   double solid_fraction;
 };
-/// What each method must reach with discs of 5 to 10 mm.
+/// Solid fraction that each method must reach with discs of 5 to 10 mm.
 constexpr Reached reached[] = {{PackingMethod::rejection, 0.5},
                                {PackingMethod::local_moves, 0.72},
                                {PackingMethod::insertion, 0.66},
@@ -51,10 +51,10 @@ TEST_CASE("discs_fill_the_box_as_asked_and_do_not_overlap") {
 
 TEST_CASE("a_seed_gives_the_same_bits_for_every_number_of_threads_and_another_seed_does_not") {
   const int before = thread_count();
-  for (const PackingMethodEntry& entry : packing_methods()) {
-    const bool falls = entry.method == PackingMethod::falling;
+  for (const auto& entry : EnumNames<PackingMethod>::list) {
+    const bool falls = entry.value == PackingMethod::falling;
     PackingOptions options =
-        falls ? falling_soil(30, 0.1) : square_box(entry.method, PackingBox::Sides::walls, 100, 0.45);
+        falls ? falling_soil(30, 0.1) : square_box(entry.value, PackingBox::Sides::walls, 100, 0.45);
     INFO(entry.name);
     set_thread_count(1);
     const GrainPacking first = pack(options);
@@ -139,15 +139,15 @@ TEST_CASE("what_does_not_fit_is_refused_with_what_was_reached") {
   CHECK(problem(options).find("the largest disc is") != std::string::npos);
   options.radii.clear();
   CHECK(problem(options).find("no bodies") != std::string::npos);
-  CHECK_THROWS_AS(packing_method_from("grow"), Error);
+  CHECK_THROWS_AS(enum_from<PackingMethod>("grow"), Error);
 }
 
 TEST_CASE("one_disc_is_packed_by_every_method") {
-  for (const PackingMethodEntry& entry : packing_methods()) {
+  for (const auto& entry : EnumNames<PackingMethod>::list) {
     INFO(entry.name);
-    const bool falls = entry.method == PackingMethod::falling;
+    const bool falls = entry.value == PackingMethod::falling;
     const GrainPacking packing =
-        pack(falls ? falling_soil(1, 0.1) : square_box(entry.method, PackingBox::Sides::walls, 1, 0.3));
+        pack(falls ? falling_soil(1, 0.1) : square_box(entry.value, PackingBox::Sides::walls, 1, 0.3));
     REQUIRE(packing.size() == 1);
     CHECK(largest_overlap(packing) < 1e-4);
   }

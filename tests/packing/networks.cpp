@@ -50,7 +50,7 @@ double difference(const Matrix3& a, const Matrix3& b) {
 
 }  // namespace
 
-// What statics sees at the contacts of bodies that lie is what dynamics left: nothing but round-off to move.
+// Forces of statics at the contacts of resting bodies are those that dynamics left: motions are round-off.
 TEST_CASE("settled_bodies_of_every_shape_are_confirmed_by_statics") {
   const PackingShape shape = GENERATE(from_range(networked_shapes()));
   PackingOptions options = falling_soil(40, 0.15);

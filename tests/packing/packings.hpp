@@ -52,7 +52,7 @@ inline PackingOptions falling_soil(std::int64_t discs, double width) {
   return options;
 }
 
-/// Of two discs over the smaller radius, and of discs and walls, by comparing all.
+/// Largest overlap of two discs over the smaller radius, and of discs and walls, by comparing all.
 inline double largest_overlap(const GrainPacking& packing) {
   double largest = 0;
   for (std::size_t i = 0; i < packing.size(); ++i) {

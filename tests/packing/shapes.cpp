@@ -179,7 +179,7 @@ TEST_CASE("a_seed_gives_the_same_bodies_for_every_number_of_threads_and_points_t
       mean += axis_of_turns(first.grains[k].angle / std::numbers::pi) / static_cast<double>(first.grains.size());
     }
     CHECK(same);
-    // Of 60 random directions the mean of (cos 2 theta, sin 2 theta) has the length 60^(-1/2) or so.
+    // For 60 random directions the mean of (cos 2 theta, sin 2 theta) has the length 60^(-1/2) or so.
     if (shape.kind != Kind::bonded_pair) CHECK(norm(mean) < 4 / std::sqrt(60.0));
     options.seed = 2;
     CHECK(centres_of(first) != centres_of(pack(options)));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "equidem/assembly/lattices.hpp"
 #include "equidem/homogenize/affine.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/material/spring_relations.hpp"
@@ -63,7 +64,7 @@ TEST_CASE("uniform_strain_of_the_hexagonal_lattice_gives_hookes_law_disc_by_disc
   for (const double ratio : ratios) {
     const double nu = poisson_ratio_of_ratio(ratio), G = random.uniform(1e8, 1e9);
     const SpringConstants k = springs_for({.shear_modulus = G, .poisson_ratio = nu, .plane = Plane::strain},
-                                          Packing::hexagonal, {}, NegativeTangential::static_only);
+                                          lattices::hexagonal.relation, {}, NegativeTangential::static_only);
     REQUIRE(k.kT == Approx(ratio * k.kN).margin(1e-12 * k.kN));
     for (int sample = 0; sample < 5; ++sample) {
       const Tensor2 h = 1e-3 * random_tensor(random);

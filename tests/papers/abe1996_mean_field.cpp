@@ -54,7 +54,7 @@ ElasticModuli mean_field(const Assembly& cell, double ratio, SpringWeighting wei
   IsotropicMeasures measures{.solid_fraction = cell.solid_fraction(),
                              .contact_density = cell.coordination_number() / (2 * std::numbers::pi)};
   if (weighting == SpringWeighting::contact_density) measures.contact_density = 1;
-  return moduli_of({kN, ratio * kN}, Packing::isotropic, measures);
+  return moduli_of({kN, ratio * kN}, isotropic_relation, measures);
 }
 
 template <typename Item>

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include "equidem/assembly/lattices.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/homogenize/tension_test.hpp"
 #include "equidem/material/spring_relations.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What load_bearing_network leaves out carries nothing, and all that it leaves carries what it did before: against
-/// dense solutions of random networks. Self-stresses against dense ranks.
+/// The contacts that load_bearing_network leaves out carry no force, and the others carry the same force as before:
+/// against dense solutions of random networks. Self-stresses against dense ranks.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

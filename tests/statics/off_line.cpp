@@ -73,7 +73,7 @@ TEST_CASE("stiffness_off_the_line_of_centres_is_the_second_derivative_of_the_ene
   CAPTURE(periodic, seed);
   CHECK(relative_difference(k.entries, expected.entries) < 1e-13);
 
-  // What bodies feel is the first derivative, and the energy that of the contact law.
+  // Forces on bodies are the first derivative of the energy, and the energy is that of the contact law.
   Random random(seed);
   const std::vector<DiscMotion> motions = random_motions(assembly, random);
   PreciseMotion motion(3 * assembly.size());

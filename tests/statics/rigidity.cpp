@@ -45,7 +45,7 @@ struct Scene {
     return examine_rigidity(assembly, ContactGraph(assembly), ContactSprings(springs), unknowns());
   }
 
-  /// What check_rigidity says; empty where it accepts.
+  /// The message of check_rigidity; empty where it accepts.
   [[nodiscard]] std::string refusal() const {
     try {
       check_rigidity(assembly, ContactGraph(assembly), ContactSprings(springs), unknowns());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What check_rigidity tells from the contact graph is what the eigenvalues of the stiffness matrix say.
+/// The judgement of check_rigidity from the contact graph agrees with the eigenvalues of the stiffness matrix.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -170,7 +170,7 @@ class Waves {
   std::vector<Wave> waves_;
 };
 
-/// What became of a request.
+/// Outcome of a request.
 struct Got {
   std::int64_t level = 0;
   Values values;
@@ -269,10 +269,10 @@ TEST_CASE("accuracy_asked_of_bonded_waves_is_kept_at_most_twice_the_least_cost")
     const Waves::Sum sum = waves.random_sum(random);
     const auto evaluate = [&](std::int64_t n) { return waves.run(sum, integrator, n); };
     const Values truth = waves.exact(sum);
-    const auto first =
-        static_cast<std::int64_t>(std::ceil(sum.time * waves.fastest() / (0.8 * stability_limit(integrator, 0))));
+    const auto first = static_cast<std::int64_t>(
+        std::ceil(sum.time * waves.fastest() / (0.8 * scheme_of(integrator).stability_limit(0))));
     const Got got = refine(evaluate, {.accuracy = accuracy,
-                                      .order = static_cast<double>(facts_of(integrator).order),
+                                      .order = static_cast<double>(scheme_of(integrator).order),
                                       .first = first,
                                       .most = 4096 * first,
                                       .apart = near,

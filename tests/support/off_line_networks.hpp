@@ -30,8 +30,8 @@ inline void place_contact(Assembly& assembly, Contact contact, Vec2 normal, Vec2
   assembly.contact_arms.push_back({normal, dot(arm, s), dot(rest, s)});
 }
 
-/// The same bodies, of sections of their own, whose contacts have normals and points drawn about those of discs; one in
-/// `again` touch in a second place.
+/// The bodies of an assembly, with sections of their own, whose contacts have normals and points drawn about those of
+/// discs; one in `again` touch in a second place.
 inline Assembly off_line(const Assembly& discs, std::uint64_t seed, int again = 5) {
   Random random(seed);
   Assembly bodies = discs;

@@ -22,7 +22,7 @@ const ContactSprings equal_springs(SpringConstants{1, 1});
 
 }  // namespace
 
-// Of the motions that repeat with a cell of even size, the wave M is one.
+// The wave M is one of the motions that repeat with a cell of even size.
 TEST_CASE("a_periodic_hexagonal_cell_gives_way_at_minus_one_third") {
   const auto [columns, rows] = GENERATE(std::pair{2, 2}, std::pair{6, 4}, std::pair{5, 8});
   const CriticalRatio found = find_critical_ratio(periodic_hexagonal(columns, rows), equal_springs, {});

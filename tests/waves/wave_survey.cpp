@@ -67,7 +67,7 @@ TEST_CASE("no_wave_gives_way_before_the_one_that_the_survey_names") {
   const WaveSurvey survey = survey_waves(cell, unit_masses(assembly), Rotation::free);
   const BlochWaves waves(cell, unit_masses(assembly), true);
   CAPTURE(assembly.size(), survey.critical.value, survey.critical.at.name);
-  // Of long waves q is a short wave vector along their direction.
+  // For long waves q is a short wave vector along their direction.
   const bool long_waves = survey.critical.at.name == long_waves_name;
   CHECK(waves.critical_ratio(survey.critical.at.q) == Approx(survey.critical.value).epsilon(long_waves ? 1e-4 : 1e-12));
   if (long_waves) CHECK(survey.critical.value == waves.long_wave_loss().ratio);
@@ -91,7 +91,7 @@ TEST_CASE("rattlers_make_no_waves") {
   CHECK(waves.squared_frequencies({0.3, 0.2}).front() > 0.01);
 }
 
-// What a cell cannot show: motions that differ from cell to cell.
+// Motions that differ from cell to cell, which one cell cannot show.
 TEST_CASE("waves_that_cost_nothing_are_mechanisms_of_the_infinite_assembly") {
   const auto free_waves = [](const Assembly& assembly, double kT) {
     const ContactSprings springs(SpringConstants{1e9, kT * 1e9});

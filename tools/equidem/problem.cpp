@@ -82,15 +82,9 @@ SolvedCase solve_case(const Problem& problem, const EquilibriumSolver& solver, c
 
 std::optional<TensionTheory> tension_theory(const Problem& problem) {
   if (!problem.tension || !problem.springs.constants || !problem.springs.springs.uniform()) return {};
-  const double ratio = problem.springs.constants->ratio();
-  switch (problem.resolved.assembly.kind) {
-    case AssemblyKind::hexagonal:
-      return TensionTheory{poisson_ratio_of_ratio(ratio), hexagonal_stiffness_ratio(ratio)};
-    case AssemblyKind::square:
-      return TensionTheory{0, 1};
-    default:
-      return {};
-  }
+  const Lattice* lattice = problem.resolved.assembly.arrangement;
+  if (lattice == nullptr || lattice->tension == nullptr) return {};
+  return lattice->tension(problem.springs.constants->ratio());
 }
 
 ResultValue known(std::int64_t count) {

@@ -64,12 +64,7 @@ struct SolvedCase {
 
 SolvedCase solve_case(const Problem& problem, const EquilibriumSolver& solver, const NamedLoads& loads);
 
-/// What theory says of the tension test on a lattice of equal springs, plane strain: hexagonal nu = (1 - r)/4 and
-/// (37) with r = kT/kN; square nu = 0 and s11/(kN e11) = 1.
-struct TensionTheory {
-  double poisson_ratio = 0;
-  double stiffness_ratio = 0;
-};
+/// Theory of the tension test on a lattice of equal springs; none for other assemblies and springs.
 std::optional<TensionTheory> tension_theory(const Problem& problem);
 
 /// The stability where the solver cannot judge it.

@@ -10,8 +10,8 @@
 
 namespace equidem {
 
-/// Of the section of every body where the assembly has sections, else of the disc or sphere of its radius.
-/// \throws Error (bad_input) as inertia_of a disc; on spheres where there are sections
+/// Inertia of every body: from its section where the assembly has sections, else that of the disc or sphere of its
+/// radius. \throws Error (bad_input) as inertia_of a disc; on spheres where there are sections
 std::vector<Inertia> inertia_of(const Assembly& assembly, double density, Body body);
 
 }  // namespace equidem

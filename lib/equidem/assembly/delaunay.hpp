@@ -19,7 +19,7 @@ struct RadiusDistribution {
 
 struct DelaunayOptions {
   std::int64_t discs = 10000;  ///< wanted count, >= 3 (>= 1 where periodic); all processes come near it:
-                               ///< assembly.size() says how near
+                               ///< assembly.size() is the number reached
   PointProcess points = PointProcess::poisson_disc;
   double disorder = 0.1;  ///< perturbed_hexagonal: in [0, 0.5)
   std::uint64_t seed = 1;

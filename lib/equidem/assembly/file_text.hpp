@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What reading and writing an assembly file share.
+/// Names that reading and writing an assembly file share.
 #pragma once
 
 #include <string>

@@ -10,9 +10,9 @@
 namespace equidem {
 
 /// Read an assembly. `contacts` missing: touching discs (gap at most 1e-9 of the smaller radius). The contact point
-/// is the midpoint of the branch unless "levers": [[r_i, r_j], ...] says otherwise (see Contact); off the line of
+/// is the midpoint of the branch unless "levers": [[r_i, r_j], ...] is given (see Contact); off the line of
 /// centres "normals":
-/// [[n_x, n_y], ...] and "offsets": [[o_i, o_j], ...] say where with them (see ContactArms); "springs": [[kN, kT], ...]
+/// [[n_x, n_y], ...] and "offsets": [[o_i, o_j], ...] give its place (see ContactArms); "springs": [[kN, kT], ...]
 /// per contact; "sections": [[area, polar moment], ...] in m² and m⁴ of bodies that are no discs, each then with the
 /// radius of the disc of equal area; "box": [[x, y], [x, y]], the lower left and the upper right corner of what the
 /// cells of a free assembly fill, else the smallest rectangle that holds all discs; "groups": {"name": [disc, ...]}.

@@ -1,29 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Regular assemblies of equal touching discs.
+/// All lattices.
 #pragma once
 
-#include "equidem/assembly/assembly.hpp"
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "equidem/assembly/lattices/hexagonal.hpp"
+#include "equidem/assembly/lattices/lattice.hpp"
+#include "equidem/assembly/lattices/square.hpp"
 
 namespace equidem {
 
-/// A block of a lattice. Rows run along x, the first at the bottom.
-struct LatticeOptions {
-  int columns = 21;       ///< discs in a row, >= 1
-  int rows = 21;          ///< >= 1
-  double radius = 0.005;  ///< m, > 0
-  bool periodic = false;  ///< in both directions
-};
+/// In the order of the choices of the case file.
+std::span<const Lattice> all_lattices();
 
-/// Close-packed rows (Abe 1996, Figs. 5 and 6). Free: rows alternate `columns` and `columns - 1` discs, the first and
-/// every other one long, each short row shifted by one radius. Periodic: `columns` discs in each row, `rows` even.
-/// Every disc stands for the area 2 sqrt3 a²; the height of a free block is rows * sqrt3 a. Groups of a free block:
-/// left, right (end discs of every row), bottom, top (first and last row), bottom_left, bottom_right, top_left,
-/// top_right (one disc each); tributary lengths sqrt3 a on left and right, 2a on bottom and top.
-/// \throws Error (bad_input) on counts or a radius that make no lattice, odd `rows` where periodic
-Assembly hexagonal_lattice(const LatticeOptions& options);
+/// The lattice with this name; null where there is none. With Assembly::kind: the lattice of an assembly.
+const Lattice* find_lattice(std::string_view name);
 
-/// Discs on a square grid (Abe 1996, Fig. 4); groups as for the hexagonal lattice, tributary lengths 2a.
-Assembly square_lattice(const LatticeOptions& options);
+/// Conditions on columns and rows of all lattices, for the help of the case file.
+std::string lattice_counts();
 
 }  // namespace equidem

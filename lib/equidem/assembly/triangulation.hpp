@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Delaunay and regular triangulations of points; the source behind this header is the only one that knows CGAL.
+/// Delaunay and regular triangulations of points; the source of this header is the only one that uses CGAL.
 #pragma once
 
 #include <cstdint>

@@ -22,10 +22,8 @@ namespace {
 
 Assembly generate(const AssemblyCase& wanted) {
   switch (wanted.kind) {
-    case AssemblyKind::square:
-      return square_lattice(wanted.lattice);
-    case AssemblyKind::hexagonal:
-      return hexagonal_lattice(wanted.lattice);
+    case AssemblyKind::lattice:
+      return wanted.arrangement->make(wanted.lattice);
     case AssemblyKind::delaunay:
       return delaunay_assembly(wanted.delaunay);
     case AssemblyKind::file:
@@ -95,15 +93,16 @@ void check_group_names(const Assembly& assembly, const Case& resolved) {
   }
 }
 
-SpringConstants springs_of_material(const Case& resolved, const Assembly& assembly, Packing& packing) {
+SpringConstants springs_of_material(const Case& resolved, const ChosenRelation& chosen) {
   const MaterialCase& material = *resolved.material;
-  if (resolved.weighting != SpringWeighting::uniform && resolved.assembly.kind == AssemblyKind::square) {
-    bad_input(fmt::format("the weighting is \"{}\" on the square lattice", to_string(resolved.weighting)),
-              "its relation to moduli (Abe 1996, eq. 31) is for equal springs", "Use weighting = \"uniform\"");
+  const Lattice* lattice = resolved.assembly.arrangement;
+  if (resolved.weighting != SpringWeighting::uniform && lattice != nullptr &&
+      lattice->relation.equal_springs != nullptr) {
+    bad_input(fmt::format("the weighting is \"{}\" on the {}", to_string(resolved.weighting), lattice->relation.place),
+              fmt::format("its relation to moduli (Abe 1996, eq. {}) is for equal springs", lattice->relation.equation),
+              "Use weighting = \"uniform\"");
   }
-  const SpringRelation relation = spring_relation(resolved, assembly);
-  packing = relation.packing;
-  return springs_for(material.moduli, packing, relation.measures,
+  return springs_for(material.moduli, chosen.relation, chosen.measures,
                      material.static_only ? NegativeTangential::static_only : NegativeTangential::refuse);
 }
 
@@ -113,10 +112,10 @@ std::string described(const SpringConstants& springs, SpringWeighting weighting)
 }
 
 std::string described(const MaterialCase& material, const SpringConstants& springs, SpringWeighting weighting,
-                      Packing packing) {
+                      const SpringRelation& relation) {
   return fmt::format("G = {:.6g} Pa, nu = {:.6g} (plane {}) gives {}. The relation {}", material.moduli.shear_modulus,
                      material.moduli.poisson_ratio, to_string(material.moduli.plane), described(springs, weighting),
-                     validity(packing));
+                     relation.validity);
 }
 
 }  // namespace
@@ -157,21 +156,20 @@ std::optional<double> disc_density(const Case& resolved, const Assembly& assembl
        "Remove one of the two");
 }
 
-SpringRelation spring_relation(const Case& resolved, const Assembly& assembly) {
+ChosenRelation spring_relation(const Case& resolved, const Assembly& assembly) {
   if (resolved.weighting == SpringWeighting::uniform) {
-    if (resolved.assembly.kind == AssemblyKind::hexagonal) return {Packing::hexagonal, {}};
-    if (resolved.assembly.kind == AssemblyKind::square) return {Packing::square, {}};
+    if (resolved.assembly.arrangement != nullptr) return {resolved.assembly.arrangement->relation, {}};
   }
   switch (resolved.weighting) {
     case SpringWeighting::contact_density:
-      return {Packing::isotropic, {assembly.solid_fraction(), 1.0}};
+      return {isotropic_relation, {assembly.solid_fraction(), 1.0}};
     case SpringWeighting::voronoi:
-      return {Packing::isotropic, {0.5, 1.0}};
+      return {isotropic_relation, {0.5, 1.0}};
     case SpringWeighting::uniform:
       break;
   }
   const double psi = assembly.coordination_number() / (2 * std::numbers::pi);
-  return {Packing::isotropic, {assembly.solid_fraction(), psi}};
+  return {isotropic_relation, {assembly.solid_fraction(), psi}};
 }
 
 BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
@@ -196,11 +194,16 @@ BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
                   ? "springs of the assembly file; those of the case file are not used (own_springs = false: they are)"
                   : "springs of the assembly file"};
     }
-    Packing packing = Packing::isotropic;
-    const SpringConstants constants =
-        resolved.material ? springs_of_material(resolved, assembly, packing) : *resolved.springs;
-    const std::string report = resolved.material ? described(*resolved.material, constants, resolved.weighting, packing)
-                                                 : described(constants, resolved.weighting);
+    SpringConstants constants;
+    std::string report;
+    if (resolved.material) {
+      const ChosenRelation chosen = spring_relation(resolved, assembly);
+      constants = springs_of_material(resolved, chosen);
+      report = described(*resolved.material, constants, resolved.weighting, chosen.relation);
+    } else {
+      constants = *resolved.springs;
+      report = described(constants, resolved.weighting);
+    }
     return {contact_springs(assembly, constants, resolved.weighting), constants, report};
   } catch (const Error& error) {
     throw error.at(where);

@@ -25,15 +25,15 @@ Assembly build_assembly(const Case& resolved);
 std::optional<double> disc_density(const Case& resolved, const Assembly& assembly);
 
 /// The relation between springs and moduli (Abe 1996) that holds for a case: that of its lattice where springs are
-/// equal, hexagonal (34) or square (31), else the isotropic one, (20) and (21), with the measures that it asks for:
+/// equal, else the isotropic one, (20) and (21), with the measures that it asks for:
 /// solid fraction and coordination number; of springs weighted by contact_density k psi = K/phi by (21); of springs
 /// weighted by voronoi K = kN/2, since the facets of Voronoi cells obey sum h l = 2 V and uniform strain then stores
 /// w = kN <(n e n)²>.
-struct SpringRelation {
-  Packing packing = Packing::isotropic;
+struct ChosenRelation {
+  SpringRelation relation;
   IsotropicMeasures measures;
 };
-SpringRelation spring_relation(const Case& resolved, const Assembly& assembly);
+ChosenRelation spring_relation(const Case& resolved, const Assembly& assembly);
 
 /// The springs of every contact and where they come from.
 struct BuiltSprings {

@@ -28,8 +28,9 @@ AssemblyCase read_assembly_table(TomlValue& table, const fs::path& folder) {
     result.own_springs = flag(table, "own_springs");
     return result;
   }
-  if (kind != "delaunay") {
-    result.kind = kind == "square" ? AssemblyKind::square : AssemblyKind::hexagonal;
+  result.arrangement = find_lattice(kind);
+  if (result.arrangement != nullptr) {
+    result.kind = AssemblyKind::lattice;
     result.lattice = {.columns = whole(table, "columns"),
                       .rows = whole(table, "rows"),
                       .radius = number(table, "radius"),
@@ -254,7 +255,7 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
   result.homogenize = read_homogenize(*root.find("homogenize"));
   if (const TomlValue* ensemble = root.find("ensemble")) result.ensemble = read_ensemble(*ensemble);
   const TomlValue& solver = *root.find("solver");
-  result.solver = {.method = solver_method_from(text(solver, "method")),
+  result.solver = {.method = enum_from<SolverMethod>(text(solver, "method")),
                    .max_refinements = whole(solver, "max_refinements"),
                    .memory_limit = *bytes_of(*solver.find("memory_limit"))};
   const TomlValue& output = *root.find("output");

@@ -27,11 +27,12 @@
 
 namespace equidem {
 
-enum class AssemblyKind { square, hexagonal, delaunay, file };
+enum class AssemblyKind { lattice, delaunay, file };
 
 /// [assembly]; the options of the other kinds keep their defaults.
 struct AssemblyCase {
-  AssemblyKind kind = AssemblyKind::hexagonal;
+  AssemblyKind kind = AssemblyKind::lattice;
+  const Lattice* arrangement = nullptr;  ///< of kind lattice: which one; else null
   LatticeOptions lattice;
   DelaunayOptions delaunay;
   std::filesystem::path path;     ///< as the program opens it

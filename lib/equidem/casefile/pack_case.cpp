@@ -70,7 +70,7 @@ void read_amount(const TomlValue& table, const SizeDistribution& sizes, PackingO
   const TomlValue* grains = table.find("grains");
   const TomlValue* box = table.find("box");
   const TomlValue* fraction = table.find("solid_fraction");
-  const bool falls = options.method == PackingMethod::falling;
+  const bool falls = entry_of(options.method).open_top;
   options.box.sides = falls                                ? PackingBox::Sides::open_top
                       : text(table, "sides") == "periodic" ? PackingBox::Sides::periodic
                                                            : PackingBox::Sides::walls;
@@ -81,9 +81,9 @@ void read_amount(const TomlValue& table, const SizeDistribution& sizes, PackingO
   if (falls && fraction != nullptr)
     fail_at(*fraction, "packing.solid_fraction", "a solid fraction is wanted of falling bodies",
             "it comes about by itself, lower with more friction", "Remove it");
-  if (dense && options.method == PackingMethod::local_moves)
-    fail_at(*fraction, "packing.solid_fraction", "auto with local_moves", "they do not know when to stop",
-            "Give a number, or take growth");
+  if (dense && !entry_of(options.method).as_dense_as_possible)
+    fail_at(*fraction, "packing.solid_fraction", fmt::format("auto with {}", to_string(options.method)),
+            "the method has no end without a wanted solid fraction", "Give a number, or take growth");
   const int given = (grains != nullptr) + (box != nullptr) + (fraction != nullptr && !dense);
   if (given != 2) {
     fail_at(table, "packing",
@@ -146,7 +146,7 @@ PackCase parse_pack_case(std::string_view content, const std::string& name, cons
   result.title = text(root, "title");
   TomlValue& packing = *root.find("packing");
   PackingOptions& options = result.packing;
-  options.method = packing_method_from(text(packing, "method"));
+  options.method = enum_from<PackingMethod>(text(packing, "method"));
   options.seed = static_cast<std::uint64_t>(packing.find("seed")->integer);
   options.overlap = number(packing, "overlap");
   options.attempts = packing.find("attempts")->integer;

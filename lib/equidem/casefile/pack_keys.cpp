@@ -3,6 +3,8 @@
 
 #include <string_view>
 
+#include "equidem/packing/methods.hpp"
+
 namespace equidem {
 namespace {
 
@@ -11,19 +13,14 @@ using enum KeyType;
 constexpr const char* none = KeySpec::none;
 
 std::vector<KeySpec> keys_of_packing() {
+  static const std::string methods = help_of(EnumNames<PackingMethod>::list);
   return {
       {.table = "packing",
        .name = "method",
        .type = choice,
        .fallback = "\"growth\"",
-       .choices = {"rejection", "local_moves", "insertion", "growth", "falling"},
-       .help =
-           "rejection: places at random, up to about 0.5; local_moves: overlapping bodies moved at random, to 0.78; "
-           "insertion: into gaps, beside two others, discs to 0.7, others to 0.6; growth: bodies grow and push each "
-           "other apart, to "
-           "jamming; falling: under "
-           "gravity, "
-           "to rest"},
+       .choices = names_of<PackingMethod>(),
+       .help = methods.c_str()},
       {.table = "packing",
        .name = "grains",
        .type = whole,

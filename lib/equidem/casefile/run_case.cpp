@@ -133,7 +133,7 @@ std::optional<RunCase> read_run(const TomlValue& root, std::span<const NamedSche
                             : "Give one of the two");
   }
   result.time_step = read_time_step(*run, result.duration);
-  result.integrator = integrator_from(text(*run, "integrator"));
+  result.integrator = enum_from<Integrator>(text(*run, "integrator"));
   result.motion = text(*run, "motion") == "small" ? LoopKind::Motion::small : LoopKind::Motion::finite;
   result.gravity = vector(*run, "gravity");
   result.damping = read_damping(*run);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/run_keys.hpp"
 
+#include "equidem/dynamics/integrator.hpp"
+
 namespace equidem {
 namespace {
 
@@ -52,7 +54,7 @@ std::vector<KeySpec> keys_of_run() {
        .name = "integrator",
        .type = choice,
        .fallback = "\"leapfrog\"",
-       .choices = {"leapfrog", "velocity_verlet", "thesis", "fourth_order"},
+       .choices = names_of<Integrator>(),
        .help = "leapfrog: central differences; velocity_verlet: the same motion; thesis: Sukegawa (3.14)-(3.17) as "
                "printed, order 1; fourth_order: symplectic, four forces a step"},
       {.table = "run",

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/scene_keys.hpp"
 
+#include "equidem/assembly/lattices.hpp"
+#include "equidem/core/names.hpp"
+
 namespace equidem {
 
 std::vector<KeySpec> scene_keys() {
   using enum KeyType;
-  const std::vector<std::string> lattices = {"square", "hexagonal"};
+  static const std::string counts = "discs in the longest row; " + lattice_counts();
+  const std::vector<std::string> lattices = names_in(all_lattices());
+  std::vector<std::string> kinds = lattices, generated = lattices;
+  kinds.insert(kinds.end(), {"delaunay", "file"});
+  generated.emplace_back("delaunay");
   const std::vector<std::string> delaunay = {"delaunay"};
   return {
       {.table = "", .name = "schema", .type = text, .help = "says which rules the file follows: \"equidem/1\""},
@@ -19,24 +26,24 @@ std::vector<KeySpec> scene_keys() {
       {.table = "assembly",
        .name = "kind",
        .type = choice,
-       .choices = {"square", "hexagonal", "delaunay", "file"},
+       .choices = kinds,
        .later = {"packing"},
-       .help = "square and hexagonal: lattices of equal touching discs; delaunay: random points, the edges of "
-               "their triangulation are the contacts; file: read from a file"},
+       .help = "delaunay: random points, the edges of their triangulation are the contacts; file: read from a file; "
+               "others: lattices of equal touching discs"},
       {.table = "assembly",
        .name = "columns",
        .type = whole,
        .range = Range::from(1, 1e6),
        .when_key = "kind",
        .when = lattices,
-       .help = "discs in the longest row; hexagonal, free: rows alternate columns and columns - 1"},
+       .help = counts.c_str()},
       {.table = "assembly",
        .name = "rows",
        .type = whole,
        .range = Range::from(1, 1e6),
        .when_key = "kind",
        .when = lattices,
-       .help = "in a periodic hexagonal assembly: even"},
+       .help = "of discs"},
       {.table = "assembly",
        .name = "radius",
        .type = number,
@@ -100,7 +107,7 @@ std::vector<KeySpec> scene_keys() {
        .type = flag,
        .fallback = "false",
        .when_key = "kind",
-       .when = {"square", "hexagonal", "delaunay"},
+       .when = generated,
        .help = "joined to itself left-right and top-bottom"},
       {.table = "assembly",
        .name = "density",

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/task_keys.hpp"
 
+#include "equidem/linear/linear_solver.hpp"
+
 namespace equidem {
 
 std::vector<KeySpec> task_keys() {
+  static const std::string methods = help_of(EnumNames<SolverMethod>::list);
   using enum KeyType;
   return {
       {.table = "test",
@@ -137,8 +140,8 @@ std::vector<KeySpec> task_keys() {
        .name = "method",
        .type = choice,
        .fallback = "\"auto\"",
-       .choices = {"auto", "multifrontal", "cholmod", "umfpack"},
-       .help = "auto: multifrontal"},
+       .choices = names_of<SolverMethod>(),
+       .help = methods.c_str()},
       {.table = "solver",
        .name = "max_refinements",
        .type = whole,

@@ -14,7 +14,7 @@
 
 namespace equidem {
 
-/// FNV-1a (Fowler, Noll & Vo), 64 bits. Not against those who want to deceive it.
+/// FNV-1a (Fowler, Noll & Vo), 64 bits. Not a protection against forgery.
 class Checksum {
  public:
   /// Every change of a single byte changes the sum.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The one way bad input and failed computations are told. Broken promises between functions are asserted instead.
+/// Errors of bad input and of failed computations. Broken preconditions between functions are asserted instead.
 #pragma once
 
 #include <cassert>
@@ -9,7 +9,7 @@
 
 namespace equidem {
 
-/// What went wrong, and the exit code of the program for it.
+/// The kind of an error, which decides the exit code of the program.
 enum class ErrorKind {
   computation_failed = 1,  ///< the input was accepted, but no trustworthy answer exists or was reached
   bad_input = 2,           ///< the input cannot be used as it is
@@ -32,7 +32,7 @@ class Error : public std::runtime_error {
   [[nodiscard]] const std::string& where() const { return where_; }
   [[nodiscard]] int exit_code() const { return static_cast<int>(kind_); }
 
-  /// The same error with the place in the user's file that caused it; an error that already has one keeps it.
+  /// A copy with the place in the user's file that caused the error; a place that is already set is kept.
   [[nodiscard]] Error at(const std::string& where) const;
 
  private:

@@ -60,6 +60,14 @@ const auto& entry_named(const List& list, std::string_view name, const char* wha
   refuse_name(name, what, names_in(list));
 }
 
+/// "NAME: HELP; NAME: HELP", of entries with a member `help`.
+template <class List>
+std::string help_of(const List& list) {
+  std::string text;
+  for (const auto& entry : list) text += (text.empty() ? "" : "; ") + std::string(entry.name) + ": " + entry.help;
+  return text;
+}
+
 /// The entry of a value, which must be in the list.
 template <NamedEnum Enum>
 constexpr const auto& entry_of(Enum value) {

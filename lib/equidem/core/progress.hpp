@@ -12,7 +12,7 @@ namespace equidem {
 /// Whether progress may be shown at all; on by default, and even then only where stderr is a terminal.
 void set_progress_shown(bool shown);
 
-/// A line on stderr that says how far a long computation is: "factorizing 42 %, 7 s left". Shown from the second
+/// A line on stderr with the progress of a long computation: "factorizing 42 %, 7 s left". Shown from the second
 /// second on, so that short computations stay silent.
 class Progress {
  public:

@@ -16,8 +16,8 @@ namespace equidem {
 /// \param degrees_of_freedom >= 1
 double student_critical_value(double confidence, std::int64_t degrees_of_freedom);
 
-/// The mean of independent samples of one distribution. NaN is what the samples cannot tell: the mean of none, the
-/// scatter of one.
+/// The mean of independent samples of one distribution. NaN marks quantities that the samples do not determine: the
+/// mean of none, the scatter of one.
 struct MeanEstimate {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -25,7 +25,7 @@ struct MeanEstimate {
   double mean = unknown;
   double standard_deviation = unknown;  ///< of the distribution, from n - 1
   double standard_error = unknown;      ///< of the mean
-  double half_width = unknown;          ///< the mean lies within mean +- half_width with the confidence asked for
+  double half_width = unknown;          ///< the mean lies within mean +- half_width with the wanted confidence
 
   [[nodiscard]] double low() const { return mean - half_width; }
   [[nodiscard]] double high() const { return mean + half_width; }

@@ -2,7 +2,7 @@
 /// \file
 /// Vectors and second-order tensors of the plane.
 ///
-/// Sign conventions of the whole library, said here once: SI units per metre of depth (springs in Pa, forces in N/m,
+/// Sign conventions of the whole library: SI units per metre of depth (springs in Pa, forces in N/m,
 /// stress in Pa), angles in radians counter-clockwise, tension positive. For a contact of discs i and j the normal n
 /// points from i to j and the tangent is s = (-n_y, n_x).
 #pragma once

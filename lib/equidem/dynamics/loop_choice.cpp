@@ -37,10 +37,11 @@ void check_damping(const SimulationOptions& options) {
     bad_input("several kinds of damping at contacts are asked for",
               "stiffness, contact and local damping are three ways to the same end", "Keep one of them");
   }
-  if (options.integrator == Integrator::fourth_order && (dashpots || damping.local > 0)) {
-    bad_input("the fourth-order integrator is asked for with dashpots or local damping",
-              "it is of fourth order only where forces depend on positions, or for mass-proportional damping",
-              "Use leapfrog, or damp by mass");
+  if (!scheme_of(options.integrator).takes_dashpots && (dashpots || damping.local > 0)) {
+    bad_input(
+        fmt::format("the integrator \"{}\" is asked for with dashpots or local damping", to_string(options.integrator)),
+        "its forces depend on positions only, or on velocities by mass-proportional damping",
+        "Use leapfrog, or damp by mass");
   }
 }
 

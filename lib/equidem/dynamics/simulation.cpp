@@ -25,7 +25,7 @@ Simulation::Implementation::Implementation(const Scene& scene_in, const Simulati
       effects(effects_of(scene, options)),
       kind(loop_for(scene, options, effects)),
       step_function(equidem::step_function(kind)),
-      stages(stages_of(options.integrator, options.time_step, options.damping.mass)),
+      stages(scheme_of(options.integrator).stages(options.time_step, options.damping.mass)),
       bodies(lay_out(scene.assembly), kind),
       driven(scene, bodies.layout(), kind),
       dissipation(static_cast<std::size_t>(bodies.layout().strips())) {
@@ -125,7 +125,7 @@ void Simulation::Implementation::start() {
     }
     bodies.put_velocities(previous);
   } else {
-    const Stage ahead{.kick = 0, .drift = first_drift(options.integrator, h)};
+    const Stage ahead{.kick = 0, .drift = scheme_of(options.integrator).first_drift * h};
     for (std::int32_t strip = 0; strip < bodies.layout().strips(); ++strip) do_strip(strip, ahead, 0, 0, ahead.drift);
     bodies.motion[0] = bodies.motion[1];
   }
@@ -144,7 +144,8 @@ void Simulation::Implementation::do_strip(std::int32_t strip, const Stage& stage
 
 void Simulation::Implementation::advance(std::int64_t count) {
   const auto per_step = static_cast<std::int64_t>(stages.size());
-  std::vector<double> times(stages.size() + 1, first_drift(options.integrator, options.time_step));  // of positions
+  std::vector<double> times(stages.size() + 1,
+                            scheme_of(options.integrator).first_drift * options.time_step);  // of positions
   for (std::size_t k = 0; k < stages.size(); ++k) times[k + 1] = times[k] + stages[k].drift + stages[k].drift_before;
   const auto threads = static_cast<int>(
       std::min<std::size_t>(scene.assembly.size() / std::max<std::size_t>(1, options.discs_per_thread), 1024));

@@ -31,9 +31,7 @@ struct Simulation::Implementation {
 
   Implementation(const Scene& scene_in, const SimulationOptions& options_in);
 
-  [[nodiscard]] bool staggered() const {
-    return options.integrator == Integrator::leapfrog || options.integrator == Integrator::velocity_verlet;
-  }
+  [[nodiscard]] bool staggered() const { return scheme_of(options.integrator).half_step_start; }
   [[nodiscard]] double time_at(std::int64_t step) const { return static_cast<double>(step) * options.time_step; }
 
   void list_contacts();

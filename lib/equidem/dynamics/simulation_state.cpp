@@ -77,7 +77,7 @@ std::vector<DiscMotion> Simulation::Implementation::synchronous_velocities() con
 
 std::vector<DiscMotion> Simulation::Implementation::motions() const {
   std::vector<DiscMotion> result = bodies.discs_of(bodies.motion[parity]);
-  const double ahead = first_drift(options.integrator, options.time_step);
+  const double ahead = scheme_of(options.integrator).first_drift * options.time_step;
   if (ahead == 0) return result;
   const std::vector<DiscMotion> v = bodies.disc_velocities(bodies.velocity);
   for (std::size_t d = 0; d < v.size(); ++d) {

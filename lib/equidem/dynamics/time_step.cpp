@@ -115,14 +115,14 @@ double critical_of_thesis(const Vibration& vibration, const SquaredFrequency& sq
 }
 
 double critical_step(const Vibration& vibration, const SquaredFrequency& squared, double omega) {
-  switch (vibration.options.integrator) {
-    case Integrator::leapfrog:
-    case Integrator::velocity_verlet:
+  const IntegrationScheme& scheme = scheme_of(vibration.options.integrator);
+  switch (scheme.limit) {
+    case StabilityLimit::central_differences:
       return critical_of_leapfrog(vibration, squared, omega);
-    case Integrator::thesis:
+    case StabilityLimit::thesis:
       return critical_of_thesis(vibration, squared, omega);
-    case Integrator::fourth_order:
-      return stability_limit(Integrator::fourth_order, 0) / omega;
+    case StabilityLimit::undamped:
+      return scheme.stability_limit(0) / omega;
   }
   return 0;
 }
@@ -181,7 +181,8 @@ void check(const TimeStepOptions& wanted) {
 /// scheme goes back in time within a step, where velocities grow by exp(0.21 alpha h).
 void respect_mass_damping(TimeStep& step, const SimulationOptions& options, const TimeStepOptions& wanted) {
   const double alpha = options.damping.mass, longest = 2 / alpha;
-  if (!(alpha > 0) || options.integrator == Integrator::thesis || wanted.allow_unstable) return;
+  const MassDamping damping_of_mass = scheme_of(options.integrator).mass_damping;
+  if (!(alpha > 0) || damping_of_mass == MassDamping::one_sided || wanted.allow_unstable) return;
   if (wanted.step && *wanted.step > longest) {
     bad_input(fmt::format("the time step {:.6g} s is too long for the mass damping of {:.6g} 1/s", *wanted.step, alpha),
               fmt::format("past 2/damping = {:.6g} s it would turn velocities around", longest),
@@ -193,7 +194,7 @@ void respect_mass_damping(TimeStep& step, const SimulationOptions& options, cons
         "Mass damping shortens the step: past 2/damping = {:.6g} s it would turn velocities around.", longest));
   }
   const double share = step.step / longest;
-  if (options.integrator == Integrator::fourth_order || share * share < 0.05) return;
+  if (damping_of_mass == MassDamping::exact || share * share < 0.05) return;
   step.notes.push_back(fmt::format(
       "What mass damping brings to rest slides too short by up to {:.0f} %, (damping step/2)².", 100 * share * share));
 }
@@ -254,8 +255,8 @@ TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, 
   result.critical = use_bound              ? guaranteed
                     : result.omega_max > 0 ? critical_step(vibration, exact, result.omega_max)
                                            : infinite;
-  result.exact =
-      !use_bound && scene.walls.empty() && !(options.integrator == Integrator::thesis && options.damping.contact > 0);
+  result.exact = !use_bound && scene.walls.empty() &&
+                 !(scheme_of(options.integrator).limit == StabilityLimit::thesis && options.damping.contact > 0);
   result.growth_rate = growth_rate(vibration, result.omega_max);
 
   if (wanted.step) {

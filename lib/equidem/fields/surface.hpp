@@ -22,7 +22,7 @@ struct SurfaceProfile {
 };
 
 /// Exact for every shape: a body counts in a column with the highest point that it has there.
-/// \param heap of each body: whether it is looked at; empty: all are
+/// \param heap for each body: whether it is included; empty: all are
 /// \param columns >= 1, of the width from left to right
 SurfaceProfile surface_of(std::span<const Grain> grains, std::span<const Clump> clumps, double left, double right,
                           std::size_t columns, std::span<const char> heap = {});

@@ -18,11 +18,11 @@ constexpr double mean_rotation(const Tensor2& gradient) {
   return 0.5 * (gradient.yx - gradient.xy);
 }
 
-/// Stretch and slip, m, of every contact where each sees the affine motion u = h x and all discs turn by `rotation`
+/// Stretch and slip, m, of every contact under the affine motion u = h x, all discs turning by `rotation`
 /// (rad).
 std::vector<ContactDeformation> affine_deformations(const Assembly& assembly, const Tensor2& gradient, double rotation);
 
-/// Contact forces, N/m, where each contact sees the affine motion u = h x and all discs turn by the same `rotation`
+/// Contact forces, N/m, under the affine motion u = h x, all discs turning by the same `rotation`
 /// (rad):
 ///
 ///   dn = n . h l,   ds = s . h l - (r_i + r_j) rotation,   l the branch vector

@@ -58,7 +58,7 @@ struct Shift {
   bool operator==(const Shift&) const = default;
 };
 
-/// The same periodic network with every disc at that image that has the most contacts without crossing the period: a
+/// The periodic network with every disc at that image that has the most contacts without crossing the period: a
 /// boundary that is cut then leaves few discs hanging by a single contact. Each move lowers the number of crossing
 /// contacts, so that this ends.
 Assembly wrapped_compactly(const Assembly& assembly) {

@@ -76,7 +76,7 @@ Symmetric2 inverse_in_the_limit(const Symmetric2& finite, const Symmetric2& infi
     return {finite.yy / d, -finite.xy / d, finite.xx / d};
   }
   if (infinite.determinant() > 1e-13 * trace * trace) return {};
-  // Of rank one: only its null vector v is left, v v^T / (v^T finite v).
+  // The rank is one: only the null vector v is left, v v^T / (v^T finite v).
   const Vec2 v = infinite.xx > infinite.yy ? Vec2{-infinite.xy, infinite.xx} : Vec2{infinite.yy, -infinite.xy};
   const double energy = finite.xx * v.x * v.x + 2 * finite.xy * v.x * v.y + finite.yy * v.y * v.y;
   return {v.x * v.x / energy, v.x * v.y / energy, v.y * v.y / energy};

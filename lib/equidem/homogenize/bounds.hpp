@@ -12,7 +12,7 @@ namespace equidem {
 /// Every disc follows the uniform strain (and the mean rotation, which a strain has none of): C_V = (1/A) sum kN d_n
 /// d_n + kT d_s d_s over contacts, with the deformations of unit strains; an upper bound as a quadratic form where
 /// kT >= 0 (Bathurst & Rothenburg 1988). Springs equal at all contacts give effective_moduli K = S kN/4 and
-/// G = S (kN + kT)/8 with S = sum l²/A, whatever the fabric. Exact on lattices with one disc in the primitive cell. Pa.
+/// G = S (kN + kT)/8 with S = sum l²/A, for any fabric. Exact on lattices with one disc in the primitive cell. Pa.
 /// \throws Error (bad_input) where a free assembly has no cell areas
 Matrix3 voigt_stiffness(const Assembly& assembly, const ContactSprings& springs);
 

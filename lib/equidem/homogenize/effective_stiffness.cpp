@@ -19,9 +19,9 @@ namespace {
 
 using WeakStrain = std::array<double, 3>;
 
-/// What levers that leave a gap or an overlap cost: a rigid rotation of all discs would make their contact slip.
+/// Error from levers that leave a gap or an overlap: a rigid rotation of all discs would make their contact slip.
 void check_levers(const Assembly& assembly, const ContactSprings& springs, const Effects& effects) {
-  if (!effects.rotation || !assembly.contact_arms.empty()) return;  // check(Assembly) sees that these meet
+  if (!effects.rotation || !assembly.contact_arms.empty()) return;  // check(Assembly) ensures that these meet
   constexpr double close = 1e-9, rounding = 8 * std::numeric_limits<double>::epsilon();  // of lengths, of coordinates
   for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
     const Contact& c = assembly.contacts[k];

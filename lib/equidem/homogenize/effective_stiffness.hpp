@@ -76,7 +76,7 @@ struct EffectiveStiffness {
 /// Solve for unit strains xx, yy and xy (and the unit rotation where rotation is restrained) on one factorization.
 /// \throws Error (bad_input) where the boundary does not suit the assembly, levers do not add up to their branch where
 ///         they
-///         matter, no piece spans the cell, the network is a mechanism (named) or some strain costs no energy (named),
+///         matter, no piece spans the cell, the network is a mechanism (named) or some strain has no energy (named),
 ///         since a floppy network has no modulus; springs too far apart for a double; (computation_failed) as
 ///         EquilibriumSolver; at the limit of stability
 EffectiveStiffness effective_stiffness(const Assembly& assembly, const ContactSprings& springs,

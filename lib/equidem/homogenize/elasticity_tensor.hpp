@@ -11,7 +11,7 @@
 
 namespace equidem {
 
-/// What an effective stiffness says as moduli. K, G, nu, E are those of the nearest isotropic tensor (the mean over
+/// The moduli of an effective stiffness. K, G, nu, E are those of the nearest isotropic tensor (the mean over
 /// all directions), so that they do not depend on how the sample is turned.
 struct EffectiveModuli {
   double bulk_modulus_2d = 0;  ///< K = (C11 + C22 + 2 C12)/4, Pa

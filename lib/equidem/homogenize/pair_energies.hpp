@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What load cases store together.
+/// Mutual energies of load cases.
 #pragma once
 
 #include <vector>

@@ -18,7 +18,7 @@ class SampleSolver {
  public:
   /// \param held discs that the boundary holds or loads: never left out; empty: none
   /// \param hold_translations whether the translations of these discs are prescribed
-  /// \param result gets what there is to say about the network, and the stages
+  /// \param result receives the findings about the network, and the times of stages
   /// \throws Error as effective_stiffness
   SampleSolver(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options,
                const std::vector<std::uint8_t>& held, bool hold_translations, EffectiveStiffness& result);

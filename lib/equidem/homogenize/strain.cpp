@@ -36,7 +36,7 @@ Tensor2 fitted_displacement_gradient(const Assembly& assembly, std::span<const D
     centre += weight(disc) * assembly.centres[disc];
     mean += weight(disc) * motions[disc].u;
   }
-  // Sums about the centroid: a position far from the origin or a large rigid motion costs no digits.
+  // Sums about the centroid: no digits are lost far from the origin or by a large rigid motion.
   // h = (sum w du dx^T) (sum w dx dx^T)^-1.
   Tensor2 second_moment;
   Tensor2 covariance;

@@ -31,7 +31,7 @@ double power_difference(const std::vector<Tensor2>& stresses, const Matrix3& sti
   return largest / largest_entry(stiffness);
 }
 
-/// What rounding of normals and lever arms changes of an energy of two cases, N, at most: the motion is stationary, so
+/// Bound, N, on the error of an energy of two cases by rounding of normals and lever arms: the motion is stationary, so
 /// that the change of sum kN dn_a dn_b + kT ds_a ds_b is that of the deformations of given motions.
 double rounding_of_energies(const SampleSolver& solver, const std::vector<Solution>& solutions,
                             const std::vector<std::vector<ContactDeformation>>& deformations) {
@@ -73,7 +73,7 @@ void keep_gradient_stiffness(const std::vector<Tensor2>& stresses, EffectiveStif
   result.stress_asymmetry = asymmetric / largest_entry(result.gradient_stiffness);
 }
 
-/// Of the part that carries load, over the area of the whole.
+/// Stiffness of the part that carries load, over the area of the whole.
 Tensor2 mean_stress(const SampleSolver& solver, const std::vector<ContactDeformation>& deformations, double area) {
   std::vector<ContactForce> forces(deformations.size());
   for (std::size_t c = 0; c < forces.size(); ++c) {

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "equidem/assembly/lattices.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/material/spring_relations.hpp"
@@ -58,7 +59,7 @@ int half_reach(GaugePlacement placement, int count) {
   return count - 1;
 }
 
-/// The nearest pair, symmetric about the middle of 0 ... count - 1, at least as far out as the placement says;
+/// The nearest pair, symmetric about the middle of 0 ... count - 1, at least as far out as the placement demands;
 /// negative where there is none.
 std::pair<int, int> symmetric_pair(GaugePlacement placement, int count) {
   const int twice_first = count - 1 - half_reach(placement, count);
@@ -69,9 +70,9 @@ std::pair<int, int> symmetric_pair(GaugePlacement placement, int count) {
 /// Gauges on a lattice, found by counting rows and discs: no tie between equally near discs can turn them.
 class LatticeGauges {
  public:
-  LatticeGauges(const Assembly& assembly, GaugePlacement placement)
+  LatticeGauges(const Assembly& assembly, RowAlignment alignment, GaugePlacement placement)
       : placement_(placement),
-        staggered_(assembly.kind == "hexagonal"),
+        staggered_(alignment == RowAlignment::staggered),
         columns_(static_cast<int>(group(assembly, "bottom").discs.size())),
         first_(group(assembly, "left").discs),
         last_(group(assembly, "right").discs) {
@@ -94,7 +95,7 @@ class LatticeGauges {
   [[nodiscard]] int rows() const { return static_cast<int>(first_.size()); }
   [[nodiscard]] int count(int row) const { return last_[row] - first_[row] + 1; }
   [[nodiscard]] Disc middle_disc(int row) const { return first_[row] + (count(row) - 1) / 2; }
-  /// Of the two middle rows of an even number, the one with a disc in its middle.
+  /// The middle row; of the two middle rows of an even number, the one with a disc in its middle.
   [[nodiscard]] int middle_row() const {
     const int row = (rows() - 1) / 2;
     return rows() % 2 == 0 && count(row) % 2 == 0 && count(row + 1) % 2 != 0 ? row + 1 : row;
@@ -213,8 +214,9 @@ TensionSetup tension_setup(const Assembly& assembly, const TensionTest& test) {
                     {.group = "bottom_left", .ux = 0.0, .uy = 0.0, .rotation = {}}};
   setup.loads = {{.group = "left", .kind = LoadKind::traction, .force = {-test.stress, 0}},
                  {.group = "right", .kind = LoadKind::traction, .force = {test.stress, 0}}};
-  if (assembly.kind == "hexagonal" || assembly.kind == "square") {
-    LatticeGauges(assembly, test.gauge).place(setup);
+  const Lattice* lattice = find_lattice(assembly.kind);
+  if (lattice != nullptr && lattice->alignment != RowAlignment::irregular) {
+    LatticeGauges(assembly, lattice->alignment, test.gauge).place(setup);
   } else {
     place_nearest_gauges(assembly, test.gauge, setup);
   }

@@ -15,10 +15,10 @@ namespace equidem {
 
 /// Where the two strain gauges A-B (along x) and C-D (along y) sit. On the lattices A and B are discs of the middle
 /// row (of two middle rows of a hexagonal block, the one with a disc in its middle), the nearest pair symmetric about
-/// its middle that is at least as far out as said. C and D share one x, that of the disc in or next to the middle,
+/// its middle that is at least as far out as wanted. C and D share one x, that of the disc in or next to the middle,
 /// and lie as many rows above as below the middle one; `ends` leaves out the last of an even number of hexagonal
 /// rows, since only every other row has discs at the same x. Elsewhere all four are the discs nearest to the points
-/// said, one spacing being the mean branch length.
+/// wanted, one spacing being the mean branch length.
 enum class GaugePlacement {
   centre,   ///< discs two spacings (rows) either side of the middle
   quarter,  ///< discs a quarter of the block either side of the middle

@@ -46,7 +46,7 @@ std::vector<double> tractions(const Assembly& assembly, const TractionSample& sa
   return force;
 }
 
-/// What the contacts cut store under the forces that they carry.
+/// Energy stored by the cut contacts under the forces that they carry.
 PairEnergies energies_of_cuts(const Assembly& assembly, const ContactSprings& springs, const TractionSample& sample) {
   PairEnergies energies;
   for (const auto& cut : sample.cuts) {

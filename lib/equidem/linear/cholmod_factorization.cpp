@@ -12,7 +12,9 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/linear/linear_solver.hpp"
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
+#include "equidem/linear/ordering/symbolic_factor.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
 
 namespace equidem {
@@ -52,10 +54,10 @@ struct Library<SuiteSparse_long> {
   static constexpr auto free_dense = cholmod_l_free_dense;
 };
 
-/// Keeps CHOLMOD on the calling thread. As Debian builds it, it asks OpenMP for four threads at every supernode, a
+/// Keeps CHOLMOD on the calling thread. As built by Debian, it requests four OpenMP threads at every supernode, a
 /// request that outranks omp_set_num_threads and OMP_NUM_THREADS: most supernodes are small, and the threads cost
 /// more than they bring. With no active parallel region allowed, each runs on its caller. The OpenMP runtime is the
-/// one that CHOLMOD has brought along, if any, so it is asked for by name.
+/// one that CHOLMOD has brought along, if any, so it is looked up by name.
 class OneThread {
  public:
   explicit OneThread(bool wanted) {
@@ -276,6 +278,11 @@ std::unique_ptr<Factorization> cholmod_cholesky(const MatrixOnGraph& matrix, con
   if (trial != nullptr) trial->times = std::move(times);
   if (outcome == Outcome::not_positive) return nullptr;
   return std::move(factor);
+}
+
+std::unique_ptr<Factorization> factorize_by_cholmod(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
+                                                    const SymbolicFactor& symbolic) {
+  return cholmod_cholesky(matrix, unknowns, CholmodOrdering::ours, symbolic.tree.order);
 }
 
 }  // namespace equidem

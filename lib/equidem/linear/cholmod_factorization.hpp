@@ -21,15 +21,15 @@ enum class CholmodOrdering {
   amd,    ///< approximate minimum degree on the graph of unknowns
 };
 
-/// What a comparison of solvers sets and learns.
+/// Setting and timings for comparisons of solvers.
 struct CholmodTrial {
   bool keep_thread_settings = false;  ///< leave the threads of BLAS and OpenMP as the process has them
   StageTimes times;                   ///< compression, ordering, analysis, factorization
 };
 
 /// K = L L^T over the components that are not held, with 32-bit indices as long as they reach. Returns a null pointer
-/// where K is not positive definite to working precision; `report`, where given, tells where. Held components are
-/// solved as rows of a unit matrix times the largest spring. One factorization must not be used by two threads at
+/// where K is not positive definite to working precision; `report`, where given, contains the place. Held components
+/// are solved as rows of a unit matrix times the largest spring. One factorization must not be used by two threads at
 /// once.
 /// \param order discs in elimination order, for CholmodOrdering::ours
 /// \throws Error (computation_failed) where memory does not suffice or CHOLMOD fails

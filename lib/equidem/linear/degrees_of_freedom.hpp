@@ -20,7 +20,7 @@ struct DegreesOfFreedom {
   std::vector<double> prescribed;  ///< m, per component: the value where held, else 0
   std::int64_t unknowns = 0;
   std::int64_t free_rotations = 0;   ///< unknowns that are rotations
-  std::int64_t inert_rotations = 0;  ///< rotations that no contact resists: held at 0, they cannot change the answer
+  std::int64_t inert_rotations = 0;  ///< rotations that no contact resists: held at 0, without effect on the result
 };
 
 }  // namespace equidem

@@ -10,12 +10,12 @@
 
 namespace equidem {
 
-/// What a factorization found out about the matrix.
+/// Properties of the matrix that a factorization found.
 struct FactorReport {
   std::string name;     ///< "multifrontal Cholesky", ...
   double nonzeros = 0;  ///< entries of L
   double bytes = 0;
-  std::int64_t negative_pivots = -1;  ///< negative eigenvalues (Sylvester); -1 where the method cannot tell
+  std::int64_t negative_pivots = -1;  ///< negative eigenvalues (Sylvester); -1 where the method does not determine it
   double growth = 0;                  ///< largest |L_ij|; 0 where not watched
   /// Smallest pivot over the diagonal entry it started from: the share of a stiffness that is left when all others
   /// have given way. Near round-off the matrix is singular.
@@ -36,10 +36,10 @@ class Factorization {
   /// x := K^-1 x for right-hand sides stored one after another.
   virtual void solve(std::span<double> x, int right_hand_sides) const = 0;
   /// The motion of least resistance that the factorization came across, not normalized: L^-T e for the unit vector e
-  /// of the smallest pivot. Where K is singular it is a mechanism. Empty where the method does not tell.
+  /// of the smallest pivot. Where K is singular it is a mechanism. Empty where the method does not determine it.
   [[nodiscard]] virtual std::vector<double> softest_motion() const { return {}; }
-  /// The k-th of FactorReport::zero_pivots motions that cost nothing, not normalized; they are independent. Solving
-  /// holds one unknown for each of them. Empty where the method does not tell.
+  /// The k-th of FactorReport::zero_pivots zero-energy modes, not normalized; they are independent. Solving
+  /// holds one unknown for each of them. Empty where the method does not determine them.
   [[nodiscard]] virtual std::vector<double> null_motion(std::int64_t) const { return {}; }
   [[nodiscard]] virtual const FactorReport& report() const = 0;
 };

@@ -1,24 +1,60 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Choice of the linear solver.
+/// The linear solvers, and the choice of one.
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <memory>
+
+#include "equidem/core/names.hpp"
+#include "equidem/linear/factorization.hpp"
 
 namespace equidem {
 
-/// The back ends.
-enum class SolverMethod {
-  automatic,     ///< multifrontal: Cholesky where no spring is negative, else L D L^T
-  multifrontal,  ///< ours: geometric nested dissection on the graph of discs, threads over subtrees
-  cholmod,       ///< SuiteSparse's supernodal Cholesky with our ordering
-  umfpack,       ///< SuiteSparse's unsymmetric LU with partial pivoting, ordered by itself
+struct DegreesOfFreedom;
+struct MatrixOnGraph;
+struct SymbolicFactor;
+
+/// A factorization that statics can choose. A back end is one file that defines its `factorize`, and its lines in
+/// SolverMethod and the list below.
+struct BackEnd {
+  bool definite_only = false;  ///< needs a positive definite matrix: refuses kT < 0
+  double memory_factor = 1;    ///< estimated peak memory, over that of the multifrontal factorization
+  /// Null: our multifrontal factorizations, which also name mechanisms. Others return null where they meet a zero or
+  /// (definite_only) negative pivot; K is then judged by ours.
+  std::unique_ptr<Factorization> (*factorize)(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
+                                              const SymbolicFactor& symbolic) = nullptr;
 };
 
-/// \throws Error (bad_input) naming the choices
-SolverMethod solver_method_from(const std::string& name);
-std::string to_string(SolverMethod method);
+std::unique_ptr<Factorization> factorize_by_cholmod(const MatrixOnGraph&, const DegreesOfFreedom&,
+                                                    const SymbolicFactor&);
+std::unique_ptr<Factorization> factorize_by_umfpack(const MatrixOnGraph&, const DegreesOfFreedom&,
+                                                    const SymbolicFactor&);
+
+enum class SolverMethod { automatic, multifrontal, cholmod, umfpack };
+
+template <>
+struct EnumNames<SolverMethod> {
+  struct Entry {
+    SolverMethod value;
+    const char* name;
+    const char* help;
+    BackEnd back_end;
+  };
+  static constexpr const char* what = "solver method";
+  static constexpr Entry list[] = {
+      {SolverMethod::automatic, "auto", "multifrontal", {}},
+      {SolverMethod::multifrontal, "multifrontal", "ours: Cholesky where no spring is negative, else L D L^T", {}},
+      {SolverMethod::cholmod,
+       "cholmod",
+       "SuiteSparse's supernodal Cholesky in our order",
+       {.definite_only = true, .factorize = factorize_by_cholmod}},
+      {SolverMethod::umfpack,
+       "umfpack",
+       "SuiteSparse's unsymmetric LU in its own order",
+       {.memory_factor = 4, .factorize = factorize_by_umfpack}},
+  };
+};
 
 struct SolverOptions {
   SolverMethod method = SolverMethod::automatic;
@@ -29,7 +65,7 @@ struct SolverOptions {
 /// \throws Error (bad_input) on a negative number of refinements or a memory limit that is negative or no number
 void check(const SolverOptions& options);
 
-/// What a factorization will take, known before it is tried.
+/// Estimated cost of a factorization.
 struct SolveEstimate {
   std::int64_t unknowns = 0;
   double factor_nonzeros = 0;  ///< entries of L

@@ -18,7 +18,7 @@ double bytes_in(const std::string& path) {
   return file >> bytes ? bytes : std::numeric_limits<double>::infinity();
 }
 
-/// What this process takes already: "VmRSS:" resident, "VmSize:" address space, "VmData:" data segment.
+/// Memory of this process, bytes: "VmRSS:" resident, "VmSize:" address space, "VmData:" data segment.
 double bytes_of_process(const std::string& what) {
   std::ifstream status("/proc/self/status");
   std::string word;
@@ -39,7 +39,7 @@ double available_memory() {
     double kilobytes = 0;
     if (word == "MemAvailable:" && meminfo >> kilobytes) available = 1024 * kilobytes;
   }
-  // Caches of the control group give way, so only what is resident counts against its limit.
+  // Caches of the control group are released on demand, so only resident memory counts against its limit.
   available = std::min(available, bytes_in("/sys/fs/cgroup/memory.max") - bytes_of_process("VmRSS:"));
   const auto limited = [&](auto resource, const std::string& used) {
     rlimit limit{};

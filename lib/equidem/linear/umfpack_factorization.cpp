@@ -13,7 +13,9 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/linear/linear_solver.hpp"
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
+#include "equidem/linear/ordering/symbolic_factor.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
 
 namespace equidem {
@@ -158,6 +160,11 @@ std::unique_ptr<Factorization> umfpack_lu(const MatrixOnGraph& matrix, const Deg
   if (report != nullptr) *report = factor->report();
   if (!regular) return nullptr;
   return factor;
+}
+
+std::unique_ptr<Factorization> factorize_by_umfpack(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
+                                                    const SymbolicFactor&) {
+  return umfpack_lu(matrix, unknowns);
 }
 
 }  // namespace equidem

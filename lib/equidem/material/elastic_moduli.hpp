@@ -24,7 +24,7 @@ struct ElasticModuli {
   double poisson_ratio = 0;  ///< in the reading `plane`: (-1, 1/2) for plane strain, (-1, 1) for plane stress
   Plane plane = Plane::strain;
 
-  /// The same body in the other reading: nu_strain = nu_stress / (1 + nu_stress); G does not change.
+  /// These moduli in the other reading: nu_strain = nu_stress / (1 + nu_stress); G does not change.
   [[nodiscard]] ElasticModuli read_as(Plane other) const;
   /// E = 2 G (1 + nu), Pa.
   [[nodiscard]] double young_modulus() const;

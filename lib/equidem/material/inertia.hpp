@@ -34,7 +34,7 @@ struct Inertia {
 /// \param density of the disc itself, kg/m³
 /// \throws Error (bad_input) where the density is not positive and finite
 Inertia inertia_of(double radius, double density, Body body);
-/// The same for every disc.
+/// One Inertia for every disc.
 std::vector<Inertia> inertia_of(const std::vector<double>& radii, double density, Body body);
 
 /// An elliptic cylinder per metre of depth: m = rho pi a b, I = m (a² + b²)/4 (Sukegawa 2010, eq. 4.54).

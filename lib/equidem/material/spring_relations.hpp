@@ -1,55 +1,64 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Abe (1996): contact springs and the moduli of the continuum that an assembly of discs stands for, both ways.
+/// Relations between contact springs and the moduli of the continuum that an assembly of discs stands for (Abe 1996),
+/// both ways. Those of lattices are in assembly/lattices.
 #pragma once
-
-#include <string>
 
 #include "equidem/material/elastic_moduli.hpp"
 #include "equidem/material/spring_constants.hpp"
 
 namespace equidem {
 
-/// The arrangements for which Abe gives a relation.
-enum class Packing {
-  isotropic,             ///< eqs. (21), (22): mean field, needs solid fraction and contact density
-  hexagonal,             ///< eq. (34)
-  square,                ///< eq. (31): nu = 0 only
-  hexagonal_restrained,  ///< eq. (53), rotation restrained: matches the displacement operator, not the stress
-};
-
-/// Measures of an isotropic assembly that eqs. (20)-(21) ask for.
+/// Measures of an isotropic assembly, of eqs. (20) and (21).
 struct IsotropicMeasures {
   double solid_fraction = 0;   ///< phi = gamma/rho, in (0, 1]
   double contact_density = 0;  ///< psi = z/(2 pi), contacts per radian around one disc
 };
 
-/// What to do where a relation asks for kT < 0.
-enum class NegativeTangential {
-  refuse,
-  static_only,  ///< continue the relation: a static answer exists down to the critical ratio, no dynamic one
-                ///< does
+/// The two moduli of a sheet whose signs decide about stability.
+struct SheetModuli {
+  double bulk = 0;   ///< K = G/(1 - 2 nu) in plane strain, Pa
+  double shear = 0;  ///< G, Pa
 };
 
-/// \throws Error (bad_input) with the sentence that says what is representable: nu > 1/4 in plane strain (1/3 in
-///         plane stress) unless the static-only continuation is asked for, anything but nu = 0 on the square lattice,
-///         missing measures
-SpringConstants springs_for(const ElasticModuli& moduli, Packing packing, const IsotropicMeasures& measures = {},
+/// A relation between equal springs and the moduli of an isotropic continuum.
+struct SpringRelation {
+  const char* name;                     ///< "hexagonal lattice, eq. (34)": reports
+  const char* place;                    ///< "square lattice": messages
+  const char* equation;                 ///< its number in Abe (1996)
+  const char* validity;                 ///< "holds for nu <= 1/4 (plane strain): ...", a sentence or two for reports
+  const char* static_limit;             ///< where kT < 0 is statically stable, a clause for messages
+  bool needs_measures = false;          ///< IsotropicMeasures are used
+  const char* equal_springs = nullptr;  ///< where the relation holds for kT = kN and nu = 0 only: why, else null
+  const char* shear_limit = "-1";       ///< kT/kN at which G vanishes, for messages
+  SheetModuli (*moduli)(const SpringConstants& springs, const IsotropicMeasures& measures);
+  /// \param one_minus_4nu 1 - 4 nu in plane strain, exactly 0 where kT vanishes
+  SpringConstants (*springs)(const ElasticModuli& moduli, double one_minus_4nu, const IsotropicMeasures& measures);
+};
+
+/// Mean field, eqs. (20) to (22): K = phi psi kN, G = phi psi (kN + kT)/2.
+extern const SpringRelation isotropic_relation;
+
+/// Treatment of moduli whose relation yields kT < 0.
+enum class NegativeTangential {
+  refuse,
+  static_only,  ///< continue the relation: a static answer exists down to the critical ratio, a dynamic one does not
+};
+
+/// \throws Error (bad_input) with the range that can be represented: nu > 1/4 in plane strain (1/3 in plane stress)
+///         unless the static-only continuation is asked for, nu other than 0 on the square lattice, missing measures
+SpringConstants springs_for(const ElasticModuli& moduli, const SpringRelation& relation,
+                            const IsotropicMeasures& measures = {},
                             NegativeTangential negative = NegativeTangential::refuse);
 
 /// The moduli that springs stand for, the inverse of springs_for.
 /// \throws Error (bad_input) where the springs stand for no isotropic continuum (square lattice with kT != kN) or for
 ///         no stable one (kN <= 0, kT/kN at or below the limit where G or K is no longer positive)
-ElasticModuli moduli_of(const SpringConstants& springs, Packing packing, const IsotropicMeasures& measures = {},
-                        Plane plane = Plane::strain);
+ElasticModuli moduli_of(const SpringConstants& springs, const SpringRelation& relation,
+                        const IsotropicMeasures& measures = {}, Plane plane = Plane::strain);
 
-/// "holds for nu <= 1/4 (plane strain): ...", one sentence for reports.
-std::string validity(Packing packing);
-
-/// nu = (1 - kT/kN)/4, plane strain: eq. (22), also the hexagonal lattice's.
+/// nu = (1 - kT/kN)/4, plane strain: eq. (22), and the hexagonal lattice.
 double poisson_ratio_of_ratio(double ratio);
-/// 2G/((1 - nu) kN) = 2 sqrt3 (1 + r)/(3 + r), r = kT/kN, hexagonal: eq. (37).
-double hexagonal_stiffness_ratio(double ratio);
 /// nu = -e22/(e11 - e22) of a uniaxial test along x, plane strain: eq. (35).
 double poisson_ratio_of_strains(double e11, double e22);
 

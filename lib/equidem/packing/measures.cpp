@@ -121,7 +121,7 @@ Region measured_region(const GrainPacking& packing) {
 
 namespace {
 
-/// Of the bodies, m²; where the box is periodic also of what reaches in across its sides.
+/// Area of the bodies, m²; in a periodic box also of the images that reach in across its sides.
 double covered_area(const GrainPacking& packing, const Region& region) {
   const int images = packing.box.periodic() ? 1 : 0;
   double covered = 0;

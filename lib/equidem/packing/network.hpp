@@ -22,7 +22,7 @@ namespace equidem {
 /// The bodies and the contacts between them with the springs given.
 Assembly network_of(const GrainPacking& packing, const SpringConstants& springs);
 
-/// What walls hold.
+/// The network with walls as supports.
 struct HeldNetwork {
   /// Contacts with a wall are ones with a body that mirrors it behind the wall; these are the group "walls": held, they
   /// resist as the wall does. Bodies with fewer than two contacts, which could roll, are left out one after the other.
@@ -31,7 +31,7 @@ struct HeldNetwork {
 };
 HeldNetwork held_network_of(const GrainPacking& packing, const SpringConstants& springs);
 
-/// How statics sees a packing at rest.
+/// The contact network of a packing at rest, for statics.
 struct RestConfirmation {
   double mean_overlap = 0;    ///< m
   double largest_motion = 0;  ///< m: how far a body moves under what its weight and contact forces lack

@@ -43,7 +43,7 @@ const std::vector<BodyPair>& PairFinder::within(const PackingBox& box, std::span
     for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
       const auto q = static_cast<std::size_t>(list.partner[static_cast<std::size_t>(p)]);
       const std::int32_t j = owner_[q];
-      // Of the two that see each other across a side, the first counts.
+      // A pair across a side is found from both ends; it counts at the first.
       if (q >= count && j <= static_cast<std::int32_t>(i)) continue;
       pairs_.push_back({static_cast<std::int32_t>(i), j, shift_[q]});
     }
@@ -99,7 +99,7 @@ void push_shapes(const Bodies& bodies, std::span<const Outline> outlines, double
   }
 }
 
-/// What FIRE moves: bodies, and of those that are no discs their angles.
+/// The unknowns that FIRE moves: positions, and angles of bodies other than discs.
 class Pushed {
  public:
   Pushed(const PackingBox& box, const UnitBody& shape, const PushingOptions& options, PairFinder& finder,

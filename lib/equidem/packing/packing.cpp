@@ -2,12 +2,10 @@
 #include "equidem/packing/packing.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/nearest.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/material/inertia.hpp"
@@ -16,24 +14,12 @@
 namespace equidem {
 namespace {
 
-constexpr std::array table{
-    PackingMethodEntry{PackingMethod::rejection, "rejection", "attempts", fill_by_rejection},
-    PackingMethodEntry{PackingMethod::local_moves, "local_moves", "sweeps", fill_by_local_moves},
-    PackingMethodEntry{PackingMethod::insertion, "insertion", "attempts", fill_by_insertion},
-    PackingMethodEntry{PackingMethod::growth, "growth", "evaluations of all overlaps", fill_by_growth},
-    PackingMethodEntry{PackingMethod::falling, "falling", "time steps, relaxation included", fill_by_falling},
-};
-
-const PackingMethodEntry& entry_of(PackingMethod method) {
-  return *std::find_if(table.begin(), table.end(), [&](const auto& entry) { return entry.method == method; });
-}
-
 bool positive(double value) {
   return value > 0 && std::isfinite(value);
 }
 
 void check(const PackingOptions& options) {
-  const bool falls = options.method == PackingMethod::falling;
+  const bool falls = entry_of(options.method).open_top;
   const UnitBody shape = unit_body_of(options.shape);
   const std::string noun = noun_of(options.shape.kind);
   if (options.radii.empty()) bad_input("there are no bodies to pack", "the box would stay empty", "Give their number");
@@ -77,27 +63,6 @@ void check(const PackingOptions& options) {
 }
 
 }  // namespace
-
-PackingMethod packing_method_from(const std::string& name) {
-  std::vector<std::string> names;
-  std::string list;
-  for (const auto& entry : table) {
-    if (name == entry.name) return entry.method;
-    names.emplace_back(entry.name);
-    list += (list.empty() ? "" : ", ") + names.back();
-  }
-  const auto meant = nearest(name, names);
-  bad_input(fmt::format("there is no method of packing '{}'", name), "they are " + list,
-            meant ? fmt::format("Did you mean '{}'?", *meant) : "Name one of them");
-}
-
-std::string to_string(PackingMethod method) {
-  return entry_of(method).name;
-}
-
-std::span<const PackingMethodEntry> packing_methods() {
-  return table;
-}
 
 void make_grains(const PackingShape& shape, const Bodies& bodies, double density, GrainPacking& packing) {
   const UnitBody body = unit_body_of(shape);

@@ -4,12 +4,11 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
-#include <string>
 #include <vector>
 
 #include "equidem/core/vector.hpp"
 #include "equidem/grains/grain_simulation.hpp"
+#include "equidem/packing/methods.hpp"
 #include "equidem/packing/packing_shape.hpp"
 #include "equidem/packing/settling.hpp"
 
@@ -27,18 +26,6 @@ struct PackingBox {
   [[nodiscard]] bool periodic() const { return sides == Sides::periodic; }
   [[nodiscard]] double area() const { return size.x * size.y; }
 };
-
-enum class PackingMethod {
-  rejection,    ///< places at random, one disc after the other; where one would overlap another it is tried again
-  local_moves,  ///< all at random, then small random moves of those that overlap
-  insertion,    ///< one after the other, each into a gap where it touches two others
-  growth,       ///< points at random that grow into discs, pushing each other apart
-  falling,      ///< from a staggered grid under gravity
-};
-
-/// \throws Error (bad_input) naming the choices
-PackingMethod packing_method_from(const std::string& name);
-std::string to_string(PackingMethod method);
 
 struct PackingOptions {
   PackingMethod method = PackingMethod::growth;
@@ -63,7 +50,7 @@ struct GrainPacking {
   std::vector<Clump> clumps;
   std::vector<GrainBond> bonds;  ///< with their dashpots where they fell
   std::vector<double> radii;     ///< of each body as the shape says, m
-  bool complete = true;          ///< all bodies asked for are there, as large as asked for
+  bool complete = true;          ///< all wanted bodies are there, in the wanted sizes
   double seconds = 0;
   std::int64_t work = 0;  ///< attempts, sweeps, evaluations of all contacts or time steps: as the method counts
   // falling
@@ -75,16 +62,7 @@ struct GrainPacking {
   [[nodiscard]] std::size_t body_of(std::size_t grain) const { return bonds.empty() ? grain : grain / 2; }
 };
 
-/// A row of the table of methods.
-struct PackingMethodEntry {
-  PackingMethod method;
-  const char* name;
-  const char* unit_of_work;
-  void (*fill)(const PackingOptions& options, GrainPacking& packing);  ///< grains, clumps, bonds, radii
-};
-std::span<const PackingMethodEntry> packing_methods();
-
-/// Same options, same packing, whatever the number of threads.
+/// The packing depends on the options only, not on the number of threads.
 /// \throws Error (bad_input): no bodies, a shape that is none (unit_body_of), a box or radii that are not
 ///         positive, bodies wider than the box, more area than the box has, falling into a box without an open top and
 ///         the reverse; (computation_failed): the bodies do not fit, naming how dense they came to lie, and as settle
@@ -92,12 +70,5 @@ GrainPacking pack(const PackingOptions& options);
 
 /// Bodies as grains of a scene: `grains`, `clumps`, `bonds` (without dashpots) and `radii` of a packing.
 void make_grains(const PackingShape& shape, const Bodies& bodies, double density, GrainPacking& packing);
-
-// The methods, one file each.
-void fill_by_rejection(const PackingOptions& options, GrainPacking& packing);
-void fill_by_local_moves(const PackingOptions& options, GrainPacking& packing);
-void fill_by_insertion(const PackingOptions& options, GrainPacking& packing);
-void fill_by_growth(const PackingOptions& options, GrainPacking& packing);
-void fill_by_falling(const PackingOptions& options, GrainPacking& packing);
 
 }  // namespace equidem

@@ -3,42 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
-#include "equidem/core/error.hpp"
-#include "equidem/core/text.hpp"
 #include "equidem/grains/scene/clipped_area.hpp"
 #include "equidem/grains/scene/clump.hpp"
 
 namespace equidem {
-namespace {
 
-using Kind = PackingShape::Kind;
-
-/// By it moments are divided while bodies are pushed apart. What is nearly round would be turned far by its small
-/// moments, so that it never came to rest; what is round but for rounding of its centre does not turn.
 double lever_of(double arm, double reach) {
   constexpr double rounding = 1e-12, shortest = 0.1;
   return arm <= rounding * reach ? 0 : std::max(arm, shortest * reach);
 }
 
-UnitBody unit_ellipse(double aspect) {
-  constexpr double longest = 1000;
-  if (!(aspect >= 1 && aspect <= longest)) {
-    bad_input(fmt::format("the aspect of the ellipses is {}", aspect),
-              fmt::format("it is the long half-axis over the short one, from 1 to {}", longest), "Correct it");
-  }
-  const double a = std::sqrt(aspect), b = 1 / a;
-  return {.a = a,
-          .b = b,
-          .reach = a,
-          .lever = lever_of(a - b, a),
-          .area = std::numbers::pi,
-          .gyration = 0.25 * (a * a + b * b)};
-}
-
-UnitBody unit_clump(std::vector<Clump::Disc> discs, double area) {
+UnitBody body_of_discs(std::vector<Clump::Disc> discs, double area) {
   Clump clump = centred_clump(std::move(discs));
   const DiscUnion whole = union_of(clump.discs);
   const double scale = std::sqrt(area / whole.area);
@@ -52,24 +29,6 @@ UnitBody unit_clump(std::vector<Clump::Disc> discs, double area) {
   }
   body.lever = lever_of(body.lever, body.reach);
   return body;
-}
-
-}  // namespace
-
-UnitBody unit_body_of(const PackingShape& shape) {
-  constexpr double pi = std::numbers::pi;
-  switch (shape.kind) {
-    case Kind::disc:
-      return {.area = pi, .gyration = 0.5};
-    case Kind::ellipse:
-      return unit_ellipse(shape.aspect);
-    case Kind::bonded_pair:
-    case Kind::rigid_pair:
-      return unit_clump({{{-1, 0}, 1}, {{1, 0}, 1}}, 2 * pi);
-    case Kind::clump:
-      break;
-  }
-  return unit_clump(shape.discs, pi);
 }
 
 double area_of(const PackingShape& shape, std::span<const double> radii) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What is packed: discs, ellipses, pairs of discs, clumps.
+/// Shapes to pack: discs, ellipses, pairs of discs, clumps.
 #pragma once
 
 #include <span>
@@ -28,25 +28,6 @@ struct PackingShape {
   [[nodiscard]] bool is_disc() const { return kind == Kind::disc; }
 };
 
-template <>
-struct EnumNames<PackingShape::Kind> {
-  struct Entry {
-    PackingShape::Kind value;
-    const char* name;
-    const char* noun;  ///< for reports; plural with s
-  };
-  using Kind = PackingShape::Kind;
-  static constexpr const char* what = "shape to pack";
-  static constexpr Entry list[] = {{Kind::disc, "disc", "disc"},
-                                   {Kind::ellipse, "ellipse", "ellipse"},
-                                   {Kind::bonded_pair, "bonded_pair", "pair"},
-                                   {Kind::rigid_pair, "rigid_pair", "pair"},
-                                   {Kind::clump, "clump", "clump"}};
-};
-inline std::string noun_of(PackingShape::Kind kind) {
-  return entry_of(kind).noun;
-}
-
 /// A body for the radius 1 at the angle 0, its centre of mass in the origin.
 struct UnitBody {
   double a = 1, b = 1;                  ///< half-axes of a disc or an ellipse
@@ -57,8 +38,46 @@ struct UnitBody {
   double area = 0;      ///< times r²
   double gyration = 0;  ///< I/m, times r²
 };
+/// The lever of a unit body from its longest arm (UnitBody::lever). While bodies are pushed apart, moments are divided
+/// by it: its lower bound of a tenth of the reach keeps the small moments on nearly round bodies from turning them far,
+/// and so from coming to rest; bodies that are round up to rounding do not turn.
+double lever_of(double arm, double reach);
+
+/// Discs tied rigidly, in any place and unit, scaled to an area.
+/// \throws Error (bad_input) on discs that have no area
+UnitBody body_of_discs(std::vector<Clump::Disc> discs, double area);
+
+// A shape is one file of the folder shapes that defines one of these functions, and its lines in PackingShape::Kind and
+// the list below.
+using MakeUnitBody = UnitBody(const PackingShape& shape);
+MakeUnitBody unit_disc, unit_ellipse, unit_pair, unit_clump;
+
+struct PackingShapeEntry {
+  PackingShape::Kind value;
+  const char* name;
+  const char* noun;  ///< for reports; plural with s
+  MakeUnitBody* unit_body;
+};
+
+template <>
+struct EnumNames<PackingShape::Kind> {
+  using Kind = PackingShape::Kind;
+  static constexpr const char* what = "shape to pack";
+  static constexpr PackingShapeEntry list[] = {{Kind::disc, "disc", "disc", unit_disc},
+                                               {Kind::ellipse, "ellipse", "ellipse", unit_ellipse},
+                                               {Kind::bonded_pair, "bonded_pair", "pair", unit_pair},
+                                               {Kind::rigid_pair, "rigid_pair", "pair", unit_pair},
+                                               {Kind::clump, "clump", "clump", unit_clump}};
+};
+
+inline std::string noun_of(PackingShape::Kind kind) {
+  return entry_of(kind).noun;
+}
+
 /// \throws Error (bad_input) on an aspect below 1 or above 1000, a clump without discs or with discs that have no area
-UnitBody unit_body_of(const PackingShape& shape);
+inline UnitBody unit_body_of(const PackingShape& shape) {
+  return entry_of(shape.kind).unit_body(shape);
+}
 
 /// The area of all bodies, m².
 double area_of(const PackingShape& shape, std::span<const double> radii);

@@ -34,7 +34,7 @@ class PlacedBodies {
 
   [[nodiscard]] double turns(std::size_t body) const { return bodies_.turns.empty() ? 0 : bodies_.turns[body]; }
 
-  /// The same place in the box.
+  /// The place, moved into the box by whole periods.
   [[nodiscard]] Vec2 wrapped(Vec2 place) const;
   /// From a to b, the shortest way.
   [[nodiscard]] Vec2 branch(Vec2 a, Vec2 b) const {
@@ -67,7 +67,7 @@ class PlacedBodies {
 
   /// Call body(overlap) for all overlaps of a body at a place with others and with walls, m, until it returns true.
   /// \param angle turns
-  /// \param except a body not to look at; -1: none
+  /// \param except a body to leave out; -1: none
   template <typename Body>
   bool any_overlap(Vec2 place, double radius, double angle, std::int32_t except, const Body& body) const;
 

@@ -162,7 +162,7 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
                                      .reference_length = 0,
                                      .margin = 0});
 
-  // What is left of the motion once the bodies lie: they swing in the slowest modes, which contacts hardly damp. Where
+  // Once the bodies lie, they still swing in the slowest modes, which contacts hardly damp. Where
   // the kinetic energy has fallen to half a peak all of them are stopped, and the springs find them nearer to rest.
   // Bodies that can still drop by more than this share of their radius are left to fall; bonded pairs creep as long as
   // they carry.

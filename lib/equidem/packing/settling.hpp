@@ -26,9 +26,9 @@ struct SettlingOptions {
   /// Bring the bodies down without inertia and friction first: much faster, but the network of contacts is that of
   /// frictionless bodies and denser than what falls.
   bool relax_first = false;
-  /// Dashpots of bonded pairs, as shares of what a step by the velocities at its start bears: C_n = share 2 m_n/dt, C_s
-  /// = share 2 m_s/dt with m_n = m/2, m_s = m/6. What they carry makes them creep, the less the larger they are: far
-  /// more than an explicit step bears, or the bodies never come to rest.
+  /// Dashpots of bonded pairs, as shares of the stability limit of a step with the velocities at its start: C_n = share
+  /// 2 m_n/dt, C_s = share 2 m_s/dt with m_n = m/2, m_s = m/6. What they carry makes them creep, the less the larger
+  /// they are: far more than the limit of an explicit step, or the bodies never come to rest.
   double bond_share = 2e4;
 };
 

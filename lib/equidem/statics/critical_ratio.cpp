@@ -29,7 +29,7 @@ void check(const CriticalRatioOptions& options) {
       "it needs a tolerance of at least 1e-12 and a start in [-1, -tolerance)", "Correct them");
 }
 
-/// kT = ratio kN, but where the given springs say that there is none.
+/// kT = ratio kN, except where the given springs have kT = 0.
 ContactSprings with_ratio(const Assembly& assembly, const ContactSprings& springs, double ratio) {
   const bool all = !springs.any_tangential();
   if (springs.uniform()) return ContactSprings(SpringConstants{springs[0].kN, ratio * springs[0].kN});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The ratio kT/kN at which an assembly with its supports gives way.
+/// The ratio kT/kN at which an assembly with its supports loses stability.
 #pragma once
 
 #include <cstdint>
@@ -22,12 +22,12 @@ struct CriticalRatioOptions {
   bool antiperiodic_y = false;
 };
 
-/// What the search found and how.
+/// Result of the search.
 struct CriticalRatio {
   double ratio = 0;             ///< negative infinity: stable down to `lowest`; 0: for no kT < 0
   std::int64_t mechanisms = 0;  ///< motions that resist for no ratio, beside those held: they are left out
   std::int64_t factorizations = 0;
-  /// The motion that gives way, per disc, not normalized; empty where the value is a bisection's.
+  /// The unstable motion, per disc, not normalized; empty where the value was found by bisection.
   std::vector<DiscMotion> motion;
 };
 
@@ -44,7 +44,7 @@ struct CriticalRatio {
 CriticalRatio find_critical_ratio(const Assembly& assembly, const ContactSprings& springs,
                                   std::span<const Support> supports, const CriticalRatioOptions& options = {});
 
-/// The same for equal springs.
+/// As above, for equal springs.
 double critical_ratio(const Assembly& assembly, std::span<const Support> supports,
                       const CriticalRatioOptions& options = {});
 

@@ -47,8 +47,8 @@ struct Equilibrium {
   std::int64_t unknowns = 0;
   std::int64_t negative_pivots = 0;  ///< negative eigenvalues of K (Sylvester's law of inertia); -1: not counted
   /// Negative eigenvalues beyond those that the rotations bring by themselves where kT < 0 (one each): independent
-  /// motions by which the assembly would give way. 0: the state of rest is stable as statics sees it; -1: the solver
-  /// cannot tell.
+  /// unstable motions. 0: the equilibrium is statically stable; -1: the solver does not
+  /// determine it.
   std::int64_t unstable_modes = 0;
   double pivot_growth = 0;     ///< largest |L_ij| of the factorization
   double factor_nonzeros = 0;  ///< entries of L

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Hold what can move at no cost, where that changes no force: rigid motions and gears of an assembly under balanced
-/// loads.
+/// Fixing zero-energy modes where that changes no force: rigid motions and gears of an assembly under balanced loads.
 #pragma once
 
 #include <cstdint>

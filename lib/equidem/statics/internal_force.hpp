@@ -48,7 +48,7 @@ void contact_forces_of(const Assembly& assembly, const ContactSprings& springs, 
 void internal_force(const Assembly& assembly, const ContactGraph& graph, const DegreesOfFreedom& unknowns,
                     std::span<const ContactForce> forces, std::span<double> result);
 
-/// What is left of the load f once the contacts have answered: f - f_int(motion) on free components, 0 on held ones.
+/// Residual force f - f_int(motion) on free components, 0 on held ones.
 /// Stretch, slip, forces and their sums are all evaluated in extended precision.
 /// \param imposed deformation of each contact beside that of the motion; empty: none
 /// \param f per component; empty: no load

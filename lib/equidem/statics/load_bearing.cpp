@@ -116,7 +116,7 @@ class Pruning {
     return count < 2 || (tangential < 2 && std::abs(cross(normals[0], normals[1])) > round_off);
   }
 
-  /// The same where the columns are (n, -offset) and (s, lever).
+  /// As above, with the columns (n, -offset) and (s, lever).
   [[nodiscard]] bool off_line_carries_nothing(std::size_t disc) const {
     struct Column {
       Vec2 force;
@@ -167,7 +167,7 @@ class Pruning {
     std::int32_t disc = 0;
     std::int32_t parent = -1;   ///< step
     std::int32_t contact = -1;  ///< with the parent
-    std::int32_t next = 0;      ///< of its contacts to look at
+    std::int32_t next = 0;      ///< index of its next contact
     std::int32_t low = 0;       ///< first step that a contact joins to this stretch (Tarjan 1972)
     std::int32_t size = 1;      ///< of the stretch
     std::int32_t anchors = 0;   ///< of the stretch: held discs, and contacts that close a ring around the period

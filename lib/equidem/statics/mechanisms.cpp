@@ -16,7 +16,7 @@
 namespace equidem {
 namespace {
 
-/// K with what can be told from the graph held, factorized as indefinite.
+/// K, with the zero-energy modes found from the graph held, factorized as indefinite.
 struct HeldSystem {
   ContactGraph graph;
   DegreesOfFreedom unknowns;
@@ -33,7 +33,7 @@ struct HeldSystem {
         matrix(assemble_stiffness(assembly, graph, springs, unknowns)),
         symbolic(std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph), graph, unknowns.per_disc))) {
     check_memory(estimate(*symbolic, unknowns, true), 0);
-    // Of many mechanisms at once a pivot that is zero would outgrow its round-off by the usual threshold, and be
+    // With many mechanisms at once, a pivot that is zero would outgrow its round-off by the usual threshold, and be
     // missed.
     factor = multifrontal_ldlt(symbolic, MatrixOnGraph{matrix, assembly, graph}, {.threshold = 0.1});
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// All motions of an assembly that cost nothing, counted and described, whether or not anything is solved.
+/// All zero-energy modes of an assembly, counted and described, without a solution.
 #pragma once
 
 #include <cstdint>

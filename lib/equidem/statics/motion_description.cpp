@@ -107,7 +107,7 @@ class Description {
     return fmt::format("a motion of {}{}", describe_moving(1), translates ? ", along " + describe_direction(u) : "");
   }
 
-  /// What a mechanism does to its contacts.
+  /// Deformation of the contacts by a mechanism.
   [[nodiscard]] std::string describe_contacts() const {
     double stretch = 0;
     double slip = 0;
@@ -199,7 +199,7 @@ class Description {
     return weight_[disc] > moving_least * weight_[largest_first_.front()];
   }
 
-  /// Of all discs, or else of those that move; empty where neither is rigid.
+  /// The rigid motion of all discs, or else of those that move; empty where neither is rigid.
   [[nodiscard]] std::string describe_rigid() const {
     std::string words = describe_rigid(every_disc(), laid_out_.centres);
     return words.empty() ? describe_rigid(moving_, lay_out_moving()) : words;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A motion of an assembly in words and in energy: what a mode of zero or negative stiffness looks like, and whether
+/// A motion of an assembly in words and in energy: the kind of a mode of zero or negative stiffness, and whether
 /// it is a mechanism or merely soft.
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace equidem {
 
-/// What kind of motion this is, as words that fit into a sentence (no capital, no full stop): "a rigid rotation of
+/// The kind of a motion, as words that fit into a sentence (no capital, no full stop): "a rigid rotation of
 /// the whole assembly about (0.1, 0.05)", "a local motion of about 3 of 900 discs: disc 17 at (0.02, 0.01), ...".
 /// Told apart are rigid translation and rotation (of all discs, or of those that move, such as a row or a ring, also
 /// across the period), counter-rotation of discs, motion of one disc or of a few, groups that slide past one another,

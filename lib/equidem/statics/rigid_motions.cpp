@@ -170,7 +170,7 @@ class Equations {
     }
   }
 
-  /// What rotations of i and j do to the slip of a contact and, off the line of centres, to its stretch.
+  /// Slip of a contact and, off the line of centres, its stretch, from rotations of i and j.
   struct Row {
     double i = 0, j = 0;
     [[nodiscard]] bool joins() const { return i != 0 && j != 0; }

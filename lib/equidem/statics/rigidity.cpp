@@ -88,7 +88,7 @@ std::string sizes_of(const std::vector<PieceMotions>& pieces) {
   return text + (sizes.size() > most ? ", ... discs" : " discs");
 }
 
-/// What to hold so that the motions stop. Components are held along x or y, so that a translation that is free while
+/// Components to hold so that the motions stop. They are held along x or y, so that a translation that is free while
 /// another is not runs along x or y.
 std::string remedy(const PieceMotions& piece) {
   const std::vector<RigidMotion>& free = piece.free;

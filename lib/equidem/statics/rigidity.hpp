@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Is an assembly held? What can be told before any factorization: rigid motions of its pieces and the
+/// Whether an assembly is held, as far as it follows without a factorization: rigid motions of its pieces and the
 /// counter-rotation of discs (rigid_motions.hpp). Other mechanisms, such as the shear of a square lattice without
 /// tangential springs, depend on every angle and show only in the factorization.
 #pragma once

@@ -9,25 +9,14 @@
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/linear/cholmod_factorization.hpp"
 #include "equidem/linear/memory.hpp"
 #include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
 #include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
-#include "equidem/linear/umfpack_factorization.hpp"
 #include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/spring_sizes.hpp"
 
 namespace equidem {
 namespace {
-
-struct MethodName {
-  SolverMethod method;
-  const char* name;
-};
-constexpr MethodName method_names[] = {{SolverMethod::automatic, "auto"},
-                                       {SolverMethod::multifrontal, "multifrontal"},
-                                       {SolverMethod::cholmod, "cholmod"},
-                                       {SolverMethod::umfpack, "umfpack"}};
 
 constexpr double suspicious = 1e-9;  // share of a stiffness left when all others have given way
 
@@ -42,7 +31,7 @@ bool costs_no_energy(const System& system, const std::vector<double>& motion) {
   return costs_no_energy(system, system.springs, motion);
 }
 
-/// Whether springs that give energy back (kT < 0) leave next to nothing of what the others take.
+/// Whether the negative energy of springs with kT < 0 nearly cancels that of the others.
 bool springs_cancel(const System& system, const std::vector<DiscMotion>& motions) {
   if (!system.springs.any_negative()) return false;
   const Assembly& assembly = system.k.assembly;
@@ -90,7 +79,7 @@ bool is_mechanism(const System& system, const Factorization& factor) {
   return !softest.empty() && costs_no_energy(system, softest);
 }
 
-/// Unknowns may be held only against motions that truly cost nothing, however soft some springs are beside others.
+/// Unknowns may be held only against true zero-energy modes, even where springs differ by many orders of magnitude.
 void check_null_motions(const System& system, const Factorization& factor) {
   constexpr std::int64_t most = 32;
   const Assembly& assembly = system.k.assembly;
@@ -122,8 +111,8 @@ std::unique_ptr<Factorization> multifrontal(const System& system, Mechanisms mec
   return indefinite(system, mechanisms);  // no spring is negative: a pivot that is not positive is round-off of zero
 }
 
-/// What a library's factorization cannot tell, ours can: where it failed or met a pivot near nothing, K is factorized
-/// once more to name the mechanism, if there is one.
+/// The factorizations of other libraries do not name mechanisms: where one failed or met a pivot near zero, K is
+/// factorized once more to name the mechanism, if there is one.
 std::unique_ptr<Factorization> judged(std::unique_ptr<Factorization> factor, const System& system,
                                       Mechanisms mechanisms) {
   if (factor && factor->report().smallest_pivot > suspicious) return factor;
@@ -131,36 +120,17 @@ std::unique_ptr<Factorization> judged(std::unique_ptr<Factorization> factor, con
   return factor && judge->report().zero_pivots == 0 ? std::move(factor) : std::move(judge);
 }
 
-std::unique_ptr<Factorization> by_cholmod(const System& system, Mechanisms mechanisms) {
-  if (system.springs.any_negative()) {
-    bad_input("method 'cholmod' cannot solve this case",
-              "some kT is negative, and Cholesky wants a positive definite matrix", "Use method = \"auto\"");
+std::unique_ptr<Factorization> by_back_end(SolverMethod method, const System& system, Mechanisms mechanisms) {
+  const BackEnd& back_end = entry_of(method).back_end;
+  if (back_end.factorize == nullptr) return multifrontal(system, mechanisms);
+  if (back_end.definite_only && system.springs.any_negative()) {
+    bad_input(fmt::format("method '{}' cannot solve this case", to_string(method)),
+              "some kT is negative, and the method needs a positive definite matrix", "Use method = \"auto\"");
   }
-  return judged(cholmod_cholesky(system.k, system.unknowns, CholmodOrdering::ours, system.symbolic->tree.order), system,
-                mechanisms);
-}
-
-std::unique_ptr<Factorization> by_umfpack(const System& system, Mechanisms mechanisms) {
-  return judged(umfpack_lu(system.k, system.unknowns), system, mechanisms);
+  return judged(back_end.factorize(system.k, system.unknowns, *system.symbolic), system, mechanisms);
 }
 
 }  // namespace
-
-SolverMethod solver_method_from(const std::string& name) {
-  std::string known;
-  for (const auto& entry : method_names) {
-    if (name == entry.name) return entry.method;
-    known += (known.empty() ? "" : ", ") + std::string(entry.name);
-  }
-  bad_input(fmt::format("'{}' is no solver method", name), "", fmt::format("Choose one of {}", known));
-}
-
-std::string to_string(SolverMethod method) {
-  for (const auto& entry : method_names) {
-    if (method == entry.method) return entry.name;
-  }
-  return "auto";
-}
 
 void check(const SolverOptions& options) {
   if (options.max_refinements < 0) {
@@ -199,19 +169,7 @@ void check_memory(const SolveEstimate& estimate, double memory_limit) {
 std::unique_ptr<Factorization> factorize(const System& system, const SolverOptions& options, Mechanisms mechanisms,
                                          StageTimes& times) {
   const Stopwatch watch;
-  std::unique_ptr<Factorization> factor;
-  switch (options.method) {
-    case SolverMethod::automatic:
-    case SolverMethod::multifrontal:
-      factor = multifrontal(system, mechanisms);
-      break;
-    case SolverMethod::cholmod:
-      factor = by_cholmod(system, mechanisms);
-      break;
-    case SolverMethod::umfpack:
-      factor = by_umfpack(system, mechanisms);
-      break;
-  }
+  std::unique_ptr<Factorization> factor = by_back_end(options.method, system, mechanisms);
   times.add("factorize", watch.seconds());
   return factor;
 }

@@ -28,7 +28,7 @@ StiffnessSolver::StiffnessSolver(const Assembly& assembly, const ContactSprings&
   auto symbolic = std::make_shared<const SymbolicFactor>(analyze(std::move(tree), graph_, unknowns_.per_disc));
   times.add("analyze", watch.lap());
   SolveEstimate size = estimate(*symbolic, unknowns_, springs.any_negative());
-  if (options.method == SolverMethod::umfpack) size.peak_bytes *= 4;  // LU of the whole matrix in an order of its own
+  size.peak_bytes *= entry_of(options.method).back_end.memory_factor;
   check_memory(size, options.memory_limit);
   watch.lap();
   matrix_ = assemble_stiffness(assembly, graph_, springs, unknowns_);
@@ -92,7 +92,7 @@ struct StiffnessSolver::Refinement {
     done = solution.residual == 0;
   }
 
-  /// Take in the correction that the factorization answered with, and leave the new residual in its place.
+  /// Add the correction by the factorization, and replace it by the new residual.
   void correct(std::span<double> x, int pass) {
     constexpr double good_enough = 1e-15;
     constexpr double slow = 0.05;  // share of the error that a pass leaves

@@ -22,7 +22,7 @@
 
 namespace equidem {
 
-/// What pulls: loads on discs, prescribed motions of held components, deformations imposed on contacts.
+/// Right-hand side: loads on discs, prescribed motions of held components, deformations imposed on contacts.
 struct RightHandSide {
   std::vector<double> force;                ///< per component, N/m (moments over a); empty: none
   std::vector<double> prescribed;           ///< per component, m, read where held; empty: held at 0
@@ -76,7 +76,7 @@ class StiffnessSolver {
   /// stiff translations (small kT) are no errors: |D^-1/2 K D^-1/2| <= 1, and the energy of what a motion misses is
   /// at most scaled_residual² scaled_inverse_norm. |D^-1/2 (f - f_int)|, square root of N.
   [[nodiscard]] double scaled_residual(const RightHandSide& given, const PreciseMotion& motion) const;
-  /// The same, or where rows are alike (within a factor of 100) a bound on it that costs nothing: the residual over
+  /// As above, or where rows are alike (within a factor of 100) a bound on it at no cost: the residual over
   /// the root of the smallest row.
   [[nodiscard]] double scaled_residual_bound(const RightHandSide& given, const Solution& solution) const;
   /// |D^1/2 K^-1 D^1/2| as softest_motion finds it: a lower bound, mostly within a factor of 2; 0 where nothing is

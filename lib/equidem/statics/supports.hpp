@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What holds and what pulls an assembly.
+/// Supports and loads of an assembly.
 #pragma once
 
 #include <optional>

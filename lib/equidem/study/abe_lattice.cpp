@@ -33,7 +33,7 @@ Tension tension_of(int rows, GaugePlacement gauge) {
 }  // namespace
 
 Study abe_lattice_study(bool quick) {
-  const ElasticModuli exact = moduli_of({kN, ratio * kN}, Packing::hexagonal);
+  const ElasticModuli exact = moduli_of({kN, ratio * kN}, lattices::hexagonal.relation);
   Study study{.name = "abe_lattice",
               .title = fmt::format("Abe's tension test, hexagonal lattice, kT/kN = {:g}", ratio),
               .quantities = {{.name = "poisson_ratio",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The studies that the program knows by name, one file each.
+/// The built-in studies, one file each.
 #pragma once
 
 #include <span>

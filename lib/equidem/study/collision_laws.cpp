@@ -54,7 +54,7 @@ double height_of(int ball) {
   return height * (1 + 0.2 * ball / balls);
 }
 
-/// Of a rigid ball, m above the floor, at a time after its first impact.
+/// Height of a rigid ball above the floor, m, at a time after its first impact.
 double rigid_height(double from, double time) {
   const double fall = std::sqrt(2 * from / gravity), speed = restitution * gravity * fall, t = time - fall;
   return t * (speed - 0.5 * gravity * t);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What each effect costs where it is on, from plain scenes to full ones, and that it costs nothing where it is off.
+/// Cost of each effect where it is on, from plain scenes to full ones, and the proof that it costs nothing where it is
+/// off.
 #include <functional>
 #include <memory>
 
@@ -70,7 +71,7 @@ GrainScene bed(int side) {
   return scene;
 }
 
-/// Discs that fly about in a box and meet two by two, as maps want it: in a bed they give wrong energies.
+/// Discs that fly in a box and collide in pairs, as the maps require: in a dense bed the maps give wrong energies.
 GrainScene gas(int side) {
   const double spacing = 2.5 * radius, width = spacing * side;
   GrainScene scene;
@@ -117,7 +118,7 @@ void add_clumps(GrainScene& scene) {
   });
 }
 
-/// Of neighbours in a row, both discs.
+/// Contacts between neighbours in a row.
 void add_bonds(GrainScene& scene) {
   for (std::size_t k = 2; k + 1 < scene.grains.size(); k += 10) {
     GrainBond bond{.i = k, .j = k + 1};

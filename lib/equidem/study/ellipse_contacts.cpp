@@ -25,7 +25,7 @@ struct Pair {
   double overlap = 0;  ///< m
 };
 
-/// What a method finds.
+/// Contact that a method finds.
 struct Found {
   double overlap = 0;
   Vec2 normal;

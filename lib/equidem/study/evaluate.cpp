@@ -71,7 +71,7 @@ void find_errors(const Study& study, std::vector<StudyRow>& rows) {
   }
 }
 
-/// Of time over 1/h, over the finer half of the levels, at least two.
+/// Exponent of time over 1/h, from the finer half of the levels, at least two.
 double cost_exponent_of(const std::vector<StudyRow>& rows, const std::vector<std::size_t>& levels) {
   std::vector<Level> times;
   for (std::size_t k = levels.size() < 4 ? 0 : levels.size() / 2; k < levels.size(); ++k)
@@ -123,7 +123,7 @@ std::vector<CostPoint> points_of(const Study& study, const std::vector<StudyRow>
   return points;
 }
 
-/// What an error `times` smaller than that of a row costs beside it: by the front where it reaches that far, else by
+/// Cost, relative to a row, of an error `times` smaller: by the front where it reaches that far, else by
 /// the order of the row's method.
 std::string price_of_more(const Study& study, const StudyResult& result, const std::vector<CostPoint>& points,
                           std::size_t row, double times) {

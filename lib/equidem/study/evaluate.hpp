@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What the measurements of a study say: errors, orders, fronts, advice.
+/// Evaluation of the measurements of a study: errors, orders, fronts, advice.
 #pragma once
 
 #include <optional>

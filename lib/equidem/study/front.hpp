@@ -11,7 +11,7 @@
 
 namespace equidem {
 
-/// What a setting costs and gives.
+/// Cost and error of a setting.
 struct CostPoint {
   double seconds = 0;
   double error = 0;  ///< not a number: it takes no part

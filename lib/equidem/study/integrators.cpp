@@ -109,7 +109,7 @@ Study integrators_study(bool quick) {
                              }});
     }
     study.orders.push_back({.method = to_string(range.integrator),
-                            .order = static_cast<double>(facts_of(range.integrator).order),
+                            .order = static_cast<double>(scheme_of(range.integrator).order),
                             .why = "of the scheme, with damping in proportion to mass"});
   }
   return study;

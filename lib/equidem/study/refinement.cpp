@@ -56,7 +56,7 @@ std::int64_t Refinement::propose() {
     const auto reached = [&](double order) { return error_at(real(options_.most), order); };
     // Even if errors fell faster than they do.
     if (reached((1 + order_off) * options_.order) > options_.accuracy) refuse_beyond(reached(options_.order));
-    // Where the limit is not known well enough, the next level is there to tell it.
+    // Where the limit is too uncertain, the next level improves it.
     const std::int64_t next = admissible(2 * real(finest()));
     if (doubt_ <= options_.accuracy / 3 || n <= next || next > options_.most) {
       if (n > options_.most) refuse_beyond(reached(options_.order) + doubt_);
@@ -111,7 +111,7 @@ std::array<Refinement::Level, 3> Refinement::last_three() const {
   three[0] = std::prev(values_.end());
   for (std::size_t k = 1; k < three.size(); ++k) {
     three[k] = std::prev(three[k - 1]);
-    // neighbours would tell rounding
+    // neighbours would measure rounding
     while (three[k] != values_.begin() && 0.99 * options_.apart * real(three[k]->first) > real(three[k - 1]->first))
       --three[k];
   }

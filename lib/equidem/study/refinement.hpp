@@ -18,8 +18,8 @@ struct RefinementOptions {
   std::int64_t first = 1;       ///< the coarsest level, an `admissible` one
   std::int64_t most = 0;        ///< the finest level that may be tried
   std::string unit = "levels";  ///< what levels are numbers of, in messages: "steps"
-  /// Levels that tell how errors fall lie at least this apart, > 1: near ones are cheaper, far ones disturbed less by
-  /// what is no power of n.
+  /// Levels from which the order is estimated lie at least this apart, > 1: near ones are cheaper, far ones disturbed
+  /// less by what is no power of n.
   double apart = 2;
   /// The smallest level >= n that can be computed; empty: every n.
   std::function<std::int64_t(std::int64_t n)> admissible = {};

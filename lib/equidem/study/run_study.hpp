@@ -19,7 +19,7 @@ struct StudyOptions {
   std::uint64_t seed = 1;    ///< of the order of settings
 };
 
-/// What is known of one setting.
+/// Measurements of one setting.
 struct TaskSamples {
   std::vector<double> values;  ///< one per quantity; empty: not yet tried
   std::string refusal;         ///< why the setting has no values; empty: it has
@@ -38,7 +38,7 @@ struct StudySamples {
 /// hurts all alike. The first round warms up: it gives the values, its times are not kept. Rounds go on until all times
 /// are trusted or the budget is spent. A setting that fails is kept with its reason; the user's wish to stop ends the
 /// study and keeps what is done. Shows progress.
-/// \param kept of an earlier run of the same study, which goes on from there; empty: none
+/// \param kept results of an earlier run of the study, which is continued; empty: none
 /// \param save called after each setting with all samples so far; may be empty
 StudySamples run_study(const Study& study, const StudyOptions& options, StudySamples kept = {},
                        const std::function<void(const StudySamples& done)>& save = {});

@@ -53,7 +53,7 @@ struct Block {
     return solve_equilibrium(assembly, springs, setup.supports, setup.loads, options).motions;
   }
 
-  /// Of displacements, 2-norm.
+  /// Relative error of displacements, 2-norm.
   [[nodiscard]] double error(const std::vector<DiscMotion>& motions) const {
     double off = 0, size = 0;
     for (std::size_t d = 0; d < motions.size(); ++d) {
@@ -115,7 +115,9 @@ Study solvers_study(bool quick) {
   for (const int rows : quick ? std::vector{15, 31} : std::vector{21, 61, 101}) {
     const auto lazy = std::make_shared<LazyBlock>(rows);
     const std::string problem = fmt::format("{} x {} discs", rows, rows);
-    for (const SolverMethod method : {SolverMethod::multifrontal, SolverMethod::cholmod, SolverMethod::umfpack}) {
+    for (const auto& solver : EnumNames<SolverMethod>::list) {
+      const SolverMethod method = solver.value;
+      if (method == SolverMethod::automatic) continue;
       for (const int refinements : {0, 4}) {
         study.tasks.push_back(
             task_of(lazy,

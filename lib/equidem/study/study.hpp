@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What a study asks: which settings are tried, what is measured, against which truth.
+/// Definition of a study: settings to try, quantities to measure, reference values.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +14,9 @@
 
 namespace equidem {
 
-/// One way to compute an answer.
+/// One way to compute a result.
 struct Setting {
-  std::string problem = {};  ///< what is asked; answers to one problem compete. Empty where there is only one
+  std::string problem = {};  ///< problem solved; results for one problem compete. Empty where there is only one
   std::string method = {};   ///< by what; empty where there is only one
   std::vector<std::pair<std::string, double>> values = {};  ///< what is varied, by name
   /// h > 0, smaller is finer: errors of a method of order p fall as h^p. Not a number: nothing is refined.
@@ -37,9 +37,9 @@ enum class Truth {
 struct Quantity {
   std::string name;        ///< "poisson_ratio"
   std::string label = {};  ///< of its axis: "error of Poisson's ratio"; facts: "bytes per disc"
-  /// A fact has no truth: it is told beside the errors.
+  /// A fact has no reference value: it is reported beside the errors.
   bool fact = false;
-  /// A fact that is the resolution of its setting, which only measuring tells.
+  /// A fact that is the resolution of its setting, known only by measurement.
   bool resolution = false;
   bool relative = false;    ///< errors are divided by the truth
   double truth = 0;         ///< Truth::known
@@ -47,7 +47,7 @@ struct Quantity {
   double rounding = 1e-15;  ///< errors below are rounding: shown as this, and no part of an order
 };
 
-/// What theory says of the order of a method.
+/// The order of a method by theory.
 struct ExpectedOrder {
   std::string problem = {}, method = {}, quantity = {};  ///< empty: all
   double order = 1;
@@ -76,10 +76,10 @@ struct Study {
   std::vector<ExpectedOrder> orders = {};
   std::vector<std::string> notes = {};  ///< sentences: what is computed, and what to make of it
 
-  /// The first entry that fits; empty: theory says nothing.
+  /// The first entry that fits; empty: no theory.
   [[nodiscard]] const ExpectedOrder* expected(const Setting& setting, const std::string& quantity) const;
-  /// Of name, quantities, truth and settings, as 16 hexadecimal digits: measurements of studies with the same sum fit
-  /// together. \param context what else they depend on, such as machine and build
+  /// Checksum of name, quantities, truth and settings, as 16 hexadecimal digits: measurements of studies with one sum
+  /// fit together. \param context what else they depend on, such as machine and build
   [[nodiscard]] std::string checksum(const std::string& context) const;
 };
 

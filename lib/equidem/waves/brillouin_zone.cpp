@@ -76,7 +76,7 @@ class Climb {
 }  // namespace
 
 Vec2 BrillouinZone::folded(Vec2 q) const {
-  // Of the nine nearest by coordinates, the first one that is shortest.
+  // The shortest of the nine nearest by coordinates; the first of several.
   const double size = cross(reciprocal[0], reciprocal[1]);
   const double x = cross(q, reciprocal[1]) / size, y = cross(reciprocal[0], q) / size;
   q -= std::round(x) * reciprocal[0] + std::round(y) * reciprocal[1];

@@ -297,7 +297,7 @@ LongWaveLoss find_long_wave_loss(const StiffnessOrders& normal, const StiffnessO
   const LongWaveLoss none{-std::numeric_limits<double>::infinity(), 0};
   const LongWavePencil pencil(normal, tangential, rotation);
   if (pencil.empty()) return none;
-  constexpr double round_off = 1e-14;  // of the stiffness, in what costs nothing in any direction
+  constexpr double round_off = 1e-14;  // share of the stiffness, in directions without stiffness
   // A falls with r throughout (others_lost, 0), so that its sign brackets the one ratio where it is singular.
   const double lowest = std::max(pencil.others_lost(), -1.0);
   double lost = lowest, kept = 0;

@@ -16,7 +16,7 @@ namespace {
 
 using Product = std::function<void(std::span<const double>, std::span<double>)>;
 
-/// As Spectra wants operators, of size about 1: its tolerances are absolute for eigenvalues below 4e-11.
+/// Operator for Spectra, scaled to about 1: its tolerances are absolute for eigenvalues below 4e-11.
 class Operator {
  public:
   using Scalar = double;

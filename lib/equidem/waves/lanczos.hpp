@@ -32,7 +32,7 @@ struct LanczosOptions {
 
 /// Implicitly restarted Lanczos from a random vector, which has a part in every eigenvector with probability one. Where
 /// the work allowed does not suffice for the tolerance, which an end of the spectrum that is nearly continuous may
-/// cause, looser ones are tried with as much work each: `converged` and `residual` tell.
+/// cause, looser ones are tried with as much work each: see `converged` and `residual`.
 /// \param multiply y = A x, A symmetric, x and y of `size` components; must give the same bits for the same x
 ExtremeEigenvalue extreme_eigenvalue(
     std::size_t size, const std::function<void(std::span<const double> x, std::span<double> y)>& multiply,

@@ -171,7 +171,7 @@ class TranslationGroup {
     return norm(a.branch - b.branch) <= 2 * distance_ && alike(a.frame, b.frame) &&
            alike(a.springs.kN, b.springs.kN, stiffness_) && alike(a.springs.kT, b.springs.kT, stiffness_);
   }
-  /// Of the same shape, as far as mass and moment of inertia know.
+  /// Whether two bodies have equal radius, area and polar moment.
   [[nodiscard]] bool alike_bodies(std::int32_t d, std::int32_t e) const {
     if (!alike(assembly_.radii[d], assembly_.radii[e], length_)) return false;
     if (assembly_.sections.empty()) return true;

@@ -25,7 +25,7 @@ ExtremeEigenvalue extreme_squared_frequency(const Assembly& assembly, const Cont
                                             const DegreesOfFreedom& unknowns, const std::vector<Inertia>& inertia,
                                             SpectrumEnd end, const LanczosOptions& options = {});
 
-/// Upper bound of omega², whatever the supports: the largest eigenvalue of any contact taken alone with its share m/z,
+/// Upper bound of omega² for any supports: the largest eigenvalue of any contact taken alone with its share m/z,
 /// I/z of the inertia of its discs (Fried 1972; O'Sullivan & Bray 2004). Stretch and slip of a contact do not couple,
 /// so that
 ///

@@ -49,7 +49,7 @@ Vec2 direction(int k) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-/// Of the zone: nearer to q = 0 the round-off of motions that cost q² tells, and the exact limit is asked instead.
+/// Share of the zone: nearer to q = 0 round-off dominates modes of stiffness q², and the exact limit is used instead.
 constexpr double nearest_to_gamma = 1e-3;
 
 double critical_ratio_away_from_gamma(const BlochWaves& waves, const BrillouinZone& zone, Vec2 q) {
@@ -71,7 +71,7 @@ void add_long_waves(const BlochWaves& waves, const BrillouinZone& zone, ZoneMaxi
                  nearest_to_gamma * norm(zone.reciprocal[0]) * Vec2{std::cos(loss.angle), std::sin(loss.angle)}};
 }
 
-/// The cell with springs of one stiffness: what costs nothing does so by its geometry, whatever the springs.
+/// The cell with equal springs: its zero-energy modes follow from geometry alone.
 PrimitiveCell with_unit_springs(PrimitiveCell cell) {
   for (CellContact& contact : cell.contacts) contact.springs = {1, contact.springs.kT != 0 ? 1.0 : 0.0};
   return cell;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What the waves of a periodic assembly tell: dispersion, sound, highest frequency, growth, and where it loses its
+/// Survey of the waves of a periodic assembly: dispersion, sound, highest frequency, growth, and where it loses its
 /// stiffness.
 #pragma once
 
@@ -40,8 +40,8 @@ struct WaveSurvey {
   ZoneMaximum critical;      ///< of r_c: the wave that loses its stiffness first as kT/kN falls from 0
   ZoneMaximum highest;       ///< of omega²
   ZoneMaximum growing;       ///< of -omega²: positive where waves grow; not searched where no kT < 0
-  /// Of the grid and the points of symmetry but Gamma: wave vectors of waves that neither stretch nor slip any contact,
-  /// kT of either sign counted by its size. Such waves are mechanisms of the infinite assembly.
+  /// On the grid and at the points of symmetry other than Gamma: wave vectors of waves that neither stretch nor slip
+  /// any contact, kT of either sign counted by its size. Such waves are mechanisms of the infinite assembly.
   std::vector<Vec2> free_waves;
   std::vector<PathPoint> path;
   std::vector<SoundAlong> sound;  ///< every 15 degrees from 0 to 165
@@ -52,7 +52,7 @@ struct WaveSurvey {
 constexpr const char* long_waves_name = "long waves";
 /// Cells up to here are surveyed: K(q) is dense, 3 x 100 complex rows.
 constexpr std::size_t most_discs_of_survey = 100;
-/// Wave vectors that the survey asks for, for estimates.
+/// Number of wave vectors of the survey, for estimates.
 std::size_t survey_size(const PrimitiveCell& cell);
 
 /// Grid and path are as fine as one disc in a cell of its own needs: a larger cell has a zone smaller by as much.

@@ -60,9 +60,11 @@ CalibrateOptions calibrate_options(const Case& resolved) {
                         .solver = resolved.solver};
   options.weighting = resolved.weighting;
   options.static_only = resolved.material->static_only;
-  const bool equal = resolved.weighting == SpringWeighting::uniform;
-  if (resolved.assembly.kind == AssemblyKind::hexagonal && equal) options.lattice = Packing::hexagonal;
-  if (resolved.assembly.kind == AssemblyKind::square) options.lattice = Packing::square;
+  const Lattice* lattice = resolved.assembly.arrangement;
+  // A relation for equal springs only: calibrate refuses other weightings.
+  if (lattice != nullptr &&
+      (resolved.weighting == SpringWeighting::uniform || lattice->relation.equal_springs != nullptr))
+    options.lattice = lattice;
   return options;
 }
 
@@ -71,10 +73,10 @@ std::optional<MeanFieldGuess> mean_field_guess(const Case& resolved, const Assem
                                                const EffectiveStiffness& achieved) {
   MeanFieldGuess guess;
   try {
-    const SpringRelation relation = spring_relation(resolved, assembly);
-    if (relation.packing != Packing::isotropic) return {};
+    const ChosenRelation chosen = spring_relation(resolved, assembly);
+    if (!chosen.relation.needs_measures) return {};
     guess.springs =
-        springs_for(resolved.material->moduli, relation.packing, relation.measures,
+        springs_for(resolved.material->moduli, chosen.relation, chosen.measures,
                     resolved.material->static_only ? NegativeTangential::static_only : NegativeTangential::refuse);
     const ContactSprings springs = contact_springs(assembly, guess.springs, resolved.weighting);
     const EffectiveStiffness c = effective_stiffness(

@@ -131,12 +131,12 @@ void add_mean_field(Results& out, const Calibrated& c) {
                        wanted.poisson_ratio));
 }
 
-/// Eq. (53) beside the springs of a lattice whose discs do not turn.
-void add_operator(Results& out, const Calibrated& c) {
-  const SpringConstants k = springs_for(c.wanted(), Packing::hexagonal_restrained, {}, NegativeTangential::static_only);
-  out.line("displacements", fmt::format("eq. (53) advises {}: it fits wave speeds and problems in which all of the "
+/// The relation for restrained rotation beside the springs of a lattice whose discs do not turn.
+void add_operator(Results& out, const Calibrated& c, const SpringRelation& restrained) {
+  const SpringConstants k = springs_for(c.wanted(), restrained, {}, NegativeTangential::static_only);
+  out.line("displacements", fmt::format("eq. ({}) advises {}: it fits wave speeds and problems in which all of the "
                                         "boundary is displaced, not the stress, which is calibrated here",
-                                        shown_springs(k)));
+                                        restrained.equation, shown_springs(k)));
 }
 
 }  // namespace
@@ -151,8 +151,9 @@ Results calibrated_results(const Calibrated& c, const Effects& effects) {
   add_reached(out, c.found);
   add_range(out, c.found, c.wanted().plane);
   if (c.mean_field) add_mean_field(out, c);
-  if (resolved.assembly.kind == AssemblyKind::hexagonal && resolved.rotation == Rotation::restrained)
-    add_operator(out, c);
+  const Lattice* lattice = resolved.assembly.arrangement;
+  if (lattice != nullptr && lattice->restrained != nullptr && resolved.rotation == Rotation::restrained)
+    add_operator(out, c, *lattice->restrained);
   return out;
 }
 

@@ -85,14 +85,10 @@ StiffnessBeside estimate(const char* key, const char* name, const Problem& probl
 /// Moduli by the relation of Abe (1996), where the springs stand for an isotropic continuum.
 std::optional<RelationBeside> relation_of(const Problem& problem) {
   if (!problem.springs.constants) return {};
-  const SpringRelation relation = spring_relation(problem.resolved, problem.assembly);
+  const ChosenRelation chosen = spring_relation(problem.resolved, problem.assembly);
   try {
-    const ElasticModuli moduli =
-        moduli_of(*problem.springs.constants, relation.packing, relation.measures, Plane::stress);
-    const char* name = relation.packing == Packing::hexagonal ? "hexagonal lattice, eq. (34)"
-                       : relation.packing == Packing::square  ? "square lattice, eq. (31)"
-                                                              : "mean field, eqs. (21), (22)";
-    return RelationBeside{name, moduli.bulk_modulus_2d(), moduli.shear_modulus};
+    const ElasticModuli moduli = moduli_of(*problem.springs.constants, chosen.relation, chosen.measures, Plane::stress);
+    return RelationBeside{chosen.relation.name, moduli.bulk_modulus_2d(), moduli.shear_modulus};
   } catch (const Error&) {
     return {};
   }

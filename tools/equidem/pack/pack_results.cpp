@@ -10,11 +10,6 @@
 namespace equidem {
 namespace {
 
-const PackingMethodEntry& entry_of(PackingMethod method) {
-  const auto table = packing_methods();
-  return *std::find_if(table.begin(), table.end(), [&](const auto& entry) { return entry.method == method; });
-}
-
 const char* name_of(PackingBox::Sides sides) {
   switch (sides) {
     case PackingBox::Sides::walls:

@@ -39,7 +39,7 @@ std::vector<double> displacements(const std::vector<DiscMotion>& motions) {
 int order_of(const RunCase& run) {
   const Damping& damping = run.damping;
   const bool late = damping.stiffness > 0 || damping.contact > 0 || damping.local > 0;
-  return late ? order_with_late_velocities : facts_of(run.integrator).order;
+  return late ? order_with_late_velocities : scheme_of(run.integrator).order;
 }
 
 RefinementOptions step_refinement(const RunSetup& setup, double accuracy) {

@@ -123,7 +123,7 @@ std::string describe_run_setup(const RunSetup& setup, const Simulation& simulati
     }
     return out;
   }
-  const IntegratorFacts facts = facts_of(run.integrator);
+  const IntegrationScheme& facts = scheme_of(run.integrator);
   const bool late = run.damping.stiffness > 0 || run.damping.contact > 0 || run.damping.local > 0;
   const int order = late ? order_with_late_velocities : facts.order;
   out += report_line("integrator", fmt::format("{}, order {}{}, {} a step", to_string(run.integrator), order,
@@ -188,7 +188,7 @@ std::string describe_run(const RunSetup& setup, const Simulation& simulation, co
   if (lacks > balance_to_mention) {
     const Scene& scene = setup.scene;  // the work of what drives a run is counted to the second order
     const bool driven = !scene.loads.empty() || !scene.supports.empty() || !scene.walls.empty();
-    const int order = std::min(facts_of(setup.run().integrator).order, driven ? 2 : 4);
+    const int order = std::min(scheme_of(setup.run().integrator).order, driven ? 2 : 4);
     out += report_line(
         "", fmt::format("it falls as the step to the power {}: about {:g} with run.time_step={:.2g}", order,
                         balance_to_mention, setup.step.step * std::pow(balance_to_mention / lacks, 1.0 / order)));

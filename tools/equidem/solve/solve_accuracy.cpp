@@ -38,8 +38,7 @@ std::vector<double> values_of(const TensionResult& result) {
 }  // namespace
 
 bool BlockSearch::serves(const Case& resolved) {
-  const AssemblyKind kind = resolved.assembly.kind;
-  return resolved.test && (kind == AssemblyKind::hexagonal || kind == AssemblyKind::square);
+  return resolved.test && resolved.assembly.arrangement != nullptr;
 }
 
 BlockSearch::BlockSearch(const CommonOptions& options, const Case& resolved, double accuracy)

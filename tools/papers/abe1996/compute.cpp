@@ -69,7 +69,7 @@ std::vector<Convergence> test_sizes(const Block& block, Progress& progress) {
 
 /// Eq. (52) with G and nu of eq. (34).
 Tensor2 stress_of_continuum(const SpringConstants& springs, const Tensor2& h) {
-  const ElasticModuli moduli = moduli_of(springs, Packing::hexagonal);
+  const ElasticModuli moduli = moduli_of(springs, lattices::hexagonal.relation);
   const double g = moduli.shear_modulus, lambda = moduli.lame_lambda(), volume = lambda * (h.xx + h.yy);
   const double shear = g * (h.xy + h.yx);
   return {volume + 2 * g * h.xx, shear, shear, volume + 2 * g * h.yy};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
 
+#include "equidem/assembly/lattices.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/material/spring_relations.hpp"
 
@@ -54,7 +55,7 @@ std::string section_4(const StressCheck& s) {
       "  gives nu = {:.5f} at kT/kN = {}, near (1 - r)/4 = {:.5f}, where (53) gives {:.5f}.\n",
       s.free_rotation, s.restrained_rotation, s.ratio, s.spin, s.asymmetry, s.expected_asymmetry, s.moment_density,
       s.restrained_poisson_ratio, s.ratio, poisson_ratio_of_ratio(s.ratio),
-      moduli_of({1, s.ratio}, Packing::hexagonal_restrained).poisson_ratio);
+      moduli_of({1, s.ratio}, lattices::hexagonal_restrained).poisson_ratio);
 }
 
 }  // namespace

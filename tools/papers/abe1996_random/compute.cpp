@@ -56,7 +56,7 @@ std::array<double, 3> mean_field_moduli(double ratio, SpringWeighting weighting,
                              .contact_density = cell.coordination_number / (2 * std::numbers::pi)};
   if (weighting == SpringWeighting::contact_density) measures.contact_density = 1;  // k / psi on psi contacts
   if (weighting == SpringWeighting::voronoi) measures = {.solid_fraction = 0.5, .contact_density = 1};
-  const ElasticModuli moduli = moduli_of({1, ratio}, Packing::isotropic, measures);
+  const ElasticModuli moduli = moduli_of({1, ratio}, isotropic_relation, measures);
   return {moduli.bulk_modulus_2d(), moduli.shear_modulus, moduli.poisson_ratio};
 }
 

@@ -200,43 +200,51 @@ Calibration search(const Assembly& assembly, const ElasticModuli& target, const 
   return result;
 }
 
-[[noreturn]] void refuse_negative_lattice(const ElasticModuli& target, double ratio) {
-  bad_input(fmt::format("Poisson's ratio {:.12g} in plane {} needs kT < 0 on the hexagonal lattice",
-                        target.poisson_ratio, to_string(target.plane)),
-            fmt::format("kT/kN = {:.4g} by Abe 1996, eq. 34, and no motion of the discs is stable then", ratio),
+[[noreturn]] void refuse_negative_lattice(const ElasticModuli& target, const Lattice& lattice, double ratio) {
+  bad_input(fmt::format("Poisson's ratio {:.12g} in plane {} needs kT < 0 on the {} lattice", target.poisson_ratio,
+                        to_string(target.plane), lattice.name),
+            fmt::format("kT/kN = {:.4g} by Abe 1996, eq. {}, and no motion of the discs is stable then", ratio,
+                        lattice.relation.equation),
             fmt::format("Ask for a Poisson's ratio of at most {}, or allow kT < 0 with static_only = true",
                         target.plane == Plane::strain ? "1/4" : "1/3"));
 }
 
-[[noreturn]] void refuse_unstable_lattice(const ElasticModuli& target, double ratio) {
-  bad_input(fmt::format("Poisson's ratio {:.9g} in plane {} is beyond the static limit of the hexagonal lattice",
-                        target.poisson_ratio, to_string(target.plane)),
-            fmt::format("it needs kT/kN = {:.6g}, and the infinite lattice gives way at -1/3", ratio),
-            fmt::format("Ask for a Poisson's ratio below {}", target.plane == Plane::strain ? "1/3" : "1/2"));
+[[noreturn]] void refuse_unstable_lattice(const ElasticModuli& target, const Lattice& lattice, double ratio) {
+  const double highest = moduli_of({1, lattice.critical_ratio}, lattice.relation, {}, target.plane).poisson_ratio;
+  bad_input(fmt::format("Poisson's ratio {:.9g} in plane {} is beyond the static limit of the {} lattice",
+                        target.poisson_ratio, to_string(target.plane), lattice.name),
+            fmt::format("it needs kT/kN = {:.6g}, and the infinite lattice is unstable at {:.6g} and below", ratio,
+                        lattice.critical_ratio),
+            fmt::format("Ask for a Poisson's ratio below {:.6g}", highest));
 }
 
 Calibration solve_lattice(const Assembly& assembly, const ElasticModuli& target, const CalibrateOptions& options) {
-  const Packing packing = *options.lattice;
+  const Lattice& lattice = *options.lattice;
+  const SpringRelation& relation = lattice.relation;
   if (options.weighting != SpringWeighting::uniform) {
     bad_input(fmt::format("the weighting is \"{}\" on a lattice", to_string(options.weighting)),
-              "its relations to moduli (Abe 1996, eqs. 31 and 34) are for equal springs",
+              fmt::format("its relation to moduli (Abe 1996, eq. {}) is for equal springs", relation.equation),
               "Use weighting = \"uniform\"");
   }
-  const SpringConstants springs = springs_for(target, packing, {}, NegativeTangential::static_only);
+  const SpringConstants springs = springs_for(target, relation, {}, NegativeTangential::static_only);
   const double ratio = springs.ratio();
-  if (ratio < 0 && !options.static_only) refuse_negative_lattice(target, ratio);
-  if (packing == Packing::hexagonal && ratio <= -1.0 / 3) refuse_unstable_lattice(target, ratio);
+  if (ratio < 0 && !options.static_only) refuse_negative_lattice(target, lattice, ratio);
+  if (ratio <= lattice.critical_ratio) refuse_unstable_lattice(target, lattice, ratio);
   Calibration result;
-  result.smallest_shear_to_bulk = packing == Packing::square ? 1 : 0.5;  // hexagonal: q = (1 + r)/2
-  if (packing == Packing::square) result.largest_shear_to_bulk = 1;
+  // Without negative springs G/K rises with kT/kN from its value at kT = 0, where other than equal springs are
+  // possible.
+  const bool equal = relation.equal_springs != nullptr;
+  const SheetModuli least = relation.moduli({1, equal ? 1.0 : 0.0}, {});
+  result.smallest_shear_to_bulk = least.shear / least.bulk;
+  if (equal) result.largest_shear_to_bulk = result.smallest_shear_to_bulk;
   result.scanned = true;
-  result.method = fmt::format("closed form, Abe 1996, eq. ({})", packing == Packing::square ? 31 : 34);
+  result.method = fmt::format("closed form, Abe 1996, eq. ({})", relation.equation);
   result.verified = assembly.periodic();
   if (result.verified) {
     Homogenizer homogenizer(assembly, options);
     if (!homogenizer.sample(ratio).stable) {
       if (homogenizer.failed()) homogenizer.fail();
-      refuse_unstable_lattice(target, ratio);
+      refuse_unstable_lattice(target, lattice, ratio);
     }
     // Not scaled to the wanted moduli: the closed form is tried as it is.
     homogenizer.deliver(springs.kN, result);

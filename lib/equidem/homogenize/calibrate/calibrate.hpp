@@ -8,6 +8,7 @@
 #include <string>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/assembly/lattices/lattice.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
@@ -22,10 +23,10 @@ struct CalibrateOptions {
   /// Boundary::periodic is taken as displacement where the assembly is not periodic.
   HomogenizeOptions homogenize = {};
   SpringWeighting weighting = SpringWeighting::uniform;
-  /// Packing::hexagonal or square: the assembly is a block of this lattice, of touching equal discs; springs are then
-  /// those of the infinite lattice in closed form.
-  std::optional<Packing> lattice = {};
-  bool static_only = false;  ///< kT < 0 allowed, down to where the cell gives way
+  /// The assembly is a block of this lattice, of touching equal discs: springs are those of the infinite lattice in
+  /// closed form. Null: they are searched for.
+  const Lattice* lattice = nullptr;
+  bool static_only = false;  ///< kT < 0 allowed, down to the loss of stability
   double tolerance = 1e-11;  ///< relative, of the moduli reached, in [1e-14, 1e-2]
 };
 
@@ -42,7 +43,7 @@ struct Calibration {
   /// shear. `scanned`: and no others, else the values at the ends.
   double smallest_shear_to_bulk = 0;
   double largest_shear_to_bulk = std::numeric_limits<double>::infinity();
-  bool scanned = false;  ///< all ratios were looked at, for the extremes of G/K, as find_by_scan
+  bool scanned = false;  ///< all ratios were searched for the extremes of G/K, as find_by_scan
   bool rising = true;    ///< G/K rose with kT/kN at every ratio tried, as FoundRatio
   std::string method;    ///< "closed form, Abe 1996, eq. (34)", "Newton on kT/kN"
   StageTimes times;      ///< of all factorizations
@@ -60,8 +61,8 @@ struct Calibration {
 /// nearest isotropic tensor.
 ///
 /// On a lattice the springs are (34) or (31) of Abe 1996. (34) also holds with rotation restrained: moduli are read
-/// from the symmetric part of stress by strain, which does not know the mean rotation; (53), the relation by wave
-/// speeds and prescribed displacements, is springs_for(..., Packing::hexagonal_restrained). The square lattice can
+/// from the symmetric part of stress by strain, which is independent of the mean rotation; (53), the relation by wave
+/// speeds and prescribed displacements, is springs_for(..., *Lattice::restrained). The square lattice can
 /// show nu = 0 only.
 /// \throws Error (bad_input) where nu is out of the range of this assembly, with the range and the nearest feasible
 ///         value; springs in the assembly file; as effective_stiffness and springs_for;

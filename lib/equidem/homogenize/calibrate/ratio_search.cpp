@@ -54,7 +54,7 @@ class StretchedRange {
  public:
   explicit StretchedRange(const RatioRange& range)
       : at_zero_(range.at_zero), inverse_at_infinity_(1 / range.at_infinity) {
-    // y - ln r at both ends; where q leaves an end in the wrong direction, that end says nothing.
+    // y - ln r at both ends; where q leaves an end in the wrong direction, that end is not used.
     const double at_zero = std::log(range.smallest.slope / (1 - at_zero_ * inverse_at_infinity_));
     const double at_infinity = of(range.largest.shear_to_bulk) - std::log(range.largest.ratio);
     if (std::isfinite(at_zero) && std::isfinite(at_infinity)) {
@@ -115,7 +115,7 @@ struct Cubic {
   }
 };
 
-/// Where f changes its sign in [0, 1], as its ends say.
+/// Sign change of f in [0, 1], judged by its ends.
 template <class Function>
 double root(const Function& f) {
   double low = 0, high = 1;
@@ -150,7 +150,7 @@ FoundRatio find_between(const RatioSampler& sample, RatioSample a, RatioSample b
   not_followed(wanted, a.ratio, b.ratio);
 }
 
-/// Samples in between, in order, until each piece is monotonic as far as the cubic through its ends can tell.
+/// Samples in between, in order, until each piece is monotonic by the cubic through its ends.
 void close_in(const RatioSampler& sample, const RatioSample& a, const RatioSample& b, std::vector<RatioSample>& out) {
   constexpr double sharp = 1e-9;
   const bool logarithmic = a.ratio > 0;

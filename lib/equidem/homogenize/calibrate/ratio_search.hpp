@@ -13,13 +13,13 @@ struct RatioSample {
   double shear_to_bulk = 0;  ///< q = G/K
   double slope = 0;          ///< dq/dr
   double bulk_growth = 0;    ///< d ln K / d ln r, in [0, 1]: 1 where K is that of the tangential springs alone
-  bool stable = true;        ///< false: the assembly gives way, the other numbers mean nothing
+  bool stable = true;        ///< false: the assembly is unstable, the other numbers have no meaning
 };
 
 /// Homogenizes once: one factorization.
 using RatioSampler = std::function<RatioSample(double ratio)>;
 
-/// What an assembly can show without negative springs, r <= 1e6.
+/// The range of q that an assembly can show without negative springs, r <= 1e6.
 struct RatioRange {
   RatioSample smallest;  ///< at r = 1e-8, or where that is lost in rounding at the next that is not
   RatioSample largest;   ///< at r = 1e6, or likewise
@@ -55,22 +55,21 @@ struct FoundRatio {
 /// \param range rising
 /// \param wanted from range.at_zero to range.greatest
 /// \param tolerance of q, relative
-/// \return not reached where `wanted` is that of r = 0 and the assembly gives way there
+/// \return not reached where `wanted` is that of r = 0 and the assembly is unstable there
 /// \throws Error (computation_failed) where q(r) cannot be followed: it jumps
 FoundRatio find_ratio(const RatioSampler& sample, const RatioRange& range, double wanted, double tolerance);
 
-/// The same for any range: one sample per decade, closed in on every extremum (to 1e-9 of q), then the piece with
+/// As find_ratio, for any range: one sample per decade, closed in on every extremum (to 1e-9 of q), then the piece with
 /// `wanted` that is nearest to r = 1. C is the least of energies linear in r, so that K and G are sums of r/(r + t)
 /// with positive weights: they, and q, bend over no less than a decade.
 /// \param range its extremes are set
 /// \return not reached where `wanted` lies outside of them
 FoundRatio find_by_scan(const RatioSampler& sample, RatioRange& range, double wanted, double tolerance);
 
-/// The same for r < 0, wanted < at_zero: Newton's method with memory on r(q), which starts at r = 0 and turns back
-/// where the assembly is not stable; then, as find_by_scan, from r = 0 to the limit of stability. Not reached: `at` is
-/// the sample with the smallest q of all between the limit and r = 0, the same for every `wanted`; at.ratio > 0 where
-/// nothing negative is stable.
-/// \param range closed
+/// As find_ratio, for r < 0, wanted < at_zero: Newton's method with memory on r(q), which starts at r = 0 and turns
+/// back where the assembly is not stable; then, as find_by_scan, from r = 0 to the limit of stability. Not reached:
+/// `at` is the sample with the smallest q of all between the limit and r = 0, the same for every `wanted`; at.ratio > 0
+/// where nothing negative is stable. \param range closed
 FoundRatio find_negative_ratio(const RatioSampler& sample, const RatioRange& range, double wanted, double tolerance);
 
 }  // namespace equidem

@@ -19,7 +19,7 @@ struct EnsemblePlan {
   std::uint64_t first_seed = 1;
 };
 
-/// What homogenizing one cell gave.
+/// Result of homogenizing one cell.
 struct HomogenizedCell {
   std::int64_t discs = 0;  ///< that the cell has: some point processes only come near the number wanted
   EffectiveModuli moduli;

@@ -19,9 +19,9 @@ constexpr std::size_t judged = 3;  // K, G, nu in plane strain
 constexpr int small_pilots = 64, large_pilots = 8, fewest_cells = 8;
 constexpr std::int64_t pilot_ratio = 8;  // of the sizes of both
 constexpr double most_cells = 1e9;
-constexpr double aim = 0.98;  // of the accuracy asked for
+constexpr double aim = 0.98;  // share of the wanted accuracy
 
-/// What the mean of cells misses of one quantity, in units of the accuracy's measure.
+/// Estimated error of the mean of one quantity over the cells, in units of the accuracy's measure.
 struct Miss {
   double scatter = 0;      ///< standard deviation of a cell of N times sqrt(N)
   double drift = 0;        ///< a cell of N is off by drift/N
@@ -160,7 +160,7 @@ class Sampling {
     return !done.stopped;
   }
 
-  /// What the cells chosen reach.
+  /// Accuracy that the chosen cells reach.
   [[nodiscard]] double error() const {
     return accuracy_of(misses_of(result_.statistics), static_cast<double>(result_.chosen.discs), result_.chosen.samples,
                        options_.confidence);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// As many random cells, as large as needed: the cheapest ensemble that tells the moduli to an accuracy.
+/// Number and size of random cells: the cheapest ensemble that determines the moduli to an accuracy.
 #pragma once
 
 #include <cstdint>
@@ -36,11 +36,11 @@ struct AccurateEnsemble {
   std::vector<EnsembleSample> samples;  ///< pilot cells too
   EnsembleStatistics statistics;        ///< of all sizes sampled
   double estimated = 0;            ///< error of the mean of the chosen cells: scatter and drift, the worst of the three
-  EnsembleSetting ten_times_more;  ///< what a tenth of the accuracy asked for would take
+  EnsembleSetting ten_times_more;  ///< setting that reaches a tenth of the wanted error
   bool stopped = false;            ///< by the user, before the end
 };
 
-/// Small cells of two sizes tell scatter and drift; the cheapest size and number follow from
+/// Small cells of two sizes give scatter and drift; the cheapest size and number follow from
 ///
 ///   P(|normal(drift/N, s)| > accuracy), summed over K, G and nu, <= 1 - confidence,   s² = amplitude²/(N S) + (error
 ///   of drift)²/N²,

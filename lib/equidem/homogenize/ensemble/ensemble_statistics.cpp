@@ -42,7 +42,7 @@ Scatter scatter_of(const std::vector<EnsembleSize>& sizes, std::size_t quantity)
   Scatter scatter;
   for (const EnsembleSize& size : sizes) {
     const MeanEstimate& e = size.estimates[quantity];
-    // Poisson's ratio and anisotropy are numbers of order 1 at most, whatever their mean.
+    // Poisson's ratio and anisotropy are numbers of order 1 at most, independent of their mean.
     const double scale = ensemble_quantities[quantity].modulus ? std::abs(e.mean) : 1;
     if (!(e.standard_deviation > round_off * scale)) continue;
     scatter.discs.push_back(size.mean_discs);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What an ensemble of random cells says of the moduli: mean, scatter, their dependence on size, the size needed.
+/// Statistics of the moduli over an ensemble of random cells: mean, scatter, their dependence on size, the size needed.
 #pragma once
 
 #include <array>
@@ -57,7 +57,7 @@ struct SizeDependence {
   double limit_error = 0;
   double drift = 0;
   double drift_error = 0;
-  bool drifts = false;  ///< the drift is not 0 with the confidence asked for
+  bool drifts = false;  ///< the drift is not 0 with the wanted confidence
 };
 
 struct EnsembleStatistics {

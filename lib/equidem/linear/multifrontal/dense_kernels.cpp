@@ -100,7 +100,7 @@ void solve_lower_transposed(std::size_t n, std::size_t columns, const double* l,
   }
 }
 
-// Divide and conquer; the sizes of the work arrays are those that LAPACK's documentation asks for.
+// Divide and conquer; sizes of work arrays by LAPACK's documentation.
 int find_spectrum(std::size_t n, double* a, double* values, bool vectors) {
   if (n == 0) return 0;
   const int size = as_int(n), work_size = vectors ? 1 + 6 * size + 2 * size * size : 2 * size + 1;

@@ -34,7 +34,7 @@ void solve_lower(std::size_t n, std::size_t columns, const double* l, std::size_
 void solve_lower_transposed(std::size_t n, std::size_t columns, const double* l, std::size_t ldl, double* x,
                             std::size_t ldx, bool unit = false);
 /// Eigenvalues, ascending, of the symmetric or Hermitian matrix in the lower triangle of a (n x n), which is lost: a
-/// holds orthonormal eigenvectors in its columns where `vectors` asks for them. Returns 0, or a positive number where
+/// holds orthonormal eigenvectors in its columns where `vectors` is set. Returns 0, or a positive number where
 /// they do not converge.
 int find_spectrum(std::size_t n, double* a, double* values, bool vectors);
 int find_spectrum(std::size_t n, std::complex<double>* a, double* values, bool vectors);

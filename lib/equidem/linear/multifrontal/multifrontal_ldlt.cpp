@@ -17,7 +17,7 @@
 namespace equidem {
 namespace {
 
-/// What a front leaves behind: its pivots with their part of L, and the rows that they update.
+/// The factor of a front: its pivots with their part of L, and the rows that they update.
 struct FrontFactor {
   FrontPivots pivots;
   std::vector<std::int64_t> ids;  ///< unknowns (in elimination order): pivots first, then delayed ones, then later rows

@@ -56,7 +56,7 @@ TreeSweep::TreeSweep(const SymbolicFactor& symbolic, const std::function<double(
 void TreeSweep::up(const Size& size, const Visit& visit, const std::function<void(double)>& report) const {
   const auto& nodes = symbolic_.tree.nodes;
   const double total = std::accumulate(work_.begin(), work_.end(), 0.0);
-  // What subtree roots and the nodes above them hand on.
+  // Updates passed on by the subtree roots and the nodes above them.
   std::vector<LargeBuffer> handed(nodes.size());
   BufferPool pool;
   // Largest height of the stack over all subtrees.

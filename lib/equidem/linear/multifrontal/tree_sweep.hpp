@@ -15,7 +15,7 @@ namespace equidem {
 /// Visits every front, children before parents or parents before children; subtrees run on separate threads.
 class TreeSweep {
  public:
-  /// What a child has left for its parent.
+  /// The update that a child passes to its parent.
   struct Child {
     std::size_t node;
     const double* values;

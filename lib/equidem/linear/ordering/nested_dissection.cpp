@@ -27,7 +27,7 @@ struct Part {
   [[nodiscard]] std::int32_t size() const { return end - begin; }
 };
 
-/// What became of a part: it eliminates items [begin, end) after its children, which are named by their labels.
+/// A part after dissection: it eliminates items [begin, end) after its children, which are named by their labels.
 struct Division {
   std::int32_t begin = 0, end = 0;
   std::array<std::int32_t, 2> children{-1, -1};

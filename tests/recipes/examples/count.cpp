@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+
+#include "equidem/casefile/build.hpp"
+#include "equidem/core/text.hpp"
+
+#include "command.hpp"
+#include "verbs.hpp"
+
+namespace equidem {
+namespace {
+
+int count_discs(const CommonOptions& common) {
+  const Case resolved = read_case(common);
+  const Assembly assembly = build_assembly(resolved);
+  const std::string report = counted(static_cast<long long>(assembly.size()), "disc") + "\n";
+  JsonObject object;
+  object.set("discs", assembly.size());
+  deliver(common, report, object);
+  return 0;
+}
+
+}  // namespace
+
+Run declare_count(CLI::App& command) {
+  const auto common = std::make_shared<CommonOptions>();
+  add_common_options(command, *common);
+  return [common] { return count_discs(*common); };
+}
+
+}  // namespace equidem
