@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Ellipses, clumps and the springs of packings in cases of grains.
-#include "equidem/casefile/grain_shapes.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 
 #include <cmath>
 #include <numbers>

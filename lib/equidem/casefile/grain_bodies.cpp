@@ -9,11 +9,11 @@
 #include <string_view>
 #include <utility>
 
-#include "equidem/casefile/grain_shapes.hpp"
 #include "equidem/casefile/read_value.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/nearest.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 
 namespace equidem {
 namespace {
@@ -55,6 +55,39 @@ std::size_t column_of(std::string_view name) {
   std::size_t c = 0;
   while (c < columns && name != names[c] && name != with_units[c]) ++c;
   return c;
+}
+
+/// "x y r; x y r": the discs of a clump in one cell of a table, m.
+/// \throws Error (bad_input) where the text is something else
+std::vector<Clump::Disc> clump_from(std::string_view text) {
+  const auto fail = [&] {
+    bad_input(fmt::format("'{}' are no discs of a clump", text),
+              "three numbers for each, x y r in m, and ; between them", "Write it like 0 0 0.01; 0.015 0 0.01");
+  };
+  std::vector<Clump::Disc> discs;
+  std::vector<double> numbers;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  const auto finish = [&] {
+    if (numbers.size() != 3) fail();
+    discs.push_back({{numbers[0], numbers[1]}, numbers[2]});
+    numbers.clear();
+  };
+  while (at != end) {
+    if (*at == ' ') {
+      ++at;
+    } else if (*at == ';') {
+      finish();
+      ++at;
+    } else {
+      const auto [rest, problem] = std::from_chars(at, end, numbers.emplace_back());
+      const bool ends = rest == end || *rest == ' ' || *rest == ';';
+      if (problem != std::errc() || !ends || !std::isfinite(numbers.back())) fail();
+      at = rest;
+    }
+  }
+  finish();
+  return discs;
 }
 
 /// Reads a file of grains line by line.

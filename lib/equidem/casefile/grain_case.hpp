@@ -40,8 +40,8 @@ struct GrainCase {
   GrainOptions options;                ///< without its time step
   GrainStepOptions step;               ///< how that is chosen
   double duration = 0;                 ///< s
-  std::optional<ShakingCase> shaking;  ///< its motion is in the walls
-  std::optional<MeasureCase> measures;
+  std::optional<Shaking> shaking;  ///< its motion is in the walls
+  std::optional<MeasureOptions> measures;
   std::vector<GrainProbe> probes;
   OutputCase output;
 

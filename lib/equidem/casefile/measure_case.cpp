@@ -43,11 +43,11 @@ std::vector<KeySpec> measure_keys() {
   };
 }
 
-MeasureCase read_measures(const TomlValue& table, Body body) {
+MeasureOptions read_measures(const TomlValue& table, Body body) {
   if (body == Body::sphere)
     fail_at(table, "measures", "the bodies are spheres", "areas of the plane say nothing of their volumes",
             "Remove [measures], or take discs");
-  MeasureCase measures;
+  MeasureOptions measures;
   if (const TomlValue* region = table.find("region")) {
     const auto& sides = region->items;
     if (!(sides[0].real < sides[2].real && sides[1].real < sides[3].real))

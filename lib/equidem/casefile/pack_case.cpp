@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/pack_case.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "equidem/casefile/keys.hpp"
 #include "equidem/casefile/pack_keys.hpp"
 #include "equidem/casefile/read_value.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/material/wave_speed_springs.hpp"
-#include "equidem/packing/size_distribution.hpp"
+#include "equidem/packing/amount.hpp"
 
 namespace equidem {
 namespace {
@@ -65,59 +62,26 @@ PackingShape read_shape(const TomlValue& table) {
   return shape;
 }
 
-/// Box and radii from two of grains, box and solid_fraction.
+/// The method, the shape and the seed are read before.
 void read_amount(const TomlValue& table, const SizeDistribution& sizes, PackingOptions& options) {
-  const TomlValue* grains = table.find("grains");
-  const TomlValue* box = table.find("box");
-  const TomlValue* fraction = table.find("solid_fraction");
+  PackingAmount amount;
+  if (const TomlValue* grains = table.find("grains")) amount.grains = grains->integer;
+  if (table.find("box") != nullptr) amount.box = vector(table, "box");
+  if (const TomlValue* fraction = table.find("solid_fraction")) {
+    options.as_dense_as_possible = !fraction->is_number();
+    if (fraction->is_number()) amount.solid_fraction = fraction->real;
+  }
   const bool falls = entry_of(options.method).open_top;
-  options.box.sides = falls                                ? PackingBox::Sides::open_top
-                      : text(table, "sides") == "periodic" ? PackingBox::Sides::periodic
-                                                           : PackingBox::Sides::walls;
-  if (falls && text(table, "sides") == "periodic")
-    fail_at(*table.find("sides"), "packing.sides", "bodies fall into a periodic box", "they would fall for ever",
-            "Take walls, or another method");
-  const bool dense = fraction != nullptr && !fraction->is_number();
-  if (falls && fraction != nullptr)
-    fail_at(*fraction, "packing.solid_fraction", "a solid fraction is wanted of falling bodies",
-            "it comes about by itself, lower with more friction", "Remove it");
-  if (dense && !entry_of(options.method).as_dense_as_possible)
-    fail_at(*fraction, "packing.solid_fraction", fmt::format("auto with {}", to_string(options.method)),
-            "the method has no end without a wanted solid fraction", "Give a number, or take growth");
-  const int given = (grains != nullptr) + (box != nullptr) + (fraction != nullptr && !dense);
-  if (given != 2) {
-    fail_at(table, "packing",
-            given > 2 ? "grains, box and solid_fraction are all given" : "it is not said how much is packed",
-            falls || dense ? "grains and box say it" : "two of grains, box and solid_fraction say it",
-            given > 2 ? "Remove one of them" : "Give two of them");
+  options.box.sides = text(table, "sides") == "periodic" ? PackingBox::Sides::periodic
+                      : falls                            ? PackingBox::Sides::open_top
+                                                         : PackingBox::Sides::walls;
+  try {
+    set_amount(amount, sizes, options);
+  } catch (const Error& error) {
+    const TomlValue* value = table.find(error.where());
+    fail_at(value != nullptr ? *value : table, value != nullptr ? "packing." + error.where() : "packing",
+            error.problem(), error.why(), error.remedy());
   }
-  Random random(~options.seed);  // sizes are independent of places
-  if (box != nullptr) {
-    options.box.size = vector(table, "box");
-    if (!(options.box.size.x > 0 && options.box.size.y > 0))
-      fail_at(*box, "packing.box", "the box has no area", "width and height are positive", "Correct it");
-  }
-  const double mean_area = unit_body_of(options.shape).area * moments_of(sizes).mean_square;
-  std::int64_t count = 0;
-  if (grains != nullptr) {
-    count = grains->integer;
-  } else {
-    const double wanted = std::round(fraction->real * options.box.area() / mean_area);
-    if (!(wanted >= 1 && wanted <= 1e7))
-      fail_at(*box, "packing.box", fmt::format("{:.3g} bodies would fill the box", wanted), "they are 1 to 1e7",
-              "Change the box or the radii");
-    count = static_cast<std::int64_t>(wanted);
-  }
-  options.radii = draw_radii(sizes, count, random);
-  // What drawing leaves open: a box for the bodies, or radii for the box, to the last bit of the solid fraction.
-  if (box == nullptr) {
-    const double side = std::sqrt(area_of(options.shape, options.radii) / fraction->real);
-    options.box.size = {side, side};
-  } else if (grains == nullptr) {
-    const double scale = std::sqrt(fraction->real * options.box.area() / area_of(options.shape, options.radii));
-    for (double& radius : options.radii) radius *= scale;
-  }
-  options.as_dense_as_possible = dense;
 }
 
 SettlingOptions read_settling(const TomlValue& table) {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/shaking_case.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
+#include <utility>
 
 #include "equidem/casefile/read_value.hpp"
 #include "equidem/casefile/schedule_case.hpp"
@@ -24,80 +22,48 @@ void refuse_beside(const TomlValue& table, const char* key, const std::string& w
     fail_at(*value, fmt::format("shaking.{}", key), fmt::format("{} does not apply", key), why, "Remove it");
 }
 
-std::int64_t count_cycles(const TomlValue& table, double frequency, double start, double run_duration) {
-  const TomlValue* cycles = table.find("cycles");
-  const TomlValue* duration = table.find("duration");
-  if (cycles != nullptr) {
-    refuse_beside(table, "duration", "cycles says how long the box shakes");
-    return cycles->integer;
-  }
-  const double periods = frequency * (duration != nullptr ? duration->real : run_duration - start);
-  const double whole = std::round(periods);
-  if (duration != nullptr && (whole < 1 || std::abs(periods - whole) > 1e-6 * whole))
-    fail_at(*duration, "shaking.duration",
-            fmt::format("{} s are {:.6g} cycles of {} Hz", duration->real, periods, frequency),
-            "only whole cycles end at rest",
-            fmt::format("Make it {:.6g} s, or give cycles", std::max(1.0, whole) / frequency));
-  constexpr double most = 1e12;
-  if (!(periods < most))
-    fail_at(*table.find("frequency"), "shaking.frequency", fmt::format("the box would shake {:.3g} times", periods),
-            "the run has fewer steps than that", "Lower it, or give cycles");
-  // On beyond the end of the run, which may cut a cycle short.
-  return static_cast<std::int64_t>(duration != nullptr ? whole : std::max(1.0, std::ceil(periods - 1e-9 * whole)));
-}
-
-void read_harmonic(const TomlValue& table, double run_duration, ShakingCase& shaking) {
+HarmonicShaking read_harmonic(const TomlValue& table) {
   for (const char* key : {"quantity", "baseline", "scale"})
     refuse_beside(table, key, "it is for a record, and the box shakes with a frequency");
-  const TomlValue* acceleration = table.find("acceleration");
-  const TomlValue* frequency = table.find("frequency");
-  if (acceleration == nullptr || frequency == nullptr) {
-    const char* missing = acceleration == nullptr ? "acceleration" : "frequency";
-    fail_at(table, "shaking", fmt::format("it is not said how the box moves: {} is missing", missing),
-            "acceleration and frequency say it, or a record", "Give acceleration and frequency, or record = \"FILE\"");
-  }
-  const double a = unit_of(table) * acceleration->real, start = number(table, "start");
-  if (!(start < run_duration))
-    fail_at(*table.find("start"), "shaking.start", fmt::format("the box begins to shake at {} s", start),
-            fmt::format("the run ends at {} s", run_duration), "Start earlier, or run longer");
-  shaking.frequency = frequency->real;
-  shaking.cycles = count_cycles(table, shaking.frequency, start, run_duration);
-  try {
-    shaking.motion.displacement = harmonic_shaking(a, shaking.frequency, start, shaking.cycles);
-  } catch (const Error& error) {
-    throw error.at(fmt::format("{}: shaking.frequency", frequency->where()));
-  }
-  const double omega = 2 * std::numbers::pi * shaking.frequency;
-  shaking.motion.peak_acceleration = a;
-  shaking.motion.peak_velocity = a / omega;
-  shaking.motion.peak_displacement = 2 * a / (omega * omega);
+  for (const char* key : {"acceleration", "frequency"})
+    if (table.find(key) == nullptr)
+      fail_at(table, "shaking", fmt::format("it is not said how the box moves: {} is missing", key),
+              "acceleration and frequency say it, or a record",
+              "Give acceleration and frequency, or record = \"FILE\"");
+  HarmonicShaking options{.acceleration = unit_of(table) * number(table, "acceleration"),
+                          .frequency = number(table, "frequency"),
+                          .start = number(table, "start"),
+                          .duration = optional_number(table, "duration")};
+  if (const TomlValue* cycles = table.find("cycles")) options.cycles = cycles->integer;
+  return options;
 }
 
-void read_record(TomlValue& table, const fs::path& folder, ShakingCase& shaking) {
+RecordedShaking read_record(TomlValue& table, const fs::path& folder) {
   for (const char* key : {"acceleration", "frequency", "cycles", "duration"})
     refuse_beside(table, key, "the record says how the box moves");
-  shaking.recorded = true;
-  TomlValue& path = *table.find("record");
-  const fs::path file = opened(path.text, folder);
+  RecordedShaking options;
   const TomlValue* quantity = table.find("quantity");
   const bool displacement = quantity != nullptr && quantity->text == "displacement";
-  if (displacement) refuse_beside(table, "baseline", "a recorded displacement is followed as it is");
-  const double factor = optional_number(table, "scale").value_or(1) * (displacement ? 1 : unit_of(table));
-  const double start = number(table, "start");
+  if (displacement) {
+    options.quantity = RecordedShaking::Quantity::displacement;
+    refuse_beside(table, "baseline", "a recorded displacement is followed as it is");
+  }
+  options.scale = optional_number(table, "scale").value_or(options.scale) * (displacement ? 1 : unit_of(table));
+  options.start = number(table, "start");
+  if (const TomlValue* baseline = table.find("baseline"))
+    options.baseline = baseline->text == "velocity" ? Baseline::velocity : Baseline::rest;
+  TomlValue& path = *table.find("record");
+  const fs::path file = opened(path.text, folder);
   try {
     Schedule points{.kind = Schedule::Kind::table};
     read_points(file, points, displacement ? "displacement" : "acceleration");
-    points = scaled(points, factor);
-    const TomlValue* baseline = table.find("baseline");
-    shaking.motion = displacement
-                         ? follow_motion(points.times, points.values, start)
-                         : integrate_motion(points.times, points.values, start,
-                                            baseline != nullptr && baseline->text == "velocity" ? Baseline::velocity
-                                                                                                : Baseline::rest);
+    options.times = std::move(points.times);
+    options.values = std::move(points.values);
   } catch (const Error& error) {
     throw error.at(fmt::format("{}: shaking.record", path.where()));
   }
   path.text = file.string();
+  return options;
 }
 
 }  // namespace
@@ -180,25 +146,22 @@ std::vector<KeySpec> shaking_keys() {
   };
 }
 
-ShakingCase read_shaking(TomlValue& root, const fs::path& folder, double run_duration, std::span<GrainWall> walls) {
+Shaking read_shaking(TomlValue& root, const fs::path& folder, double run_duration, std::span<GrainWall> walls) {
   TomlValue& table = *root.find("shaking");
-  ShakingCase shaking;
-  const Vec2 direction = vector(table, "direction");
-  const double length = norm(direction);
-  if (!(length > 0))
-    fail_at(*table.find("direction"), "shaking.direction", "the direction of the shaking is zero",
-            "it says where the box moves", "Give a direction, such as [1.0, 0.0]");
-  shaking.direction = direction / length;
+  ShakingOptions options{.direction = vector(table, "direction")};
   if (table.find("record") != nullptr) {
-    read_record(table, folder, shaking);
+    options.motion = read_record(table, folder);
   } else {
-    read_harmonic(table, run_duration, shaking);
+    options.motion = read_harmonic(table);
   }
-  constexpr double fastest = 3e8;  // light
-  if (!(shaking.motion.peak_velocity < fastest))
-    fail_at(table, "shaking", fmt::format("the box would move with {:.3g} m/s", shaking.motion.peak_velocity),
-            fmt::format("nothing is faster than {:.0e} m/s", fastest),
-            "Give a smaller acceleration, or check the units");
+  Shaking shaking;
+  try {
+    shaking = shaking_of(options, run_duration);
+  } catch (const Error& error) {
+    const TomlValue* value = table.find(error.where());
+    fail_at(value != nullptr ? *value : table, value != nullptr ? "shaking." + error.where() : "shaking",
+            error.problem(), error.why(), error.remedy());
+  }
   bool any = false;
   const auto& tables = repeated(root, "wall");
   for (std::size_t k = 0; k < walls.size(); ++k) {

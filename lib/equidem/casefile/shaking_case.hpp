@@ -5,21 +5,12 @@
 
 #include <filesystem>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "equidem/casefile/keys.hpp"
 #include "equidem/grains/scene/shaking.hpp"
 
 namespace equidem {
-
-struct ShakingCase {
-  Vec2 direction;       ///< unit
-  GroundMotion motion;  ///< along it
-  bool recorded = false;
-  double frequency = 0;     ///< Hz, not recorded
-  std::int64_t cycles = 0;  ///< not recorded
-};
 
 /// The keys of [shaking] and wall.shaken.
 std::vector<KeySpec> shaking_keys();
@@ -31,7 +22,7 @@ std::vector<KeySpec> shaking_keys();
 /// \throws Error (bad_input) with line and key: no motion or two, a duration of no whole cycles, no wall that moves, a
 ///         wall that moves by
 ///         itself as well, a record that is no table
-ShakingCase read_shaking(TomlValue& root, const std::filesystem::path& folder, double run_duration,
+Shaking read_shaking(TomlValue& root, const std::filesystem::path& folder, double run_duration,
                          std::span<GrainWall> walls);
 
 }  // namespace equidem

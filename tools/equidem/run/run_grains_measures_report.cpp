@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/fields/coarse_fields.hpp"
-#include "equidem/fields/spectrum.hpp"
 #include "equidem/output/files/csv.hpp"
 #include "equidem/output/pictures/field_files.hpp"
 #include "equidem/output/plots/plot.hpp"
@@ -38,48 +34,11 @@ JsonObject before_and_after(double before, double after) {
   return object;
 }
 
-/// The end of [shaking], or the start of the run.
-double end_of_shaking(const GrainCase& resolved) {
-  if (!resolved.shaking) return 0;
-  const Schedule& motion = resolved.shaking->motion.displacement;
-  return motion.kind == Schedule::Kind::cycles ? motion.end : motion.times.back();
-}
-
 }  // namespace
 
-GrainMeasures::Sloshing GrainMeasures::sloshing() const {
-  Sloshing result;
-  result.period = result.theory = not_measured;
-  const double width = start_.inside.high.x - start_.inside.low.x;
-  const double depth = before().surface.height - start_.inside.low.y, gravity = -resolved_.scene.gravity.y;
-  if (gravity > 0 && depth > 0 && width > 0) result.theory = sloshing_period(width, depth, gravity);
-  // Free motion says more than what is forced: two periods of it suffice.
-  const double end = end_of_shaking(resolved_), last = moments_.back().time;
-  const bool free = !std::isnan(result.theory) && last - end >= 2 * result.theory;
-  result.from = free ? end : before().time;
-  std::vector<double> times, slopes;
-  for (const MeasuredMoment& moment : moments_) {
-    if (moment.time < result.from || std::isnan(moment.surface.slope)) continue;
-    times.push_back(moment.time);
-    slopes.push_back(moment.surface.slope);
-  }
-  try {
-    constexpr double widest = 4;  // times the theory, and its inverse
-    const double lowest = std::isnan(result.theory) ? 0 : 1 / (widest * result.theory);
-    const double highest = std::isnan(result.theory) ? INFINITY : widest / result.theory;
-    const SpectralPeak peak = spectral_peak(times, slopes, lowest, highest);
-    result.period = peak.period();
-    result.amplitude = peak.amplitude;
-    result.frequency_resolution = peak.resolution;
-  } catch (const Error& error) {
-    result.missing = error.problem();
-  }
-  return result;
-}
-
 std::string GrainMeasures::describe() const {
-  const MeasuredMoment& before = this->before();
-  const MeasuredMoment& after = moments_.back();
+  const MeasuredMoment& before = measures_.before();
+  const MeasuredMoment& after = measures_.moments().back();
   std::string out;
   if (resolved_.shaking)
     out += report_line("measured",
@@ -100,8 +59,8 @@ std::string GrainMeasures::describe() const {
       "thrown",
       fmt::format("{} were further than {} from the heap at a moment looked at, {} at the end; {} outside the box",
                   counted(static_cast<long long>(after.ever_thrown), "grain"),
-                  shown(resolved_.measures->thrown_gap * diameter_, " m"), after.thrown, after.outside));
-  const Sloshing slosh = sloshing();
+                  shown(resolved_.measures->thrown_gap * measures_.mean_diameter(), " m"), after.thrown, after.outside));
+  const Sloshing slosh = measures_.sloshing();
   const std::string theory =
       std::isnan(slosh.theory) ? "" : fmt::format("; linear theory of a liquid {:.4g} s", slosh.theory);
   out += report_line(
@@ -117,9 +76,9 @@ std::string GrainMeasures::describe() const {
 }
 
 void GrainMeasures::add_to(JsonObject& object) const {
-  const MeasuredMoment& before = this->before();
-  const MeasuredMoment& after = moments_.back();
-  const Sloshing slosh = sloshing();
+  const MeasuredMoment& before = measures_.before();
+  const MeasuredMoment& after = measures_.moments().back();
+  const Sloshing slosh = measures_.sloshing();
   JsonObject period;
   set_known(period, "period", slosh.period);
   set_known(period, "theory_period", slosh.theory);
@@ -127,7 +86,7 @@ void GrainMeasures::add_to(JsonObject& object) const {
       .set("amplitude", slosh.amplitude)
       .set("frequency_resolution", slosh.frequency_resolution);
   JsonObject measures;
-  measures.set("mean_diameter", diameter_)
+  measures.set("mean_diameter", measures_.mean_diameter())
       .set("time", before_and_after(before.time, after.time))
       .set("void_ratio", before_and_after(before.void_ratio, after.void_ratio))
       .set("porosity", before_and_after(before.porosity, after.porosity))
@@ -158,11 +117,11 @@ void GrainMeasures::write_files(const std::filesystem::path& folder, const Grain
       }
       plot.series.push_back(std::move(series));
     };
-    add(before_, before().time, PlotColour::sky_blue);
-    add(last_, moments_.back().time, PlotColour::vermilion);
+    add(measures_.surface_before(), measures_.before().time, PlotColour::sky_blue);
+    add(measures_.surface(), measures_.moments().back().time, PlotColour::vermilion);
     write_plot(folder, "surface_plot", plot, overwrite);
     Series ratio{.label = "", .colour = PlotColour::blue, .column = "void_ratio"};
-    for (const MeasuredMoment& moment : moments_) {
+    for (const MeasuredMoment& moment : measures_.moments()) {
       ratio.x.push_back(moment.time);
       ratio.y.push_back(moment.void_ratio);
     }
@@ -175,21 +134,12 @@ void GrainMeasures::write_files(const std::filesystem::path& folder, const Grain
     }
   }
   if (!resolved_.measures->cell) return;
-  const std::vector<Grain> grains = simulation.grains();
-  const GrainBox box = box_of(resolved_.scene.walls, grains, simulation.time());
-  Region region = box.inside;
-  if (!box.lid)
-    region.high.y = *std::max_element(last_.heights.begin(), last_.heights.end(),
-                                      [](double a, double b) { return std::isnan(a) ? !std::isnan(b) : a < b; });
-  write_fields(folder, "fields",
-               coarse_fields(grains, resolved_.scene.clumps, simulation.contacts(),
-                             grid_over(region, *resolved_.measures->cell)),
-               overwrite);
+  write_fields(folder, "fields", measures_.fields(simulation), overwrite);
 }
 
 std::string describe_shaking(const GrainCase& resolved) {
   if (!resolved.shaking) return {};
-  const ShakingCase& shaking = *resolved.shaking;
+  const Shaking& shaking = *resolved.shaking;
   const GroundMotion& motion = shaking.motion;
   const std::string size =
       fmt::format("{:.4g} m/s² ({:.4g} gal) at most", motion.peak_acceleration, motion.peak_acceleration / gal);

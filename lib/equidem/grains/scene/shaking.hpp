@@ -4,7 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <variant>
+#include <vector>
 
 #include "equidem/grains/scene/wall_shape.hpp"
 
@@ -48,6 +51,48 @@ GroundMotion integrate_motion(std::span<const double> times, std::span<const dou
 /// between them). The first point is where the box stands. \param displacements m
 /// \throws Error (bad_input) as integrate_motion
 GroundMotion follow_motion(std::span<const double> times, std::span<const double> displacements, double start);
+
+/// A motion a cos(2 pi f (t - start)) of the box, as harmonic_shaking.
+struct HarmonicShaking {
+  double acceleration = 0;                ///< amplitude a, m/s²
+  double frequency = 0;                   ///< f, Hz
+  double start = 0;                       ///< s
+  std::optional<std::int64_t> cycles = {};  ///< >= 1
+  std::optional<double> duration = {};    ///< s, whole cycles, instead of cycles; neither: to the end of the run
+};
+
+/// A recorded motion of the box, as integrate_motion or follow_motion.
+struct RecordedShaking {
+  enum class Quantity { acceleration, displacement } quantity = Quantity::acceleration;
+  std::vector<double> times;           ///< s
+  std::vector<double> values;          ///< m/s² or m
+  double scale = 1;                    ///< factor of the values
+  double start = 0;                    ///< s, of the first point
+  Baseline baseline = Baseline::rest;  ///< accelerations only
+};
+
+struct ShakingOptions {
+  Vec2 direction = {1, 0};  ///< of any length > 0
+  std::variant<HarmonicShaking, RecordedShaking> motion = {};
+};
+
+/// How a box shakes.
+struct Shaking {
+  Vec2 direction;       ///< unit
+  GroundMotion motion;  ///< along it
+  bool recorded = false;
+  double frequency = 0;     ///< Hz, not recorded
+  std::int64_t cycles = 0;  ///< not recorded
+
+  [[nodiscard]] double start() const;  ///< s
+  [[nodiscard]] double end() const;    ///< s
+};
+
+/// \param run_duration s
+/// \throws Error (bad_input), its place the name of the option, or empty: a direction of length 0, a start after the end
+///         of the run, cycles and a duration both, a duration of no whole cycles, more than 1e12 cycles, a motion as
+///         fast as light, and as harmonic_shaking, integrate_motion, follow_motion
+Shaking shaking_of(const ShakingOptions& options, double run_duration);
 
 /// Let walls move along a direction.
 /// \param direction unit

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/grain_shapes.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -64,37 +63,6 @@ void GrainShapes::make_clump(Grain& grain, std::vector<Clump::Disc> discs, doubl
   grain.clump = at->second;
   grain.radius = radius_of(clumps_[c]);
   grain.inertia = {density * inertias_[c].mass, density * inertias_[c].moment};
-}
-
-std::vector<Clump::Disc> clump_from(std::string_view text) {
-  const auto fail = [&] {
-    bad_input(fmt::format("'{}' are no discs of a clump", text),
-              "three numbers for each, x y r in m, and ; between them", "Write it like 0 0 0.01; 0.015 0 0.01");
-  };
-  std::vector<Clump::Disc> discs;
-  std::vector<double> numbers;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  const auto finish = [&] {
-    if (numbers.size() != 3) fail();
-    discs.push_back({{numbers[0], numbers[1]}, numbers[2]});
-    numbers.clear();
-  };
-  while (at != end) {
-    if (*at == ' ') {
-      ++at;
-    } else if (*at == ';') {
-      finish();
-      ++at;
-    } else {
-      const auto [rest, problem] = std::from_chars(at, end, numbers.emplace_back());
-      const bool ends = rest == end || *rest == ' ' || *rest == ';';
-      if (problem != std::errc() || !ends || !std::isfinite(numbers.back())) fail();
-      at = rest;
-    }
-  }
-  finish();
-  return discs;
 }
 
 }  // namespace equidem

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Histories of bodies in a box while they move: void ratio, surface, bodies thrown, period of the surface.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "equidem/fields/coarse_fields.hpp"
+#include "equidem/fields/surface.hpp"
+#include "equidem/fields/void_ratio.hpp"
+#include "equidem/grains/scene/shaking.hpp"
+
+namespace equidem {
+
+struct MeasureOptions {
+  std::optional<Region> region = {};  ///< of the void ratio, m, where the box stands at the start; none:
+                                      ///< measured_region at each moment
+  std::size_t columns = 0;            ///< of the surface, at least 2; 0: two largest diameters wide
+  double thrown_gap = 1;              ///< mean diameters between the heap and a body that is thrown
+  std::optional<double> cell = {};    ///< width of the cells of the fields, m; none: no fields
+};
+
+/// Stands for a quantity that has no value at a moment.
+inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
+
+/// Places go with the shaking box.
+struct MeasuredMoment {
+  std::int64_t step = 0;
+  double time = 0;  ///< s
+  double void_ratio = not_measured, porosity = not_measured;
+  SurfaceShape surface;          ///< of the heap
+  Vec2 centre;                   ///< of mass, m
+  std::int64_t thrown = 0;       ///< bodies apart from the heap now
+  std::int64_t ever_thrown = 0;  ///< bodies that were, now or before
+  std::int64_t outside = 0;      ///< bodies with the centre beyond a side or the floor of the box
+};
+
+/// When a body was first seen apart from the heap.
+struct FirstThrow {
+  std::int64_t step = 0;
+  double time = 0;  ///< s
+};
+
+/// Strongest period of the slope of the surface.
+struct Sloshing {
+  double from = 0;                ///< s, start of the history examined
+  double period = not_measured;   ///< s
+  double amplitude = 0;           ///< of the slope
+  double frequency_resolution = 0;  ///< Hz
+  double theory = not_measured;   ///< s, sloshing_period of a liquid of the depth before the shaking
+  std::string missing = {};       ///< why there is no period
+};
+
+class BoxMeasures {
+ public:
+  /// \param scene bodies at the start, walls and gravity; must outlive this
+  /// \param shaking of the walls of the scene; none: the box stands
+  /// \throws Error (bad_input) as box_of, and as grid_over where the cells are too small
+  BoxMeasures(const GrainScene& scene, MeasureOptions options, const std::optional<Shaking>& shaking = {});
+
+  /// \param grains in the order of the scene
+  const MeasuredMoment& record(std::int64_t step, double time, const std::vector<Grain>& grains);
+  /// Goes on with the history of an earlier run.
+  /// \param before surface at the last moment before the shaking
+  void restore(std::vector<MeasuredMoment> moments, SurfaceProfile before,
+               std::vector<std::optional<FirstThrow>> throws);
+
+  [[nodiscard]] const MeasureOptions& options() const { return options_; }  ///< columns chosen
+  [[nodiscard]] double mean_diameter() const { return diameter_; }          ///< m
+  /// The first column and its width at the start, heights unknown.
+  [[nodiscard]] SurfaceProfile empty_profile() const;
+  [[nodiscard]] const std::vector<MeasuredMoment>& moments() const { return moments_; }
+  /// The last moment before the shaking begins; without shaking the first. There is at least one.
+  [[nodiscard]] const MeasuredMoment& before() const;
+  [[nodiscard]] const SurfaceProfile& surface_before() const { return before_; }
+  [[nodiscard]] const SurfaceProfile& surface() const { return last_; }  ///< of the last moment
+  [[nodiscard]] const std::vector<std::optional<FirstThrow>>& throws() const { return throws_; }  ///< of each body
+  /// Over the free motion after the shaking where it lasts two periods of theory, else from before() on.
+  [[nodiscard]] Sloshing sloshing() const;
+  /// Fields over the inside of the box, below the surface where there is no lid; options().cell must be given.
+  [[nodiscard]] CoarseFields fields(const GrainSimulation& simulation) const;
+
+ private:
+  const GrainScene& scene_;
+  MeasureOptions options_;
+  std::optional<Shaking> shaking_;
+  GrainBox start_;  ///< the box at t = 0
+  double shaken_from_ = 0;
+  double diameter_ = 0;
+  std::vector<MeasuredMoment> moments_;
+  SurfaceProfile before_, last_;
+  std::vector<std::optional<FirstThrow>> throws_;
+};
+
+}  // namespace equidem

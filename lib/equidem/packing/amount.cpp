@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/packing/amount.hpp"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/random.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+[[noreturn]] void fail(const char* option, std::string problem, std::string why, std::string remedy) {
+  throw Error(ErrorKind::bad_input, std::move(problem), std::move(why), std::move(remedy), option);
+}
+
+void check(const PackingAmount& amount, const PackingOptions& options) {
+  const bool falls = options.method == PackingMethod::falling, dense = options.as_dense_as_possible;
+  if (falls && options.box.periodic())
+    fail("sides", "bodies fall into a periodic box", "they would fall for ever", "Take walls, or another method");
+  if (falls && (amount.solid_fraction || dense))
+    fail("solid_fraction", "a solid fraction is asked for falling bodies",
+         "it comes about by itself, lower with more friction", "Remove it");
+  if (dense && options.method == PackingMethod::local_moves)
+    fail("solid_fraction", "solid_fraction = \"auto\" with local_moves", "the method has no rule to stop",
+         "Give a number, or take growth");
+  const int given =
+      int{amount.grains.has_value()} + int{amount.box.has_value()} + int{amount.solid_fraction.has_value()};
+  if (given > 2)
+    fail("", "grains, box and solid_fraction are all given",
+         falls || dense ? "grains and box say it" : "two of them give the third", "Remove one of them");
+  if (given < 2)
+    fail("", "the amount to pack is missing",
+         falls || dense ? "grains and box give it" : "two of grains, box and solid_fraction give it",
+         "Give two of them");
+  if (amount.box && !(amount.box->x > 0 && amount.box->y > 0))
+    fail("box", "the box has no area", "width and height are positive", "Correct it");
+}
+
+}  // namespace
+
+void set_amount(const PackingAmount& amount, const SizeDistribution& sizes, PackingOptions& options) {
+  check(amount, options);
+  Random random(~options.seed);  // sizes are independent of places
+  if (amount.box) options.box.size = *amount.box;
+  std::int64_t count = amount.grains.value_or(0);
+  if (!amount.grains) {
+    const double mean_area = unit_body_of(options.shape).area * moments_of(sizes).mean_square;
+    const double wanted = std::round(*amount.solid_fraction * options.box.area() / mean_area);
+    if (!(wanted >= 1 && wanted <= 1e7))
+      fail("box", fmt::format("{:.3g} bodies would fill the box", wanted), "they are 1 to 1e7",
+           "Change the box or the radii");
+    count = static_cast<std::int64_t>(wanted);
+  }
+  options.radii = draw_radii(sizes, count, random);
+  if (!amount.box) {
+    const double side = std::sqrt(area_of(options.shape, options.radii) / *amount.solid_fraction);
+    options.box.size = {side, side};
+  } else if (!amount.grains) {
+    const double scale =
+        std::sqrt(*amount.solid_fraction * options.box.area() / area_of(options.shape, options.radii));
+    for (double& radius : options.radii) radius *= scale;
+  }
+}
+
+}  // namespace equidem
