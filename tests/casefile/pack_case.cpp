@@ -103,7 +103,7 @@ TEST_CASE("contradictions_of_a_packing_are_told_with_their_line") {
   };
   const std::vector<Wrong> all = {
       {{"packing.solid_fraction=0.5"}, "all given"},
-      {{"packing.grains=none"}, "not said how much"},
+      {{"packing.grains=none"}, "amount to pack is missing"},
       {{"packing.method=falling", "packing.solid_fraction=auto"}, "falling"},
       {{"packing.method=falling", "packing.sides=periodic"}, "for ever"},
       {{"packing.method=local_moves", "packing.solid_fraction=auto"}, "local_moves"},

@@ -49,7 +49,9 @@ const MeasuredMoment& BoxMeasures::record(std::int64_t step, double time, const 
   const Vec2 moved = shaking_ ? shaking_->motion.displacement.at(time) * shaking_->direction : Vec2{};
   const GrainBox box = box_of(scene_.walls, grains, time);
   const std::vector<char> heap = heap_of(grains, options_.thrown_gap * diameter_);
-  MeasuredMoment moment{.step = step, .time = time};
+  MeasuredMoment moment;
+  moment.step = step;
+  moment.time = time;
   std::optional<Region> region;
   if (options_.region) {
     region = Region{options_.region->low + moved, options_.region->high + moved};

@@ -8,6 +8,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/packing/methods.hpp"
 
 namespace equidem {
 namespace {
@@ -17,15 +18,15 @@ namespace {
 }
 
 void check(const PackingAmount& amount, const PackingOptions& options) {
-  const bool falls = options.method == PackingMethod::falling, dense = options.as_dense_as_possible;
+  const bool falls = entry_of(options.method).open_top, dense = options.as_dense_as_possible;
   if (falls && options.box.periodic())
     fail("sides", "bodies fall into a periodic box", "they would fall for ever", "Take walls, or another method");
   if (falls && (amount.solid_fraction || dense))
     fail("solid_fraction", "a solid fraction is asked for falling bodies",
          "it comes about by itself, lower with more friction", "Remove it");
-  if (dense && options.method == PackingMethod::local_moves)
-    fail("solid_fraction", "solid_fraction = \"auto\" with local_moves", "the method has no rule to stop",
-         "Give a number, or take growth");
+  if (dense && !entry_of(options.method).as_dense_as_possible)
+    fail("solid_fraction", fmt::format("solid_fraction = \"auto\" with {}", to_string(options.method)),
+         "the method has no rule to stop", "Give a number, or take growth");
   const int given =
       int{amount.grains.has_value()} + int{amount.box.has_value()} + int{amount.solid_fraction.has_value()};
   if (given > 2)
@@ -59,8 +60,7 @@ void set_amount(const PackingAmount& amount, const SizeDistribution& sizes, Pack
     const double side = std::sqrt(area_of(options.shape, options.radii) / *amount.solid_fraction);
     options.box.size = {side, side};
   } else if (!amount.grains) {
-    const double scale =
-        std::sqrt(*amount.solid_fraction * options.box.area() / area_of(options.shape, options.radii));
+    const double scale = std::sqrt(*amount.solid_fraction * options.box.area() / area_of(options.shape, options.radii));
     for (double& radius : options.radii) radius *= scale;
   }
 }

@@ -87,7 +87,7 @@ class Store {
     Results object;
     object.set("settings", settings);
     for (const OutcomeKey& key : outcome_keys()) object.set(key.name, outcome.*key.value);
-    write_file(file(name, ".json"), object.text(), true);
+    write_file(file(name, ".json"), object.json(), true);
   }
 
   std::optional<GrainState> find_state(const Fill& fill, const std::string& settings) const {

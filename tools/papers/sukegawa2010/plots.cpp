@@ -5,8 +5,8 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/fields/spectrum.hpp"
+#include "equidem/output/files/csv.hpp"
 
-#include "csv_cells.hpp"
 #include "sukegawa2010/sukegawa2010.hpp"
 #include "tables.hpp"
 
