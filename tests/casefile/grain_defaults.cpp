@@ -32,7 +32,7 @@ TEST_CASE("defaults_of_cases_of_grains_are_those_of_the_options") {
   for (const double height : {1.0, 2.0})
     scene.grains.push_back(
         {.position = {0, height}, .radius = 0.01 * height, .inertia = inertia_of(0.01 * height, 2500, Body::disc)});
-  GrainWall floor;
+  Wall floor;
   floor.name = "floor";
   floor.normal = {0, 1};
   scene.walls = {floor};

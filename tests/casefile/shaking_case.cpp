@@ -65,9 +65,9 @@ TEST_CASE("all_walls_move_alike_with_the_acceleration_in_its_unit") {
                 std::string(unit) + "\"\n"));
     REQUIRE(resolved.shaking);
     CHECK(resolved.shaking->motion.peak_acceleration == Approx(0.4 * factor));
-    for (const GrainWall& wall : resolved.scene.walls) {
+    for (const Wall& wall : resolved.scene.walls) {
       const double t = 0.4, h = 1e-4;
-      const auto x = [&](double time) { return Vec2{wall.move_x.at(time), wall.move_y.at(time)}; };
+      const auto x = [&](double time) { return wall.displacement(time); };
       const Vec2 a = (x(t + h) - 2 * x(t) + x(t - h)) / (h * h);
       const double wanted = 0.4 * factor * std::cos(2 * 3.141592653589793 * 5 * 0.15);
       CAPTURE(unit, wall.name, a.x, a.y, wanted);

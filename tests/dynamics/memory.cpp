@@ -17,6 +17,6 @@ TEST_CASE("small_motions_keep_300_bytes_a_disc_in_the_loop") {
   const ContactSprings springs(SpringConstants{1, 0.4});
   const Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
   const Simulation run(scene, {.time_step = 0.1});
-  CAPTURE(hexagonal, assembly.size(), run.bytes_per_disc());
-  CHECK(run.bytes_per_disc() <= 300);
+  CAPTURE(hexagonal, assembly.size(), run.bytes_per_body());
+  CHECK(run.bytes_per_body() <= 300);
 }

@@ -94,15 +94,18 @@ inline Assembly delaunay_block(std::int64_t discs, std::uint64_t seed, bool peri
 
 /// Let a run start from displaced discs at rest: leapfrog keeps velocities half a step behind, v = -M^-1 f h/2.
 inline void displace(Simulation& run, const Scene& scene, double step, const std::vector<DiscMotion>& u) {
-  SimulationState state = run.save();
+  SavedState state = run.save();
   const std::vector<DiscForce> f = run.unbalanced_forces(u);
-  state.motions = u;
+  std::vector<DiscMotion> velocities(u.size()), previous(u.size());
   for (std::size_t d = 0; d < u.size(); ++d) {
     const Inertia& body = scene.inertia[d];
     const double turning = body.moment > 0 ? f[d].moment / body.moment : 0;
-    state.velocities[d] = {-0.5 * step / body.mass * f[d].force, -0.5 * step * turning};
-    state.previous[d] = {u[d].u - step * state.velocities[d].u, u[d].theta - step * state.velocities[d].theta};
+    velocities[d] = {-0.5 * step / body.mass * f[d].force, -0.5 * step * turning};
+    previous[d] = {u[d].u - step * velocities[d].u, u[d].theta - step * velocities[d].theta};
   }
+  state["motions"] = numbers_of(u);
+  state["previous"] = numbers_of(previous);
+  state["velocities"] = numbers_of(velocities);
   run.restore(state);
 }
 

@@ -30,7 +30,7 @@ TEST_CASE("weight_on_a_floor_relaxes_to_the_weight_over_the_spring") {
                              .springs = springs,
                              .inertia = {{1, 1}, {2, 1}, {3, 1}},
                              .supports = guides,
-                             .walls = {{"floor", {0, -0.5}, {0, 1}, 50, always(0)}}};
+                             .walls = {{.name = "floor", .point = {0, -0.5}, .normal = {0, 1}, .kN = 50}}};
   const auto motion = GENERATE(LoopKind::Motion::small, LoopKind::Motion::finite);
   const Relaxation rest = relax(scene, {.motion = motion, .gravity = {0, -1}, .tolerance = 1e-12});
   CAPTURE(rest.report());
@@ -45,8 +45,10 @@ TEST_CASE("one_disc_above_a_floor_falls_to_its_rest_on_it") {
   alone.centres = {{0, 2}};
   alone.radii = {0.5};
   const ContactSprings springs(SpringConstants{1, 0.5});
-  equidem::Scene scene{
-      .assembly = alone, .springs = springs, .inertia = {{1, 1}}, .walls = {{"floor", {0, 0}, {0, 1}, 50, always(0)}}};
+  equidem::Scene scene{.assembly = alone,
+                       .springs = springs,
+                       .inertia = {{1, 1}},
+                       .walls = {{.name = "floor", .point = {0, 0}, .normal = {0, 1}, .kN = 50}}};
   const auto motion = GENERATE(LoopKind::Motion::small, LoopKind::Motion::finite);
   CHECK(relax(scene, {.motion = motion}).relative_unbalanced == 0);
   CHECK(relax(scene, {.motion = motion}).report().find("no force is left unbalanced") != std::string::npos);

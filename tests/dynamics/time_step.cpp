@@ -101,7 +101,7 @@ TEST_CASE("held_discs_and_walls_change_the_critical_step") {
   CHECK(held > free);
   // One disc on two springs 60 degrees apart: omega² = 3 kN/(2 m).
   CHECK(held == Approx(2 / std::sqrt(1.5 / scene.inertia[0].mass)).epsilon(1e-12));
-  scene.walls = {{"floor", {0, -0.5}, {0, 1}, 2, always(0)}};
+  scene.walls = {{.name = "floor", .point = {0, -0.5}, .normal = {0, 1}, .kN = 2}};
   const TimeStep walled = choose_time_step(scene, {});
   CHECK(walled.critical == Approx(2 / std::sqrt((1.5 + 2) / scene.inertia[0].mass)).epsilon(1e-12));
   CHECK(!walled.exact);

@@ -32,10 +32,10 @@ Extent extent_of(const Assembly& assembly) {
 std::vector<Wall> box_around(const Assembly& assembly) {
   const auto [low, high] = extent_of(assembly);
   const double a = assembly.radii[0];
-  return {{.name = "left", .point = {low.x - a, 0}, .normal = {1, 0}, .kN = 1, .displacement = {}},
-          {.name = "right", .point = {high.x + a, 0}, .normal = {-1, 0}, .kN = 1, .displacement = {}},
-          {.name = "bottom", .point = {0, low.y - a}, .normal = {0, 1}, .kN = 1, .displacement = {}},
-          {.name = "top", .point = {0, high.y + a}, .normal = {0, -1}, .kN = 1, .displacement = {}}};
+  return {{.name = "left", .point = {low.x - a, 0}, .normal = {1, 0}, .kN = 1},
+          {.name = "right", .point = {high.x + a, 0}, .normal = {-1, 0}, .kN = 1},
+          {.name = "bottom", .point = {0, low.y - a}, .normal = {0, 1}, .kN = 1},
+          {.name = "top", .point = {0, high.y + a}, .normal = {0, -1}, .kN = 1}};
 }
 
 std::string refusal(const std::vector<Wall>& walls, const Assembly& assembly) {
@@ -84,8 +84,8 @@ TEST_CASE("moving_walls_cross_when_their_ways_add_up_to_the_room_between_them") 
   const double room = high.x - low.x + 2 * block().radii[0];
   const auto pressing = [&](double left, double right) {
     std::vector<Wall> walls = box_around(block());
-    walls[0].displacement = {.kind = Schedule::Kind::ramp, .value = left, .end = 0.2};
-    walls[1].displacement = {.kind = Schedule::Kind::table, .times = {0, 0.1, 0.3}, .values = {0, 0, right}};
+    move_along(walls[0], {1, 0}, {.kind = Schedule::Kind::ramp, .value = left, .end = 0.2});
+    move_along(walls[1], {-1, 0}, {.kind = Schedule::Kind::table, .times = {0, 0.1, 0.3}, .values = {0, 0, right}});
     return refusal(walls, block());
   };
   CHECK(pressing(0.5 * room, 0.49 * room).empty());
@@ -98,10 +98,11 @@ TEST_CASE("moving_walls_cross_when_their_ways_add_up_to_the_room_between_them") 
 TEST_CASE("a_box_that_is_shaken_as_a_whole_keeps_its_room") {
   std::vector<Wall> walls = box_around(block());
   const double amplitude = 100 * block().radii[0];
-  walls[0].displacement = {.kind = Schedule::Kind::sine, .value = amplitude, .frequency = 2};
-  walls[1].displacement = scaled(walls[0].displacement, -1);
+  const Schedule sine{.kind = Schedule::Kind::sine, .value = amplitude, .frequency = 2};
+  move_along(walls[0], {1, 0}, sine);
+  move_along(walls[1], {1, 0}, sine);
   CHECK(refusal(walls, block()).empty());
-  walls[1].displacement = walls[0].displacement;
+  move_along(walls[1], {-1, 0}, sine);
   CHECK(refusal(walls, block()).find("cross at 0.125 s") != std::string::npos);
 }
 
@@ -134,8 +135,9 @@ TEST_CASE("walls_that_mean_nothing_are_refused") {
   CHECK(with([&](Wall& w) { w.kN = nan; }).find("kN = nan Pa") != std::string::npos);
   CHECK(with([](Wall& w) { w.normal = {2, 0}; }).find("no unit vector") != std::string::npos);
   CHECK(with([](Wall& w) { w.normal = {0, 0}; }).find("no unit vector") != std::string::npos);
-  CHECK(with([&](Wall& w) { w.point.y = nan; }).find("not finite") != std::string::npos);
-  CHECK(with([&](Wall& w) { w.displacement.value = nan; }).find("value = nan") != std::string::npos);
+  CHECK(with([&](Wall& w) { w.point.y = nan; }).find("stands nowhere") != std::string::npos);
+  CHECK(with([&](Wall& w) { w.move_x.value = nan; }).find("value = nan") != std::string::npos);
+  CHECK(with([](Wall& w) { w.shape = Wall::Shape::segment; }).find("straight walls alone") != std::string::npos);
   const Assembly periodic = hexagonal_lattice({.columns = 4, .rows = 4, .radius = 0.5, .periodic = true});
   CHECK(refusal({good}, periodic).find("periodic assembly") != std::string::npos);
 }
@@ -151,7 +153,7 @@ TEST_CASE("a_disc_rebounds_from_a_wall_however_far_it_was") {
   const Scene scene{.assembly = assembly,
                     .springs = springs,
                     .inertia = {{1, 1}},
-                    .walls = {{"far", {1 + radii, 0}, {-1, 0}, 1e4, {}}},
+                    .walls = {{.name = "far", .point = {1 + radii, 0}, .normal = {-1, 0}, .kN = 1e4}},
                     .velocities = {{"all", {1, 0}, 0}}};
   const double step = 1e-3;
   Simulation run(scene, {.motion = motion, .time_step = step});

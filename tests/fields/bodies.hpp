@@ -29,8 +29,8 @@ inline Grain disc(Vec2 position, double radius, Vec2 velocity = {}) {
   return grain;
 }
 
-inline GrainWall line(std::string name, Vec2 point, Vec2 normal) {
-  GrainWall wall;
+inline Wall line(std::string name, Vec2 point, Vec2 normal) {
+  Wall wall;
   wall.name = std::move(name);
   wall.point = point;
   wall.normal = normal;

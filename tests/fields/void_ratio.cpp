@@ -55,9 +55,9 @@ TEST_CASE("the_measured_region_leaves_walls_and_surface_out_and_goes_with_the_bo
   for (int row = 0; row < 20; ++row)
     for (int column = 0; column < 30; ++column) grains.push_back(disc({r * (1 + 2 * column), r * (1 + 2 * row)}, r));
   grains.push_back(disc({0.3, 2}, r));  // in the air: it lifts one column alone
-  std::vector<GrainWall> walls{line("floor", {0, 0}, {0, 1}), line("left", {0, 0}, {1, 0}),
-                               line("right", {0.6, 0}, {-1, 0})};
-  for (GrainWall& wall : walls) wall.move_x = {.kind = Schedule::Kind::ramp, .value = 0.05, .end = 1};
+  std::vector<Wall> walls{line("floor", {0, 0}, {0, 1}), line("left", {0, 0}, {1, 0}),
+                          line("right", {0.6, 0}, {-1, 0})};
+  for (Wall& wall : walls) wall.move_x = {.kind = Schedule::Kind::ramp, .value = 0.05, .end = 1};
   for (Grain& grain : grains) grain.position.x += 0.05;
   const GrainBox box = box_of(walls, grains, 1);
   CHECK_FALSE(box.lid);

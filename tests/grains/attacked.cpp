@@ -13,14 +13,14 @@ using namespace equidem::test;
 
 namespace {
 
-GrainWall segment(std::string name, Vec2 point, Vec2 end) {
-  GrainWall wall = line(std::move(name), point, {0, 1});
-  wall.shape = GrainWall::Shape::segment;
+Wall segment(std::string name, Vec2 point, Vec2 end) {
+  Wall wall = line(std::move(name), point, {0, 1});
+  wall.shape = Wall::Shape::segment;
   wall.end = end;
   return wall;
 }
 
-GrainSimulation simulation_of(const std::vector<Grain>& grains, const std::vector<GrainWall>& walls, double stiffness,
+GrainSimulation simulation_of(const std::vector<Grain>& grains, const std::vector<Wall>& walls, double stiffness,
                               double step, const Stepping& stepping, Vec2 gravity = {}) {
   GrainScene scene;
   scene.grains = grains;
@@ -36,7 +36,7 @@ TEST_CASE("what_is_too_soft_to_hold_a_body_is_refused_however_short_the_steps") 
   for (const Stepping& stepping : all_steppings) {
     if (is_map(stepping.law)) continue;  // they turn any speed round
     CAPTURE(stepping.name());
-    const auto refused = [&](const std::vector<Grain>& grains, const std::vector<GrainWall>& walls) {
+    const auto refused = [&](const std::vector<Grain>& grains, const std::vector<Wall>& walls) {
       GrainSimulation simulation = simulation_of(grains, walls, 1e-3, 1e-3, stepping);
       try {
         simulation.advance(4000);
@@ -55,12 +55,12 @@ TEST_CASE("what_is_too_soft_to_hold_a_body_is_refused_however_short_the_steps") 
 }
 
 TEST_CASE("a_body_that_hits_the_joint_of_two_walls_rebounds_as_from_one") {
-  const std::vector<std::vector<GrainWall>> joints{{segment("a", {-3, 0}, {0, 0}), segment("b", {0, 0}, {3, 0})},
-                                                   {segment("b", {0, 0}, {3, 0}), segment("a", {0, 0}, {-3, 0})},
-                                                   {segment("a", {-3, -3}, {0, 0}), segment("b", {0, 0}, {3, -3})},
-                                                   {line("floor", {0, 0}, {0, 1}), segment("post", {0, 0}, {0, -3})}};
+  const std::vector<std::vector<Wall>> joints{{segment("a", {-3, 0}, {0, 0}), segment("b", {0, 0}, {3, 0})},
+                                              {segment("b", {0, 0}, {3, 0}), segment("a", {0, 0}, {-3, 0})},
+                                              {segment("a", {-3, -3}, {0, 0}), segment("b", {0, 0}, {3, -3})},
+                                              {line("floor", {0, 0}, {0, 1}), segment("post", {0, 0}, {0, -3})}};
   for (const Stepping& stepping : all_steppings) {
-    const auto rebound = [&](const std::vector<GrainWall>& walls) {
+    const auto rebound = [&](const std::vector<Wall>& walls) {
       GrainSimulation simulation = simulation_of({ball({0, 1.01}, 1, {0, -1})}, walls, 1e4, 1e-3, stepping);
       simulation.advance(100);
       CHECK(simulation.counters().contacts == 1);
@@ -77,7 +77,7 @@ TEST_CASE("a_body_that_hits_the_joint_of_two_walls_rebounds_as_from_one") {
 TEST_CASE("a_body_slides_over_the_joints_of_a_floor_as_over_a_whole_one") {
   // Pressed in by its weight, a body that met the next piece before its time would be lifted and slowed there. What is
   // left is the step in which it comes to the next piece: its contact is still with the end of the last one.
-  std::vector<GrainWall> pieces;
+  std::vector<Wall> pieces;
   for (int k = 0; k < 10; ++k) pieces.push_back(segment("piece", {0.5 * k, 0}, {0.5 * (k + 1), 0}));
   const double stiffness = 1e4, step = 1e-3;
   const Grain start = ball({0.2, 1 - 9.8 / stiffness}, 1, {1, 0});
@@ -96,17 +96,17 @@ TEST_CASE("a_body_slides_over_the_joints_of_a_floor_as_over_a_whole_one") {
 }
 
 TEST_CASE("walls_that_lie_on_one_another_are_refused") {
-  const GrainWall floor = line("floor", {0, 0}, {0, 1}), plate = segment("plate", {0, 0}, {1, 0});
-  const std::vector<std::vector<GrainWall>> doubled{{floor, line("again", {5, 0}, {0, 1})},
-                                                    {plate, segment("again", {1, 0}, {0, 0})},
-                                                    {plate, segment("part", {0.5, 0}, {2, 0})},
-                                                    {plate, segment("half", {0, 0}, {0.5, 0})},
-                                                    {floor, plate}};
-  const std::vector<std::vector<GrainWall>> apart{{floor, line("roof", {0, 0}, {0, -1})},
-                                                  {plate, segment("next", {1, 0}, {2, 0})},
-                                                  {plate, segment("corner", {0, 0}, {0, 1})},
-                                                  {plate, segment("cross", {0.5, -1}, {0.5, 1})},
-                                                  {floor, segment("post", {0, 0}, {0, 1})}};
+  const Wall floor = line("floor", {0, 0}, {0, 1}), plate = segment("plate", {0, 0}, {1, 0});
+  const std::vector<std::vector<Wall>> doubled{{floor, line("again", {5, 0}, {0, 1})},
+                                               {plate, segment("again", {1, 0}, {0, 0})},
+                                               {plate, segment("part", {0.5, 0}, {2, 0})},
+                                               {plate, segment("half", {0, 0}, {0.5, 0})},
+                                               {floor, plate}};
+  const std::vector<std::vector<Wall>> apart{{floor, line("roof", {0, 0}, {0, -1})},
+                                             {plate, segment("next", {1, 0}, {2, 0})},
+                                             {plate, segment("corner", {0, 0}, {0, 1})},
+                                             {plate, segment("cross", {0.5, -1}, {0.5, 1})},
+                                             {floor, segment("post", {0, 0}, {0, 1})}};
   for (const auto& walls : doubled) {
     CAPTURE(walls[0].name, walls[1].name);
     CHECK(coinciding_walls(walls, 1e-6).has_value());

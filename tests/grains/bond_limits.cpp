@@ -22,7 +22,7 @@ GrainBond dashpots_alone() {
 }
 
 double energy_of(const GrainSimulation& simulation) {
-  const GrainLedger ledger = simulation.energy();
+  const EnergyLedger ledger = simulation.energy();
   return ledger.kinetic + ledger.elastic();
 }
 
@@ -106,7 +106,7 @@ TEST_CASE("the_ledger_of_dashpots_closes_to_round_off_with_euler") {
   options.bond_step = bond_step;
   GrainSimulation simulation(scene, options);
   simulation.advance(100);
-  const GrainLedger ledger = simulation.energy();
+  const EnergyLedger ledger = simulation.energy();
   CAPTURE(to_string(law), ledger.kinetic, ledger.lost_bond, ledger.initial, ledger.error());
   CHECK(simulation.counters().contacts == 0);
   CHECK(std::abs(ledger.error()) < 1e-13 * ledger.initial);
@@ -125,7 +125,7 @@ TEST_CASE("the_ledger_of_bonds_closes_with_the_step") {
     options.bond_step = bond_step;
     GrainSimulation simulation(scene, options);
     simulation.advance(std::llround(1 / step));
-    const GrainLedger ledger = simulation.energy();
+    const EnergyLedger ledger = simulation.energy();
     errors.push_back(std::abs(ledger.error()) / ledger.initial);
   }
   const double order = std::log2(errors[2] / errors[3]);
@@ -189,7 +189,7 @@ TEST_CASE("a_run_with_bonds_goes_on_with_the_same_bits") {
   const GrainOptions options = options_of(stepping, 0.01);
   constexpr int last = 100;
   GrainSimulation whole(scene, options);
-  std::vector<GrainState> states;
+  std::vector<SavedState> states;
   for (int k = 0; k < last; ++k) {
     if (k % 7 == 0) states.push_back(whole.save());
     whole.advance(1);

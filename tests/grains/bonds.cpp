@@ -269,5 +269,5 @@ TEST_CASE("bonds_of_a_scene_are_among_its_effects") {
   CHECK_FALSE(loose.effects().rotation);
   CHECK(tied.bonds().number == 1);
   CHECK(loose.bonds().number == 0);
-  CHECK(loose.bytes_per_grain() < tied.bytes_per_grain());
+  CHECK(loose.bytes_per_body() < tied.bytes_per_body());
 }

@@ -12,7 +12,7 @@ namespace {
 struct Rebound {
   double restitution = 0;  // measured
   double spin = 0, momentum = 0;
-  GrainLedger ledger;
+  EnergyLedger ledger;
   std::int64_t steps = 0;  // of evaluations of the law
 };
 
@@ -32,7 +32,7 @@ Rebound rebound(const Impact& impact, const GrainOptions& options, const PairPro
   const double gap = (1 + phase) * options.time_step;
   const Vec2 along{0.6, 0.8};
   std::vector<Grain> grains;
-  std::vector<GrainWall> walls;
+  std::vector<Wall> walls;
   if (impact.wall) {
     grains.push_back(ball((radius + gap) * along, radius, -along, impact.mass_i));
     walls.push_back(line("wall", {0, 0}, along));
@@ -155,7 +155,7 @@ double energy_drift(NormalLaw law, std::int64_t impacts, std::int64_t* steps) {
   double worst = 0;
   while (simulation.counters().contacts < impacts) {
     simulation.advance(997);
-    const GrainLedger ledger = simulation.energy();
+    const EnergyLedger ledger = simulation.energy();
     worst = std::max(worst, std::abs((ledger.kinetic + ledger.elastic_normal) / before - 1));
   }
   *steps = simulation.step();

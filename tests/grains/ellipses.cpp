@@ -12,7 +12,7 @@ using namespace equidem::test;
 
 namespace {
 
-GrainWall floor_line() {
+Wall floor_line() {
   return line("floor", {0, 0}, {0, 1});
 }
 
@@ -136,19 +136,19 @@ TEST_CASE("the_ledger_of_an_elastic_ellipse_closes_with_the_order_of_the_integra
 
 TEST_CASE("an_ellipse_dropped_flat_comes_to_rest_on_its_side") {
   // On walls of every shape; on the arc it balances on the top.
-  const auto shape = GENERATE(GrainWall::Shape::line, GrainWall::Shape::segment, GrainWall::Shape::arc);
+  const auto shape = GENERATE(Wall::Shape::line, Wall::Shape::segment, Wall::Shape::arc);
   PairProperties pair;
   pair.stiffness = 1e4;
   pair.restitution = 0.3;
   pair.end = ContactEnd::at_zero_overlap;
   pair.friction = 0.5;
   pair.tangential_ratio = 0.5;
-  GrainWall wall = floor_line();
+  Wall wall = floor_line();
   wall.shape = shape;
-  if (shape == GrainWall::Shape::segment) {
+  if (shape == Wall::Shape::segment) {
     wall.point = {-9, 0};
     wall.end = {9, 0};
-  } else if (shape == GrainWall::Shape::arc) {
+  } else if (shape == Wall::Shape::arc) {
     wall.point = {0, -5};
     wall.radius = 5;
     wall.to = std::numbers::pi;
@@ -209,10 +209,10 @@ TEST_CASE("needles_in_a_box_keep_their_energy") {
   }
   PairProperties pair;
   pair.stiffness = 1e5;
-  std::vector<GrainWall> walls{line("floor", {0, 0}, {0, 1}), line("left", {0, 0}, {1, 0}),
-                               line("right", {5, 0}, {-1, 0}), line("lid", {0, 5}, {0, -1})};
-  GrainWall post;
-  post.shape = GrainWall::Shape::segment;
+  std::vector<Wall> walls{line("floor", {0, 0}, {0, 1}), line("left", {0, 0}, {1, 0}), line("right", {5, 0}, {-1, 0}),
+                          line("lid", {0, 5}, {0, -1})};
+  Wall post;
+  post.shape = Wall::Shape::segment;
   post.name = "post";
   post.point = {1, 2.02};
   post.end = {3, 2.02};
@@ -220,7 +220,7 @@ TEST_CASE("needles_in_a_box_keep_their_energy") {
   GrainSimulation simulation(scene_of(needles, walls, pair),
                              options_of({NormalLaw::linear_dashpot, Scheme::velocity_verlet}, 1e-4));
   simulation.advance(20000);
-  const GrainLedger ledger = simulation.energy();
+  const EnergyLedger ledger = simulation.energy();
   CAPTURE(ledger.error(), ledger.initial, simulation.counters().contacts, simulation.counters().evaluations);
   CHECK(simulation.counters().contacts > 50);
   CHECK(std::abs(ledger.error()) < 1e-3 * ledger.initial);

@@ -96,7 +96,7 @@ double largest_gain(Stepping stepping, double step, int count, ContactEnd end) {
     pair.tangential_damping = pair.tangential_ratio > 0 && k % 3 == 0 ? random.uniform(0, 1) : 0;
     pair.cap = k % 2 == 0 ? FrictionCap::whole_force : FrictionCap::spring_alone;
     const GrainSimulation simulation = shoot(shot, pair, options_of(stepping, step));
-    const GrainLedger ledger = simulation.energy();
+    const EnergyLedger ledger = simulation.energy();
     largest = std::max(largest, ledger.kinetic / ledger.initial - 1);
   }
   return largest;

@@ -11,7 +11,7 @@ namespace {
 
 struct Balance {
   double error = 0;  // largest over the run, of the initial energy
-  GrainLedger last;
+  EnergyLedger last;
   std::int64_t contacts = 0;
 };
 
@@ -21,7 +21,7 @@ Balance run(const GrainScene& scene, const GrainOptions& options, double time) {
   const auto steps = static_cast<std::int64_t>(std::llround(time / options.time_step));
   for (std::int64_t k = 0; k < steps; ++k) {
     simulation.advance(1);
-    const GrainLedger ledger = simulation.energy();
+    const EnergyLedger ledger = simulation.energy();
     balance.error = std::max(balance.error, std::abs(ledger.error()) / ledger.initial);
   }
   balance.last = simulation.energy();
@@ -42,7 +42,7 @@ PairProperties lossy(NormalLaw law) {
 GrainScene oblique_impact(NormalLaw law, Vec2 gravity, bool moving) {
   Grain grain = ball({0, 1.03}, 1, {0.8, -1});
   grain.spin = 0.5;
-  GrainWall floor = line("floor", {0, 0}, {0, 1});
+  Wall floor = line("floor", {0, 0}, {0, 1});
   if (moving) {
     floor.move_x = {Schedule::Kind::sine, 0.1, 0, 0, 0.3};
     floor.move_y = {Schedule::Kind::sine, -0.05, 0, 0, 0.8};
@@ -60,7 +60,7 @@ TEST_CASE("the_ledger_of_one_contact_closes_to_round_off_with_maps_and_exact_flo
       GrainScene scene = oblique_impact(law, {0, 0}, moving);
       scene.pairs[0].end = end;
       const Balance balance = run(scene, options_of(law, step), 3);
-      const GrainLedger& l = balance.last;
+      const EnergyLedger& l = balance.last;
       CAPTURE(to_string(law), step, moving, to_string(end), balance.error, l.lost_restitution, l.lost_dashpot,
               l.lost_slip, l.lost_tangential_dashpot, l.lost_release, l.work_of_walls);
       CHECK(balance.error < 1e-14);
@@ -106,8 +106,8 @@ TEST_CASE("losses_of_an_impact_belong_to_their_mechanisms") {
   GrainSimulation smooth(scene_of({grain}, {line("floor", {0, 0}, {0, 1})}, pair), options_of(stepping, 0.01));
   REQUIRE(pass_contact(smooth, 1000));
 
-  const GrainLedger l = rough.energy();
-  const GrainLedger s = smooth.energy();
+  const EnergyLedger l = rough.energy();
+  const EnergyLedger s = smooth.energy();
   CAPTURE(stepping.name(), l.initial, l.kinetic, s.kinetic, l.lost_restitution, l.lost_dashpot, l.lost_slip,
           l.lost_tangential_dashpot, l.lost_release, s.lost_release);
   // without friction the normal motion loses (1 - e²)/2, whatever takes it
@@ -132,7 +132,7 @@ double error_when_over(const GrainScene& scene, const Stepping& stepping, double
     shifted.grains[0].position.y += step * k / phases;
     GrainSimulation simulation(shifted, options_of(stepping, step));
     REQUIRE(pass_contact(simulation, 100000));
-    const GrainLedger ledger = simulation.energy();
+    const EnergyLedger ledger = simulation.energy();
     sum += std::pow(ledger.error() / ledger.initial, 2);
   }
   return std::sqrt(sum / phases);
@@ -226,12 +226,12 @@ TEST_CASE("friction_leaves_an_error_of_the_second_order_of_the_step") {
 TEST_CASE("a_wall_works_on_what_it_pushes") {
   // Seen from a wall that comes with speed 1 an impact with e = 1 turns the velocity round: from rest to 2.
   const Stepping stepping = GENERATE(from_range(all_steppings));
-  GrainWall piston = line("piston", {-1.5, 0}, {1, 0});
+  Wall piston = line("piston", {-1.5, 0}, {1, 0});
   piston.move_x = {Schedule::Kind::table, 0, 0, 0, 0, {0, 100}, {0, 100}};
   GrainSimulation simulation(scene_of({ball({0, 0}, 1, {})}, {piston}, one_second(stepping.law, 1)),
                              options_of(stepping, 1e-3));
   REQUIRE(pass_contact(simulation, 100000));
-  const GrainLedger l = simulation.energy();
+  const EnergyLedger l = simulation.energy();
   CAPTURE(stepping.name(), l.kinetic, l.work_of_walls, l.initial);
   const bool exact = is_map(stepping.law) || stepping.law == NormalLaw::exact_flow;
   CHECK(l.kinetic == Approx(2).epsilon(exact ? 1e-13 : 1e-5));
@@ -254,8 +254,8 @@ TEST_CASE("the_ledger_of_many_contacts_closes_with_the_step") {
 
 TEST_CASE("a_disc_swings_in_a_round_bowl_without_loss") {
   // Dropped beside the lowest point, e = 1: the normal turns all the time. Second order.
-  GrainWall bowl;
-  bowl.shape = GrainWall::Shape::arc;
+  Wall bowl;
+  bowl.shape = Wall::Shape::arc;
   bowl.name = "bowl";
   bowl.point = {0, 0};
   bowl.radius = 5;

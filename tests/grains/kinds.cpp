@@ -32,7 +32,7 @@ Grain ball(Vec2 position, double radius, Vec2 velocity = {}) {
 GrainScene three_balls() {
   GrainScene scene;
   scene.grains = {ball({0, 1}, 0.01, {1, 0}), ball({0.0301, 1}, 0.02, {-1, 0}), ball({1, 0.5}, 0.03)};
-  GrainWall floor;
+  Wall floor;
   floor.name = "floor";
   floor.normal = {0, 1};
   scene.walls = {floor};

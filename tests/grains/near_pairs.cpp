@@ -39,7 +39,7 @@ TEST_CASE("contacts_by_eights_are_contacts_one_by_one") {
     eights.advance(1);
     singles.advance(1);
     apart = std::max(apart, distance_of_motions(eights, singles));
-    const GrainLedger a = eights.energy(), b = singles.energy();
+    const EnergyLedger a = eights.energy(), b = singles.energy();
     CAPTURE(stepping.name(), static_cast<int>(cap), static_cast<int>(end), friction, two_kinds, springs, k, apart);
     REQUIRE(apart < 1e-9);
     REQUIRE(eights.counters().contacts == singles.counters().contacts);
@@ -66,7 +66,7 @@ TEST_CASE("contacts_by_eights_are_contacts_one_by_one") {
   }
   CAPTURE(stepping.name(), static_cast<int>(cap), static_cast<int>(end), friction, two_kinds, springs);
   CHECK(eights.counters().contacts > 10);
-  CHECK(eights.bytes_per_grain() != singles.bytes_per_grain());  // otherwise it is one loop twice
+  CHECK(eights.bytes_per_body() != singles.bytes_per_body());  // otherwise it is one loop twice
 }
 
 TEST_CASE("steps_made_together_are_steps_made_one_at_a_time") {

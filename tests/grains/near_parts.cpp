@@ -33,7 +33,7 @@ TEST_CASE("contacts_of_parts_by_eights_are_contacts_one_by_one") {
     eights.advance(1);
     singles.advance(1);
     apart = std::max(apart, distance_of_motions(eights, singles));
-    const GrainLedger a = eights.energy(), b = singles.energy();
+    const EnergyLedger a = eights.energy(), b = singles.energy();
     CAPTURE(stepping.name(), static_cast<int>(cap), static_cast<int>(end), friction, needles, k, apart);
     REQUIRE(apart < 1e-9);
     REQUIRE(eights.counters().contacts == singles.counters().contacts);
@@ -61,7 +61,7 @@ TEST_CASE("contacts_of_parts_by_eights_are_contacts_one_by_one") {
     }
   }
   CHECK(eights.counters().contacts > 10);
-  CHECK(eights.bytes_per_grain() != singles.bytes_per_grain());  // otherwise it is one loop twice
+  CHECK(eights.bytes_per_body() != singles.bytes_per_body());  // otherwise it is one loop twice
 }
 
 TEST_CASE("contacts_of_needles_are_those_that_brute_force_finds") {
@@ -112,7 +112,7 @@ TEST_CASE("the_ledger_of_a_fill_of_ellipses_closes") {
     const GrainOptions options = options_of({NormalLaw::linear_dashpot, scheme}, 0.05 * std::sqrt(0.5 / 2e4));
     GrainSimulation simulation(scene, options);
     simulation.advance(static_cast<std::int64_t>(15 / options.time_step));
-    const GrainLedger ledger = simulation.energy();
+    const EnergyLedger ledger = simulation.energy();
     CAPTURE(simulation.counters().contacts, ledger.kinetic, ledger.lost());
     CHECK(simulation.counters().contacts > 50);
     errors.push_back(std::abs(ledger.error()) / ledger.lost());

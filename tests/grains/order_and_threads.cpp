@@ -58,7 +58,7 @@ TEST_CASE("the_order_of_bodies_and_walls_changes_no_bit") {
     one.advance(1);
     two.advance(1);
     // the ledger is a sum over all bodies; the motions are compared below
-    const GrainLedger a = one.energy(), b = two.energy();
+    const EnergyLedger a = one.energy(), b = two.energy();
     CAPTURE(stepping.name(), seed, k, a.kinetic - b.kinetic, a.lost() - b.lost());
     REQUIRE(a.kinetic == b.kinetic);
     REQUIRE(a.error() == b.error());

@@ -18,7 +18,7 @@ TEST_CASE("a_simulation_that_has_run_can_be_taken_back") {
   const Stepping stepping = GENERATE(from_range(all_steppings));
   GrainSimulation simulation(busy_box(stepping.law, 3, 3, 22), options_of(stepping, 0.01));
   simulation.advance(40);
-  const GrainState state = simulation.save();
+  const SavedState state = simulation.save();
   const Bits then = bits_of(simulation);
   simulation.advance(60);
   const Bits first = bits_of(simulation);
@@ -38,8 +38,8 @@ TEST_CASE("a_state_of_another_scene_is_refused") {
   CHECK_THROWS_WITH(other.restore(one.save()),
                     Catch::Contains("the state is of 9 grains") && Catch::Contains("the scene has 6"));
   CHECK(bits_of(other) == before);
-  GrainState damaged = other.save();
-  damaged.contacts.push_back(1);
+  SavedState damaged = other.save();
+  damaged["contacts"].push_back(1);
   CHECK_THROWS_AS(other.restore(damaged), Error);
   CHECK(bits_of(other) == before);
 }

@@ -12,7 +12,7 @@ namespace equidem::test {
 
 inline void check_resuming(const GrainScene& scene, const GrainOptions& options, int last) {
   GrainSimulation whole(scene, options);
-  std::vector<GrainState> states;
+  std::vector<SavedState> states;
   std::vector<Bits> seen;
   for (int k = 0; k < last; ++k) {
     states.push_back(whole.save());
@@ -22,7 +22,7 @@ inline void check_resuming(const GrainScene& scene, const GrainOptions& options,
   REQUIRE(whole.counters().contacts > 10);
   const Bits end = bits_of(whole);
   for (int k = 0; k < last; ++k) {
-    CAPTURE(k, states[static_cast<std::size_t>(k)].contacts.size());
+    CAPTURE(k, states[static_cast<std::size_t>(k)]["contacts"].size());
     GrainSimulation resumed(scene, options);
     resumed.restore(states[static_cast<std::size_t>(k)]);
     REQUIRE(bits_of(resumed) == seen[static_cast<std::size_t>(k)]);

@@ -55,8 +55,8 @@ inline Grain ball(Vec2 position, double radius, Vec2 velocity = {}, double mass 
   return grain;
 }
 
-inline GrainWall line(std::string name, Vec2 point, Vec2 normal) {
-  GrainWall wall;
+inline Wall line(std::string name, Vec2 point, Vec2 normal) {
+  Wall wall;
   wall.name = std::move(name);
   wall.point = point;
   wall.normal = normal;
@@ -76,7 +76,7 @@ inline PairProperties one_second(NormalLaw law, double restitution, double reduc
   return pair;
 }
 
-inline GrainScene scene_of(std::vector<Grain> grains, std::vector<GrainWall> walls, const PairProperties& pair,
+inline GrainScene scene_of(std::vector<Grain> grains, std::vector<Wall> walls, const PairProperties& pair,
                            Vec2 gravity = {}) {
   GrainScene scene;
   scene.grains = std::move(grains);
@@ -130,7 +130,7 @@ inline Bits bits_of(const GrainSimulation& simulation) {
     bits.push_back(static_cast<std::uint64_t>(c.steps) << 8 | static_cast<std::uint64_t>(c.mode));
     add({c.overlap, c.closing, c.normal.x, c.normal.y, c.normal_force, c.tangential_force});
   }
-  const GrainLedger l = simulation.energy();
+  const EnergyLedger l = simulation.energy();
   add({l.kinetic, l.elastic_normal, l.elastic_tangential, l.potential, l.lost_restitution, l.lost_dashpot, l.lost_slip,
        l.lost_tangential_dashpot, l.lost_release, l.work_of_walls, l.initial, l.elastic_bond, l.lost_bond});
   return {std::move(bits)};
@@ -150,8 +150,8 @@ inline GrainScene busy_box(NormalLaw law, int columns, int rows, std::uint64_t s
       grains.push_back(grain);
     }
   }
-  std::vector<GrainWall> walls{line("floor", {0, 0}, {0, 1}), line("left", {0, 0}, {1, 0}),
-                               line("right", {1.0 * columns, 0}, {-1, 0}), line("lid", {0, 1.0 * rows}, {0, -1})};
+  std::vector<Wall> walls{line("floor", {0, 0}, {0, 1}), line("left", {0, 0}, {1, 0}),
+                          line("right", {1.0 * columns, 0}, {-1, 0}), line("lid", {0, 1.0 * rows}, {0, -1})};
   walls[0].move_x = {Schedule::Kind::sine, 0.2, 0, 0, 0.5};
   walls[0].move_y = {Schedule::Kind::sine, -0.02, 0, 0, 1.5};
   PairProperties pair = one_second(law, 0.8, 0.5);

@@ -131,7 +131,7 @@ TEST_CASE("records_that_say_nothing_are_refused") {
   CHECK_NOTHROW(integrate_motion(two, rest, 0, Baseline::rest));
   CHECK_THROWS_AS(harmonic_shaking(4, 0, 0, 5), Error);
   CHECK_THROWS_AS(harmonic_shaking(4, 10, 0, 0), Error);
-  std::vector<GrainWall> walls{line("floor", {}, {0, 1})};
+  std::vector<Wall> walls{line("floor", {}, {0, 1})};
   shake(walls, {1, 0}, harmonic_shaking(4, 10, 0, 5));
   CHECK(walls[0].moves());
   CHECK_FALSE(walls[0].move_y.changes());
@@ -149,7 +149,7 @@ TEST_CASE("a_grain_that_friction_holds_follows_the_box_and_one_that_it_cannot_ho
     pair.friction = 0.5;
     pair.tangential_ratio = 0.5;
     pair.tangential_damping = 0.3;
-    std::vector<GrainWall> walls{line("floor", {}, {0, 1})};
+    std::vector<Wall> walls{line("floor", {}, {0, 1})};
     shake(walls, {1, 0}, harmonic_shaking(acceleration, 5, 0.1, 4));
     GrainSimulation simulation(scene_of({block}, walls, pair, {0, -9.81}), options_of(NormalLaw::exact_flow, 2e-5));
     double behind = 0;

@@ -65,8 +65,8 @@ TEST_CASE("scenes_of_shapes_that_cannot_be_stepped_are_refused") {
   CHECK_THAT(changed([](GrainScene& s) { s.clumps[0].discs.clear(); }), Contains("has no discs"));
   CHECK_THAT(changed([](GrainScene& s) { s.walls = {line("floor", {0, -0.5}, {1, 0})}; }), Contains("behind wall"));
 
-  GrainWall bowl;
-  bowl.shape = GrainWall::Shape::arc;
+  Wall bowl;
+  bowl.shape = Wall::Shape::arc;
   bowl.name = "bowl";
   bowl.radius = 5;
   bowl.from = -3;
@@ -163,8 +163,8 @@ TEST_CASE("a_grain_squeezed_through_a_closing_gap_is_refused") {
 }
 
 TEST_CASE("an_ellipse_that_falls_into_a_bowl_is_refused_before_it_touches_twice") {
-  GrainWall bowl;
-  bowl.shape = GrainWall::Shape::arc;
+  Wall bowl;
+  bowl.shape = Wall::Shape::arc;
   bowl.name = "bowl";
   bowl.radius = 2;
   bowl.from = -std::numbers::pi;

@@ -72,8 +72,8 @@ TEST_CASE("an_ellipse_slides_over_a_joint_of_segments_as_over_one") {
     scene.grains = {clump ? lump(scene, pair_of_discs(), {-3, 1 - 1e-5}, 0, {1, 0})
                           : oval({-3, 0.5}, 1, 0.5, 0.1, {1, 0})};
     for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
-      GrainWall wall;
-      wall.shape = GrainWall::Shape::segment;
+      Wall wall;
+      wall.shape = Wall::Shape::segment;
       wall.name = std::to_string(k);
       wall.point = {ends[k], 0};
       wall.end = {ends[k + 1], 0};

@@ -18,16 +18,16 @@ using namespace equidem;
 
 namespace {
 
-using Shape = GrainWall::Shape;
+using Shape = Wall::Shape;
 using std::numbers::pi;
 
-GrainWall line(Vec2 point, double angle) {
+Wall line(Vec2 point, double angle) {
   return {.shape = Shape::line, .name = "w", .point = point, .normal = {std::cos(angle), std::sin(angle)}};
 }
-GrainWall segment(Vec2 point, Vec2 end) {
+Wall segment(Vec2 point, Vec2 end) {
   return {.shape = Shape::segment, .name = "w", .point = point, .end = end};
 }
-GrainWall arc(Vec2 centre, double radius, double from, double to) {
+Wall arc(Vec2 centre, double radius, double from, double to) {
   return {.shape = Shape::arc, .name = "w", .point = centre, .radius = radius, .from = from, .to = to};
 }
 
@@ -35,7 +35,7 @@ Vec2 at_random(Random& random, double size) {
   return {random.uniform(-size, size), random.uniform(-size, size)};
 }
 
-GrainWall thin_wall(Random& random) {
+Wall thin_wall(Random& random) {
   if (random.below(2) == 0) return segment(at_random(random, 1), at_random(random, 1));
   const double from = random.uniform(-10, 10);
   const double angle = random.below(4) == 0 ? 2 * pi : random.uniform(0.1, 2 * pi);
@@ -43,7 +43,7 @@ GrainWall thin_wall(Random& random) {
 }
 
 /// Points of a thin wall from end to end, evenly spaced.
-std::vector<Vec2> sampled(const GrainWall& wall, int pieces) {
+std::vector<Vec2> sampled(const Wall& wall, int pieces) {
   std::vector<Vec2> points;
   for (int k = 0; k <= pieces; ++k) {
     const double share = static_cast<double>(k) / pieces;
@@ -77,7 +77,7 @@ bool crosses_samples(const std::vector<Vec2>& points, Vec2 before, Vec2 after) {
 }
 
 /// The wall a little longer or shorter, larger or smaller.
-GrainWall changed(GrainWall wall, double share) {
+Wall changed(Wall wall, double share) {
   const Vec2 along = share * (wall.end - wall.point);
   if (wall.shape == Shape::segment) {
     wall.point -= along;
@@ -91,7 +91,7 @@ GrainWall changed(GrainWall wall, double share) {
   return wall;
 }
 
-std::string refusal(const GrainWall& wall) {
+std::string refusal(const Wall& wall) {
   try {
     check(wall);
   } catch (const Error& error) {
@@ -105,7 +105,7 @@ std::string refusal(const GrainWall& wall) {
 TEST_CASE("no_point_of_a_thin_wall_is_nearer_than_the_nearest") {
   Random random(1);
   for (int k = 0; k < 300; ++k) {
-    const GrainWall wall = thin_wall(random);
+    const Wall wall = thin_wall(random);
     const std::vector<Vec2> points = sampled(wall, 2000);
     const double spacing = norm(points[1] - points[0]);
     for (int probe = 0; probe < 5; ++probe) {
@@ -125,7 +125,7 @@ TEST_CASE("no_point_of_a_thin_wall_is_nearer_than_the_nearest") {
 TEST_CASE("the_distance_from_a_line_has_a_sign_and_its_normal_never_turns") {
   Random random(2);
   for (int k = 0; k < 200; ++k) {
-    const GrainWall wall = line(at_random(random, 2), random.uniform(0, 2 * pi));
+    const Wall wall = line(at_random(random, 2), random.uniform(0, 2 * pi));
     const Vec2 displacement = at_random(random, 2);
     const double height = random.uniform(-3, 3);
     const Vec2 foot = wall.point + displacement + random.uniform(-9, 9) * perpendicular(wall.normal);
@@ -147,7 +147,7 @@ TEST_CASE("the_distance_from_a_line_has_a_sign_and_its_normal_never_turns") {
 TEST_CASE("next_to_a_thin_wall_the_normal_is_its_own") {
   Random random(3);
   for (int k = 0; k < 500; ++k) {
-    const GrainWall wall = thin_wall(random);
+    const Wall wall = thin_wall(random);
     const double share = random.uniform(0.01, 0.99);
     const double angle = wall.from + share * (wall.to - wall.from);
     const Vec2 outwards{std::cos(angle), std::sin(angle)};
@@ -171,7 +171,7 @@ TEST_CASE("a_way_passes_through_where_it_crosses_the_samples_of_the_wall") {
   int not_passed = 0;
   int near_an_end = 0;
   for (int k = 0; k < 3000; ++k) {
-    const GrainWall wall = thin_wall(random);
+    const Wall wall = thin_wall(random);
     const Vec2 before = at_random(random, 1.5);
     const Vec2 after = at_random(random, 1.5);
     // Arcs are samples joined by chords, off by less than what the wall is changed by.
@@ -199,13 +199,13 @@ TEST_CASE("nothing_leaves_a_closed_wall_unseen") {
     const double radius = random.uniform(0.5, 2);
     corners.push_back({radius * std::cos(0.9 * k), radius * std::sin(0.9 * k)});
   }
-  std::vector<GrainWall> polygon;
+  std::vector<Wall> polygon;
   for (std::size_t k = 0; k < corners.size(); ++k) {
     polygon.push_back(segment(corners[k], corners[(k + 1) % corners.size()]));
   }
-  std::vector<GrainWall> ring;
+  std::vector<Wall> ring;
   for (int k = 0; k < 5; ++k) ring.push_back(arc({}, 1.3, 0.2 + 0.4 * pi * k, 0.2 + 0.4 * pi * (k + 1)));
-  const std::vector<GrainWall> circle = {arc({}, 1, 0.7, 0.7 + 2 * pi)};
+  const std::vector<Wall> circle = {arc({}, 1, 0.7, 0.7 + 2 * pi)};
   for (const auto& closed : {polygon, ring, circle}) {
     for (int k = 0; k < 3000; ++k) {
       const Vec2 inside = at_random(random, 0.1);
@@ -213,7 +213,7 @@ TEST_CASE("nothing_leaves_a_closed_wall_unseen") {
       outside *= 5 / norm(outside);
       if (k % 3 == 0) {
         // Through a corner, or between two arcs.
-        const GrainWall& wall = closed[random.below(closed.size())];
+        const Wall& wall = closed[random.below(closed.size())];
         const Vec2 corner = wall.shape == Shape::segment
                                 ? wall.point
                                 : wall.point + wall.radius * Vec2{std::cos(wall.from), std::sin(wall.from)};
@@ -221,7 +221,7 @@ TEST_CASE("nothing_leaves_a_closed_wall_unseen") {
       }
       const auto seen = [&](Vec2 before, Vec2 after) {
         return std::any_of(closed.begin(), closed.end(),
-                           [&](const GrainWall& wall) { return passes_through(wall, before, after); });
+                           [&](const Wall& wall) { return passes_through(wall, before, after); });
       };
       CAPTURE(closed.size(), k, inside.x, inside.y, outside.x, outside.y);
       CHECK(seen(inside, outside));
@@ -231,10 +231,10 @@ TEST_CASE("nothing_leaves_a_closed_wall_unseen") {
 }
 
 TEST_CASE("of_two_ways_that_meet_on_the_wall_one_passes") {
-  std::vector<GrainWall> walls = {line({0, 2}, pi), segment({0, -1}, {0, 3}), segment({0, 3}, {0, -1}),
-                                  arc({-2, 0}, 2, -1, 1)};
+  std::vector<Wall> walls = {line({0, 2}, pi), segment({0, -1}, {0, 3}), segment({0, 3}, {0, -1}),
+                             arc({-2, 0}, 2, -1, 1)};
   walls[0].normal = {-1, 0};
-  for (const GrainWall& wall : walls) {
+  for (const Wall& wall : walls) {
     const Vec2 own = nearest(wall, {}, {0, 0}).normal;
     CAPTURE(own.x, own.y);
     CHECK_FALSE(passes_through(wall, {0, 0}, 0.5 * own));
@@ -251,7 +251,7 @@ TEST_CASE("of_two_ways_that_meet_on_the_wall_one_passes") {
 }
 
 TEST_CASE("a_chord_passes_an_arc_twice_and_a_tangent_never") {
-  const GrainWall upper = arc({0, 0}, 1, 0, pi);
+  const Wall upper = arc({0, 0}, 1, 0, pi);
   CHECK(passes_through(upper, {-2, 0.5}, {2, 0.5}));
   CHECK(passes_through(upper, {2, 0.999}, {-2, 0.999}));
   CHECK_FALSE(passes_through(upper, {-2, 1}, {2, 1}));
@@ -264,10 +264,10 @@ TEST_CASE("a_chord_passes_an_arc_twice_and_a_tangent_never") {
 
 TEST_CASE("no_place_of_the_centre_makes_a_contact_that_is_no_number") {
   const double tiny = 5e-324;
-  const std::vector<GrainWall> walls = {
-      line({0, 0}, 1),      segment({0, 0}, {1, 0}),   segment({0, 0}, {0, 1e-100}), arc({0, 0}, 1, 0, 2 * pi),
-      arc({0, 0}, 1, 3, 4), arc({0, 0}, 1e-100, 0, 1), arc({0, 0}, 1e100, 0, 1)};
-  for (const GrainWall& wall : walls) {
+  const std::vector<Wall> walls = {line({0, 0}, 1),           segment({0, 0}, {1, 0}), segment({0, 0}, {0, 1e-100}),
+                                   arc({0, 0}, 1, 0, 2 * pi), arc({0, 0}, 1, 3, 4),    arc({0, 0}, 1e-100, 0, 1),
+                                   arc({0, 0}, 1e100, 0, 1)};
+  for (const Wall& wall : walls) {
     REQUIRE(refusal(wall).empty());
     const std::vector<Vec2> points = sampled(wall, 8);
     for (const double x : {0.0, tiny, -1e-200, 1e-160, 1e-30, 1.0, -1e100}) {
@@ -296,7 +296,7 @@ TEST_CASE("walls_that_stand_nowhere_are_refused") {
   CHECK(refusal(segment({0, 0}, {0, 1e-9})).empty());
   for (const double from : {0.0, -1.0, 0.1, 5.0, 100.0}) CHECK(refusal(arc({0, 0}, 1, from, from + 2 * pi)).empty());
 
-  GrainWall slanted = line({0, 0}, 1);
+  Wall slanted = line({0, 0}, 1);
   slanted.normal = {1, 1};
   CHECK_THAT(refusal(slanted), Catch::Contains("(1, 1), which is no unit vector"));
   slanted.normal = {nan, 1};
@@ -313,7 +313,7 @@ TEST_CASE("walls_that_stand_nowhere_are_refused") {
   CHECK_THAT(refusal(arc({0, 0}, 1, 1, 1)), Catch::Contains("counter-clockwise"));
   CHECK_THAT(refusal(arc({0, 0}, 1, nan, 1)), Catch::Contains("goes from nan"));
   CHECK_THAT(refusal(arc({0, 0}, 1, 0, 6.2832)), Catch::Contains("at most 2 pi long"));
-  GrainWall moving = line({0, 0}, 1);
+  Wall moving = line({0, 0}, 1);
   moving.move_y.value = nan;
   CHECK_FALSE(refusal(moving).empty());
 }

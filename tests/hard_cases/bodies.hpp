@@ -69,7 +69,7 @@ inline Balance keep(GrainSimulation& simulation, std::int64_t steps) {
   for (int part = 0; part < 100; ++part) {
     simulation.advance(steps / 100);
     const Momenta now = momenta_of(simulation.grains());
-    const GrainLedger ledger = simulation.energy();
+    const EnergyLedger ledger = simulation.energy();
     put_in = std::max(put_in, ledger.initial + std::abs(ledger.work_of_walls) + std::abs(ledger.potential));
     balance.energy = std::max(balance.energy, std::abs(ledger.error()));
     balance.momentum = std::max(balance.momentum, norm(now.linear - before.linear) / linear);
@@ -104,15 +104,15 @@ inline GrainOptions verlet(double step) {
   return options_of({NormalLaw::linear_dashpot, Scheme::velocity_verlet}, step);
 }
 
-inline GrainWall wall_between(std::string name, Vec2 from, Vec2 to) {
-  GrainWall wall = line(std::move(name), from, {0, 1});
-  wall.shape = GrainWall::Shape::segment;
+inline Wall wall_between(std::string name, Vec2 from, Vec2 to) {
+  Wall wall = line(std::move(name), from, {0, 1});
+  wall.shape = Wall::Shape::segment;
   wall.end = to;
   return wall;
 }
 
 /// Floor, left, right and lid.
-inline std::vector<GrainWall> closed_box(double width, double height) {
+inline std::vector<Wall> closed_box(double width, double height) {
   return {line("floor", {0, 0}, {0, 1}), line("left", {0, 0}, {1, 0}), line("right", {width, 0}, {-1, 0}),
           line("lid", {0, height}, {0, -1})};
 }

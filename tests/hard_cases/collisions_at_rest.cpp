@@ -24,11 +24,11 @@ struct Unrest {
 
 Unrest rest(GrainSimulation& simulation, std::int64_t steps) {
   const std::vector<Grain> before = simulation.grains();
-  const GrainLedger ledger = simulation.energy();
+  const EnergyLedger ledger = simulation.energy();
   Unrest unrest;
   for (int part = 0; part < 10; ++part) {
     simulation.advance(steps / 10);
-    const GrainLedger now = simulation.energy();
+    const EnergyLedger now = simulation.energy();
     double overlap = 0;
     for (const GrainContact& contact : simulation.contacts()) overlap = std::max(overlap, contact.overlap);
     const std::vector<Grain> grains = simulation.grains();
@@ -105,8 +105,8 @@ TEST_CASE("a_disc_wedged_between_two_walls_rests_and_rebounds") {
   HardCase table({.name = "a disc wedged between two walls",
                   .why = "two contacts of one body at once, neither along gravity; e of each is not e of both"});
   const double half = std::numbers::pi / 6;
-  const std::vector<GrainWall> walls{line("left", {0, 0}, {std::cos(half), std::sin(half)}),
-                                     line("right", {0, 0}, {-std::cos(half), std::sin(half)})};
+  const std::vector<Wall> walls{line("left", {0, 0}, {std::cos(half), std::sin(half)}),
+                                line("right", {0, 0}, {-std::cos(half), std::sin(half)})};
   for (const NormalLaw law : {NormalLaw::linear_dashpot, NormalLaw::hertz_dashpot, NormalLaw::exact_flow}) {
     PairProperties pair = one_second(law, 1);
     pair.stiffness *= 100;
@@ -163,7 +163,7 @@ TEST_CASE("a_heap_comes_to_rest_and_stays") {
   const NormalLaw law = GENERATE(NormalLaw::exact_flow, NormalLaw::linear_dashpot);
   GrainSimulation settling(scene, options_of(law, 0.002));
   settling.advance(20000);
-  const GrainLedger settled = settling.energy();
+  const EnergyLedger settled = settling.energy();
   scene.grains = settling.grains();
   scene.pairs[0].restitution = 1;
   GrainSimulation resting(scene, options_of(law, 0.002));

@@ -48,7 +48,7 @@ TEST_CASE("a_grain_in_a_closing_gap_is_squeezed_until_that_is_refused") {
     const Bits before = bits_of(simulation);
     CHECK_THROWS_AS(simulation.advance(1), Error);
     CHECK(bits_of(simulation) == before);
-    const GrainLedger ledger = simulation.energy();
+    const EnergyLedger ledger = simulation.energy();
     const double error = std::abs(ledger.error()) / ledger.work_of_walls;
     CAPTURE(name_of(kind), simulation.time(), error);
     CHECK(simulation.time() > 1);
@@ -223,7 +223,7 @@ TEST_CASE("a_box_shaken_at_100_g_keeps_its_grains_and_its_ledger") {
       shake(scene.walls, {1, 0}, harmonic_shaking(100 * standard_gravity, 5, 0, 10));
       GrainSimulation simulation(scene, verlet(step));
       const Balance balance = keep(simulation, static_cast<std::int64_t>(std::llround(2.5 / step)));
-      const GrainLedger ledger = simulation.energy();
+      const EnergyLedger ledger = simulation.energy();
       CAPTURE(name_of(kind), step, balance.energy, balance.contacts, ledger.work_of_walls, ledger.lost());
       for (const Grain& g : simulation.grains()) {  // the box is back where it was
         CAPTURE(g.position);

@@ -71,8 +71,8 @@ TEST_CASE("needles_keep_momentum_and_energy") {
 TEST_CASE("a_needle_rests_on_two_pegs_by_its_tip_and_its_side") {
   HardCase table(needles);
   const auto peg = [](std::string name, double x) {
-    GrainWall wall = line(std::move(name), {x, 0}, {0, 1});
-    wall.shape = GrainWall::Shape::arc;
+    Wall wall = line(std::move(name), {x, 0}, {0, 1});
+    wall.shape = Wall::Shape::arc;
     wall.radius = 0.05;
     wall.to = 2 * std::numbers::pi;
     return wall;

@@ -37,7 +37,7 @@ double error_of_ledger(const GrainScene& scene, const GrainOptions& options, dou
   double largest = 0;
   while (simulation.time() < until) {
     simulation.advance(1);
-    const GrainLedger ledger = simulation.energy();
+    const EnergyLedger ledger = simulation.energy();
     largest = std::max(largest, std::abs(ledger.error()) / ledger.initial);
   }
   REQUIRE(simulation.counters().contacts > 0);
@@ -64,7 +64,7 @@ TEST_CASE("an_impact_of_quadratic_springs_is_elastic_and_as_deep_and_long_as_the
     for (Grain& grain : grains) grain.short_half_axis = 0.5;  // ellipses that meet along their long axes
     grains.push_back(ellipse);
   }
-  std::vector<GrainWall> walls;
+  std::vector<Wall> walls;
   if (on_wall) walls.push_back(line("wall", {1.01, 0}, {-1, 0}));
   const double step = 1e-3;
   GrainSimulation simulation(scene_of(grains, walls, one_second_quadratic()), stepping(scheme, step));

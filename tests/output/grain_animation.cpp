@@ -22,7 +22,7 @@ namespace {
 struct AnimatedScene {
   std::vector<Grain> grains;
   std::vector<Clump> clumps{{{{{-0.1, 0}, 0.1}, {{0.1, 0}, 0.15}}}};
-  std::vector<GrainWall> walls;
+  std::vector<Wall> walls;
   std::vector<int> groups{0, 1, 7};
   std::vector<GrainFrame> frames;
 
@@ -30,9 +30,9 @@ struct AnimatedScene {
     grains.push_back({.position = {0.2, 0.3}, .radius = 0.1, .inertia = {1, 1}});
     grains.push_back({.position = {1.1, 0.4}, .radius = 0.3, .inertia = {1, 1}, .short_half_axis = 0.15});
     grains.push_back({.position = {0.5, 0.9}, .radius = 0.25, .inertia = {1, 1}, .clump = 0});
-    GrainWall floor, arc;
+    Wall floor, arc;
     floor.move_x = {.kind = Schedule::Kind::sine, .value = 0.1, .frequency = 1};
-    arc.shape = GrainWall::Shape::arc;
+    arc.shape = Wall::Shape::arc;
     arc.radius = 1, arc.to = 2;
     walls = {floor, arc};
     for (int k = 0; k < 5; ++k) {
@@ -121,7 +121,7 @@ TEST_CASE("the_view_of_an_animation_holds_its_walls") {
   AnimatedScene scene;
   const double far = GENERATE(0.0, -1e4);  // where on its line a wall is given
   scene.walls[0].point.x = far;
-  GrainWall& arc = scene.walls[1];
+  Wall& arc = scene.walls[1];
   arc.radius = GENERATE(1.0, 6.0);
   arc.to = 3;
   arc.move_y = {.kind = Schedule::Kind::sine, .value = 0.5, .frequency = 2.5};  // at 0.1 s farthest up

@@ -5,8 +5,8 @@
 
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/output/files/energies.hpp"
 #include "equidem/output/files/frames.hpp"
-#include "equidem/output/files/grain_checkpoint.hpp"
 #include "equidem/output/files/grain_tables.hpp"
 #include "equidem/output/files/growing_csv.hpp"
 #include "equidem/output/files/hdf5.hpp"
@@ -37,59 +37,7 @@ std::vector<Grain> grains_at(std::int64_t step, std::size_t count) {
   return grains;
 }
 
-GrainState grain_state(std::int64_t step, std::size_t count) {
-  GrainState state;
-  state.step = step;
-  state.grains = grains_at(step, count);
-  state.contacts = {0, 1, -0.0, 1e-300, 1.0 / 3};
-  state.sums.assign(4 * count, 0.1 * static_cast<double>(step));
-  double next = 1;
-  for (const GrainEnergyTerm& term : grain_energy_terms) state.ledger.*term.value = 1 / (next += 1.5);
-  state.counters = {.evaluations = 9007199254740991, .contacts = 7, .rebuilds = 3, .sweeps = 0};
-  return state;
-}
-
 }  // namespace
-
-TEST_CASE("a_checkpoint_of_grains_gives_back_every_bit") {
-  const TemporaryFolder folder;
-  const std::size_t count = GENERATE(1, 5);
-  const GrainState state = grain_state(77, count);
-  GrainRecord record;
-  for (std::int64_t step = 0; step < 3; ++step) {
-    record.energies.push_back({step, 0.1 * static_cast<double>(step), state.ledger});
-    record.paths.emplace_back(count, Vec2{static_cast<double>(step), 1.0 / 7});
-  }
-  const auto path = folder / "run.checkpoint.h5";
-  write_grain_checkpoint(CheckpointWriter(path, "the case", false), state, record);
-  const GrainCheckpoint found = read_grain_checkpoint(path, "the case", grains_at(0, count));
-  CHECK(found.state.step == state.step);
-  REQUIRE(found.state.grains.size() == count);
-  for (std::size_t g = 0; g < count; ++g) {
-    const Grain &a = found.state.grains[g], &b = state.grains[g];
-    CHECK(a.position == b.position);
-    CHECK(a.velocity == b.velocity);
-    CHECK(a.angle == b.angle);
-    CHECK(a.spin == b.spin);
-    CHECK(a.radius == b.radius);
-    CHECK(a.kind == b.kind);
-  }
-  CHECK(found.state.contacts == state.contacts);
-  CHECK(std::signbit(found.state.contacts[2]));
-  CHECK(found.state.sums == state.sums);
-  for (const GrainEnergyTerm& term : grain_energy_terms) {
-    CAPTURE(term.name);
-    CHECK(found.state.ledger.*term.value == state.ledger.*term.value);
-    CHECK(found.record.energies.back().ledger.*term.value == state.ledger.*term.value);
-  }
-  CHECK(found.state.counters.evaluations == 9007199254740991);
-  CHECK(found.state.counters.contacts == 7);
-  CHECK(found.state.counters.rebuilds == 3);
-  CHECK(found.record.energies[2].step == 2);
-  CHECK(found.record.energies[2].time == 0.2);
-  CHECK(found.record.paths == record.paths);
-  CHECK(refusal_of([&] { read_grain_checkpoint(path, "another", grains_at(0, count)); }).says("another case"));
-}
 
 TEST_CASE("frames_of_travelling_bodies_hold_their_places") {
   const TemporaryFolder folder;
@@ -160,9 +108,9 @@ TEST_CASE("tables_of_grains_and_contacts_have_a_row_for_each") {
   CHECK(table.starts_with("grain,group,x_m,y_m,radius_m,vx_m_per_s,vy_m_per_s,spin_rad_per_s,angle_rad,"));
   CHECK(table.find("\n1,steel,") != std::string::npos);
   CHECK(table.ends_with(",7800\n"));
-  GrainWall floor;
+  Wall floor;
   floor.name = "floor";
-  const std::vector<GrainWall> walls{floor};
+  const std::vector<Wall> walls{floor};
   std::vector<GrainContact> contacts(2);
   contacts[0].j = 1;
   contacts[0].normal_force = 3.5;
@@ -181,9 +129,11 @@ TEST_CASE("tables_of_grains_and_contacts_have_a_row_for_each") {
 
 TEST_CASE("a_table_of_energies_holds_every_term_and_what_the_balance_lacks") {
   const TemporaryFolder folder;
-  const GrainLedger ledger = grain_state(1, 1).ledger;
-  const std::vector<GrainEnergySample> samples{{0, 0.0, {}}, {8, 0.5, ledger}};
-  write_grain_energy_csv(folder / "energy.csv", samples, Body::sphere, false);
+  EnergyLedger ledger;
+  double next = 1;
+  for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) ledger.*term.value = 1 / (next += 1.5);
+  const std::vector<EnergySample> samples{{0, 0.0, {}}, {8, 0.5, ledger}};
+  write_energy_csv(folder / "energy.csv", samples, BodyFamily::colliding, Body::sphere, false);
   const std::string rows = read_file(folder / "energy.csv");
   CAPTURE(rows);
   CHECK(rows.starts_with("step,time_s,kinetic_J,"));
@@ -195,12 +145,12 @@ TEST_CASE("a_table_of_energies_holds_every_term_and_what_the_balance_lacks") {
 TEST_CASE("a_picture_of_grains_shows_walls_paths_and_title") {
   const TemporaryFolder folder;
   const auto grains = grains_at(1, 3);
-  std::vector<GrainWall> walls(3);
+  std::vector<Wall> walls(3);
   walls[0].point = {0, -0.2};
-  walls[1].shape = GrainWall::Shape::segment;
+  walls[1].shape = Wall::Shape::segment;
   walls[1].point = {3, 0};
   walls[1].end = {3, 2};
-  walls[2].shape = GrainWall::Shape::arc;
+  walls[2].shape = Wall::Shape::arc;
   walls[2].radius = 4;
   walls[2].to = 1.5;
   std::vector<std::vector<Vec2>> paths;

@@ -101,10 +101,17 @@ TEST_CASE("frames_show_clumps_as_their_discs_and_ellipses_with_both_half_axes") 
   Bodies bodies;
   const auto& clumps = bodies.shapes.clumps();
   {
-    GrainFrames frames(folder.path(), "frames", bodies.grains, clumps, {.expected = 1});
-    frames.append(0, 0.0, bodies.grains);
-    for (Grain& grain : bodies.grains) grain.angle += 0.5;
-    frames.append(7, 0.5, bodies.grains);
+    FrameOptions options{.expected = 1};
+    const Assembly discs = discs_of_frames(bodies.grains, clumps, options);
+    FrameWriter frames(folder.path(), "frames", discs, options);
+    std::vector<DiscMotion> motions, velocities;
+    for (const Grain& grain : bodies.grains) {
+      motions.push_back({grain.position, grain.angle});
+      velocities.push_back({grain.velocity, grain.spin});
+    }
+    frames.append(0, 0.0, motions, velocities);
+    for (std::size_t g = 0; g < motions.size(); ++g) motions[g].theta = bodies.grains[g].angle += 0.5;
+    frames.append(7, 0.5, motions, velocities);
     frames.finish();
   }
   const Hdf5Layout layout = read_hdf5_layout(
@@ -142,7 +149,9 @@ TEST_CASE("frames_show_clumps_as_their_discs_and_ellipses_with_both_half_axes") 
   Bodies other;
   other.grains[1].short_half_axis = 0.11;
   CHECK(equidem::test::refusal_of([&] {
-          GrainFrames(folder.path(), "frames", other.grains, clumps, {.expected = 1, .continue_after = 7});
+          FrameOptions options{.expected = 1, .continue_after = 7};
+          const Assembly discs = discs_of_frames(other.grains, clumps, options);
+          FrameWriter(folder.path(), "frames", discs, options);
         }).says("short_half_axis"));
 }
 

@@ -7,7 +7,7 @@
 
 #include "equidem/core/file.hpp"
 #include "equidem/core/random.hpp"
-#include "equidem/output/files/energy_terms.hpp"
+#include "equidem/output/files/energies.hpp"
 
 #include "output/runs.hpp"
 #include "output/states.hpp"
@@ -26,7 +26,7 @@ const std::vector<Probe> probes = {
 };
 
 void record(ProbeWriter& writer, std::int64_t step) {
-  writer.record(step, time_at(step), motions_at(step, discs), velocities_at(step, discs), state_at(step, 0).ledger);
+  writer.record(step, time_at(step), motions_at(step, discs), velocities_at(step, discs), ledger_at(step));
 }
 
 /// Steps of the rows of a file, all of which must be whole.
@@ -69,15 +69,16 @@ TEST_CASE("probes_record_means_and_energies") {
       found.push_back(value);
     }
     const auto u = motions_at(step, discs), v = velocities_at(step, discs);
-    const EnergyLedger ledger = state_at(step, 0).ledger;
+    const EnergyLedger ledger = ledger_at(step);
     std::vector<double> wanted{static_cast<double>(step), time_at(step)};
     for (const auto& values : {u, v}) {
       wanted.push_back((values[3].u.x + values[4].u.x + values[29].u.x) / 3);
       wanted.push_back((values[3].u.y + values[4].u.y + values[29].u.y) / 3);
     }
-    wanted.insert(wanted.end(), {u[7].theta, v[7].theta, ledger.kinetic, ledger.elastic, ledger.potential, ledger.sway,
-                                 ledger.damped_mass, ledger.damped_contact, ledger.damped_local, ledger.work_of_loads,
-                                 ledger.work_of_supports, ledger.work_of_walls, ledger.initial, ledger.error()});
+    wanted.insert(wanted.end(),
+                  {u[7].theta, v[7].theta, ledger.kinetic, ledger.elastic(), ledger.potential, ledger.sway,
+                   ledger.damped_mass, ledger.damped_contact, ledger.damped_local, ledger.work_of_loads,
+                   ledger.work_of_supports, ledger.work_of_walls, ledger.initial, ledger.error()});
     CHECK(found == wanted);
   }
 }
@@ -182,17 +183,20 @@ TEST_CASE("probes_that_cannot_measure_are_refused") {
   const auto start = [&](const std::vector<Probe>& with) {
     return refusal_of([&] { ProbeWriter(folder / "probes.csv", with, discs, {}); });
   };
-  CHECK(start({{"a", {}}}).says("the probe 'a' holds no disc"));
-  CHECK(start({{"a", {30}}}).says("the probe 'a' names disc 30 (the discs are 0 to 29)"));
-  CHECK(start({{"a", {-1}}}).says("the probe 'a' names disc -1"));
+  CHECK(start({{"a", {}}}).says("the probe 'a' holds no body"));
+  CHECK(start({{"a", {30}}}).says("the probe 'a' names body 30 (the bodies are 0 to 29)"));
+  CHECK(start({{"a", {-1}}}).says("the probe 'a' names body -1"));
   CHECK(start({{"a", {1}}, {"a", {2}}}).says("two probes are called 'a'"));
   CHECK(start({{"", {1}}}).says("a probe has no name"));
   CHECK(folder.files() == 0);
   write_file(folder / "probes.csv", "mine", false);
   CHECK(start(probes).says("exists already"));
   CHECK(read_file(folder / "probes.csv") == "mine");
+  using enum ProbeQuantity;
   CHECK(refusal_of([] { enum_from<ProbeQuantity>("speed"); }).says("unknown quantity of a probe 'speed'"));
-  CHECK(enum_from<ProbeQuantity>("spin") == ProbeQuantity::spin);
+  CHECK(enum_from<ProbeQuantity>("displacement") == displacement);
+  CHECK(enum_from<ProbeQuantity>("angle") == angle);
+  CHECK(enum_from<ProbeQuantity>("spin") == spin);
 }
 
 TEST_CASE("a_full_disk_is_told") {

@@ -17,7 +17,8 @@
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/dynamics/simulation.hpp"
+#include "equidem/motion/ledger.hpp"
+#include "equidem/motion/saved_state.hpp"
 
 namespace equidem {
 
@@ -36,26 +37,28 @@ inline double time_at(std::int64_t step) {
   return 1e-5 * static_cast<double>(step);
 }
 
-inline SimulationState state_at(std::int64_t step, std::size_t discs) {
-  SimulationState state;
-  state.step = step;
-  state.motions = motions_at(step, discs);
-  state.previous = motions_at(step - 1, discs);
-  state.velocities = velocities_at(step, discs);
+inline EnergyLedger ledger_at(std::int64_t step) {
   const double s = static_cast<double>(step);
-  state.ledger = {.kinetic = std::sin(s),
-                  .elastic = std::cos(s),
-                  .potential = -s,
-                  .sway = 1e-3 * s,
-                  .damped_mass = 0.1 * s,
-                  .damped_contact = 1 / (s + 3),
-                  .damped_local = 1e-300 * s,
-                  .work_of_loads = std::sqrt(s),
-                  .work_of_supports = s / 7,
-                  .work_of_walls = -0.0,
-                  .initial = 42};
-  state.sums = {s, s / 3, -s};
-  return state;
+  return {.kinetic = std::sin(s),
+          .elastic_bonded = std::cos(s),
+          .potential = -s,
+          .sway = 1e-3 * s,
+          .damped_mass = 0.1 * s,
+          .damped_contact = 1 / (s + 3),
+          .damped_local = 1e-300 * s,
+          .work_of_loads = std::sqrt(s),
+          .work_of_supports = s / 7,
+          .work_of_walls = -0.0,
+          .initial = 42};
+}
+
+inline SavedState state_at(std::int64_t step, std::size_t discs) {
+  const double s = static_cast<double>(step);
+  return {.step = step,
+          .arrays = {{"motions", 3, numbers_of(motions_at(step, discs))},
+                     {"previous", 3, numbers_of(motions_at(step - 1, discs))},
+                     {"velocities", 3, numbers_of(velocities_at(step, discs))},
+                     {"sums", 1, {s, s / 3, -s}}}};
 }
 
 /// Run `work` in a process of its own and kill it `microseconds` later.

@@ -120,7 +120,7 @@ TEST_CASE("the_energy_of_what_falls_is_accounted_for_but_for_an_error_of_the_ord
                   .scheme = corrected ? GrainOptions::Scheme::corrected_verlet : GrainOptions::Scheme::velocity_verlet,
                   .time_step = step});
       run.advance(std::llround(0.06 / step));
-      const GrainLedger ledger = run.energy();
+      const EnergyLedger ledger = run.energy();
       sum += std::abs(ledger.error()) / ledger.lost();
     }
     return sum / 10;

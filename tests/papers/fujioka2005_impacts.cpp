@@ -94,7 +94,7 @@ TEST_CASE("fujioka_2005_fast_impacts_without_gravity_have_the_ratio_e_squared_to
   const NormalLaw law = GENERATE(NormalLaw::five_case_map, NormalLaw::energy_map, NormalLaw::exact_flow);
   GrainScene scene = column(pair_of(law), 1);
   scene.gravity = {};
-  GrainWall ceiling;
+  Wall ceiling;
   ceiling.point = {0, 5 * diameter};
   ceiling.normal = {0, -1};
   scene.walls.push_back(ceiling);

@@ -87,7 +87,7 @@ TEST_CASE("balls_that_lose_nothing_keep_their_energy_by_exact_flow_better_than_b
     for (int k = 1; k <= 5; ++k) start_height += k * drop * diameter;
     const double start_energy = scene.grains[0].inertia.mass * gravity * start_height;
     run.advance(20000);
-    const GrainLedger energy = run.energy();
+    const EnergyLedger energy = run.energy();
     return std::abs((energy.kinetic + energy.elastic_normal + energy.potential) / start_energy);
   };
   const double x = change(NormalLaw::exact_flow), p = change(NormalLaw::energy_map);

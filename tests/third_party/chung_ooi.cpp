@@ -154,7 +154,7 @@ Rebound rebound(const Material& material, const PairProperties& asked, Stepping 
   while (touched == 0 || !simulation.contacts().empty()) {
     simulation.advance(1);
     touched = simulation.counters().contacts;
-    const GrainLedger ledger = simulation.energy();
+    const EnergyLedger ledger = simulation.energy();
     result.highest =
         std::max(result.highest, (ledger.kinetic + ledger.elastic_normal + ledger.elastic_tangential) / before);
   }

@@ -124,7 +124,7 @@ TEST_CASE("lammps_dem03_two_spheres_squeezed_between_walls") {  // dem03-elastic
       CHECK(std::abs(now.velocity.y - both[k].velocity) <= round_off);
     }
   }
-  const GrainLedger ledger = simulation.energy();
+  const EnergyLedger ledger = simulation.energy();
   INFO(fmt::format("energy: {:.3g} of what there was", ledger.error() / ledger.initial));
   CHECK(std::abs(ledger.error()) < 5e-4 * ledger.initial);  // analytic_tol of the file
 }

@@ -44,7 +44,7 @@ Vec2 direction(const TomlValue& table, const char* key, const std::string& use) 
   return given / length;
 }
 
-void read_motion(const TomlValue& table, std::span<const NamedSchedule> schedules, GrainWall& wall) {
+void read_motion(const TomlValue& table, std::span<const NamedSchedule> schedules, Wall& wall) {
   const TomlValue* displacement = table.find("displacement");
   const TomlValue* along = table.find("direction");
   const TomlValue* schedule = table.find("schedule");
@@ -57,7 +57,7 @@ void read_motion(const TomlValue& table, std::span<const NamedSchedule> schedule
             displacement == nullptr ? "Add displacement = ... in m"
                                     : "Add schedule = \"NAME\" and a [[schedule]] of that name");
   }
-  if (along == nullptr && wall.shape != GrainWall::Shape::line)
+  if (along == nullptr && wall.shape != Wall::Shape::line)
     fail_at(*displacement, "wall.displacement", fmt::format("wall '{}' has no direction", wall.name),
             "only a line moves along its normal by itself", "Add direction = [..., ...]");
   const Vec2 unit = along == nullptr ? wall.normal : direction(table, "direction", "it says where the wall moves");
@@ -65,22 +65,22 @@ void read_motion(const TomlValue& table, std::span<const NamedSchedule> schedule
   wall.move_y = scheduled(table, "wall", displacement->real * unit.y, schedules);
 }
 
-GrainWall read_wall(const TomlValue& table, std::span<const NamedSchedule> schedules) {
-  GrainWall wall;
+Wall read_wall(const TomlValue& table, std::span<const NamedSchedule> schedules) {
+  Wall wall;
   wall.name = text(table, "name");
   const std::string& shape = text(table, "shape");
   const char* culprit = "normal";
   if (shape == "line") {
-    wall.shape = GrainWall::Shape::line;
+    wall.shape = Wall::Shape::line;
     wall.point = vector(table, "point");
     wall.normal = direction(table, "normal", "it says on which side the grains are");
   } else if (shape == "segment") {
-    wall.shape = GrainWall::Shape::segment;
+    wall.shape = Wall::Shape::segment;
     wall.point = vector(table, "point");
     wall.end = vector(table, "end");
     culprit = "end";
   } else {
-    wall.shape = GrainWall::Shape::arc;
+    wall.shape = Wall::Shape::arc;
     wall.point = vector(table, "centre");
     wall.radius = number(table, "radius");
     wall.from = number(table, "from");

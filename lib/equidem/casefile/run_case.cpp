@@ -51,11 +51,14 @@ Wall read_wall(const TomlValue& table, std::span<const NamedSchedule> schedules)
             fmt::format("wall '{}' has a schedule and no displacement", text(table, "name")), "it would not move",
             "Add displacement = ... in m");
   }
-  return {.name = text(table, "name"),
-          .point = vector(table, "point"),
-          .normal = normal / length,
-          .kN = number(table, "kN"),
-          .displacement = scheduled(table, "wall", optional_number(table, "displacement").value_or(0), schedules)};
+  Wall wall;
+  wall.name = text(table, "name");
+  wall.point = vector(table, "point");
+  wall.normal = normal / length;
+  wall.kN = number(table, "kN");
+  move_along(wall, wall.normal,
+             scheduled(table, "wall", optional_number(table, "displacement").value_or(0), schedules));
+  return wall;
 }
 
 ProbeCase read_probe(const TomlValue& table) {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "equidem/casefile/toml.hpp"
-#include "equidem/dynamics/schedule.hpp"
+#include "equidem/motion/schedule.hpp"
 
 namespace equidem {
 

@@ -146,7 +146,7 @@ std::vector<KeySpec> shaking_keys() {
   };
 }
 
-Shaking read_shaking(TomlValue& root, const fs::path& folder, double run_duration, std::span<GrainWall> walls) {
+Shaking read_shaking(TomlValue& root, const fs::path& folder, double run_duration, std::span<Wall> walls) {
   TomlValue& table = *root.find("shaking");
   ShakingOptions options{.direction = vector(table, "direction")};
   if (table.find("record") != nullptr) {

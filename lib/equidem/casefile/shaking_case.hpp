@@ -23,6 +23,6 @@ std::vector<KeySpec> shaking_keys();
 ///         wall that moves by
 ///         itself as well, a record that is no table
 Shaking read_shaking(TomlValue& root, const std::filesystem::path& folder, double run_duration,
-                         std::span<GrainWall> walls);
+                         std::span<Wall> walls);
 
 }  // namespace equidem

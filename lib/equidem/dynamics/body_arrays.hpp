@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "equidem/contact/frame.hpp"
-#include "equidem/dynamics/kernels/lane_vector.hpp"
 #include "equidem/dynamics/kernels/step_kernel.hpp"
 #include "equidem/dynamics/layout.hpp"
+#include "equidem/motion/lane_vector.hpp"
 
 namespace equidem {
 

@@ -143,8 +143,9 @@ void DrivenDiscs::add_loads(const Scene& scene, std::vector<std::vector<DiscLoad
 std::span<const DrivenDiscs::WallMotion> DrivenDiscs::move_walls(std::int32_t strip, double time, double time_after) {
   WallMotion* motions = wall_motions_.data() + static_cast<std::size_t>(strip) * walls_.size();
   for (std::size_t k = 0; k < walls_.size(); ++k) {
-    const Schedule& displacement = walls_[k].displacement;
-    motions[k] = {displacement.at(time), 0.5 * (displacement.at(time_after) - displacement.at(2 * time - time_after))};
+    const Wall& wall = walls_[k];
+    motions[k] = {wall.displacement_along_normal(time), 0.5 * (wall.displacement_along_normal(time_after) -
+                                                               wall.displacement_along_normal(2 * time - time_after))};
   }
   return {motions, walls_.size()};
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
-#include "equidem/dynamics/kernels/lane_vector.hpp"
+#include "equidem/motion/lane_vector.hpp"
 
 namespace equidem {
 

@@ -97,7 +97,8 @@ class StillScene {
 
   static std::vector<Wall> walls_at(const Scene& scene, double time) {
     std::vector<Wall> walls = scene.walls;
-    for (Wall& wall : walls) wall.displacement = {.value = wall.displacement.at(time)};
+    for (Wall& wall : walls)
+      wall.move_x = {.value = wall.move_x.at(time)}, wall.move_y = {.value = wall.move_y.at(time)};
     return walls;
   }
 

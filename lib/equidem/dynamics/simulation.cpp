@@ -188,7 +188,7 @@ const Effects& Simulation::effects() const {
 EnergyLedger Simulation::energy() const {
   return implementation_->ledger();
 }
-double Simulation::bytes_per_disc() const {
+double Simulation::bytes_per_body() const {
   const Implementation& s = *implementation_;
   const DiscLayout& layout = s.bodies.layout();
   const std::size_t doubles = s.geometry.size() + s.inverse_inertia.size() + 2 * s.bodies.motion[0].size() +

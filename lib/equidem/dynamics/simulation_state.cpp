@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
-#include <iterator>
-#include <span>
 #include <utility>
 
 #include "equidem/contact/finite_bond.hpp"
@@ -15,12 +13,10 @@
 namespace equidem {
 namespace {
 
-/// What a saved state keeps of the ledger at the start; all but the first two are counted from there.
-constexpr double EnergyLedger::*terms_at_start[] = {&EnergyLedger::kinetic,          &EnergyLedger::elastic,
-                                                    &EnergyLedger::potential,        &EnergyLedger::sway,
-                                                    &EnergyLedger::damped_mass,      &EnergyLedger::damped_contact,
-                                                    &EnergyLedger::damped_local,     &EnergyLedger::work_of_loads,
-                                                    &EnergyLedger::work_of_supports, &EnergyLedger::work_of_walls};
+/// Terms of the ledger that are counted from the start.
+bool counts_from_start(const EnergyTerm& term) {
+  return term.value != &EnergyLedger::kinetic && term.value != &EnergyLedger::elastic_bonded;
+}
 
 }  // namespace
 
@@ -138,7 +134,7 @@ EnergyLedger Simulation::Implementation::raw_ledger() const {
     result.damped_contact += of_strip.contact;
     result.damped_local += of_strip.local;
   }
-  result.elastic = elastic_energy(now);
+  result.elastic_bonded = elastic_energy(now);
   for (std::size_t d = 0; d < now.size(); ++d) {
     result.potential -= scene.inertia[d].mass * dot(options.gravity, now[d].u);
   }
@@ -156,8 +152,9 @@ EnergyLedger Simulation::Implementation::raw_ledger() const {
 
 EnergyLedger Simulation::Implementation::ledger() const {
   EnergyLedger result = raw_ledger();
-  for (double EnergyLedger::*since : std::span(terms_at_start).subspan(2)) result.*since -= at_start.*since;
-  result.initial = at_start.kinetic + at_start.elastic;
+  for (const EnergyTerm& term : energy_terms(BodyFamily::bonded))
+    if (counts_from_start(term)) result.*term.value -= at_start.*term.value;
+  result.initial = at_start.kinetic + at_start.elastic_bonded;
   return result;
 }
 
@@ -201,35 +198,37 @@ std::int64_t Simulation::first_runaway() const {
   return -1;
 }
 
-SimulationState Simulation::save() const {
+SavedState Simulation::save() const {
   const Implementation& s = *implementation_;
-  SimulationState state{.step = s.steps,
-                        .motions = s.bodies.discs_of(s.bodies.motion[s.parity]),
-                        .previous = s.bodies.discs_of(s.bodies.motion[1 - s.parity]),
-                        .velocities = s.bodies.disc_velocities(s.bodies.velocity),
-                        .ledger = s.ledger(),
-                        .sums = {}};
-  for (double EnergyLedger::*term : terms_at_start) state.sums.push_back(s.at_start.*term);
-  for (const Dissipation& d : s.dissipation) state.sums.insert(state.sums.end(), {d.mass, d.contact, d.local});
-  for (const DrivingWork& w : s.driven.sums()) state.sums.insert(state.sums.end(), {w.loads, w.supports, w.walls});
-  return state;
+  std::vector<double> sums;
+  for (const EnergyTerm& term : energy_terms(BodyFamily::bonded)) sums.push_back(s.at_start.*term.value);
+  for (const Dissipation& d : s.dissipation) sums.insert(sums.end(), {d.mass, d.contact, d.local});
+  for (const DrivingWork& w : s.driven.sums()) sums.insert(sums.end(), {w.loads, w.supports, w.walls});
+  return {.step = s.steps,
+          .arrays = {{"motions", 3, numbers_of(s.bodies.discs_of(s.bodies.motion[s.parity]))},
+                     {"previous", 3, numbers_of(s.bodies.discs_of(s.bodies.motion[1 - s.parity]))},
+                     {"velocities", 3, numbers_of(s.bodies.disc_velocities(s.bodies.velocity))},
+                     {"sums", 1, std::move(sums)}}};
 }
 
-void Simulation::restore(const SimulationState& state) {
+void Simulation::restore(const SavedState& state) {
   Implementation& s = *implementation_;
   const std::size_t discs = s.scene.assembly.size(), strips = s.dissipation.size();
-  if (state.motions.size() != discs || state.previous.size() != discs || state.velocities.size() != discs ||
-      state.sums.size() != std::size(terms_at_start) + 6 * strips) {
-    bad_input(fmt::format("the saved state has {}", counted(static_cast<std::int64_t>(state.motions.size()), "disc")),
+  const std::vector<DiscMotion> motions = motions_of(state["motions"]), previous = motions_of(state["previous"]),
+                                velocities = motions_of(state["velocities"]);
+  const std::vector<double>& sums = state["sums"];
+  if (motions.size() != discs || previous.size() != discs || velocities.size() != discs ||
+      sums.size() != energy_terms(BodyFamily::bonded).size() + 6 * strips) {
+    bad_input(fmt::format("the saved state has {}", counted(static_cast<std::int64_t>(motions.size()), "disc")),
               fmt::format("this assembly has {}", discs), "Go on with the case that the state was saved from");
   }
   s.steps = state.step;
   s.parity = 0;
-  s.bodies.put(state.motions, s.bodies.motion[0]);
-  s.bodies.put(state.previous, s.bodies.motion[1]);
-  s.bodies.put_velocities(state.velocities);
-  const double* sum = state.sums.data();
-  for (double EnergyLedger::*term : terms_at_start) s.at_start.*term = *sum++;
+  s.bodies.put(motions, s.bodies.motion[0]);
+  s.bodies.put(previous, s.bodies.motion[1]);
+  s.bodies.put_velocities(velocities);
+  const double* sum = sums.data();
+  for (const EnergyTerm& term : energy_terms(BodyFamily::bonded)) s.at_start.*term.value = *sum++;
   for (Dissipation& d : s.dissipation) d = {sum[0], sum[1], sum[2]}, sum += 3;
   std::vector<DrivingWork> work(strips);
   for (DrivingWork& w : work) w = {sum[0], sum[1], sum[2]}, sum += 3;

@@ -16,20 +16,15 @@ void check_alone(const Wall& wall, const Assembly& assembly) {
     bad_input(fmt::format("wall '{}' stands in a periodic assembly", wall.name),
               "every disc has images on both sides of any wall", "Remove the wall, or set periodic = false");
   }
-  if (!std::isfinite(wall.point.x + wall.point.y) || !std::isfinite(wall.normal.x + wall.normal.y)) {
-    bad_input(fmt::format("wall '{}' has a point or a normal that is not finite", wall.name), "it stands nowhere",
-              "Give finite numbers");
+  if (wall.shape != Wall::Shape::line) {
+    bad_input(fmt::format("wall '{}' is a segment or an arc", wall.name), "bonded discs meet straight walls alone",
+              "Give it the shape of a line");
   }
-  if (std::abs(dot(wall.normal, wall.normal) - 1) > 1e-12) {
-    bad_input(
-        fmt::format("the normal ({}, {}) of wall '{}' is no unit vector", wall.normal.x, wall.normal.y, wall.name),
-        "distances are measured with it", "Divide it by its length");
-  }
+  check(wall);
   if (!(wall.kN > 0) || !std::isfinite(wall.kN)) {
     bad_input(fmt::format("wall '{}' has kN = {} Pa", wall.name, wall.kN), "its spring must be > 0 and finite",
               "Give a positive one");
   }
-  check(wall.displacement);
 }
 
 /// Times at which a displacement turns or ends.
@@ -58,9 +53,11 @@ bool face_each_other(const Wall& a, const Wall& b) {
 void check_room(const Wall& a, const Wall& b) {
   std::vector<double> times{0};
   for (const Wall* wall : {&a, &b})
-    for (const double time : turning_points(wall->displacement)) times.push_back(std::max(time, 0.0));
+    for (const Schedule* schedule : {&wall->move_x, &wall->move_y})
+      for (const double time : turning_points(*schedule)) times.push_back(std::max(time, 0.0));
   for (const double time : times) {
-    const double room = dot(a.normal, b.point - a.point) - a.displacement.at(time) - b.displacement.at(time);
+    const double room =
+        dot(a.normal, b.point - a.point) - a.displacement_along_normal(time) - b.displacement_along_normal(time);
     if (room > 0) continue;
     bad_input(
         fmt::format("walls '{}' and '{}' cross{}", a.name, b.name, time > 0 ? fmt::format(" at {:.6g} s", time) : ""),
@@ -70,7 +67,7 @@ void check_room(const Wall& a, const Wall& b) {
 }
 
 void check_discs(const Wall& wall, const Assembly& assembly) {
-  const double start = wall.displacement.at(0);
+  const double start = wall.displacement_along_normal(0);
   for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
     const double height = dot(wall.normal, assembly.centres[disc] - wall.point) - start;
     if (height > 0) continue;
@@ -85,7 +82,7 @@ WallPushes wall_pushes(const Scene& scene, const std::vector<DiscMotion>& motion
   WallPushes result;
   if (!scene.walls.empty()) result.forces.resize(motions.size());
   for (const Wall& wall : scene.walls) {
-    const double moved = wall.displacement.at(time);
+    const double moved = wall.displacement_along_normal(time);
     for (std::size_t d = 0; d < motions.size(); ++d) {
       const Vec2 centre = scene.assembly.centres[d] + motions[d].u;
       const double gap = dot(wall.normal, centre - wall.point) - moved - scene.assembly.radii[d];

@@ -38,7 +38,7 @@ void RunawayWatch::look(const Simulation& run, const EnergyLedger& energy) {
   // Loads and gravity first take energy and then give it back: what counts is the most that was there.
   given_ = std::max({given_, energy.initial + std::abs(energy.work_of_loads) + std::abs(energy.work_of_supports) +
                                  std::abs(energy.work_of_walls) + std::abs(energy.potential)});
-  const double held = std::abs(energy.kinetic) + std::abs(energy.elastic);
+  const double held = std::abs(energy.kinetic) + std::abs(energy.elastic());
   if (!std::isfinite(held) || held > limits_.growth * given_) {
     const std::int64_t disc = fastest_disc(scene_, run.velocities());
     stop(run, disc,

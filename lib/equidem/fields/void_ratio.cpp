@@ -15,11 +15,10 @@ namespace {
 constexpr double side_strip = 2, surface_strip = 3, least = 2;  // mean diameters
 
 /// Along y for a wall along x; 0: it stands askew.
-Vec2 normal_of(const GrainWall& wall) {
-  if (wall.shape == GrainWall::Shape::arc) return {};
+Vec2 normal_of(const Wall& wall) {
+  if (wall.shape == Wall::Shape::arc) return {};
   Vec2 normal = wall.normal;
-  if (wall.shape == GrainWall::Shape::segment)
-    normal = perpendicular(wall.end - wall.point) / norm(wall.end - wall.point);
+  if (wall.shape == Wall::Shape::segment) normal = perpendicular(wall.end - wall.point) / norm(wall.end - wall.point);
   constexpr double straight = 1e-9;
   if (std::abs(normal.x) < straight) return {0, 1};
   if (std::abs(normal.y) < straight) return {1, 0};
@@ -28,7 +27,7 @@ Vec2 normal_of(const GrainWall& wall) {
 
 }  // namespace
 
-GrainBox box_of(std::span<const GrainWall> walls, std::span<const Grain> grains, double time) {
+GrainBox box_of(std::span<const Wall> walls, std::span<const Grain> grains, double time) {
   if (grains.empty()) bad_input("a box without grains", "there is nothing to measure", "Add some");
   GrainBox box{.inside = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}}};
   Vec2 middle;
@@ -40,9 +39,9 @@ GrainBox box_of(std::span<const GrainWall> walls, std::span<const Grain> grains,
     middle += grain.position / static_cast<double>(grains.size());
   }
   Region walled{{-INFINITY, -INFINITY}, {INFINITY, INFINITY}};
-  for (const GrainWall& wall : walls) {
+  for (const Wall& wall : walls) {
     const Vec2 normal = normal_of(wall);
-    const Vec2 place = wall.point + Vec2{wall.move_x.at(time), wall.move_y.at(time)};
+    const Vec2 place = wall.point + wall.displacement(time);
     if (normal.x != 0 && place.x < middle.x) walled.low.x = std::max(walled.low.x, place.x);
     if (normal.x != 0 && place.x >= middle.x) walled.high.x = std::min(walled.high.x, place.x);
     if (normal.y != 0 && place.y < middle.y) walled.low.y = std::max(walled.low.y, place.y);

@@ -20,7 +20,7 @@ struct GrainBox {
 /// Lines and segments along the axes are its sides; each is on that side of the middle of all bodies on which it lies
 /// at the start. \param time s, by which walls have moved
 /// \throws Error (bad_input) without grains
-GrainBox box_of(std::span<const GrainWall> walls, std::span<const Grain> grains, double time);
+GrainBox box_of(std::span<const Wall> walls, std::span<const Grain> grains, double time);
 
 /// Mean diameter of circles with the areas of the bodies, m.
 double mean_diameter(std::span<const Grain> grains, std::span<const Clump> clumps);

@@ -31,7 +31,7 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
   const bool springs = any_pair([](const PairProperties& p) { return p.friction > 0 && p.tangential_ratio > 0; });
   const bool losses = any_pair([](const PairProperties& pair) { return pair.restitution < 1; });
   const bool gravity = scene.gravity != Vec2{};
-  const bool moving = std::any_of(scene.walls.begin(), scene.walls.end(), [](const GrainWall& w) { return w.moves(); });
+  const bool moving = std::any_of(scene.walls.begin(), scene.walls.end(), [](const Wall& w) { return w.moves(); });
   const auto any_shape = [&](GrainShape shape) {
     return std::any_of(scene.grains.begin(), scene.grains.end(), [&](const Grain& g) { return g.shape() == shape; });
   };

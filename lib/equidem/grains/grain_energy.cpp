@@ -48,8 +48,8 @@ std::pair<double, double> GrainSimulation::Implementation::elastic() const {
   return {normal, tangential};
 }
 
-GrainLedger GrainSimulation::Implementation::energy() const {
-  GrainLedger ledger = system.lost;
+EnergyLedger GrainSimulation::Implementation::energy() const {
+  EnergyLedger ledger = system.lost;
   ledger.kinetic = kinetic();
   std::tie(ledger.elastic_normal, ledger.elastic_tangential) = elastic();
   ledger.elastic_bond = elastic_of_bonds(system);

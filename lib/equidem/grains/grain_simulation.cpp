@@ -143,7 +143,7 @@ void GrainSimulation::advance(std::int64_t steps) {
   for (std::int64_t k = 0; k < steps; ++k) {
     const std::int64_t now = self.system.step;
     const GrainCounters counters = self.system.counters;
-    if (self.kept.grains.empty() || now - self.kept.step >= steps_between_kept_states) self.kept = save();
+    if (self.kept.arrays.empty() || now - self.kept.step >= steps_between_kept_states) self.kept = save();
     try {
       self.system.near.record = k + 1 == steps || now + 1 - self.kept.step >= steps_between_kept_states;
       self.make_step();
@@ -181,6 +181,22 @@ std::vector<Grain> GrainSimulation::grains() const {
     grains[system.grain_of[k]] = grain;
   }
   return grains;
+}
+
+std::vector<DiscMotion> GrainSimulation::motions() const {
+  const GrainSystem& system = implementation_->system;
+  std::vector<DiscMotion> motions(system.motions.size());
+  for (std::size_t k = 0; k < motions.size(); ++k)
+    motions[system.grain_of[k]] = {system.motions[k].position, system.motions[k].angle};
+  return motions;
+}
+
+std::vector<DiscMotion> GrainSimulation::velocities() const {
+  const GrainSystem& system = implementation_->system;
+  std::vector<DiscMotion> velocities(system.motions.size());
+  for (std::size_t k = 0; k < velocities.size(); ++k)
+    velocities[system.grain_of[k]] = {system.motions[k].velocity, system.motions[k].spin};
+  return velocities;
 }
 
 std::vector<GrainContact> GrainSimulation::contacts() const {
@@ -227,7 +243,7 @@ std::vector<GrainContact> GrainSimulation::contacts() const {
   return contacts;
 }
 
-GrainLedger GrainSimulation::energy() const {
+EnergyLedger GrainSimulation::energy() const {
   return implementation_->energy();
 }
 
@@ -239,7 +255,7 @@ const Effects& GrainSimulation::effects() const {
   return implementation_->effects;
 }
 
-double GrainSimulation::bytes_per_grain() const {
+double GrainSimulation::bytes_per_body() const {
   const GrainSystem& system = implementation_->system;
   const double bytes = static_cast<double>(
       system.near.bytes() + system.near_parts.bytes() + system.bodies.capacity() * sizeof(GrainBody) +

@@ -10,31 +10,9 @@
 
 #include "equidem/contact/effects.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
+#include "equidem/motion/any_simulation.hpp"
 
 namespace equidem {
-
-/// Energies, J (spheres) or J per metre of depth. Maps and exact_flow keep all to one instant; the force laws by Euler
-/// keep velocities half a step behind, and the potential of gravity is taken where the body was then.
-struct GrainLedger {
-  double kinetic = 0;
-  double elastic_normal = 0, elastic_tangential = 0;
-  double elastic_bond = 0;      ///< springs of bonds
-  double potential = 0;         ///< gravity, 0 at the start
-  double lost_restitution = 0;  ///< maps
-  double lost_dashpot = 0;      ///< normal
-  double lost_slip = 0, lost_tangential_dashpot = 0;
-  double lost_release =
-      0;  ///< tangential springs, and normal springs of contacts that end at zero force, let go at the end of a contact
-  double lost_bond = 0;  ///< dashpots of bonds
-  double work_of_walls = 0;
-  double initial = 0;  ///< kinetic + elastic at the start
-  [[nodiscard]] double lost() const {
-    return lost_restitution + lost_dashpot + lost_slip + lost_tangential_dashpot + lost_release + lost_bond;
-  }
-  [[nodiscard]] double elastic() const { return elastic_normal + elastic_tangential + elastic_bond; }
-  /// What the balance lacks: kinetic + elastic + potential + lost - work - initial.
-  [[nodiscard]] double error() const { return kinetic + elastic() + potential + lost() - work_of_walls - initial; }
-};
 
 /// A contact as it was in the last step.
 struct GrainContact {
@@ -79,56 +57,50 @@ struct BondReport {
   double step_limit = 0;       ///< s, that the bonds impose; infinite: none
 };
 
-/// Everything needed to go on with the same bits, in the caller's order.
-struct GrainState {
-  std::int64_t step = 0;
-  std::vector<Grain> grains;
-  std::vector<double> contacts;  ///< as the loop keeps them
-  GrainLedger ledger;
-  std::vector<double> sums;  ///< pushes of the last step, where the next needs them
-  GrainCounters counters;
-};
-
-class GrainSimulation {
+class GrainSimulation final : public AnySimulation {
  public:
   /// Decide the effects, pick the loop. Bodies and walls are kept in an order of their own, by place, so that the
   /// caller's order changes no bit.
   /// \throws Error as check(scene, options)
   GrainSimulation(const GrainScene& scene, const GrainOptions& options);
-  ~GrainSimulation();
+  ~GrainSimulation() override;
   GrainSimulation(GrainSimulation&&) noexcept;
   GrainSimulation& operator=(GrainSimulation&&) noexcept;
   GrainSimulation(const GrainSimulation&) = delete;
   GrainSimulation& operator=(const GrainSimulation&) = delete;
 
-  /// Make steps.
+  [[nodiscard]] BodyFamily family() const override { return BodyFamily::colliding; }
+  [[nodiscard]] const Effects& effects() const override;
   /// \throws Error (computation_failed) before the step in which a body would pass through a wall or another body
-  ///         unseen, or centres
-  ///         would pass each other; naming step, bodies, speed and the step that would do; on motions that are no
-  ///         numbers; where exact_flow finds no common solution of all contacts. The state is that before the step.
-  void advance(std::int64_t steps);
+  ///         unseen, or centres would pass each other; naming step, bodies, speed and the step that would do; on
+  ///         motions that are no numbers; where exact_flow finds no common solution of all contacts. The state is that
+  ///         before the step.
+  void advance(std::int64_t steps) override;
+  [[nodiscard]] std::int64_t step() const override;
+  [[nodiscard]] double time() const override;
+  [[nodiscard]] std::vector<DiscMotion> motions() const override;
+  [[nodiscard]] std::vector<DiscMotion> velocities() const override;
+  [[nodiscard]] EnergyLedger energy() const override;
+  [[nodiscard]] double bytes_per_body() const override;
+  /// Arrays: motions (n, 3): position, angle; velocities (n, 3): velocity, spin; contacts as the loop keeps them;
+  /// pushes (n, 3) of the last step and bonds (b, 3), where the next step needs them; losses: the terms of the ledger;
+  /// counters.
+  [[nodiscard]] SavedState save() const override;
+  void restore(const SavedState& state) override;
 
-  [[nodiscard]] std::int64_t step() const;
-  [[nodiscard]] double time() const;
   /// In the caller's order.
   [[nodiscard]] std::vector<Grain> grains() const;
   /// Of the last step, in the order of (i, j).
   [[nodiscard]] std::vector<GrainContact> contacts() const;
-  [[nodiscard]] GrainLedger energy() const;
   [[nodiscard]] const GrainCounters& counters() const;
   [[nodiscard]] BondReport bonds() const;
   /// In the order of (i, j), i < j.
   [[nodiscard]] std::vector<BondDrift> bond_drifts() const;
-  [[nodiscard]] const Effects& effects() const;
-  /// Bytes of all arrays, per grain.
-  [[nodiscard]] double bytes_per_grain() const;
-
-  [[nodiscard]] GrainState save() const;
-  /// \throws Error (bad_input) where the state is of another number of bodies
-  void restore(const GrainState& state);
+  /// Set all velocities to 0; the energy taken counts as lost in normal dashpots.
+  void stop_all();
 
  private:
-  void go_back_to(const GrainState& state);
+  void go_back_to(const SavedState& state);
 
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;

@@ -17,7 +17,7 @@ struct GrainSimulation::Implementation {
   FlowFunction flow = nullptr;        ///< simultaneous laws
   double potential_at_start = 0, energy_at_start = 0;
   double bond_limit = 0;  ///< step that bonds impose, s
-  GrainState kept;        ///< a state not long ago, to come back to
+  SavedState kept;        ///< a state not long ago, to come back to
 
   void make_step();
   /// What contacts and bonds give in the step.
@@ -32,7 +32,7 @@ struct GrainSimulation::Implementation {
   [[nodiscard]] double kinetic() const;
   /// Normal and tangential springs as they stand.
   [[nodiscard]] std::pair<double, double> elastic() const;
-  [[nodiscard]] GrainLedger energy() const;
+  [[nodiscard]] EnergyLedger energy() const;
 };
 
 /// Which effects a scene of colliding bodies has, and why not the others.

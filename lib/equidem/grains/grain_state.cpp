@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <iterator>
 #include <limits>
+#include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
@@ -14,6 +17,11 @@ constexpr std::size_t numbers_per_plain_contact = 13;
 constexpr std::size_t numbers_per_pair_of_parts = 6;
 constexpr std::size_t numbers_per_push = 3;
 constexpr std::size_t numbers_per_bond = 3;
+
+constexpr std::int64_t GrainCounters::*counters_saved[] = {&GrainCounters::evaluations, &GrainCounters::contacts,
+                                                           &GrainCounters::rebuilds, &GrainCounters::sweeps,
+                                                           &GrainCounters::doubtful};
+static_assert(sizeof(GrainCounters) == std::size(counters_saved) * sizeof(std::int64_t), "a counter is not saved");
 
 std::size_t numbers_per_contact_of(const GrainSystem& system) {
   return numbers_per_plain_contact + (system.parts.empty() ? 0 : numbers_per_pair_of_parts);
@@ -72,77 +80,93 @@ void take(const double* numbers, Candidate& candidate) {
 
 }  // namespace
 
-GrainState GrainSimulation::save() const {
+SavedState GrainSimulation::save() const {
   const GrainSystem& system = implementation_->system;
-  GrainState state;
-  state.step = system.step;
-  state.grains = grains();
-  state.ledger = system.lost;
-  state.counters = system.counters;
+  std::vector<double> contacts, losses, counts, pushes, bonds;
   for (std::size_t p = 0; p < system.near.count; ++p) {
     if (!system.near.touching(p)) continue;
     const Candidate candidate = candidate_of(system, p);
-    append(state.contacts, candidate);
-    if (!system.parts.empty()) append(state.contacts, parts_of_discs(system, candidate));
+    append(contacts, candidate);
+    if (!system.parts.empty()) append(contacts, parts_of_discs(system, candidate));
   }
   for (const NearParts::List& list : system.near_parts.lists) {
     for (std::size_t p = 0; p < list.count; ++p) {
       if (!list.touching(p)) continue;
       const auto [candidate, pair] = candidate_of(system, list, p);
-      append(state.contacts, candidate);
-      append(state.contacts, pair);
+      append(contacts, candidate);
+      append(contacts, pair);
     }
   }
   for (std::size_t c = 0; c < system.candidates.size(); ++c) {
     if (!system.candidates[c].touching) continue;
-    append(state.contacts, system.candidates[c]);
-    if (!system.parts.empty()) append(state.contacts, system.part_pairs[c]);
+    append(contacts, system.candidates[c]);
+    if (!system.parts.empty()) append(contacts, system.part_pairs[c]);
   }
-  if (!implementation_->keeps_pushes()) return state;  // the others find all pushes of a step in that step
-  for (const Push& push : system.pushes) {
-    for (const double number : {push.impulse.x, push.impulse.y, push.torque}) {
-      state.sums.push_back(number);
+  for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) losses.push_back(system.lost.*term.value);
+  for (const auto counter : counters_saved) counts.push_back(static_cast<double>(system.counters.*counter));
+  if (implementation_->keeps_pushes()) {  // the others find all pushes of a step in that step
+    for (const Push& push : system.pushes) pushes.insert(pushes.end(), {push.impulse.x, push.impulse.y, push.torque});
+  }
+  if (implementation_->verlet()) {
+    for (const TiedPair& bond : system.bonds) {
+      const BondModes impulse = last_impulse(system, bond);
+      bonds.insert(bonds.end(), {impulse.normal, impulse.tangential, impulse.rolling});
     }
   }
-  if (!implementation_->verlet()) return state;
-  for (const TiedPair& bond : system.bonds) {
-    const BondModes impulse = last_impulse(system, bond);
-    for (const double number : {impulse.normal, impulse.tangential, impulse.rolling}) {
-      state.sums.push_back(number);
-    }
-  }
-  return state;
+  return {.step = system.step,
+          .arrays = {{"motions", 3, numbers_of(motions())},
+                     {"velocities", 3, numbers_of(velocities())},
+                     {"contacts", numbers_per_contact_of(system), std::move(contacts)},
+                     {"pushes", numbers_per_push, std::move(pushes)},
+                     {"bonds", numbers_per_bond, std::move(bonds)},
+                     {"losses", 1, std::move(losses)},
+                     {"counters", 1, std::move(counts)}}};
 }
 
-void GrainSimulation::restore(const GrainState& state) {
+void GrainSimulation::stop_all() {
+  SavedState state = save();
+  GrainSystem& system = implementation_->system;
+  system.lost.lost_dashpot += implementation_->kinetic();
+  state["losses"].clear();
+  for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) state["losses"].push_back(system.lost.*term.value);
+  std::fill(state["velocities"].begin(), state["velocities"].end(), 0.0);
+  restore(state);
+}
+
+void GrainSimulation::restore(const SavedState& state) {
   go_back_to(state);
   implementation_->kept = {};
 }
 
-void GrainSimulation::go_back_to(const GrainState& state) {
+void GrainSimulation::go_back_to(const SavedState& state) {
   GrainSystem& system = implementation_->system;
   const std::size_t numbers_per_contact = numbers_per_contact_of(system);
   const bool shapes = !system.parts.empty();
   const std::size_t pushes = implementation_->keeps_pushes() ? numbers_per_push * system.motions.size() : 0;
   const std::size_t bonds = implementation_->verlet() ? numbers_per_bond * system.bonds.size() : 0;
-  if (state.grains.size() != system.motions.size() || state.contacts.size() % numbers_per_contact != 0 ||
-      state.sums.size() != pushes + bonds) {
-    bad_input(fmt::format("the state is of {}", counted(static_cast<long long>(state.grains.size()), "grain")),
+  const std::vector<double>&places = state["motions"], &velocities = state["velocities"], &contacts = state["contacts"];
+  const std::vector<double>&losses = state["losses"], &counts = state["counters"];
+  if (places.size() != 3 * system.motions.size() || velocities.size() != places.size() ||
+      contacts.size() % numbers_per_contact != 0 || state["pushes"].size() != pushes ||
+      state["bonds"].size() != bonds || losses.size() != energy_terms(BodyFamily::colliding).size() ||
+      counts.size() != std::size(counters_saved)) {
+    bad_input(fmt::format("the state is of {}", counted(static_cast<long long>(places.size() / 3), "grain")),
               fmt::format("the scene has {}", system.motions.size()),
               "Resume with the scene that the state was saved from");
   }
   system.step = state.step;
-  system.lost = state.ledger;
+  const double* loss = losses.data();
+  for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) system.lost.*term.value = *loss++;
   for (std::size_t k = 0; k < system.motions.size(); ++k) {
-    const Grain& grain = state.grains[system.grain_of[k]];
-    system.motions[k] = {grain.position, grain.velocity, grain.spin, grain.angle};
-    if (state.sums.empty()) continue;
-    const double* numbers = state.sums.data() + numbers_per_push * k;
-    system.pushes[k] = {{numbers[0], numbers[1]}, numbers[2]};
+    const double *x = places.data() + 3 * system.grain_of[k], *v = velocities.data() + 3 * system.grain_of[k];
+    system.motions[k] = {{x[0], x[1]}, {v[0], v[1]}, v[2], x[2]};
+    if (pushes == 0) continue;
+    const double* push = state["pushes"].data() + numbers_per_push * k;
+    system.pushes[k] = {{push[0], push[1]}, push[2]};
   }
   for (std::size_t b = 0; b < bonds / numbers_per_bond; ++b) {
-    const double* numbers = state.sums.data() + pushes + numbers_per_bond * b;
-    take_last_impulse(system, system.bonds[b], {numbers[0], numbers[1], numbers[2]});
+    const double* impulse = state["bonds"].data() + numbers_per_bond * b;
+    take_last_impulse(system, system.bonds[b], {impulse[0], impulse[1], impulse[2]});
   }
   system.free_flight = false;
   system.deepest = std::numeric_limits<double>::infinity();  // not known: verlet has to look
@@ -154,10 +178,10 @@ void GrainSimulation::go_back_to(const GrainState& state) {
   std::vector<Candidate> near;
   std::vector<std::pair<Candidate, PartPair>> near_parts;
   std::vector<const double*> others;
-  for (std::size_t at = 0; at < state.contacts.size(); at += numbers_per_contact) {
+  for (std::size_t at = 0; at < contacts.size(); at += numbers_per_contact) {
     Candidate contact;
-    take(state.contacts.data() + at, contact);
-    const double* numbers = state.contacts.data() + at;
+    take(contacts.data() + at, contact);
+    const double* numbers = contacts.data() + at;
     if (contact.j >= 0 && are_discs(system, contact.i, contact.j) && system.near.active) {
       near.push_back(contact);
     } else if (contact.j >= 0 && !are_discs(system, contact.i, contact.j) && system.near_parts.active) {
@@ -191,7 +215,8 @@ void GrainSimulation::go_back_to(const GrainState& state) {
     system.part_pairs[c].arm_i = {numbers[2], numbers[3]};
     system.part_pairs[c].arm_j = {numbers[4], numbers[5]};
   }
-  system.counters = state.counters;
+  const double* count = counts.data();
+  for (const auto counter : counters_saved) system.counters.*counter = static_cast<std::int64_t>(*count++);
 }
 
 }  // namespace equidem

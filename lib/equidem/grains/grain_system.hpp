@@ -116,7 +116,7 @@ struct GrainSystem {
   double longest_way = 0;      ///< of a body in the step being made, squared, m²
   double smallest_radius = 0;  ///< of the circles that parts hold, m
   double deepest = 0;          ///< overlap of the step, m
-  GrainLedger lost;            ///< losses and work since the start
+  EnergyLedger lost;           ///< losses and work since the start
   GrainCounters counters;
 
   [[nodiscard]] const LawDescription& law() const { return describe(options.law); }

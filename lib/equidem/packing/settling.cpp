@@ -81,22 +81,11 @@ double mean_mass(std::span<const Grain> grains) {
   return mass / static_cast<double>(grains.size());
 }
 
-/// As a dashpot would: what is taken counts as lost in it.
-void stop_all(GrainSimulation& simulation) {
-  GrainState state = simulation.save();
-  state.ledger.lost_dashpot += simulation.energy().kinetic;
-  for (Grain& grain : state.grains) {
-    grain.velocity = {};
-    grain.spin = 0;
-  }
-  simulation.restore(state);
-}
-
 }  // namespace
 
-std::vector<GrainWall> walls_of_box(double width) {
+std::vector<Wall> walls_of_box(double width) {
   const auto wall = [](const char* name, Vec2 point, Vec2 normal) {
-    GrainWall made;
+    Wall made;
     made.name = name;
     made.point = point;
     made.normal = normal;
@@ -195,7 +184,7 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
       }
     }
     if (kinetic < lying_drop * weight_radius && kinetic < 0.5 * peak) {
-      stop_all(simulation);
+      simulation.stop_all();
       peak = 0;
     }
   }

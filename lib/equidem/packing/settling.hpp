@@ -38,7 +38,7 @@ struct SettlingReport {
   double time_step = 0;           ///< s
   double time = 0;                ///< s of motion
   std::int64_t steps = 0;
-  GrainLedger ledger;
+  EnergyLedger ledger;
   BondReport bonds;  ///< how far bonded pairs drifted
 };
 
@@ -51,7 +51,7 @@ struct SettledBodies {
 };
 
 /// The walls of the box: 0 floor, 1 left, 2 right.
-std::vector<GrainWall> walls_of_box(double width);
+std::vector<Wall> walls_of_box(double width);
 
 /// A box of a width with an open top, floor at y = 0, walls at x = 0 and x = width: walls, gravity, contacts of linear
 /// springs and dashpots. Bodies are of kind 0 and still to come.

@@ -18,13 +18,6 @@ namespace {
 
 constexpr double work = 1e5;  // disc-steps
 
-double bytes_of(const Simulation& run) {
-  return run.bytes_per_disc();
-}
-double bytes_of(const GrainSimulation& run) {
-  return run.bytes_per_grain();
-}
-
 /// Runs 100,000 disc-steps; a millisecond is 10 ns per disc-step.
 template <class Run>
 StudyTask task_of(const std::string& problem, const std::string& method, std::size_t discs,
@@ -36,7 +29,7 @@ StudyTask task_of(const std::string& problem, const std::string& method, std::si
                          .values =
                              [=] {
                                const double unknowns = run->effects().rotation ? 3 : 2;
-                               return std::vector{bytes_of(*run), unknowns};
+                               return std::vector{run->bytes_per_body(), unknowns};
                              }};
           }};
 }
@@ -158,7 +151,7 @@ void add_bonded(Study& study, int side) {
     study.tasks.push_back(
         task_of<Simulation>("bonded discs", one.name, lattice->size(), [lattice, springs, options, wall = one.wall] {
           Scene scene{.assembly = *lattice, .springs = *springs, .inertia = inertia_of(lattice->radii, 1, Body::disc)};
-          if (wall) scene.walls = {{.name = "floor", .point = {0, 0}, .normal = {0, 1}, .kN = 1, .displacement = {}}};
+          if (wall) scene.walls = {{.name = "floor", .point = {0, 0}, .normal = {0, 1}, .kN = 1}};
           return Simulation(scene, options);
         }));
   }

@@ -23,7 +23,7 @@ GrainScene gas(int side) {
   for (const auto& [point, normal] :
        {std::pair{Vec2{0, 0}, Vec2{1, 0}}, std::pair{Vec2{0, 0}, Vec2{0, 1}},
         std::pair{Vec2{width, width}, Vec2{-1, 0}}, std::pair{Vec2{width, width}, Vec2{0, -1}}}) {
-    GrainWall wall;
+    Wall wall;
     wall.point = point;
     wall.normal = normal;
     scene.walls.push_back(wall);

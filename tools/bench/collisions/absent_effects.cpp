@@ -62,7 +62,7 @@ std::string compare_free_flight(int discs, int rounds) {
   const double disc_steps = static_cast<double>(discs) * static_cast<double>(steps);
   for (std::size_t k = 0; k < entries.size(); ++k) {
     table += row(entries[k].label, seconds[k], seconds[0], disc_steps,
-                 k > 0 ? fmt::format("{:.0f}", simulations[k - 1].bytes_per_grain()) : "32");
+                 k > 0 ? fmt::format("{:.0f}", simulations[k - 1].bytes_per_body()) : "32");
   }
   return table + fmt::format("\nLists of neighbours made in {} steps: {}.\n", simulations[0].step(),
                              simulations[0].counters().rebuilds);
@@ -85,8 +85,8 @@ std::string compare_friction(int columns, int rows, int rounds) {
   check_alike(without, by_hand, 1e-6);
   const double disc_steps = static_cast<double>(smooth.grains.size()) * static_cast<double>(steps);
   return header + row(entries[0].label, seconds[0], seconds[0], disc_steps, "") +
-         row(entries[1].label, seconds[1], seconds[0], disc_steps, fmt::format("{:.0f}", without.bytes_per_grain())) +
-         row(entries[2].label, seconds[2], seconds[0], disc_steps, fmt::format("{:.0f}", with.bytes_per_grain()));
+         row(entries[1].label, seconds[1], seconds[0], disc_steps, fmt::format("{:.0f}", without.bytes_per_body())) +
+         row(entries[2].label, seconds[2], seconds[0], disc_steps, fmt::format("{:.0f}", with.bytes_per_body()));
 }
 
 }  // namespace equidem::bench

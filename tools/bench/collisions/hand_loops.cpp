@@ -40,7 +40,7 @@ FrictionlessDiscs::FrictionlessDiscs(const GrainScene& scene, double margin, dou
     for (std::int64_t p = near.begin[i]; p < near.begin[i + 1]; ++p) {
       pairs_.emplace_back(static_cast<std::int32_t>(i), near.partner[static_cast<std::size_t>(p)]);
     }
-    for (const GrainWall& wall : scene.walls) {
+    for (const Wall& wall : scene.walls) {
       if (dot(circles[i].centre - wall.point, wall.normal) < circles[i].radius + margin) {
         touches_.push_back({static_cast<std::int32_t>(i), wall.point, wall.normal});
       }

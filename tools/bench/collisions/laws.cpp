@@ -176,7 +176,7 @@ std::string compare_in_simulation(const std::string& scene, int rounds) {
     const auto evaluations = static_cast<double>(simulations[k].counters().evaluations - before[k]);
     table += fmt::format("| {} | {:.3f} | {} | {} | {:.0f} |\n", names[k], evaluations / (disc_steps * (rounds + 1)),
                          text(scaled(seconds[k], 1e9 / disc_steps), "{:.1f}"),
-                         text(ratio_of(seconds[k], seconds[0]), "{:.2f}"), simulations[k].bytes_per_grain());
+                         text(ratio_of(seconds[k], seconds[0]), "{:.2f}"), simulations[k].bytes_per_body());
   }
   table += failed;
   return table;

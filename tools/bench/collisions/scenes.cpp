@@ -20,8 +20,8 @@ Grain body(Vec2 position, double radius, Body kind, Vec2 velocity = {}) {
   return grain;
 }
 
-GrainWall line(const char* name, Vec2 point, Vec2 normal) {
-  GrainWall wall;
+Wall line(const char* name, Vec2 point, Vec2 normal) {
+  Wall wall;
   wall.name = name;
   wall.point = point;
   wall.normal = normal;

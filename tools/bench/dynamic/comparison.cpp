@@ -25,7 +25,7 @@ std::int64_t steps_for(std::size_t discs) {
 
 double activity_of(const Simulation& simulation) {
   double sum = 0;
-  for (const DiscMotion& v : simulation.save().velocities) sum += dot(v.u, v.u) + v.theta * v.theta;
+  for (const DiscMotion& v : motions_of(simulation.save()["velocities"])) sum += dot(v.u, v.u) + v.theta * v.theta;
   return sum;
 }
 
@@ -99,7 +99,7 @@ std::string compare_loops(const std::string& kind, std::int64_t discs, const std
     if (k < 2) {
       table += " | | |\n";
     } else {
-      table += fmt::format(" {:.0f} | {:.0f} % | {:.0f} % |\n", stepwise.simulation().bytes_per_disc(),
+      table += fmt::format(" {:.0f} | {:.0f} % | {:.0f} % |\n", stepwise.simulation().bytes_per_body(),
                            100 * speed.median * traffic(assembly) / (cores * limits.bandwidth),
                            100 * speed.median * operations(assembly) / (cores * limits.arithmetic));
     }
@@ -140,7 +140,7 @@ std::string compare_effects(const std::string& kind, std::int64_t discs, int rou
   for (std::size_t k = 0; k < entries.size(); ++k) {
     table += fmt::format(
         "| {} | {} | {} | {:.0f} |\n", entries[k].label, with_range(speeds(seconds[k], disc_steps), "{:.3g}"),
-        with_range(ratio_of(seconds[k], seconds[0]), "{:.2f}"), scenes[k]->simulation().bytes_per_disc());
+        with_range(ratio_of(seconds[k], seconds[0]), "{:.2f}"), scenes[k]->simulation().bytes_per_body());
   }
   return table;
 }

@@ -30,8 +30,8 @@ Simulation simulation_of(const Assembly& assembly, const ContactSprings& springs
                            .factor = {.kind = Schedule::Kind::ramp, .value = 1, .start = 0, .end = 100}});
   }
   Simulation simulation(scene, variant.options);
-  SimulationState state = simulation.save();
-  state.motions = state.previous = start_motions(assembly);
+  SavedState state = simulation.save();
+  state["motions"] = state["previous"] = numbers_of(start_motions(assembly));
   simulation.restore(state);
   return simulation;
 }

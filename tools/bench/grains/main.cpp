@@ -50,7 +50,7 @@ GrainScene loose_discs(std::size_t count, bool friction, bool single) {
     scene.grains.push_back(grain);
   }
   const auto wall = [](Vec2 point, Vec2 normal) {
-    GrainWall line;
+    Wall line;
     line.point = point;
     line.normal = normal;
     line.kind = 1;
@@ -91,7 +91,7 @@ void report(const char* state, GrainScene scene, GrainScene* end, std::int64_t b
               rates[rates.size() / 2], rates.front(), rates.back(), 1e9 / rates[rates.size() / 2],
               static_cast<double>(simulation.counters().evaluations - start.evaluations) / made / bodies,
               1000 * static_cast<double>(simulation.counters().rebuilds - start.rebuilds) / made,
-              simulation.bytes_per_grain());
+              simulation.bytes_per_body());
   std::fflush(stdout);
   if (end != nullptr) end->grains = simulation.grains();
 }

@@ -62,8 +62,8 @@ std::vector<Shape> shapes() {
           {"bonded pair of discs, explicit", -1, Law::exact, true, Bond::explicit_euler, Scheme::corrected_verlet}};
 }
 
-GrainWall line(const char* name, Vec2 point, Vec2 normal) {
-  GrainWall wall;
+Wall line(const char* name, Vec2 point, Vec2 normal) {
+  Wall wall;
   wall.name = name;
   wall.point = point;
   wall.normal = normal;
@@ -197,7 +197,7 @@ void run(const Request& request) {
     report += fmt::format("| {} | {} | {:.2f} | {} | {} | {} | {} | {:.0f} |\n", entries[k].label,
                           name_of(shapes()[k].scheme), contacts[k], text(each, "{:.0f}"), text(over_disc, "{:.2f}"),
                           text(scaled(each, 1 / contacts[k]), "{:.0f}"), text(over, "{:.2f}"),
-                          simulations[k].bytes_per_grain() * (shapes()[k].bonded ? 2 : 1));
+                          simulations[k].bytes_per_body() * (shapes()[k].bonded ? 2 : 1));
   }
   std::printf("%s", report.c_str());
   if (request.file.empty()) return;

@@ -30,9 +30,9 @@ void check_outputs(const CommonOptions& common, const PackCase& resolved) {
   if (resolved.picture) plan.expect("picture.png");
 }
 
-std::vector<GrainWall> walls_of(const PackingBox& box) {
+std::vector<Wall> walls_of(const PackingBox& box) {
   if (box.periodic()) return {};
-  std::vector<GrainWall> walls = walls_of_box(box.size.x);
+  std::vector<Wall> walls = walls_of_box(box.size.x);
   if (box.sides == PackingBox::Sides::walls) {
     walls.push_back(walls.front());
     walls.back().name = "lid";
@@ -57,7 +57,7 @@ void write_files(const CommonOptions& common, const PackCase& resolved, const Gr
     if (!held.bodies.empty()) write_assembly(folder / "assembly_with_walls.json", held.assembly, common.overwrite);
   }
   if (resolved.picture) {
-    const std::vector<GrainWall> walls = walls_of(packing.box);
+    const std::vector<Wall> walls = walls_of(packing.box);
     write_grain_picture(folder, "picture",
                         {.title = resolved.title,
                          .time = packing.settling.time,

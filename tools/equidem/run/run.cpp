@@ -1,27 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <cmath>
+#include <initializer_list>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
 #include "equidem/casefile/grain_case.hpp"
-#include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/file.hpp"
+#include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/dynamics/relaxation.hpp"
-#include "equidem/homogenize/stress.hpp"
-#include "equidem/output/files/csv.hpp"
-#include "equidem/output/files/vtk.hpp"
-#include "equidem/output/pictures/picture.hpp"
+#include "equidem/core/threads.hpp"
 
 #include "command.hpp"
 #include "run/run_accuracy.hpp"
+#include "run/run_bonded.hpp"
 #include "run/run_grains.hpp"
-#include "run/run_loop.hpp"
 #include "run/run_report.hpp"
-#include "run/run_setup.hpp"
+#include "solve/report.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
@@ -33,7 +29,8 @@ struct RunVerb {
   std::optional<double> accuracy;
 };
 
-void check_outputs(const RunVerb& options, const Case& resolved) {
+/// Asked before the run, so that no hour is lost to a full folder.
+void check_outputs(const RunVerb& options, std::initializer_list<std::pair<const char*, bool>> files) {
   const CommonOptions& common = options.common;
   if (options.resume && !common.out) {
     throw Error(ErrorKind::bad_input, "--resume without --out", "the checkpoint lies in that folder",
@@ -44,104 +41,85 @@ void check_outputs(const RunVerb& options, const Case& resolved) {
   if (options.resume) return;
   plan.expect("result.json");
   plan.expect("case.toml");
-  if (resolved.output.csv) plan.expect("discs.csv");
-  if (resolved.output.picture) plan.expect("picture.svg");
+  for (const auto& [name, wanted] : files)
+    if (wanted) plan.expect(name);
 }
 
-/// Contact forces of small motions, for pictures; of finite ones nothing is drawn but the motion.
-std::vector<ContactForce> forces_of(const Problem& problem, const std::vector<DiscMotion>& motions) {
-  std::vector<ContactForce> forces(problem.assembly.contacts.size());
-  for (std::size_t c = 0; c < forces.size(); ++c) {
-    const Contact& contact = problem.assembly.contacts[c];
-    forces[c] = linear_spring_force(problem.springs.springs[c],
-                                    deformation(frame_of(problem.assembly, c), motions[contact.i], motions[contact.j]));
-  }
-  return forces;
+void check_outputs(const RunVerb& options, const Case& resolved) {
+  check_outputs(options, {{"discs.csv", resolved.output.csv}, {"picture.svg", resolved.output.picture}});
 }
 
-void write_state(const CommonOptions& common, const RunSetup& setup, const std::vector<DiscMotion>& motions,
-                 bool overwrite) {
-  const Assembly& assembly = setup.problem.assembly;
-  const OutputCase& wanted = setup.problem.resolved.output;
-  std::vector<ContactForce> forces;
-  if (setup.run().motion == LoopKind::Motion::small) forces = forces_of(setup.problem, motions);
-  const AssemblyState state{.assembly = assembly, .motions = motions, .contact_forces = forces, .stresses = {}};
-  if (wanted.csv) write_disc_csv(*common.out / "discs.csv", state, overwrite);
-  if (wanted.vtk) write_vtk(*common.out, "state", state, overwrite);
-  if (wanted.picture) {
-    const bool far = setup.run().motion == LoopKind::Motion::finite;  // then where it began is worth seeing
-    write_picture(*common.out, "picture", state, {.title = setup.problem.resolved.title, .undeformed = far}, overwrite);
-  }
-}
-
-int dry_run(const CommonOptions& common, const RunSetup& setup) {
-  Simulation simulation(setup.simulation());
-  std::string report = describe_run_setup(setup, simulation);
+int dry_run(CommonOptions common, RunJob& job) {
+  const RunPlan plan = job.plan();
+  AnySimulation& simulation = job.simulation();
+  std::string report = job.describe();
   JsonObject object;
-  if (!setup.run().until_rest) {
-    const double seconds = estimate_seconds(setup, simulation);
-    report += describe_estimate(setup, seconds);
-    object.set("steps", setup.steps()).set("estimated_seconds", seconds);
-    add_time_step(object, setup.step);
+  if (plan.steps > 0) {
+    report += describe_output(job, plan, simulation);
+    const double seconds = estimate_seconds(simulation, plan);
+    report += report_line(
+        "steps", fmt::format("{}, about {:.2g} s with these threads, output aside", grouped(plan.steps), seconds));
+    object.set("steps", plan.steps).set("estimated_seconds", seconds);
+    job.add_step(object);
   }
-  add_common(object, "dry_run", report, setup.problem.times, simulation.effects());
-  object.set("bytes_per_disc", simulation.bytes_per_disc());
-  CommonOptions without_folder = common;
-  without_folder.out.reset();
-  deliver(without_folder, report, object);
-  return 0;
-}
-
-int relax_to_rest(const RunVerb& options, const RunSetup& setup) {
-  const CommonOptions& common = options.common;
-  if (options.resume) {
-    throw Error(ErrorKind::bad_input, "--resume of a run to rest", "it keeps no checkpoints: it ends where it ends",
-                "Run it anew");
-  }
-  const Simulation simulation(setup.simulation());
-  StageTimes times = setup.problem.times;
-  Stopwatch watch;
-  const Relaxation rest = relax(setup.scene, relaxation_options(setup));
-  times.add("relaxation", watch.lap());
-  if (common.out) write_state(common, setup, rest.motions, common.overwrite);
-  const std::string report = describe_run_setup(setup, simulation) + describe_rest(setup, rest, times);
-  JsonObject object;
-  add_common(object, "at_rest", report, times, simulation.effects());
-  add_rest(object, setup, rest);
-  if (common.out) write_file(*common.out / "case.toml", to_toml(setup.problem.resolved, *common.out), common.overwrite);
+  add_common(object, "dry_run", report, job.times(), simulation.effects());
+  object.set(fmt::format("bytes_per_{}", job.body_name()), simulation.bytes_per_body());
+  common.out.reset();
   deliver(common, report, object);
   return 0;
 }
 
-/// Makes all steps and delivers what came of them; false, and nothing delivered, where the step that the search
-/// proposed is too long.
-bool step_through(const RunVerb& options, const RunSetup& setup, StepSearch* search) {
-  const CommonOptions& common = options.common;
-  Simulation simulation(setup.simulation());
+/// Make all steps and deliver the results; false, and nothing delivered, where the step that the search proposed is too
+/// long.
+bool step_through(const RunVerb& options, RunJob& job, StepSearch* search) {
+  CommonOptions common = options.common;
+  AnySimulation& simulation = job.simulation();
+  const RunPlan plan = job.plan();
   const RunResult result =
-      run_through(setup, simulation, {.folder = common.out, .overwrite = common.overwrite, .resume = options.resume});
+      run_through(simulation, plan, {.folder = common.out, .overwrite = common.overwrite, .resume = options.resume});
   if (search != nullptr && !search->accepts(simulation.motions(), result.seconds)) return false;
-  StageTimes times = setup.problem.times;
+  StageTimes times = job.times();
   times.add("steps", result.seconds);
-  const bool overwrite = common.overwrite || options.resume;
+  common.overwrite = common.overwrite || options.resume;
   if (common.out) {
     Stopwatch watch;
-    write_state(common, setup, simulation.motions(), overwrite);
-    write_file(*common.out / "case.toml", to_toml(setup.problem.resolved, *common.out), overwrite);
-    write_energy_plot(*common.out, setup, result, overwrite);
+    job.write_files(*common.out, result, common.overwrite);
     times.add("files", watch.lap());
   }
-  std::string report = describe_run_setup(setup, simulation) + describe_run(setup, simulation, result, times);
+  std::string report =
+      job.describe() + describe_output(job, plan, simulation) + describe_run(job, plan, simulation, result, times);
   JsonObject object;
   if (search != nullptr) report += describe_accuracy(search->reached());
   add_common(object, "done", report, times, simulation.effects());
-  add_run(object, setup, simulation, result);
+  add_run(object, job, simulation, result);
   if (search != nullptr) add_accuracy(object, search->reached());
-  CommonOptions delivered = common;
-  delivered.overwrite = overwrite;
-  deliver(delivered, report, object);
+  deliver(common, report, object);
   if (common.out) say(common, fmt::format("written to {}", common.out->string()));
   return true;
+}
+
+int run_grains(const RunVerb& options) {
+  const CommonOptions& common = options.common;
+  if (options.accuracy) {
+    bad_input("--accuracy does not act on bodies that collide",
+              "their motions do not converge by one order with the step: impacts begin and end within it, and many of "
+              "them make the motion chaotic",
+              "Halve time_step and compare what is measured; 'equidem study collision_laws' shows the error of each "
+              "law against the step");
+  }
+  if (common.seed) bad_input("--seed", "nothing in a case of grains is random", "Leave it out");
+  if (common.threads > 0) set_thread_count(common.threads);
+  set_progress_shown(!common.quiet);
+  GrainCase resolved = read_grain_case(common.case_file, common.set);
+  check_outputs(options, {{"energy.csv", true},
+                          {"measures.csv", resolved.measures.has_value()},
+                          {"grains.csv", resolved.output.csv},
+                          {"picture.png", resolved.output.picture}});
+  const GrainSetup setup(std::move(resolved));
+  GrainRun job(setup);
+  if (common.dry_run) return dry_run(common, job);
+  step_through(options, job, nullptr);
+  return 0;
 }
 
 int run_to_accuracy(RunVerb options, double accuracy) {
@@ -150,34 +128,34 @@ int run_to_accuracy(RunVerb options, double accuracy) {
               "Leave one of them out");
   check_outputs(options, read_case(options.common));
   StepSearch search(options.common, accuracy);
-  while (!step_through(options, RunSetup(search.propose()), &search))
+  for (;;) {
+    const RunSetup setup(search.propose());
+    BondedRun job(setup);
+    if (step_through(options, job, &search)) return 0;
     options.common.overwrite = true;  // what the step that was too long has left
-  return 0;
+  }
 }
 
 int run(const RunVerb& options) {
   const CommonOptions& common = options.common;
   refuse_dry_run_with_accuracy(common, options.accuracy.has_value());
-  if (describes_grains(common.case_file, common.set)) {
-    if (options.accuracy) {
-      bad_input(
-          "--accuracy does not act on bodies that collide",
-          "their motions do not converge by one order with the step: impacts begin and end within it, and many of "
-          "them make the motion chaotic",
-          "Halve time_step and compare what is measured; 'equidem study collision_laws' shows the error of each "
-          "law against the step");
-    }
-    return run_grains(common, options.resume);
-  }
+  if (describes_grains(common.case_file, common.set)) return run_grains(options);
   if (options.accuracy) return run_to_accuracy(options, *options.accuracy);
   Case resolved = read_case(common);
   check_outputs(options, resolved);
   const bool goes_on = options.resume && resolved.run && resolved.run->duration;
   const RunSetup setup(std::move(resolved),
                        goes_on ? std::optional(kept_step(*common.out / "run.checkpoint.h5")) : std::nullopt);
-  if (common.dry_run) return dry_run(common, setup);
-  if (setup.run().until_rest) return relax_to_rest(options, setup);
-  step_through(options, setup, nullptr);
+  BondedRun job(setup);
+  if (common.dry_run) return dry_run(common, job);
+  if (setup.run().until_rest) {
+    if (options.resume) {
+      throw Error(ErrorKind::bad_input, "--resume of a run to rest", "it keeps no checkpoints: it ends where it ends",
+                  "Run it anew");
+    }
+    return job.relax_to_rest(common);
+  }
+  step_through(options, job, nullptr);
   return 0;
 }
 

@@ -8,7 +8,7 @@
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/output/files/json.hpp"
 
-#include "run/run_grains_loop.hpp"
+#include "run/run_grains_setup.hpp"
 
 namespace equidem {
 

@@ -2,84 +2,129 @@
 #include "run/run_grains.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <cmath>
 
 #include "equidem/casefile/echo.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
-#include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/core/threads.hpp"
+#include "equidem/output/files/energies.hpp"
+#include "equidem/output/files/grain_frames.hpp"
 #include "equidem/output/files/grain_tables.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"
 
-#include "run/run_grains_loop.hpp"
+#include "run/run_bonds_report.hpp"
 #include "run/run_grains_report.hpp"
-#include "solve/report.hpp"
+#include "run/run_report.hpp"
 
 namespace equidem {
 namespace {
 
-GrainCase read(const CommonOptions& common) {
-  if (common.seed) bad_input("--seed", "nothing in a case of grains is random", "Leave it out");
-  if (common.threads > 0) set_thread_count(common.threads);
-  set_progress_shown(!common.quiet);
-  return read_grain_case(common.case_file, common.set);
-}
+constexpr std::int64_t samples = 200, samples_of_few = 1000;  // of the energies, the latter where paths are drawn
 
-void check_outputs(const CommonOptions& common, bool resume, const GrainCase& resolved) {
-  if (resume && !common.out)
-    bad_input("--resume without --out", "the checkpoint lies in that folder",
-              "Name the folder of the run that is to go on");
-  const OutputPlan plan(common);
-  plan.expect_json();
-  if (resume) return;
-  plan.expect("result.json");
-  plan.expect("case.toml");
-  plan.expect("energy.csv");
-  if (resolved.measures) plan.expect("measures.csv");
-  if (resolved.output.csv) plan.expect("grains.csv");
-  if (resolved.output.picture) plan.expect("picture.png");
-}
-
-/// Seconds that all steps will take, from the time of the first few, which are made.
-double estimate_seconds(const GrainSetup& setup, GrainSimulation& simulation) {
-  constexpr double enough = 0.05;  // s of the clock on the wall
-  for (std::int64_t steps = 1;; steps *= 4) {
-    steps = std::min(steps, setup.steps - simulation.step());
-    if (steps == 0) return 0;
-    const Stopwatch watch;
-    try {
-      simulation.advance(steps);
-    } catch (const Error& error) {
-      throw error.at(setup.resolved.where("run.time_step"));
-    }
-    const double seconds = watch.seconds();
-    if (seconds > enough || simulation.step() == setup.steps)
-      return seconds / static_cast<double>(steps) * static_cast<double>(setup.steps);
+/// What rounding of positions can make of kinetic energy and of potential.
+double rounding_of_energy(const GrainSetup& setup, const std::vector<Grain>& grains) {
+  constexpr double rounding = 1e-15;
+  double sum = 0;
+  for (const Grain& grain : grains) {
+    const double lost_way = rounding * norm(grain.position) / setup.step.step;
+    sum += grain.inertia.mass *
+           (lost_way * lost_way + 1e3 * rounding * norm(setup.resolved.scene.gravity) * norm(grain.position));
   }
+  return sum;
 }
 
-int dry_run(const CommonOptions& common, const GrainSetup& setup) {
-  GrainSimulation simulation = setup.simulation();
-  std::string report = describe_grains(setup, simulation);
-  const double seconds = estimate_seconds(setup, simulation);
-  report += report_line("steps", fmt::format("{}, about {:.2g} s, output aside", grouped(setup.steps), seconds));
-  JsonObject object;
-  add_common(object, "dry_run", report, {}, simulation.effects());
-  object.set("steps", setup.steps).set("estimated_seconds", seconds);
-  add_grain_step(object, setup.step);
-  object.set("bytes_per_grain", simulation.bytes_per_grain());
-  CommonOptions without_folder = common;
-  without_folder.out.reset();
-  deliver(without_folder, report, object);
-  return 0;
+/// Losses may be counted badly where steps are long; motion out of nothing is no answer at all.
+/// \throws Error (computation_failed)
+void refuse_made_energy(const GrainSetup& setup, const GrainSimulation& simulation, const EnergyLedger& ledger) {
+  if (!std::isfinite(ledger.error())) {
+    computation_failed(fmt::format("step {}: an energy is not a number any more", simulation.step()),
+                       "squares of speeds, or stiffnesses, are beyond all numbers", "Use smaller ones");
+  }
+  constexpr double most = 4;
+  const double given = ledger.initial + std::abs(ledger.work_of_walls) + std::abs(ledger.potential);
+  if (ledger.kinetic <= most * given) return;
+  if (ledger.kinetic <= most * (given + rounding_of_energy(setup, simulation.grains()))) return;
+  computation_failed(
+      fmt::format("step {}: the bodies move with {:.3g} times the energy that there was", simulation.step(),
+                  ledger.kinetic / given),
+      "contacts make energy where steps are too long for them, and maps where several act on a body at once",
+      "Use a shorter time_step, or the law exact_flow");
 }
 
-void write_state(const std::filesystem::path& folder, const GrainSetup& setup, const GrainSimulation& simulation,
-                 const GrainRun& run, bool overwrite) {
-  const GrainCase& resolved = setup.resolved;
-  const std::vector<Grain> grains = simulation.grains();
+}  // namespace
+
+GrainRun::GrainRun(const GrainSetup& setup) : setup_(setup), simulation_(setup.simulation()) {
+  if (setup.resolved.measures) measures_.emplace(setup.resolved, simulation_);
+  frame_discs_ = discs_of_frames(setup.resolved.scene.grains, setup.resolved.scene.clumps, frames_);
+}
+
+RunPlan GrainRun::plan() {
+  const GrainCase& resolved = setup_.resolved;
+  const bool draws_paths = resolved.scene.grains.size() <= most_drawn_paths;
+  RunPlan plan{.steps = setup_.steps,
+               .time_step = setup_.step.step,
+               .case_text = setup_.fingerprint(),
+               .frame_interval = output().frame_interval,
+               .probe_interval = output().probe_interval,
+               .checkpoint_interval = output().checkpoint_interval,
+               .frame_discs = &frame_discs_,
+               .frames = frames_,
+               .body = resolved.body,
+               .samples = draws_paths ? samples_of_few : samples,
+               .paths = draws_paths,
+               .recorder = measures_ ? &*measures_ : nullptr,
+               .watch = [this](const EnergyLedger& energy) { refuse_made_energy(setup_, simulation_, energy); },
+               .step_place = resolved.where("run.time_step")};
+  for (const GrainProbe& wanted : resolved.probes) {
+    Probe probe{wanted.name, wanted.grains, {}};
+    for (const std::string& word : wanted.quantities) probe.quantities.push_back(enum_from<ProbeQuantity>(word));
+    plan.probes.push_back(std::move(probe));
+  }
+  return plan;
+}
+
+std::string GrainRun::describe() const {
+  return describe_grains(setup_, simulation_);
+}
+
+std::string GrainRun::describe_events() const {
+  const GrainCounters& counters = simulation_.counters();
+  return (measures_ ? measures_->describe() : "") +
+         report_line("collisions", fmt::format("{} contacts begun, {} at the end; {} evaluations of the law",
+                                               grouped(counters.contacts), simulation_.contacts().size(),
+                                               grouped(counters.evaluations))) +
+         describe_drift_of_bonds(simulation_.bonds());
+}
+
+std::string GrainRun::describe_balance(const Balance& balance) const {
+  return describe_grain_balance(setup_, simulation_, balance);
+}
+
+void GrainRun::add_step(JsonObject& object) const {
+  add_grain_step(object, setup_.step);
+}
+
+void GrainRun::add_results(JsonObject& object) const {
+  add_grain_results(object, setup_, simulation_);
+  add_shaking(object, setup_.resolved);
+  if (measures_) measures_->add_to(object);
+}
+
+void GrainRun::write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const {
+  constexpr EnergyCurve curves[] = {
+      {"kinetic", PlotColour::blue, [](const EnergyLedger& l) { return l.kinetic; }},
+      {"elastic", PlotColour::vermilion, [](const EnergyLedger& l) { return l.elastic(); }},
+      {"potential", PlotColour::green, [](const EnergyLedger& l) { return l.potential; }},
+      {"lost at impacts", PlotColour::orange,
+       [](const EnergyLedger& l) { return l.lost_restitution + l.lost_dashpot + l.lost_release; }},
+      {"lost by friction", PlotColour::purple,
+       [](const EnergyLedger& l) { return l.lost_slip + l.lost_tangential_dashpot; }},
+      {"lost in bonds", PlotColour::yellow, [](const EnergyLedger& l) { return l.lost_bond; }},
+      {"put in by walls", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.work_of_walls; }},
+  };
+  const GrainCase& resolved = setup_.resolved;
+  const std::vector<Grain> grains = simulation_.grains();
   std::vector<std::string> groups;
   std::vector<int> colours;
   for (const Grain& grain : grains) {
@@ -91,64 +136,28 @@ void write_state(const std::filesystem::path& folder, const GrainSetup& setup, c
   }
   if (resolved.output.csv) {
     write_grain_csv(folder / "grains.csv", {grains, resolved.scene.clumps, groups, resolved.densities}, overwrite);
-    write_grain_contact_csv(folder / "contacts.csv", simulation.contacts(), resolved.scene.walls, resolved.body,
+    write_grain_contact_csv(folder / "contacts.csv", simulation_.contacts(), resolved.scene.walls, resolved.body,
                             overwrite);
   }
   if (resolved.output.csv && !resolved.scene.bonds.empty())
-    write_bond_csv(folder / "bonds.csv", resolved.scene.bonds, simulation.bond_drifts(), overwrite);
+    write_bond_csv(folder / "bonds.csv", resolved.scene.bonds, simulation_.bond_drifts(), overwrite);
   if (resolved.output.picture) {
     write_grain_picture(folder, "picture",
                         {.title = resolved.title,
-                         .time = simulation.time(),
+                         .time = simulation_.time(),
                          .grains = grains,
                          .clumps = resolved.scene.clumps,
                          .groups = colours,
                          .bonds = resolved.scene.bonds,
                          .walls = resolved.scene.walls,
-                         .paths = run.record.paths},
+                         .paths = result.record.paths},
                         overwrite);
-    write_grain_energy_plot(folder, setup, run, overwrite);
+    write_energy_plot(folder, "energy_plot", resolved.title, resolved.body, result.record.energies, curves, overwrite);
     write_probe_paths(folder, resolved, overwrite);
   }
-  write_grain_energy_csv(folder / "energy.csv", run.record.energies, resolved.body, overwrite);
+  write_energy_csv(folder / "energy.csv", result.record.energies, BodyFamily::colliding, resolved.body, overwrite);
   write_file(folder / "case.toml", to_toml(resolved.document, folder), overwrite);
-}
-
-}  // namespace
-
-int run_grains(const CommonOptions& common, bool resume) {
-  StageTimes times;
-  Stopwatch watch;
-  GrainCase resolved = read(common);
-  check_outputs(common, resume, resolved);
-  const GrainSetup setup(std::move(resolved));
-  if (common.dry_run) return dry_run(common, setup);
-  GrainSimulation simulation = setup.simulation();
-  times.add("scene", watch.lap());
-  std::optional<GrainMeasures> measures;
-  if (setup.resolved.measures) measures.emplace(setup.resolved);
-  const GrainRun run =
-      run_through(setup, simulation, {.folder = common.out, .overwrite = common.overwrite, .resume = resume},
-                  measures ? &*measures : nullptr);
-  times.add("steps", run.seconds);
-  CommonOptions delivered = common;
-  delivered.overwrite = common.overwrite || resume;
-  if (common.out) {
-    watch.lap();
-    write_state(*common.out, setup, simulation, run, delivered.overwrite);
-    if (measures) measures->write_files(*common.out, simulation, delivered.overwrite);
-    times.add("files", watch.lap());
-  }
-  const std::string report = describe_grains(setup, simulation) + (measures ? measures->describe() : "") +
-                             describe_grain_run(setup, simulation, run, times);
-  JsonObject object;
-  add_common(object, "done", report, times, simulation.effects());
-  add_grain_run(object, setup, simulation, run);
-  add_shaking(object, setup.resolved);
-  if (measures) measures->add_to(object);
-  deliver(delivered, report, object);
-  if (common.out) say(common, fmt::format("written to {}", common.out->string()));
-  return 0;
+  if (measures_) measures_->write_files(folder, overwrite);
 }
 
 }  // namespace equidem

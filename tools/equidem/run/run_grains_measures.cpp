@@ -65,7 +65,8 @@ BoxMeasures measures_of(const GrainCase& resolved) {
 
 }  // namespace
 
-GrainMeasures::GrainMeasures(const GrainCase& resolved) : resolved_(resolved), measures_(measures_of(resolved)) {}
+GrainMeasures::GrainMeasures(const GrainCase& resolved, const GrainSimulation& simulation)
+    : resolved_(resolved), simulation_(simulation), measures_(measures_of(resolved)) {}
 
 void GrainMeasures::open(const std::filesystem::path& folder, bool overwrite,
                          std::optional<std::int64_t> continue_after) {
@@ -109,8 +110,8 @@ void GrainMeasures::go_on(std::int64_t after) {
   measures_.restore(measures_.moments(), profile, std::move(throws));
 }
 
-void GrainMeasures::record(std::int64_t step, double time, const std::vector<Grain>& grains) {
-  const MeasuredMoment& moment = measures_.record(step, time, grains);
+void GrainMeasures::record(std::int64_t step, double time) {
+  const MeasuredMoment& moment = measures_.record(step, time, simulation_.grains());
   if (!table_) return;
   table_->add(step, cells_of(moment));
   std::vector<double> cells{time};

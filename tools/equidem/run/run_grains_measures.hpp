@@ -14,34 +14,36 @@
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/output/files/growing_csv.hpp"
 #include "equidem/output/files/json.hpp"
+#include "equidem/output/run/run_loop.hpp"
 
 namespace equidem {
 
-class GrainMeasures {
+class GrainMeasures final : public RunRecorder {
  public:
   /// \param resolved with measures
-  explicit GrainMeasures(const GrainCase& resolved);
+  /// \param simulation that is measured; must stay where it is
+  GrainMeasures(const GrainCase& resolved, const GrainSimulation& simulation);
 
   /// Write measures.csv, surface.csv and thrown.csv (when a body was first seen apart) into a folder.
   /// \param continue_after go on with the files of an earlier run
   /// \throws Error (bad_input) as GrowingCsv
-  void open(const std::filesystem::path& folder, bool overwrite, std::optional<std::int64_t> continue_after);
-  [[nodiscard]] std::int64_t last_step() const { return measures_.moments().empty() ? -1 : measures_.moments().back().step; }
-  void record(std::int64_t step, double time, const std::vector<Grain>& grains);
-  /// Return once all rows are on the disk.
-  void sync();
+  void open(const std::filesystem::path& folder, bool overwrite, std::optional<std::int64_t> continue_after) override;
+  [[nodiscard]] std::int64_t last_step() const override { return measures_.moments().empty() ? -1 : measures_.moments().back().step; }
+  void record(std::int64_t step, double time) override;
+  void sync() override;
 
   /// For the report, after the last step.
   [[nodiscard]] std::string describe() const;
   void add_to(JsonObject& object) const;
   /// surface_plot: the surface before and at the end; void_ratio_plot; fields where asked for.
-  void write_files(const std::filesystem::path& folder, const GrainSimulation& simulation, bool overwrite) const;
+  void write_files(const std::filesystem::path& folder, bool overwrite) const;
 
  private:
   void go_on(std::int64_t after);
   void write_thrown() const;
 
   const GrainCase& resolved_;
+  const GrainSimulation& simulation_;
   BoxMeasures measures_;
   std::filesystem::path folder_;
   std::optional<GrowingCsv> table_, profiles_;

@@ -102,8 +102,7 @@ void GrainMeasures::add_to(JsonObject& object) const {
   object.set("measures", measures);
 }
 
-void GrainMeasures::write_files(const std::filesystem::path& folder, const GrainSimulation& simulation,
-                                bool overwrite) const {
+void GrainMeasures::write_files(const std::filesystem::path& folder, bool overwrite) const {
   if (resolved_.output.picture) {
     Plot plot{.title = resolved_.title};
     plot.x.label = "x, m";
@@ -134,7 +133,7 @@ void GrainMeasures::write_files(const std::filesystem::path& folder, const Grain
     }
   }
   if (!resolved_.measures->cell) return;
-  write_fields(folder, "fields", measures_.fields(simulation), overwrite);
+  write_fields(folder, "fields", measures_.fields(simulation_), overwrite);
 }
 
 std::string describe_shaking(const GrainCase& resolved) {

@@ -10,36 +10,14 @@
 
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/kinds.hpp"
-#include "equidem/output/files/grain_energy.hpp"
-#include "equidem/output/plots/plot.hpp"
 
 #include "run/run_bonds_report.hpp"
+#include "run/run_grains_measures.hpp"
+#include "run/run_report.hpp"
 #include "solve/report.hpp"
 
 namespace equidem {
 namespace {
-
-constexpr double balance_to_doubt = 0.1;
-
-double grain_steps_per_second(const GrainSetup& setup, const GrainRun& run) {
-  if (!(run.seconds > 0)) return 0;
-  return static_cast<double>(run.steps_done) * static_cast<double>(setup.resolved.scene.grains.size()) / run.seconds;
-}
-
-/// What the balance is held against: the most energy that there was.
-double largest_term(const GrainLedger& ledger) {
-  return std::max({ledger.kinetic, ledger.elastic(), std::abs(ledger.potential), ledger.lost(),
-                   std::abs(ledger.work_of_walls), ledger.initial});
-}
-
-double relative_error(const GrainLedger& ledger) {
-  const double size = largest_term(ledger);
-  return size > 0 ? ledger.error() / size : 0.0;
-}
-
-const char* energy_unit(Body body) {
-  return body == Body::disc ? "J per m of depth" : "J";
-}
 
 /// "0.02 m", "0.01 to 0.02 m".
 std::string range(double smallest, double largest) {
@@ -105,7 +83,7 @@ std::string describe_bodies(const GrainCase& resolved) {
     out += report_line("groups", list);
   }
   std::string walls;
-  for (const GrainWall& wall : resolved.scene.walls) {
+  for (const Wall& wall : resolved.scene.walls) {
     constexpr const char* shapes[] = {"line", "segment", "arc"};
     walls += fmt::format("{}{} ({}{})", walls.empty() ? "" : ", ", wall.name, shapes[static_cast<int>(wall.shape)],
                          wall.moves() ? ", moves" : "");
@@ -181,7 +159,7 @@ std::string describe_limit_of_maps(const GrainCase& resolved) {
 }
 
 /// Where a balance that lacks much comes from, and what to do.
-std::string advice_on_balance(const GrainSetup& setup, const GrainSimulation& simulation, const GrainLedger& ledger) {
+std::string advice_on_balance(const GrainSetup& setup, const GrainSimulation& simulation, const EnergyLedger& ledger) {
   const GrainCase& resolved = setup.resolved;
   if (is_map(resolved.options.law)) {
     return fmt::format(
@@ -223,20 +201,6 @@ std::string describe_step(const GrainSetup& setup) {
   return out;
 }
 
-/// What of the output is not what a reader of the case would expect.
-std::string describe_output(const GrainSetup& setup) {
-  const OutputCase& output = setup.resolved.output;
-  std::string out;
-  if (!setup.resolved.probes.empty() && !output.probe_interval)
-    out += report_line("probes", "not recorded: [output] has no probe_interval");
-  for (const auto& [name, interval] :
-       {std::pair{"frames", output.frame_interval}, std::pair{"probes", output.probe_interval}}) {
-    if (interval && *interval < setup.step.step)
-      out += report_line(name, fmt::format("at every step, which is longer than the interval of {} s", *interval));
-  }
-  return out;
-}
-
 }  // namespace
 
 std::string describe_grains(const GrainSetup& setup, const GrainSimulation& simulation) {
@@ -251,51 +215,20 @@ std::string describe_grains(const GrainSetup& setup, const GrainSimulation& simu
   for (const Effects::Entry& entry : simulation.effects().entries)
     if (!entry.active) out += report_line("", fmt::format("no {}: {}", entry.name, entry.why));
   out += report_line("law", describe_law(resolved)) + describe_limit_of_maps(resolved);
-  out += describe_pairs(resolved) + describe_shaking(resolved) + describe_step(setup) + describe_bonds(setup) +
-         describe_output(setup);
-  return out + report_line("memory", fmt::format("{:.0f} bytes a grain in the loop", simulation.bytes_per_grain()));
+  return out + describe_pairs(resolved) + describe_shaking(resolved) + describe_step(setup) + describe_bonds(setup);
 }
 
-std::string describe_grain_run(const GrainSetup& setup, const GrainSimulation& simulation, const GrainRun& run,
-                               const StageTimes& times) {
-  const GrainCounters& counters = simulation.counters();
-  std::string out =
-      report_line("steps", fmt::format("{}, to t = {:.6g} s; {:.3g} grain-steps per second", grouped(simulation.step()),
-                                       simulation.time(), grain_steps_per_second(setup, run)));
-  out += report_line("collisions", fmt::format("{} contacts begun, {} at the end; {} evaluations of the law",
-                                               grouped(counters.contacts), simulation.contacts().size(),
-                                               grouped(counters.evaluations)));
-  out += describe_drift_of_bonds(simulation.bonds());
-  const GrainLedger l = simulation.energy();
-  out += report_line("energy", fmt::format("kinetic {:.6g}, elastic {:.6g}, potential {:.6g} {}", l.kinetic,
-                                           l.elastic(), l.potential, energy_unit(setup.resolved.body)));
-  const GrainLedger& start = run.record.energies.front().ledger;
-  const double overlap = start.elastic();
-  out += report_line(
-      "",
-      fmt::format("at the start {:.6g}{}{}", l.initial,
-                  overlap > 1e-6 * largest_term(l) ? fmt::format(", {:.6g} of it in bodies that overlap", overlap) : "",
-                  l.work_of_walls != 0 ? fmt::format("; put in by walls {:.6g}", l.work_of_walls) : ""));
-  std::string lost;
-  for (const auto& [name, value] :
-       {std::pair{"restitution", l.lost_restitution}, std::pair{"normal dashpots", l.lost_dashpot},
-        std::pair{"slip", l.lost_slip}, std::pair{"tangential dashpots", l.lost_tangential_dashpot},
-        std::pair{"springs let go", l.lost_release}, std::pair{"bonds", l.lost_bond}})
-    if (value != 0) lost += fmt::format("{}{} {:.6g}", lost.empty() ? "" : ", ", name, value);
-  out += report_line("", lost.empty() ? "nothing lost" : fmt::format("lost {:.6g}: {}", l.lost(), lost));
-  out += report_line("balance", fmt::format("lacks {:.1e} of the largest term", relative_error(l)));
-  if (std::abs(relative_error(l)) > balance_to_doubt)
-    out += report_line("", "that is much: " + advice_on_balance(setup, simulation, l));
-  if (counters.doubtful > 0)
+std::string describe_grain_balance(const GrainSetup& setup, const GrainSimulation& simulation, const Balance& balance) {
+  std::string out;
+  if (std::abs(balance.now) > balance_to_doubt)
+    out += report_line("", "that is much: " + advice_on_balance(setup, simulation, simulation.energy()));
+  if (const std::int64_t doubtful = simulation.counters().doubtful; doubtful > 0)
     out += report_line(
         "",
         fmt::format("of all evaluations {} were of contacts pressed together in a step that may feed their vibration: "
                     "the step is safe for one contact, not for any cluster; compare with one a third as long",
-                    grouped(counters.doubtful)));
-  std::string stages;
-  for (const auto& [stage, seconds] : times.stages())
-    if (seconds >= 0.02 * times.total()) stages += fmt::format(", {} {:.2g} s", stage, seconds);
-  return out + report_line("times", fmt::format("{:.2g} s in all{}", times.total(), stages));
+                    grouped(doubtful)));
+  return out;
 }
 
 void add_grain_step(JsonObject& object, const GrainTimeStep& step) {
@@ -313,8 +246,7 @@ void add_grain_step(JsonObject& object, const GrainTimeStep& step) {
   set_known("critical_time_step", step.omega_step > 0 ? step.step * step.limit / step.omega_step : 0);
 }
 
-void add_grain_run(JsonObject& object, const GrainSetup& setup, const GrainSimulation& simulation,
-                   const GrainRun& run) {
+void add_grain_results(JsonObject& object, const GrainSetup& setup, const GrainSimulation& simulation) {
   const GrainCase& resolved = setup.resolved;
   const auto [round, ellipses, clumps] = counts_of_shapes(resolved);
   JsonObject shapes;
@@ -324,64 +256,14 @@ void add_grain_run(JsonObject& object, const GrainSetup& setup, const GrainSimul
       .set("grains", resolved.scene.grains.size())
       .set("shapes", shapes)
       .set("walls", resolved.scene.walls.size())
-      .set("law", to_string(resolved.options.law))
-      .set("steps", simulation.step())
-      .set("time", simulation.time());
-  add_grain_step(object, setup.step);
+      .set("law", to_string(resolved.options.law));
   add_bonds(object, setup, simulation.bonds());
-  const GrainLedger ledger = simulation.energy();
-  JsonObject energy;
-  for (const GrainEnergyTerm& term : grain_energy_terms) energy.set(term.name, ledger.*term.value);
-  energy.set("elastic", ledger.elastic())
-      .set("dissipated", ledger.lost())
-      .set("input", ledger.work_of_walls)
-      .set("error", ledger.error())
-      .set("relative_error", relative_error(ledger));
   const GrainCounters& counters = simulation.counters();
-  object.set("energy", energy)
-      .set("contacts", counters.contacts)
+  object.set("contacts", counters.contacts)
       .set("touching", simulation.contacts().size())
       .set("evaluations", counters.evaluations)
       .set("sweeps", counters.sweeps)
-      .set("rebuilds", counters.rebuilds)
-      .set("particle_steps_per_second", grain_steps_per_second(setup, run))
-      .set("bytes_per_grain", simulation.bytes_per_grain());
-}
-
-void write_grain_energy_plot(const std::filesystem::path& folder, const GrainSetup& setup, const GrainRun& run,
-                             bool overwrite) {
-  Plot plot;
-  plot.title = setup.resolved.title;
-  plot.x.label = "time, s";
-  plot.y.label = fmt::format("energy, {}", energy_unit(setup.resolved.body));
-  struct Curve {
-    const char* label;
-    PlotColour colour;
-    double (*value)(const GrainLedger&);
-  };
-  constexpr Curve curves[] = {
-      {"kinetic", PlotColour::blue, [](const GrainLedger& l) { return l.kinetic; }},
-      {"elastic", PlotColour::vermilion, [](const GrainLedger& l) { return l.elastic(); }},
-      {"potential", PlotColour::green, [](const GrainLedger& l) { return l.potential; }},
-      {"lost at impacts", PlotColour::orange,
-       [](const GrainLedger& l) { return l.lost_restitution + l.lost_dashpot + l.lost_release; }},
-      {"lost by friction", PlotColour::purple,
-       [](const GrainLedger& l) { return l.lost_slip + l.lost_tangential_dashpot; }},
-      {"lost in bonds", PlotColour::yellow, [](const GrainLedger& l) { return l.lost_bond; }},
-      {"put in by walls", PlotColour::sky_blue, [](const GrainLedger& l) { return l.work_of_walls; }},
-      {"what the balance lacks", PlotColour::black, [](const GrainLedger& l) { return l.error(); }},
-  };
-  for (const Curve& curve : curves) {
-    Series series{.label = curve.label, .colour = curve.colour};
-    bool any = false;
-    for (const GrainEnergySample& sample : run.record.energies) {
-      series.x.push_back(sample.time);
-      series.y.push_back(curve.value(sample.ledger));
-      any = any || series.y.back() != 0;
-    }
-    if (any) plot.series.push_back(std::move(series));
-  }
-  if (!plot.series.empty()) write_plot(folder, "energy_plot", plot, overwrite);
+      .set("rebuilds", counters.rebuilds);
 }
 
 }  // namespace equidem

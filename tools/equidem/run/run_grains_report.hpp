@@ -1,32 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What `equidem run` says of bodies that collide: report, JSON, plot of the energies.
+/// The part of the report and the JSON of `equidem run` that colliding bodies alone have.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
-#include "equidem/core/stopwatch.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/output/files/json.hpp"
 
-#include "run/run_grains_loop.hpp"
+#include "run/run_grains_setup.hpp"
+#include "run/run_job.hpp"
 
 namespace equidem {
 
 /// Bodies, walls, effects, contacts, step.
 std::string describe_grains(const GrainSetup& setup, const GrainSimulation& simulation);
-/// Steps, speed, contacts, energies and their balance.
-std::string describe_grain_run(const GrainSetup& setup, const GrainSimulation& simulation, const GrainRun& run,
-                               const StageTimes& times);
+/// What to do about the balance, and about contacts that were doubtful.
+std::string describe_grain_balance(const GrainSetup& setup, const GrainSimulation& simulation, const Balance& balance);
 
 /// time_step, contact_duration, steps_in_contact, omega_time_step, critical_time_step; null where unknown.
 void add_grain_step(JsonObject& object, const GrainTimeStep& step);
-/// title, grains, walls, body, law, steps, time, energy {...}, contacts (begun), touching, evaluations, ...
-void add_grain_run(JsonObject& object, const GrainSetup& setup, const GrainSimulation& simulation, const GrainRun& run);
-
-/// energy_plot.{csv,gp,svg,png}: the ledger in a few curves against time, and what the balance lacks.
-void write_grain_energy_plot(const std::filesystem::path& folder, const GrainSetup& setup, const GrainRun& run,
-                             bool overwrite);
+/// title, grains, walls, body, law, bonds, contacts (begun), touching, evaluations, ...
+void add_grain_results(JsonObject& object, const GrainSetup& setup, const GrainSimulation& simulation);
 
 }  // namespace equidem

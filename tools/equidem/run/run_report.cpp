@@ -3,269 +3,131 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/energy_terms.hpp"
-#include "equidem/output/plots/plot.hpp"
+#include "equidem/output/files/energies.hpp"
 
 #include "solve/report.hpp"
 
 namespace equidem {
 namespace {
 
-constexpr double balance_to_doubt = 0.1;  // of the largest energy
-constexpr double balance_to_mention = 1e-3;
+constexpr double worth_telling = 1e-3;  // of the largest energy
 
-double disc_steps_per_second(const RunSetup& setup, const RunResult& result) {
+double body_steps_per_second(const AnySimulation& simulation, const RunResult& result) {
   if (!(result.seconds > 0)) return 0;
-  return static_cast<double>(result.steps_done) * static_cast<double>(setup.problem.assembly.size()) / result.seconds;
+  return static_cast<double>(result.steps_done) * static_cast<double>(simulation.motions().size()) / result.seconds;
 }
 
-/// What the balance is held against: the most energy that there was.
-double largest_energy(const EnergyLedger& ledger) {
-  return std::max({std::abs(ledger.kinetic), std::abs(ledger.elastic), std::abs(ledger.potential),
-                   std::abs(ledger.dissipated()), std::abs(ledger.input()), std::abs(ledger.initial)});
+double largest_energy(const EnergyLedger& end, const RunRecord& record) {
+  double size = end.largest();
+  for (const EnergySample& sample : record.energies) size = std::max(size, sample.ledger.largest());
+  return size;
 }
 
-/// What the balance lacks now and at most, relative to the most energy that there was in the whole run.
-struct Balance {
-  double now = 0, most = 0;
-};
-Balance balance_of(const Simulation& simulation, const RunResult& result) {
-  const EnergyLedger end = simulation.energy();
-  double most = std::abs(end.error()), size = largest_energy(end);
-  for (const EnergySample& sample : result.energies) {
-    most = std::max(most, std::abs(sample.ledger.error()));
-    size = std::max(size, largest_energy(sample.ledger));
+/// "slip 0.1, bonds 0.02": the terms of a role that are not 0.
+std::string list_terms(const AnySimulation& simulation, const EnergyLedger& ledger, EnergyRole role) {
+  std::string list;
+  for (const EnergyTerm& term : energy_terms(simulation.family()))
+    if (term.role == role && ledger.*term.value != 0)
+      list += fmt::format("{}{} {:.6g}", list.empty() ? "" : ", ", term.label, ledger.*term.value);
+  return list;
+}
+
+std::string describe_energies(const RunPlan& plan, const AnySimulation& simulation, const RunResult& result) {
+  const EnergyLedger l = simulation.energy();
+  std::string out = report_line("energy", fmt::format("kinetic {:.6g}, elastic {:.6g}, potential {:.6g} {}", l.kinetic,
+                                                      l.elastic(), l.potential, energy_unit(plan.body)));
+  const double overlap = result.record.energies.front().ledger.elastic();
+  const std::string work = list_terms(simulation, l, EnergyRole::work);
+  out += report_line("", fmt::format("at the start {:.6g}{}{}", l.initial,
+                                     overlap > 1e-6 * l.largest() ? fmt::format(", {:.6g} of it elastic", overlap) : "",
+                                     work.empty() ? "" : "; put in by " + work));
+  if (std::abs(l.sway) > worth_telling * l.largest()) {
+    out += report_line(
+        "", fmt::format("leapfrog lets kinetic + elastic energy sway with the motion, now by {:.3g}", l.sway));
   }
-  return size > 0 ? Balance{end.error() / size, most / size} : Balance{};
-}
-
-/// What a case asks for that a run to rest does not heed.
-std::string unused_at_rest(const RunSetup& setup) {
-  const RunCase& run = setup.run();
-  const OutputCase& output = setup.problem.resolved.output;
-  std::string out;
-  const auto name = [&](bool asked, const char* what) {
-    if (asked) out += (out.empty() ? "" : ", ") + std::string(what);
-  };
-  name(run.time_step.step.has_value(), "time_step");
-  name(run.integrator != Integrator::leapfrog, "integrator");
-  name(run.damping.mass > 0 || run.damping.stiffness > 0 || run.damping.contact > 0 || run.damping.local > 0,
-       "[run.damping]");
-  name(!run.velocities.empty(), "[[velocity]]");
-  name(output.frame_interval.has_value(), "frame_interval");
-  name(!run.probes.empty() || output.probe_interval, "[[probe]]");
-  return out;
-}
-
-/// Whether anything of the scene changes with time.
-bool any_schedule(const Scene& scene) {
-  const auto changes = [](const std::optional<Schedule>& motion) { return motion && motion->changes(); };
-  return std::ranges::any_of(
-             scene.supports,
-             [&](const TimedSupport& s) { return changes(s.ux) || changes(s.uy) || changes(s.rotation); }) ||
-         std::ranges::any_of(scene.loads, [](const TimedLoad& load) { return load.factor.changes(); }) ||
-         std::ranges::any_of(scene.walls, [](const Wall& wall) { return wall.displacement.changes(); });
-}
-
-/// What of the output is not what a reader of the case would expect.
-std::string describe_output(const RunSetup& setup) {
-  const OutputCase& output = setup.problem.resolved.output;
-  std::string out;
-  if (!setup.run().probes.empty() && !output.probe_interval) {
-    out += report_line("probes", "not recorded: [output] has no probe_interval");
-  }
-  for (const auto& [name, interval] :
-       {std::pair{"frame", output.frame_interval}, std::pair{"probe", output.probe_interval}}) {
-    if (!interval || *interval >= setup.step.step) continue;
-    out += report_line(fmt::format("{}s", name),
-                       fmt::format("at every step, which is longer than {}_interval = {} s", name, *interval));
-  }
-  return out;
-}
-
-void add_scene(JsonObject& object, const RunSetup& setup) {
-  object.set("title", setup.problem.resolved.title)
-      .set("discs", setup.problem.assembly.size())
-      .set("contacts", setup.problem.assembly.contacts.size())
-      .set("motion", setup.run().motion == LoopKind::Motion::small ? "small" : "finite");
-}
-
-std::string stages_of(const StageTimes& times) {
-  std::string stages;
-  for (const auto& [stage, seconds] : times.stages()) {
-    if (seconds >= 0.02 * times.total()) stages += fmt::format(", {} {:.2g} s", stage, seconds);
-  }
-  return report_line("times", fmt::format("{:.2g} s in all{}", times.total(), stages));
+  const std::string lost = list_terms(simulation, l, EnergyRole::lost);
+  return out + report_line("", lost.empty() ? "nothing lost" : fmt::format("lost {:.6g}: {}", l.lost(), lost));
 }
 
 }  // namespace
 
-RelaxationOptions relaxation_options(const RunSetup& setup) {
-  return {.motion = setup.run().motion,
-          .rotation = setup.problem.resolved.rotation,
-          .gravity = setup.run().gravity,
-          .tolerance = *setup.run().until_rest};
+Balance balance_of(const EnergyLedger& end, const RunRecord& record) {
+  double most = std::abs(end.error());
+  for (const EnergySample& sample : record.energies) most = std::max(most, std::abs(sample.ledger.error()));
+  const double size = largest_energy(end, record);
+  return size > 0 ? Balance{end.error() / size, most / size} : Balance{};
 }
 
-std::string describe_run_setup(const RunSetup& setup, const Simulation& simulation) {
-  std::string out = describe_problem(setup.problem, simulation.effects());
-  const RunCase& run = setup.run();
-  out += report_line("motions", run.motion == LoopKind::Motion::small
-                                    ? "small: normals and contact points fixed, the forces are those of the matrix K"
-                                    : "finite: normals and contact points follow the bodies");
-  if (run.until_rest) {
-    const std::string unused = unused_at_rest(setup);
-    if (!unused.empty()) out += report_line("not used", unused + ": a run to rest has steps of its own and no time");
-    if (any_schedule(setup.scene)) {
-      out += report_line("schedules", "as they are at t = 0: a run to rest has no time, and starts from there");
-    }
-    return out;
+std::string describe_output(const RunJob& job, const RunPlan& plan, const AnySimulation& simulation) {
+  std::string out;
+  if (!plan.probes.empty() && !plan.probe_interval)
+    out += report_line("probes", "not recorded: [output] has no probe_interval");
+  for (const auto& [name, interval] :
+       {std::pair{"frame", plan.frame_interval}, std::pair{"probe", plan.probe_interval}}) {
+    if (!interval || *interval >= plan.time_step) continue;
+    out += report_line(fmt::format("{}s", name),
+                       fmt::format("at every step, which is longer than {}_interval = {} s", name, *interval));
   }
-  const IntegrationScheme& facts = scheme_of(run.integrator);
-  const bool late = run.damping.stiffness > 0 || run.damping.contact > 0 || run.damping.local > 0;
-  const int order = late ? order_with_late_velocities : facts.order;
-  out += report_line("integrator", fmt::format("{}, order {}{}, {} a step", to_string(run.integrator), order,
-                                               order < facts.order ? " (dampers act half a step late)" : "",
-                                               counted(facts.force_evaluations, "force evaluation")));
-  const TimeStep& step = setup.step;
-  if (std::isinf(step.critical)) {
-    out += report_line("time step", fmt::format("{:.6g} s; nothing vibrates, any step is stable", step.step));
-  } else {
-    out += report_line("time step",
-                       fmt::format("{:.6g} s, {:.4g} of the {} step {:.6g} s (rule: {})", step.step, step.ratio(),
-                                   step.exact ? "critical" : "guaranteed", step.critical, step.rule));
-    for (const std::string& note : step.notes) out += report_line("", note);
-  }
-  out += describe_output(setup);
-  out += report_line("memory", fmt::format("{:.0f} bytes a disc in the loop", simulation.bytes_per_disc()));
-  return out;
+  return out + report_line("memory",
+                           fmt::format("{:.0f} bytes a {} in the loop", simulation.bytes_per_body(), job.body_name()));
 }
 
-double estimate_seconds(const RunSetup& setup, Simulation& simulation) {
-  constexpr double enough = 0.05;  // s of the clock on the wall
-  const std::int64_t total = setup.steps();
-  std::int64_t steps = 1;
-  for (;;) {
-    steps = std::min(steps, total);
-    const Stopwatch watch;
-    simulation.advance(steps);
-    const double seconds = watch.seconds();
-    if (seconds > enough || steps == total) return seconds / static_cast<double>(steps) * static_cast<double>(total);
-    steps *= 4;
-  }
+std::string describe_times(const StageTimes& times) {
+  std::string stages;
+  for (const auto& [stage, seconds] : times.stages())
+    if (seconds >= 0.02 * times.total()) stages += fmt::format(", {} {:.2g} s", stage, seconds);
+  return report_line("times", fmt::format("{:.2g} s in all{}", times.total(), stages));
 }
 
-std::string describe_estimate(const RunSetup& setup, double seconds) {
-  return report_line(
-      "steps", fmt::format("{}, about {:.2g} s with these threads, output aside", grouped(setup.steps()), seconds));
-}
-
-std::string describe_run(const RunSetup& setup, const Simulation& simulation, const RunResult& result,
-                         const StageTimes& times) {
-  std::string out =
-      report_line("steps", fmt::format("{}, to t = {:.6g} s; {:.3g} disc-steps per second", grouped(simulation.step()),
-                                       simulation.time(), disc_steps_per_second(setup, result)));
-  const EnergyLedger ledger = simulation.energy();
-  out +=
-      report_line("energy", fmt::format("kinetic {:.6g}, elastic {:.6g}, potential {:.6g} N (J per m of depth, per m)",
-                                        ledger.kinetic, ledger.elastic, ledger.potential));
-  out +=
-      report_line("", fmt::format("at the start {:.6g}; put in by loads {:.6g}, supports {:.6g}, walls {:.6g}",
-                                  ledger.initial, ledger.work_of_loads, ledger.work_of_supports, ledger.work_of_walls));
-  if (std::abs(ledger.sway) > balance_to_mention * largest_energy(ledger)) {
-    out += report_line(
-        "", fmt::format("leapfrog lets kinetic + elastic energy sway with the motion, now by {:.3g}", ledger.sway));
-  }
-  out += report_line("", fmt::format("dissipated by mass damping {:.6g}, contacts {:.6g}, local damping {:.6g}",
-                                     ledger.damped_mass, ledger.damped_contact, ledger.damped_local));
-  const Balance balance = balance_of(simulation, result);
-  const double lacks = balance.most;
-  out += report_line("balance",
+std::string describe_run(const RunJob& job, const RunPlan& plan, const AnySimulation& simulation,
+                         const RunResult& result, const StageTimes& times) {
+  const Balance balance = balance_of(simulation.energy(), result.record);
+  return report_line("steps",
+                     fmt::format("{}, to t = {:.6g} s; {:.3g} {}-steps per second", grouped(simulation.step()),
+                                 simulation.time(), body_steps_per_second(simulation, result), job.body_name())) +
+         job.describe_events() + describe_energies(plan, simulation, result) +
+         report_line("balance",
                      fmt::format("lacks {:.1e} of the largest term of the run at its end, at most {:.1e} on the way",
-                                 std::abs(balance.now), lacks));
-  if (lacks > balance_to_mention) {
-    const Scene& scene = setup.scene;  // the work of what drives a run is counted to the second order
-    const bool driven = !scene.loads.empty() || !scene.supports.empty() || !scene.walls.empty();
-    const int order = std::min(scheme_of(setup.run().integrator).order, driven ? 2 : 4);
-    out += report_line(
-        "", fmt::format("it falls as the step to the power {}: about {:g} with run.time_step={:.2g}", order,
-                        balance_to_mention, setup.step.step * std::pow(balance_to_mention / lacks, 1.0 / order)));
-  }
-  if (lacks > balance_to_doubt) {
-    out += report_line("", "that is much: compare with a shorter step before trusting the motion");
-  }
-  return out + stages_of(times);
+                                 std::abs(balance.now), balance.most)) +
+         job.describe_balance(balance) + describe_times(times);
 }
 
-std::string describe_rest(const RunSetup&, const Relaxation& rest, const StageTimes& times) {
-  return report_line("rest", rest.report()) + stages_of(times);
-}
-
-void add_time_step(JsonObject& object, const TimeStep& step) {
-  object.set("time_step", step.step)
-      .set("critical_time_step", step.critical)
-      .set("time_step_ratio", step.ratio())
-      .set("time_step_rule", step.rule)
-      .set("critical_time_step_exact", step.exact)
-      .set("omega_max", step.omega_max);
-}
-
-void add_rest(JsonObject& object, const RunSetup& setup, const Relaxation& rest) {
-  add_scene(object, setup);
-  object.set("steps", rest.steps)
-      .set("force_evaluations", rest.evaluations)
-      .set("relative_unbalanced_force", rest.relative_unbalanced);
-}
-
-void add_run(JsonObject& object, const RunSetup& setup, const Simulation& simulation, const RunResult& result) {
-  add_scene(object, setup);
-  object.set("steps", simulation.step()).set("time", simulation.time());
-  add_time_step(object, setup.step);
+void add_run(JsonObject& object, const RunJob& job, const AnySimulation& simulation, const RunResult& result) {
+  job.add_step(object);
+  job.add_results(object);
   const EnergyLedger ledger = simulation.energy();
-  JsonObject energy;
-  for (const EnergyTerm& term : energy_terms) energy.set(term.name, ledger.*term.value);
-  energy.set("dissipated", ledger.dissipated())
-      .set("input", ledger.input())
-      .set("error", ledger.error())
-      .set("relative_error", balance_of(simulation, result).now);
-  object.set("energy", energy);
-  object.set("integrator", to_string(setup.run().integrator));
-  object.set("particle_steps_per_second", disc_steps_per_second(setup, result));
-  object.set("bytes_per_disc", simulation.bytes_per_disc());
+  object.set("steps", simulation.step())
+      .set("time", simulation.time())
+      .set("energy", energy_json(simulation.family(), ledger, largest_energy(ledger, result.record)))
+      .set("particle_steps_per_second", body_steps_per_second(simulation, result))
+      .set(fmt::format("bytes_per_{}", job.body_name()), simulation.bytes_per_body());
 }
 
-void write_energy_plot(const std::filesystem::path& folder, const RunSetup& setup, const RunResult& result,
+const char* energy_unit(Body body) {
+  return body == Body::disc ? "J per m of depth" : "J";
+}
+
+void write_energy_plot(const std::filesystem::path& folder, const std::string& name, const std::string& title,
+                       Body body, std::span<const EnergySample> energies, std::span<const EnergyCurve> curves,
                        bool overwrite) {
   Plot plot;
-  plot.title = setup.problem.resolved.title;
+  plot.title = title;
   plot.x.label = "time, s";
-  plot.y.label = "energy, J per m of depth";
-  struct Curve {
-    const char* label;
-    PlotColour colour;
-    double (*value)(const EnergyLedger&);
-  };
-  constexpr Curve curves[] = {
-      {"kinetic", PlotColour::blue, [](const EnergyLedger& l) { return l.kinetic; }},
-      {"elastic", PlotColour::vermilion, [](const EnergyLedger& l) { return l.elastic; }},
-      {"potential", PlotColour::green, [](const EnergyLedger& l) { return l.potential; }},
-      {"dissipated", PlotColour::orange, [](const EnergyLedger& l) { return l.dissipated(); }},
-      {"put in", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.input(); }},
-      {"what the balance lacks", PlotColour::black, [](const EnergyLedger& l) { return l.error(); }},
-  };
-  for (const Curve& curve : curves) {
+  plot.y.label = fmt::format("energy, {}", energy_unit(body));
+  const auto add = [&](const EnergyCurve& curve) {
     Series series{.label = curve.label, .colour = curve.colour};
-    bool any = false;
-    for (const EnergySample& sample : result.energies) {
+    for (const EnergySample& sample : energies) {
       series.x.push_back(sample.time);
       series.y.push_back(curve.value(sample.ledger));
-      any = any || series.y.back() != 0;
     }
-    if (any) plot.series.push_back(std::move(series));
-  }
-  if (!plot.series.empty()) write_plot(folder, "energy", plot, overwrite);
+    if (std::ranges::any_of(series.y, [](double y) { return y != 0; })) plot.series.push_back(std::move(series));
+  };
+  for (const EnergyCurve& curve : curves) add(curve);
+  add({"what the balance lacks", PlotColour::black, [](const EnergyLedger& l) { return l.error(); }});
+  if (!plot.series.empty()) write_plot(folder, name, plot, overwrite);
 }
 
 }  // namespace equidem

@@ -1,40 +1,42 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What `equidem run` says: report, JSON, plot of the energies.
+/// The part of the report, the JSON and the plots of `equidem run` that is common to all bodies.
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 
-#include "equidem/dynamics/relaxation.hpp"
-#include "equidem/output/files/json.hpp"
+#include "equidem/output/plots/plot.hpp"
 
-#include "run/run_loop.hpp"
-#include "run/run_setup.hpp"
+#include "run/run_job.hpp"
 
 namespace equidem {
 
-RelaxationOptions relaxation_options(const RunSetup& setup);
+Balance balance_of(const EnergyLedger& end, const RunRecord& record);
 
-/// Assembly, springs, effects, loop and step.
-std::string describe_run_setup(const RunSetup& setup, const Simulation& simulation);
-/// Steps, speed, energies and their balance.
-std::string describe_run(const RunSetup& setup, const Simulation& simulation, const RunResult& result,
-                         const StageTimes& times);
-/// Seconds that all steps will take, from the time of the first few, which are made.
-double estimate_seconds(const RunSetup& setup, Simulation& simulation);
-std::string describe_estimate(const RunSetup& setup, double seconds);
-std::string describe_rest(const RunSetup& setup, const Relaxation& rest, const StageTimes& times);
+/// Intervals that the time step does not allow, probes without interval, memory.
+std::string describe_output(const RunJob& job, const RunPlan& plan, const AnySimulation& simulation);
+/// Steps and speed, job.describe_events(), energies and their balance, times.
+std::string describe_run(const RunJob& job, const RunPlan& plan, const AnySimulation& simulation,
+                         const RunResult& result, const StageTimes& times);
+std::string describe_times(const StageTimes& times);
 
-/// time_step, critical_time_step, time_step_ratio, time_step_rule, omega_max.
-void add_time_step(JsonObject& object, const TimeStep& step);
-/// steps, force_evaluations, relative_unbalanced_force, and what was relaxed.
-void add_rest(JsonObject& object, const RunSetup& setup, const Relaxation& rest);
-/// steps, energy {kinetic, elastic, potential, dissipated, input, error, ...}, particle_steps_per_second, ...
-void add_run(JsonObject& object, const RunSetup& setup, const Simulation& simulation, const RunResult& result);
+/// steps, time, energy {terms, elastic, dissipated, input, error, relative_error}, particle_steps_per_second,
+/// bytes_per_disc or bytes_per_grain, and what the job adds.
+void add_run(JsonObject& object, const RunJob& job, const AnySimulation& simulation, const RunResult& result);
 
-/// energy.{csv,gp,svg,png}: the terms of the ledger against time, and what the balance lacks.
-void write_energy_plot(const std::filesystem::path& folder, const RunSetup& setup, const RunResult& result,
+/// "J per m of depth", "J".
+const char* energy_unit(Body body);
+
+struct EnergyCurve {
+  const char* label;
+  PlotColour colour;
+  double (*value)(const EnergyLedger&);
+};
+/// NAME.{csv,gp,svg,png}: curves that are not 0 throughout, and the error of the balance, against time.
+void write_energy_plot(const std::filesystem::path& folder, const std::string& name, const std::string& title,
+                       Body body, std::span<const EnergySample> energies, std::span<const EnergyCurve> curves,
                        bool overwrite);
 
 }  // namespace equidem

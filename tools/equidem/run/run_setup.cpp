@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <initializer_list>
 #include <string_view>
 #include <utility>
 
@@ -14,6 +13,8 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/checkpoint.hpp"
+
+#include "run/run_case_text.hpp"
 
 namespace equidem {
 namespace {
@@ -57,19 +58,12 @@ TimeStep step_of(Problem& problem, const Scene& scene, const std::optional<KeptS
 
 /// What changes faster than steps can follow.
 void check_events(const Case& resolved, TimeStep& step) {
-  constexpr double most = 0.5, worth_telling = 0.05;
+  constexpr double share_to_mention = 0.05;
   const double end = resolved.run->duration.value_or(0);
   const auto check = [&](const Schedule& schedule, const char* table, std::size_t k) {
-    const MissedEvent missed = missed_event(schedule, step.step, end);
-    const std::string place = fmt::format("{}.{}", table, k);
-    if (missed.share > most) {
-      throw Error(
-          ErrorKind::bad_input,
-          fmt::format("its schedule has an event at {:.6g} s that steps of {:.6g} s miss", missed.time, step.step),
-          fmt::format("between two steps lie {:.0f} % of the range of its values", 100 * missed.share),
-          "Give a time_step well below its length, or let it last longer", resolved.where(place + ".schedule"));
-    }
-    if (missed.share > worth_telling) {
+    const MissedEvent missed =
+        check_event(schedule, step.step, end, resolved.where(fmt::format("{}.{}.schedule", table, k)));
+    if (missed.share > share_to_mention) {
       step.notes.push_back(fmt::format("Of the schedule of {} {} steps miss up to {:.0f} % of its range, at {:.6g} s.",
                                        table, k, 100 * missed.share, missed.time));
     }
@@ -81,14 +75,11 @@ void check_events(const Case& resolved, TimeStep& step) {
       if (*motion) check(**motion, "support", k);
   }
   for (std::size_t k = 0; k < run.loads.size(); ++k) check(run.loads[k].factor, "load", k);
-  for (std::size_t k = 0; k < run.walls.size(); ++k) check(run.walls[k].displacement, "wall", k);
+  for (std::size_t k = 0; k < run.walls.size(); ++k)
+    for (const Schedule* motion : {&run.walls[k].move_x, &run.walls[k].move_y}) check(*motion, "wall", k);
 }
 
 /// Tells whether files that a case names are still what they were.
-void add(Checksum& sum, const Schedule& schedule) {
-  for (const auto* numbers : {&schedule.times, &schedule.values, &schedule.rates}) sum.add(*numbers);
-}
-
 std::string checksum_of(const Assembly& assembly) {
   Checksum sum;
   for (const Vec2 centre : assembly.centres) sum.add(centre.x), sum.add(centre.y);
@@ -113,13 +104,8 @@ std::string checksum_of_schedules(const Scene& scene) {
     for (const auto* motion : {&support.ux, &support.uy, &support.rotation})
       if (*motion) add(sum, **motion);
   for (const TimedLoad& load : scene.loads) add(sum, load.factor);
-  for (const Wall& wall : scene.walls) add(sum, wall.displacement);
+  for (const Wall& wall : scene.walls) add(sum, wall.move_x), add(sum, wall.move_y);
   return sum.text();
-}
-
-void erase(TomlValue& table, std::initializer_list<std::string_view> names) {
-  std::erase_if(table.entries,
-                [&](const auto& entry) { return std::find(names.begin(), names.end(), entry.first) != names.end(); });
 }
 
 /// In what order keys stand does not matter.
@@ -176,9 +162,9 @@ std::int64_t RunSetup::steps() const {
 std::string RunSetup::fingerprint() const {
   Case known = problem.resolved;
   if (TomlValue* table = known.document.find("run")) {
-    erase(*table, {"duration", "time_step", "allow_unstable_step"});  // the step is below
+    erase_keys(*table, {"duration", "time_step", "allow_unstable_step"});  // the step is below
   }
-  erase(known.document, {"title", "output", "homogenize", "ensemble", "solver"});
+  erase_keys(known.document, {"title", "output", "homogenize", "ensemble", "solver"});
   sort_keys(known.document);
   return to_toml(known, {}) +
          fmt::format("{}{}{}{}\n# checksums: discs and contacts {}\n# springs {}\n# schedules {}\n", step_line,

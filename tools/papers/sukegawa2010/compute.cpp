@@ -12,7 +12,7 @@
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
-#include "equidem/output/files/grain_checkpoint.hpp"
+#include "equidem/output/files/checkpoint.hpp"
 
 #include "sukegawa2010/sukegawa2010.hpp"
 
@@ -90,16 +90,16 @@ class Store {
     write_file(file(name, ".json"), object.json(), true);
   }
 
-  std::optional<GrainState> find_state(const Fill& fill, const std::string& settings) const {
+  std::optional<SavedState> find_state(const Fill& fill, const std::string& settings) const {
     const auto path = file(fill.name(), ".h5");
     if (!folder_ || overwrite_ || !std::filesystem::exists(path)) return {};
     const std::lock_guard lock(mutex_);
-    return read_grain_checkpoint(path, settings, start_of(fill).grains).state;
+    return read_checkpoint(path, settings).state;
   }
-  void keep_state(const Fill& fill, const std::string& settings, const GrainState& state) const {
+  void keep_state(const Fill& fill, const std::string& settings, const SavedState& state) const {
     if (!folder_) return;
     const std::lock_guard lock(mutex_);
-    write_grain_checkpoint(CheckpointWriter(file(fill.name(), ".h5"), settings, true), state, {});
+    CheckpointWriter(file(fill.name(), ".h5"), settings, true).write(state);
   }
 
  private:

@@ -136,7 +136,7 @@ class BoxRun {
     o.steps = static_cast<double>(simulation_.step());
     o.time = simulation_.time() - zero_;
     o.time_step = step_of(scene_, run_.fill);
-    const GrainLedger energy = simulation_.energy();
+    const EnergyLedger energy = simulation_.energy();
     o.energy_error = energy.error() / std::abs(energy.potential);
     o.seconds = computing_.lap();
     return o;

@@ -162,7 +162,7 @@ struct RunFiles {
 
 /// A box at rest.
 struct FilledBox {
-  GrainState state;
+  SavedState state;
   Outcome outcome;
 };
 /// Let the bodies fall and come to rest.

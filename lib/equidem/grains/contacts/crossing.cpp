@@ -21,7 +21,7 @@ constexpr double slow_way = 0.1;
   if (candidate.j >= 0) {
     other = fmt::format("grain {}", system.grain_of[static_cast<std::size_t>(candidate.j)]);
   } else {
-    const GrainWall& wall = system.scene.walls[static_cast<std::size_t>(~candidate.j)];
+    const Wall& wall = system.scene.walls[static_cast<std::size_t>(~candidate.j)];
     other = wall.name.empty() ? fmt::format("wall {}", system.wall_of[static_cast<std::size_t>(~candidate.j)])
                               : fmt::format("wall \"{}\"", wall.name);
   }

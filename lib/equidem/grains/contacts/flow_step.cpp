@@ -88,8 +88,8 @@ Line line_of(const GrainSystem& system, const Candidate& candidate, const Trial&
     return {sum / length, std::max(0.5, length / (norm(trial.branch) + norm(end)))};
   }
   const auto w = static_cast<std::size_t>(~candidate.j);
-  const GrainWall& wall = system.scene.walls[w];
-  if (wall.shape == GrainWall::Shape::line) return {-wall.normal, 1};
+  const Wall& wall = system.scene.walls[w];
+  if (wall.shape == Wall::Shape::line) return {-wall.normal, 1};
   const Vec2 centre = system.motions[static_cast<std::size_t>(candidate.i)].position;
   const auto normal_at = [&](double share) {
     return -nearest(wall, system.walls[w].displacement, centre - share * way).normal;

@@ -27,7 +27,7 @@ inline Meeting meeting_of_grains(const GrainBody& bi, const GrainBody& bj, Vec2 
 }
 
 /// \param position of grain i
-inline Meeting meeting_with_wall(const GrainBody& bi, const GrainWall& wall, Vec2 displacement, Vec2 position) {
+inline Meeting meeting_with_wall(const GrainBody& bi, const Wall& wall, Vec2 displacement, Vec2 position) {
   const WallContact contact = nearest(wall, displacement, position);
   return {bi.radius - contact.distance, -contact.normal, bi.radius, 0};
 }

@@ -88,8 +88,8 @@ void refuse_bowls(const GrainSystem& system) {
     const Candidate& candidate = system.candidates[c];
     if (candidate.j >= 0 || !has_ellipse(system, candidate, system.part_pairs[c])) continue;
     const auto i = static_cast<std::size_t>(candidate.i), w = static_cast<std::size_t>(~candidate.j);
-    const GrainWall& wall = system.scene.walls[w];
-    if (wall.shape != GrainWall::Shape::arc) continue;
+    const Wall& wall = system.scene.walls[w];
+    if (wall.shape != Wall::Shape::arc) continue;
     const Vec2 displacement = system.walls[w].displacement + system.dt() * system.walls[w].velocity;
     const Vec2 position = system.next[i].position;
     if (norm(position - wall.point - displacement) >= wall.radius) continue;

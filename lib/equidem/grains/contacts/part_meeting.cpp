@@ -52,8 +52,8 @@ PartMeeting meeting_of_grain_parts(const GrainSystem& system, const Candidate& c
 
 /// From outside, where refuse_bowls keeps it: against the whole circle where that is met on the arc, else against the
 /// nearer end, a point.
-EllipseContact contact_with_arc(const GrainSystem& system, std::int32_t grain, const Ellipse& ellipse,
-                                const GrainWall& wall, Vec2 displacement) {
+EllipseContact contact_with_arc(const GrainSystem& system, std::int32_t grain, const Ellipse& ellipse, const Wall& wall,
+                                Vec2 displacement) {
   const Vec2 position = system.motions[static_cast<std::size_t>(grain)].position;
   const Vec2 middle = wall.point + displacement, to_middle = middle - position;
   if (nearest(wall, displacement, position).distance > ellipse.a) return {EllipseState::apart, 1, {}, {}, {}};
@@ -72,16 +72,16 @@ EllipseContact contact_with_arc(const GrainSystem& system, std::int32_t grain, c
 EllipseContact contact_with_wall(const GrainSystem& system, std::int32_t grain, const GrainPart& part,
                                  std::int32_t wall_index, Vec2 last_normal) {
   const auto i = static_cast<std::size_t>(grain), w = static_cast<std::size_t>(wall_index);
-  const GrainWall& wall = system.scene.walls[w];
+  const Wall& wall = system.scene.walls[w];
   const Vec2 displacement = system.walls[w].displacement;
   const Ellipse ellipse{part.a, part.b, system.axes[i]};
   const Vec2 to_point = wall.point + displacement - system.motions[i].position;
   switch (wall.shape) {
-    case GrainWall::Shape::line:
+    case Wall::Shape::line:
       return contact_with_line(ellipse, to_point, wall.normal);
-    case GrainWall::Shape::segment:
+    case Wall::Shape::segment:
       return contact_with_segment(ellipse, to_point, to_point + (wall.end - wall.point), last_normal);
-    case GrainWall::Shape::arc:
+    case Wall::Shape::arc:
       break;
   }
   return contact_with_arc(system, grain, ellipse, wall, displacement);
@@ -89,8 +89,8 @@ EllipseContact contact_with_wall(const GrainSystem& system, std::int32_t grain, 
 
 /// Surely, without a root.
 bool is_clear_of_line(const GrainSystem& system, std::size_t i, const GrainPart& part, std::size_t w) {
-  const GrainWall& wall = system.scene.walls[w];
-  if (wall.shape != GrainWall::Shape::line) return false;
+  const Wall& wall = system.scene.walls[w];
+  if (wall.shape != Wall::Shape::line) return false;
   const double height = dot(system.motions[i].position - (wall.point + system.walls[w].displacement), wall.normal);
   const double x = part.a * dot(system.axes[i], wall.normal), y = part.b * cross(system.axes[i], wall.normal);
   return height > 0 && height * height * (1 - 1e-9) > x * x + y * y;

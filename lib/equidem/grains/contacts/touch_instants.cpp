@@ -53,7 +53,7 @@ double last_tangential(const GrainSystem& system, const TouchInstant& contact, d
 }  // namespace
 
 void begin_within_drift(GrainSystem& system, const TouchInstant& contact) {
-  GrainLedger& lost = system.lost;
+  EnergyLedger& lost = system.lost;
   lost.lost_dashpot += 0.5 * contact.dashpot * contact.closing;
   if (contact.slides) {
     lost.lost_slip -= 0.5 * contact.tangential * contact.slip + contact.stored;
@@ -69,17 +69,17 @@ void begin_within_drift(GrainSystem& system, const TouchInstant& contact) {
   if (contact.slides) {  // as the normal force
     const double normal = contact.spring + contact.dashpot;
     impulse.tangential = normal > 0 ? contact.tangential * ((impulse.spring + impulse.dashpot) / normal) : 0;
-    impulse.taken = &GrainLedger::lost_slip;
+    impulse.taken = &EnergyLedger::lost_slip;
   } else {
     impulse.tangential_spring = 0.5 * (contact.part - 1) * (contact.tangential - contact.tangential_dashpot);
     impulse.tangential = (contact.part - 0.5) * contact.tangential_dashpot;
-    impulse.taken = &GrainLedger::lost_tangential_dashpot;
+    impulse.taken = &EnergyLedger::lost_tangential_dashpot;
   }
   system.touch_impulses.push_back(impulse);
 }
 
 void end_within_drift(GrainSystem& system, const TouchInstant& contact) {
-  GrainLedger& lost = system.lost;
+  EnergyLedger& lost = system.lost;
   const DriftShares share = system.law().shares_of_drift(contact.part);
   const double given = contact.spring + contact.dashpot;
   double true_one = given != 0 ? share.spring * contact.spring + share.dashpot * contact.dashpot : 0;
@@ -88,7 +88,7 @@ void end_within_drift(GrainSystem& system, const TouchInstant& contact) {
   impulse.spring = (share.spring - 0.5) * contact.spring;
   impulse.dashpot = true_one - 0.5 * given - impulse.spring;
   impulse.tangential = last_tangential(system, contact, given, true_one) - 0.5 * contact.tangential;
-  impulse.taken = &GrainLedger::lost_release;
+  impulse.taken = &EnergyLedger::lost_release;
   lost.lost_dashpot += 0.5 * contact.dashpot * contact.closing;
   lost.lost_release += contact.stored - 0.5 * contact.tangential * contact.slip;
   if (given == 0) {  // the spring has nothing more to give: the dashpot takes what it holds

@@ -17,7 +17,7 @@
 namespace equidem {
 
 struct GrainSystem;
-struct GrainLedger;
+struct EnergyLedger;
 
 /// A contact at the end of the drift in which it began, or at the start of the drift in which it ended.
 struct TouchInstant {
@@ -45,7 +45,7 @@ struct TouchImpulse {
   std::int32_t i = 0, j = 0;
   Vec2 normal, arm_i, arm_j;
   double spring = 0, dashpot = 0, tangential_spring = 0, tangential = 0;  ///< N s, on j
-  double GrainLedger::*taken = nullptr;                                   ///< where what `tangential` takes is counted
+  double EnergyLedger::*taken = nullptr;                                  ///< where what `tangential` takes is counted
 };
 
 /// Count what a contact took in the drift in which it began or ended; corrected_verlet: see to it that it gets its

@@ -170,15 +170,15 @@ void place_walls(GrainSystem& system) {
   const double now = system.time();
   const double next = static_cast<double>(system.step + 1) * system.dt();
   for (std::size_t w = 0; w < system.walls.size(); ++w) {
-    const GrainWall& wall = system.scene.walls[w];
+    const Wall& wall = system.scene.walls[w];
     if (!wall.moves() && system.step > 0) continue;  // where it always was
-    const Vec2 here = {wall.move_x.at(now), wall.move_y.at(now)};
-    const Vec2 there = {wall.move_x.at(next), wall.move_y.at(next)};
+    const Vec2 here = wall.displacement(now);
+    const Vec2 there = wall.displacement(next);
     const Vec2 velocity = (there - here) / system.dt();
     system.walls[w] = {here, velocity, velocity, velocity};
     if (!system.options.verlet() || system.step == 0) continue;
     const double past = static_cast<double>(system.step - 1) * system.dt();
-    const Vec2 before = {wall.move_x.at(past), wall.move_y.at(past)};
+    const Vec2 before = wall.displacement(past);
     system.walls[w].acting_velocity = (there - before) / (2 * system.dt());
     system.walls[w].passed_velocity = (here - before) / system.dt();
   }

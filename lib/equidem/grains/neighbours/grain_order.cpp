@@ -14,7 +14,7 @@ auto place(const Grain& grain) {
                     grain.inertia.mass, grain.inertia.moment, grain.kind, grain.angle, grain.short_half_axis);
 }
 
-auto place(const GrainWall& wall) {
+auto place(const Wall& wall) {
   return std::tuple(static_cast<int>(wall.shape), wall.point.x, wall.point.y, wall.normal.x, wall.normal.y, wall.end.x,
                     wall.end.y, wall.radius, wall.from, wall.to, wall.kind);
 }
@@ -51,7 +51,7 @@ std::vector<std::int32_t> inverse(const std::vector<std::size_t>& order) {
 void order_by_place(GrainSystem& system, const GrainScene& scene) {
   system.grain_of = sorted_by_place(
       scene.grains, [&](const Grain& a, const Grain& b) { return has_lesser_discs(a, b, scene.clumps); });
-  system.wall_of = sorted_by_place(scene.walls, [](const GrainWall&, const GrainWall&) { return false; });
+  system.wall_of = sorted_by_place(scene.walls, [](const Wall&, const Wall&) { return false; });
   system.place_of_grain = inverse(system.grain_of);
   system.place_of_wall = inverse(system.wall_of);
   system.scene = scene;

@@ -27,7 +27,7 @@ PairLaw law_of(const Candidate& candidate) {
 /// Of all kinds but those that are of walls alone.
 std::vector<const PairProperties*> pairs_of_grains(const GrainScene& scene) {
   std::vector<bool> of_walls(static_cast<std::size_t>(scene.kinds)), met(of_walls);
-  for (const GrainWall& wall : scene.walls) of_walls[static_cast<std::size_t>(wall.kind)] = true;
+  for (const Wall& wall : scene.walls) of_walls[static_cast<std::size_t>(wall.kind)] = true;
   for (const Grain& grain : scene.grains) met[static_cast<std::size_t>(grain.kind)] = true;
   for (std::size_t k = 0; k < met.size(); ++k) met[k] = met[k] || !of_walls[k];
   std::vector<const PairProperties*> pairs;

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "equidem/core/vector.hpp"
-#include "equidem/dynamics/kernels/lane_vector.hpp"
 #include "equidem/grains/neighbours/neighbours.hpp"
+#include "equidem/motion/lane_vector.hpp"
 
 namespace equidem {
 

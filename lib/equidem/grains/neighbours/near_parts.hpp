@@ -16,9 +16,9 @@
 #include <utility>
 #include <vector>
 
-#include "equidem/dynamics/kernels/lane_vector.hpp"
 #include "equidem/grains/neighbours/near_pairs.hpp"
 #include "equidem/grains/scene/grain_parts.hpp"
+#include "equidem/motion/lane_vector.hpp"
 
 namespace equidem {
 

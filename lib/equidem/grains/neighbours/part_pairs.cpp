@@ -62,10 +62,10 @@ std::vector<PartPair> near_parts_of_wall(const GrainSystem& system, std::size_t 
   for (std::int32_t p = system.first_part[i]; p < system.first_part[i + 1]; ++p) {
     const GrainPart& part = system.parts[static_cast<std::size_t>(p)];
     const Vec2 centre = system.motions[i].position + offset_of(part, system.axes[i]);
-    const GrainWall& shape = system.scene.walls[wall];
+    const Wall& shape = system.scene.walls[wall];
     const WallContact contact = nearest(shape, system.walls[wall].displacement, centre);
     double reach = part.a;
-    if (shape.shape == GrainWall::Shape::line) reach = support({part.a, part.b, system.axes[i]}, contact.normal).reach;
+    if (shape.shape == Wall::Shape::line) reach = support({part.a, part.b, system.axes[i]}, contact.normal).reach;
     if (contact.distance <= reach + system.margin) near.push_back({p, 0, 0, {}, {}, {}});
   }
   return near;

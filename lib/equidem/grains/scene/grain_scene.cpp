@@ -86,7 +86,7 @@ std::vector<Lightest> lightest_of_kinds(const GrainScene& scene) {
     kind.inverse = std::max(kind.inverse, inverse);
     ++kind.bodies;
   }
-  for (const GrainWall& wall : scene.walls) ++kinds[static_cast<std::size_t>(wall.kind)].bodies;
+  for (const Wall& wall : scene.walls) ++kinds[static_cast<std::size_t>(wall.kind)].bodies;
   return kinds;
 }
 
@@ -151,11 +151,11 @@ void check_places(const GrainScene& scene, const PlaceOfGrain& where) {
     }
   }
   for (std::size_t i = 0; i < circles.size(); ++i) {
-    for (const GrainWall& wall : scene.walls) {
+    for (const Wall& wall : scene.walls) {
       if (!is_behind(scene, scene.grains[i], wall)) continue;
       refuse_grain(i, where, fmt::format("grain {} starts behind wall \"{}\" or on it", i, wall.name),
                    "a contact could not tell which way is out",
-                   wall.shape == GrainWall::Shape::line ? "Move it, or turn the normal of the wall round" : "Move it");
+                   wall.shape == Wall::Shape::line ? "Move it, or turn the normal of the wall round" : "Move it");
     }
   }
 }
@@ -197,8 +197,12 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
       throw error.at(where ? where(i) : std::string());
     }
   }
-  for (const GrainWall& wall : scene.walls) {
+  for (const Wall& wall : scene.walls) {
     check(wall);
+    if (wall.kN != 0) {
+      bad_input(fmt::format("wall \"{}\" has kN = {} Pa", wall.name, wall.kN),
+                "the stiffness of a wall that bodies collide with is that of its kind", "Give it to the pair of kinds");
+    }
     if (wall.kind < 0 || wall.kind >= scene.kinds) {
       bad_input(fmt::format("wall \"{}\" is of the kind {}", wall.name, wall.kind),
                 fmt::format("the table of pairs has {}", scene.kinds), "Use kinds from 0 to one less than that");

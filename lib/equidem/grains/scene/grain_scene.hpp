@@ -82,7 +82,7 @@ struct GrainScene {
   std::vector<Grain> grains;
   std::vector<Clump> clumps;  ///< shapes, of any number of grains each
   std::vector<GrainBond> bonds;
-  std::vector<GrainWall> walls;
+  std::vector<Wall> walls;
   Vec2 gravity = {};  ///< m/s²
   int kinds = 1;
   std::vector<PairProperties> pairs;  ///< kinds x kinds, symmetric, row by row

@@ -25,9 +25,9 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 
 /// \throws Error where `name` is none of `groups` and, with `walls_too`, none of the walls
 void check_name(const std::string& name, const std::string& option, std::vector<std::string> groups,
-                const std::vector<GrainWall>& walls, bool walls_too) {
+                const std::vector<Wall>& walls, bool walls_too) {
   if (walls_too)
-    for (const GrainWall& wall : walls) groups.push_back(wall.name);
+    for (const Wall& wall : walls) groups.push_back(wall.name);
   if (contains(groups, name)) return;
   const auto meant = nearest(name, groups);
   std::string list;
@@ -42,7 +42,7 @@ bool is_pair(const CollisionOptions::Pair& pair, const std::string& first, const
 
 /// \return the walls that have a pair of their own
 std::vector<std::string> check_pairs(const CollisionOptions& options, const std::vector<std::string>& groups,
-                                     const std::vector<GrainWall>& walls) {
+                                     const std::vector<Wall>& walls) {
   std::vector<std::string> apart;
   for (std::size_t k = 0; k < options.pairs.size(); ++k) {
     const CollisionOptions::Pair& pair = options.pairs[k];
@@ -101,7 +101,7 @@ ContactTable set_kinds(GrainScene& scene, std::span<const std::string> groups, c
   if (walls_apart.size() < scene.walls.size()) table.kinds.emplace_back("walls");
   table.kinds.insert(table.kinds.end(), walls_apart.begin(), walls_apart.end());
   const auto first_wall = table.kinds.begin() + static_cast<std::ptrdiff_t>(grain_kinds);
-  for (GrainWall& wall : scene.walls) {
+  for (Wall& wall : scene.walls) {
     const auto at = std::find(first_wall, table.kinds.end(), wall.name);
     wall.kind = static_cast<int>((at != table.kinds.end() ? at : first_wall) - table.kinds.begin());
   }

@@ -41,7 +41,7 @@ struct ContactTable {
 };
 
 /// Gives bodies and walls of a scene their kinds, and every two kinds their contact.
-/// \param scene with all bodies and walls; Grain::kind, GrainWall::kind and GrainScene::kinds are set
+/// \param scene with all bodies and walls; Grain::kind, Wall::kind and GrainScene::kinds are set
 /// \param groups one name for each body; empty: all are "grains"
 /// \throws Error (bad_input) as contact_of, its place the name of the option, such as "restitution", "walls.stiffness",
 ///         "pairs.0.with"; also: more than 256 kinds, a pair of unknown names, a pair given twice

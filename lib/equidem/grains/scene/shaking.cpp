@@ -202,13 +202,12 @@ Shaking shaking_of(const ShakingOptions& options, double run_duration) {
   return shaking;
 }
 
-void shake(std::span<GrainWall> walls, Vec2 direction, const Schedule& displacement) {
-  for (GrainWall& wall : walls) {
+void shake(std::span<Wall> walls, Vec2 direction, const Schedule& displacement) {
+  for (Wall& wall : walls) {
     if (wall.moves())
       bad_input(fmt::format("wall '{}' moves by itself", wall.name), "the box moves it too",
                 "Leave out its displacement, or keep it out of the shaking");
-    if (direction.x != 0) wall.move_x = scaled(displacement, direction.x);
-    if (direction.y != 0) wall.move_y = scaled(displacement, direction.y);
+    move_along(wall, direction, displacement);
   }
 }
 

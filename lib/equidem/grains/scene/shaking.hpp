@@ -54,11 +54,11 @@ GroundMotion follow_motion(std::span<const double> times, std::span<const double
 
 /// A motion a cos(2 pi f (t - start)) of the box, as harmonic_shaking.
 struct HarmonicShaking {
-  double acceleration = 0;                ///< amplitude a, m/s²
-  double frequency = 0;                   ///< f, Hz
-  double start = 0;                       ///< s
+  double acceleration = 0;                  ///< amplitude a, m/s²
+  double frequency = 0;                     ///< f, Hz
+  double start = 0;                         ///< s
   std::optional<std::int64_t> cycles = {};  ///< >= 1
-  std::optional<double> duration = {};    ///< s, whole cycles, instead of cycles; neither: to the end of the run
+  std::optional<double> duration = {};      ///< s, whole cycles, instead of cycles; neither: to the end of the run
 };
 
 /// A recorded motion of the box, as integrate_motion or follow_motion.
@@ -97,6 +97,6 @@ Shaking shaking_of(const ShakingOptions& options, double run_duration);
 /// Let walls move along a direction.
 /// \param direction unit
 /// \throws Error (bad_input) where a wall moves by itself
-void shake(std::span<GrainWall> walls, Vec2 direction, const Schedule& displacement);
+void shake(std::span<Wall> walls, Vec2 direction, const Schedule& displacement);
 
 }  // namespace equidem

@@ -41,9 +41,9 @@ void check_clump(const Clump& clump, const Grain& grain, std::size_t i) {
 
 /// In a bowl an ellipse may touch in two points at once.
 void check_arcs(const GrainScene& scene, const Grain& grain, std::size_t i) {
-  for (const GrainWall& wall : scene.walls) {
-    if (wall.shape != GrainWall::Shape::arc) continue;
-    const Vec2 middle = wall.point + Vec2{wall.move_x.at(0), wall.move_y.at(0)};
+  for (const Wall& wall : scene.walls) {
+    if (wall.shape != Wall::Shape::arc) continue;
+    const Vec2 middle = wall.point + wall.displacement(0);
     if (norm(grain.position - middle) >= wall.radius) continue;
     bad_input(fmt::format("grain {}, an ellipse, starts at the inside of the arc \"{}\"", i, wall.name),
               "there it may touch in two points at once, which one contact cannot tell", "Make the arc of segments");
@@ -118,8 +118,8 @@ bool are_inside_one_another(const GrainScene& scene, const Grain& a, const Grain
   });
 }
 
-bool is_behind(const GrainScene& scene, const Grain& grain, const GrainWall& wall) {
-  const Vec2 start = {wall.move_x.at(0), wall.move_y.at(0)};
+bool is_behind(const GrainScene& scene, const Grain& grain, const Wall& wall) {
+  const Vec2 start = wall.displacement(0);
   const auto is_out = [&](Vec2 centre) {
     const double distance = nearest(wall, start, centre).distance;
     return distance > 0 && std::isfinite(distance);

@@ -20,6 +20,6 @@ void check_laws_of_shapes(const GrainScene& scene, const GrainOptions& options);
 bool are_inside_one_another(const GrainScene& scene, const Grain& a, const Grain& b);
 
 /// Whether a centre of a part is behind a wall or on it.
-bool is_behind(const GrainScene& scene, const Grain& grain, const GrainWall& wall);
+bool is_behind(const GrainScene& scene, const Grain& grain, const Wall& wall);
 
 }  // namespace equidem

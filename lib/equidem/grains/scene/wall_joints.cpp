@@ -11,8 +11,8 @@
 namespace equidem {
 namespace {
 
-Vec2 end_of(const GrainWall& wall, int end) {
-  if (wall.shape == GrainWall::Shape::segment) return end == 1 ? wall.point : wall.end;
+Vec2 end_of(const Wall& wall, int end) {
+  if (wall.shape == Wall::Shape::segment) return end == 1 ? wall.point : wall.end;
   const double angle = end == 1 ? wall.from : wall.to;
   return wall.point + wall.radius * Vec2{std::cos(angle), std::sin(angle)};
 }
@@ -34,7 +34,7 @@ std::int32_t cover_of(const GrainSystem& system, std::int32_t i, std::int32_t pa
   return -1;
 }
 
-bool move_alike(const GrainWall& a, const GrainWall& b) {
+bool move_alike(const Wall& a, const Wall& b) {
   return a.move_x == b.move_x && a.move_y == b.move_y;
 }
 
@@ -55,13 +55,12 @@ void go_on(const Candidate& left, Candidate& contact) {
 
 }  // namespace
 
-std::optional<std::pair<std::size_t, std::size_t>> coinciding_walls(std::span<const GrainWall> walls,
-                                                                    double tolerance) {
-  using enum GrainWall::Shape;
-  const auto is_on = [&](const Vec2& point, const GrainWall& wall) {
+std::optional<std::pair<std::size_t, std::size_t>> coinciding_walls(std::span<const Wall> walls, double tolerance) {
+  using enum Wall::Shape;
+  const auto is_on = [&](const Vec2& point, const Wall& wall) {
     return std::abs(nearest(wall, {}, point).distance) <= tolerance;
   };
-  const auto lies_on = [&](const GrainWall& a, const GrainWall& b) {
+  const auto lies_on = [&](const Wall& a, const Wall& b) {
     if (a.shape == line) return b.shape == line && is_on(a.point, b) && norm(a.normal - b.normal) <= 1e-9;
     if (a.shape == arc)
       return b.shape == arc && a.point == b.point && a.radius == b.radius && a.from == b.from && a.to == b.to;
@@ -88,18 +87,18 @@ std::optional<std::pair<std::size_t, std::size_t>> coinciding_walls(std::span<co
   return {};
 }
 
-std::vector<WallJoints> joints_of(std::span<const GrainWall> walls, double tolerance) {
+std::vector<WallJoints> joints_of(std::span<const Wall> walls, double tolerance) {
   std::vector<WallJoints> all(walls.size());
   bool any = false;
   for (std::size_t w = 0; w < walls.size(); ++w) {
-    if (walls[w].shape == GrainWall::Shape::line) continue;
+    if (walls[w].shape == Wall::Shape::line) continue;
     for (const int end : {1, 2}) {
       const Vec2 point = end_of(walls[w], end);
       for (std::size_t k = 0; k < walls.size(); ++k) {
         if (k == w || !move_alike(walls[k], walls[w])) continue;
         if (!(std::abs(nearest(walls[k], {}, point).distance) <= tolerance)) continue;
         WallJoint joint{static_cast<std::int32_t>(k), 0};
-        if (walls[k].shape != GrainWall::Shape::line) {
+        if (walls[k].shape != Wall::Shape::line) {
           for (const int other : {1, 2})
             if (norm(end_of(walls[k], other) - point) <= tolerance) joint.end = other;
         }

@@ -31,11 +31,11 @@ using WallJoints = std::array<std::vector<WallJoint>, 2>;
 
 /// \param tolerance gaps no wider than this are none, m
 /// \return one for each wall; empty where no walls join
-std::vector<WallJoints> joints_of(std::span<const GrainWall> walls, double tolerance);
+std::vector<WallJoints> joints_of(std::span<const Wall> walls, double tolerance);
 
 /// Walls that lie on one another for some length, where every contact would be counted twice; parts of arcs are not
 /// looked at.
-std::optional<std::pair<std::size_t, std::size_t>> coinciding_walls(std::span<const GrainWall> walls, double tolerance);
+std::optional<std::pair<std::size_t, std::size_t>> coinciding_walls(std::span<const Wall> walls, double tolerance);
 
 /// Find out which contacts with ends of walls are covered by a contact with a wall that goes on there; these do
 /// nothing. What such a contact remembers goes over to the one that takes its place.

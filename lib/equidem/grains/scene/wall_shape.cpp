@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "equidem/core/error.hpp"
-#include "equidem/core/text.hpp"
 #include "equidem/core/turns.hpp"
 
 namespace equidem {
@@ -32,7 +30,7 @@ WallContact contact_with_end(int end, const Vec2& branch, const Vec2& own_normal
 /// Next to an end: of the length of a segment, of the radius of an arc.
 constexpr double next_to = 1e-9;
 
-WallContact nearest_of_segment(const GrainWall& wall, const Vec2& centre) {
+WallContact nearest_of_segment(const Wall& wall, const Vec2& centre) {
   const Vec2 along = wall.end - wall.point;
   const Vec2 branch = centre - wall.point;
   const double length = norm(along);
@@ -50,8 +48,7 @@ WallContact nearest_of_segment(const GrainWall& wall, const Vec2& centre) {
 /// Whether the ray from the centre of the arc through a point meets the arc.
 class Span {
  public:
-  explicit Span(const GrainWall& arc)
-      : angle_(arc.to - arc.from), first_(direction(arc.from)), last_(direction(arc.to)) {}
+  explicit Span(const Wall& arc) : angle_(arc.to - arc.from), first_(direction(arc.from)), last_(direction(arc.to)) {}
 
   [[nodiscard]] bool has(const Vec2& p) const {
     if (angle_ >= whole_turn * (1 - rounding)) return true;
@@ -67,7 +64,7 @@ class Span {
   Vec2 first_, last_;
 };
 
-WallContact nearest_of_arc(const GrainWall& wall, const Vec2& centre) {
+WallContact nearest_of_arc(const Wall& wall, const Vec2& centre) {
   const Vec2 p = centre - wall.point;
   const double distance = norm(p);
   if (distance < shortest) return {wall.radius, -direction(0.5 * (wall.from + wall.to)), 0};
@@ -85,7 +82,7 @@ WallContact nearest_of_arc(const GrainWall& wall, const Vec2& centre) {
   return last.distance < first.distance ? last : first;
 }
 
-bool segment_is_passed(const GrainWall& wall, const Vec2& before, const Vec2& after) {
+bool segment_is_passed(const Wall& wall, const Vec2& before, const Vec2& after) {
   const Vec2 along = wall.end - wall.point;
   const auto on_own_side = [&](const Vec2& p) { return cross(along, p - wall.point) >= 0; };
   if (on_own_side(before) == on_own_side(after)) return false;
@@ -96,7 +93,7 @@ bool segment_is_passed(const GrainWall& wall, const Vec2& before, const Vec2& af
 }
 
 /// The way meets the circle where |b + t w|^2 = R^2, A t^2 + 2 B t + C = 0.
-bool arc_is_passed(const GrainWall& wall, const Vec2& before, const Vec2& after) {
+bool arc_is_passed(const Wall& wall, const Vec2& before, const Vec2& after) {
   const Vec2 b = before - wall.point;
   const Vec2 w = after - before;
   const double from_centre = norm(b);
@@ -118,91 +115,31 @@ bool arc_is_passed(const GrainWall& wall, const Vec2& before, const Vec2& after)
   return in || out;
 }
 
-bool is_finite(const Vec2& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y);
-}
-
-[[noreturn]] void refuse(const GrainWall& wall, const std::string& what, std::string why, std::string remedy) {
-  bad_input(fmt::format("wall '{}' {}", wall.name, what), std::move(why), std::move(remedy));
-}
-
-void check_line(const GrainWall& wall) {
-  // Written so that it also refuses what is no number.
-  if (std::abs(dot(wall.normal, wall.normal) - 1) <= 1e-12) return;
-  refuse(wall, fmt::format("has the normal ({}, {}), which is no unit vector", wall.normal.x, wall.normal.y),
-         "distances are measured with it", "Divide it by its length");
-}
-
-void check_segment(const GrainWall& wall) {
-  if (!is_finite(wall.end)) {
-    refuse(wall, fmt::format("ends at ({}, {}) m", wall.end.x, wall.end.y), "it stands nowhere", "Give finite numbers");
-  }
-  if (norm(wall.end - wall.point) >= shortest) return;
-  refuse(wall, fmt::format("begins and ends at ({}, {}) m", wall.end.x, wall.end.y),
-         "a segment without length has no sides", "Move one of its ends");
-}
-
-void check_arc(const GrainWall& wall) {
-  if (!(wall.radius >= shortest) || !std::isfinite(wall.radius)) {
-    refuse(wall, fmt::format("has radius = {} m", wall.radius), "that of an arc must be > 0 and finite",
-           "Give a positive one");
-  }
-  const double angle = wall.to - wall.from;
-  if (!(angle > 0) || !std::isfinite(angle)) {
-    refuse(wall, fmt::format("goes from {} to {} rad", wall.from, wall.to), "an arc runs counter-clockwise, to > from",
-           "Exchange the angles, or add 2 pi to the second");
-  }
-  if (angle > whole_turn * (1 + rounding) + rounding * std::abs(wall.from)) {
-    refuse(wall, fmt::format("goes from {} to {} rad", wall.from, wall.to), "an arc is at most 2 pi long",
-           "Take 2 pi for a whole circle");
-  }
-}
-
 }  // namespace
 
-WallContact nearest(const GrainWall& wall, const Vec2& displacement, const Vec2& centre) {
+WallContact nearest(const Wall& wall, const Vec2& displacement, const Vec2& centre) {
   const Vec2 relative = centre - displacement;
   switch (wall.shape) {
-    case GrainWall::Shape::line:
+    case Wall::Shape::line:
       return {dot(wall.normal, relative - wall.point), wall.normal, 0};
-    case GrainWall::Shape::segment:
+    case Wall::Shape::segment:
       return nearest_of_segment(wall, relative);
-    case GrainWall::Shape::arc:
+    case Wall::Shape::arc:
       return nearest_of_arc(wall, relative);
   }
   return {};
 }
 
-bool passes_through(const GrainWall& wall, const Vec2& before, const Vec2& after) {
+bool passes_through(const Wall& wall, const Vec2& before, const Vec2& after) {
   switch (wall.shape) {
-    case GrainWall::Shape::line:
+    case Wall::Shape::line:
       return (dot(wall.normal, before - wall.point) >= 0) != (dot(wall.normal, after - wall.point) >= 0);
-    case GrainWall::Shape::segment:
+    case Wall::Shape::segment:
       return segment_is_passed(wall, before, after);
-    case GrainWall::Shape::arc:
+    case Wall::Shape::arc:
       return arc_is_passed(wall, before, after);
   }
   return false;
-}
-
-void check(const GrainWall& wall) {
-  if (!is_finite(wall.point)) {
-    refuse(wall, fmt::format("stands at ({}, {}) m", wall.point.x, wall.point.y), "it stands nowhere",
-           "Give finite numbers");
-  }
-  switch (wall.shape) {
-    case GrainWall::Shape::line:
-      check_line(wall);
-      break;
-    case GrainWall::Shape::segment:
-      check_segment(wall);
-      break;
-    case GrainWall::Shape::arc:
-      check_arc(wall);
-      break;
-  }
-  check(wall.move_x);
-  check(wall.move_y);
 }
 
 }  // namespace equidem

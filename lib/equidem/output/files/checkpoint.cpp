@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstdint>
 #include <span>
+#include <sstream>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -14,7 +15,6 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/energy_terms.hpp"
 #include "equidem/output/files/hdf5.hpp"
 #include "equidem/output/files/json.hpp"
 #include "equidem/output/files/open_file.hpp"
@@ -22,26 +22,9 @@
 namespace equidem {
 namespace {
 
-static_assert(sizeof(SimulationState) ==
-                  sizeof(std::int64_t) + 4 * sizeof(std::vector<DiscMotion>) + sizeof(EnergyLedger),
-              "a member of the state is not saved");
-static_assert(sizeof(DiscMotion) == 3 * sizeof(double));
-
 constexpr std::string_view magic = "equidem-checkpoint/";
-constexpr int format_version = 2;
+constexpr int format_version = 3;
 constexpr std::size_t header_size = 512;
-
-struct Field {
-  const char* name;
-  std::vector<DiscMotion> SimulationState::*values;
-};
-constexpr Field fields[] = {{"motions", &SimulationState::motions},
-                            {"previous", &SimulationState::previous},
-                            {"velocities", &SimulationState::velocities}};
-
-std::string ledger_name(const EnergyTerm& term) {
-  return fmt::format("ledger/{}", term.name);
-}
 
 /// The 512 bytes before the HDF5 part; the last line is a checksum of the lines before and of all that follows.
 struct Header {
@@ -148,40 +131,47 @@ std::string first_differences(std::string_view there, std::string_view here) {
   return shown > 0 ? text : "the ends of their lines";
 }
 
-constexpr std::size_t sample_size = 2 + std::size(energy_terms);
-
-std::vector<double> packed(std::span<const EnergySample> energies) {
-  std::vector<double> numbers;
-  for (const EnergySample& sample : energies) {
-    numbers.insert(numbers.end(), {static_cast<double>(sample.step), sample.time});
-    for (const EnergyTerm& term : energy_terms) numbers.push_back(sample.ledger.*term.value);
+/// Energies and paths as arrays beside those of the state; names that no simulation uses.
+std::vector<SavedArray> arrays_of(const RunRecord& record) {
+  SavedArray energies{.name = "energies", .columns = 2 + energy_terms().size(), .values = {}};
+  for (const EnergySample& sample : record.energies) {
+    energies.values.insert(energies.values.end(), {static_cast<double>(sample.step), sample.time});
+    for (const EnergyTerm& term : energy_terms()) energies.values.push_back(sample.ledger.*term.value);
   }
-  return numbers;
+  SavedArray paths{
+      .name = "paths", .columns = record.paths.empty() ? 1 : 2 * record.paths.front().size(), .values = {}};
+  for (const std::vector<Vec2>& places : record.paths)
+    for (const Vec2 place : places) paths.values.insert(paths.values.end(), {place.x, place.y});
+  return {std::move(energies), std::move(paths)};
 }
 
-std::vector<EnergySample> unpacked(const std::vector<double>& numbers) {
-  std::vector<EnergySample> energies(numbers.size() / sample_size);
-  const double* next = numbers.data();
-  for (EnergySample& sample : energies) {
+RunRecord record_of(const SavedArray& energies, const SavedArray& paths) {
+  RunRecord record;
+  for (const double* next = energies.values.data(); next != energies.values.data() + energies.values.size();) {
+    EnergySample& sample = record.energies.emplace_back();
     sample.step = static_cast<std::int64_t>(*next++);
     sample.time = *next++;
-    for (const EnergyTerm& term : energy_terms) sample.ledger.*term.value = *next++;
+    for (const EnergyTerm& term : energy_terms()) sample.ledger.*term.value = *next++;
   }
-  return energies;
+  for (std::size_t at = 0; at < paths.values.size(); at += paths.columns) {
+    std::vector<Vec2>& places = record.paths.emplace_back();
+    for (std::size_t k = 0; k < paths.columns; k += 2)
+      places.push_back({paths.values[at + k], paths.values[at + k + 1]});
+  }
+  return record;
 }
 
-Hdf5Layout layout_of(const SimulationState& state, const std::string& case_text, std::size_t samples) {
+/// The names of the arrays stand in an attribute of the file.
+Hdf5Layout layout_of(const std::vector<SavedArray>& arrays, const std::string& case_text) {
   Hdf5Layout layout;
   layout.user_block = header_size;
-  layout.arrays = {{"case", Hdf5Number::text, {case_text.size()}},
-                   {"step", Hdf5Number::int64, {1}},
-                   {"sums", Hdf5Number::float64, {state.sums.size()}},
-                   {"energies", Hdf5Number::float64, {samples, sample_size}}};
-  for (const Field& field : fields) {
-    layout.arrays.push_back({field.name, Hdf5Number::float64, {(state.*field.values).size(), 3}});
-  }
-  for (const EnergyTerm& term : energy_terms) {
-    layout.arrays.push_back({ledger_name(term), Hdf5Number::float64, {1}, "J/m"});
+  layout.arrays = {{"case", Hdf5Number::text, {case_text.size()}}, {"step", Hdf5Number::int64, {1}}};
+  for (const SavedArray& array : arrays) {
+    std::vector<std::uint64_t> shape{array.values.size() / array.columns};
+    if (array.columns > 1) shape.push_back(array.columns);
+    layout.arrays.push_back({array.name, Hdf5Number::float64, std::move(shape)});
+    std::string& names = layout.attributes["arrays"];
+    names += (names.empty() ? "" : " ") + array.name;
   }
   return layout;
 }
@@ -206,8 +196,9 @@ OpenFile open_whole(const std::filesystem::path& path) {
 }
 
 Hdf5Layout find_arrays(const std::filesystem::path& path) {
-  std::vector<std::string> names;
-  for (const Hdf5Array& array : layout_of({}, {}, 0).arrays) names.push_back(array.name);
+  std::istringstream listed(read_hdf5_layout(path, {}).attributes["arrays"]);
+  std::vector<std::string> names{"case", "step"};
+  for (std::string name; listed >> name;) names.push_back(name);
   return read_hdf5_layout(path, names);
 }
 
@@ -225,23 +216,17 @@ CheckpointWriter::CheckpointWriter(std::filesystem::path path, std::string case_
   check_writable(path_, overwrite);
 }
 
-void CheckpointWriter::write(const SimulationState& state, std::span<const EnergySample> energies) const {
+void CheckpointWriter::write(const SavedState& state, const RunRecord& record) const {
   std::error_code ignored;
   if (path_.has_parent_path()) std::filesystem::create_directories(path_.parent_path(), ignored);
+  std::vector<SavedArray> arrays = state.arrays;
+  for (SavedArray& array : arrays_of(record)) arrays.push_back(std::move(array));
   Replacement replacement(path_);
-  const Hdf5Layout layout = write_hdf5_layout(replacement.path(), layout_of(state, case_text_, energies.size()));
+  const Hdf5Layout layout = write_hdf5_layout(replacement.path(), layout_of(arrays, case_text_));
   OpenFile file(replacement.path(), OpenFile::Mode::update);
   put(file, layout["case"], std::span<const char>(case_text_));
   put(file, layout["step"], std::span(&state.step, 1));
-  put(file, layout["sums"], std::span<const double>(state.sums));
-  const std::vector<double> samples = packed(energies);
-  put(file, layout["energies"], std::span<const double>(samples));
-  for (const Field& field : fields) {
-    put(file, layout[field.name], std::span<const DiscMotion>(state.*field.values));
-  }
-  for (const EnergyTerm& term : energy_terms) {
-    put(file, layout[ledger_name(term)], std::span(&(state.ledger.*term.value), 1));
-  }
+  for (const SavedArray& array : arrays) put(file, layout[array.name], std::span<const double>(array.values));
   Header header{.library = library_version(), .bytes = file.size()};
   header.checksum = checksum_of(file, header);
   const std::string text = header.text();
@@ -259,20 +244,17 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string&
            "Go on with the case it was made by, or start the run afresh");
   }
   Checkpoint result;
-  SimulationState& state = result.state;
-  get(file, layout["step"], std::span(&state.step, 1));
-  state.sums.resize(layout["sums"].shape[0]);
-  get(file, layout["sums"], std::span(state.sums));
-  for (const Field& field : fields) {
-    (state.*field.values).resize(layout[field.name].shape[0]);
-    get(file, layout[field.name], std::span(state.*field.values));
+  get(file, layout["step"], std::span(&result.state.step, 1));
+  std::vector<SavedArray> arrays;
+  for (const Hdf5Array& found : layout.arrays) {
+    if (found.name == "case" || found.name == "step") continue;
+    SavedArray& array = arrays.emplace_back(found.name, found.shape.size() > 1 ? found.shape[1] : 1);
+    array.values.resize(found.size());
+    get(file, found, std::span(array.values));
   }
-  for (const EnergyTerm& term : energy_terms) {
-    get(file, layout[ledger_name(term)], std::span(&(state.ledger.*term.value), 1));
-  }
-  std::vector<double> samples(layout["energies"].size());
-  get(file, layout["energies"], std::span(samples));
-  result.energies = unpacked(samples);
+  result.record = record_of(arrays[arrays.size() - 2], arrays.back());
+  arrays.resize(arrays.size() - 2);
+  result.state.arrays = std::move(arrays);
   return result;
 }
 

@@ -4,20 +4,25 @@
 #pragma once
 
 #include <filesystem>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "equidem/dynamics/simulation.hpp"
-#include "equidem/output/files/energy_terms.hpp"
+#include "equidem/motion/ledger.hpp"
+#include "equidem/motion/saved_state.hpp"
 
 namespace equidem {
 
+/// History of a run from its start.
+struct RunRecord {
+  std::vector<EnergySample> energies;
+  std::vector<std::vector<Vec2>> paths;  ///< places of all bodies at each sample; empty: not recorded
+};
+
 /// Writes NAME.checkpoint.h5: an HDF5 file after 512 bytes of text that name the format, the version of the library,
-/// the length of the file and a checksum of all of it. Arrays: case (the text of the resolved case), step, motions,
-/// previous, velocities (n, 3): x, y, rotation; sums; ledger/NAME for every term of the energy ledger; energies: step,
-/// time and every term of the samples so far. A checkpoint is written beside the last one, forced to the disk, and
-/// takes its name then: killed at any moment, power cut or disk full, the last good one is there.
+/// the length of the file and a checksum of all of it. Arrays: case (the text of the resolved case); step; those of the
+/// saved state; energies: step, time and every term of the ledger, a row for each sample so far; paths. A checkpoint is
+/// written beside the last one, forced to the disk, and takes its name then: killed at any moment, power cut or disk
+/// full, the last good one is there.
 class CheckpointWriter {
  public:
   /// \param case_text the resolved case, by which read_checkpoint knows that a checkpoint belongs to a run
@@ -26,7 +31,7 @@ class CheckpointWriter {
   CheckpointWriter(std::filesystem::path path, std::string case_text, bool overwrite);
 
   /// \throws Error (computation_failed) where the disk is full; the last checkpoint stays
-  void write(const SimulationState& state, std::span<const EnergySample> energies = {}) const;
+  void write(const SavedState& state, const RunRecord& record = {}) const;
 
  private:
   std::filesystem::path path_;
@@ -34,14 +39,14 @@ class CheckpointWriter {
 };
 
 struct Checkpoint {
-  SimulationState state;
-  std::vector<EnergySample> energies;
+  SavedState state;
+  RunRecord record;
 };
 
 /// \param case_text the resolved case that is to go on
 /// \throws Error (bad_input) where there is no such file, it is no checkpoint, it is truncated or altered, another
-///         version
-///         of the format or the library wrote it, or it belongs to another case (with the first lines that differ)
+///         version of the format or the library wrote it, or it belongs to another case (with the first lines that
+///         differ)
 Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string& case_text);
 
 /// The case that a checkpoint belongs to.

@@ -13,6 +13,7 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/json.hpp"
+#include "equidem/output/files/placed_discs.hpp"
 #include "equidem/output/files/xdmf.hpp"
 
 namespace equidem {
@@ -97,7 +98,8 @@ FrameWriter::FrameWriter(const std::filesystem::path& folder, const std::string&
       index_path_(folder / (name + ".xdmf2")),
       assembly_(assembly),
       travelling_(options.travelling),
-      of_discs_(options.of_discs) {
+      of_discs_(options.of_discs),
+      parts_(options.parts) {
   assert(options.expected >= 1);
   const bool replace = options.overwrite || options.continue_after;
   check_writable(path_, replace);
@@ -115,6 +117,18 @@ FrameWriter::FrameWriter(const std::filesystem::path& folder, const std::string&
 void FrameWriter::append(std::int64_t step, double time, std::span<const DiscMotion> motions,
                          std::span<const DiscMotion> velocities) {
   assert(step > last_step());
+  std::vector<DiscMotion> of_parts, rates_of_parts;
+  if (!parts_.empty()) {
+    for (const FramePart& part : parts_) {
+      const DiscMotion &body = motions[part.body], &rate = velocities[part.body];
+      const bool in_the_middle = part.offset == Vec2{};
+      const Vec2 arm = in_the_middle ? Vec2{} : turned(part.offset, body.theta);
+      of_parts.push_back({body.u + arm, body.theta});
+      rates_of_parts.push_back({rate.u + rate.theta * perpendicular(arm), rate.theta});
+    }
+    motions = of_parts;
+    velocities = rates_of_parts;
+  }
   assert(motions.size() == assembly_.size() && velocities.size() == assembly_.size());
   const std::size_t frame = times_.size();
   if (frame == layout_["time"].shape[0]) resize(2 * frames());

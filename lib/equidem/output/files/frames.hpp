@@ -24,6 +24,12 @@ struct DiscNumbers {
   std::vector<double> values;
 };
 
+/// A disc of a body.
+struct FramePart {
+  std::size_t body = 0;
+  Vec2 offset;  ///< in the frame of the body, m
+};
+
 struct FrameOptions {
   /// Frames to leave room for, >= 1. Where more come the file is copied into one of twice the room.
   std::int64_t expected = 100;
@@ -34,6 +40,7 @@ struct FrameOptions {
   /// Go on with the files of an earlier run: frames later than this step are dropped.
   std::optional<std::int64_t> continue_after = {};
   std::vector<DiscNumbers> of_discs = {};  ///< beside the radius
+  std::vector<FramePart> parts = {};       ///< of each disc; empty: every disc is a body
 };
 
 /// Writes frames. NAME.h5 (schema "equidem-frames/1"), n discs, m contacts, room for K frames:
@@ -56,7 +63,7 @@ class FrameWriter {
   /// Add a frame.
   /// \param step greater than last_step()
   /// \param time s
-  /// \param motions, velocities per disc; m and rad, m/s and rad/s
+  /// \param motions, velocities per body; m and rad, m/s and rad/s
   /// \throws Error (computation_failed) where the disk is full; earlier frames stay
   void append(std::int64_t step, double time, std::span<const DiscMotion> motions,
               std::span<const DiscMotion> velocities);
@@ -82,6 +89,7 @@ class FrameWriter {
   const Assembly& assembly_;
   bool travelling_;
   std::vector<DiscNumbers> of_discs_;
+  std::vector<FramePart> parts_;
   Hdf5Layout layout_;
   std::optional<OpenFile> file_;
   std::vector<double> times_;

@@ -55,7 +55,7 @@ void write_grain_csv(const std::filesystem::path& path, const GrainRows& rows, b
 }
 
 void write_grain_contact_csv(const std::filesystem::path& path, std::span<const GrainContact> contacts,
-                             std::span<const GrainWall> walls, Body body, bool overwrite) {
+                             std::span<const Wall> walls, Body body, bool overwrite) {
   const std::string depth = per_depth(body);
   CsvText text({"i", "j", "wall", "overlap_m", "closing_m_per_s", "normal_x", "normal_y", "normal_force_N" + depth,
                 "tangential_force_N" + depth, "mode", "steps"},
@@ -74,20 +74,6 @@ void write_grain_contact_csv(const std::filesystem::path& path, std::span<const 
       text.cell(value);
     text.cell(std::int64_t{contact.mode});
     text.cell(contact.steps);
-    text.end_row();
-  }
-  write_file(path, text.text(), overwrite);
-}
-
-void write_grain_energy_csv(const std::filesystem::path& path, std::span<const GrainEnergySample> energies, Body body,
-                            bool overwrite) {
-  std::vector<std::string> columns{"step", "time_s"};
-  for (const std::string& name : grain_energy_columns(body)) columns.push_back(name);
-  CsvText text(columns, energies.size());
-  for (const GrainEnergySample& sample : energies) {
-    text.cell(sample.step);
-    text.cell(sample.time);
-    for (const double value : grain_energy_cells(sample.ledger)) text.cell(value);
     text.end_row();
   }
   write_file(path, text.text(), overwrite);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Colliding bodies, their contacts and energies as CSV.
+/// Colliding bodies, their contacts and bonds as CSV.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/material/inertia.hpp"
-#include "equidem/output/files/grain_energy.hpp"
+#include "equidem/output/files/energies.hpp"
 
 namespace equidem {
 
@@ -35,13 +35,7 @@ void write_grain_csv(const std::filesystem::path& path, const GrainRows& rows, b
 /// steps.
 /// \throws Error (bad_input) as write_file does
 void write_grain_contact_csv(const std::filesystem::path& path, std::span<const GrainContact> contacts,
-                             std::span<const GrainWall> walls, Body body, bool overwrite);
-
-/// One row per moment: step, time_s, every term of the ledger as TERM_J (of discs TERM_J_per_m), error_J, what its
-/// balance lacks.
-/// \throws Error (bad_input) as write_file does
-void write_grain_energy_csv(const std::filesystem::path& path, std::span<const GrainEnergySample> energies, Body body,
-                            bool overwrite);
+                             std::span<const Wall> walls, Body body, bool overwrite);
 
 /// One row per bond: i, j, normal_dashpot, tangential_dashpot, rolling_dashpot, normal_spring, tangential_spring
 /// (units: GrainBond), and where `drifts` are given what each has drifted since the start: distance_drift, slip_drift

@@ -6,12 +6,12 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/energy_terms.hpp"
+#include "equidem/output/files/energies.hpp"
 
 namespace equidem {
 namespace {
 
-void check(const std::vector<Probe>& probes, std::size_t discs) {
+void check(const std::vector<Probe>& probes, std::size_t bodies) {
   std::set<std::string> names;
   for (const Probe& probe : probes) {
     if (probe.name.empty()) bad_input("a probe has no name", "its columns are found by it", "Name it");
@@ -19,69 +19,52 @@ void check(const std::vector<Probe>& probes, std::size_t discs) {
       bad_input(fmt::format("two probes are called '{}'", probe.name), "columns are found by their names",
                 "Rename one of them");
     }
-    if (probe.discs.empty()) {
-      bad_input(fmt::format("the probe '{}' holds no disc", probe.name), "nothing has no mean",
-                "Choose at least one disc");
+    if (probe.bodies.empty()) {
+      bad_input(fmt::format("the probe '{}' holds no body", probe.name), "nothing has no mean",
+                "Choose at least one body");
     }
-    for (const std::int32_t disc : probe.discs) {
-      if (disc < 0 || static_cast<std::size_t>(disc) >= discs) {
-        bad_input(fmt::format("the probe '{}' names disc {}", probe.name, disc),
-                  fmt::format("the discs are 0 to {}", static_cast<long long>(discs) - 1),
-                  "Choose discs that are there");
+    for (const std::int32_t body : probe.bodies) {
+      if (body < 0 || static_cast<std::size_t>(body) >= bodies) {
+        bad_input(fmt::format("the probe '{}' names body {}", probe.name, body),
+                  fmt::format("the bodies are 0 to {}", static_cast<long long>(bodies) - 1),
+                  "Choose bodies that are there");
       }
     }
   }
 }
 
-std::vector<std::string> columns_of(const std::vector<Probe>& probes, bool energy) {
+std::vector<std::string> columns_of(const std::vector<Probe>& probes, const ProbeOptions& options) {
   std::vector<std::string> columns{"step", "time_s"};
-  for (const Probe& probe : probes) {
-    for (const ProbeQuantity quantity : probe.quantities) {
-      switch (quantity) {
-        case ProbeQuantity::displacement:
-          columns.insert(columns.end(), {probe.name + "_ux_m", probe.name + "_uy_m"});
-          break;
-        case ProbeQuantity::rotation:
-          columns.push_back(probe.name + "_rotation_rad");
-          break;
-        case ProbeQuantity::velocity:
-          columns.insert(columns.end(), {probe.name + "_vx_m_per_s", probe.name + "_vy_m_per_s"});
-          break;
-        case ProbeQuantity::spin:
-          columns.push_back(probe.name + "_spin_rad_per_s");
-          break;
-      }
-    }
-  }
-  if (energy) {
-    for (const EnergyTerm& term : energy_terms) columns.push_back(fmt::format("{}_J_per_m", term.name));
-    columns.emplace_back("error_J_per_m");
-  }
+  for (const Probe& probe : probes)
+    for (const ProbeQuantity quantity : probe.quantities)
+      for (const char* column : {entry_of(quantity).column, entry_of(quantity).second_column})
+        if (column != nullptr) columns.push_back(probe.name + column);
+  for (const std::string& name : energy_columns(options.family, options.body)) columns.push_back(name);
   return columns;
 }
 
-DiscMotion mean_of(const std::vector<std::int32_t>& discs, std::span<const DiscMotion> values) {
+DiscMotion mean_of(const std::vector<std::int32_t>& bodies, std::span<const DiscMotion> values) {
   DiscMotion sum;
-  for (const std::int32_t disc : discs) {
-    sum.u += values[static_cast<std::size_t>(disc)].u;
-    sum.theta += values[static_cast<std::size_t>(disc)].theta;
+  for (const std::int32_t body : bodies) {
+    sum.u += values[static_cast<std::size_t>(body)].u;
+    sum.theta += values[static_cast<std::size_t>(body)].theta;
   }
-  const auto count = static_cast<double>(discs.size());
+  const auto count = static_cast<double>(bodies.size());
   return {sum.u / count, sum.theta / count};
 }
 
-std::vector<Probe> checked(std::vector<Probe> probes, std::size_t discs) {
-  check(probes, discs);
+std::vector<Probe> checked(std::vector<Probe> probes, std::size_t bodies) {
+  check(probes, bodies);
   return probes;
 }
 
 }  // namespace
 
-ProbeWriter::ProbeWriter(std::filesystem::path path, std::vector<Probe> probes, std::size_t discs,
+ProbeWriter::ProbeWriter(std::filesystem::path path, std::vector<Probe> probes, std::size_t bodies,
                          const ProbeOptions& options)
-    : probes_(checked(std::move(probes), discs)),
-      energy_(options.energy),
-      table_(std::move(path), columns_of(probes_, options.energy),
+    : probes_(checked(std::move(probes), bodies)),
+      family_(options.family),
+      table_(std::move(path), columns_of(probes_, options),
              {.interval = options.interval, .overwrite = options.overwrite, .continue_after = options.continue_after}) {
 }
 
@@ -89,22 +72,18 @@ void ProbeWriter::record(std::int64_t step, double time, std::span<const DiscMot
                          std::span<const DiscMotion> velocities, const EnergyLedger& ledger) {
   std::vector<double> cells = {time};
   for (const Probe& probe : probes_) {
-    const DiscMotion motion = mean_of(probe.discs, motions), velocity = mean_of(probe.discs, velocities);
+    const DiscMotion motion = mean_of(probe.bodies, motions), velocity = mean_of(probe.bodies, velocities);
     for (const ProbeQuantity quantity : probe.quantities) {
-      const bool rates = quantity == ProbeQuantity::velocity || quantity == ProbeQuantity::spin;
-      const DiscMotion& value = rates ? velocity : motion;
-      if (quantity == ProbeQuantity::rotation || quantity == ProbeQuantity::spin) {
+      const ProbeQuantityFacts& facts = entry_of(quantity);
+      const DiscMotion& value = facts.rate ? velocity : motion;
+      if (facts.second_column == nullptr) {
         cells.push_back(value.theta);
       } else {
-        cells.push_back(value.u.x);
-        cells.push_back(value.u.y);
+        cells.insert(cells.end(), {value.u.x, value.u.y});
       }
     }
   }
-  if (energy_) {
-    for (const EnergyTerm& term : energy_terms) cells.push_back(ledger.*term.value);
-    cells.push_back(ledger.error());
-  }
+  for (const double cell : energy_cells(family_, ledger)) cells.push_back(cell);
   table_.add(step, cells);
 }
 

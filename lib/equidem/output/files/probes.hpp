@@ -12,50 +12,63 @@
 
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/names.hpp"
-#include "equidem/dynamics/simulation.hpp"
+#include "equidem/material/inertia.hpp"
+#include "equidem/motion/ledger.hpp"
 #include "equidem/output/files/growing_csv.hpp"
 
 namespace equidem {
 
-enum class ProbeQuantity { displacement, rotation, velocity, spin };
+/// Bonded discs have displacements and rotations, colliding bodies positions and angles; both velocities and spins.
+enum class ProbeQuantity { displacement, rotation, position, angle, velocity, spin };
+
+struct ProbeQuantityFacts {
+  ProbeQuantity value;
+  const char* name;
+  bool rate;
+  const char *column, *second_column;  ///< ends of their names; an angle has one
+};
 template <>
 struct EnumNames<ProbeQuantity> {
   static constexpr const char* what = "quantity of a probe";
-  static constexpr NamedValue<ProbeQuantity> list[] = {{ProbeQuantity::displacement, "displacement"},
-                                                       {ProbeQuantity::rotation, "rotation"},
-                                                       {ProbeQuantity::velocity, "velocity"},
-                                                       {ProbeQuantity::spin, "spin"}};
+  static constexpr ProbeQuantityFacts list[] = {
+      {ProbeQuantity::displacement, "displacement", false, "_ux_m", "_uy_m"},
+      {ProbeQuantity::rotation, "rotation", false, "_rotation_rad", nullptr},
+      {ProbeQuantity::position, "position", false, "_x_m", "_y_m"},
+      {ProbeQuantity::angle, "angle", false, "_angle_rad", nullptr},
+      {ProbeQuantity::velocity, "velocity", true, "_vx_m_per_s", "_vy_m_per_s"},
+      {ProbeQuantity::spin, "spin", true, "_spin_rad_per_s", nullptr}};
 };
 
-/// The mean of some discs.
+/// The mean over some bodies.
 struct Probe {
-  std::string name;                 ///< begins the names of its columns
-  std::vector<std::int32_t> discs;  ///< at least one
+  std::string name;                  ///< begins the names of its columns
+  std::vector<std::int32_t> bodies;  ///< at least one
   std::vector<ProbeQuantity> quantities = {ProbeQuantity::displacement};
 };
 
 struct ProbeOptions {
-  bool energy = true;      ///< the energy ledger too
-  double interval = 5;     ///< s of the clock on the wall between two writes; 64 KiB of rows are written at once
+  BodyFamily family = BodyFamily::bonded;  ///< whose terms of the ledger
+  Body body = Body::disc;                  ///< unit of energies: J per metre of depth, of spheres J
+  double interval = 5;     ///< s of wall-clock time between two writes; 64 KiB of rows are written at once
   bool overwrite = false;  ///< a file of that name
   /// Go on with the file of an earlier run: rows later than this step, and a row cut short, are dropped.
   std::optional<std::int64_t> continue_after = {};
 };
 
-/// Writes rows: step, time_s; for every probe what it asks for: NAME_ux_m, NAME_uy_m; NAME_rotation_rad;
-/// NAME_vx_m_per_s, NAME_vy_m_per_s; NAME_spin_rad_per_s; then every term of the ledger, TERM_J_per_m, and
-/// error_J_per_m, what its balance lacks.
+/// Writes rows: step, time_s; for every probe what it asks for: NAME_ux_m, NAME_uy_m; NAME_rotation_rad; NAME_x_m,
+/// NAME_y_m; NAME_angle_rad; NAME_vx_m_per_s, NAME_vy_m_per_s; NAME_spin_rad_per_s; then the columns of the energy
+/// ledger (energies.hpp).
 class ProbeWriter {
  public:
-  /// \param discs of the assembly
-  /// \throws Error (bad_input) where two probes share a name or one has no disc or one that is not there, where the
-  ///         file
-  ///         exists and neither `overwrite` nor `continue_after` is set, where it cannot be written, or where the file
-  ///         to go on with has other columns
-  ProbeWriter(std::filesystem::path path, std::vector<Probe> probes, std::size_t discs, const ProbeOptions& options);
+  /// \param bodies of the scene
+  /// \throws Error (bad_input) where two probes share a name or one has no body or one that is not there, where the
+  ///         file exists and neither `overwrite` nor `continue_after` is set, where it cannot be written, or where the
+  ///         file to go on with has other columns
+  ProbeWriter(std::filesystem::path path, std::vector<Probe> probes, std::size_t bodies, const ProbeOptions& options);
 
   /// Add a row.
   /// \param step greater than last_step()
+  /// \param motions displacements and rotations, or positions and angles, of all bodies
   /// \throws Error (computation_failed) where the disk is full
   void record(std::int64_t step, double time, std::span<const DiscMotion> motions,
               std::span<const DiscMotion> velocities, const EnergyLedger& ledger);
@@ -69,7 +82,7 @@ class ProbeWriter {
 
  private:
   std::vector<Probe> probes_;
-  bool energy_;
+  BodyFamily family_;
   GrowingCsv table_;
 };
 

@@ -28,13 +28,13 @@ struct View {
   [[nodiscard]] double span() const { return std::max(high.x - low.x, high.y - low.y); }
 };
 
-Vec2 displacement(const GrainWall& wall, double time) {
-  return {wall.move_x.at(time), wall.move_y.at(time)};
+Vec2 displacement(const Wall& wall, double time) {
+  return wall.displacement(time);
 }
 
 /// A segment or an arc as a line of points, where it stands at first.
-std::vector<Vec2> outline_of(const GrainWall& wall) {
-  if (wall.shape == GrainWall::Shape::segment) return {wall.point, wall.end};
+std::vector<Vec2> outline_of(const Wall& wall) {
+  if (wall.shape == Wall::Shape::segment) return {wall.point, wall.end};
   std::vector<Vec2> points;
   constexpr int pieces = 90;
   for (int k = 0; k <= pieces; ++k) {
@@ -55,8 +55,8 @@ View view_of(const GrainAnimation& animation) {
                   "Check the run that it comes from");
       view.include(x, animation.shapes[g].radius);
     }
-    for (const GrainWall& wall : animation.walls) {
-      if (wall.shape == GrainWall::Shape::line) continue;
+    for (const Wall& wall : animation.walls) {
+      if (wall.shape == Wall::Shape::line) continue;
       for (const Vec2 point : outline_of(wall)) view.include(point + displacement(wall, frame.time), 0);
     }
   }
@@ -113,9 +113,9 @@ std::string parts_of(const GrainAnimation& animation) {
 }
 
 /// Of a line what crosses the view, and more for when it moves.
-std::string wall_points(const GrainWall& wall, const View& view) {
+std::string wall_points(const Wall& wall, const View& view) {
   std::vector<Vec2> points;
-  if (wall.shape == GrainWall::Shape::line) {
+  if (wall.shape == Wall::Shape::line) {
     const Vec2 along = perpendicular(wall.normal), middle = 0.5 * (view.low + view.high);
     const Vec2 foot = wall.point + dot(middle - wall.point, along) * along;
     points = {foot - 4 * view.span() * along, foot + 4 * view.span() * along};
@@ -304,11 +304,11 @@ std::string grain_animation_html(const GrainAnimation& animation) {
   groups.resize(animation.shapes.size(), 0);
   text += "const groups = " + list(groups, 3) + ";\n";
   std::string walls, moves, frames;
-  for (const GrainWall& wall : animation.walls) walls += (walls.empty() ? "" : ",") + wall_points(wall, view);
+  for (const Wall& wall : animation.walls) walls += (walls.empty() ? "" : ",") + wall_points(wall, view);
   for (const GrainFrame& frame : animation.frames) {
     times.push_back(frame.time);
     std::vector<double> moved;
-    for (const GrainWall& wall : animation.walls) {
+    for (const Wall& wall : animation.walls) {
       const Vec2 to = displacement(wall, frame.time);
       moved.insert(moved.end(), {to.x, to.y});
     }

@@ -27,7 +27,7 @@ struct GrainAnimation {
   std::span<const Grain> shapes = {};  ///< their places are not looked at
   std::span<const Clump> clumps = {};
   std::span<const int> groups = {};  ///< of each grain: its colour; empty: all alike
-  std::span<const GrainWall> walls = {};
+  std::span<const Wall> walls = {};
   std::span<const GrainFrame> frames = {};
   double speed = 1;  ///< of the picture, in seconds of motion per second
 };

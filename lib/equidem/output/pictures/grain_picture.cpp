@@ -37,14 +37,14 @@ struct Bounds {
   }
 };
 
-Vec2 displacement(const GrainWall& wall, double time) {
-  return {wall.move_x.at(time), wall.move_y.at(time)};
+Vec2 displacement(const Wall& wall, double time) {
+  return wall.displacement(time);
 }
 
 /// Points along a segment or an arc.
-std::vector<Vec2> outline(const GrainWall& wall, double time) {
+std::vector<Vec2> outline(const Wall& wall, double time) {
   const Vec2 moved = displacement(wall, time);
-  if (wall.shape == GrainWall::Shape::segment) return {wall.point + moved, wall.end + moved};
+  if (wall.shape == Wall::Shape::segment) return {wall.point + moved, wall.end + moved};
   std::vector<Vec2> points;
   constexpr int per_turn = 180;
   const int pieces = std::max(2, static_cast<int>(std::ceil(per_turn * (wall.to - wall.from) / 6.28)));
@@ -66,8 +66,8 @@ Bounds bounds_of(const GrainPicture& picture) {
     bounds.include(grain.position, grain.radius);
     for (const std::vector<Vec2>& places : picture.paths) bounds.include(places[g], grain.radius);
   }
-  for (const GrainWall& wall : picture.walls) {
-    if (wall.shape == GrainWall::Shape::line) continue;
+  for (const Wall& wall : picture.walls) {
+    if (wall.shape == Wall::Shape::line) continue;
     for (const Vec2 point : outline(wall, picture.time)) bounds.include(point, 0);
   }
   // A line near by is seen with some ground under it.
@@ -117,7 +117,7 @@ std::optional<std::array<Vec2, 2>> clipped(const PageFrame& frame, Vec2 point, V
 }
 
 /// With strokes on the side where no grain can be.
-void draw_line_wall(Canvas& canvas, const PageFrame& frame, const GrainWall& wall, double time) {
+void draw_line_wall(Canvas& canvas, const PageFrame& frame, const Wall& wall, double time) {
   const auto ends = clipped(frame, wall.point + displacement(wall, time), perpendicular(wall.normal));
   if (!ends) return;
   const Vec2 a = frame.to_page((*ends)[0]), b = frame.to_page((*ends)[1]);
@@ -132,8 +132,8 @@ void draw_line_wall(Canvas& canvas, const PageFrame& frame, const GrainWall& wal
 }
 
 void draw_walls(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
-  for (const GrainWall& wall : picture.walls) {
-    if (wall.shape == GrainWall::Shape::line) {
+  for (const Wall& wall : picture.walls) {
+    if (wall.shape == Wall::Shape::line) {
       draw_line_wall(canvas, frame, wall, picture.time);
       continue;
     }

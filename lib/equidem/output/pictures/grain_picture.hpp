@@ -23,7 +23,7 @@ struct GrainPicture {
   std::span<const Clump> clumps = {};
   std::span<const int> groups = {};       ///< of each grain: its colour; empty: all alike
   std::span<const GrainBond> bonds = {};  ///< lines from centre to centre
-  std::span<const GrainWall> walls = {};
+  std::span<const Wall> walls = {};
   /// Places of all grains at moments; empty: no paths.
   std::span<const std::vector<Vec2>> paths = {};
 };

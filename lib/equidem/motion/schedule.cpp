@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/dynamics/schedule.hpp"
+#include "equidem/motion/schedule.hpp"
 
 #include <algorithm>
 #include <cmath>

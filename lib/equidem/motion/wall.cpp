@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/motion/wall.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr double whole_turn = 2 * std::numbers::pi;
+/// Of angles that are meant to be a whole turn apart, rad per rad.
+constexpr double rounding = 1e-15;
+/// A vector shorter than this has no direction: its square is no number.
+constexpr double shortest = 1e-150;
+
+bool is_finite(const Vec2& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y);
+}
+
+[[noreturn]] void refuse(const Wall& wall, const std::string& what, std::string why, std::string remedy) {
+  bad_input(fmt::format("wall '{}' {}", wall.name, what), std::move(why), std::move(remedy));
+}
+
+void check_line(const Wall& wall) {
+  // Written so that it also refuses what is no number.
+  if (std::abs(dot(wall.normal, wall.normal) - 1) <= 1e-12) return;
+  refuse(wall, fmt::format("has the normal ({}, {}), which is no unit vector", wall.normal.x, wall.normal.y),
+         "distances are measured with it", "Divide it by its length");
+}
+
+void check_segment(const Wall& wall) {
+  if (!is_finite(wall.end)) {
+    refuse(wall, fmt::format("ends at ({}, {}) m", wall.end.x, wall.end.y), "it stands nowhere", "Give finite numbers");
+  }
+  if (norm(wall.end - wall.point) >= shortest) return;
+  refuse(wall, fmt::format("begins and ends at ({}, {}) m", wall.end.x, wall.end.y),
+         "a segment without length has no sides", "Move one of its ends");
+}
+
+void check_arc(const Wall& wall) {
+  if (!(wall.radius >= shortest) || !std::isfinite(wall.radius)) {
+    refuse(wall, fmt::format("has radius = {} m", wall.radius), "that of an arc must be > 0 and finite",
+           "Give a positive one");
+  }
+  const double angle = wall.to - wall.from;
+  if (!(angle > 0) || !std::isfinite(angle)) {
+    refuse(wall, fmt::format("goes from {} to {} rad", wall.from, wall.to), "an arc runs counter-clockwise, to > from",
+           "Exchange the angles, or add 2 pi to the second");
+  }
+  if (angle > whole_turn * (1 + rounding) + rounding * std::abs(wall.from)) {
+    refuse(wall, fmt::format("goes from {} to {} rad", wall.from, wall.to), "an arc is at most 2 pi long",
+           "Take 2 pi for a whole circle");
+  }
+}
+
+}  // namespace
+
+void move_along(Wall& wall, Vec2 direction, const Schedule& displacement) {
+  if (direction.x != 0) wall.move_x = scaled(displacement, direction.x);
+  if (direction.y != 0) wall.move_y = scaled(displacement, direction.y);
+}
+
+void check(const Wall& wall) {
+  if (!is_finite(wall.point)) {
+    refuse(wall, fmt::format("stands at ({}, {}) m", wall.point.x, wall.point.y), "it stands nowhere",
+           "Give finite numbers");
+  }
+  switch (wall.shape) {
+    case Wall::Shape::line:
+      check_line(wall);
+      break;
+    case Wall::Shape::segment:
+      check_segment(wall);
+      break;
+    case Wall::Shape::arc:
+      check_arc(wall);
+      break;
+  }
+  check(wall.move_x);
+  check(wall.move_y);
+}
+
+}  // namespace equidem

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Walls: lines, segments, arcs; at rest or moving.
+#pragma once
+
+#include <string>
+
+#include "equidem/core/vector.hpp"
+#include "equidem/motion/schedule.hpp"
+
+namespace equidem {
+
+/// A wall of infinite mass. A line has an outside only on the side that its normal points to; segments and arcs are
+/// thin and have two sides and two ends. The own normal of a segment points to the left of the way from `point` to
+/// `end`, that of an arc away from its centre; a centre exactly on a wall counts as on that side.
+///
+/// Bonded discs take lines with a spring kN, without friction. Colliding bodies take all shapes; stiffness, restitution
+/// and friction follow from `kind`.
+struct Wall {
+  enum class Shape { line, segment, arc } shape = Shape::line;
+  std::string name;
+  Vec2 point;               ///< line: on it; segment: first end; arc: centre. m
+  Vec2 normal = {0, 1};     ///< line: unit, towards the bodies
+  Vec2 end = {};            ///< segment: second end, m
+  double radius = 0;        ///< arc, m, > 0
+  double from = 0, to = 0;  ///< arc: angles, counter-clockwise from `from` to `to` > from, at most 2 pi further; rad
+  Schedule move_x = {}, move_y = {};  ///< displacement over time, m; constant 0: at rest
+  int kind = 0;                       ///< colliding bodies: row of the table of pairs
+  double kN = 0;                      ///< bonded discs: force per m of overlap, Pa, > 0
+
+  [[nodiscard]] bool moves() const { return move_x.changes() || move_y.changes(); }
+  [[nodiscard]] Vec2 displacement(double time) const { return {move_x.at(time), move_y.at(time)}; }
+  /// Of a line, m.
+  [[nodiscard]] double displacement_along_normal(double time) const { return dot(normal, displacement(time)); }
+};
+
+/// The wall moves along a direction.
+/// \param direction unit
+void move_along(Wall& wall, Vec2 direction, const Schedule& displacement);
+
+/// \throws Error (bad_input) on numbers that are not finite, a normal that is no unit vector, a segment without length,
+///         an arc without radius or with angles out of order
+void check(const Wall& wall);
+
+}  // namespace equidem

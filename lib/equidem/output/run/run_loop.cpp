@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/output/run/run_loop.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/output/run/recurrence.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr double look_every = 0.2;  // s of wall-clock time: progress, interrupts, runaways
+
+Error placed(const Error& error, const RunPlan& plan) {
+  return plan.step_place.empty() ? error : error.at(plan.step_place);
+}
+
+class RunLoop {
+ public:
+  RunLoop(AnySimulation& simulation, const RunPlan& plan, const RunFiles& files)
+      : simulation_(simulation),
+        plan_(plan),
+        stride_(static_cast<std::int64_t>(
+            std::bit_floor(static_cast<std::uint64_t>(std::max<std::int64_t>(1, plan.steps / plan.samples))))),
+        frame_times_(plan.frame_interval, plan.time_step),
+        probe_times_(plan.probe_interval, plan.time_step) {
+    if (files.folder) open(files);
+  }
+
+  RunResult go() {
+    look();
+    Progress progress("stepping");
+    Stopwatch since_checkpoint;
+    const std::int64_t first = simulation_.step();
+    std::int64_t chunk = 64;
+    while (simulation_.step() < plan_.steps) {
+      const std::int64_t now = simulation_.step();
+      const std::int64_t next = std::min(
+          {plan_.steps, frame_times_.after(now), probe_times_.after(now), now + stride_ - now % stride_, now + chunk});
+      const Stopwatch steps;
+      step_to(next);
+      const double taken = steps.seconds();
+      result_.seconds += taken;
+      if (taken < 0.5 * look_every && next - now == chunk) chunk *= 2;
+      if (taken > look_every && chunk > 1) chunk /= 2;
+      look();
+      try {
+        progress.update(static_cast<double>(simulation_.step()) / static_cast<double>(plan_.steps));
+      } catch (const Error&) {
+        save();
+        throw;
+      }
+      if (checkpoint_ && since_checkpoint.seconds() > plan_.checkpoint_interval) {
+        save();
+        since_checkpoint.lap();
+      }
+    }
+    save();
+    close();
+    result_.steps_done = simulation_.step() - first;
+    return std::move(result_);
+  }
+
+ private:
+  void open(const RunFiles& files) {
+    const std::filesystem::path path = *files.folder / "run.checkpoint.h5";
+    if (files.resume) go_on(read_checkpoint(path, plan_.case_text));
+    checkpoint_.emplace(path, plan_.case_text, files.overwrite || files.resume);
+    const auto after = [&](const Recurrence& times) {
+      return files.resume ? std::optional(last_entry(times)) : std::nullopt;
+    };
+    if (plan_.frame_interval) {
+      const double steps = static_cast<double>(plan_.steps);
+      const double count = std::min(steps, steps * plan_.time_step / *plan_.frame_interval);
+      FrameOptions options = plan_.frames;
+      options.expected = static_cast<std::int64_t>(count) + 2;
+      options.overwrite = files.overwrite;
+      options.continue_after = after(frame_times_);
+      frames_.emplace(*files.folder, "frames", *plan_.frame_discs, options);
+    }
+    if (plan_.recorder != nullptr) plan_.recorder->open(*files.folder, files.overwrite, after(probe_times_));
+    if (plan_.probe_interval) {
+      const std::size_t bodies = simulation_.motions().size();
+      history_.emplace(*files.folder / "history.csv", plan_.probes, bodies,
+                       ProbeOptions{.family = simulation_.family(),
+                                    .body = plan_.body,
+                                    .overwrite = files.overwrite,
+                                    .continue_after = after(probe_times_)});
+    }
+  }
+
+  /// Samples of a shorter run are more, and at every power of two steps: those of this run are among them, but for the
+  /// one at its end.
+  void go_on(Checkpoint checkpoint) {
+    simulation_.restore(checkpoint.state);
+    if (simulation_.step() > plan_.steps) {
+      bad_input(fmt::format("the run is to end at {:.6g} s, and its checkpoint lies at {:.6g} s",
+                            static_cast<double>(plan_.steps) * plan_.time_step, simulation_.time()),
+                "a run does not go back", "Give a longer duration, or start the run afresh");
+    }
+    RunRecord& record = checkpoint.record;
+    for (std::size_t k = 0; k < record.energies.size(); ++k) {
+      if (record.energies[k].step % stride_ != 0) continue;
+      result_.record.energies.push_back(record.energies[k]);
+      if (!record.paths.empty()) result_.record.paths.push_back(std::move(record.paths[k]));
+    }
+  }
+
+  /// Where the run goes on: an entry that was made there only because the run ended is dropped.
+  [[nodiscard]] std::int64_t last_entry(const Recurrence& times) const {
+    return times.at(simulation_.step()) ? simulation_.step() : simulation_.step() - 1;
+  }
+
+  void step_to(std::int64_t step) {
+    try {
+      simulation_.advance(step - simulation_.step());
+    } catch (const Error& error) {
+      save();
+      fail(error);
+    }
+  }
+
+  [[noreturn]] void fail(const Error& error) {
+    close();
+    throw placed(error, plan_);
+  }
+
+  void look() {
+    const std::int64_t step = simulation_.step();
+    const bool last = step == plan_.steps;
+    auto& energies = result_.record.energies;
+    const bool probing = probe_times_.at(step) || last;
+    const bool sample = (energies.empty() || energies.back().step < step) && (last || step % stride_ == 0);
+    const bool frame = frames_ && frames_->last_step() < step && (frame_times_.at(step) || last);
+    const bool row = history_ && history_->last_step() < step && probing;
+    const bool recorded = plan_.recorder != nullptr && plan_.recorder->last_step() < step && probing;
+    if (!plan_.watch_between && !sample && !frame && !row && !recorded) return;
+    const EnergyLedger ledger = simulation_.energy();
+    try {
+      if (plan_.watch) plan_.watch(ledger);
+    } catch (const Error& error) {
+      fail(error);
+    }
+    const double time = simulation_.time();
+    if (sample) energies.push_back({step, time, ledger});
+    if (recorded) plan_.recorder->record(step, time);
+    const bool path = sample && plan_.paths;
+    if (!path && !frame && !row) return;
+    const std::vector<DiscMotion> motions = simulation_.motions(), velocities = simulation_.velocities();
+    if (path) {
+      auto& places = result_.record.paths.emplace_back();
+      for (const DiscMotion& motion : motions) places.push_back(motion.u);
+    }
+    if (frame) frames_->append(step, time, motions, velocities);
+    if (row) history_->record(step, time, motions, velocities, ledger);
+  }
+
+  /// Everything that the checkpoint counts on is on the disk before it is.
+  void save() {
+    if (!checkpoint_) return;
+    if (history_) history_->sync();
+    if (frames_) frames_->sync();
+    if (plan_.recorder != nullptr) plan_.recorder->sync();
+    checkpoint_->write(simulation_.save(), result_.record);
+  }
+
+  void close() {
+    if (frames_) frames_->finish();
+    if (history_) history_->flush();
+  }
+
+  AnySimulation& simulation_;
+  const RunPlan& plan_;
+  std::int64_t stride_;  ///< steps from one sample of the energies to the next
+  Recurrence frame_times_, probe_times_;
+  std::optional<CheckpointWriter> checkpoint_;
+  std::optional<FrameWriter> frames_;
+  std::optional<ProbeWriter> history_;
+  RunResult result_;
+};
+
+}  // namespace
+
+RunResult run_through(AnySimulation& simulation, const RunPlan& plan, const RunFiles& files) {
+  return RunLoop(simulation, plan, files).go();
+}
+
+double estimate_seconds(AnySimulation& simulation, const RunPlan& plan) {
+  constexpr double enough = 0.05;  // s of wall-clock time
+  for (std::int64_t steps = 1;; steps *= 4) {
+    steps = std::min(steps, plan.steps - simulation.step());
+    if (steps <= 0) return 0;
+    const Stopwatch watch;
+    try {
+      simulation.advance(steps);
+    } catch (const Error& error) {
+      throw placed(error, plan);
+    }
+    const double seconds = watch.seconds();
+    if (seconds > enough || simulation.step() == plan.steps)
+      return seconds / static_cast<double>(steps) * static_cast<double>(plan.steps);
+  }
+}
+
+}  // namespace equidem

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/run_case_text.hpp"
+
+#include <algorithm>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+
+void erase_keys(TomlValue& table, std::initializer_list<std::string_view> names) {
+  std::erase_if(table.entries,
+                [&](const auto& entry) { return std::find(names.begin(), names.end(), entry.first) != names.end(); });
+}
+
+void add(Checksum& sum, const Schedule& schedule) {
+  for (const auto* numbers : {&schedule.times, &schedule.values, &schedule.rates}) sum.add(*numbers);
+}
+
+MissedEvent check_event(const Schedule& schedule, double step, double duration, const std::string& where) {
+  constexpr double most = 0.5;
+  const MissedEvent missed = missed_event(schedule, step, duration);
+  if (missed.share <= most) return missed;
+  throw Error(ErrorKind::bad_input,
+              fmt::format("its schedule has an event at {:.6g} s that steps of {:.6g} s miss", missed.time, step),
+              fmt::format("between two steps lie {:.0f} % of the range of its values", 100 * missed.share),
+              "Give a time_step well below its length, or let it last longer", where);
+}
+
+}  // namespace equidem

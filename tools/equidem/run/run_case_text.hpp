@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What the case texts of checkpoints are made of, and events that steps are too long for.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+#include "equidem/casefile/toml.hpp"
+#include "equidem/core/checksum.hpp"
+#include "equidem/motion/schedule.hpp"
+
+namespace equidem {
+
+void erase_keys(TomlValue& table, std::initializer_list<std::string_view> names);
+void add(Checksum& sum, const Schedule& schedule);
+
+/// \param where the user wrote the schedule
+/// \return the event of the schedule that steps miss the most of
+/// \throws Error (bad_input) where they miss more than half of the range of its values
+MissedEvent check_event(const Schedule& schedule, double step, double duration, const std::string& where);
+
+}  // namespace equidem

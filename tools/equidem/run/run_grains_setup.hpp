@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A run of colliding bodies made ready: the case and the step.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "equidem/casefile/grain_case.hpp"
+#include "equidem/casefile/grain_step.hpp"
+#include "equidem/grains/grain_simulation.hpp"
+
+namespace equidem {
+
+struct GrainSetup {
+  explicit GrainSetup(GrainCase given);
+
+  GrainCase resolved;
+  GrainTimeStep step;
+  std::int64_t steps = 0;  ///< of the whole duration
+
+  /// \throws Error as GrainSimulation does, with its place in the case
+  [[nodiscard]] GrainSimulation simulation() const;
+  /// The case as a checkpoint knows it: all that changes the motion, files that it names too, without how long it lasts
+  /// and what is written.
+  [[nodiscard]] std::string fingerprint() const;
+};
+
+}  // namespace equidem
