@@ -217,6 +217,10 @@ class Sweep(ProgramTest):
         with open(out / "sweep.csv", newline="") as file:
             return list(csv.DictReader(file))
 
+    def test_a_sweep_takes_no_verb(self):
+        self.check_error(equidem("sweep", TENSION, "--key", "ratio", "--values", "0.5", "--verb", "solve"), 2, "--verb",
+                         "Leave it out")
+
     def test_the_curve_follows_theory(self):
         out = self.folder / "out"
         done = self.check_done(equidem("sweep", TENSION, "--key", "ratio", "--from", "0", "--to", "1", "--steps", "3",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What all verbs share on the command line: the case file, overrides, and where results go.
+/// Options and output that all verbs share: the case file, overrides, threads, files of the results.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ struct CommonOptions {
   bool overwrite = false;
 };
 
-/// Where results go and how the work is done: what verbs without a case file take, too.
+/// --out, --json, --threads, --quiet and --overwrite; verbs without a case file take these alone.
 void add_result_options(CLI::App& command, CommonOptions& options);
 /// The case file, its overrides, and add_result_options.
 void add_common_options(CLI::App& command, CommonOptions& options);
@@ -47,7 +47,7 @@ std::vector<std::string> overrides_of(const CommonOptions& options, const std::s
 /// Apply threads and quiet, and read the case with its overrides.
 Case read_case(const CommonOptions& options);
 
-/// Where the files of a verb go. Asked before the computation, so that no hour is lost to a full folder.
+/// Checks before the computation that the files of a verb can be written.
 class OutputPlan {
  public:
   explicit OutputPlan(const CommonOptions& options) : options_(options) {}
@@ -97,7 +97,7 @@ void write_case(const CommonOptions& options, const Resolved& resolved) {
 /// "optimized, assertions off".
 std::string build_description();
 
-/// A sentence to go into another one.
+/// The sentence without its full stop, as a part of another one.
 std::string without_full_stop(std::string sentence);
 
 /// One line on stderr, unless quiet.

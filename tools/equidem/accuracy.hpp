@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// --accuracy X of the verbs: what was asked, what is estimated to be reached, and what ten times more would cost.
+/// The option --accuracy X of the verbs: the accuracy asked for, the one reached, the cost of ten times more.
 #pragma once
 
 #include <optional>
@@ -25,7 +25,7 @@ struct ReachedAccuracy {
   AccuracySetting value;     ///< what it was set to
   std::string pilots;        ///< what was computed to choose it, in words; empty: nothing
   double pilots_factor = 0;  ///< their work, times that of what was chosen
-  /// What a tenth of the error asked for would take.
+  /// The settings and the time of a tenth of the error.
   struct TenTimesMore {
     double time_factor = 1;  ///< times the time of what was chosen
     double seconds = 0;      ///< by that

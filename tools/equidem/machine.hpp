@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// On what, and with what, times were measured.
+/// The machine and the build on which times were measured.
 #pragma once
 
 #include <string>

@@ -130,6 +130,13 @@ Results estimate_results(const SolveEstimate& e) {
   return results.block("nothing was solved (--dry-run)\n");
 }
 
+Results dry_run_results(const Problem& problem, const Results& further, AssemblyKeys keys) {
+  const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
+  const SolveEstimate estimate =
+      estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options());
+  return problem_results(problem, effects, keys).append(further).append(estimate_results(estimate));
+}
+
 Results moduli_results(const EffectiveModuli& m, const std::string& name, bool of_solid) {
   Results results;
   results.line(name)

@@ -18,7 +18,7 @@
 
 namespace equidem {
 
-/// Everything that an EquilibriumSolver is given; it must stay where it is while the solver lives.
+/// The input of an EquilibriumSolver, which refers to it: it must outlive the solver and not move.
 struct Problem {
   Case resolved;
   Assembly assembly;
@@ -84,6 +84,9 @@ Results problem_results(const Problem& problem, const Effects& effects, Assembly
 
 /// Size, memory and work of a factorization that was not done.
 Results estimate_results(const SolveEstimate& estimate);
+
+/// The problem, further results, and the size of its factorization, for --dry-run.
+Results dry_run_results(const Problem& problem, const Results& further = {}, AssemblyKeys keys = AssemblyKeys::all);
 
 /// K <= G/3, that is nu <= -1 in plane strain.
 inline constexpr const char* no_solid = "no isotropic solid has these moduli: K <= G/3";

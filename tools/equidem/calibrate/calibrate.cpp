@@ -25,14 +25,14 @@ struct CalibrateVerb {
   CommonOptions common;
   std::optional<std::filesystem::path> springs;  ///< where the springs file goes
 
-  /// Where it really goes: unasked into --out, if there is one.
+  /// The path given, else springs.toml in --out.
   [[nodiscard]] std::optional<std::filesystem::path> springs_path() const {
     if (springs || !common.out) return springs;
     return *common.out / "springs.toml";
   }
 };
 
-/// Before the computation: all files can be written, each to a place of its own.
+/// \throws Error (bad_input) where a file cannot be written, or two results go to one file
 void check_outputs(const CalibrateVerb& options) {
   const CommonOptions& common = options.common;
   const OutputPlan plan(common);
@@ -68,7 +68,7 @@ CalibrateOptions calibrate_options(const Case& resolved) {
   return options;
 }
 
-/// None for lattices, whose relation is exact.
+/// Empty for lattices, whose relation is exact.
 std::optional<MeanFieldGuess> mean_field_guess(const Case& resolved, const Assembly& assembly,
                                                const EffectiveStiffness& achieved) {
   MeanFieldGuess guess;
@@ -117,13 +117,11 @@ std::string text_of_springs(const Case& resolved, const Assembly& assembly, cons
 }
 
 int dry_run_calibration(const CommonOptions& options, const Problem& problem) {
-  const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
-  Results results = problem_results(problem, effects, AssemblyKeys::size);
+  Results results;
   results.line("factorizations",
                "six or fewer of this size, some thirty where nu does not fall throughout with kT/kN, and one more to "
                "judge the mean field");
-  results.append(estimate_results(estimate_solve(problem.assembly, problem.springs.springs, {}, problem.options())));
-  deliver(options, "dry_run", results, problem.times);
+  deliver(options, "dry_run", dry_run_results(problem, results, AssemblyKeys::size), problem.times);
   return 0;
 }
 

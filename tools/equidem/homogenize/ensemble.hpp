@@ -27,7 +27,7 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
 ///         (interrupted)
 int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, double accuracy);
 
-// What both share.
+// Shared by both.
 
 /// Builds and homogenizes one cell.
 /// \throws Error (computation_failed) where the cell is unstable, or that is not known; as build_assembly

@@ -16,7 +16,7 @@ namespace equidem {
 /// One row per cell: discs, seed, discs_built, the moduli, refusal.
 std::string samples_csv(const std::vector<EnsembleSample>& samples);
 
-/// What samples_csv wrote, bit for bit.
+/// Reads a table of samples_csv; numbers have the same bits.
 /// \throws Error (bad_input) where the file is another table or damaged
 std::vector<EnsembleSample> read_samples_csv(const std::filesystem::path& path);
 

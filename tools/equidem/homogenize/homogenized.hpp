@@ -24,7 +24,7 @@ struct StiffnessBeside {
   std::string missing;  ///< why there is none
 };
 
-/// What Abe (1996) gives for the springs of the case.
+/// Moduli by Abe (1996) for the springs of the case.
 struct RelationBeside {
   std::string name;  ///< "mean field, eqs. (21), (22)"
   double bulk_modulus_2d = 0;
@@ -58,7 +58,7 @@ struct Homogenized {
   [[nodiscard]] std::vector<StiffnessBeside> ordered() const;
 };
 
-/// How C11 varies with the direction of its axis, C11 + |two| cos 2(t - t2) + |four| cos 4(t - t4) about its mean.
+/// Variation of C11 with the direction of its axis, C11 + |two| cos 2(t - t2) + |four| cos 4(t - t4) about its mean.
 struct StiffnessAxes {
   double one_axis = 0;        ///< amplitude over the mean: one axis is stiffer than the one across it
   double one_direction = 0;   ///< rad, of that axis, in [0, pi)

@@ -83,7 +83,7 @@ std::optional<ConfirmedRest> confirmed(const PackCase& resolved, const GrainPack
   return rest;
 }
 
-/// What cannot be packed or measured is told with the line of that key.
+/// Adds the line of the key to the errors of a task.
 template <typename Task>
 auto located(const PackCase& resolved, const char* key, const Task& task) {
   try {

@@ -13,13 +13,13 @@
 
 namespace equidem {
 
-/// What statics says of bodies that settled.
+/// Equilibrium of settled bodies by statics on the same contacts.
 struct ConfirmedRest {
   std::optional<RestConfirmation> confirmation;
   std::string why_not = {};  ///< where there is none
 };
 
-/// What is to be packed; the report alone.
+/// Bodies, box, method and springs of the case; the report alone.
 Results pack_case_results(const PackCase& resolved);
 
 /// Report and JSON of the verb.

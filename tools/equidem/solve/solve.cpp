@@ -19,7 +19,7 @@
 namespace equidem {
 namespace {
 
-/// Of the names of the files of a load case.
+/// End of the names of the files of a load case.
 std::string suffix_of(const std::string& load_case) {
   return load_case.empty() ? "" : "_" + load_case;
 }
@@ -78,17 +78,6 @@ void write_outputs(const CommonOptions& options, const Problem& problem, const L
   write_state_picture(options, wanted, suffix_of(result.name), state, picture);
 }
 
-int dry_run_solution(const CommonOptions& options, const Problem& problem) {
-  const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
-  StageTimes times = problem.times;
-  const Stopwatch watch;
-  const Results estimate =
-      estimate_results(estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options()));
-  times.add("analysis", watch.seconds());
-  deliver(options, "dry_run", problem_results(problem, effects).append(estimate), times);
-  return 0;
-}
-
 /// The worst of all load cases.
 ReachedAccuracy bound_of(const std::vector<SolvedCase>& results, double accuracy, double seconds) {
   const auto worst = std::max_element(results.begin(), results.end(), [](const SolvedCase& a, const SolvedCase& b) {
@@ -145,7 +134,10 @@ int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
     return 0;
   }
   const Problem problem = build_problem(std::move(resolved));
-  if (options.dry_run) return dry_run_solution(options, problem);
+  if (options.dry_run) {
+    deliver(options, "dry_run", dry_run_results(problem), problem.times);
+    return 0;
+  }
   solve_once(options, problem, accuracy, nullptr);
   return 0;
 }

@@ -54,7 +54,7 @@ class BlockSearch {
   double other_seconds_ = 0;  ///< of all before
 };
 
-/// What the answer to an assembly that is given owes to the solver: its error bound.
+/// The error that the solver adds to the solution of a given assembly: its error bound.
 /// \throws Error (computation_failed) where the bound is above the accuracy, or not known
 ReachedAccuracy solver_accuracy(double accuracy, double error_bound, double condition, double seconds);
 

@@ -9,7 +9,7 @@
 namespace equidem {
 namespace {
 
-/// What the inertia of K says about the answer.
+/// The stability of the equilibrium, by the inertia of K.
 std::string stability(const Problem& problem, const Equilibrium& result) {
   if (result.unstable_modes < 0) {
     return stability_not_known;
@@ -77,7 +77,7 @@ void add_tension(Results& out, const Problem& problem, const SolvedCase& result)
       .note(", fitted to the inner half of the block");
 }
 
-/// Of the factorization, which all load cases share.
+/// The factorization, which all load cases share.
 Results solver_results(const Problem& problem, const Equilibrium& e) {
   Results out;
   out.line("unknowns").add("unknowns", "", e.unknowns, "", {Shown::count});

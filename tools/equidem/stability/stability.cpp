@@ -21,10 +21,7 @@ int dry_run_survey(const CommonOptions& options, const Problem& problem) {
   const Assembly& assembly = problem.assembly;
   const ContactSprings& springs = problem.springs.springs;
   const Effects effects = derive_effects(assembly, springs, problem.resolved.rotation);
-  StageTimes times = problem.times;
-  Stopwatch watch;
-  const SolveEstimate size = estimate_solve(assembly, springs, problem.supports, problem.options());
-  Results results = problem_results(problem, effects, AssemblyKeys::size);
+  Results results;
   results.line("factorizations", "about 15 of the size below, 50 where a large cell is periodic").line("waves");
   results.set("waves", Results());
   if (assembly.periodic()) {
@@ -47,8 +44,7 @@ int dry_run_survey(const CommonOptions& options, const Problem& problem) {
            "s is guaranteed to be stable (element bound)")
       .note(problem.resolved.assembly.density ? "" : "; density 1 kg/m³ assumed");
   results.set("density_assumed", !problem.resolved.assembly.density.has_value());
-  times.add("analysis", watch.lap());
-  deliver(options, "dry_run", results.append(estimate_results(size)), times);
+  deliver(options, "dry_run", dry_run_results(problem, results, AssemblyKeys::size), problem.times);
   return 0;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What `equidem stability` finds out about a case.
+/// The analysis of `equidem stability`.
 #pragma once
 
 #include <filesystem>

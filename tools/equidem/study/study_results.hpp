@@ -19,7 +19,7 @@
 
 namespace equidem {
 
-/// Everything that is told of a study.
+/// A study, its result and how it was run.
 struct StudyReport {
   const Study& study;
   StudyResult result;

@@ -15,7 +15,7 @@ namespace equidem {
 /// per quantity (round 0 only), refusal, checksum.
 std::string study_samples_csv(const Study& study, const StudySamples& samples, const std::string& checksum);
 
-/// What study_samples_csv wrote, bit for bit.
+/// Reads a table of study_samples_csv; numbers have the same bits.
 /// \throws Error (bad_input) where the file is another table, damaged, or of another study, machine or build
 StudySamples read_study_samples(const std::filesystem::path& path, const Study& study, const std::string& checksum);
 

@@ -70,7 +70,7 @@ std::string override_of(const SweepOptions& options, const Case& base, double va
                      toml_number(value * base.springs->kN), to_string(base.weighting));
 }
 
-/// Points that share an assembly build it once.
+/// Builds the assembly once where the key does not change it.
 class ProblemFactory {
  public:
   explicit ProblemFactory(const SweepOptions& options)
@@ -233,18 +233,15 @@ void check_key(const SweepOptions& options, const Case& base, double first) {
 
 int dry_run(const SweepOptions& options, const Case& base, const std::vector<double>& values) {
   const Problem problem = build_problem(base);
-  const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
   Results results;
   results.block(
       fmt::format("{} of {}, each about as large as this one:\n\n", counted(std::ssize(values), "point"), options.key));
-  results.append(problem_results(problem, effects));
-  results.append(
-      estimate_results(estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options())));
-  deliver(options.common, "dry_run", results.set("key", options.key).set("values", values), problem.times);
+  results.append(dry_run_results(problem)).set("key", options.key).set("values", values);
+  deliver(options.common, "dry_run", results, problem.times);
   return 0;
 }
 
-/// What a sweep has come to.
+/// The state of a sweep at its end or where it was stopped.
 struct Progressed {
   std::vector<SweepPoint> points;  ///< of this run
   bool stopped = false;            ///< by the user, before the last value

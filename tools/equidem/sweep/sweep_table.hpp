@@ -34,7 +34,7 @@ struct SweepPoint {
 /// \param key name of the first column
 std::string sweep_csv(const std::string& key, const std::vector<SweepPoint>& points);
 
-/// What sweep_csv wrote.
+/// Reads a table of sweep_csv.
 /// \throws Error (bad_input) where the file is another table or damaged
 std::vector<SweepPoint> read_sweep_csv(const std::filesystem::path& path, const std::string& key);
 
