@@ -198,7 +198,7 @@ class Resume(GrainTest):
         self.run_case(BETWEEN, "--out", out, "--set", "run.duration=0.1")
         resume = ("run", BETWEEN, "--out", out, "--resume")
         self.check_error(equidem(*resume, "--set", "collisions.friction=0.2"), 2, "another case", "friction")
-        self.check_error(equidem(*resume, "--set", "run.duration=0.05"), 2, "past the end")
+        self.check_error(equidem(*resume, "--set", "run.duration=0.05"), 2, "a run does not go back")
         self.check_error(equidem("run", BETWEEN, "--resume"), 2, "--out")
         self.check_error(equidem("run", BETWEEN, "--out", self.folder / "none", "--resume"), 2, "no such file")
 

@@ -61,9 +61,10 @@ void check_writable(const fs::path& path, bool overwrite) {
   }
   if (folder.empty() || !fs::exists(folder, ignored)) folder = ".";
   if (!fs::is_directory(folder, ignored)) cannot_write(path, fmt::format("'{}' is not a folder", folder.string()));
-  // Some file systems refuse what their permissions allow: try it.
+  // Some file systems refuse what their permissions allow: try it. Another thread may try the same folder at the same
+  // time.
   const fs::path trial = folder / fmt::format(".equidem.{}.part", getpid());
-  if (mkdir(trial.c_str(), 0700) != 0)
+  if (mkdir(trial.c_str(), 0700) != 0 && errno != EEXIST)
     cannot_write(path, fmt::format("'{}': {}", folder.string(), std::strerror(errno)));
   fs::remove(trial, ignored);
 }
