@@ -253,11 +253,11 @@ TEST_CASE("wrong_entries_are_named") {
   for (const Case& wrong : cases) CHECK(refusal(file_with(wrong.key, wrong.value)) == wrong.sentence);
 
   CHECK(refusal("{}") ==
-        "a.json: schema: the key 'schema' is missing (an assembly file says \"schema\": "
+        "a.json: schema: the key 'schema' is missing (an assembly file has \"schema\": "
         "\"equidem-assembly/1\"). Add or "
         "correct it, if this is an assembly file.");
   CHECK(refusal(R"({"schema": "other/2"})") ==
-        "a.json: schema: the schema is \"other/2\" (an assembly file says \"schema\": "
+        "a.json: schema: the schema is \"other/2\" (an assembly file has \"schema\": "
         "\"equidem-assembly/1\"). Add or "
         "correct it, if this is an assembly file.");
   CHECK(refusal("[1]") ==

@@ -93,7 +93,7 @@ TEST_CASE("points_that_make_no_triangulation_are_named") {
   a.centres = {{0, 0}, {1, 0}, {0, 1}, {1, 0}};
   CHECK_THROWS_WITH(triangulate(a),
                     "discs 1 and 3 have the same centre, (1, 0) m (no direction joins them, and their cells cannot be "
-                    "told apart). Move or remove one of them.");
+                    "separated). Move or remove one of them.");
   a.centres = {{0, 0}, {1, 1}, {3, 3}, {2, 2}};
   CHECK_THROWS_WITH(triangulate(a),
                     "all 4 discs lie on the line through discs 0 and 2 (points on one line have no triangles). Move "

@@ -74,7 +74,7 @@ TEST_CASE("voigt_stiffness_is_the_stress_of_affine_motion") {
 }
 
 TEST_CASE("voigt_moduli_of_equal_springs_depend_on_fabric_through_S_alone") {
-  // Averaged over directions, (n n)(n n) and (n s)(n s) are isotropic, whatever n: K = S kN/4, G = S (kN + kT)/8.
+  // Averaged over directions, (n n)(n n) and (n s)(n s) are isotropic for any n: K = S kN/4, G = S (kN + kT)/8.
   for (const bool periodic : {false, true}) {
     for (const auto& [name, assembly] : assemblies(periodic)) {
       const Tensor2 branch = fabric(assembly).branch;

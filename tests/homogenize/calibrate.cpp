@@ -245,7 +245,7 @@ TEST_CASE("the_static_limit_advised_is_reached") {
       CHECK(found.springs.kT < 0);
       CHECK(found.achieved.unstable_modes == 0);
       CHECK(found.relative_error <= 1e-10);
-      // One limit, whatever was asked.
+      // The limit does not depend on the wanted moduli.
       const std::string advice = message.substr(message.find("the highest"));
       if (first.empty()) first = advice;
       CHECK(advice == first);
@@ -309,7 +309,7 @@ TEST_CASE("stiffer_moduli_take_springs_stiffer_by_the_same_factor") {
 }
 
 // With kT = kN and rotation restrained each contact resists the relative motion alike in all directions, so that u_x
-// and u_y do not know of each other: K = G whatever the network.
+// and u_y are independent: K = G for any network.
 TEST_CASE("with_rotation_restrained_nu_0_asks_for_equal_springs_on_every_assembly") {
   for (const Kind& kind : kinds()) {
     if (kind.options.homogenize.rotation != Rotation::restrained) continue;

@@ -97,7 +97,7 @@ TEST_CASE("tangential_springs_next_to_nothing_are_as_good_as_none") {
 }
 
 TEST_CASE("at_its_limit_of_stability_a_network_is_not_called_floppy") {
-  // From both sides to the ratio at which a motion of the cell first costs nothing: C has a pole there.
+  // From both sides to the ratio at which a motion of the cell first has no energy: C has a pole there.
   const Assembly cell = random_cell(GENERATE(1, 2, 3), 12);
   double stable = 0, lost = -0.5;
   std::optional<Refused> last;

@@ -149,7 +149,7 @@ struct PositiveSum {
 struct Network {
   std::string name;
   PositiveSum G, K;
-  double lost_below = 0;  ///< r at which it gives way
+  double lost_below = 0;  ///< r at which stability is lost
 
   double q(double r) const { return G.value(r) / K.value(r); }
   RatioSample at(double r) const {

@@ -117,7 +117,7 @@ TEST_CASE("every_shape_fills_the_box_by_every_method_without_overlaps") {
         CAPTURE(deepest, measures.largest_overlap);
         CHECK(deepest <= options.overlap);
         CHECK(measures.largest_overlap <= options.overlap);
-        // Mass is area times density, whatever the shape.
+        // Mass is area times density for every shape.
         double mass = 0;
         for (const Grain& grain : packing.grains) mass += grain.inertia.mass;
         CHECK(mass == Approx(options.settling.density * area_of_grains(packing)).epsilon(1e-12));

@@ -84,7 +84,7 @@ TEST_CASE("rotations_that_no_contact_resists_are_held_and_counted") {
   k[3].kT = 0;
   const ContactSprings springs(k);
   const DegreesOfFreedom unknowns = number_unknowns(chain, springs, derive_effects(springs, Rotation::free), {});
-  CHECK(unknowns.inert_rotations == 2);  // of disc 0 (lever) and disc 4 (spring)
+  CHECK(unknowns.rotations_without_stiffness == 2);  // of disc 0 (lever) and disc 4 (spring)
   CHECK(unknowns.free_rotations == 3);
   CHECK(unknowns.unknowns == 13);
   CHECK(unknowns.held[2] != 0);

@@ -214,7 +214,7 @@ TEST_CASE("a_moment_on_an_inert_disc_is_refused_unless_a_support_takes_it") {
   CHECK(refusal.says(fmt::format("a moment acts on disc {}", last)));
   CHECK(refusal.says("tangential spring"));
 
-  // Another inert disc, so that there are some although the loaded one is held.
+  // Another disc whose rotation has no stiffness, so that there are some although the loaded one is held.
   Assembly two = fan;
   two.groups["first"].discs = {last - 1};
   for (std::size_t c = 0; c < two.contacts.size(); ++c) {

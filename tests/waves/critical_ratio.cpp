@@ -71,7 +71,7 @@ TEST_CASE("springs_of_their_own_change_the_critical_ratio_as_they_change_the_wav
   CHECK(std::abs(found.ratio - waves.critical_ratio({})) < 2e-10);
 }
 
-// Free edges give way earlier than the lattice: values of the generalized eigenvalue problem, computed independently.
+// Free edges lose stability before the lattice: values of the generalized eigenvalue problem, computed independently.
 TEST_CASE("the_tension_test_loses_its_edges_first") {
   struct Known {
     int size;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Motions that cost nothing are counted as theory counts them.
+/// Zero-energy modes are counted as by theory.
 #include "equidem/statics/mechanisms.hpp"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The smallest cell is found whatever repetition of it is given.
+/// The smallest cell is found from any repetition of it.
 #include <cmath>
 
 #include "support/catch.hpp"

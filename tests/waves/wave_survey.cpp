@@ -59,7 +59,7 @@ TEST_CASE("the_survey_of_a_lattice_says_what_closed_forms_say") {
   }
 }
 
-// A mean strain is held in the cell itself, but follows in a long wave: which may give way first.
+// A mean strain is held in the cell itself, but follows in a long wave: which may lose stability first.
 TEST_CASE("no_wave_gives_way_before_the_one_that_the_survey_names") {
   const Assembly assembly = random_cell(GENERATE(8, 30), GENERATE(1, 2));
   const ContactSprings springs(SpringConstants{1, 0.5});

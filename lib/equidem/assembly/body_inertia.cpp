@@ -8,7 +8,7 @@ namespace equidem {
 std::vector<Inertia> inertia_of(const Assembly& assembly, double density, Body body) {
   std::vector<Inertia> all = inertia_of(assembly.radii, density, body);
   if (!assembly.sections.empty() && body != Body::disc) {
-    bad_input("the bodies of the assembly shall be spheres", "its file gives their cross-sections",
+    bad_input("the bodies of the assembly are set to be spheres", "its file gives their cross-sections",
               "Write body = \"disc\", or remove \"sections\" from the file");
   }
   for (std::size_t d = 0; d < assembly.sections.size(); ++d)

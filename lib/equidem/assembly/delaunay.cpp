@@ -91,7 +91,7 @@ void take_network(Assembly& assembly, PowerCells&& cells) {
 }
 
 /// Leave out discs that hang loose: those without contacts, whose power cell their neighbours have taken, and those in
-/// a corner with a single neighbour, which would roll about it at no cost. Where many have a single neighbour the
+/// a corner with a single neighbour, which would roll about it without energy. Where many have a single neighbour the
 /// rectangle is a strip one disc wide, and they stay. Returns how many are left out.
 std::size_t drop_loose_discs(Assembly& assembly, const PowerCells& cells) {
   std::vector<int> contacts(assembly.size(), 0);

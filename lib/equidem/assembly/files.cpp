@@ -124,7 +124,7 @@ void check_keys(const Json& file) {
   if (found == file.end() || *found != assembly_schema) {
     refuse(found == file.end() ? std::string("the key 'schema' is missing")
                                : fmt::format("the schema is {}", found->dump()),
-           fmt::format("an assembly file says \"schema\": \"{}\"", assembly_schema),
+           fmt::format("an assembly file has \"schema\": \"{}\"", assembly_schema),
            "Add or correct it, if this is an assembly file", "schema");
   }
   for (const auto& [key, value] : file.items()) {

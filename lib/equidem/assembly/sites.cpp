@@ -96,7 +96,7 @@ void Sites::sort() {
     if (a == b || positions_[order_[k - 1]] != positions_[order_[k]]) continue;
     bad_input(fmt::format("discs {} and {} have the same centre, ({}, {}) m", std::min(a, b), std::max(a, b),
                           positions_[a].x, positions_[a].y),
-              "no direction joins them, and their cells cannot be told apart", "Move or remove one of them");
+              "no direction joins them, and their cells cannot be separated", "Move or remove one of them");
   }
 }
 

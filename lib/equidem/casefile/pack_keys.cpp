@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "equidem/packing/methods.hpp"
+#include "equidem/packing/packing_shape.hpp"
 
 namespace equidem {
 namespace {
@@ -78,7 +79,7 @@ std::vector<KeySpec> keys_of_packing() {
        .name = "kind",
        .type = choice,
        .fallback = "\"disc\"",
-       .choices = {"disc", "ellipse", "bonded_pair", "rigid_pair", "clump"},
+       .choices = names_of<PackingShape::Kind>(),
        .help = "the radius drawn is that of the disc of equal area, of pairs that of their two discs; directions are "
                "random; bonded_pair: tied by dashpots (falling), rigid_pair and clump: rigidly"},
       {.table = "packing.shape",

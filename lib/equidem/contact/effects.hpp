@@ -43,10 +43,10 @@ struct Effects {
 };
 
 /// Normal springs always; tangential springs where some kT != 0; rotation where moreover it is not restrained. Free
-/// rotation with kT = 0 would leave rotations without stiffness: they are inert and are no unknowns, unless contacts
+/// rotation with kT = 0 would leave rotations without stiffness: they are no unknowns, unless contacts
 /// lie off the lines of centres, where normal springs resist them.
 Effects derive_effects(const Assembly& assembly, const ContactSprings& springs, Rotation rotation);
-/// The same of contacts that all lie on the lines of centres.
+/// As above, for contacts that all lie on the lines of centres.
 Effects derive_effects(const ContactSprings& springs, Rotation rotation);
 
 }  // namespace equidem

@@ -19,7 +19,7 @@ namespace equidem {
 /// How the macroscopic strain enters. As quadratic forms on the same cell: traction <= periodic <= displacement <=
 /// Voigt (Huet 1990).
 enum class Boundary {
-  periodic,      ///< images move with the mean strain: the cell repeats for ever
+  periodic,      ///< images move with the mean strain: the cell repeats without end
   displacement,  ///< the discs at the boundary follow a uniform displacement gradient (and turn freely)
   traction,      ///< the boundary carries the tractions of a uniform stress
 };

@@ -14,7 +14,7 @@
 #include "equidem/core/matrix.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/homogenize/boundary.hpp"
-#include "equidem/homogenize/harmless_motions.hpp"
+#include "equidem/homogenize/zero_energy_modes.hpp"
 #include "equidem/linear/linear_solver.hpp"
 
 namespace equidem {
@@ -52,14 +52,14 @@ struct EffectiveStiffness {
   std::int64_t rattlers = 0;            ///< discs without contacts, left out
   std::int64_t discs_removed = 0;       ///< that carry no load: rattlers, dangling discs, floating pieces
   std::vector<std::string> removed;     ///< sentences that name them
-  std::vector<HarmlessMotion> motions;  ///< held, since they do not change the stiffness; at most a few are described
+  std::vector<ZeroEnergyMode> motions;  ///< held, since they do not change the stiffness; at most a few are described
   std::int64_t gear_modes = 0;
   std::int64_t local_mechanisms = 0;
   std::int64_t self_stresses = 0;  ///< independent states of self-stress (Maxwell & Calladine); -1: not counted
   Effects effects;
   std::int64_t unknowns = 0;
   std::int64_t negative_pivots = 0;
-  /// As of Equilibrium, and the mean strains that release energy; 0: stable in statics within this cell.
+  /// As in Equilibrium, plus the mean strains that release energy; 0: stable in statics within this cell.
   std::int64_t unstable_modes = 0;
   std::int64_t unstable_strains = 0;  ///< negative eigenvalues of `stiffness`
   std::string solver;

@@ -35,7 +35,7 @@ void SampleSolver::prune(const std::vector<std::uint8_t>& held, EffectiveStiffne
   bad_input(network_.spanned == 0 || network_.pieces == 0 ? "no piece of the network spans the cell"
                                                           : "the network spans the cell in one direction only",
             removed.empty() ? "some mean strain costs it no energy" : removed,
-            "A modulus would say nothing of it. Add contacts, or pack the discs more densely");
+            "It has no modulus. Add contacts, or pack the discs more densely");
 }
 
 void SampleSolver::factorize(const std::vector<std::uint8_t>& held, bool hold_translations,
@@ -54,10 +54,10 @@ void SampleSolver::factorize(const std::vector<std::uint8_t>& held, bool hold_tr
   solver_.emplace(assembly(), springs(), std::move(graph), std::move(unknowns), options_.solver, Mechanisms::hold,
                   result.times);
   const FactorReport& report = solver_->factor().report();
-  result.motions = harmless_motions(assembly(), *solver_, held_motions_,
-                                    options_.boundary == Boundary::traction && !whole_.groups.contains("left")
-                                        ? "the cell, cut open at its boundary,"
-                                        : "the network");
+  result.motions = zero_energy_modes(assembly(), *solver_, held_motions_,
+                                     options_.boundary == Boundary::traction && !whole_.groups.contains("left")
+                                         ? "the cell, cut open at its boundary,"
+                                         : "the network");
   result.gear_modes = static_cast<std::int64_t>(held_motions_.gears.size());
   result.local_mechanisms = report.zero_pivots;
   result.self_stresses =

@@ -32,7 +32,8 @@ std::vector<double> tractions(const Assembly& assembly, const TractionSample& sa
     const std::size_t d = static_cast<std::size_t>(index[disc]) * b;
     force[d] += f.x;
     force[d + 1] += f.y;
-    if (b == 3 && unknowns.held[d + 2] != DegreesOfFreedom::inert) force[d + 2] += moment / unknowns.rotation_scale;
+    if (b == 3 && unknowns.held[d + 2] != DegreesOfFreedom::without_stiffness)
+      force[d + 2] += moment / unknowns.rotation_scale;
   };
   for (const auto& share : sample.shares) add(share.disc, stress * share.a, 0);
   for (const auto& cut : sample.cuts) {

@@ -27,7 +27,7 @@ void check_poisson_ratio(double nu, Plane plane) {
   const bool other_reading = plane == Plane::strain && nu >= 0.5 && nu < 1;
   bad_input(fmt::format("Poisson's ratio is {:.6g} in plane {}", nu, to_string(plane)),
             fmt::format("it must lie between -1 and {}, both excluded, for the body to be stable", limit),
-            other_reading ? "If it was measured on a thin sheet, say plane stress"
+            other_reading ? "If it was measured on a thin sheet, set plane stress"
                           : fmt::format("Give a Poisson's ratio between -1 and {}", limit));
 }
 

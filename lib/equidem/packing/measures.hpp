@@ -24,8 +24,8 @@ struct PackingContact {
   Vec2 arm_i;
 };
 
-/// All that overlap or whose gap is at most 1e-8 of the smaller radius; i < j, ordered. The grains of a bonded pair do
-/// not touch each other.
+/// All pairs that overlap or whose gap is at most 1e-8 of the smaller radius; i < j, ordered. The grains of a bonded
+/// pair do not touch each other.
 std::vector<PackingContact> contacts_of(const GrainPacking& packing);
 
 struct PackingMeasures {

@@ -12,9 +12,10 @@ Outline outline_of(const Grain& grain, std::span<const Clump> clumps) {
       return {.axis = axis, .discs = clumps[static_cast<std::size_t>(grain.clump)].discs};
     case GrainShape::ellipse:
       return {.a = grain.radius, .b = grain.short_half_axis, .axis = axis};
-    default:
-      return {.a = grain.radius, .b = grain.radius};
+    case GrainShape::disc:
+      break;
   }
+  return {.a = grain.radius, .b = grain.radius};
 }
 
 }  // namespace equidem

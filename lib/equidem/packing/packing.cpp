@@ -29,7 +29,7 @@ void check(const PackingOptions& options) {
               "Correct it");
   }
   if (falls != (box.sides == PackingBox::Sides::open_top)) {
-    bad_input(falls ? "bodies shall fall into a closed box"
+    bad_input(falls ? "bodies fall into a closed box"
                     : fmt::format("{} into a box with an open top", to_string(options.method)),
               "what falls comes from above, the others need a box to fill",
               falls ? "Open its top" : "Close the box, or make it periodic");

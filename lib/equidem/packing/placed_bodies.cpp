@@ -24,7 +24,7 @@ Placement placement_at_random(const PackingOptions& options, const UnitBody& sha
   if (!options.shape.is_disc()) there.turns = random.uniform();
   if (!options.box.periodic()) {
     const Outline outline = outline_of(shape, radius, there.turns);
-    // As far from each side as the body reaches towards it, the middle where it does not fit.
+    // The distance from each side is the reach of the body towards it; the middle where it does not fit.
     for_wall_touches(outline, {}, {{}, PackingBox::Sides::walls}, std::numeric_limits<double>::infinity(),
                      [&](int side, const Touch& touch) {
                        if (side == 0) low.y = std::max(low.y, touch.overlap);
@@ -50,7 +50,7 @@ PlacedBodies::PlacedBodies(const PackingBox& box, const UnitBody& shape, std::sp
   }
   for (SizeClass& sizes : classes_) {
     if (sizes.bodies == 0) continue;
-    // As wide as the bodies reach, and no more squares than bodies.
+    // The width of a square is at least the reach of the bodies, and there are at most as many squares as bodies.
     const double width =
         std::max(2 * shape_.reach * sizes.largest, std::sqrt(box.area() / static_cast<double>(sizes.bodies)));
     sizes.columns = std::max<std::int64_t>(1, static_cast<std::int64_t>(box.size.x / width));

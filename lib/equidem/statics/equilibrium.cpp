@@ -59,9 +59,9 @@ std::vector<double> assemble_loads(const Assembly& assembly, const DegreesOfFree
 
 /// A moment on a disc that no contact keeps from turning, and no support either, could not be balanced.
 void check_inert_loads(const Assembly& assembly, const DegreesOfFreedom& unknowns, std::span<const double> f) {
-  if (unknowns.per_disc != 3 || unknowns.inert_rotations == 0) return;
+  if (unknowns.per_disc != 3 || unknowns.rotations_without_stiffness == 0) return;
   for (std::size_t d = 0; d < assembly.size(); ++d) {
-    if (f[3 * d + 2] == 0 || unknowns.held[3 * d + 2] != DegreesOfFreedom::inert) continue;
+    if (f[3 * d + 2] == 0 || unknowns.held[3 * d + 2] != DegreesOfFreedom::without_stiffness) continue;
     bad_input(
         fmt::format("a moment acts on disc {}", d),
         "none of its contacts has a tangential spring and a lever arm, or lies off the line of centres, to resist it",
@@ -226,7 +226,7 @@ std::string Equilibrium::report() const {
     if (unstable_modes == 0) {
       text += "those of the rotations alone (kT < 0); the state of rest is stable in statics\n";
     } else if (unstable_modes < 0) {
-      text += "the solver cannot tell stable from unstable\n";
+      text += "the solver does not determine stability\n";
     } else {
       text += fmt::format("{} beyond those of the rotations: the state of rest is UNSTABLE\n", unstable_modes);
     }

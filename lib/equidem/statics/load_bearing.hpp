@@ -4,18 +4,18 @@
 /// are taken out.
 ///
 /// A disc or a group of discs on which no load acts is left out where its own equilibrium lets its contacts carry no
-/// force, whatever the rest does (a disc is loaded where it is held; elsewhere loads come through contacts):
+/// force under any motion of the rest (a disc is loaded where it is held; elsewhere loads come through contacts):
 /// - a disc without contacts, or with a single one: its force has nothing to balance it;
 /// - a disc with two contacts that are not in line, where slip is resisted at neither of them, or at one only and the
 ///   disc turns freely: the balance of moments leaves no tangential force, that of forces then no normal ones;
 /// - what a single contact joins to the rest (dangling): no force can pass it;
-/// - what a single disc joins to the rest (dangling): it can follow that disc rigidly, at no cost where rotation is
+/// - what a single disc joins to the rest (dangling): it can follow that disc rigidly, without energy where rotation is
 ///   restrained, kT = 0 or levers add up to their branch; elsewhere it stays;
 /// - a connected piece that reaches neither an image of itself across the period nor a held disc (floating): it
 ///   follows no mean strain. With a free boundary and nothing held, pieces stay.
-/// Then whatever has become such a disc or group. A contact of a disc with its own image carries force in balance with
-/// itself, so that its disc stays. Where kT < 0, at a ratio where what is left out is itself at its limit of
-/// stability, its state is not unique and zero is the one meant.
+/// This is repeated for discs and groups that have become such. A contact of a disc with its own image carries force in
+/// balance with itself, so that its disc stays. Where kT < 0, at a ratio where what is left out is itself at its limit
+/// of stability, its state is not unique and zero is the one meant.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@
 
 namespace equidem {
 
-/// Which discs carry no load whatever the mean strain, and the network without them. Taking them out changes no force.
+/// Discs that carry no load under any mean strain, and the network without them. Removing them changes no force.
 struct LoadBearingNetwork {
   std::int64_t rattlers = 0;           ///< discs without contacts
   std::int64_t dangling = 0;           ///< discs whose contacts can carry no force

@@ -88,7 +88,7 @@ MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& 
         motion.empty() ? "" : ", such as " + describe_motion(assembly, motions_of(system.unknowns, motion))));
   }
   if (assembly.periodic() && supports.empty()) {
-    const ContactSprings equal(SpringConstants{1, 1});  // what carries no load for want of slip joins all the same
+    const ContactSprings equal(SpringConstants{1, 1});  // contacts without slip carry no load, but join their discs
     report.unjoined =
         2 - load_bearing_network(assembly, equal, derive_effects(assembly, equal, Rotation::restrained)).spanned;
     if (report.unjoined > 0) {

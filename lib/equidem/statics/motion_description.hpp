@@ -18,9 +18,8 @@ namespace equidem {
 /// the whole assembly about (0.1, 0.05)", "a local motion of about 3 of 900 discs: disc 17 at (0.02, 0.01), ...".
 /// Told apart are rigid translation and rotation (of all discs, or of those that move, such as a row or a ring, also
 /// across the period), counter-rotation of discs, motion of one disc or of a few, groups that slide past one another,
-/// uniform strain, and whatever else spreads over the assembly; and where no contact stretches, whether discs slip or
-/// roll. Does not depend on the scale or the sign of the motions.
-/// \param motions per disc, finite
+/// uniform strain, and other motions that extend over the assembly; and where no contact stretches, whether discs slip
+/// or roll. Does not depend on the scale or the sign of the motions. \param motions per disc, finite
 std::string describe_motion(const Assembly& assembly, std::span<const DiscMotion> motions);
 
 /// "x", "y" or the unit vector "(0.6, 0.8)"; opposite directions have one name.

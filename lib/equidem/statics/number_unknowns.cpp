@@ -66,8 +66,8 @@ void hold_inert_rotations(const Assembly& assembly, const ContactSprings& spring
   for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
     std::uint8_t& held = unknowns.held[3 * disc + 2];
     if (resisted[disc] != 0 || held != 0) continue;
-    held = DegreesOfFreedom::inert;
-    ++unknowns.inert_rotations;
+    held = DegreesOfFreedom::without_stiffness;
+    ++unknowns.rotations_without_stiffness;
   }
 }
 

@@ -91,7 +91,7 @@ struct RollingComponent {
   TriangularFactor<2> equations;
 
   /// A disc whose rotation no contact resists.
-  [[nodiscard]] bool inert() const { return discs == 1 && equations.r[0][0] == 0; }
+  [[nodiscard]] bool without_stiffness() const { return discs == 1 && equations.r[0][0] == 0; }
   [[nodiscard]] bool gear_mode() const { return discs > 1 && equations.r[0][0] <= tolerance; }
 };
 
@@ -277,10 +277,10 @@ class Equations {
 
   /// Rows of held rotations; then gamma is eliminated and what a component asks of omega goes to its piece.
   void hold_rotations() {
-    std::vector<std::uint8_t> inert(components_.size());
-    for (std::size_t k = 0; k < components_.size(); ++k) inert[k] = components_[k].inert() ? 1 : 0;
+    std::vector<std::uint8_t> no_stiffness(components_.size());
+    for (std::size_t k = 0; k < components_.size(); ++k) no_stiffness[k] = components_[k].without_stiffness() ? 1 : 0;
     for (std::size_t d = 0; d < assembly_.size(); ++d) {
-      if (unknowns_.held[3 * d + 2] == 0 || inert[component_[d]] != 0) continue;
+      if (unknowns_.held[3 * d + 2] == 0 || no_stiffness[component_[d]] != 0) continue;
       piece_of(static_cast<std::int32_t>(d)).motions.held = true;
       const double scale = std::abs(alpha_[d]) + std::abs(beta_[d]);
       components_[component_[d]].equations.add({beta_[d] / scale, alpha_[d] / scale});

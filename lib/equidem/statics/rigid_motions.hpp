@@ -18,7 +18,7 @@
 /// is what can move. gamma alone is the gear mode: it exists where every ring of the component closes, that is, has
 /// an even number of contacts and equal products of lever arms either way round. With rotation restrained every theta
 /// is zero and any kT != 0 resists omega. Off the lines of centres the arms of a contact meet in one point, so that
-/// omega costs nothing where all bodies turn with it: rotations beside it, theta_i - omega = beta_i gamma, must leave
+/// omega has no energy where all bodies turn with it: rotations beside it, theta_i - omega = beta_i gamma, must leave
 /// r_i theta_i + r_j theta_j (where kT
 /// != 0) and o_i theta_i + o_j theta_j without change, o the offsets. A piece that winds around the period cannot
 /// rotate.

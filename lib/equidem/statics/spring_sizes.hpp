@@ -8,7 +8,7 @@
 
 namespace equidem {
 
-/// Every spring that there is as stiff as any other, 1 Pa: which motions cost nothing, no longer how little others
+/// Every spring replaced by one of 1 Pa: the zero-energy modes stay, but no longer how little energy others
 /// cost.
 ContactSprings equal_springs(const Assembly& assembly, const ContactSprings& springs);
 

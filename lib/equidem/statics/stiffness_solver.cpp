@@ -139,7 +139,7 @@ struct StiffnessSolver::Refinement {
  private:
   static constexpr const char* too_soft = "the stiffness matrix is too close to singular for the digits of a double";
   static constexpr const char* remedy =
-      "Hold a slender assembly in more places, bring springs of very different size closer to each other, or use fewer "
+      "Hold a slender assembly in more places, make springs less different in size, or use fewer "
       "discs";
 
   double evaluate(std::span<double> residual) const {

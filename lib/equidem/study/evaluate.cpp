@@ -141,8 +141,7 @@ std::string price_of_more(const Study& study, const StudyResult& result, const s
     if (mine) price = std::max(price, cost_of_accuracy(times, curve.cost_exponent, curve.order->order));
   }
   if (price > 0)
-    return fmt::format("{:g} times more accuracy would cost about {:.2g} times the time, as its order says", times,
-                       price);
+    return fmt::format("{:g} times more accuracy would cost about {:.2g} times the time, by its order", times, price);
   return fmt::format("no setting tried is {:g} times more accurate", times);
 }
 

@@ -82,7 +82,7 @@ Study random_assembly_study(bool quick) {
                    .why = "many independent patches average as the root of their number (Kanit et al. 2003); "
                           "the scatter of n samples is itself known to 1/sqrt(2 n) only"}};
   study.notes = {
-      "h is one over all discs, cells times seeds. The standard error says nothing of a drift with the size of cells: "
+      "h is one over all discs, cells times seeds. The standard error does not contain a drift with the size of cells: "
       "that is what [ensemble] of equidem homogenize measures."};
   return study;
 }

@@ -99,7 +99,7 @@ std::int64_t Refinement::admissible(double n) const {
 void Refinement::try_pilot(std::int64_t level) {
   if (level > options_.most)
     refuse(fmt::format(
-        "to tell how errors fall takes three computations, the finest of {} {}, and the most that are tried are {}",
+        "an estimate of the order takes three computations, the finest of {} {}, and the most that are tried are {}",
         level, options_.unit, options_.most));
   values_[level] = pilot_(level);
   pilots_.push_back(level);

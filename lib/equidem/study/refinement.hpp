@@ -45,7 +45,7 @@ class Refinement {
   /// The coarsest level that should reach the accuracy, by all that is known so far.
   /// \throws Error (computation_failed) as soon as it is plain that no level up to `most` does, naming what can be
   ///         reached, or where errors
-  ///         do not fall as theory says up to 64 times the first level; whatever `pilot` throws
+  ///         do not fall as theory says up to 64 times the first level; any error that `pilot` throws
   std::int64_t propose();
   /// Whether the error of what a level gave, estimated with it, is within the accuracy.
   bool accepts(std::int64_t level, Values values);
@@ -53,7 +53,7 @@ class Refinement {
   [[nodiscard]] double error(std::int64_t level) const;  ///< of a level that is known, estimated
   [[nodiscard]] double order() const { return order_; }  ///< that was observed, of the distances between levels
   [[nodiscard]] const std::vector<std::int64_t>& pilots() const { return pilots_; }  ///< in the order of trying
-  /// By error ~ level^-theory.
+  /// Predicted by error ~ level^-theory.
   [[nodiscard]] std::int64_t level_for(double accuracy, std::int64_t level) const;
 
  private:
@@ -68,7 +68,7 @@ class Refinement {
   [[nodiscard]] std::array<Level, 3> last_three() const;
   /// Order, limit and doubt, from the last three.
   void find_limit();
-  /// By the finest level.
+  /// Judged by the finest level.
   [[nodiscard]] double error_at(double level, double order) const;
   [[nodiscard]] std::int64_t wanted() const;
 

@@ -142,9 +142,10 @@ Study solvers_study(bool quick) {
   study.orders = {
       {.method = "relaxation", .order = 1, .why = "the error is K^-1 times the unbalanced force that is left"}};
   study.notes = {
-      "The order of relaxation is that of the error over the unbalanced force that is left, not over the tolerance: a "
-      "look at it every 25 steps finds it up to 10,000 times smaller than at the last, so that several tolerances end "
-      "in the same state."};
+      "The order of relaxation is that of the error over the unbalanced force that is left, not over the tolerance: "
+      "the "
+      "force is checked every 25 steps and may be 10,000 times smaller than at the check before, so that several "
+      "tolerances end in the same state."};
   return study;
 }
 

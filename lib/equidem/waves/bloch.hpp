@@ -51,7 +51,7 @@ class BlochWaves {
   [[nodiscard]] SoundSpeeds sound_speeds(Vec2 direction) const;
 
   /// Smallest omega² (by magnitude) at q = 0 of a wave with more than half of its kinetic energy in rotations, other
-  /// than one that costs nothing; none where rotations are no unknowns or all such waves cost nothing. On lattices of
+  /// than a zero-energy mode; none where rotations are no unknowns or all such waves have no energy. On lattices of
   /// one disc: hexagonal 12 kT/(beta m), square 8 kT/(beta m).
   [[nodiscard]] std::optional<double> squared_rotational_gap() const;
 

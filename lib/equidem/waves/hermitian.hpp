@@ -46,8 +46,8 @@ double largest_share(const ComplexMatrix& n, const ComplexMatrix& t);
 ///
 ///   H = Z^H (D2 - D1 D0^+ D1) Z,   Z^H D1 Z = 0
 ///
-/// the latter because a motion that costs nothing at q = 0 costs O(q²) for small q. `vectors` holds the columns of Z
-/// turned to the eigenvectors of H, size x as many as there are values.
+/// the latter because a zero-energy mode at q = 0 has a stiffness of O(q²) for small q. `vectors` holds the columns of
+/// Z turned to the eigenvectors of H, size x as many as there are values.
 struct LongWaves {
   std::vector<double> squared_speeds;
   std::vector<std::vector<Complex>> vectors;
@@ -73,7 +73,7 @@ struct LongWaveLoss {
 ///
 ///   A(n; r) = Q(n) - L(n) D^-1 L(n)^T,   Q = Z^T K2(n) Z,   L = Z^T K1(n) Y,   D = Y^T K0 Y,   K = N + r T,
 ///
-/// Z the motions that cost nothing at q = 0 (translations, gears) and Y the others: the acoustic tensor of the
+/// Z the zero-energy modes at q = 0 (translations, gears) and Y the others: the acoustic tensor of the
 /// homogenized assembly, which waves lose where it first has an eigenvalue 0 as r falls from 0.
 ///
 /// \param normal, tangential N and T of K = N + r T, both positive semidefinite for every q

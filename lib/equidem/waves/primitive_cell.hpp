@@ -33,7 +33,7 @@ struct PrimitiveCell {
   double rotation_scale = 1;  ///< a, m: the mean radius of the assembly
 
   [[nodiscard]] std::size_t size() const { return discs.size(); }
-  /// As on_lines_of_centres(Assembly).
+  /// See on_lines_of_centres(Assembly).
   [[nodiscard]] bool on_lines_of_centres() const {
     return std::all_of(contacts.begin(), contacts.end(),
                        [](const CellContact& c) { return c.frame.offset_i == 0 && c.frame.offset_j == 0; });

@@ -45,7 +45,7 @@ void add_rigidity(Results& out, const EffectiveStiffness& r) {
   std::vector<std::string> lines = r.removed;
   if (r.discs_removed > 0) lines.emplace_back("without them every force is the same, and so is the stiffness");
   std::vector<Results> described;
-  for (const HarmlessMotion& motion : r.motions) {
+  for (const ZeroEnergyMode& motion : r.motions) {
     lines.push_back(fmt::format("{}: {}", motion.kind, motion.description));
     described.push_back(Results().set("kind", motion.kind).set("description", motion.description));
   }

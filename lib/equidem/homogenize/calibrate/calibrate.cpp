@@ -275,7 +275,7 @@ Calibration calibrate(const Assembly& assembly, const ElasticModuli& target, con
   if (!(result.relative_error <= accepted)) {
     computation_failed(fmt::format("the moduli reached are off by {:.2g}", result.relative_error),
                        result.verified ? "the springs do not give them on this assembly" : "",
-                       "Check that the assembly is the lattice that it is said to be");
+                       "Check that the assembly is this lattice");
   }
   return result;
 }

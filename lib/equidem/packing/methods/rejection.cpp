@@ -36,7 +36,7 @@ void fill_by_rejection(const PackingOptions& options, GrainPacking& packing) {
         fmt::format("{} of {} {}s found a place, {:.4g} of the box", k, radii.size(), noun_of(options.shape.kind),
                     area_of(options.shape, placed.bodies().radii) / options.box.area()),
         fmt::format(
-            "for the next one {} attempts were all in vain; equal discs thrown at random never cover more than 0.547",
+            "{} attempts to place the next one failed; equal discs placed at random never cover more than 0.547",
             options.attempts),
         "Ask for less, for more attempts, or use growth");
   }

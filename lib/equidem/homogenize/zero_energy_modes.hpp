@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Motions without energy that leave the effective stiffness as it is, and those that do not.
+/// Zero-energy modes that leave the effective stiffness unchanged, and those that do not.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@
 
 namespace equidem {
 
-/// A motion that costs no energy and leaves the effective stiffness as it is.
-struct HarmlessMotion {
+/// A motion without energy that leaves the effective stiffness unchanged.
+struct ZeroEnergyMode {
   std::string kind;         ///< "gear", "local"
   std::string description;  ///< which discs, which motion
 };
@@ -22,9 +22,8 @@ struct HarmlessMotion {
 /// work on them. At most eight of each kind are described.
 /// \param name of the network for messages: "the network", "the cell, cut open at its boundary,"
 /// \throws Error (bad_input) where a mechanism runs through the sample (winds around the period, or moves a quarter of
-///         the
-///         discs of a free sample), or where there are more than 1000: the network is floppy
-std::vector<HarmlessMotion> harmless_motions(const Assembly& assembly, const StiffnessSolver& solver,
-                                             const HeldMotions& held, const std::string& name);
+///         the discs of a free sample), or where there are more than 1000: the network is floppy
+std::vector<ZeroEnergyMode> zero_energy_modes(const Assembly& assembly, const StiffnessSolver& solver,
+                                              const HeldMotions& held, const std::string& name);
 
 }  // namespace equidem

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/homogenize/harmless_motions.hpp"
+#include "equidem/homogenize/zero_energy_modes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -47,9 +47,9 @@ bool runs_through(const Assembly& assembly, const std::vector<std::uint8_t>& mov
 
 }  // namespace
 
-std::vector<HarmlessMotion> harmless_motions(const Assembly& assembly, const StiffnessSolver& solver,
-                                             const HeldMotions& held, const std::string& name) {
-  std::vector<HarmlessMotion> result;
+std::vector<ZeroEnergyMode> zero_energy_modes(const Assembly& assembly, const StiffnessSolver& solver,
+                                              const HeldMotions& held, const std::string& name) {
+  std::vector<ZeroEnergyMode> result;
   for (const GearMode& gear : held.gears) {
     if (result.size() == most_described) break;
     result.push_back({"gear", fmt::format("{} around {} counter-rotate like gears: their contacts form no odd ring",
@@ -65,7 +65,7 @@ std::vector<HarmlessMotion> harmless_motions(const Assembly& assembly, const Sti
       bad_input(mechanisms == 1 ? fmt::format("{} is a mechanism", name)
                                 : fmt::format("{} is floppy: it has {} mechanisms", name, mechanisms),
                 fmt::format("it can move at no cost: {}", describe_motion(assembly, motion)),
-                "A modulus would say nothing of it. Add contacts, or give the contacts tangential springs (kT > 0)");
+                "It has no modulus. Add contacts, or give the contacts tangential springs (kT > 0)");
     }
     if (static_cast<std::size_t>(k) < most_described) result.push_back({"local", describe_motion(assembly, motion)});
   }
