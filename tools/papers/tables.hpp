@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -11,6 +12,7 @@
 
 #include "equidem/output/files/csv.hpp"
 #include "equidem/output/plots/plot.hpp"
+#include "equidem/output/results.hpp"
 
 namespace equidem {
 
@@ -34,6 +36,9 @@ void add_column(Table& table, const std::string& name, const Rows& rows, Take ta
   for (const auto& row : rows) values.push_back(std::invoke(take, row));
   table.add(name, std::move(values));
 }
+
+/// The rows of a table as JSON objects. \param renamed columns whose keys differ: {column, key}
+std::vector<Results> rows_of(const Table& table, const std::map<std::string, std::string>& renamed = {});
 
 /// The series with one point per row. \param x, y members or functions of a row
 template <class Rows, class X, class Y>

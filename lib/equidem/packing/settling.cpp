@@ -49,22 +49,7 @@ void check(const SettlingOptions& options) {
 
 /// A quarter of the limit of one contact: several at a body lower it, dashpots in proportion to their number.
 double chosen_step(const GrainScene& scene, const SettlingOptions& options) {
-  if (options.time_step > 0) return options.time_step;
-  // Masses that the lightest contact moves: two bodies alike, arms as long as they get.
-  double normal = INFINITY, tangential = INFINITY, mass = INFINITY;
-  for (const Grain& grain : scene.grains) {
-    const Inertia& body = grain.inertia;
-    const auto moved = [&](double lever) { return 0.5 / (1 / body.mass + lever * lever / body.moment); };
-    mass = std::min(mass, body.mass);
-    normal = std::min(normal, moved(longest_lever(grain, scene.clumps)));
-    tangential = std::min(tangential, moved(grain.radius));
-  }
-  const auto limit = [&](double stiffness, double moved_mass) {
-    return semi_implicit_limit(options.damping * std::sqrt(mass / moved_mass)) / std::sqrt(stiffness / moved_mass);
-  };
-  double step = limit(options.springs.kN, normal);
-  if (options.springs.kT > 0) step = std::min(step, limit(options.springs.kT, tangential));
-  return 0.25 * step;
+  return options.time_step > 0 ? options.time_step : 0.25 * contact_step_limit(scene, options);
 }
 
 void tie(GrainScene& scene, double share, double step) {
@@ -82,6 +67,24 @@ double mean_mass(std::span<const Grain> grains) {
 }
 
 }  // namespace
+
+double contact_step_limit(const GrainScene& scene, const SettlingOptions& options) {
+  // Smallest masses that a contact of two equal bodies moves along its normal and tangent.
+  double normal = INFINITY, tangential = INFINITY, mass = INFINITY;
+  for (const Grain& grain : scene.grains) {
+    const Inertia& body = grain.inertia;
+    const auto moved = [&](double lever) { return 0.5 / (1 / body.mass + lever * lever / body.moment); };
+    mass = std::min(mass, body.mass);
+    normal = std::min(normal, moved(longest_lever(grain, scene.clumps)));
+    tangential = std::min(tangential, moved(grain.radius));
+  }
+  const auto limit = [&](double stiffness, double moved_mass) {
+    return semi_implicit_limit(options.damping * std::sqrt(mass / moved_mass)) / std::sqrt(stiffness / moved_mass);
+  };
+  double step = limit(options.springs.kN, normal);
+  if (options.springs.kT > 0) step = std::min(step, limit(options.springs.kT, tangential));
+  return step;
+}
 
 std::vector<Wall> walls_of_box(double width) {
   const auto wall = [](const char* name, Vec2 point, Vec2 normal) {

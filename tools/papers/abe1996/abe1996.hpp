@@ -13,7 +13,7 @@
 
 namespace equidem::abe1996 {
 
-/// The block of Fig. 6. The paper prints neither its size nor where the gauges sit; these are ours.
+/// The block of Fig. 6. The paper prints neither its size nor the positions of the gauges; these are chosen here.
 struct Block {
   int columns = 21;  ///< discs in a long row
   int rows = 21;
@@ -34,7 +34,7 @@ struct RatioPoint {
   [[nodiscard]] bool stable() const { return unstable_modes == 0; }
 };
 
-/// The same test on blocks of n x n.
+/// The tension test on a block of n x n discs.
 struct SizePoint {
   int rows = 0;
   double poisson_ratio_error = 0;    ///< against (22)
@@ -56,17 +56,17 @@ struct StressCheck {
   double spin = 0;                      ///< u_2,1 - u_1,2 of the example
   double asymmetry = 0;                 ///< s_12 - s_21 of the example, Pa
   double expected_asymmetry = 0;        ///< -sqrt3 kT (u_2,1 - u_1,2), Pa
-  double moment_density = 0;            ///< of the moments that hold the discs, Pa
+  double moment_density = 0;            ///< restraining moments per area, Pa
   double restrained_poisson_ratio = 0;  ///< of the tension test with rotation restrained, at the same ratio
 };
 
 struct Reproduction {
   Block block;
-  double height = 0;         ///< m, by which the load is divided: rows * sqrt3 a
+  double height = 0;         ///< m, rows * sqrt3 a, on which the load acts
   double gauge_length = 0;   ///< m, A-B
   double gauge_height = 0;   ///< m, C-D
-  double lattice_limit = 0;  ///< -1/3: where the infinite lattice gives way
-  double block_limit = 0;    ///< r_c of this block
+  double lattice_limit = 0;  ///< critical kT/kN of the infinite lattice, -1/3
+  double block_limit = 0;    ///< critical kT/kN of this block
   std::vector<RatioPoint> points;
   std::vector<Convergence> convergence;
   StressCheck stress;

@@ -18,32 +18,6 @@
 
 namespace equidem::sukegawa2010 {
 
-const std::vector<OutcomeKey>& outcome_keys() {
-  static const std::vector<OutcomeKey> keys{{"void_ratio_before", &Outcome::void_ratio_before},
-                                            {"void_ratio", &Outcome::void_ratio},
-                                            {"whole_void_ratio_before", &Outcome::whole_before},
-                                            {"whole_void_ratio", &Outcome::whole},
-                                            {"surface_height_before_m", &Outcome::height_before},
-                                            {"surface_height_m", &Outcome::height},
-                                            {"roughness_before_m", &Outcome::roughness_before},
-                                            {"roughness_m", &Outcome::roughness},
-                                            {"centre_height_before_m", &Outcome::centre_before},
-                                            {"centre_height_m", &Outcome::centre},
-                                            {"largest_slope", &Outcome::slope},
-                                            {"swing_m", &Outcome::swing},
-                                            {"thrown", &Outcome::thrown},
-                                            {"coordination", &Outcome::coordination},
-                                            {"bond_creep", &Outcome::creep},
-                                            {"bond_roll_rad", &Outcome::roll},
-                                            {"largest_overlap", &Outcome::overlap},
-                                            {"time_step_s", &Outcome::time_step},
-                                            {"steps", &Outcome::steps},
-                                            {"time_s", &Outcome::time},
-                                            {"energy_error", &Outcome::energy_error},
-                                            {"seconds", &Outcome::seconds}};
-  return keys;
-}
-
 namespace {
 
 /// All settings that a filling depends on.
@@ -77,7 +51,7 @@ class Store {
                   "Choose another --out, or give --overwrite to start again", path.string());
     }
     Outcome outcome;
-    for (const OutcomeKey& key : outcome_keys())
+    for (const OutcomeKey& key : outcome_keys)
       outcome.*key.value = number_in_json(text, key.name).value_or(std::numeric_limits<double>::quiet_NaN());
     return outcome;
   }
@@ -86,7 +60,7 @@ class Store {
     if (!folder_) return;
     Results object;
     object.set("settings", settings);
-    for (const OutcomeKey& key : outcome_keys()) object.set(key.name, outcome.*key.value);
+    for (const OutcomeKey& key : outcome_keys) object.set(key.name, outcome.*key.value);
     write_file(file(name, ".json"), object.json(), true);
   }
 
@@ -140,7 +114,6 @@ void compute(const CommonOptions& options, Reproduction& result) {
   const std::vector<Run> runs = plan(result.quick);
   result.planned = runs.size();
   const Store store(options);
-  const RunFiles files{.folder = options.out, .overwrite = true};
   std::vector<std::optional<Outcome>> outcomes;
   std::map<std::string, std::unique_ptr<SharedFill>> fills;
   std::map<std::string, bool> shown;
@@ -178,14 +151,14 @@ void compute(const CommonOptions& options, Reproduction& result) {
         if (state) {
           fill.box = FilledBox{std::move(*state), *outcome};
         } else {
-          fill.box = fill_box(run.fill, shown.at(run.fill.name()), files, tick(cost));
+          fill.box = fill_box(run.fill, shown.at(run.fill.name()), options.out, tick(cost));
           store.keep_state(run.fill, settings, fill.box->state);
           store.keep(run.fill.name(), settings, fill.box->outcome);
         }
         work.add(counted, base = cost);
       }
     }
-    outcomes[k] = shake_box(run, *fill.box, files, tick(cost_of(run)));
+    outcomes[k] = shake_box(run, *fill.box, options.out, tick(cost_of(run)));
     work.add(counted, base + cost_of(run));
     store.keep(run.name(), settings_of(run), *outcomes[k]);
   };

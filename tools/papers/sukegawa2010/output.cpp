@@ -21,21 +21,9 @@ Table table_of(const Reproduction& result) {
   add_column(table, "acceleration_gal", runs, [](const Done& d) { return d.run.shaking->gal; });
   add_column(table, "frequency_Hz", runs, [](const Done& d) { return d.run.shaking->frequency; });
   add_column(table, "cycles", runs, [](const Done& d) { return d.run.shaking->cycles; });
-  for (const OutcomeKey& key : outcome_keys())
+  for (const OutcomeKey& key : outcome_keys)
     add_column(table, key.name, runs, [&](const Done& d) { return d.outcome.*key.value; });
   return table;
-}
-
-Results json_of(const Done& done) {
-  Results object;
-  object.set("name", done.run.name()).set("shape", plural_of(done.run.fill.shape));
-  object.set("variant", done.run.fill.variant).set("seed", static_cast<std::int64_t>(done.run.fill.seed));
-  if (done.run.shaking) {
-    object.set("acceleration_gal", done.run.shaking->gal).set("frequency_Hz", done.run.shaking->frequency);
-    object.set("cycles", done.run.shaking->cycles);
-  }
-  for (const OutcomeKey& key : outcome_keys()) object.set(key.name, done.outcome.*key.value);
-  return object;
 }
 
 int reproduce(const CommonOptions& options, bool quick) {
@@ -59,6 +47,7 @@ int reproduce(const CommonOptions& options, bool quick) {
     const Fill fill = result.runs.empty() ? plan(quick).front().fill : result.runs.front().run.fill;
     const GrainScene scene = start_of(fill);
     const bool any = !result.runs.empty();
+    const Table table = table_of(result);
     finish_paper(common, {.paper = "sukegawa2010",
                           .report = report(result),
                           .times = result.times,
@@ -66,11 +55,9 @@ int reproduce(const CommonOptions& options, bool quick) {
                           .add_numbers =
                               [&](Results& object) {
                                 object.set("quick", quick).set("planned", static_cast<std::int64_t>(result.planned));
-                                std::vector<Results> runs;
-                                for (const Done& done : result.runs) runs.push_back(json_of(done));
-                                object.set("runs", runs);
+                                object.set("runs", rows_of(table, {{"run", "name"}}));
                               },
-                          .tables = any ? Named<Table>{{"runs", table_of(result)}} : Named<Table>{},
+                          .tables = any ? Named<Table>{{"runs", table}} : Named<Table>{},
                           .plots = any ? plots(result, options.out) : Named<Plot>{},
                           .status = result.complete() ? "done" : "incomplete"});
   }

@@ -204,7 +204,7 @@ bool has_points(const Plot& plot) {
 
 }  // namespace
 
-Named<Plot> plots(const Reproduction& result, const std::optional<std::filesystem::path>& folder) {
+Named<Plot> plots(const Reproduction& result, const Folder& folder) {
   Named<Plot> all;
   all.emplace_back("void_ratio", void_ratio_plot(result));
   for (const Shape shape : {Shape::disc, Shape::bonded_pair}) {

@@ -74,12 +74,12 @@ std::string title_of(const Run& run, const std::string& when) {
 /// Filling or shaking of a box.
 class BoxRun {
  public:
-  BoxRun(const Run& run, GrainScene scene, bool shown, const RunFiles& files)
+  BoxRun(const Run& run, GrainScene scene, bool shown, const Folder& folder)
       : run_(run),
         scene_(std::move(scene)),
         simulation_(scene_, options_of(scene_, run.fill)),
-        files_(files),
-        shown_(shown && files.folder),
+        folder_(folder),
+        shown_(shown && folder),
         layers_(layers_of(scene_)),
         followed_(followed(run.fill.grid, run.fill.shape)),
         diameter_(mean_diameter(scene_.grains, scene_.clumps)) {
@@ -144,22 +144,23 @@ class BoxRun {
 
   /// The history as a table.
   void write(const std::string& name) const {
-    if (!files_.folder) return;
+    if (!folder_) return;
     Table history;
     for (const auto& [column, values] : columns_) history.add(column, values);
-    write_csv(*files_.folder / "runs" / (name + ".csv"), history, files_.overwrite);
+    write_csv(*folder_ / "runs" / (name + ".csv"), history, true);
   }
 
   /// Amplitude of the centre of mass along x in the box at the frequency of shaking, over its last two cycles.
   double swing(const Shaking& shaking) const {
-    std::vector<double> times, places;
-    for (std::size_t k = 0; k < times_.size(); ++k) {
-      const double phase = times_[k] * shaking.frequency;
+    const std::vector<double>&all_times = columns_[0].second, &all_centres = columns_[3].second;
+    std::vector<double> times, centres;
+    for (std::size_t k = 0; k < all_times.size(); ++k) {
+      const double phase = all_times[k] * shaking.frequency;
       if (phase < static_cast<double>(shaking.cycles - 2) || phase > static_cast<double>(shaking.cycles)) continue;
-      times.push_back(times_[k]);
-      places.push_back(centres_[k]);
+      times.push_back(all_times[k]);
+      centres.push_back(all_centres[k]);
     }
-    return times.size() < 8 ? unknown : amplitude_spectrum(times, places, std::array{shaking.frequency}).front();
+    return times.size() < 8 ? unknown : amplitude_spectrum(times, centres, std::array{shaking.frequency}).front();
   }
 
   /// The bodies now. \param when part of the title
@@ -171,8 +172,8 @@ class BoxRun {
     if (!farthest_.empty()) draw(name, when, farthest_, farthest_time_);
   }
   void animate(const std::string& name) const {
-    if (!files_.folder || !run_.animated) return;
-    write_grain_animation(*files_.folder / (name + ".html"),
+    if (!folder_ || !run_.animated) return;
+    write_grain_animation(*folder_ / (name + ".html"),
                           {.title = title_of(run_, "shaken"),
                            .caption = "Colours: five layers of the grid that the box was filled from.",
                            .shapes = scene_.grains,
@@ -180,14 +181,14 @@ class BoxRun {
                            .groups = layers_,
                            .walls = scene_.walls,
                            .frames = frames_},
-                          files_.overwrite);
+                          true);
   }
 
  private:
   void draw(const std::string& name, const std::string& when, const std::vector<Grain>& grains, double time) const {
     if (!shown_) return;
     const std::lock_guard lock(drawing());
-    write_grain_picture(*files_.folder, name,
+    write_grain_picture(*folder_, name,
                         {.title = title_of(run_, when),
                          .time = time,
                          .grains = grains,
@@ -195,7 +196,7 @@ class BoxRun {
                          .groups = layers_,
                          .bonds = scene_.bonds,
                          .walls = scene_.walls},
-                        files_.overwrite);
+                        true);
   }
 
   void sample() {
@@ -204,9 +205,7 @@ class BoxRun {
     last_ = measure(scene_, grains, time, diameter_);
     for (std::size_t g = 0; g < grains.size(); ++g)
       if (!last_.heap[g]) ever_[g] = 1;
-    if (times_.empty()) swings_from_ = last_.centre.x;
-    times_.push_back(time - zero_);
-    centres_.push_back(last_.centre.x);
+    if (columns_.empty()) swings_from_ = last_.centre.x;
     slope_ = std::max(slope_, std::abs(last_.surface.slope));
     const double swing = std::abs(last_.centre.x - swings_from_);
     if (shown_ && run_.shaking && swing > farthest_swing_) {
@@ -247,7 +246,7 @@ class BoxRun {
   const Run& run_;
   GrainScene scene_;
   GrainSimulation simulation_;
-  const RunFiles& files_;
+  const Folder& folder_;
   bool shown_;
   std::vector<int> layers_;
   std::array<std::size_t, 9> followed_;
@@ -255,7 +254,6 @@ class BoxRun {
   double slope_ = 0, swings_from_ = 0;
   Moment first_, last_;
   std::vector<char> ever_;
-  std::vector<double> times_, centres_;
   double farthest_swing_ = -1, farthest_time_ = 0;
   std::vector<Grain> farthest_;
   std::vector<GrainFrame> frames_;
@@ -265,9 +263,9 @@ class BoxRun {
 
 }  // namespace
 
-FilledBox fill_box(const Fill& fill, bool shown, const RunFiles& files, const std::function<void(double)>& tick) {
+FilledBox fill_box(const Fill& fill, bool shown, const Folder& folder, const std::function<void(double)>& tick) {
   const Run run{.fill = fill};
-  BoxRun box(run, start_of(fill), shown, files);
+  BoxRun box(run, start_of(fill), shown, folder);
   box.draw(run.name() + "_start", "the start");
   box.start();
   box.until_rest(0.5, longest_fall, tick);
@@ -279,14 +277,14 @@ FilledBox fill_box(const Fill& fill, bool shown, const RunFiles& files, const st
   return filled;
 }
 
-Outcome shake_box(const Run& run, const FilledBox& filled, const RunFiles& files,
+Outcome shake_box(const Run& run, const FilledBox& filled, const Folder& folder,
                   const std::function<void(double)>& tick) {
   GrainScene scene = start_of(run.fill);
   const Shaking& shaking = *run.shaking;
   const double start = static_cast<double>(filled.state.step) * step_of(scene, run.fill);
   const double duration = static_cast<double>(shaking.cycles) / shaking.frequency;
   shake(scene.walls, {1, 0}, harmonic_shaking(gal * shaking.gal, shaking.frequency, start, shaking.cycles));
-  BoxRun box(run, std::move(scene), run.shown, files);
+  BoxRun box(run, std::move(scene), run.shown, folder);
   box.simulation().restore(filled.state);
   box.start();
   box.until_rest(duration, duration + longest_rest, tick);

@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
-#include <cmath>
-
 #include "equidem/core/random.hpp"
 #include "equidem/material/wave_speed_springs.hpp"
 #include "equidem/packing/packing.hpp"
@@ -67,22 +64,7 @@ GrainScene start_of(const Fill& fill) {
 }
 
 double step_of(const GrainScene& scene, const Fill& fill) {
-  if (fill.step) return *fill.step;
-  const SpringConstants springs = material_of(fill).springs;
-  double limit = INFINITY;
-  for (const Grain& grain : scene.grains) {
-    const double mass = grain.inertia.mass;
-    const auto bound = [&](double stiffness, double lever) {
-      const double moved = 0.5 / (1 / mass + lever * lever / grain.inertia.moment);
-      const double damping = fill.damping * std::sqrt(mass / moved);  // of c = 2 h sqrt(m k) (2.27)
-      return semi_implicit_limit(damping) / std::sqrt(stiffness / moved);
-    };
-    double arm = 0;  // largest lever of a normal force
-    if (grain.shape() == GrainShape::ellipse) arm = grain.radius - grain.short_half_axis;
-    if (grain.shape() == GrainShape::clump) arm = 0.5 * grain.radius;
-    limit = std::min({limit, bound(springs.kN, arm), bound(springs.kT, grain.radius)});
-  }
-  return fill.step_share * limit;
+  return fill.step ? *fill.step : fill.step_share * contact_step_limit(scene, material_of(fill));
 }
 
 GrainOptions options_of(const GrainScene& scene, const Fill& fill) {

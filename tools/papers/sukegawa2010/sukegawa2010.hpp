@@ -119,7 +119,28 @@ struct OutcomeKey {
   const char* name;
   double Outcome::*value;
 };
-const std::vector<OutcomeKey>& outcome_keys();
+inline constexpr std::array outcome_keys{OutcomeKey{"void_ratio_before", &Outcome::void_ratio_before},
+                                         OutcomeKey{"void_ratio", &Outcome::void_ratio},
+                                         OutcomeKey{"whole_void_ratio_before", &Outcome::whole_before},
+                                         OutcomeKey{"whole_void_ratio", &Outcome::whole},
+                                         OutcomeKey{"surface_height_before_m", &Outcome::height_before},
+                                         OutcomeKey{"surface_height_m", &Outcome::height},
+                                         OutcomeKey{"roughness_before_m", &Outcome::roughness_before},
+                                         OutcomeKey{"roughness_m", &Outcome::roughness},
+                                         OutcomeKey{"centre_height_before_m", &Outcome::centre_before},
+                                         OutcomeKey{"centre_height_m", &Outcome::centre},
+                                         OutcomeKey{"largest_slope", &Outcome::slope},
+                                         OutcomeKey{"swing_m", &Outcome::swing},
+                                         OutcomeKey{"thrown", &Outcome::thrown},
+                                         OutcomeKey{"coordination", &Outcome::coordination},
+                                         OutcomeKey{"bond_creep", &Outcome::creep},
+                                         OutcomeKey{"bond_roll_rad", &Outcome::roll},
+                                         OutcomeKey{"largest_overlap", &Outcome::overlap},
+                                         OutcomeKey{"time_step_s", &Outcome::time_step},
+                                         OutcomeKey{"steps", &Outcome::steps},
+                                         OutcomeKey{"time_s", &Outcome::time},
+                                         OutcomeKey{"energy_error", &Outcome::energy_error},
+                                         OutcomeKey{"seconds", &Outcome::seconds}};
 
 /// A run with its results.
 struct Done {
@@ -154,11 +175,7 @@ GrainScene start_of(const Fill& fill);
 double step_of(const GrainScene& scene, const Fill& fill);
 GrainOptions options_of(const GrainScene& scene, const Fill& fill);
 
-/// Folder of the files of runs; empty: no files.
-struct RunFiles {
-  std::optional<std::filesystem::path> folder;
-  bool overwrite = true;
-};
+using Folder = std::optional<std::filesystem::path>;  ///< for the files of runs; empty: no files
 
 /// A box at rest.
 struct FilledBox {
@@ -167,9 +184,9 @@ struct FilledBox {
 };
 /// Let the bodies fall and come to rest.
 /// \param tick called with the share done, several times in a run
-FilledBox fill_box(const Fill& fill, bool shown, const RunFiles& files, const std::function<void(double)>& tick);
+FilledBox fill_box(const Fill& fill, bool shown, const Folder& folder, const std::function<void(double)>& tick);
 /// Shake a box at rest and let it come to rest again.
-Outcome shake_box(const Run& run, const FilledBox& filled, const RunFiles& files,
+Outcome shake_box(const Run& run, const FilledBox& filled, const Folder& folder,
                   const std::function<void(double)>& tick);
 
 /// Compute all runs that are not yet in the folder, on all threads.
@@ -205,6 +222,6 @@ double amplification_of(const Done& done);
 double liquid_amplification(double period, double width, double depth);
 
 std::string report(const Reproduction& result);
-Named<Plot> plots(const Reproduction& result, const std::optional<std::filesystem::path>& folder);
+Named<Plot> plots(const Reproduction& result, const Folder& folder);
 
 }  // namespace equidem::sukegawa2010
