@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "equidem/casefile/build.hpp"
-#include "equidem/casefile/keys.hpp"
+#include "equidem/casefile/case_tables.hpp"
 #include "equidem/core/file.hpp"
 
 #include "example.hpp"
@@ -176,13 +176,13 @@ TEST_CASE("every_case_of_the_data_folder_is_valid_and_can_be_built") {
 
 TEST_CASE("the_description_names_every_key_and_its_example_is_valid") {
   const std::string text = describe_case_file();
-  for (const KeySpec& key : case_file_spec().keys) {
+  for (const casefile::KeySpec& key : casefile::case_file().spec().keys) {
     CAPTURE(key.table, key.name);
-    CHECK(text.find(std::string("\n  ") + key.name + " ") != std::string::npos);
+    CHECK(text.find("\n  " + key.name + " ") != std::string::npos);
   }
-  for (const TableSpec& table : case_file_spec().tables) {
+  for (const casefile::TableSpec& table : casefile::case_file().spec().tables) {
     CAPTURE(table.name);
-    CHECK(text.find(std::string("[") + table.name + "]") != std::string::npos);
+    CHECK(text.find("[" + table.name + "]") != std::string::npos);
   }
   const auto begin = text.find("  schema = ");
   const auto end = text.find("Any key can be set");

@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "equidem/casefile/echo.hpp"
+#include "equidem/casefile/engine/echo.hpp"
 #include "equidem/casefile/grain_step.hpp"
-#include "equidem/casefile/keys.hpp"
 #include "equidem/core/text.hpp"
 
 #include "example.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "equidem/casefile/echo.hpp"
+#include "equidem/casefile/engine/echo.hpp"
 #include "equidem/core/error.hpp"
 
 #include "support/catch.hpp"

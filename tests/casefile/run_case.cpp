@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "equidem/casefile/keys.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 

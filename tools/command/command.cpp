@@ -7,7 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "equidem/casefile/toml.hpp"
+#include "equidem/casefile/engine/toml.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"

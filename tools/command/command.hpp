@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "equidem/casefile/case.hpp"
-#include "equidem/casefile/echo.hpp"
+#include "equidem/casefile/engine/echo.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/output/files/json.hpp"

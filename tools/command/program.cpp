@@ -12,7 +12,7 @@
 #include <CLI/CLI.hpp>
 #include <unistd.h>
 
-#include "equidem/casefile/toml.hpp"
+#include "equidem/casefile/engine/toml.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/nearest.hpp"
 #include "equidem/core/progress.hpp"

@@ -10,11 +10,12 @@
 #include <string_view>
 #include <utility>
 
-#include "equidem/casefile/read_value.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
+using namespace casefile;
 namespace {
 
 namespace fs = std::filesystem;
@@ -201,6 +202,7 @@ BondCase read_bonds(TomlValue& root, const fs::path& folder, std::size_t grains)
         throw error.at(fmt::format("{}: bonds.path", path->where()));
       }
       path->text = file.string();
+      path->is_path = true;
     } else if (repeated(root, "bond").empty()) {
       fail_at(*table, "bonds", "no grains are tied", "the table only says how", "Add [[bond]] with grains, or a path");
     }

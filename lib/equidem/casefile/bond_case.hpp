@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "equidem/casefile/keys.hpp"
-#include "equidem/casefile/toml.hpp"
+#include "equidem/casefile/engine/keys.hpp"
+#include "equidem/casefile/engine/toml.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem {
@@ -17,7 +17,7 @@ struct BondCase {
   GrainOptions::BondStep step = GrainOptions::BondStep::exact;
 };
 
-std::vector<KeySpec> bond_keys();
+std::vector<casefile::KeySpec> bond_keys();
 
 /// \param root seen by check_and_complete; the path becomes that which the program opens
 /// \throws Error (bad_input) with line and key: grains that are not there, tied to themselves or twice to one another,

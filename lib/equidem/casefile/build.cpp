@@ -2,15 +2,12 @@
 #include "equidem/casefile/build.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/files.hpp"
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/material/spring_relations.hpp"
 
 namespace equidem {
 namespace {
@@ -44,9 +41,9 @@ DiscGroup discs_of(const GroupCase& wanted, const Assembly& assembly, const std:
   }
   std::sort(result.discs.begin(), result.discs.end());
   result.discs.erase(std::unique(result.discs.begin(), result.discs.end()), result.discs.end());
-  if (!wanted.box_low) return result;
+  if (!wanted.box) return result;
 
-  const Vec2 low = *wanted.box_low, high = *wanted.box_high;
+  const auto [low, high] = *wanted.box;
   Vec2 least = assembly.centres.front(), most = least;
   for (std::int32_t disc = 0; disc < count; ++disc) {
     const Vec2 x = assembly.centres[static_cast<std::size_t>(disc)];
@@ -65,7 +62,7 @@ DiscGroup discs_of(const GroupCase& wanted, const Assembly& assembly, const std:
 void add_groups(Assembly& assembly, const Case& resolved) {
   for (std::size_t k = 0; k < resolved.groups.size(); ++k) {
     const GroupCase& wanted = resolved.groups[k];
-    const std::string where = resolved.where(fmt::format("group.{}.{}", k, wanted.box_low ? "box" : "discs"));
+    const std::string where = resolved.where(fmt::format("group.{}.{}", k, wanted.box ? "box" : "discs"));
     if (assembly.groups.contains(wanted.name)) {
       fail(resolved.where(fmt::format("group.{}.name", k)),
            fmt::format("the assembly has a group '{}' of its own", wanted.name), "a name means one group",
@@ -91,19 +88,6 @@ void check_group_names(const Assembly& assembly, const Case& resolved) {
       }
     }
   }
-}
-
-SpringConstants springs_of_material(const Case& resolved, const ChosenRelation& chosen) {
-  const MaterialCase& material = *resolved.material;
-  const Lattice* lattice = resolved.assembly.arrangement;
-  if (resolved.weighting != SpringWeighting::uniform && lattice != nullptr &&
-      lattice->relation.equal_springs != nullptr) {
-    bad_input(fmt::format("the weighting is \"{}\" on the {}", to_string(resolved.weighting), lattice->relation.place),
-              fmt::format("its relation to moduli (Abe 1996, eq. {}) is for equal springs", lattice->relation.equation),
-              "Use weighting = \"uniform\"");
-  }
-  return springs_for(material.moduli, chosen.relation, chosen.measures,
-                     material.static_only ? NegativeTangential::static_only : NegativeTangential::refuse);
 }
 
 std::string described(const SpringConstants& springs, SpringWeighting weighting) {
@@ -138,38 +122,16 @@ Assembly build_assembly(const Case& resolved) {
 }
 
 std::optional<double> disc_density(const Case& resolved, const Assembly& assembly) {
-  const std::optional<double>& rho = resolved.assembly.density;
-  if (!resolved.material || !resolved.material->density) return rho;
-  const double gamma = *resolved.material->density;
-  const std::string where = resolved.where("material.density");
-  if (resolved.assembly.body == Body::sphere) {
-    if (rho) return rho;
-    fail(where, "the density of a continuum does not give that of spheres",
-         "a sheet of spheres has no mass per metre of depth", "Give assembly.density");
+  try {
+    return disc_density(resolved.assembly.density, resolved.material ? resolved.material->density : std::nullopt,
+                        resolved.assembly.body, assembly);
+  } catch (const Error& error) {
+    throw error.at(resolved.where("material.density"));
   }
-  const double phi = assembly.solid_fraction();
-  if (!rho) return gamma / phi;
-  constexpr double tolerance = 1e-6;
-  if (std::abs(gamma - *rho * phi) <= tolerance * gamma) return rho;
-  fail(where, fmt::format("density = {:.9g} kg/m³ contradicts the density of the discs", gamma),
-       fmt::format("discs of {:.9g} kg/m³ that fill {:.6g} of the area make {:.9g} kg/m³", *rho, phi, *rho * phi),
-       "Remove one of the two");
 }
 
 ChosenRelation spring_relation(const Case& resolved, const Assembly& assembly) {
-  if (resolved.weighting == SpringWeighting::uniform) {
-    if (resolved.assembly.arrangement != nullptr) return {resolved.assembly.arrangement->relation, {}};
-  }
-  switch (resolved.weighting) {
-    case SpringWeighting::contact_density:
-      return {isotropic_relation, {assembly.solid_fraction(), 1.0}};
-    case SpringWeighting::voronoi:
-      return {isotropic_relation, {0.5, 1.0}};
-    case SpringWeighting::uniform:
-      break;
-  }
-  const double psi = assembly.coordination_number() / (2 * std::numbers::pi);
-  return {isotropic_relation, {assembly.solid_fraction(), psi}};
+  return spring_relation(assembly, resolved.weighting, resolved.assembly.arrangement);
 }
 
 BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
@@ -194,17 +156,16 @@ BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
                   ? "springs of the assembly file; those of the case file are not used (own_springs = false: they are)"
                   : "springs of the assembly file"};
     }
-    SpringConstants constants;
-    std::string report;
-    if (resolved.material) {
-      const ChosenRelation chosen = spring_relation(resolved, assembly);
-      constants = springs_of_material(resolved, chosen);
-      report = described(*resolved.material, constants, resolved.weighting, chosen.relation);
-    } else {
-      constants = *resolved.springs;
-      report = described(constants, resolved.weighting);
+    if (!resolved.material) {
+      return {contact_springs(assembly, *resolved.springs, resolved.weighting), *resolved.springs,
+              described(*resolved.springs, resolved.weighting)};
     }
-    return {contact_springs(assembly, constants, resolved.weighting), constants, report};
+    const MaterialCase& material = *resolved.material;
+    const SpringConstants constants =
+        springs_of_moduli(material.moduli, assembly, resolved.weighting, resolved.assembly.arrangement,
+                          material.static_only ? NegativeTangential::static_only : NegativeTangential::refuse);
+    return {contact_springs(assembly, constants, resolved.weighting), constants,
+            described(material, constants, resolved.weighting, spring_relation(resolved, assembly).relation)};
   } catch (const Error& error) {
     throw error.at(where);
   }

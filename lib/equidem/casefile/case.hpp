@@ -13,15 +13,15 @@
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
-#include "equidem/casefile/material_case.hpp"
+#include "equidem/casefile/engine/toml.hpp"
 #include "equidem/casefile/run_case.hpp"
 #include "equidem/casefile/schedule_case.hpp"
-#include "equidem/casefile/toml.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/homogenize/tension_test.hpp"
 #include "equidem/linear/linear_solver.hpp"
+#include "equidem/material/elastic_moduli.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/statics/supports.hpp"
 
@@ -45,7 +45,10 @@ struct AssemblyCase {
 struct GroupCase {
   std::string name;
   std::vector<std::int32_t> discs;
-  std::optional<Vec2> box_low, box_high;  ///< m
+  struct Box {
+    Vec2 low, high;
+  };
+  std::optional<Box> box;  ///< m
 };
 
 /// [[load]] entries that act together.
@@ -61,7 +64,7 @@ struct OutputCase {
   bool picture = true;
   std::optional<double> frame_interval;  ///< s, of a run
   std::optional<double> probe_interval;  ///< s, of the histories of a run
-  double checkpoint_interval = 60;       ///< s of the clock on the wall
+  double checkpoint_interval = 60;       ///< s, wall-clock time
 };
 
 /// Which bounds are printed beside the effective stiffness.
@@ -69,6 +72,13 @@ enum class BoundsWanted {
   automatic,  ///< all of them where that costs little
   affine,     ///< those that need no solution
   all,        ///< also those by uniform displacements and tractions at the boundary
+};
+
+template <>
+struct EnumNames<BoundsWanted> {
+  static constexpr const char* what = "choice of bounds";
+  static constexpr NamedValue<BoundsWanted> list[] = {
+      {BoundsWanted::automatic, "auto"}, {BoundsWanted::affine, "affine"}, {BoundsWanted::all, "all"}};
 };
 
 /// [homogenize].
@@ -79,10 +89,17 @@ struct HomogenizeCase {
 
 /// [ensemble]: random samples of one kind, from the seeds s, s + 1, ..., s that of the assembly.
 struct EnsembleCase {
-  std::vector<std::int64_t> discs;  ///< wanted in a sample, ascending; in place of that of the assembly
-  int samples = 10;                 ///< of each size
-  std::optional<double> accuracy;   ///< wanted of the moduli, relative
-  double confidence = 0.95;         ///< of intervals
+  std::vector<std::int64_t> discs = {100, 400, 1600};  ///< in a sample, ascending; instead of that of the assembly
+  int samples = 10;                                    ///< of each size
+  std::optional<double> accuracy;                      ///< wanted of the moduli, relative
+  double confidence = 0.95;                            ///< of intervals
+};
+
+/// [material].
+struct MaterialCase {
+  ElasticModuli moduli;
+  std::optional<double> density;  ///< kg/m³, gamma: of the continuum, discs and voids together
+  bool static_only = false;       ///< kT < 0 allowed
 };
 
 /// A checked case file: complete, in range and without contradiction. What only the assembly can tell (whether a
@@ -123,6 +140,12 @@ Case read_case(const std::filesystem::path& path, std::span<const std::string> o
 /// \param folder to which paths in the text are relative
 Case parse_case(std::string_view text, const std::string& name, const std::filesystem::path& folder,
                 std::span<const std::string> overrides = {});
+
+/// Every key of every kind of case file with type, unit, range, default and meaning, as text of at most 100 columns.
+std::string describe_case_file();
+
+/// Whether a path such as "springs.kT" or "load.0.moment" names a key of the case file.
+bool is_case_key(std::string_view path);
 
 /// The resolved case as TOML: every default written out, overrides applied. Reading it back gives the same case.
 /// \param folder where it will lie: paths are written relative to it

@@ -9,13 +9,14 @@
 #include <string_view>
 #include <utility>
 
-#include "equidem/casefile/read_value.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/nearest.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 
 namespace equidem {
+using namespace casefile;
 namespace {
 
 namespace fs = std::filesystem;
@@ -293,6 +294,7 @@ GrainBodies read_bodies(TomlValue& root, const fs::path& folder) {
       throw error.at(fmt::format("{}: grains.path", path->where()));
     }
     path->text = bodies.file = file.string();
+    path->is_path = true;
   }
   for (const TomlValue& table : repeated(root, "grain")) read_grain_table(table, density, shapes, bodies);
   bodies.clumps = shapes.clumps();

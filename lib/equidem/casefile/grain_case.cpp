@@ -4,15 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "equidem/casefile/case_tables.hpp"
+#include "equidem/casefile/engine/keys.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/grain_bodies.hpp"
 #include "equidem/casefile/grain_keys.hpp"
 #include "equidem/casefile/grain_pairs.hpp"
-#include "equidem/casefile/keys.hpp"
-#include "equidem/casefile/read_value.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/nearest.hpp"
 
 namespace equidem {
+using namespace casefile;
 namespace {
 
 namespace fs = std::filesystem;
@@ -216,7 +218,10 @@ GrainCase parse_grain_case(std::string_view content, const std::string& name, co
   result.scene.bonds = std::move(bonds.bonds);
   result.options.bond_step = bonds.step;
   check_names_of_kinds(root, bodies.groups);
-  const auto schedules = read_schedules(root, folder);
+  std::vector<ScheduleTable> schedule_tables;
+  if (TomlValue* list = root.find("schedule"))
+    for (TomlValue& table : list->items) read_table(schedule_keys(), table, folder, schedule_tables.emplace_back());
+  const auto schedules = read_schedules(root, schedule_tables);
   for (const TomlValue& table : repeated(root, "wall")) result.scene.walls.push_back(read_wall(table, schedules));
   const TomlValue& collisions = *root.find("collisions");
   result.options.law = normal_law_from(text(collisions, "law"));

@@ -13,9 +13,9 @@
 
 #include "equidem/casefile/bond_case.hpp"
 #include "equidem/casefile/case.hpp"
+#include "equidem/casefile/engine/toml.hpp"
 #include "equidem/casefile/measure_case.hpp"
 #include "equidem/casefile/shaking_case.hpp"
-#include "equidem/casefile/toml.hpp"
 #include "equidem/grains/scene/grain_time_step.hpp"
 
 namespace equidem {
@@ -37,9 +37,9 @@ struct GrainCase {
   std::string grain_file;         ///< that of [grains] path; empty: none
   std::vector<int> grain_lines;   ///< of its grains, in that file
   ContactTable contacts;
-  GrainOptions options;                ///< without its time step
-  GrainStepOptions step;               ///< how that is chosen
-  double duration = 0;                 ///< s
+  GrainOptions options;            ///< without its time step
+  GrainStepOptions step;           ///< how that is chosen
+  double duration = 0;             ///< s
   std::optional<Shaking> shaking;  ///< its motion is in the walls
   std::optional<MeasureOptions> measures;
   std::vector<GrainProbe> probes;

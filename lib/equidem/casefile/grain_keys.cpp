@@ -4,12 +4,14 @@
 #include <string_view>
 
 #include "equidem/casefile/bond_case.hpp"
+#include "equidem/casefile/case_tables.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/grain_pair_keys.hpp"
 #include "equidem/casefile/measure_case.hpp"
-#include "equidem/casefile/read_value.hpp"
 #include "equidem/casefile/shaking_case.hpp"
 
 namespace equidem {
+using namespace casefile;
 namespace {
 
 using enum KeyType;
@@ -208,7 +210,7 @@ bool is_shared(const KeySpec& key) {
 
 const FileSpec& grain_file_spec() {
   static const FileSpec spec = [] {
-    FileSpec file{.schema = case_file_spec().schema,
+    FileSpec file{.schema = casefile::case_file().spec().schema,
                   .noun = "case file of colliding bodies",
                   .tables = {{.name = "grains", .completed = true, .help = "what all grains have in common"},
                              {.name = "grain", .repeated = true, .help = "one body"},
@@ -227,7 +229,7 @@ const FileSpec& grain_file_spec() {
                              {.name = "probe", .repeated = true, .help = "a history of grains"},
                              {.name = "output", .completed = true, .help = "what is written with --out"}},
                   .keys = {}};
-    for (const KeySpec& key : case_file_spec().keys)
+    for (const KeySpec& key : casefile::case_file().spec().keys)
       if (is_shared(key)) file.keys.push_back(key);
     for (const auto& more : {keys_of_bodies(), bond_keys(), keys_of_collisions(), keys_of_walls(), keys_of_motion(),
                              shaking_keys(), measure_keys()})

@@ -5,6 +5,7 @@
 #include "equidem/core/text.hpp"
 
 namespace equidem {
+using namespace casefile;
 namespace {
 
 using enum KeyType;

@@ -5,11 +5,11 @@
 
 #include <vector>
 
-#include "equidem/casefile/keys.hpp"
+#include "equidem/casefile/engine/keys.hpp"
 
 namespace equidem {
 
 /// Of [collisions], [collisions.walls] and [[collisions.pair]].
-std::vector<KeySpec> keys_of_collisions();
+std::vector<casefile::KeySpec> keys_of_collisions();
 
 }  // namespace equidem

@@ -6,9 +6,10 @@
 #include <charconv>
 #include <string_view>
 
-#include "equidem/casefile/read_value.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
 
 namespace equidem {
+using namespace casefile;
 namespace {
 
 constexpr std::array ways_to_stiffness = {"stiffness",       "dimensionless_stiffness", "contact_duration",

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "equidem/casefile/engine/toml.hpp"
 #include "equidem/casefile/grain_case.hpp"
-#include "equidem/casefile/toml.hpp"
 
 namespace equidem {
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/measure_case.hpp"
 
-#include "equidem/casefile/read_value.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
 
 namespace equidem {
+using namespace casefile;
 
 std::vector<KeySpec> measure_keys() {
   using enum KeyType;

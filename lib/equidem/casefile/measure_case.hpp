@@ -5,14 +5,14 @@
 
 #include <vector>
 
-#include "equidem/casefile/keys.hpp"
+#include "equidem/casefile/engine/keys.hpp"
 #include "equidem/fields/box_measures.hpp"
 #include "equidem/material/inertia.hpp"
 
 namespace equidem {
 
 /// The keys of [measures].
-std::vector<KeySpec> measure_keys();
+std::vector<casefile::KeySpec> measure_keys();
 
 /// \param table [measures], seen by check_and_complete
 /// \throws Error (bad_input) with line and key: a region without area, spheres

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/pack_case.hpp"
 
-#include "equidem/casefile/keys.hpp"
+#include "equidem/casefile/engine/keys.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/pack_keys.hpp"
-#include "equidem/casefile/read_value.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/material/wave_speed_springs.hpp"
 #include "equidem/packing/amount.hpp"
 
 namespace equidem {
+using namespace casefile;
 namespace {
 
 namespace fs = std::filesystem;
@@ -38,6 +39,7 @@ SizeDistribution read_sizes(TomlValue& table, const fs::path& folder) {
       throw error.at(fmt::format("{}: packing.radii.path", path.where()));
     }
     path.text = file.string();
+    path.is_path = true;
   }
   return sizes;
 }

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "equidem/casefile/toml.hpp"
+#include "equidem/casefile/engine/toml.hpp"
 #include "equidem/packing/measures.hpp"
 #include "equidem/packing/packing.hpp"
 

@@ -3,10 +3,12 @@
 
 #include <string_view>
 
+#include "equidem/casefile/case_tables.hpp"
 #include "equidem/packing/methods.hpp"
 #include "equidem/packing/packing_shape.hpp"
 
 namespace equidem {
+using namespace casefile;
 namespace {
 
 using enum KeyType;
@@ -232,7 +234,7 @@ std::vector<KeySpec> keys_of_packing() {
 
 const FileSpec& pack_file_spec() {
   static const FileSpec spec = [] {
-    FileSpec file{.schema = case_file_spec().schema,
+    FileSpec file{.schema = casefile::case_file().spec().schema,
                   .noun = "case file of a packing",
                   .tables = {{.name = "packing", .required = true, .help = "how many bodies fill which box"},
                              {.name = "packing.shape", .completed = true, .help = "what is packed"},
@@ -243,7 +245,7 @@ const FileSpec& pack_file_spec() {
                               .help = "how bodies fall and come to rest (method = falling)"},
                              {.name = "output", .completed = true, .help = "what is written with --out"}},
                   .keys = {}};
-    for (const KeySpec& key : case_file_spec().keys) {
+    for (const KeySpec& key : casefile::case_file().spec().keys) {
       const std::string_view table = key.table, name = key.name;
       if (table.empty() && name != "springs") file.keys.push_back(key);
     }

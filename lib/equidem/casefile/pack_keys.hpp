@@ -3,10 +3,10 @@
 /// The keys of a case that fills a box: the same schema, [packing] in place of [assembly].
 #pragma once
 
-#include "equidem/casefile/keys.hpp"
+#include "equidem/casefile/engine/keys.hpp"
 
 namespace equidem {
 
-const FileSpec& pack_file_spec();
+const casefile::FileSpec& pack_file_spec();
 
 }  // namespace equidem

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "equidem/casefile/engine/toml.hpp"
 #include "equidem/casefile/schedule_case.hpp"
-#include "equidem/casefile/toml.hpp"
 #include "equidem/dynamics/simulation.hpp"
 #include "equidem/dynamics/time_step.hpp"
 
@@ -19,7 +19,7 @@ namespace equidem {
 struct ProbeCase {
   std::string name;
   std::string group;
-  std::vector<std::string> quantities;  ///< words of the key probe.quantities
+  std::vector<std::string> quantities = {"displacement"};  ///< words of the key probe.quantities
 };
 
 /// [run]; exactly one of duration and until_rest is given.
@@ -27,8 +27,8 @@ struct RunCase {
   std::optional<double> duration;    ///< s
   std::optional<double> until_rest;  ///< unbalanced force, relative
   TimeStepOptions time_step;
-  Integrator integrator = Integrator::leapfrog;
-  LoopKind::Motion motion = LoopKind::Motion::small;
+  Integrator integrator = SimulationOptions{}.integrator;
+  LoopKind::Motion motion = SimulationOptions{}.motion;
   Vec2 gravity;  ///< m/s²
   Damping damping;
   std::vector<TimedSupport> supports;  ///< those of the case with their schedules; empty with [test], as loads
@@ -37,14 +37,5 @@ struct RunCase {
   std::vector<InitialVelocity> velocities;
   std::vector<ProbeCase> probes;
 };
-
-/// \param root seen by check_and_complete, with names checked
-/// \param schedules, supports of the case
-/// \param loads of its first load case; where [run] is given there is one
-/// \throws Error (bad_input) with line and key: both or neither of duration and until_rest, a time step longer than the
-///         run, two kinds of dashpots, a schedule that does not exist, a wall without a normal, what acts in a run
-///         alone where there is none, several load cases (a run is one motion)
-std::optional<RunCase> read_run(const TomlValue& root, std::span<const NamedSchedule> schedules,
-                                std::span<const Support> supports, std::span<const Load> loads);
 
 }  // namespace equidem

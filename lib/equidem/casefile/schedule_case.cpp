@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "equidem/casefile/read_value.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/nearest.hpp"
 #include "equidem/core/text.hpp"
@@ -21,49 +21,24 @@ bool read_number(std::string_view text, double& value) {
   return problem == std::errc() && end == text.data() + text.size() && std::isfinite(value);
 }
 
-void read_table(TomlValue& table, const fs::path& folder, Schedule& result) {
-  TomlValue* path = table.find("path");
-  const TomlValue* times = table.find("times");
-  const TomlValue* values = table.find("values");
-  const bool lists = times != nullptr && values != nullptr;
-  if (lists == (path != nullptr) || (times != nullptr) != (values != nullptr)) {
-    fail_at(table, "schedule", fmt::format("the points of '{}' are not given once", text(table, "name")),
-            "a table is times and values, or a file", "Give times = [...] and values = [...], or path = \"FILE\"");
+/// \return the key at fault where the schedule is wrong
+const char* complete_schedule(const TomlValue& table, ScheduleTable& read) {
+  Schedule& schedule = read.schedule;
+  if (schedule.kind != Schedule::Kind::table) return schedule.kind == Schedule::Kind::ramp ? "end" : "frequency";
+  schedule.value = 0;
+  const bool times = table.find("times") != nullptr, values = table.find("values") != nullptr;
+  if ((times && values) == read.path.has_value() || times != values) {
+    casefile::fail_at(table, "schedule", fmt::format("the points of '{}' are not given once", read.name),
+                      "a table is times and values, or a file",
+                      "Give times = [...] and values = [...], or path = \"FILE\"");
   }
-  if (path != nullptr) {
-    const fs::path file = opened(path->text, folder);
-    try {
-      read_points(file, result, "value");
-    } catch (const Error& error) {
-      throw error.at(fmt::format("{}: schedule.path", path->where()));
-    }
-    path->text = file.string();
-    return;
-  }
-  for (const TomlValue& time : times->items) result.times.push_back(time.real);
-  for (const TomlValue& value : values->items) result.values.push_back(value.real);
-}
-
-Schedule read_schedule(TomlValue& table, const fs::path& folder) {
-  Schedule result;
-  const std::string& kind = text(table, "kind");
-  const char* culprit = "times";
-  if (kind == "table") {
-    result.kind = Schedule::Kind::table;
-    read_table(table, folder, result);
-  } else {
-    result.kind = kind == "ramp" ? Schedule::Kind::ramp : Schedule::Kind::sine;
-    result.value = number(table, "value");
-    result.start = number(table, "start");
-    culprit = result.kind == Schedule::Kind::ramp ? "end" : "frequency";
-    (result.kind == Schedule::Kind::ramp ? result.end : result.frequency) = number(table, culprit);
-  }
+  if (!read.path) return "times";
   try {
-    check(result);
+    read_points(*read.path, schedule, "value");
   } catch (const Error& error) {
-    throw error.at(fmt::format("{}: schedule.{}", table.find(culprit)->where(), culprit));
+    throw error.at(fmt::format("{}: schedule.path", table.find("path")->where()));
   }
-  return result;
+  return "path";
 }
 
 }  // namespace
@@ -101,10 +76,19 @@ void read_points(const fs::path& path, Schedule& table, std::string_view column)
     bad_input(fmt::format("'{}' has no points", path.string()), "a table needs at least one", "Add rows like 0.5,1.0");
 }
 
-std::vector<NamedSchedule> read_schedules(TomlValue& root, const fs::path& folder) {
+std::vector<NamedSchedule> read_schedules(const TomlValue& root, const std::vector<ScheduleTable>& tables) {
   std::vector<NamedSchedule> schedules;
-  if (TomlValue* list = root.find("schedule"))
-    for (TomlValue& table : list->items) schedules.push_back({text(table, "name"), read_schedule(table, folder)});
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    const TomlValue& table = casefile::repeated(root, "schedule")[k];
+    ScheduleTable read = tables[k];
+    const char* culprit = complete_schedule(table, read);
+    try {
+      check(read.schedule);
+    } catch (const Error& error) {
+      throw error.at(fmt::format("{}: schedule.{}", table.find(culprit)->where(), culprit));
+    }
+    schedules.push_back({read.name, std::move(read.schedule)});
+  }
   return schedules;
 }
 
@@ -118,10 +102,11 @@ Schedule scheduled(const TomlValue& table, const std::string& key, double value,
     names.push_back(known.name);
   }
   const auto meant = nearest(wanted->text, names);
-  fail_at(*wanted, key + ".schedule", fmt::format("there is no schedule {}", wanted->shown()),
-          schedules.empty() ? "the case has no [[schedule]]"
-                            : fmt::format("the case has {}", counted(static_cast<long long>(names.size()), "other")),
-          meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Add a [[schedule]] of that name, or correct it");
+  casefile::fail_at(
+      *wanted, key + ".schedule", fmt::format("there is no schedule {}", wanted->shown()),
+      schedules.empty() ? "the case has no [[schedule]]"
+                        : fmt::format("the case has {}", counted(static_cast<long long>(names.size()), "other")),
+      meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Add a [[schedule]] of that name, or correct it");
 }
 
 }  // namespace equidem

@@ -4,12 +4,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "equidem/casefile/toml.hpp"
+#include "equidem/casefile/engine/toml.hpp"
 #include "equidem/motion/schedule.hpp"
 
 namespace equidem {
@@ -19,12 +20,18 @@ struct NamedSchedule {
   Schedule schedule;
 };
 
-/// All of a document that check_and_complete has seen; paths become those that the program opens.
-/// \param folder to which paths are relative
+/// [[schedule]]: a name for a schedule, whose points may be in a file.
+struct ScheduleTable {
+  std::string name;
+  Schedule schedule{.kind = Schedule::Kind::ramp, .value = 1};
+  std::optional<std::filesystem::path> path;
+};
+
+/// The schedules of a document, checked, with the points of their files.
+/// \param root checked; the list [[schedule]] that the tables were read from
 /// \throws Error (bad_input) with line and key: an end before the start, points that are missing or do not ascend, a
-///         file
-///         that is not a table of two columns
-std::vector<NamedSchedule> read_schedules(TomlValue& root, const std::filesystem::path& folder);
+///         file that is not a table of two columns
+std::vector<NamedSchedule> read_schedules(const TomlValue& root, const std::vector<ScheduleTable>& tables);
 
 /// The rows "time,value" of a file as the points of a table; '#' begins a comment.
 /// \param column what a first row that names the columns calls the second one

@@ -3,10 +3,11 @@
 
 #include <utility>
 
-#include "equidem/casefile/read_value.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/schedule_case.hpp"
 
 namespace equidem {
+using namespace casefile;
 namespace {
 
 namespace fs = std::filesystem;
@@ -63,6 +64,7 @@ RecordedShaking read_record(TomlValue& table, const fs::path& folder) {
     throw error.at(fmt::format("{}: shaking.record", path.where()));
   }
   path.text = file.string();
+  path.is_path = true;
   return options;
 }
 

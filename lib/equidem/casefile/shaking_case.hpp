@@ -7,13 +7,13 @@
 #include <span>
 #include <vector>
 
-#include "equidem/casefile/keys.hpp"
+#include "equidem/casefile/engine/keys.hpp"
 #include "equidem/grains/scene/shaking.hpp"
 
 namespace equidem {
 
 /// The keys of [shaking] and wall.shaken.
-std::vector<KeySpec> shaking_keys();
+std::vector<casefile::KeySpec> shaking_keys();
 
 /// Read [shaking] and let the walls move so, but for those with shaken = false.
 /// \param root seen by check_and_complete, with [shaking]; the path of the record becomes that which the program opens
@@ -23,6 +23,6 @@ std::vector<KeySpec> shaking_keys();
 ///         wall that moves by
 ///         itself as well, a record that is no table
 Shaking read_shaking(TomlValue& root, const std::filesystem::path& folder, double run_duration,
-                         std::span<Wall> walls);
+                     std::span<Wall> walls);
 
 }  // namespace equidem

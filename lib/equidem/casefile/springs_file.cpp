@@ -3,7 +3,7 @@
 
 #include <sstream>
 
-#include "equidem/casefile/keys.hpp"
+#include "equidem/casefile/case_tables.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -19,7 +19,7 @@ std::string springs_file(const SpringConstants& springs, SpringWeighting weighti
     out += line.empty() ? "#\n" : fmt::format("# {}\n", line);
   }
   return out + fmt::format("schema = \"{}\"\ntitle = {}\n\n[springs]\nkN = {}\nkT = {}\nweighting = {}\n",
-                           springs_file_spec().schema, toml_text(title), toml_number(springs.kN),
+                           casefile::springs_file_format().spec().schema, toml_text(title), toml_number(springs.kN),
                            toml_number(springs.kT), toml_text(to_string(weighting)));
 }
 

@@ -6,16 +6,15 @@
 #include <set>
 #include <sstream>
 
-#include "equidem/casefile/keys.hpp"
-#include "equidem/casefile/read_value.hpp"
-#include "equidem/casefile/study_keys.hpp"
+#include "equidem/casefile/case_tables.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/core/file.hpp"
 
 namespace equidem {
 namespace {
 
 /// "a, b" as {"a", "b"}.
-std::vector<std::string> listed(const std::string& text) {
+std::vector<std::string> separated(const std::string& text) {
   std::vector<std::string> words;
   std::istringstream in(text);
   for (std::string word; std::getline(in >> std::ws, word, ',');) {
@@ -25,8 +24,40 @@ std::vector<std::string> listed(const std::string& text) {
   return words;
 }
 
-VariedKey read_varied(const TomlValue& table) {
-  VariedKey varied{.keys = listed(text(table, "key")), .values = {}};
+const casefile::File<StudyCase>& study_file() {
+  using namespace casefile;
+  static const File<StudyCase> file = [] {
+    using S = StudyCase;
+    using V = VariedKey;
+    File<S> made(case_file().spec().schema, "study file");
+    made.table("").keys({key("title", &S::title, "shown in reports and pictures")});
+    made.table("study", required, "error against time: what is measured")
+        .keys({key("verb", &S::verb, choices({"solve", "homogenize", "calibrate", "stability", "pack", "run"}),
+                   "what is done at each setting"),
+               key("case", &S::case_file, required, "the case file of the verb"),
+               key("measure", &S::measure, required,
+                   "a number of the result (--json), such as poisson_ratio or poisson_ratio.plane_strain"),
+               key("truth", &S::truth,
+                   "finest: the value at the last level; richardson: the limit of the last two by the order; known: "
+                   "value"),
+               key("value", &S::value, required, when("truth", {"known"}), "the truth itself"),
+               key("order", &S::order, positive, "that theory expects: errors fall as h^order; richardson needs it"),
+               key("relative", &S::relative, "errors are divided by the truth")});
+    made.table("vary", &S::varied, "what is varied; all combinations are tried")
+        .keys({key_with<V, std::string>(
+                   "key", [](V& varied, const std::string& text) { varied.keys = separated(text); }, required,
+                   "a key of the case, such as assembly.rows; several that take the same value: separated by commas"),
+               key("values", &V::values, required, "values that it takes"),
+               key("refines", &V::refines,
+                   "larger, smaller: larger or smaller values are finer levels (one [[vary]] at most); not: another "
+                   "method")});
+    return made;
+  }();
+  return file;
+}
+
+void check_varied(const TomlValue& table, const VariedKey& varied) {
+  using casefile::fail_at;
   for (const std::string& key : varied.keys) {
     if (key.find('.') == std::string::npos)
       fail_at(*table.find("key"), "vary.key", fmt::format("'{}' is no key of a case", key),
@@ -34,19 +65,13 @@ VariedKey read_varied(const TomlValue& table) {
   }
   if (varied.keys.empty())
     fail_at(*table.find("key"), "vary.key", "it is not said what varies", "the key is empty", "Name a key of the case");
-  for (const TomlValue& value : table.find("values")->items) varied.values.push_back(value.real);
   const std::set<double> different(varied.values.begin(), varied.values.end());
-  if (different.size() != varied.values.size() || varied.values.empty())
-    fail_at(*table.find("values"), "vary.values",
-            varied.values.empty() ? "there are no values" : "a value is given twice",
-            "each is one setting of the study", varied.values.empty() ? "Give at least one" : "Leave it out once");
-  const std::string& refines = text(table, "refines");
-  using enum VariedKey::Refines;
-  varied.refines = refines == "larger" ? larger : refines == "smaller" ? smaller : not_at_all;
-  if (varied.refines != not_at_all && *different.begin() <= 0)
+  if (different.size() != varied.values.size())
+    fail_at(*table.find("values"), "vary.values", "a value is given twice", "each is one setting of the study",
+            "Leave it out once");
+  if (varied.refines != VariedKey::Refines::not_at_all && *different.begin() <= 0)
     fail_at(*table.find("values"), "vary.values", fmt::format("{} is among values that refine", *different.begin()),
             "orders are read off their logarithms", "Give positive values, or set refines = \"not\"");
-  return varied;
 }
 
 /// A number as TOML, whole ones without a point: keys that count take nothing else.
@@ -56,27 +81,25 @@ std::string as_toml(double value) {
 
 }  // namespace
 
+const casefile::FileSpec& study_file_spec() {
+  return study_file().spec();
+}
+
 StudyCase parse_study_case(std::string_view content, const std::string& name, const std::filesystem::path& folder) {
+  using casefile::fail_at;
+  using casefile::repeated;
   TomlValue root = parse_toml(content, name);
-  check_and_complete(root, study_file_spec());
-  const TomlValue& study = *root.find("study");
+  study_file().check(root);
   StudyCase result;
-  result.title = text(root, "title");
-  result.verb = text(study, "verb");
-  result.case_file = opened(text(study, "case"), folder);
-  result.measure = text(study, "measure");
-  const std::string& truth = text(study, "truth");
-  result.truth = truth == "known" ? Truth::known : truth == "finest" ? Truth::finest : Truth::richardson;
-  result.value = optional_number(study, "value").value_or(0);
-  result.order = optional_number(study, "order");
-  result.relative = flag(study, "relative");
+  study_file().assign(root, folder, result);
+  const TomlValue& study = *root.find("study");
   if (result.truth == Truth::richardson && !result.order)
     fail_at(study, "study.order", "the order is missing", "the limit is extrapolated by it",
             "Give order, or truth = \"finest\"");
   if (result.truth == Truth::known && result.relative && result.value == 0)
     fail_at(*study.find("value"), "study.value", "errors are relative to 0", "they would be infinite",
             "Set relative = false");
-  for (const TomlValue& table : repeated(root, "vary")) result.varied.push_back(read_varied(table));
+  for (std::size_t k = 0; k < result.varied.size(); ++k) check_varied(repeated(root, "vary")[k], result.varied[k]);
   if (result.varied.empty())
     fail_at(study, "study", "nothing is varied", "a study compares settings", "Add [[vary]] with key and values");
   const auto refining = std::count_if(result.varied.begin(), result.varied.end(), [](const VariedKey& varied) {

@@ -9,22 +9,40 @@
 #include <string_view>
 #include <vector>
 
-#include "equidem/casefile/toml.hpp"
+#include "equidem/casefile/engine/keys.hpp"
+#include "equidem/casefile/engine/toml.hpp"
+#include "equidem/core/names.hpp"
 #include "equidem/study/study.hpp"
 
 namespace equidem {
+
+template <>
+struct EnumNames<Truth> {
+  using enum Truth;
+  static constexpr const char* what = "kind of truth";
+  static constexpr NamedValue<Truth> list[] = {{finest, "finest"}, {richardson, "richardson"}, {known, "known"}};
+};
 
 /// A key that a study varies.
 struct VariedKey {
   std::vector<std::string> keys;  ///< of the case, with the same value: "assembly.rows", "assembly.columns"
   std::vector<double> values;
+  /// Whether larger or smaller values are finer levels.
   enum class Refines { larger, smaller, not_at_all } refines = Refines::larger;
+};
+
+template <>
+struct EnumNames<VariedKey::Refines> {
+  using enum VariedKey::Refines;
+  static constexpr const char* what = "kind of refinement";
+  static constexpr NamedValue<VariedKey::Refines> list[] = {
+      {larger, "larger"}, {smaller, "smaller"}, {not_at_all, "not"}};
 };
 
 /// A checked study file.
 struct StudyCase {
   std::string title;
-  std::string verb;
+  std::string verb = "solve";
   std::filesystem::path case_file;  ///< as the program opens it
   std::string measure;              ///< "poisson_ratio.plane_strain"
   Truth truth = Truth::finest;
@@ -34,6 +52,9 @@ struct StudyCase {
   std::vector<VariedKey> varied;  ///< at least one
   TomlValue document;             ///< behind it, defaults filled in
 };
+
+/// The tables and keys of a study file.
+const casefile::FileSpec& study_file_spec();
 
 /// \throws Error (bad_input) with file, line and key
 StudyCase read_study_case(const std::filesystem::path& path);

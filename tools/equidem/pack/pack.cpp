@@ -2,7 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "equidem/assembly/files.hpp"
-#include "equidem/casefile/echo.hpp"
+#include "equidem/casefile/engine/echo.hpp"
 #include "equidem/casefile/pack_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "equidem/casefile/toml.hpp"
+#include "equidem/casefile/engine/toml.hpp"
 #include "equidem/core/checksum.hpp"
 #include "equidem/motion/schedule.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "equidem/casefile/echo.hpp"
+#include "equidem/casefile/engine/echo.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 

@@ -9,7 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "equidem/casefile/keys.hpp"
+#include "equidem/casefile/case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/progress.hpp"
@@ -225,7 +225,7 @@ void check_key(const SweepOptions& options, const Case& base, double first) {
                    "Give [springs] in place of [material]");
     return;
   }
-  if (is_known_key(options.key)) return;
+  if (is_case_key(options.key)) return;
   CommonOptions common = options.common;
   common.set.push_back(fmt::format("{}={}", options.key, toml_number(first)));
   static_cast<void>(read_case(common));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The keys of the case file, in one table: parsing, errors and documentation are derived from it.
+/// Description of the keys and tables of a file: checks, errors, help and the reference page follow from it. Dialects
+/// bind their keys to options structs with bind.hpp, which fills these descriptions.
 #pragma once
 
 #include <limits>
@@ -10,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
-#include "equidem/casefile/toml.hpp"
+#include "equidem/casefile/engine/toml.hpp"
 
-namespace equidem {
+namespace equidem::casefile {
 
 enum class KeyType {
   text,
@@ -52,50 +53,47 @@ struct Range {
 
 /// One key. A key whose meaning or need depends on the kind of its table has one entry for each.
 struct KeySpec {
-  const char* table;  ///< "assembly", "assembly.radii", "load"; "" at the top of the file
-  const char* name;
+  std::string table;  ///< "assembly", "assembly.radii", "load"; "" at the top of the file
+  std::string name;
   KeyType type;
-  const char* unit = "";
-  const char* fallback = required;  ///< default as TOML text, or `required`, or `none`
+  std::string unit = {};
+  std::string fallback = required;  ///< default as TOML text, or `required`, or `none`
   Range range = {};
   std::vector<std::string> choices = {};
-  std::vector<std::string> later = {};  ///< choices that are planned but not built
-  const char* when_key = "";            ///< the key applies only where this key of the same table ...
-  std::vector<std::string> when = {};   ///< ... is one of these
-  const char* help = "";
+  std::string when_key = {};           ///< the key applies only where this key of the same table ...
+  std::vector<std::string> when = {};  ///< ... is one of these
+  std::string help = {};
 
   static constexpr const char* required = "required";
   static constexpr const char* none = "none";
-  [[nodiscard]] bool is_required() const { return std::string_view(fallback) == required; }
-  [[nodiscard]] bool has_default() const { return !is_required() && std::string_view(fallback) != none; }
+  [[nodiscard]] bool is_required() const { return fallback == required; }
+  [[nodiscard]] bool has_default() const { return !is_required() && fallback != none; }
+  [[nodiscard]] std::string path() const { return table.empty() ? name : table + "." + name; }
 };
 
 /// One table of the file.
 struct TableSpec {
-  const char* name;       ///< "assembly", "assembly.radii", "load"
+  std::string name;       ///< "assembly", "assembly.radii", "load"
   bool repeated = false;  ///< [[load]]
   bool required = false;
   bool completed = false;  ///< missing: added with the defaults of its keys
-  const char* when_key = "";
+  std::string when_key = {};
   std::vector<std::string> when = {};
-  const char* help = "";
+  std::string help = {};
+
+  /// "[springs]", "[[load]]".
+  [[nodiscard]] std::string heading() const { return repeated ? "[[" + name + "]]" : "[" + name + "]"; }
 };
 
 /// A kind of file: the tables and keys that it may have.
 struct FileSpec {
-  const char* schema;
-  const char* noun;  ///< "case file"
-  std::vector<TableSpec> tables;
-  std::vector<KeySpec> keys;
+  std::string schema;
+  std::string noun;  ///< "case file"
+  std::vector<TableSpec> tables = {};
+  std::vector<KeySpec> keys = {};
+
+  [[nodiscard]] const TableSpec* table(std::string_view name) const;
 };
-
-/// The case file, schema "equidem/1".
-const FileSpec& case_file_spec();
-/// The springs file, schema "equidem-springs/1".
-const FileSpec& springs_file_spec();
-
-/// Every key of the case file with type, unit, range, default and meaning, as text of at most 100 columns.
-std::string describe_case_file();
 
 /// Check a document against its table of keys and fill in the defaults: afterwards every key that applies and has a
 /// default is there, with the right type and in range.
@@ -103,8 +101,12 @@ std::string describe_case_file();
 ///         missing key, a number that is not finite or out of range, a key that does not apply
 void check_and_complete(TomlValue& root, const FileSpec& spec);
 
-/// Whether a path such as "springs.kT" or "load.0.moment" names a key of the case file.
-bool is_known_key(std::string_view path);
+/// Whether a path such as "springs.kT" or "load.0.moment" names a key of the file.
+bool is_known_key(const FileSpec& spec, std::string_view path);
+
+/// Text on keys, at most 100 columns wide: those at the top of the file, those of one table under its heading.
+std::string describe_keys(const FileSpec& spec, std::string_view table);
+std::string describe_table(const FileSpec& spec, const TableSpec& table);
 
 /// Bytes meant by a value of KeyType::bytes; none where it is not one.
 std::optional<double> bytes_of(const TomlValue& value);
@@ -113,11 +115,7 @@ std::optional<double> bytes_of(const TomlValue& value);
 /// from 0). The value is TOML; a bare word is taken as text, but none takes out the key, or one of several tables.
 /// Missing tables are made.
 /// \throws Error (bad_input) where this is no assignment, the value is no TOML, the path leads through a value, or
-///         there is
-///         nothing to take out
+///         there is nothing to take out
 void apply_override(TomlValue& root, const std::string& assignment, const std::string& option = "--set");
 
-/// The value at a path such as "load.0.group"; where it ends early, the last value on it.
-const TomlValue& value_at(const TomlValue& root, std::string_view path);
-
-}  // namespace equidem
+}  // namespace equidem::casefile

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "equidem/casefile/toml.hpp"
+#include "equidem/casefile/engine/toml.hpp"
 
 namespace equidem {
 

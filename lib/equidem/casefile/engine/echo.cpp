@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/echo.hpp"
+#include "equidem/casefile/engine/echo.hpp"
 
 #include <algorithm>
 #include <utility>
-
-#include "equidem/casefile/case.hpp"
 
 namespace equidem {
 namespace {
@@ -50,26 +48,21 @@ void write_table(std::string& out, const std::string& path, const TomlValue& tab
   }
 }
 
-}  // namespace
-
-std::string to_toml(const Case& resolved, const fs::path& folder) {
-  return to_toml(resolved.document, folder);
+void make_relative(TomlValue& value, const fs::path& folder) {
+  for (TomlValue& item : value.items) make_relative(item, folder);
+  for (auto& [name, entry] : value.entries) make_relative(entry, folder);
+  if (!value.is_path) return;
+  std::error_code failed;
+  const fs::path from = fs::absolute(folder, failed).lexically_normal();
+  const fs::path to = fs::absolute(value.text, failed).lexically_normal();
+  const fs::path relative = to.lexically_relative(from);
+  value.text = relative.empty() ? to.string() : relative.string();
 }
 
+}  // namespace
+
 std::string to_toml(TomlValue document, const fs::path& folder) {
-  const auto make_relative = [&](TomlValue& table) {
-    TomlValue* path = table.find("path");
-    if (path == nullptr) return;
-    std::error_code failed;
-    const fs::path from = fs::absolute(folder, failed).lexically_normal();
-    const fs::path to = fs::absolute(path->text, failed).lexically_normal();
-    const fs::path relative = to.lexically_relative(from);
-    path->text = relative.empty() ? to.string() : relative.string();
-  };
-  for (const char* name : {"assembly", "grains"})
-    if (TomlValue* table = document.find(name)) make_relative(*table);
-  if (TomlValue* schedules = document.find("schedule"))
-    for (TomlValue& schedule : schedules->items) make_relative(schedule);
+  make_relative(document, folder);
   const auto place = [](const auto& entry) { return entry.first == "schema" ? 0 : entry.first == "title" ? 1 : 2; };
   std::stable_sort(document.entries.begin(), document.entries.end(),
                    [&](const auto& a, const auto& b) { return place(a) < place(b); });

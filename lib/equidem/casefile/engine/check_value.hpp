@@ -5,9 +5,9 @@
 
 #include <string>
 
-#include "equidem/casefile/keys.hpp"
+#include "equidem/casefile/engine/keys.hpp"
 
-namespace equidem {
+namespace equidem::casefile {
 
 /// "a number in Pa, > 0", `one of "square", "hexagonal"`: what a key wants.
 std::string expected(const KeySpec& key);
@@ -15,4 +15,4 @@ std::string expected(const KeySpec& key);
 /// \throws Error (bad_input), where = "file:line: table.key": wrong type, out of range, not finite, no choice
 void check_value(const TomlValue& value, const KeySpec& key);
 
-}  // namespace equidem
+}  // namespace equidem::casefile

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <charconv>
 
-#include "equidem/casefile/keys.hpp"
+#include "equidem/casefile/engine/keys.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 
-namespace equidem {
+namespace equidem::casefile {
 namespace {
 
 std::vector<std::string> segments_of(std::string_view path) {
@@ -129,23 +129,24 @@ void apply_override(TomlValue& root, const std::string& assignment, const std::s
   *at = std::move(value);
 }
 
-bool is_known_key(std::string_view path) {
+bool is_known_key(const FileSpec& spec, std::string_view path) {
   std::string without_indices;
   for (const std::string& segment : segments_of(path))
     if (!index_of(segment)) without_indices += (without_indices.empty() ? "" : ".") + segment;
-  const auto& keys = case_file_spec().keys;
-  return std::any_of(keys.begin(), keys.end(), [&](const KeySpec& key) {
-    return without_indices == (*key.table == '\0' ? std::string(key.name) : fmt::format("{}.{}", key.table, key.name));
-  });
+  return std::ranges::any_of(spec.keys, [&](const KeySpec& key) { return without_indices == key.path(); });
 }
+
+}  // namespace equidem::casefile
+
+namespace equidem {
 
 const TomlValue& value_at(const TomlValue& root, std::string_view path) {
   const TomlValue* at = &root;
-  for (const std::string& segment : segments_of(path)) {
+  for (const std::string& segment : casefile::segments_of(path)) {
     const TomlValue* next = nullptr;
     if (at->is_table()) next = at->find(segment);
     if (at->is_array()) {
-      const auto index = index_of(segment);
+      const auto index = casefile::index_of(segment);
       if (index && *index < at->items.size()) next = &at->items[*index];
     }
     if (next == nullptr) return *at;

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <cstdint>
 
-#include "equidem/casefile/check_value.hpp"
-#include "equidem/casefile/keys.hpp"
+#include "equidem/casefile/engine/check_value.hpp"
+#include "equidem/casefile/engine/keys.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/nearest.hpp"
 #include "equidem/core/text.hpp"
 
-namespace equidem {
+namespace equidem::casefile {
 namespace {
 
 std::string key_path(const std::string& path, const std::string& name) {
@@ -29,14 +29,14 @@ class Checker {
     check_schema();
     check_table("", root_);
     for (const TableSpec& table : spec_.tables) {
-      const std::string name = table.name;
+      const std::string& name = table.name;
       const std::size_t dot = name.find('.');
       TomlValue* parent = dot == std::string::npos ? &root_ : root_.find(name.substr(0, dot));
       const std::string leaf = dot == std::string::npos ? name : name.substr(dot + 1);
       if (parent == nullptr || parent->find(leaf) != nullptr) continue;
       if (table.required) {
         throw Error(ErrorKind::bad_input, "missing table", fmt::format("it describes {}", table.help),
-                    fmt::format("Add [{}]", table.name), fmt::format("{}: [{}]", root_.where(), table.name));
+                    "Add " + table.heading(), fmt::format("{}: {}", root_.where(), table.heading()));
       }
       if (table.completed) {
         TomlValue added;
@@ -48,12 +48,6 @@ class Checker {
   }
 
  private:
-  [[nodiscard]] const TableSpec* table_spec(const std::string& path) const {
-    for (const TableSpec& table : spec_.tables)
-      if (path == table.name) return &table;
-    return nullptr;
-  }
-
   [[nodiscard]] std::vector<const KeySpec*> key_specs(const std::string& path, const std::string& name) const {
     std::vector<const KeySpec*> found;
     for (const KeySpec& key : spec_.keys)
@@ -103,8 +97,8 @@ class Checker {
   }
 
   [[nodiscard]] std::string bracketed(const std::string& path) const {
-    const TableSpec* table = table_spec(path);
-    return table != nullptr && table->repeated ? fmt::format("[[{}]]", path) : fmt::format("[{}]", path);
+    const TableSpec* table = spec_.table(path);
+    return table != nullptr ? table->heading() : fmt::format("[{}]", path);
   }
 
   [[noreturn]] void fail_unknown(const std::string& path, const TomlValue& table, const std::string& name,
@@ -116,7 +110,7 @@ class Checker {
     }
     const std::string prefix = path.empty() ? "" : path + ".";
     for (const TableSpec& inner : spec_.tables) {
-      const std::string full = inner.name;
+      const std::string& full = inner.name;
       const bool directly_below = full.starts_with(prefix) && full.find('.', prefix.size()) == std::string::npos;
       if (directly_below && !contains(here, full.substr(prefix.size()))) here.push_back(full.substr(prefix.size()));
     }
@@ -126,8 +120,8 @@ class Checker {
     } else {
       for (const KeySpec& key : spec_.keys) {
         if (name != key.name) continue;
-        remedy = *key.table == '\0' ? "It belongs at the top of the file, before the first [table]"
-                                    : fmt::format("It belongs to {}", bracketed(key.table));
+        remedy = key.table.empty() ? "It belongs at the top of the file, before the first [table]"
+                                   : fmt::format("It belongs to {}", bracketed(key.table));
         break;
       }
     }
@@ -137,7 +131,7 @@ class Checker {
   }
 
   void check_inner_table(const std::string& path, const TomlValue& outer, TomlValue& value, const TableSpec& spec) {
-    const std::string full = spec.name;
+    const std::string& full = spec.name;
     if (!applies(path, outer, spec.when_key, spec.when)) {
       fail(value, full, "this table does not apply here",
            fmt::format("it is for {} = {}", spec.when_key, joined(spec.when)), "Remove it");
@@ -167,7 +161,7 @@ class Checker {
 
   void check_table(const std::string& path, TomlValue& table) {
     for (auto& [name, value] : table.entries) {
-      const TableSpec* inner = table_spec(key_path(path, name));
+      const TableSpec* inner = spec_.table(key_path(path, name));
       const auto keys = key_specs(path, name);
       const bool meant_as_key = !keys.empty() && (inner == nullptr || value.type == TomlValue::Type::text);
       if (inner != nullptr && !meant_as_key) {
@@ -187,7 +181,7 @@ class Checker {
                                       const TomlValue& value, const std::vector<const KeySpec*>& keys) const {
     std::vector<std::string> kinds;
     for (const KeySpec* key : keys) kinds.insert(kinds.end(), key->when.begin(), key->when.end());
-    const std::string selecting = keys.front()->when_key;
+    const std::string& selecting = keys.front()->when_key;
     const std::string chosen = selector(path, table, selecting);
     const std::string problem = chosen.empty()
                                     ? fmt::format("this key does not apply here")
@@ -218,4 +212,4 @@ void check_and_complete(TomlValue& root, const FileSpec& spec) {
   Checker(root, spec).run();
 }
 
-}  // namespace equidem
+}  // namespace equidem::casefile

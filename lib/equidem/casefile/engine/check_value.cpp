@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/check_value.hpp"
+#include "equidem/casefile/engine/check_value.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include "equidem/core/nearest.hpp"
 #include "equidem/core/text.hpp"
 
-namespace equidem {
+namespace equidem::casefile {
 namespace {
 
 using Type = TomlValue::Type;
@@ -20,14 +20,10 @@ std::string quoted_list(const std::vector<std::string>& words) {
   return joined(words, [](const std::string& word) { return fmt::format("\"{}\"", word); });
 }
 
-std::string full_name(const KeySpec& key) {
-  return *key.table == '\0' ? key.name : fmt::format("{}.{}", key.table, key.name);
-}
-
 [[noreturn]] void fail(const TomlValue& value, const KeySpec& key, const std::string& problem,
                        const std::string& remedy) {
   throw Error(ErrorKind::bad_input, problem, fmt::format("{} is {}", key.name, expected(key)), remedy,
-              fmt::format("{}: {}", value.where(), full_name(key)));
+              fmt::format("{}: {}", value.where(), key.path()));
 }
 
 bool reads_as_number(const std::string& text) {
@@ -150,10 +146,6 @@ void check_sizes(const TomlValue& value, const KeySpec& key) {
 void check_choice(const TomlValue& value, const KeySpec& key) {
   if (value.type != Type::text) fail_type(value, key);
   if (std::find(key.choices.begin(), key.choices.end(), value.text) != key.choices.end()) return;
-  if (std::find(key.later.begin(), key.later.end(), value.text) != key.later.end()) {
-    fail(value, key, fmt::format("{} arrives with a later version", value.shown()),
-         "Choose another, or make the assembly elsewhere and read it with kind = \"file\"");
-  }
   const auto meant = nearest(value.text, key.choices);
   fail(value, key,
        fmt::format("{} is {} {}", value.shown(), key.type == KeyType::words ? "none of the" : "no known", key.name),
@@ -173,7 +165,7 @@ void check_words(const TomlValue& value, const KeySpec& key) {
 }  // namespace
 
 std::string expected(const KeySpec& key) {
-  const std::string unit = *key.unit == '\0' ? "" : fmt::format(" in {}", key.unit);
+  const std::string unit = key.unit.empty() ? "" : fmt::format(" in {}", key.unit);
   const std::string range = key.range.text().empty() ? "" : fmt::format(", {}", key.range.text());
   switch (key.type) {
     case KeyType::text:
@@ -274,7 +266,7 @@ void check_value(const TomlValue& value, const KeySpec& key) {
     case KeyType::held:
       if (value.type == Type::boolean) {
         if (value.boolean) return;
-        fail(value, key, "false says nothing", fmt::format("Leave {} out where it is free", key.name));
+        fail(value, key, "false is not allowed", fmt::format("Leave {} out where it is free", key.name));
       }
       return check_number(value, key);
     case KeyType::bytes: {
@@ -288,4 +280,4 @@ void check_value(const TomlValue& value, const KeySpec& key) {
   }
 }
 
-}  // namespace equidem
+}  // namespace equidem::casefile

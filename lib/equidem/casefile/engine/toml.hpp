@@ -20,6 +20,7 @@ struct TomlValue {
   std::int64_t integer = 0;
   double real = 0;  ///< also set where type is integer
   bool boolean = false;
+  bool is_path = false;  ///< text is a path as the program opens it; the echo makes it relative to its folder
   std::string text;
   std::vector<TomlValue> items;                            ///< of an array
   std::vector<std::pair<std::string, TomlValue>> entries;  ///< of a table
@@ -40,6 +41,9 @@ struct TomlValue {
   /// The value in short, as TOML: `21`, `"hexagonal"`, `nan`.
   [[nodiscard]] std::string shown() const;
 };
+
+/// The value at a path such as "load.0.group"; where it ends early, the last value on it.
+const TomlValue& value_at(const TomlValue& root, std::string_view path);
 
 /// \param source name of the file, for messages
 /// \throws Error (bad_input) with file and line where the text is not TOML

@@ -3,23 +3,46 @@
 /// Values of a checked document, by key; for the readers of its tables.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "equidem/casefile/toml.hpp"
+#include "equidem/casefile/engine/toml.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/vector.hpp"
 
-namespace equidem {
+namespace equidem::casefile {
 
 /// Throw an Error (bad_input) that names the line of a value, and the key.
 [[noreturn]] inline void fail_at(const TomlValue& at, const std::string& key, const std::string& problem,
                                  const std::string& why, const std::string& remedy) {
   throw Error(ErrorKind::bad_input, problem, why, remedy, fmt::format("{}: {}", at.where(), key));
+}
+
+/// Check that exactly one of two keys is given.
+/// \param missing the problem where none is; where both are, it is "a and b are both given"
+/// \param remedy what to do; `remedy_of_both` where both are given and that is something else
+/// \throws Error (bad_input) at the second of both keys, or at the table
+void check_one_of(const TomlValue& table, const std::string& path, const std::array<const char*, 2>& keys,
+                  const std::string& missing, const std::string& why, const std::string& remedy,
+                  const std::string& remedy_of_both = {});
+
+/// Call a check of the library: its Error, whose place may be the name of an option, gets the line of that key of the
+/// table, or of the table.
+template <class Check>
+void at_key(const TomlValue& table, const std::string& path, const Check& check) {
+  try {
+    check();
+  } catch (const Error& error) {
+    const TomlValue* key = error.where().empty() ? nullptr : table.find(error.where());
+    throw Error(error.kind(), error.problem(), error.why(), error.remedy(),
+                key == nullptr ? fmt::format("{}: {}", table.where(), path)
+                               : fmt::format("{}: {}.{}", key->where(), path, error.where()));
+  }
 }
 
 /// The entry must exist and have the type: check_and_complete has seen to it.
@@ -62,4 +85,4 @@ bool is_plain_name(std::string_view name);
 /// \throws Error (bad_input) where the text holds more than letters, digits, '_' and '-'
 void check_plain_name(const TomlValue& value, const std::string& key, const std::string& what, const std::string& use);
 
-}  // namespace equidem
+}  // namespace equidem::casefile

@@ -1,14 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/read_value.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
 
 #include <algorithm>
 
-namespace equidem {
+namespace equidem::casefile {
 
 const std::vector<TomlValue>& repeated(const TomlValue& root, const char* name) {
   static const std::vector<TomlValue> none;
   const TomlValue* list = root.find(name);
   return list == nullptr ? none : list->items;
+}
+
+void check_one_of(const TomlValue& table, const std::string& path, const std::array<const char*, 2>& keys,
+                  const std::string& missing, const std::string& why, const std::string& remedy,
+                  const std::string& remedy_of_both) {
+  const TomlValue *first = table.find(keys[0]), *second = table.find(keys[1]);
+  if ((first == nullptr) != (second == nullptr)) return;
+  if (first == nullptr) fail_at(table, path, missing, why, remedy);
+  fail_at(*second, path, fmt::format("{} and {} are both given", keys[0], keys[1]), why,
+          remedy_of_both.empty() ? remedy : remedy_of_both);
 }
 
 std::filesystem::path opened(const std::filesystem::path& written, const std::filesystem::path& folder) {
@@ -42,4 +52,4 @@ void check_plain_name(const TomlValue& value, const std::string& key, const std:
           "Use letters, digits, '_' and '-' only");
 }
 
-}  // namespace equidem
+}  // namespace equidem::casefile

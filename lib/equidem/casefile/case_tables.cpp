@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/casefile/case_tables.hpp"
+
+#include "equidem/assembly/lattices.hpp"
+#include "equidem/core/names.hpp"
+
+namespace equidem::casefile {
+namespace {
+
+using Words = std::vector<std::string>;
+
+std::vector<Key<SpringsTable>> springs_keys() {
+  return {key("kN", &SpringsTable::springs, &SpringConstants::kN, required, unit("Pa"), positive, "normal spring"),
+          key("kT", &SpringsTable::springs, &SpringConstants::kT, required, unit("Pa"),
+              "tangential spring; 0: none; negative: a static answer exists for small ones only"),
+          key("weighting", &SpringsTable::weighting,
+              "uniform: the same at every contact; contact_density: k/psi(theta), Abe (11), (21); voronoi: "
+              "k h/l, shared cell edge over centre distance")};
+}
+
+void bind_assembly(File<CaseTables>& file) {
+  const Words lattices = names_in(all_lattices()), delaunay = {"delaunay"}, from_file = {"file"};
+  Words kinds = lattices;
+  kinds.insert(kinds.end(), {"delaunay", "file"});
+  const char* periodic = "joined to itself left-right and top-bottom";
+  using A = AssemblyCase;
+  using L = LatticeOptions;
+  using D = DelaunayOptions;
+  file.table("assembly", &CaseTables::assembly, required, "the discs and their contacts")
+      .keys(
+          {key_with<A, std::string>(
+               "kind",
+               [](A& assembly, const std::string& kind) {
+                 assembly.arrangement = find_lattice(kind);
+                 assembly.kind = assembly.arrangement != nullptr ? AssemblyKind::lattice
+                                 : kind == "file"                ? AssemblyKind::file
+                                                                 : AssemblyKind::delaunay;
+               },
+               required, choices(kinds),
+               "delaunay: random points, the edges of their triangulation are the contacts; file: read from a file; "
+               "others: lattices of equal touching discs"),
+           key("columns", &A::lattice, &L::columns, required, from(1, 1e6), when("kind", lattices),
+               "discs in the longest row; " + lattice_counts()),
+           key("rows", &A::lattice, &L::rows, required, from(1, 1e6), when("kind", lattices), "number of rows"),
+           key("radius", &A::lattice, &L::radius, required, unit("m"), positive, when("kind", lattices),
+               "radius of every disc"),
+           key_with<A, double>(
+               "radius",
+               [](A& a, const double& radius) {
+                 a.delaunay.radii = {radius, radius};
+               },
+               unit("m"), positive, when("kind", delaunay),
+               "radius of every disc, half the mean spacing of neighbours; or give [assembly.radii]"),
+           key("discs", &A::delaunay, &D::discs, from(3, 1e9), when("kind", delaunay),
+               "number wanted; the report says how many there are; not used with [ensemble]"),
+           key("points", &A::delaunay, &D::points, when("kind", delaunay),
+               "poisson_disc: random but never close; perturbed_hexagonal: a lattice, disturbed; random: independent"),
+           key("disorder", &A::delaunay, &D::disorder, range({.low = 0, .high = 0.5, .high_open = true}),
+               when("points", {"perturbed_hexagonal"}), "largest shift of a point, in spacings"),
+           key("seed", &A::delaunay, &D::seed, not_negative, when("kind", delaunay), "same seed, same assembly"),
+           key("aspect", &A::delaunay, &D::aspect, from(1e-3, 1e3), when("kind", delaunay),
+               "width over height of the rectangle"),
+           key("periodic", &A::lattice, &L::periodic, when("kind", lattices), periodic),
+           key("periodic", &A::delaunay, &D::periodic, when("kind", delaunay), periodic),
+           key("density", &A::density, unit("kg/m³"), positive,
+               "density of the discs themselves; for waves, time steps and motion"),
+           key("body", &A::body, "what a disc stands for: a cylinder per metre of depth, or a sphere; for its inertia"),
+           key("path", &A::path, required, when("kind", from_file), "an assembly file (JSON)"),
+           key("own_springs", &A::own_springs, when("kind", from_file),
+               "true: springs that the file gives are used; false: those of the case, or of calibrate")});
+  file.table("assembly.radii", &CaseTables::assembly, &A::delaunay, &D::radii, when("kind", delaunay),
+             "discs of different sizes, instead of radius")
+      .keys({key("smallest", &RadiusDistribution::smallest, required, unit("m"), positive),
+             key("largest", &RadiusDistribution::largest, required, unit("m"), positive,
+                 "radii are uniform between the two")});
+}
+
+void bind_material(File<CaseTables>& file) {
+  using T = MaterialTable;
+  using M = ElasticMaterial;
+  file.table("springs", &CaseTables::springs_table, "the two springs of a contact").keys(springs_keys());
+  file.table("material", &CaseTables::material_table,
+             "the continuum that the springs shall stand for, instead of [springs]")
+      .keys(
+          {key("shear_modulus", &T::material, &M::shear_modulus, unit("Pa"), positive,
+               "G; with poisson_ratio or bulk_modulus_2d"),
+           key("young_modulus", &T::material, &M::young_modulus, unit("Pa"), positive, "E; with poisson_ratio"),
+           key("poisson_ratio", &T::material, &M::poisson_ratio, between(-1, 1),
+               "with shear_modulus or young_modulus; discs can show at most 1/4 in plane strain, 1/3 in plane stress"),
+           key("bulk_modulus_2d", &T::material, &M::bulk_modulus_2d, unit("Pa"), positive,
+               "K, mean stress of the plane over its change of area; with shear_modulus"),
+           key("p_wave_speed", &T::material, &M::p_wave_speed, unit("m/s"), positive,
+               "Vp; with s_wave_speed and density: K + G = density Vp²"),
+           key("s_wave_speed", &T::material, &M::s_wave_speed, unit("m/s"), positive,
+               "Vs; with p_wave_speed and density: G = density Vs²"),
+           key("density", &T::material, &M::density, unit("kg/m³"), positive,
+               "density of the continuum, that is of discs and voids together: the discs have density / solid "
+               "fraction"),
+           key("plane", &T::material, &M::plane, required,
+               "how Poisson's ratio and Young's modulus are meant: plane strain or plane stress; wave speeds and the "
+               "two-dimensional moduli are the same in both"),
+           key("static_only", &T::static_only,
+               "allow kT < 0 for larger Poisson's ratios: no dynamics with such springs"),
+           key("weighting", &T::weighting, "as in [springs]")});
+  file.table("effects", completed, "effects that may be switched off")
+      .keys({key_in<CaseTables>("rotation", &Case::rotation, optional, choices({"free", "restrained"}),
+                                "rotation of the discs; left out: free where a tangential spring turns them")});
+}
+
+void bind_supports_and_loads(File<CaseTables>& file) {
+  file.table("test", &CaseTables::test, "a standard test, instead of [[support]] and [[load]]")
+      .keys({unbound_key<TensionTest>("kind", KeyType::choice, required, choices({"uniaxial_tension"}),
+                                      "pulled along x by its left and right sides (Abe 1996, section 3)"),
+             key("stress", &TensionTest::stress, unit("Pa"), not_zero, "tension positive"),
+             key("gauge", &TensionTest::gauge,
+                 "where strain is read: two spacings or a quarter of the block either side of the middle, or side to "
+                 "side")});
+  file.table("group", &CaseTables::groups, "discs chosen by name")
+      .keys({key("name", &GroupCase::name, required, "for use in [[support]] and [[load]]"),
+             key("discs", &GroupCase::discs, optional, "counted from 0; or give box"),
+             key("box", &GroupCase::box, unit("m"), "the discs with their centre inside")});
+  using S = SupportTable;
+  file.table("support", &CaseTables::support_tables, "prescribed motion of a group")
+      .keys(
+          {key("group", &S::support, &Support::group, required,
+               "left, right, bottom, top, bottom_left, bottom_right, top_left, top_right, or your own"),
+           key("ux", &S::support, &Support::ux, held, unit("m"), "prescribed motion; true: held at 0; left out: free"),
+           key("uy", &S::support, &Support::uy, held, unit("m")),
+           key("rotation", &S::support, &Support::rotation, held, unit("rad"), "counter-clockwise"),
+           key("schedule", &S::schedule, "in a run: the motion is multiplied by it")});
+  using T = LoadTable;
+  file.table("load", &CaseTables::load_tables, "forces and moments on a group")
+      .keys({key("group", &T::load, &Load::group, required, "as in [[support]]"),
+             key("kind", &T::load, &Load::kind,
+                 "per_disc: on each disc; total: shared equally; traction: per area of the side that the group forms"),
+             key("force", &T::load, &Load::force, optional, unit("N/m (traction: Pa)"), "[f_x, f_y]"),
+             key("moment", &T::load, &Load::moment, optional, unit("N"), "N m per metre of depth, counter-clockwise"),
+             key("case", &T::load_case, "loads of one name act together; a load without acts in every load case"),
+             key("schedule", &T::schedule, "in a run: force and moment are multiplied by it")});
+}
+
+void bind_tasks(File<CaseTables>& file) {
+  file.table("homogenize", &CaseTables::homogenize, completed, "how the effective stiffness is found")
+      .keys(
+          {key("boundary", &HomogenizeCase::boundary, or_auto,
+               "how the mean strain enters; auto: periodic where the assembly is, else displacement and traction side "
+               "by "
+               "side"),
+           key("bounds", &HomogenizeCase::bounds,
+               "affine: those that need no solution; all: also by uniform displacements and tractions at the boundary; "
+               "auto: all up to 20000 discs")});
+  file.table("ensemble", &CaseTables::ensemble, "many random samples (kind = delaunay): mean, scatter, the size needed")
+      .keys(
+          {key("discs", &EnsembleCase::discs, from(3, 1e9),
+               "sizes of the samples, ascending; in place of assembly.discs"),
+           key("samples", &EnsembleCase::samples, from(2, 1e6),
+               "samples of each size, made from assembly.seed, seed + 1, ..."),
+           key("accuracy", &EnsembleCase::accuracy, between(0, 1),
+               "wanted of the moduli, relative, such as 0.01: the report says which size reaches it"),
+           key("confidence", &EnsembleCase::confidence, between(0.5, 1), "level of the intervals that are reported")});
+  file.table("solver", &CaseTables::solver, completed, "how the equations are solved")
+      .keys({key("method", &SolverOptions::method, help_of(EnumNames<SolverMethod>::list)),
+             key("max_refinements", &SolverOptions::max_refinements, from(0, 100), "steps of iterative refinement"),
+             key("memory_limit", &SolverOptions::memory_limit, bytes, not_negative,
+                 "largest memory of the factor, also as \"4 GB\"; 0: what the machine has free")});
+  file.table("output", &CaseTables::output, completed, "what is written with --out").keys(output_keys());
+}
+
+}  // namespace
+
+std::vector<Key<OutputCase>> output_keys() {
+  return {
+      key("csv", &OutputCase::csv, "discs.csv, contacts.csv"),
+      key("vtk", &OutputCase::vtk, "state for ParaView"),
+      key("picture", &OutputCase::picture, "picture.svg, picture.png"),
+      key("frame_interval", &OutputCase::frame_interval, unit("s"), positive, "from one frame of a run to the next"),
+      key("probe_interval", &OutputCase::probe_interval, unit("s"), positive,
+          "from one row of the histories of a run to the next"),
+      key("checkpoint_interval", &OutputCase::checkpoint_interval, unit("s"), positive,
+          "wall-clock time from one checkpoint of a run to the next")};
+}
+
+const File<CaseTables>& case_file() {
+  static const File<CaseTables> file = [] {
+    File<CaseTables> made("equidem/1", "case file");
+    made.table("").keys(
+        {key_in<CaseTables>("title", &Case::title, "shown in reports and pictures"),
+         unbound_key<CaseTables>("springs", KeyType::path, "a springs file, instead of [springs] or [material]")});
+    bind_assembly(made);
+    bind_material(made);
+    bind_supports_and_loads(made);
+    bind_run_tables(made);
+    bind_tasks(made);
+    return made;
+  }();
+  return file;
+}
+
+const File<SpringsTable>& springs_file_format() {
+  static const File<SpringsTable> file = [] {
+    File<SpringsTable> made("equidem-springs/1", "springs file");
+    made.table("").keys({unbound_key<SpringsTable>("title", KeyType::text, "shown in reports and pictures")});
+    made.table("springs", required, "the two springs of a contact").keys(springs_keys());
+    return made;
+  }();
+  return file;
+}
+
+}  // namespace equidem::casefile

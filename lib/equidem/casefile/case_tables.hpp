@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The tables of the case file of an assembly, bound to a Case and to what is completed from several tables.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/engine/bind.hpp"
+#include "equidem/material/elastic_material.hpp"
+
+namespace equidem {
+
+template <>
+struct EnumNames<LoadKind> {
+  using enum LoadKind;
+  static constexpr const char* what = "kind of load";
+  static constexpr NamedValue<LoadKind> list[] = {{per_disc, "per_disc"}, {total, "total"}, {traction, "traction"}};
+};
+
+template <>
+struct EnumNames<LoopKind::Motion> {
+  using enum LoopKind::Motion;
+  static constexpr const char* what = "kind of motion";
+  static constexpr NamedValue<LoopKind::Motion> list[] = {{small, "small"}, {finite, "finite"}};
+};
+
+/// The kinds that a file can ask for.
+template <>
+struct EnumNames<Schedule::Kind> {
+  using enum Schedule::Kind;
+  static constexpr const char* what = "kind of schedule";
+  static constexpr NamedValue<Schedule::Kind> list[] = {{ramp, "ramp"}, {sine, "sine"}, {table, "table"}};
+};
+
+}  // namespace equidem
+
+namespace equidem::casefile {
+
+/// [springs].
+struct SpringsTable {
+  SpringConstants springs;
+  SpringWeighting weighting = SpringWeighting::uniform;
+};
+
+/// [material].
+struct MaterialTable {
+  ElasticMaterial material;
+  bool static_only = false;
+  SpringWeighting weighting = SpringWeighting::uniform;
+};
+
+/// [[support]].
+struct SupportTable {
+  Support support;
+  std::optional<std::string> schedule;
+};
+
+/// [[load]].
+struct LoadTable {
+  Load load;
+  std::string load_case;  ///< empty: acts in every case
+  std::optional<std::string> schedule;
+};
+
+/// [[wall]].
+struct WallTable {
+  Wall wall;
+  std::optional<double> displacement;  ///< m, along the normal
+  std::optional<std::string> schedule;
+};
+
+struct CaseTables : Case {
+  std::optional<SpringsTable> springs_table;
+  std::optional<MaterialTable> material_table;
+  std::vector<SupportTable> support_tables;
+  std::vector<LoadTable> load_tables;
+  std::vector<ScheduleTable> schedule_tables;
+  std::vector<WallTable> wall_tables;
+  std::vector<InitialVelocity> velocities;
+  std::vector<ProbeCase> probes;
+};
+
+/// The case file, schema "equidem/1".
+const File<CaseTables>& case_file();
+/// The springs file, schema "equidem-springs/1".
+const File<SpringsTable>& springs_file_format();
+
+/// Keys that mean the same in every case file.
+std::vector<Key<ScheduleTable>> schedule_keys();
+std::vector<Key<OutputCase>> output_keys();
+
+void bind_run_tables(File<CaseTables>& file);
+
+/// Complete [run] by the tables that act in a run, with their schedules.
+/// \param tables with supports, load cases and schedules
+/// \throws Error (bad_input) with line and key: both or neither of duration and until_rest, a time step longer than the
+///         run, two kinds of dashpots, a schedule that does not exist, a wall without a normal, tables that act in a
+///         run alone where there is none, several load cases (a run is one motion)
+void complete_run(const TomlValue& root, CaseTables& tables);
+
+}  // namespace equidem::casefile

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Binding of the keys of a file to the members of options structs.
+///
+/// To add a key: add a member with its default value to the options struct (the file that uses it), and one line to the
+/// table of the file:
+///
+///   file.table("solver", &Case::solver, completed, "how the equations are solved")
+///       .keys({key("method", &SolverOptions::method, "auto: multifrontal"),
+///              key("max_refinements", &SolverOptions::max_refinements, from(0, 100), "refinement steps")});
+///
+/// Checks, messages, `help case`, the reference page, --set, the echo and the reading follow from that line. The type
+/// of the member is the type of the key: bool a flag, an integer a whole number, double a number, Vec2 [x, y],
+/// std::string text, std::filesystem::path a file (relative to the case file), an enum with names its choices,
+/// std::vector a list. The value of the member in a default-constructed struct is the default of the key; a
+/// std::optional has none. Members of members are given as a chain: key("columns", &AssemblyCase::lattice,
+/// &LatticeOptions::columns).
+///
+/// A table is bound to a struct (required or completed), to a std::optional of one (absent: no value) or to a
+/// std::vector of them ([[table]]).
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "equidem/casefile/engine/keys.hpp"
+#include "equidem/casefile/engine/toml.hpp"
+#include "equidem/casefile/engine/value.hpp"
+
+namespace equidem::casefile {
+
+/// The member at the end of a chain; an empty std::optional on the way is given a value.
+template <class S>
+S& member(S& object) {
+  return object;
+}
+template <class S, class M, class C, class... Links>
+auto& member(S& object, M C::*first, Links... rest) {
+  if constexpr (is_optional<S>) {
+    if (!object) object.emplace();
+    return member((*object).*first, rest...);
+  } else {
+    return member(object.*first, rest...);
+  }
+}
+
+/// Attributes of keys and tables, given after the member; a text is the help.
+struct Required {
+  void operator()(KeySpec& key) const { key.fallback = KeySpec::required; }
+  void operator()(TableSpec& table) const { table.required = true; }
+};
+inline constexpr Required required;
+/// Absent, the member keeps its value and the echo does not show the key.
+inline constexpr auto optional = [](KeySpec& key) { key.fallback = KeySpec::none; };
+/// The default is "auto", which leaves the member as it is.
+inline constexpr auto or_auto = [](KeySpec& key) {
+  key.fallback = "\"auto\"";
+  if (key.type == KeyType::number) key.type = KeyType::number_or_auto;
+  if (key.type == KeyType::choice) key.choices.insert(key.choices.begin(), "auto");
+};
+/// A number, or true for 0.
+inline constexpr auto held = [](KeySpec& key) { key.type = KeyType::held; };
+inline constexpr auto bytes = [](KeySpec& key) {
+  key.type = KeyType::bytes;
+  key.unit = "bytes";
+};
+/// Where the table is missing it is added with its defaults.
+inline constexpr auto completed = [](TableSpec& table) { table.completed = true; };
+inline auto range(Range range) {
+  return [range](KeySpec& key) { key.range = range; };
+}
+inline const auto positive = range(Range::positive());
+inline const auto not_negative = range(Range::not_negative());
+inline const auto not_zero = range({.zero_excluded = true});
+/// Both ends included.
+inline auto from(double low, double high) {
+  return range(Range::from(low, high));
+}
+/// Both ends excluded.
+inline auto between(double low, double high) {
+  return range({.low = low, .high = high, .low_open = true, .high_open = true});
+}
+inline auto unit(std::string text) {
+  return [text](KeySpec& key) { key.unit = text; };
+}
+/// Words of a text or of a list, or the names of an enum that are allowed here.
+inline auto choices(std::vector<std::string> words) {
+  return [words](KeySpec& key) {
+    key.choices = words;
+    if (key.type == KeyType::text) key.type = KeyType::choice;
+  };
+}
+/// The key, or the table, applies only where the key `selector` of its table is one of these words.
+inline auto when(std::string selector, std::vector<std::string> words) {
+  return [selector, words](auto& spec) {
+    spec.when_key = selector;
+    spec.when = words;
+  };
+}
+
+template <class Spec, class Attribute>
+void apply(Spec& spec, const Attribute& attribute) {
+  if constexpr (std::is_convertible_v<Attribute, std::string>) {
+    spec.help = attribute;
+  } else if constexpr (!std::is_member_object_pointer_v<Attribute>) {
+    attribute(spec);
+  }
+}
+
+/// The pointers to members among the arguments.
+template <class M, class C>
+std::tuple<M C::*> link_in(M C::*link, int) {
+  return {link};
+}
+template <class Attribute>
+std::tuple<> link_in(const Attribute&, long) {
+  return {};
+}
+template <class... Arguments>
+auto links_of(const Arguments&... arguments) {
+  return std::tuple_cat(link_in(arguments, 0)...);
+}
+
+/// One key of a table that is bound to an S.
+template <class S>
+struct Key {
+  KeySpec spec;
+  std::function<void(S&, TomlValue&, const std::filesystem::path&)> read = {};
+};
+
+/// A key that is checked and described, and read elsewhere.
+template <class S, class... Attributes>
+Key<S> unbound_key(std::string name, KeyType type, const Attributes&... attributes) {
+  Key<S> key{.spec = {.table = {}, .name = std::move(name), .type = type, .fallback = KeySpec::none}};
+  (apply(key.spec, attributes), ...);
+  return key;
+}
+
+/// A key bound to a function that takes a T; it has no default.
+template <class S, class T, class... Attributes>
+Key<S> key_with(std::string name, void (*set)(S&, const T&), const Attributes&... attributes) {
+  Key<S> key = unbound_key<S>(std::move(name), type_of_key<T>());
+  key.spec.choices = choices_of<T>();
+  key.read = [set](S& object, TomlValue& value, const std::filesystem::path& folder) {
+    T given{};
+    assign(given, value, folder);
+    set(object, given);
+  };
+  (apply(key.spec, attributes), ...);
+  return key;
+}
+
+/// A key bound to the member of an S at the end of a chain; then its attributes.
+template <class S, class... Arguments>
+Key<S> key_in(std::string name, const Arguments&... arguments) {
+  const auto links = links_of(arguments...);
+  const auto target = [links](S & object) -> auto& {
+    return std::apply(
+        [&]([[maybe_unused]] auto... link) -> auto& { return member(object, link...); }, links);
+  };
+  S defaults{};
+  using T = std::remove_cvref_t<decltype(target(defaults))>;
+  Key<S> key = unbound_key<S>(std::move(name), type_of_key<T>());
+  key.spec.fallback = default_text(target(defaults));
+  key.spec.choices = choices_of<T>();
+  key.read = [target](S& object, TomlValue& value, const std::filesystem::path& folder) {
+    assign(target(object), value, folder);
+  };
+  (apply(key.spec, arguments), ...);
+  return key;
+}
+
+template <class S, class M, class... Arguments>
+Key<S> key(std::string name, M S::*first, const Arguments&... arguments) {
+  return key_in<S>(std::move(name), first, arguments...);
+}
+
+/// Whether a key with a condition applies to a checked table.
+bool applies(const KeySpec& key, const TomlValue& table);
+
+/// Assign the keys of a checked table.
+template <class S>
+void read_table(const std::vector<Key<S>>& keys, TomlValue& table, const std::filesystem::path& folder, S& into) {
+  for (const Key<S>& key : keys) {
+    TomlValue* value = table.find(key.spec.name);
+    if (value != nullptr && key.read && applies(key.spec, table)) key.read(into, *value, folder);
+  }
+}
+
+/// The table at a path such as "run.damping"; nullptr where there is none.
+TomlValue* find_table(TomlValue& root, std::string_view path);
+
+template <class T>
+struct ItemOf {
+  using type = T;
+};
+template <class T>
+requires(is_optional<T> || is_vector<T>) struct ItemOf<T> {
+  using type = typename T::value_type;
+};
+
+/// A kind of file, bound to an F.
+template <class F>
+class File {
+ public:
+  File(std::string schema, std::string noun) : spec_{std::move(schema), std::move(noun)} {
+    spec_.keys.push_back({.table = {},
+                          .name = "schema",
+                          .type = KeyType::text,
+                          .help = "says which rules the file follows: \"" + spec_.schema + "\""});
+  }
+
+  template <class Target>
+  class Binder;
+
+  /// A table, bound to the member at the end of a chain, without one to the F itself; then its attributes. Its keys are
+  /// given to the result.
+  template <class... Arguments>
+  auto table(std::string name, const Arguments&... arguments) {
+    const auto links = links_of(arguments...);
+    const auto target = [links](F & object) -> auto& {
+      return std::apply(
+          [&]([[maybe_unused]] auto... link) -> auto& { return member(object, link...); }, links);
+    };
+    TableSpec spec{.name = std::move(name)};
+    (apply(spec, arguments), ...);
+    return Binder<decltype(target)>(*this, std::move(spec), target);
+  }
+  [[nodiscard]] const FileSpec& spec() const { return spec_; }
+
+  /// Check a document and fill in its defaults.
+  /// \throws Error (bad_input) as check_and_complete
+  void check(TomlValue& root) const { check_and_complete(root, spec_); }
+  /// Assign the values of a checked document in the order of the tables.
+  /// \param folder to which paths are relative; paths become those that the program opens
+  void assign(TomlValue& root, const std::filesystem::path& folder, F& into) const {
+    for (const auto& reader : readers_) reader(root, folder, into);
+  }
+
+ private:
+  FileSpec spec_;
+  std::vector<std::function<void(TomlValue&, const std::filesystem::path&, F&)>> readers_;
+};
+
+template <class F>
+template <class Target>
+class File<F>::Binder {
+  using T = std::remove_cvref_t<decltype(std::declval<Target>()(std::declval<F&>()))>;
+  using Item = typename ItemOf<T>::type;
+
+ public:
+  Binder(File& file, TableSpec spec, Target target) : file_(file), spec_(std::move(spec)), target_(target) {
+    spec_.repeated = is_vector<T>;
+  }
+
+  void keys(std::vector<Key<Item>> keys) {
+    for (Key<Item>& key : keys) {
+      key.spec.table = spec_.name;
+      file_.spec_.keys.push_back(key.spec);
+    }
+    if (!spec_.name.empty()) file_.spec_.tables.push_back(spec_);
+    file_.readers_.push_back([keys = std::move(keys), name = spec_.name, target = target_](
+                                 TomlValue& root, const std::filesystem::path& folder, F& into) {
+      TomlValue* table = find_table(root, name);
+      if (table == nullptr) return;
+      auto& bound = target(into);
+      if constexpr (is_vector<T>) {
+        for (TomlValue& item : table->items) read_table(keys, item, folder, bound.emplace_back());
+      } else if constexpr (is_optional<T>) {
+        read_table(keys, *table, folder, bound ? *bound : bound.emplace());
+      } else {
+        read_table(keys, *table, folder, bound);
+      }
+    });
+  }
+
+ private:
+  File& file_;
+  TableSpec spec_;
+  Target target_;
+};
+
+}  // namespace equidem::casefile

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/casefile/engine/check_value.hpp"
+#include "equidem/casefile/engine/keys.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem::casefile {
+namespace {
+
+constexpr std::size_t text_width = 100;
+constexpr std::size_t name_width = 20;
+
+/// Append words, broken into lines of text_width that begin with `indent` spaces.
+void append_wrapped(std::string& out, const std::string& words, std::size_t indent) {
+  std::size_t column = indent;
+  std::string line(indent, ' ');
+  std::size_t begin = 0;
+  while (begin < words.size()) {
+    std::size_t end = words.find(' ', begin);
+    if (end == std::string::npos) end = words.size();
+    const std::size_t length = end - begin;
+    if (column > indent && column + 1 + length > text_width) {
+      out += line + "\n";
+      line.assign(indent, ' ');
+      column = indent;
+    }
+    if (column > indent) {
+      line += ' ';
+      ++column;
+    }
+    line += words.substr(begin, length);
+    column += length;
+    begin = end + 1;
+  }
+  out += line + "\n";
+}
+
+void append_key(std::string& out, const KeySpec& key) {
+  constexpr std::size_t indent = 2 + name_width + 1;
+  const std::string& name = key.name;
+  const std::size_t begin = out.size();
+  const std::string need = key.is_required()   ? "required"
+                           : key.has_default() ? fmt::format("default {}", key.fallback)
+                                               : "optional";
+  append_wrapped(out, fmt::format("{}; {}", expected(key), need), indent);
+  if (name.size() > name_width) {
+    out.insert(begin, "  " + name + "\n");
+  } else {
+    out.replace(begin + 2, name.size(), name);
+  }
+  std::string help = key.help;
+  if (!key.when_key.empty()) help = fmt::format("({} = {}) {}", key.when_key, joined(key.when), help);
+  if (!help.empty()) append_wrapped(out, help, indent);
+}
+
+}  // namespace
+
+std::string describe_keys(const FileSpec& spec, std::string_view table) {
+  std::string out;
+  for (const KeySpec& key : spec.keys)
+    if (key.table == table) append_key(out, key);
+  return out;
+}
+
+std::string describe_table(const FileSpec& spec, const TableSpec& table) {
+  return fmt::format("\n{}  {}{}\n", table.heading(), table.help, table.required ? "; required" : "") +
+         describe_keys(spec, table.name);
+}
+
+}  // namespace equidem::casefile
