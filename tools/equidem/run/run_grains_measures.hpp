@@ -28,7 +28,9 @@ class GrainMeasures final : public RunRecorder {
   /// \param continue_after go on with the files of an earlier run
   /// \throws Error (bad_input) as GrowingCsv
   void open(const std::filesystem::path& folder, bool overwrite, std::optional<std::int64_t> continue_after) override;
-  [[nodiscard]] std::int64_t last_step() const override { return measures_.moments().empty() ? -1 : measures_.moments().back().step; }
+  [[nodiscard]] std::int64_t last_step() const override {
+    return measures_.moments().empty() ? -1 : measures_.moments().back().step;
+  }
   void record(std::int64_t step, double time) override;
   void sync() override;
 

@@ -59,7 +59,8 @@ std::string GrainMeasures::describe() const {
       "thrown",
       fmt::format("{} were further than {} from the heap at a moment looked at, {} at the end; {} outside the box",
                   counted(static_cast<long long>(after.ever_thrown), "grain"),
-                  shown(resolved_.measures->thrown_gap * measures_.mean_diameter(), " m"), after.thrown, after.outside));
+                  shown(resolved_.measures->thrown_gap * measures_.mean_diameter(), " m"), after.thrown,
+                  after.outside));
   const Sloshing slosh = measures_.sloshing();
   const std::string theory =
       std::isnan(slosh.theory) ? "" : fmt::format("; linear theory of a liquid {:.4g} s", slosh.theory);
