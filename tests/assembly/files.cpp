@@ -202,8 +202,7 @@ TEST_CASE("wrong_entries_are_named") {
        "a.json: a number is too large for a double (the largest is 1.8e308). Correct it."},
       {"discs", "[[0, 0, 1], [2, 0, 1], [2, 0, 1]]",
        "a.json: discs 1 and 2 have the same centre, (2, 0) m (no direction joins them, and their cells "
-       "cannot be told "
-       "apart). Move or remove one of them."},
+       "cannot be separated). Move or remove one of them."},
       {"contacts", "[[0, 2, 0, 0]]",
        "a.json: contact 0 names disc 2 (the discs are numbered from 0 to 1). Correct the contact or add the "
        "disc."},
