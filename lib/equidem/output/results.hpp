@@ -22,6 +22,11 @@ namespace equidem {
 class Results;
 struct Effects;
 
+/// An alternative of a variant that is no integer.
+template <typename Given, typename Variant>
+concept AlternativeOf = std::constructible_from<Variant, std::in_place_type_t<std::remove_cvref_t<Given>>, Given> &&
+    !std::integral<std::remove_cvref_t<Given>>;
+
 /// The value of a result: number, integer, text, flag, vector, matrix, sub-results, a list of them, or null with the
 /// reason why it is not known.
 class ResultValue {
@@ -33,13 +38,11 @@ class ResultValue {
                                std::vector<std::int64_t>, std::vector<std::string>, std::vector<std::vector<double>>,
                                std::shared_ptr<const Results>, std::vector<Results>>;
 
-  template <typename Given>
-  requires std::constructible_from<Variant, std::in_place_type_t<std::remove_cvref_t<Given>>, Given> &&
-      (!std::integral<std::remove_cvref_t<Given>>)ResultValue(Given&& given)
-      : value(std::in_place_type<std::remove_cvref_t<Given>>, std::forward<Given>(given)) {}
+  template <AlternativeOf<Variant> Given>
+  ResultValue(Given&& given) : value(std::in_place_type<std::remove_cvref_t<Given>>, std::forward<Given>(given)) {}
   ResultValue(bool flag) : value(flag) {}
   template <std::integral Integer>
-  requires(!std::same_as<Integer, bool>) ResultValue(Integer integer) : value(static_cast<std::int64_t>(integer)) {}
+  ResultValue(Integer integer) : value(static_cast<std::int64_t>(integer)) {}
   ResultValue(std::nullptr_t) : value(Null{}) {}
   ResultValue(const char* text) : value(std::string(text)) {}
   ResultValue(std::string_view text) : value(std::string(text)) {}
