@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/shaking_case.hpp"
+#include "equidem/casefile/grain_case.hpp"
 
 #include <cmath>
 #include <filesystem>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/bond_case.hpp"
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -11,14 +9,16 @@
 #include <utility>
 
 #include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/grain_tables.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
-using namespace casefile;
 namespace {
 
 namespace fs = std::filesystem;
+using casefile::fail_at;
+using casefile::repeated;
 
 struct Strength {
   const char* key;
@@ -29,8 +29,7 @@ struct Strength {
 constexpr Strength strengths[] = {
     {"normal_dashpot", &GrainBond::normal_dashpot, "N s/m (discs: per m of depth)",
      "C_n along the line of centres: a pair stops as exp(-C_n t/m), m the reduced mass; a steady pull N makes it creep "
-     "at "
-     "N/C_n"},
+     "at N/C_n"},
     {"tangential_dashpot", &GrainBond::tangential_dashpot, "N s/m (discs: per m of depth)",
      "C_s across it, at the point of the bond; no friction limits it"},
     {"rolling_dashpot", &GrainBond::rolling_dashpot, "N m s",
@@ -54,7 +53,7 @@ class Pairs {
   explicit Pairs(std::size_t grains) : grains_(grains) {}
 
   /// \throws Error at the place given
-  void add(GrainBond bond, std::int64_t i, std::int64_t j, const std::string& where, BondCase& result) {
+  void add(GrainBond bond, std::int64_t i, std::int64_t j, const std::string& where, std::vector<GrainBond>& result) {
     const auto fail = [&](const std::string& problem, const std::string& why, const std::string& remedy) {
       throw Error(ErrorKind::bad_input, problem, why, remedy, where);
     };
@@ -69,7 +68,7 @@ class Pairs {
            "Remove one of them");
     bond.i = static_cast<std::size_t>(i);
     bond.j = static_cast<std::size_t>(j);
-    result.bonds.push_back(bond);
+    result.push_back(bond);
   }
 
  private:
@@ -98,7 +97,7 @@ std::vector<const Strength*> strengths_of_columns(std::string_view row) {
 }
 
 /// Rows "i,j,..." under a row of names.
-void read_file_of_bonds(const fs::path& path, const GrainBond& common, Pairs& pairs, BondCase& result) {
+void read_file_of_bonds(const fs::path& path, const GrainBond& common, Pairs& pairs, std::vector<GrainBond>& result) {
   const std::string content = read_file(path);
   std::string_view rest = without_byte_order_mark(content);
   bool heading = true;
@@ -139,70 +138,44 @@ void read_file_of_bonds(const fs::path& path, const GrainBond& common, Pairs& pa
   }
 }
 
-/// What the table says of a bond, over what was said before.
-GrainBond strengths_of(const TomlValue& table, GrainBond bond) {
-  for (const Strength& strength : strengths)
-    if (const auto given = optional_number(table, strength.key)) bond.*strength.value = *given;
-  return bond;
-}
-
 }  // namespace
 
-std::vector<KeySpec> bond_keys() {
-  constexpr const char* none = KeySpec::none;
-  std::vector<KeySpec> keys{
-      {.table = "bonds",
-       .name = "path",
-       .type = KeyType::path,
-       .fallback = none,
-       .help =
-           "a CSV file whose first two columns i, j number the grains that are tied; columns named like the keys below "
-           "say how, instead of these; bonds.csv of run and pack can be read back"},
-      {.table = "bonds",
-       .name = "step",
-       .type = KeyType::choice,
-       .fallback = none,
-       .choices = {"exact", "explicit"},
-       .help =
-           "exact (default): each bond decays as it should in whatever step; explicit: dashpots by the velocities at "
-           "the start of the step, as in Sukegawa (2010), with the limit dt < 2 m/C_n, 2 m/(3 C_s) of equal discs"},
-  };
-  for (const char* table : {"bonds", "bond"}) {
-    const bool base = std::string_view(table) == "bonds";
-    if (!base)
-      keys.push_back({.table = table,
-                      .name = "grains",
-                      .type = KeyType::discs,
-                      .help = "[i, j]: two discs, counted from 0, those of the file first; they do not collide"});
-    for (const Strength& strength : strengths)
-      keys.push_back({.table = table,
-                      .name = strength.key,
-                      .type = KeyType::number,
-                      .unit = strength.unit,
-                      .fallback = none,
-                      .range = Range::not_negative(),
-                      .help = base ? strength.help : "instead of that of [bonds]"});
-  }
+std::vector<casefile::Key<GrainBond>> casefile::bond_keys(bool base) {
+  std::vector<Key<GrainBond>> keys;
+  for (const Strength& strength : strengths)
+    keys.push_back(key(strength.key, strength.value, optional, unit(strength.unit), not_negative,
+                       base ? strength.help : "instead of that of [bonds]"));
   return keys;
 }
 
-BondCase read_bonds(TomlValue& root, const fs::path& folder, std::size_t grains) {
-  BondCase result;
-  GrainBond common;
+void casefile::bind_bonds(File<GrainTables>& file) {
+  file.table("bonds", &GrainTables::bonds, "properties of all bonds")
+      .keys({key("path", &BondsTable::path,
+                 "a CSV file whose first two columns i, j number the grains that are tied; columns named like the keys "
+                 "below say how, instead of these; bonds.csv of run and pack can be read back"),
+             key("step", &BondsTable::step, optional,
+                 "exact (default): each bond decays as it should in whatever step; explicit: dashpots by the "
+                 "velocities at the start of the step, as in Sukegawa (2010), with the limit dt < 2 m/C_n, 2 m/(3 C_s) "
+                 "of equal discs")});
+  file.table("bonds", &GrainTables::bonds, &BondsTable::common).keys(bond_keys(true));
+  std::vector<Key<GrainBond>> keys{
+      unbound_key<GrainBond>("grains", KeyType::discs, required,
+                             "[i, j]: two discs, counted from 0, those of the file first; they do not collide")};
+  for (Key<GrainBond>& key : bond_keys(false)) keys.push_back(std::move(key));
+  file.table("bond", repeated_table, "two discs tied by dashpots").described(std::move(keys));
+}
+
+std::vector<GrainBond> casefile::read_bonds(const TomlValue& root, const BondsTable& given, std::size_t grains) {
+  static const auto keys = casefile::bond_keys(false);
+  std::vector<GrainBond> result;
   Pairs pairs(grains);
-  if (TomlValue* table = root.find("bonds")) {
-    common = strengths_of(*table, common);
-    const TomlValue* step = table->find("step");
-    if (step != nullptr && step->text == "explicit") result.step = GrainOptions::BondStep::explicit_euler;
-    if (TomlValue* path = table->find("path")) {
-      const fs::path file = opened(path->text, folder);
+  if (const TomlValue* table = root.find("bonds")) {
+    if (given.path) {
       try {
-        read_file_of_bonds(file, common, pairs, result);
+        read_file_of_bonds(*given.path, given.common, pairs, result);
       } catch (const Error& error) {
-        throw error.at(fmt::format("{}: bonds.path", path->where()));
+        throw error.at(fmt::format("{}: bonds.path", table->find("path")->where()));
       }
-      path->text = file.string();
-      path->is_path = true;
     } else if (repeated(root, "bond").empty()) {
       fail_at(*table, "bonds", "no grains are tied", "the table only says how", "Add [[bond]] with grains, or a path");
     }
@@ -213,7 +186,9 @@ BondCase read_bonds(TomlValue& root, const fs::path& folder, std::size_t grains)
       fail_at(two, "bond.grains",
               fmt::format("{} are {}", two.shown(), counted(static_cast<long long>(two.items.size()), "grain")),
               "a bond ties two", "Write it like grains = [0, 1]");
-    const GrainBond bond = strengths_of(table, common);
+    GrainBond bond = given.common;
+    TomlValue copy = table;
+    casefile::read_table(keys, copy, {}, bond);
     if (!ties(bond)) fail_at(table, "bond", "the bond has no dashpot", no_strength, give_strength);
     pairs.add(bond, two.items[0].integer, two.items[1].integer, fmt::format("{}: bond.grains", two.where()), result);
   }

@@ -6,7 +6,7 @@
 #include "equidem/casefile/case_tables.hpp"
 #include "equidem/casefile/engine/echo.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
-#include "equidem/casefile/grain_keys.hpp"
+#include "equidem/casefile/grain_tables.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
@@ -143,7 +143,7 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
                 std::span<const std::string> overrides) {
   TomlValue root = parse_toml(content, name);
   for (const std::string& assignment : overrides) casefile::apply_override(root, assignment);
-  if (describes_grains(root)) {
+  if (casefile::describes_grains(root)) {
     throw Error(ErrorKind::bad_input, "the case describes grains that collide, and this verb needs an [assembly]",
                 "its contacts are there from the start and stay", "Use 'equidem run', or give an [assembly]",
                 root.where());

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/grain_bodies.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,16 +9,26 @@
 #include <utility>
 
 #include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/grain_tables.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/nearest.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 
 namespace equidem {
-using namespace casefile;
 namespace {
 
 namespace fs = std::filesystem;
+using casefile::fail_at;
+using casefile::GrainTable;
+
+/// The bodies of a case as they are read.
+struct GrainBodies {
+  std::vector<Grain> grains;        ///< those of the file, then those of the case
+  std::vector<double> densities;    ///< kg/m³
+  std::vector<std::string> groups;  ///< of each grain
+  std::vector<int> lines;           ///< of the grains of the file
+};
 
 std::vector<std::string_view> cells_of(std::string_view row) {
   std::vector<std::string_view> cells;
@@ -213,7 +222,7 @@ class GrainFile {
   [[nodiscard]] std::string group_of(const std::vector<std::string_view>& cells) const {
     if (at_[group] == width_ || cells[at_[group]].empty()) return "grains";
     const std::string_view name = cells[at_[group]];
-    if (!is_plain_name(name))
+    if (!casefile::is_plain_name(name))
       fail(fmt::format("'{}' cannot name a group", name), "it stands in tables",
            "Use letters, digits, '_' and '-' only");
     if (name == "walls")
@@ -228,7 +237,7 @@ class GrainFile {
 };
 
 /// Disc, ellipse or clump.
-void read_shape(const TomlValue& table, double density, GrainShapes& shapes, Grain& grain) {
+void read_shape(const TomlValue& table, const GrainTable& read, double density, GrainShapes& shapes, Grain& grain) {
   const TomlValue* given = nullptr;
   std::string key;
   for (const char* name : {"radius", "half_axes", "discs"}) {
@@ -246,63 +255,56 @@ void read_shape(const TomlValue& table, double density, GrainShapes& shapes, Gra
             "radius is for a disc, half_axes for an ellipse, discs for a clump",
             "Add one of them, such as radius = 0.01");
   try {
-    if (key == "radius") return shapes.make_disc(grain, given->real, density);
-    if (key == "half_axes") return shapes.make_ellipse(grain, given->items[0].real, given->items[1].real, density);
-    std::vector<Clump::Disc> discs_given;
-    for (const TomlValue& disc : given->items)
-      discs_given.push_back({{disc.items[0].real, disc.items[1].real}, disc.items[2].real});
-    shapes.make_clump(grain, std::move(discs_given), density);
+    if (read.radius) return shapes.make_disc(grain, *read.radius, density);
+    if (read.half_axes) return shapes.make_ellipse(grain, read.half_axes->x, read.half_axes->y, density);
+    shapes.make_clump(grain, read.discs, density);
   } catch (const Error& error) {
     throw error.at(fmt::format("{}: grain.{}", given->where(), key));
   }
 }
 
-void read_grain_table(const TomlValue& table, std::optional<double> common_density, GrainShapes& shapes,
-                      GrainBodies& bodies) {
-  const std::optional<double> own = optional_number(table, "density");
-  if (!own && !common_density) {
+void add_grain(const TomlValue& table, const GrainTable& read, std::optional<double> common_density,
+               GrainShapes& shapes, GrainBodies& bodies) {
+  if (!read.density && !common_density) {
     fail_at(table, "grain.density", "the density is missing", "motion needs the mass of the grains",
             "Add density = ... in kg/m³ to [grains], or to each [[grain]]");
   }
-  if (text(table, "group").empty())
-    fail_at(*table.find("group"), "grain.group", "the name is empty", "a group is known by its name", "Name it");
-  check_plain_name(*table.find("group"), "grain.group", "a group", "it stands in tables");
-  Grain grain;
-  grain.position = vector(table, "position");
-  grain.velocity = vector(table, "velocity");
-  grain.spin = number(table, "spin");
-  grain.angle = number(table, "angle");
-  bodies.densities.push_back(own ? *own : *common_density);
-  read_shape(table, bodies.densities.back(), shapes, grain);
+  const TomlValue& group = *table.find("group");
+  if (read.group.empty()) fail_at(group, "grain.group", "the name is empty", "a group is known by its name", "Name it");
+  casefile::check_plain_name(group, "grain.group", "a group", "it stands in tables");
+  Grain grain = read.grain;
+  bodies.densities.push_back(read.density ? *read.density : *common_density);
+  read_shape(table, read, bodies.densities.back(), shapes, grain);
   bodies.grains.push_back(grain);
-  bodies.groups.push_back(text(table, "group"));
+  bodies.groups.push_back(read.group);
 }
 
 }  // namespace
 
-GrainBodies read_bodies(TomlValue& root, const fs::path& folder) {
-  TomlValue& common = *root.find("grains");
+std::vector<std::string> casefile::read_bodies(const TomlValue& root, GrainTables& tables) {
   GrainBodies bodies;
-  bodies.body = enum_from<Body>(text(common, "body"));
-  GrainShapes shapes(bodies.body);
-  const std::optional<double> density = optional_number(common, "density");
-  if (TomlValue* path = common.find("path")) {
-    const fs::path file = opened(path->text, folder);
+  const CommonBodyTable& common = tables.common;
+  tables.body = common.body;
+  GrainShapes shapes(common.body);
+  if (common.path) {
     try {
-      GrainFile(file).read(density, shapes, bodies);
+      GrainFile(*common.path).read(common.density, shapes, bodies);
     } catch (const Error& error) {
-      throw error.at(fmt::format("{}: grains.path", path->where()));
+      throw error.at(fmt::format("{}: grains.path", root.find("grains")->find("path")->where()));
     }
-    path->text = bodies.file = file.string();
-    path->is_path = true;
+    tables.grain_file = common.path->string();
   }
-  for (const TomlValue& table : repeated(root, "grain")) read_grain_table(table, density, shapes, bodies);
-  bodies.clumps = shapes.clumps();
+  for (std::size_t k = 0; k < tables.grain_tables.size(); ++k)
+    add_grain(repeated(root, "grain")[k], tables.grain_tables[k], common.density, shapes, bodies);
   if (bodies.grains.empty()) {
     fail_at(root, "grain", "there are no grains", "something has to move",
             "Add [[grain]] with position and radius, or [grains] with path");
   }
-  return bodies;
+  tables.scene.grains = std::move(bodies.grains);
+  tables.scene.clumps = shapes.clumps();
+  tables.densities = std::move(bodies.densities);
+  tables.grain_lines = std::move(bodies.lines);
+  return std::move(bodies.groups);
 }
 
 }  // namespace equidem

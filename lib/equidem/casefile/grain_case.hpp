@@ -11,12 +11,11 @@
 #include <string_view>
 #include <vector>
 
-#include "equidem/casefile/bond_case.hpp"
 #include "equidem/casefile/case.hpp"
 #include "equidem/casefile/engine/toml.hpp"
-#include "equidem/casefile/measure_case.hpp"
-#include "equidem/casefile/shaking_case.hpp"
+#include "equidem/fields/box_measures.hpp"
 #include "equidem/grains/scene/grain_time_step.hpp"
+#include "equidem/grains/scene/shaking.hpp"
 
 namespace equidem {
 

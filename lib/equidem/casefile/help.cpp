@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/case_tables.hpp"
-#include "equidem/casefile/grain_keys.hpp"
-#include "equidem/casefile/pack_keys.hpp"
+#include "equidem/casefile/grain_tables.hpp"
+#include "equidem/casefile/pack_case.hpp"
 #include "equidem/casefile/study_case.hpp"
 
 namespace equidem {
@@ -102,7 +102,7 @@ std::string describe_case_file() {
   const casefile::FileSpec& spec = casefile::case_file().spec();
   std::string out = example;
   out += "At the top of the file\n" + describe_keys(spec, "") + describe_tables(spec) + grain_example;
-  const casefile::FileSpec& grains = grain_file_spec();
+  const casefile::FileSpec& grains = casefile::grain_file().spec();
   for (const casefile::TableSpec& table : grains.tables)
     if (table.name != "schedule" && table.name != "output") out += describe_table(grains, table);
   return out + pack_example + describe_tables(pack_file_spec()) + study_example + describe_tables(study_file_spec());

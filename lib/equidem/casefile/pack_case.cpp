@@ -1,138 +1,210 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/pack_case.hpp"
 
-#include "equidem/casefile/engine/keys.hpp"
+#include "equidem/casefile/case_tables.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
-#include "equidem/casefile/pack_keys.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/material/wave_speed_springs.hpp"
 #include "equidem/packing/amount.hpp"
+#include "equidem/packing/methods.hpp"
 
 namespace equidem {
-using namespace casefile;
 namespace {
 
 namespace fs = std::filesystem;
 
-SizeDistribution read_sizes(TomlValue& table, const fs::path& folder) {
+using namespace casefile;
+
+/// [packing.radii].
+struct SizeTable {
   SizeDistribution sizes;
-  const std::string& kind = text(table, "distribution");
-  if (kind == "uniform") {
-    sizes.smallest = number(table, "smallest");
-    sizes.largest = number(table, "largest");
-    if (sizes.largest < sizes.smallest) {
-      fail_at(*table.find("largest"), "packing.radii.largest",
-              fmt::format("the largest radius {} m is below the smallest, {} m", sizes.largest, sizes.smallest), "",
-              "Exchange them");
-    }
-  } else if (kind == "log_normal") {
-    sizes.kind = SizeDistribution::Kind::log_normal;
-    sizes.median = number(table, "median");
-    sizes.deviation = number(table, "deviation");
-  } else {
-    sizes.kind = SizeDistribution::Kind::sieve_curve;
-    TomlValue& path = *table.find("path");
-    const fs::path file = opened(path.text, folder);
-    try {
-      sizes.sieves = read_sieve_curve(file);
-    } catch (const Error& error) {
-      throw error.at(fmt::format("{}: packing.radii.path", path.where()));
-    }
-    path.text = file.string();
-    path.is_path = true;
+  std::optional<fs::path> path;
+};
+
+/// [springs]: kN and kT, or the other two.
+struct SpringsOrSpeeds {
+  std::optional<double> kN, kT;            ///< Pa
+  std::optional<double> shear_wave_speed;  ///< m/s
+  std::optional<double> poisson_ratio;
+};
+
+struct PackTables : PackCase {
+  PackingAmount amount;
+  PackingBox::Sides sides = PackingBox::Sides::walls;
+  std::optional<SizeTable> radii;
+  SpringsOrSpeeds springs;
+  enum class Start { fall, relax } start = Start::fall;
+};
+
+}  // namespace
+
+template <>
+struct EnumNames<PackTables::Start> {
+  using enum PackTables::Start;
+  static constexpr const char* what = "start of settling";
+  static constexpr NamedValue<PackTables::Start> list[] = {{fall, "fall"}, {relax, "relax"}};
+};
+
+template <>
+struct EnumNames<PackingBox::Sides> {
+  using enum PackingBox::Sides;
+  static constexpr const char* what = "kind of sides";
+  static constexpr NamedValue<PackingBox::Sides> list[] = {
+      {walls, "walls"}, {periodic, "periodic"}, {open_top, "open_top"}};
+};
+
+template <>
+struct EnumNames<SizeDistribution::Kind> {
+  using enum SizeDistribution::Kind;
+  static constexpr const char* what = "distribution of sizes";
+  static constexpr NamedValue<SizeDistribution::Kind> list[] = {
+      {uniform, "uniform"}, {log_normal, "log_normal"}, {sieve_curve, "sieve_curve"}};
+};
+
+namespace {
+
+void bind_bodies(File<PackTables>& file) {
+  using T = PackTables;
+  using O = PackingOptions;
+  file.table("packing", required, "how many bodies fill which box")
+      .keys({key_in<T>("method", &PackCase::packing, &O::method, help_of(EnumNames<PackingMethod>::list)),
+             key("grains", &T::amount, &PackingAmount::grains, from(1, 10000000),
+                 "number of bodies; two of grains, box and solid_fraction give the third (falling: grains and box)"),
+             key("box", &T::amount, &PackingAmount::box, unit("m"),
+                 "width and height from the origin; falling: the height is not used"),
+             key("solid_fraction", &T::amount, &PackingAmount::solid_fraction, or_auto, optional, between(0, 1),
+                 "wanted; auto: as dense as the method gets, with grains and box (growth scales the radii, rejection "
+                 "and insertion leave out what finds no place)"),
+             key("sides", &T::sides, choices({"walls", "periodic"}), "of the box; falling: walls and an open top"),
+             key_in<T>("seed", &PackCase::packing, &O::seed, not_negative),
+             key_in<T>("overlap", &PackCase::packing, &O::overlap, range({.low = 0, .high = 0.1, .low_open = true}),
+                       "allowed, of the smaller radius; growth with auto: the mean overlap at which discs jam, 1e-3 is "
+                       "quick"),
+             key_in<T>("attempts", &PackCase::packing, &O::attempts, from(1, 1e12),
+                       "to place a disc; sweeps of local_moves"),
+             key_in<T>("density", &PackCase::packing, &O::settling, &SettlingOptions::density, unit("kg/m³"), positive,
+                       "density of the bodies"),
+             key_in<T>("region", &PackCase::region, unit("m"),
+                       "where void ratio and porosity are measured; left out: away from walls and surface")});
+  using S = PackingShape;
+  file.table("packing.shape", &T::packing, &O::shape, completed, "shape of the bodies")
+      .keys({key("kind", &S::kind,
+                 "the radius drawn is that of the disc of equal area, of pairs that of their two discs; directions are "
+                 "random; bonded_pair: tied by dashpots (falling), rigid_pair and clump: rigidly"),
+             key("aspect", &S::aspect, from(1, 1000), when("kind", {"ellipse"}),
+                 "long over short half-axis: a = r aspect^(1/2), b = r/aspect^(1/2)"),
+             key("discs", &S::discs, required, when("kind", {"clump"}), "in any place and unit; they may overlap")});
+  const auto uniform = when("distribution", {"uniform"}), log_normal = when("distribution", {"log_normal"});
+  using R = SizeTable;
+  using D = SizeDistribution;
+  file.table("packing.radii", &T::radii, "radii of the bodies; needed")
+      .keys({key("distribution", &R::sizes, &D::kind, "by number of grains"),
+             key("smallest", &R::sizes, &D::smallest, required, unit("m"), positive, uniform),
+             key("largest", &R::sizes, &D::largest, required, unit("m"), positive, uniform),
+             key("median", &R::sizes, &D::median, required, unit("m"), positive, log_normal),
+             key("deviation", &R::sizes, &D::deviation, required, from(0, 2), log_normal,
+                 "standard deviation of ln r; cut at three of them"),
+             key("path", &R::path, required, when("distribution", {"sieve_curve"}),
+                 "a CSV file: diameter in m, share of the mass that passes")});
+}
+
+void bind_contacts(File<PackTables>& file) {
+  using T = PackTables;
+  using O = SettlingOptions;
+  using S = SpringsOrSpeeds;
+  file.table("springs", &T::springs, required, "springs of contacts: kN and kT, or wave speeds")
+      .keys({key("kN", &S::kN, unit("Pa"), positive, "of every contact, walls too; instead of the wave speeds"),
+             key("kT", &S::kT, unit("Pa"), not_negative),
+             key("shear_wave_speed", &S::shear_wave_speed, unit("m/s"), positive,
+                 "Vs: kT = pi/4 rho Vs², kN = pi/4 rho Vp²"),
+             key("poisson_ratio", &S::poisson_ratio, between(-1, 0.5), "plane strain; with shear_wave_speed")});
+  file.table("settling", completed, "how bodies fall and come to rest (method = falling)")
+      .keys({key("start", &T::start,
+                 "fall: all of it in time; relax: first brought down without inertia and friction, much faster and "
+                 "denser")});
+  file.table("settling", &T::packing, &PackingOptions::settling)
+      .keys(
+          {key("gravity", &O::gravity, unit("m/s²"), positive, "downwards"),
+           key("friction", &O::friction, not_negative, "between bodies"),
+           key("wall_friction", &O::wall_friction, not_negative),
+           key("damping", &O::damping, range({.low = 0, .high = 10, .low_open = true}),
+               "h of the dashpots 2 h sqrt(m k), m the mass of a body"),
+           key("time_step", &O::time_step, or_auto, unit("s"), positive,
+               "auto: a quarter of the limit of stability of the two lightest bodies"),
+           key("unbalanced", &O::rest, range({.low = 1e-12, .high = 1, .high_open = true}),
+               "mean unbalanced force over mean contact force, at which the bodies rest"),
+           key("longest", &O::longest, unit("s"), positive, "longest motion, before it is given up"),
+           key("bond_share", &O::bond_share, positive,
+               "dashpots of bonded pairs, relative to the largest of an explicit step: C_n = share m/dt, C_s = a third "
+               "of that; the pairs creep, and below 1e3 they hardly come to rest")});
+  file.table("output", completed, "what is written with --out")
+      .keys({key_in<T>("csv", &PackCase::csv, "grains.csv, for [grains] path"),
+             key_in<T>("picture", &PackCase::picture)});
+}
+
+const File<PackTables>& pack_file() {
+  static const File<PackTables> file = [] {
+    File<PackTables> made(case_file().spec().schema, "case file of a packing");
+    made.table("").keys({key_in<PackTables>("title", &PackCase::title, "shown in reports and pictures")});
+    bind_bodies(made);
+    bind_contacts(made);
+    return made;
+  }();
+  return file;
+}
+
+SizeDistribution sizes_of(const TomlValue& table, const SizeTable& given) {
+  SizeDistribution sizes = given.sizes;
+  if (sizes.kind == SizeDistribution::Kind::uniform && sizes.largest < sizes.smallest) {
+    fail_at(*table.find("largest"), "packing.radii.largest",
+            fmt::format("the largest radius {} m is below the smallest, {} m", sizes.largest, sizes.smallest), "",
+            "Exchange them");
+  }
+  if (!given.path) return sizes;
+  try {
+    sizes.sieves = read_sieve_curve(*given.path);
+  } catch (const Error& error) {
+    throw error.at(fmt::format("{}: packing.radii.path", table.find("path")->where()));
   }
   return sizes;
 }
 
-SpringConstants read_springs(const TomlValue& table, double density) {
-  const auto kN = optional_number(table, "kN"), kT = optional_number(table, "kT");
-  const auto speed = optional_number(table, "shear_wave_speed"), poisson = optional_number(table, "poisson_ratio");
+SpringConstants springs_of(const TomlValue& table, const SpringsOrSpeeds& given, double density) {
+  const auto& [kN, kT, speed, poisson] = given;
   if (kN && kT && !speed && !poisson) return {*kN, *kT};
   if (speed && poisson && !kN && !kT) return springs_of_wave_speeds(density, wave_speeds_from_shear(*speed, *poisson));
   fail_at(table, "springs", "it is not said how stiff contacts are", "two numbers say it",
           "Give kN and kT, or shear_wave_speed and poisson_ratio, and no others");
 }
 
-PackingShape read_shape(const TomlValue& table) {
-  PackingShape shape;
-  shape.kind = enum_from<PackingShape::Kind>(text(table, "kind"));
-  if (shape.kind == PackingShape::Kind::ellipse) shape.aspect = number(table, "aspect");
-  if (shape.kind == PackingShape::Kind::clump) {
-    for (const TomlValue& disc : table.find("discs")->items)
-      shape.discs.push_back({{disc.items[0].real, disc.items[1].real}, disc.items[2].real});
-  }
-  return shape;
-}
-
-/// The method, the shape and the seed are read before.
-void read_amount(const TomlValue& table, const SizeDistribution& sizes, PackingOptions& options) {
-  PackingAmount amount;
-  if (const TomlValue* grains = table.find("grains")) amount.grains = grains->integer;
-  if (table.find("box") != nullptr) amount.box = vector(table, "box");
-  if (const TomlValue* fraction = table.find("solid_fraction")) {
-    options.as_dense_as_possible = !fraction->is_number();
-    if (fraction->is_number()) amount.solid_fraction = fraction->real;
-  }
-  const bool falls = entry_of(options.method).open_top;
-  options.box.sides = text(table, "sides") == "periodic" ? PackingBox::Sides::periodic
-                      : falls                            ? PackingBox::Sides::open_top
-                                                         : PackingBox::Sides::walls;
-  try {
-    set_amount(amount, sizes, options);
-  } catch (const Error& error) {
-    const TomlValue* value = table.find(error.where());
-    fail_at(value != nullptr ? *value : table, value != nullptr ? "packing." + error.where() : "packing",
-            error.problem(), error.why(), error.remedy());
-  }
-}
-
-SettlingOptions read_settling(const TomlValue& table) {
-  SettlingOptions settling;
-  settling.relax_first = text(table, "start") == "relax";
-  settling.gravity = number(table, "gravity");
-  settling.friction = number(table, "friction");
-  settling.wall_friction = number(table, "wall_friction");
-  settling.damping = number(table, "damping");
-  const TomlValue& step = *table.find("time_step");
-  settling.time_step = step.is_number() ? step.real : 0;
-  settling.rest = number(table, "unbalanced");
-  settling.longest = number(table, "longest");
-  settling.bond_share = number(table, "bond_share");
-  return settling;
-}
-
 }  // namespace
+
+const casefile::FileSpec& pack_file_spec() {
+  return pack_file().spec();
+}
 
 PackCase parse_pack_case(std::string_view content, const std::string& name, const fs::path& folder,
                          std::span<const std::string> overrides) {
   TomlValue root = parse_toml(content, name);
   for (const std::string& assignment : overrides) apply_override(root, assignment);
-  check_and_complete(root, pack_file_spec());
-  PackCase result;
-  result.title = text(root, "title");
-  TomlValue& packing = *root.find("packing");
-  PackingOptions& options = result.packing;
-  options.method = enum_from<PackingMethod>(text(packing, "method"));
-  options.seed = static_cast<std::uint64_t>(packing.find("seed")->integer);
-  options.overlap = number(packing, "overlap");
-  options.attempts = packing.find("attempts")->integer;
-  options.shape = read_shape(*packing.find("shape"));
-  TomlValue* radii = packing.find("radii");
-  if (radii == nullptr)
+  pack_file().check(root);
+  PackTables tables;
+  pack_file().assign(root, folder, tables);
+  const TomlValue& packing = *root.find("packing");
+  if (!tables.radii)
     fail_at(packing, "packing", "the table [packing.radii] is missing", "it says how large the discs are", "Add it");
-  read_amount(packing, read_sizes(*radii, folder), options);
-  options.settling = read_settling(*root.find("settling"));
-  options.settling.density = number(packing, "density");
-  options.settling.springs = read_springs(*root.find("springs"), options.settling.density);
-  if (const TomlValue* region = packing.find("region")) {
-    const auto& items = region->items;
-    result.region = Region{{items[0].real, items[1].real}, {items[2].real, items[3].real}};
-  }
-  const TomlValue& output = *root.find("output");
-  result.csv = flag(output, "csv");
-  result.picture = flag(output, "picture");
-  result.document = std::move(root);
-  return result;
+  PackingOptions& options = tables.packing;
+  const TomlValue* fraction = packing.find("solid_fraction");
+  options.as_dense_as_possible = fraction != nullptr && !fraction->is_number();
+  const bool open = tables.sides == PackingBox::Sides::walls && entry_of(options.method).open_top;
+  options.box.sides = open ? PackingBox::Sides::open_top : tables.sides;
+  const SizeDistribution sizes = sizes_of(*packing.find("radii"), *tables.radii);
+  at_key(packing, "packing", [&] { set_amount(tables.amount, sizes, options); });
+  SettlingOptions& settling = options.settling;
+  settling.relax_first = tables.start == PackTables::Start::relax;
+  settling.springs = springs_of(*root.find("springs"), tables.springs, settling.density);
+  tables.document = std::move(root);
+  return tables;
 }
 
 PackCase read_pack_case(const fs::path& path, std::span<const std::string> overrides) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "equidem/casefile/engine/keys.hpp"
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/packing/measures.hpp"
 #include "equidem/packing/packing.hpp"
@@ -23,6 +24,9 @@ struct PackCase {
   bool csv = true, picture = true;
   TomlValue document;  ///< behind it, defaults filled in
 };
+
+/// The tables and keys of a case that fills a box.
+const casefile::FileSpec& pack_file_spec();
 
 /// \param overrides "packing.seed=3", in order
 /// \throws Error (bad_input) with file, line and key

@@ -72,6 +72,8 @@ inline constexpr auto bytes = [](KeySpec& key) {
 };
 /// Where the table is missing it is added with its defaults.
 inline constexpr auto completed = [](TableSpec& table) { table.completed = true; };
+/// A table [[name]] that is read elsewhere.
+inline constexpr auto repeated_table = [](TableSpec& table) { table.repeated = true; };
 inline auto range(Range range) {
   return [range](KeySpec& key) { key.range = range; };
 }
@@ -256,15 +258,21 @@ class File<F>::Binder {
 
  public:
   Binder(File& file, TableSpec spec, Target target) : file_(file), spec_(std::move(spec)), target_(target) {
-    spec_.repeated = is_vector<T>;
+    spec_.repeated = spec_.repeated || is_vector<T>;
+  }
+
+  /// Keys that are checked and described here, and read elsewhere.
+  template <class S>
+  void described(const std::vector<Key<S>>& keys) {
+    for (const Key<S>& key : keys) {
+      file_.spec_.keys.push_back(key.spec);
+      file_.spec_.keys.back().table = spec_.name;
+    }
+    if (!spec_.name.empty() && file_.spec_.table(spec_.name) == nullptr) file_.spec_.tables.push_back(spec_);
   }
 
   void keys(std::vector<Key<Item>> keys) {
-    for (Key<Item>& key : keys) {
-      key.spec.table = spec_.name;
-      file_.spec_.keys.push_back(key.spec);
-    }
-    if (!spec_.name.empty()) file_.spec_.tables.push_back(spec_);
+    described(keys);
     file_.readers_.push_back([keys = std::move(keys), name = spec_.name, target = target_](
                                  TomlValue& root, const std::filesystem::path& folder, F& into) {
       TomlValue* table = find_table(root, name);

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/casefile/grain_tables.hpp"
+
+#include "equidem/casefile/case_tables.hpp"
+
+namespace equidem::casefile {
+namespace {
+
+void bind_bodies(File<GrainTables>& file) {
+  using C = CommonBodyTable;
+  file.table("grains", &GrainTables::common, completed, "properties of all grains")
+      .keys({key("body", &C::body, "disc: a cylinder, kg and N per metre of depth; sphere: kg and N"),
+             key("density", &C::density, unit("kg/m³"), positive, "density of every grain that has none of its own"),
+             key("path", &C::path,
+                 "a CSV file of grains: the columns x, y, radius and, where wanted, short_half_axis (of an ellipse, "
+                 "radius being the long one), discs (of a clump: x y r; x y r), vx, vy, spin, angle, density, group; "
+                 "grains.csv of run and pack can be read back")});
+  using G = GrainTable;
+  file.table("grain", &GrainTables::grain_tables, "one body")
+      .keys({key("position", &G::grain, &Grain::position, required, unit("m"), "place of the mass centre"),
+             key("radius", &G::radius, unit("m"), positive, "radius of a disc or sphere; or give one of the next two"),
+             key("half_axes", &G::half_axes, unit("m"), positive,
+                 "[a, b] of an ellipse, the long one first: it lies along x at angle 0"),
+             key("discs", &G::discs, optional, unit("m"),
+                 "discs of a clump, tied rigidly, in the frame of the body at angle 0; they may overlap, areas that "
+                 "two share count once; all are shifted so that their mass centre is the origin"),
+             key("velocity", &G::grain, &Grain::velocity, unit("m/s")),
+             key("spin", &G::grain, &Grain::spin, unit("rad/s"), "counter-clockwise"),
+             key("angle", &G::grain, &Grain::angle, unit("rad")),
+             key("density", &G::density, unit("kg/m³"), positive, "instead of that of [grains]"),
+             key("group", &G::group, "for [[collisions.pair]] and [[probe]]")});
+}
+
+void bind_walls(File<GrainTables>& file) {
+  const auto line = when("shape", {"line"}), segment = when("shape", {"segment"}), arc = when("shape", {"arc"});
+  using T = GrainWallTable;
+  using W = Wall;
+  file.table("wall", &GrainTables::wall_tables, "a wall of infinite mass")
+      .keys({key("name", &T::wall, &W::name, required, "for reports, and for [[collisions.pair]]"),
+             key("shape", &T::wall, &W::shape,
+                 "line: endless, grains on one side; segment, arc: thin, with two sides and two ends"),
+             key("point", &T::wall, &W::point, required, unit("m"), when("shape", {"line", "segment"}),
+                 "on the line; the first end of the segment"),
+             key("normal", &T::wall, &W::normal, required, line, "towards the grains, of any length"),
+             key("end", &T::wall, &W::end, required, unit("m"), segment),
+             key("centre", &T::wall, &W::point, required, unit("m"), arc),
+             key("radius", &T::wall, &W::radius, required, unit("m"), positive, arc),
+             key("from", &T::wall, &W::from, unit("rad"), arc, "counter-clockwise from here ..."),
+             key("to", &T::wall, &W::to, unit("rad"), arc, "... to here"),
+             key("displacement", &T::displacement, unit("m"), "along direction, times the schedule"),
+             key("direction", &T::direction, "of any length; left out: the normal of a line"),
+             key("schedule", &T::schedule, "schedule of the displacement"),
+             key("shaken", &T::shaken, optional, "false: [shaking] does not move it")});
+}
+
+void bind_motion(File<GrainTables>& file) {
+  using T = GrainTables;
+  file.table("run", required, "how long and in which steps")
+      .keys({key_in<T>("duration", &GrainCase::duration, required, unit("s"), positive),
+             key_in<T>("time_step", &GrainCase::step, &GrainStepOptions::time_step, or_auto, unit("s"), positive,
+                       "auto: the shortest contact over steps_per_contact"),
+             key_in<T>("steps_per_contact", &GrainCase::step, &GrainStepOptions::steps_per_contact, range({.low = 2}),
+                       "of an automatic step; left out: 50 for laws that give a force, 10 for the maps, pi (that is "
+                       "omega dt = 1) for exact_flow"),
+             key_in<T>("scheme", &GrainCase::options, &GrainOptions::scheme, optional,
+                       "of laws that give a force; semi_implicit_euler (default): first order, contacts that stick do "
+                       "not creep; velocity_verlet: second order, as LAMMPS steps; corrected_verlet: the same motion, "
+                       "but contacts that begin or end within a step push for their part of it only: for impacts, and "
+                       "where the balance of energy counts"),
+             key_in<T>("gravity", &GrainCase::scene, &GrainScene::gravity, unit("m/s²"), "such as [0.0, -9.81]")});
+  using P = GrainProbeTable;
+  file.table("schedule", &T::schedule_tables, "how a wall moves").keys(schedule_keys());
+  bind_shaking(file);
+  using M = MeasureOptions;
+  file.table("measures", &T::measures, "quantities measured on the bodies in a box")
+      .keys({key("region", &M::region, unit("m"),
+                 "[x_min, y_min, x_max, y_max] in which the void ratio is measured; it goes with the shaking box. Left "
+                 "out: the box without two mean diameters at its walls and without three below the lowest place of the "
+                 "surface, at each moment"),
+             key("columns", &M::columns, optional, from(2, 10000),
+                 "in which the highest points make the surface; left out: two largest diameters wide"),
+             key("thrown_gap", &M::thrown_gap, unit("mean diameters"), positive,
+                 "a body further than that from all others of the heap is thrown"),
+             key("cell", &M::cell, unit("m"), positive,
+                 "width of the cells of the fields of stress, velocity, solid fraction and coordination at the end, "
+                 "some bodies wide; left out: no fields")});
+  file.table("probe", &T::probe_tables, "a history of grains")
+      .keys({key("name", &P::name, required, "begins the names of its columns"),
+             key("group", &P::group, "group of grains; or give grains"),
+             key("grains", &P::grains, optional, "counted from 0; those of the file first"),
+             key("quantities", &P::quantities, choices({"position", "velocity", "angle", "spin"}),
+                 "the means over these grains")});
+}
+
+}  // namespace
+
+const File<GrainTables>& grain_file() {
+  static const File<GrainTables> file = [] {
+    File<GrainTables> made(case_file().spec().schema, "case file of colliding bodies");
+    made.table("").keys({key_in<GrainTables>("title", &GrainCase::title, "shown in reports and pictures")});
+    bind_bodies(made);
+    bind_bonds(made);
+    bind_collisions(made);
+    bind_walls(made);
+    bind_motion(made);
+    std::vector<Key<OutputCase>> output = output_keys();
+    std::erase_if(output, [](const auto& key) { return key.spec.name == "vtk"; });
+    made.table("output", &GrainTables::output, completed, "what is written with --out").keys(std::move(output));
+    return made;
+  }();
+  return file;
+}
+
+}  // namespace equidem::casefile

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The tables of the case file of bodies that collide, bound to a GrainCase and to what is completed from several
+/// tables.
+#pragma once
+
+#include <filesystem>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "equidem/casefile/engine/bind.hpp"
+#include "equidem/casefile/grain_case.hpp"
+#include "equidem/grains/scene/shaking.hpp"
+
+namespace equidem {
+
+template <>
+struct EnumNames<Wall::Shape> {
+  using enum Wall::Shape;
+  static constexpr const char* what = "shape of a wall";
+  static constexpr NamedValue<Wall::Shape> list[] = {{line, "line"}, {segment, "segment"}, {arc, "arc"}};
+};
+
+template <>
+struct EnumNames<GrainOptions::Scheme> {
+  using enum GrainOptions::Scheme;
+  static constexpr const char* what = "scheme";
+  static constexpr NamedValue<GrainOptions::Scheme> list[] = {{semi_implicit_euler, "semi_implicit_euler"},
+                                                              {velocity_verlet, "velocity_verlet"},
+                                                              {corrected_verlet, "corrected_verlet"}};
+};
+
+template <>
+struct EnumNames<GrainOptions::EllipseLaw> {
+  using enum GrainOptions::EllipseLaw;
+  static constexpr const char* what = "contact of ellipses";
+  static constexpr NamedValue<GrainOptions::EllipseLaw> list[] = {
+      {exact, "exact"}, {enlarged_mended, "enlarged"}, {enlarged_as_printed, "enlarged_as_printed"}};
+};
+
+template <>
+struct EnumNames<GrainOptions::BondStep> {
+  using enum GrainOptions::BondStep;
+  static constexpr const char* what = "step of bonds";
+  static constexpr NamedValue<GrainOptions::BondStep> list[] = {{exact, "exact"}, {explicit_euler, "explicit"}};
+};
+
+template <>
+struct EnumNames<FrictionCap> {
+  using enum FrictionCap;
+  static constexpr const char* what = "limit of friction";
+  static constexpr NamedValue<FrictionCap> list[] = {{whole_force, "whole_force"}, {spring_alone, "spring_alone"}};
+};
+
+template <>
+struct EnumNames<Baseline> {
+  using enum Baseline;
+  static constexpr const char* what = "baseline";
+  static constexpr NamedValue<Baseline> list[] = {{rest, "rest"}, {velocity, "velocity"}};
+};
+
+}  // namespace equidem
+
+namespace equidem::casefile {
+
+/// [grains].
+struct CommonBodyTable {
+  Body body = Body::disc;
+  std::optional<double> density;  ///< kg/m³
+  std::optional<std::filesystem::path> path;
+};
+
+/// [[grain]]: one of radius, half_axes and discs is given.
+struct GrainTable {
+  Grain grain;
+  std::optional<double> radius;    ///< m
+  std::optional<Vec2> half_axes;   ///< m, the long one first
+  std::vector<Clump::Disc> discs;  ///< m
+  std::optional<double> density;   ///< kg/m³
+  std::string group = "grains";
+};
+
+/// An arc goes round once by default.
+inline Wall full_circle() {
+  Wall wall;
+  wall.to = 2 * std::numbers::pi;
+  return wall;
+}
+
+/// [[wall]].
+struct GrainWallTable {
+  Wall wall = full_circle();
+  std::optional<double> displacement;  ///< m, along `direction`
+  std::optional<Vec2> direction;
+  std::optional<std::string> schedule;
+  bool shaken = true;
+};
+
+/// [[probe]].
+struct GrainProbeTable {
+  std::string name;
+  std::optional<std::string> group;
+  std::vector<std::int32_t> grains;
+  std::vector<std::string> quantities = {"position"};
+};
+
+/// [bonds].
+struct BondsTable {
+  GrainBond common;
+  GrainOptions::BondStep step = GrainOptions::BondStep::exact;
+  std::optional<std::filesystem::path> path;
+};
+
+/// [shaking].
+struct ShakingTable {
+  enum class Unit { m_per_s2, gal, g };
+  Vec2 direction = {1, 0};
+  HarmonicShaking harmonic;  ///< acceleration in `unit`
+  Unit unit = Unit::m_per_s2;
+  double start = 0;  ///< s
+  std::optional<std::filesystem::path> record;
+  RecordedShaking recorded;  ///< without its points; accelerations in `unit`
+};
+
+struct GrainTables : GrainCase {
+  CommonBodyTable common;
+  std::vector<GrainTable> grain_tables;
+  PairOptions collisions;
+  std::optional<double> young_modulus, poisson_ratio, shear_wave_speed;  ///< Pa, -, m/s
+  BondsTable bonds;
+  std::vector<GrainWallTable> wall_tables;
+  std::vector<GrainProbeTable> probe_tables;
+  std::vector<ScheduleTable> schedule_tables;
+  std::optional<ShakingTable> shaking_table;
+};
+
+/// Whether a document describes bodies that collide.
+/// \throws Error (bad_input) where it has an [assembly] too
+bool describes_grains(const TomlValue& root);
+
+/// The case file of bodies that collide, schema "equidem/1".
+const File<GrainTables>& grain_file();
+
+/// The keys of a contact. In [collisions] they have defaults and help; elsewhere they replace those.
+std::vector<Key<PairOptions>> contact_keys(bool base);
+/// The dashpots and springs of a bond.
+std::vector<Key<GrainBond>> bond_keys(bool base);
+
+void bind_collisions(File<GrainTables>& file);
+void bind_bonds(File<GrainTables>& file);
+void bind_shaking(File<GrainTables>& file);
+
+/// Read [shaking] and move the walls by it, but for those with shaken = false.
+/// \param tables with walls and with [shaking]
+/// \throws Error (bad_input) with line and key: no motion or two, a duration of no whole cycles, no wall that moves, a
+///         wall that moves by itself as well, a record that is no table
+Shaking read_shaking(const TomlValue& root, GrainTables& tables);
+
+/// Read the bodies of [grains] and [[grain]].
+/// \return group of each grain
+/// \throws Error (bad_input) with line and key: no grains, no density, a file that is not a table of grains
+std::vector<std::string> read_bodies(const TomlValue& root, GrainTables& tables);
+
+/// Give grains and walls their kinds, and every two kinds their contact.
+/// \param groups of each grain
+/// \throws Error (bad_input) with line and key as set_kinds; also: keys that exclude one another, wave speeds with
+///         several densities
+void read_collisions(const TomlValue& root, const std::vector<std::string>& groups, GrainTables& tables);
+
+/// The bonds of the file, then those of the case.
+/// \throws Error (bad_input) with line and key: grains that are not there, tied to themselves or twice to one another,
+///         no dashpot, a file that is no table of bonds
+std::vector<GrainBond> read_bonds(const TomlValue& root, const BondsTable& given, std::size_t grains);
+
+}  // namespace equidem::casefile
+
+namespace equidem {
+
+template <>
+struct EnumNames<casefile::ShakingTable::Unit> {
+  using enum casefile::ShakingTable::Unit;
+  static constexpr const char* what = "unit of acceleration";
+  static constexpr NamedValue<casefile::ShakingTable::Unit> list[] = {{m_per_s2, "m/s2"}, {gal, "gal"}, {g, "g"}};
+};
+
+template <>
+struct EnumNames<RecordedShaking::Quantity> {
+  using enum RecordedShaking::Quantity;
+  static constexpr const char* what = "quantity of a record";
+  static constexpr NamedValue<RecordedShaking::Quantity> list[] = {{acceleration, "acceleration"},
+                                                                   {displacement, "displacement"}};
+};
+
+}  // namespace equidem
