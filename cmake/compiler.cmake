@@ -1,20 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# fmt and the standard library take most of the time of compiling a file: what most files read is compiled once for all targets of
-# the same flags. The preset tidy goes without, so that every file still includes what it uses.
-set(EQUIDEM_PRECOMPILED <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory> <numbers> <optional>
+# fmt and the standard library take most of the time of compiling a file: what most files read is compiled once for
+# all targets of the same flags. The preset tidy goes without, so that every file still includes what it uses.
+set(EQUIDEM_PRECOMPILED <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory>
+  <numbers> <optional>
   <span> <string> <string_view> <utility> <vector> <fmt/format.h>)
 
 # Flags of every target of the project, on an interface target that is not installed.
 add_library(equidem_compiler INTERFACE)
-# Contraction to fused multiply-add is left to the compiler's taste and the machine's: without it a seed gives the same assembly
-# everywhere. Kernels that want it say so themselves.
-target_compile_options(equidem_compiler INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off)
+# Contraction to fused multiply-add is left to the compiler's taste and the machine's: without it a seed gives the
+# same assembly everywhere. Kernels that want it say so themselves.
+target_compile_options(equidem_compiler INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off)
 if(EQUIDEM_WARNINGS_AS_ERRORS)
   target_compile_options(equidem_compiler INTERFACE -Werror)
 endif()
 if(EQUIDEM_SANITIZE)
-  # A finding ends the program, so that the test fails. GCC warns of uninitialized members of std::function in instrumented
-  # code of the standard library.
+  # A finding ends the program, so that the test fails. GCC warns of uninitialized members of std::function in
+  # instrumented code of the standard library.
   target_compile_options(equidem_compiler INTERFACE -fsanitize=${EQUIDEM_SANITIZE} -fno-sanitize-recover=all
     -fno-omit-frame-pointer -Wno-maybe-uninitialized)
   target_link_options(equidem_compiler INTERFACE -fsanitize=${EQUIDEM_SANITIZE})

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Third-party parts (Debian 12 packages); which room uses which is said in lib/CMakeLists.txt. This file is also installed: the
-# static libraries of the rooms need the same parts wherever they are linked.
+# Third-party parts (Debian 12 packages); which room uses which is said in lib/CMakeLists.txt. This file is also
+# installed: the static libraries of the rooms need the same parts wherever they are linked.
 
-# Missing parts end the configuration of this project; in find_package(equidem) they make equidem not found, with the reason.
+# Missing parts end the configuration of this project; in find_package(equidem) they make equidem not found, with the
+# reason.
 function(equidem_missing part)
   if(CMAKE_FIND_PACKAGE_NAME STREQUAL "equidem")
     set(equidem_FOUND FALSE PARENT_SCOPE)
     set(equidem_NOT_FOUND_MESSAGE "equidem needs ${part}, which was not found" PARENT_SCOPE)
   else()
-    message(FATAL_ERROR "equidem needs ${part}, which was not found. tools/packages.txt lists the Debian packages to install.")
+    message(FATAL_ERROR
+      "equidem needs ${part}, which was not found. tools/packages.txt lists the Debian packages to install.")
   endif()
 endfunction()
 

@@ -4,8 +4,8 @@
 
     check_architecture.py FOLDER
 
-reads a source tree and prints every broken rule, one per line, as "file:line: what is wrong". Exit code 1 where there is one.
-The order of the rooms is read from lib/CMakeLists.txt.
+reads a source tree and prints every broken rule, one per line, as "file:line: what is wrong". Exit code 1 if there is
+one. The order of the rooms is read from lib/CMakeLists.txt.
 """
 
 import fnmatch
@@ -14,8 +14,17 @@ import re
 import sys
 
 LONGEST_SOURCE = 400  # lines
+WIDEST_LINE = 120  # characters
+FULLEST_FOLDER = 30  # sources in one folder of lib or tools
+# Folders above it, with the number that they may not exceed: being divided, never added to.
+OVERFULL = {
+    "lib/equidem/casefile": 61,
+    "lib/equidem/output/files": 32,
+    "lib/equidem/statics": 31,
+}
 
-# Third-party headers, the places that may include them (patterns of paths), and in how many files of lib/equidem at most.
+# Third-party headers, the places that may include them (patterns of paths), and the number of files of lib/equidem that
+# may do so.
 PARTS = [
     ("fmt/*", ["lib/equidem/core/text.hpp"], 1),
     ("CGAL/*", ["lib/equidem/assembly/*"], 1),
@@ -39,7 +48,7 @@ PARTS = [
 SYSTEM = ["sys/*", "unistd.h", "dlfcn.h", "fcntl.h", "poll.h", "pthread.h", "sched.h", "immintrin.h", "malloc.h"]
 
 SOURCES = (".cpp", ".hpp", ".h", ".c", ".py")
-SCRIPTS = ("tools/prepare", "tools/test", "tools/demo", ".ci/run")
+SCRIPTS = ("tools/prepare", "tools/test", "tools/demo", ".ci/run", ".ci/format", ".ci/headers", ".ci/tidy", ".ci/sanitize")
 SPDX = "SPDX-License-Identifier: GPL-3.0-or-later"
 # Places on the machine of whoever writes: absolute paths below these.
 MACHINE_PATH = re.compile(r"(?<![\w./\-~$}{])/(?:%s)\b" % "|".join(["work", "tmp", "root", "home", "mnt", "Users"]))
@@ -121,6 +130,42 @@ def check_source(path, text, rooms, used):
         yield LONGEST_SOURCE + 1, f"the file has {length} lines, more than {LONGEST_SOURCE}: split it"
 
 
+def circles(includes):
+    """Sets of files that include one another, directly or through others: strongly connected components (Tarjan)."""
+    index, low, stack, found = {}, {}, [], []
+
+    def visit(file):
+        index[file] = low[file] = len(index)
+        stack.append(file)
+        for other in includes.get(file, ()):
+            if other not in index:
+                visit(other)
+                low[file] = min(low[file], low[other])
+            elif other in stack:
+                low[file] = min(low[file], index[other])
+        if low[file] == index[file]:
+            at = stack.index(file)
+            if len(stack) - at > 1 or file in includes.get(file, ()):
+                found.append(sorted(stack[at:]))
+            del stack[at:]
+
+    for file in sorted(includes):
+        if file not in index:
+            visit(file)
+    return found
+
+
+def check_folders(paths):
+    count = {}
+    for path in paths:
+        if path.startswith(("lib/", "tools/")) and path.endswith((".cpp", ".hpp")):
+            count[os.path.dirname(path)] = count.get(os.path.dirname(path), 0) + 1
+    for folder, files in sorted(count.items()):
+        most = OVERFULL.get(folder, FULLEST_FOLDER)
+        if files > most:
+            yield folder, 1, f"the folder has {files} sources, more than {most}: divide it by what they do"
+
+
 def has_licence(path, text):
     lines = text.splitlines()[:2]
     return any(SPDX in line for line in (lines[:2] if lines and lines[0].startswith("#!") else lines[:1]))
@@ -135,8 +180,9 @@ def violations(root):
     if not rooms:
         yield "lib/CMakeLists.txt", 1, "it lists no rooms in set(EQUIDEM_ROOMS ...)"
         return
-    used = {}
-    for path in files_of(root):
+    used, includes, paths = {}, {}, list(files_of(root))
+    yield from check_folders(paths)
+    for path in paths:
         full = os.path.join(root, path)
         if os.path.islink(full) or os.path.getsize(full) > 1_000_000:
             continue
@@ -150,9 +196,15 @@ def violations(root):
         if path.endswith(SOURCES):
             for number, wrong in check_source(path, text, rooms, used):
                 yield path, number, wrong
+        if path.startswith("lib/") and path.endswith(".hpp"):
+            includes[path] = ["lib/" + header for _, _, header in includes_of(text) if header.startswith("equidem/")]
         for number, line in enumerate(text.splitlines(), 1):
+            if is_source(path) and not path.endswith(".py") and len(line) > WIDEST_LINE:
+                yield path, number, f"the line has {len(line)} characters, more than {WIDEST_LINE}"
             if MACHINE_PATH.search(line) and not line.startswith("#!"):
                 yield path, number, f"a path of one machine: {line.strip()[:100]}"
+    for circle in circles(includes):
+        yield circle[0], 1, f"headers include one another: {', '.join(circle)}"
 
 
 def main():

@@ -89,6 +89,23 @@ class TheCheck(unittest.TestCase):
         self.fails_with({"lib/equidem/core/error.hpp": "\n" * 400}, "has 401 lines")
         self.assertEqual(violations_of({"lib/equidem/core/error.hpp": "\n" * 399}), [])
 
+    def test_rejects_a_line_that_is_too_wide(self):
+        wide = f"// {SPDX}\n//" + "é" * 118 + "\n"
+        self.assertEqual(violations_of({"lib/equidem/core/error.hpp": wide}), [])
+        self.fails_with({"lib/equidem/core/error.hpp": wide + "/" * 121}, "error.hpp:3", "has 121 characters")
+        self.fails_with({"cmake/more.cmake": f"# {SPDX}\n" + "#" * 121}, "cmake/more.cmake:2", "has 121 characters")
+
+    def test_rejects_headers_that_include_one_another(self):
+        include = '#include "equidem/core/{}.hpp"\n'
+        self.fails_with({"lib/equidem/core/a.hpp": include.format("b"), "lib/equidem/core/b.hpp": include.format("c"),
+                         "lib/equidem/core/c.hpp": include.format("a")}, "core/a.hpp, lib/equidem/core/b.hpp, lib")
+        self.fails_with({"lib/equidem/core/a.hpp": include.format("a")}, "include one another")
+
+    def test_rejects_a_folder_that_is_too_full(self):
+        files = {f"tools/equidem/file{k}.cpp": "\n" for k in range(30)}
+        self.fails_with(files, "tools/equidem:1", "has 31 sources")
+        self.assertEqual(violations_of(dict(list(files.items())[:29])), [])
+
     def test_rejects_paths_of_one_machine(self):
         for place in ("work/main", "tmp/x", "root", "home/me"):
             self.fails_with({"README.md": f"Look into /{place}.\n"}, "README.md:1: a path of one machine")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# cmake -D build=... -D place=... -D consumer=... -D compiler=... -D generator=... -D sanitizers=... -D version=... -P this
-# The installed tree is moved before it is used: nothing in it may point to where it was first.
+# cmake -D build=... -D place=... -D consumer=... -D compiler=... -D generator=... -D sanitizers=... -D version=... -P
+# this The installed tree is moved before it is used: nothing in it may point to where it was first.
 cmake_minimum_required(VERSION 3.25)
 
 function(run)
@@ -16,6 +16,10 @@ file(REMOVE_RECURSE ${place})
 run(${CMAKE_COMMAND} --install ${build} --prefix ${place}/first)
 file(RENAME ${place}/first ${place}/moved)
 
+file(GLOB internal ${place}/moved/include/equidem/grains/kernels/*.hpp)
+if(internal)
+  message(FATAL_ERROR "internal headers are installed: ${internal}")
+endif()
 file(GLOB_RECURSE package ${place}/moved/*.cmake)
 foreach(file IN LISTS package)
   file(READ ${file} text)

@@ -57,8 +57,8 @@ std::vector<Wall> walls_of_box(double width);
 /// springs and dashpots. Bodies are of kind 0 and still to come.
 GrainScene scene_of_box(double width, const SettlingOptions& options);
 
-/// Stability limit, s, of a contact of the two lightest bodies of a scene in semi-implicit Euler, with the longest lever
-/// of its forces. Several contacts of a body lower it.
+/// Stability limit, s, of a contact of the two lightest bodies of a scene in semi-implicit Euler, with the longest
+/// lever of its forces. Several contacts of a body lower it.
 double contact_step_limit(const GrainScene& scene, const SettlingOptions& options);
 
 /// The grains of a scene of a box are let go until all is at rest. Bonds get their dashpots.

@@ -39,10 +39,10 @@ class Report {
 
 constexpr const char* introduction = R"(# Collisions
 
-equidem {0}, compiler {1}, `bench_collisions --rounds {2} --halvings {3}`. One thread, processor time; medians (smallest .. largest) of
-{2} rounds in which all take turns. Laws: C linear spring and dashpot, T Hertz spring and dashpot, F and P the maps of Fujioka & Ushijima,
-X the linear spring and dashpot solved exactly within the step. Dimensionless stiffness a = k dt²/m = 0.1 (T: 4.62) where nothing else is
-said.
+equidem {0}, compiler {1}, `bench_collisions --rounds {2} --halvings {3}`. One thread, processor time; medians
+(smallest .. largest) of {2} rounds in which all take turns. Laws: C linear spring and dashpot, T Hertz spring and
+dashpot, F and P the maps of Fujioka & Ushijima, X the linear spring and dashpot solved exactly within the step.
+Dimensionless stiffness a = k dt²/m = 0.1 (T: 4.62) where nothing else is said.
 
 ## An evaluation of each law
 

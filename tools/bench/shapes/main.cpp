@@ -156,13 +156,15 @@ std::string text(const Range& range, const char* digits) {
 
 constexpr const char* introduction = R"(# Shapes
 
-equidem {0}, compiler {1}, `bench_shapes --side {2} --rounds {3}`. {4} grains of equal area that have fallen into a box under gravity, with
-friction, tangential springs and dashpots; the law linear_dashpot. One thread, processor time; medians (smallest .. largest) of {3} rounds in
-which all take turns. Everything that a step does is counted: contacts, grains that are near but apart, motion, lists. A contact is one
-that touches; a disc is that of the same scheme. Discs, round parts and ellipses go through loops over eight pairs at once, the enlarged
-ellipse contact by contact. A bonded pair counts as one grain: two discs and the dashpots between them.
+equidem {0}, compiler {1}, `bench_shapes --side {2} --rounds {3}`. {4} grains of equal area that have fallen into a box
+under gravity, with friction, tangential springs and dashpots; the law linear_dashpot. One thread, processor time;
+medians (smallest .. largest) of {3} rounds in which all take turns. Everything that a step does is counted: contacts,
+grains that are near but apart, motion, lists. A contact is one that touches; a disc is that of the same scheme. Discs,
+round parts and ellipses go through loops over eight pairs at once, the enlarged ellipse contact by contact. A bonded
+pair counts as one grain: two discs and the dashpots between them.
 
-| shape | scheme | contacts per grain | ns per grain and step | over a disc | ns per contact | over a disc contact | bytes per grain |
+| shape | scheme | contacts per grain | ns per grain and step | over a disc | ns per contact)"
+                                     R"( | over a disc contact | bytes per grain |
 |---|---|---|---|---|---|---|---|
 )";
 

@@ -204,7 +204,7 @@ std::string numerics(const Reproduction& result) {
 }  // namespace
 
 std::string report(const Reproduction& result) {
-  const Run& first = result.runs.empty() ? plan(result.quick).front() : result.runs.front().run;
+  const Run first = result.runs.empty() ? plan(result.quick).front() : result.runs.front().run;
   const StartGrid& grid = first.fill.grid;
   std::string text = "Sukegawa (2010), chapter 8: grains in a box, filled and shaken\n\n";
   if (!result.complete()) text += fmt::format("INCOMPLETE: {} of {} runs\n\n", result.runs.size(), result.planned);

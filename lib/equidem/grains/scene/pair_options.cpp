@@ -42,10 +42,11 @@ class StiffnessCheck {
 
   void operator()(std::monostate) const {
     fail("stiffness", "stiffness is missing", "no default says how stiff contacts are",
-         linear_             ? "Add contact_duration = ... in s, or stiffness, or largest_overlap with closing_speed, "
-                               "or shear_wave_speed with poisson_ratio"
-         : law_.hertz_spring ? "Add stiffness, or young_modulus with poisson_ratio, or largest_overlap with closing_speed"
-                             : "Add stiffness, or largest_overlap with closing_speed");
+         linear_ ? "Add contact_duration = ... in s, or stiffness, or largest_overlap with closing_speed, "
+                   "or shear_wave_speed with poisson_ratio"
+         : law_.hertz_spring
+             ? "Add stiffness, or young_modulus with poisson_ratio, or largest_overlap with closing_speed"
+             : "Add stiffness, or largest_overlap with closing_speed");
   }
   void operator()(SpringStiffness) const {}
   void operator()(DimensionlessStiffness) const {}

@@ -89,9 +89,9 @@ struct Shaking {
 };
 
 /// \param run_duration s
-/// \throws Error (bad_input), its place the name of the option, or empty: a direction of length 0, a start after the end
-///         of the run, cycles and a duration both, a duration of no whole cycles, more than 1e12 cycles, a motion as
-///         fast as light, and as harmonic_shaking, integrate_motion, follow_motion
+/// \throws Error (bad_input), its place the name of the option, or empty: a direction of length 0, a start after the
+///         end of the run, cycles and a duration both, a duration of no whole cycles, more than 1e12 cycles, a motion
+///         as fast as light, and as harmonic_shaking, integrate_motion, follow_motion
 Shaking shaking_of(const ShakingOptions& options, double run_duration);
 
 /// Let walls move along a direction.

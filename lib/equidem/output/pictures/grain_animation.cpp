@@ -154,7 +154,8 @@ constexpr const char* page_start = R"(<!DOCTYPE html>
 <meta charset="utf-8">
 <title>{0}</title>
 <style>
-body {{ font-family: sans-serif; margin: 0; padding: 0.8em; height: 100vh; box-sizing: border-box; display: flex; flex-direction: column; }}
+body {{ font-family: sans-serif; margin: 0; padding: 0.8em; height: 100vh; box-sizing: border-box; display: flex;
+  flex-direction: column; }}
 h1 {{ font-size: 1.3em; margin: 0 0 0.4em; }}
 p {{ margin: 0.4em 0 0; }}
 input {{ width: 40%; vertical-align: middle; }}
@@ -176,7 +177,8 @@ for (let k = 0; k < 64; ++k) value[digits[k]] = k;
 const fills = ['#add4ed', '#f7d494', '#a8dec7', '#f0b899', '#e6c2d9', '#f7f0a6'];
 const inks = ['#0073b3', '#bf8000', '#00805e', '#b34d00', '#a65985', '#8c8500'];
 const canvas = document.getElementById('view'), draw = canvas.getContext('2d');
-const slider = document.getElementById('at'), button = document.getElementById('play'), clock = document.getElementById('time');
+const slider = document.getElementById('at'), button = document.getElementById('play');
+const clock = document.getElementById('time');
 const scale = canvas.width / size[0], floor = canvas.height - room, length = times[times.length - 1] - times[0];
 const decimals = Math.min(9, Math.max(0, 2 - Math.floor(Math.log10(length || 1))));
 const shapes = parts.map(body => {
