@@ -90,7 +90,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   }
   system.near.record = true;
   if (self.verlet()) {
-    self.push();
+    self.find_impulses();
     system.lost = {};  // there was no drift before the start
   }
   self.effects = effects_of(scene, options);
@@ -103,39 +103,55 @@ GrainSimulation::~GrainSimulation() = default;
 GrainSimulation::GrainSimulation(GrainSimulation&&) noexcept = default;
 GrainSimulation& GrainSimulation::operator=(GrainSimulation&&) noexcept = default;
 
-void GrainSimulation::Implementation::push() {
+void GrainSimulation::Implementation::make_step() {
+  if (flow) return step_together();
+  if (verlet()) return step_by_verlet();
+  step_by_euler();
+}
+
+void GrainSimulation::Implementation::step_together() {
+  system.deepest = 0;
+  flow(system);  // contacts, motion and candidates
+  start_next_step();
+}
+
+void GrainSimulation::Implementation::step_by_euler() {
+  system.deepest = 0;
+  find_impulses();
+  move_by_euler(system);
+  update_candidates();
+  start_next_step();
+}
+
+void GrainSimulation::Implementation::step_by_verlet() {
+  count_opening_kick(system);
+  drift_of_verlet(system);
+  update_candidates();
+  start_next_step();
+  system.deepest = 0;
+  find_impulses();
+  kick_of_verlet(system);
+}
+
+void GrainSimulation::Implementation::find_impulses() {
   collide(system);
   if (!system.bonds.empty()) push_bonds(system);
 }
 
-void GrainSimulation::Implementation::make_step() {
-  if (!verlet()) system.deepest = 0;  // verlet has found the overlaps at the end of the last step
-  if (flow) {
-    flow(system);
-  } else {
-    if (verlet()) {
-      count_opening_kick(system);
-      drift_of_verlet(system);
-    } else {
-      push();
-      move_by_euler(system);
-    }
-    const double reach = reach_of(system);
-    refuse_runaway(system, reach);
-    refresh_candidates(system, reach);
-    refuse_bowls(system);
-    if (system.options.refuse_crossing) refuse_crossings(system, reach);
-  }
+void GrainSimulation::Implementation::update_candidates() {
+  const double reach = reach_of(system);
+  refuse_runaway(system, reach);
+  refresh_candidates(system, reach);
+  refuse_bowls(system);
+  if (system.options.refuse_crossing) refuse_crossings(system, reach);
+}
+
+void GrainSimulation::Implementation::start_next_step() {
   system.motions.swap(system.next);
   ++system.step;
   place_walls(system);
   turn_axes(system);
   cover_joints(system);
-  if (collide && verlet()) {
-    system.deepest = 0;
-    push();
-    kick_of_verlet(system);
-  }
 }
 
 void GrainSimulation::advance(std::int64_t steps) {

@@ -20,8 +20,20 @@ struct GrainSimulation::Implementation {
   SavedState kept;        ///< a state not long ago, to come back to
 
   void make_step();
-  /// What contacts and bonds give in the step.
-  void push();
+  /// All contacts together, by a simultaneous law.
+  void step_together();
+  /// Semi-implicit Euler, v' = v + a(x, v) dt, x' = x + v' dt; the maps give v' in place of a.
+  void step_by_euler();
+  /// Half a kick, drift, impulses with the velocities of the half step, the other half of the kick.
+  void step_by_verlet();
+  // Their stages:
+  /// Impulses of contacts and bonds, from positions and velocities as they are.
+  void find_impulses();
+  /// Pairs that may touch where the bodies are after the step.
+  /// \throws Error (computation_failed) where bodies would pass through one another
+  void update_candidates();
+  /// Bodies, walls and axes are those after the step.
+  void start_next_step();
   [[nodiscard]] bool verlet() const { return system.options.verlet(); }
   /// Whether a step needs the pushes of the one before.
   [[nodiscard]] bool keeps_pushes() const {
