@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// [bonds] and [[bond]] of a case file.
-#include "equidem/casefile/grain_case.hpp"
-
 #include <fstream>
 #include <string>
 

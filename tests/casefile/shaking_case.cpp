@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/grain_case.hpp"
-
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
+
+#include "equidem/casefile/grain_case.hpp"
 
 #include "casefile/grain_example.hpp"
 #include "support/catch.hpp"

@@ -68,7 +68,7 @@ TEST_CASE("closest_points_of_eight_pairs_of_ellipses_are_exact") {
     const PartGroup before = eight.group;
     const eight::Standing standing = eight::standing_of<false>(eight.bodies.data(), eight.group);
     const eight::Choice all = ~eight::Choice{};
-    const eight::Meetings found = eight::meetings_of_ellipses(eight.group, standing, all, all);
+    const eight::GeometryLanes found = eight::geometry_of_ellipses(eight.group, standing, all, all);
     for (int k = 0; k < 8; ++k, ++count) {
       const auto at = static_cast<std::size_t>(k);
       const TwoEllipses& pair = eight.pairs[at];

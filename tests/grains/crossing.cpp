@@ -128,7 +128,7 @@ TEST_CASE("a_refused_step_leaves_the_state_before_it") {
         CHECK(simulation.step() == k);
         CHECK(bits_of(simulation) == before);
         const SavedState after = simulation.save();
-        for (const char* name : {"contacts", "pushes", "bonds", "counters"}) CHECK(after[name] == state[name]);
+        for (const char* name : {"contacts", "impulses", "bonds", "counters"}) CHECK(after[name] == state[name]);
         CHECK_THROWS_WITH(simulation.advance(1), error.what());
         CHECK(bits_of(simulation) == before);
         break;

@@ -2,7 +2,7 @@
 /// \file
 /// Ellipses that meet, rebound, rest and rock.
 #include "equidem/contact/shapes/enlarged_ellipse.hpp"
-#include "equidem/grains/contacts/part_meeting.hpp"
+#include "equidem/grains/contacts/part_geometry.hpp"
 
 #include "grains/shapes.hpp"
 #include "support/catch.hpp"

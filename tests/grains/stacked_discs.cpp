@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Fujioka & Ushijima (2005), section 5.6: a sphere slides down between two others and pushes them apart; contact that
-/// lasts, several at once. Exact for rigid spheres.
+/// Fujioka & Ushijima (2005), section 5.6: a sphere slides down between two others and impulses them apart; contact
+/// that lasts, several at once. Exact for rigid spheres.
 #include "grains/scenes.hpp"
 #include "support/catch.hpp"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "equidem/grains/contacts/part_meeting.hpp"
+#include "equidem/grains/contacts/part_geometry.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 
 namespace equidem {
@@ -10,20 +10,20 @@ namespace equidem {
 double GrainSimulation::Implementation::potential() const {
   const bool behind = collide && system.options.scheme == GrainOptions::Scheme::semi_implicit_euler;
   double sum = 0;
-  for (std::size_t i = 0; i < system.motions.size(); ++i) {
-    Vec2 position = system.motions[i].position;
-    if (behind) position -= (0.5 * system.dt()) * system.motions[i].velocity;
-    sum -= dot(system.scene.gravity, position) / system.bodies[i].inverse_mass;
+  for (std::size_t i = 0; i < system.bodies.motions.size(); ++i) {
+    Vec2 position = system.bodies.motions[i].position;
+    if (behind) position -= (0.5 * system.dt()) * system.bodies.motions[i].velocity;
+    sum -= dot(system.scene.gravity, position) / system.bodies.constants[i].inverse_mass;
   }
   return sum;
 }
 
 double GrainSimulation::Implementation::kinetic() const {
   double sum = 0;
-  for (std::size_t i = 0; i < system.motions.size(); ++i) {
-    const GrainMotion& motion = system.motions[i];
-    sum += 0.5 * dot(motion.velocity, motion.velocity) / system.bodies[i].inverse_mass;
-    sum += 0.5 * motion.spin * motion.spin / system.bodies[i].inverse_moment;
+  for (std::size_t i = 0; i < system.bodies.motions.size(); ++i) {
+    const GrainMotion& motion = system.bodies.motions[i];
+    sum += 0.5 * dot(motion.velocity, motion.velocity) / system.bodies.constants[i].inverse_mass;
+    sum += 0.5 * motion.spin * motion.spin / system.bodies.constants[i].inverse_moment;
   }
   return sum;
 }
@@ -38,13 +38,14 @@ std::pair<double, double> GrainSimulation::Implementation::elastic() const {
     if (!(overlap > 0)) return;
     normal += system.law().energy(candidate.stiffness, overlap);
   };
-  for (const NearParts::List& list : system.near_parts.lists) {
+  for (const NearParts::List& list : system.contacts.near_parts.lists) {
     for (std::size_t p = 0; p < list.count; ++p) {
       auto [candidate, pair] = candidate_of(system, list, p);
-      add(candidate, meeting_of_parts(system, candidate, pair).overlap);
+      add(candidate, geometry_of_parts(system, candidate, pair).overlap);
     }
   }
-  for (std::size_t c = 0; c < system.candidates.size(); ++c) add(system.candidates[c], overlap_of(system, c));
+  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c)
+    add(system.contacts.candidates[c], overlap_of(system, c));
   return {normal, tangential};
 }
 

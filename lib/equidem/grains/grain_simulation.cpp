@@ -13,7 +13,7 @@
 #include "equidem/grains/contacts/flow_step.hpp"
 #include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/contacts/part_crossing.hpp"
-#include "equidem/grains/contacts/part_meeting.hpp"
+#include "equidem/grains/contacts/part_geometry.hpp"
 #include "equidem/grains/contacts/part_step.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 #include "equidem/grains/neighbours/part_pairs.hpp"
@@ -26,16 +26,16 @@ constexpr std::int64_t steps_between_kept_states = 256;
 
 /// As they were in the last step.
 std::pair<Vec2, Vec2> arms_of_discs(const GrainSystem& system, const Candidate& candidate) {
-  const double radius = system.bodies[static_cast<std::size_t>(candidate.i)].radius;
+  const double radius = system.bodies.constants[static_cast<std::size_t>(candidate.i)].radius;
   if (candidate.j < 0) return {radius * candidate.normal, {}};
-  const double sum = radius + system.bodies[static_cast<std::size_t>(candidate.j)].radius;
+  const double sum = radius + system.bodies.constants[static_cast<std::size_t>(candidate.j)].radius;
   const double lever = radius / sum * (sum - candidate.overlap);
   return {lever * candidate.normal, (lever - (sum - candidate.overlap)) * candidate.normal};
 }
 
 std::pair<Vec2, Vec2> arms_of(const GrainSystem& system, std::size_t c) {
-  if (system.parts.empty()) return arms_of_discs(system, system.candidates[c]);
-  return {system.part_pairs[c].arm_i, system.part_pairs[c].arm_j};
+  if (system.shapes.parts.empty()) return arms_of_discs(system, system.contacts.candidates[c]);
+  return {system.contacts.part_pairs[c].arm_i, system.contacts.part_pairs[c].arm_j};
 }
 
 }  // namespace
@@ -60,35 +60,36 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   }
   system.length = reference_length(scene, options);
   double smallest_size = system.smallest_radius;
-  for (const GrainPart& part : system.parts) {
+  for (const GrainPart& part : system.shapes.parts) {
     smallest_size = std::min(smallest_size, part.size);
     system.smallest_radius = std::min(system.smallest_radius, part.b);
   }
-  system.next = system.motions;
-  self.collide = system.parts.empty() ? collide_function(options.law, system.friction)
-                                      : collide_parts_function(options.law, system.friction);
+  system.bodies.next = system.bodies.motions;
+  self.collide = system.shapes.parts.empty() ? collide_function(options.law, system.friction)
+                                             : collide_parts_function(options.law, system.friction);
   self.flow = flow_function(options.law);
-  if (self.collide && system.friction) system.pushes_before.resize(system.pushes.size());
-  if (!gives_force(options.law)) system.moments.resize(system.pushes.size());
+  if (self.collide && system.friction) system.bodies.impulses_before.resize(system.bodies.impulses.size());
+  if (!gives_force(options.law)) system.bodies.moments.resize(system.bodies.impulses.size());
   find_dissipations(system);
   place_walls(system);
   prepare_near_pairs(system);
   pack_bonds(system);
   prepare_near_parts(system);
-  const bool listed_twice = system.parts.empty() ? system.near.active : system.near_parts.active;
-  system.base_margin = options.margin > 0 ? options.margin : (listed_twice ? 0.6 : 0.2) * smallest_size;
-  system.margin = std::max(system.base_margin, 8 * fastest * options.time_step);
-  system.joints = joints_of(system.scene.walls, joint_gap * system.smallest_radius);
+  const bool listed_twice =
+      system.shapes.parts.empty() ? system.contacts.near.active : system.contacts.near_parts.active;
+  system.contacts.base_margin = options.margin > 0 ? options.margin : (listed_twice ? 0.6 : 0.2) * smallest_size;
+  system.contacts.margin = std::max(system.contacts.base_margin, 8 * fastest * options.time_step);
+  system.walls.joints = joints_of(system.scene.walls, joint_gap * system.smallest_radius);
   find_candidates(system);
   touch_near_pairs(system);
   touch_near_parts(system);
-  for (std::size_t c = 0; c < system.candidates.size(); ++c) {
+  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c) {
     // bodies that overlap at the start touch
-    Candidate& candidate = system.candidates[c];
+    Candidate& candidate = system.contacts.candidates[c];
     candidate.touching = overlap_of(system, c) > 0;
     if (candidate.touching) ++system.counters.contacts;
   }
-  system.near.record = true;
+  system.contacts.near.record = true;
   if (self.verlet()) {
     self.find_impulses();
     system.lost = {};  // there was no drift before the start
@@ -135,19 +136,19 @@ void GrainSimulation::Implementation::step_by_verlet() {
 
 void GrainSimulation::Implementation::find_impulses() {
   collide(system);
-  if (!system.bonds.empty()) push_bonds(system);
+  if (!system.bonds.tied.empty()) add_bond_impulses(system);
 }
 
 void GrainSimulation::Implementation::update_candidates() {
   const double reach = reach_of(system);
   refuse_runaway(system, reach);
   refresh_candidates(system, reach);
-  refuse_bowls(system);
+  refuse_ellipses_in_bowls(system);
   if (system.options.refuse_crossing) refuse_crossings(system, reach);
 }
 
 void GrainSimulation::Implementation::start_next_step() {
-  system.motions.swap(system.next);
+  system.bodies.motions.swap(system.bodies.next);
   ++system.step;
   place_walls(system);
   turn_axes(system);
@@ -161,13 +162,13 @@ void GrainSimulation::advance(std::int64_t steps) {
     const GrainCounters counters = self.system.counters;
     if (self.kept.arrays.empty() || now - self.kept.step >= steps_between_kept_states) self.kept = save();
     try {
-      self.system.near.record = k + 1 == steps || now + 1 - self.kept.step >= steps_between_kept_states;
+      self.system.contacts.near.record = k + 1 == steps || now + 1 - self.kept.step >= steps_between_kept_states;
       self.make_step();
     } catch (...) {
       // it has changed contacts before it was refused: come to its start again, from a state before it
       go_back_to(self.kept);
       while (self.system.step < now) {
-        self.system.near.record = self.system.step + 1 == now;
+        self.system.contacts.near.record = self.system.step + 1 == now;
         self.make_step();
       }
       self.system.counters = counters;
@@ -186,32 +187,32 @@ double GrainSimulation::time() const {
 
 std::vector<Grain> GrainSimulation::grains() const {
   const GrainSystem& system = implementation_->system;
-  std::vector<Grain> grains(system.motions.size());
+  std::vector<Grain> grains(system.bodies.motions.size());
   for (std::size_t k = 0; k < grains.size(); ++k) {
     Grain grain = system.scene.grains[k];
-    const GrainMotion& motion = system.motions[k];
+    const GrainMotion& motion = system.bodies.motions[k];
     grain.position = motion.position;
     grain.velocity = motion.velocity;
     grain.spin = motion.spin;
     grain.angle = motion.angle;
-    grains[system.grain_of[k]] = grain;
+    grains[system.bodies.grain_of[k]] = grain;
   }
   return grains;
 }
 
 std::vector<DiscMotion> GrainSimulation::motions() const {
   const GrainSystem& system = implementation_->system;
-  std::vector<DiscMotion> motions(system.motions.size());
+  std::vector<DiscMotion> motions(system.bodies.motions.size());
   for (std::size_t k = 0; k < motions.size(); ++k)
-    motions[system.grain_of[k]] = {system.motions[k].position, system.motions[k].angle};
+    motions[system.bodies.grain_of[k]] = {system.bodies.motions[k].position, system.bodies.motions[k].angle};
   return motions;
 }
 
 std::vector<DiscMotion> GrainSimulation::velocities() const {
   const GrainSystem& system = implementation_->system;
-  std::vector<DiscMotion> velocities(system.motions.size());
+  std::vector<DiscMotion> velocities(system.bodies.motions.size());
   for (std::size_t k = 0; k < velocities.size(); ++k)
-    velocities[system.grain_of[k]] = {system.motions[k].velocity, system.motions[k].spin};
+    velocities[system.bodies.grain_of[k]] = {system.bodies.motions[k].velocity, system.bodies.motions[k].spin};
   return velocities;
 }
 
@@ -222,7 +223,7 @@ std::vector<GrainContact> GrainSimulation::contacts() const {
     if (!candidate.touching || candidate.steps == 0) return;
     GrainContact contact;
     std::tie(contact.arm_i, contact.arm_j) = arms;
-    contact.i = static_cast<std::int32_t>(system.grain_of[static_cast<std::size_t>(candidate.i)]);
+    contact.i = static_cast<std::int32_t>(system.bodies.grain_of[static_cast<std::size_t>(candidate.i)]);
     contact.overlap = candidate.overlap;
     contact.closing = candidate.closing;
     contact.normal = candidate.normal;
@@ -231,9 +232,9 @@ std::vector<GrainContact> GrainSimulation::contacts() const {
     contact.mode = candidate.mode;
     contact.steps = candidate.steps;
     if (candidate.j < 0) {
-      contact.j = ~static_cast<std::int32_t>(system.wall_of[static_cast<std::size_t>(~candidate.j)]);
+      contact.j = ~static_cast<std::int32_t>(system.walls.wall_of[static_cast<std::size_t>(~candidate.j)]);
     } else {
-      contact.j = static_cast<std::int32_t>(system.grain_of[static_cast<std::size_t>(candidate.j)]);
+      contact.j = static_cast<std::int32_t>(system.bodies.grain_of[static_cast<std::size_t>(candidate.j)]);
       if (contact.j < contact.i) {
         std::swap(contact.i, contact.j);
         contact.normal = -contact.normal;
@@ -242,17 +243,18 @@ std::vector<GrainContact> GrainSimulation::contacts() const {
     }
     contacts.push_back(contact);
   };
-  for (std::size_t p = 0; p < system.near.count; ++p) {
+  for (std::size_t p = 0; p < system.contacts.near.count; ++p) {
     const Candidate candidate = candidate_of(system, p);
     add(candidate, arms_of_discs(system, candidate));
   }
-  for (const NearParts::List& list : system.near_parts.lists) {
+  for (const NearParts::List& list : system.contacts.near_parts.lists) {
     for (std::size_t p = 0; p < list.count; ++p) {
       const auto [candidate, pair] = candidate_of(system, list, p);
       add(candidate, {pair.arm_i, pair.arm_j});
     }
   }
-  for (std::size_t c = 0; c < system.candidates.size(); ++c) add(system.candidates[c], arms_of(system, c));
+  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c)
+    add(system.contacts.candidates[c], arms_of(system, c));
   std::stable_sort(contacts.begin(), contacts.end(), [](const GrainContact& a, const GrainContact& b) {
     return std::pair(a.i, a.j) < std::pair(b.i, b.j);
   });
@@ -274,14 +276,16 @@ const Effects& GrainSimulation::effects() const {
 double GrainSimulation::bytes_per_body() const {
   const GrainSystem& system = implementation_->system;
   const double bytes = static_cast<double>(
-      system.near.bytes() + system.near_parts.bytes() + system.bodies.capacity() * sizeof(GrainBody) +
-      system.moments.capacity() * sizeof(Vec2) + 2 * system.motions.capacity() * sizeof(GrainMotion) +
-      (system.pushes.capacity() + system.pushes_before.capacity()) * sizeof(Push) +
-      system.candidates.capacity() * sizeof(Candidate) + system.part_pairs.capacity() * sizeof(PartPair) +
-      system.parts.capacity() * sizeof(GrainPart) + system.axes.capacity() * sizeof(Vec2) +
-      system.bonds.capacity() * sizeof(TiedPair) + system.packed_bonds.bytes() +
-      system.exact_pairs.capacity() * sizeof(ExactPair) + system.scene.grains.capacity() * sizeof(Grain));
-  return bytes / static_cast<double>(system.bodies.size());
+      system.contacts.near.bytes() + system.contacts.near_parts.bytes() +
+      system.bodies.constants.capacity() * sizeof(GrainBody) + system.bodies.moments.capacity() * sizeof(Vec2) +
+      2 * system.bodies.motions.capacity() * sizeof(GrainMotion) +
+      (system.bodies.impulses.capacity() + system.bodies.impulses_before.capacity()) * sizeof(BodyImpulse) +
+      system.contacts.candidates.capacity() * sizeof(Candidate) +
+      system.contacts.part_pairs.capacity() * sizeof(PartPair) + system.shapes.parts.capacity() * sizeof(GrainPart) +
+      system.shapes.axes.capacity() * sizeof(Vec2) + system.bonds.tied.capacity() * sizeof(TiedPair) +
+      system.bonds.packed.bytes() + system.contacts.exact_pairs.capacity() * sizeof(ExactPair) +
+      system.scene.grains.capacity() * sizeof(Grain));
+  return bytes / static_cast<double>(system.bodies.constants.size());
 }
 
 }  // namespace equidem

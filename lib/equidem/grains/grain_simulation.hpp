@@ -83,8 +83,8 @@ class GrainSimulation final : public AnySimulation {
   [[nodiscard]] EnergyLedger energy() const override;
   [[nodiscard]] double bytes_per_body() const override;
   /// Arrays: motions (n, 3): position, angle; velocities (n, 3): velocity, spin; contacts as the loop keeps them;
-  /// pushes (n, 3) of the last step and bonds (b, 3), where the next step needs them; losses: the terms of the ledger;
-  /// counters.
+  /// impulses (n, 3) of the last step and bonds (b, 3), where the next step needs them; losses: the terms of the
+  /// ledger; counters.
   [[nodiscard]] SavedState save() const override;
   void restore(const SavedState& state) override;
 

@@ -35,9 +35,10 @@ struct GrainSimulation::Implementation {
   /// Bodies, walls and axes are those after the step.
   void start_next_step();
   [[nodiscard]] bool verlet() const { return system.options.verlet(); }
-  /// Whether a step needs the pushes of the one before.
-  [[nodiscard]] bool keeps_pushes() const {
-    return verlet() || (collide && (system.friction || system.near.active || system.near_parts.active));
+  /// Whether a step needs the impulses of the one before.
+  [[nodiscard]] bool keeps_impulses() const {
+    return verlet() ||
+           (collide && (system.friction || system.contacts.near.active || system.contacts.near_parts.active));
   }
   /// Of gravity, where the velocities are.
   [[nodiscard]] double potential() const;

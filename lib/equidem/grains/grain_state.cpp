@@ -15,7 +15,7 @@ namespace {
 /// What a contact remembers, in numbers: i, j, steps, mode, then the rest; of parts theirs and their arms.
 constexpr std::size_t numbers_per_plain_contact = 13;
 constexpr std::size_t numbers_per_pair_of_parts = 6;
-constexpr std::size_t numbers_per_push = 3;
+constexpr std::size_t numbers_per_impulse = 3;
 constexpr std::size_t numbers_per_bond = 3;
 
 constexpr std::int64_t GrainCounters::*counters_saved[] = {&GrainCounters::evaluations, &GrainCounters::contacts,
@@ -24,7 +24,7 @@ constexpr std::int64_t GrainCounters::*counters_saved[] = {&GrainCounters::evalu
 static_assert(sizeof(GrainCounters) == std::size(counters_saved) * sizeof(std::int64_t), "a counter is not saved");
 
 std::size_t numbers_per_contact_of(const GrainSystem& system) {
-  return numbers_per_plain_contact + (system.parts.empty() ? 0 : numbers_per_pair_of_parts);
+  return numbers_per_plain_contact + (system.shapes.parts.empty() ? 0 : numbers_per_pair_of_parts);
 }
 
 void append(std::vector<double>& numbers, const PartPair& pair) {
@@ -36,8 +36,8 @@ void append(std::vector<double>& numbers, const PartPair& pair) {
 
 PartPair parts_of_discs(const GrainSystem& system, const Candidate& candidate) {
   PartPair pair;
-  pair.i = system.first_part[static_cast<std::size_t>(candidate.i)];
-  pair.j = system.first_part[static_cast<std::size_t>(candidate.j)];
+  pair.i = system.shapes.first_part[static_cast<std::size_t>(candidate.i)];
+  pair.j = system.shapes.first_part[static_cast<std::size_t>(candidate.j)];
   return pair;
 }
 
@@ -82,14 +82,14 @@ void take(const double* numbers, Candidate& candidate) {
 
 SavedState GrainSimulation::save() const {
   const GrainSystem& system = implementation_->system;
-  std::vector<double> contacts, losses, counts, pushes, bonds;
-  for (std::size_t p = 0; p < system.near.count; ++p) {
-    if (!system.near.touching(p)) continue;
+  std::vector<double> contacts, losses, counts, impulses, bonds;
+  for (std::size_t p = 0; p < system.contacts.near.count; ++p) {
+    if (!system.contacts.near.touching(p)) continue;
     const Candidate candidate = candidate_of(system, p);
     append(contacts, candidate);
-    if (!system.parts.empty()) append(contacts, parts_of_discs(system, candidate));
+    if (!system.shapes.parts.empty()) append(contacts, parts_of_discs(system, candidate));
   }
-  for (const NearParts::List& list : system.near_parts.lists) {
+  for (const NearParts::List& list : system.contacts.near_parts.lists) {
     for (std::size_t p = 0; p < list.count; ++p) {
       if (!list.touching(p)) continue;
       const auto [candidate, pair] = candidate_of(system, list, p);
@@ -97,18 +97,19 @@ SavedState GrainSimulation::save() const {
       append(contacts, pair);
     }
   }
-  for (std::size_t c = 0; c < system.candidates.size(); ++c) {
-    if (!system.candidates[c].touching) continue;
-    append(contacts, system.candidates[c]);
-    if (!system.parts.empty()) append(contacts, system.part_pairs[c]);
+  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c) {
+    if (!system.contacts.candidates[c].touching) continue;
+    append(contacts, system.contacts.candidates[c]);
+    if (!system.shapes.parts.empty()) append(contacts, system.contacts.part_pairs[c]);
   }
   for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) losses.push_back(system.lost.*term.value);
   for (const auto counter : counters_saved) counts.push_back(static_cast<double>(system.counters.*counter));
-  if (implementation_->keeps_pushes()) {  // the others find all pushes of a step in that step
-    for (const Push& push : system.pushes) pushes.insert(pushes.end(), {push.impulse.x, push.impulse.y, push.torque});
+  if (implementation_->keeps_impulses()) {  // the others find all impulses of a step in that step
+    for (const BodyImpulse& push : system.bodies.impulses)
+      impulses.insert(impulses.end(), {push.impulse.x, push.impulse.y, push.torque});
   }
   if (implementation_->verlet()) {
-    for (const TiedPair& bond : system.bonds) {
+    for (const TiedPair& bond : system.bonds.tied) {
       const BondModes impulse = last_impulse(system, bond);
       bonds.insert(bonds.end(), {impulse.normal, impulse.tangential, impulse.rolling});
     }
@@ -117,7 +118,7 @@ SavedState GrainSimulation::save() const {
           .arrays = {{"motions", 3, numbers_of(motions())},
                      {"velocities", 3, numbers_of(velocities())},
                      {"contacts", numbers_per_contact_of(system), std::move(contacts)},
-                     {"pushes", numbers_per_push, std::move(pushes)},
+                     {"impulses", numbers_per_impulse, std::move(impulses)},
                      {"bonds", numbers_per_bond, std::move(bonds)},
                      {"losses", 1, std::move(losses)},
                      {"counters", 1, std::move(counts)}}};
@@ -141,40 +142,42 @@ void GrainSimulation::restore(const SavedState& state) {
 void GrainSimulation::go_back_to(const SavedState& state) {
   GrainSystem& system = implementation_->system;
   const std::size_t numbers_per_contact = numbers_per_contact_of(system);
-  const bool shapes = !system.parts.empty();
-  const std::size_t pushes = implementation_->keeps_pushes() ? numbers_per_push * system.motions.size() : 0;
-  const std::size_t bonds = implementation_->verlet() ? numbers_per_bond * system.bonds.size() : 0;
+  const bool shapes = !system.shapes.parts.empty();
+  const std::size_t impulses =
+      implementation_->keeps_impulses() ? numbers_per_impulse * system.bodies.motions.size() : 0;
+  const std::size_t bonds = implementation_->verlet() ? numbers_per_bond * system.bonds.tied.size() : 0;
   const std::vector<double>&places = state["motions"], &velocities = state["velocities"], &contacts = state["contacts"];
   const std::vector<double>&losses = state["losses"], &counts = state["counters"];
-  if (places.size() != 3 * system.motions.size() || velocities.size() != places.size() ||
-      contacts.size() % numbers_per_contact != 0 || state["pushes"].size() != pushes ||
+  if (places.size() != 3 * system.bodies.motions.size() || velocities.size() != places.size() ||
+      contacts.size() % numbers_per_contact != 0 || state["impulses"].size() != impulses ||
       state["bonds"].size() != bonds || losses.size() != energy_terms(BodyFamily::colliding).size() ||
       counts.size() != std::size(counters_saved)) {
     bad_input(fmt::format("the state is of {}", counted(static_cast<long long>(places.size() / 3), "grain")),
-              fmt::format("the scene has {}", system.motions.size()),
+              fmt::format("the scene has {}", system.bodies.motions.size()),
               "Resume with the scene that the state was saved from");
   }
   system.step = state.step;
   const double* loss = losses.data();
   for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) system.lost.*term.value = *loss++;
-  for (std::size_t k = 0; k < system.motions.size(); ++k) {
-    const double *x = places.data() + 3 * system.grain_of[k], *v = velocities.data() + 3 * system.grain_of[k];
-    system.motions[k] = {{x[0], x[1]}, {v[0], v[1]}, v[2], x[2]};
-    if (pushes == 0) continue;
-    const double* push = state["pushes"].data() + numbers_per_push * k;
-    system.pushes[k] = {{push[0], push[1]}, push[2]};
+  for (std::size_t k = 0; k < system.bodies.motions.size(); ++k) {
+    const double *x = places.data() + 3 * system.bodies.grain_of[k],
+                 *v = velocities.data() + 3 * system.bodies.grain_of[k];
+    system.bodies.motions[k] = {{x[0], x[1]}, {v[0], v[1]}, v[2], x[2]};
+    if (impulses == 0) continue;
+    const double* push = state["impulses"].data() + numbers_per_impulse * k;
+    system.bodies.impulses[k] = {{push[0], push[1]}, push[2]};
   }
   for (std::size_t b = 0; b < bonds / numbers_per_bond; ++b) {
     const double* impulse = state["bonds"].data() + numbers_per_bond * b;
-    take_last_impulse(system, system.bonds[b], {impulse[0], impulse[1], impulse[2]});
+    take_last_impulse(system, system.bonds.tied[b], {impulse[0], impulse[1], impulse[2]});
   }
   system.free_flight = false;
   system.deepest = std::numeric_limits<double>::infinity();  // not known: verlet has to look
   place_walls(system);
   turn_axes(system);
-  system.candidates.clear();
-  system.exact_pairs.clear();
-  system.part_pairs.clear();
+  system.contacts.candidates.clear();
+  system.contacts.exact_pairs.clear();
+  system.contacts.part_pairs.clear();
   std::vector<Candidate> near;
   std::vector<std::pair<Candidate, PartPair>> near_parts;
   std::vector<const double*> others;
@@ -182,19 +185,19 @@ void GrainSimulation::go_back_to(const SavedState& state) {
     Candidate contact;
     take(contacts.data() + at, contact);
     const double* numbers = contacts.data() + at;
-    if (contact.j >= 0 && are_discs(system, contact.i, contact.j) && system.near.active) {
+    if (contact.j >= 0 && are_discs(system, contact.i, contact.j) && system.contacts.near.active) {
       near.push_back(contact);
-    } else if (contact.j >= 0 && !are_discs(system, contact.i, contact.j) && system.near_parts.active) {
+    } else if (contact.j >= 0 && !are_discs(system, contact.i, contact.j) && system.contacts.near_parts.active) {
       near_parts.emplace_back(contact, pair_of(numbers + numbers_per_plain_contact));
     } else {
       others.push_back(numbers);
     }
   }
-  if (system.near.active) {
+  if (system.contacts.near.active) {
     load_pair_bodies(system);
     take_near_pairs(system, near);
   }
-  if (system.near_parts.active) take_near_parts(system, near_parts);
+  if (system.contacts.near_parts.active) take_near_parts(system, near_parts);
   find_candidates(system);
   std::size_t c = 0;
   for (const double* contact : others) {
@@ -202,18 +205,18 @@ void GrainSimulation::go_back_to(const SavedState& state) {
     const auto j = static_cast<std::int32_t>(contact[1]);
     const double* numbers = contact + numbers_per_plain_contact;
     const auto is_it = [&] {
-      if (system.candidates[c].i != i || system.candidates[c].j != j) return false;
-      return !shapes || is_of(numbers, system.part_pairs[c]);
+      if (system.contacts.candidates[c].i != i || system.contacts.candidates[c].j != j) return false;
+      return !shapes || is_of(numbers, system.contacts.part_pairs[c]);
     };
-    while (c < system.candidates.size() && !is_it()) ++c;
-    if (c == system.candidates.size()) {
+    while (c < system.contacts.candidates.size() && !is_it()) ++c;
+    if (c == system.contacts.candidates.size()) {
       bad_input("the state has a contact of bodies that are apart", "it is of another scene, or damaged",
                 "Resume with the scene that the state was saved from");
     }
-    take(contact, system.candidates[c]);
+    take(contact, system.contacts.candidates[c]);
     if (!shapes) continue;
-    system.part_pairs[c].arm_i = {numbers[2], numbers[3]};
-    system.part_pairs[c].arm_j = {numbers[4], numbers[5]};
+    system.contacts.part_pairs[c].arm_i = {numbers[2], numbers[3]};
+    system.contacts.part_pairs[c].arm_j = {numbers[4], numbers[5]};
   }
   const double* count = counts.data();
   for (const auto counter : counters_saved) system.counters.*counter = static_cast<std::int64_t>(*count++);

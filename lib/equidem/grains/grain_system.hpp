@@ -32,7 +32,7 @@ struct GrainBody {
 };
 
 /// What contacts give a body in one step.
-struct alignas(32) Push {
+struct alignas(32) BodyImpulse {
   Vec2 impulse;       ///< N s
   double torque = 0;  ///< impulse of the moment, N m s
   double rim = 0;     ///< impulse along the rim of a disc by near pairs, N s; the move of bodies makes a torque of it
@@ -73,59 +73,84 @@ struct WallPlace {
   Vec2 passed_velocity;  ///< velocity_verlet: mean over the step before
 };
 
+/// The bodies in the order of their places.
+struct Bodies {
+  std::vector<GrainBody> constants;
+  std::vector<GrainMotion> motions;
+  std::vector<GrainMotion> next;  ///< after the step being made
+  std::vector<BodyImpulse> impulses;
+  std::vector<BodyImpulse> impulses_before;  ///< of the step before, where friction asks for them
+  /// maps: mass times shift of the position, kg m; exact_flow: integral of (dt - t) force dt, N s²; other laws: empty
+  std::vector<Vec2> moments;
+  std::vector<std::size_t> grain_of;         ///< caller's number of the k-th
+  std::vector<std::int32_t> place_of_grain;  ///< its inverse
+};
+
+/// Ellipses and clumps; all empty in scenes of discs alone.
+struct Shapes {
+  std::vector<GrainPart> parts;          ///< of body k: from first_part[k] to first_part[k + 1]
+  std::vector<std::int32_t> first_part;  ///< one more than bodies
+  std::vector<std::int32_t> body_of_part;
+  std::vector<std::int32_t> shaped;  ///< bodies that are no discs
+  std::vector<Vec2> axes;            ///< x-axis of each body where it is now
+};
+
+/// The walls in the order of their places.
+struct Walls {
+  std::vector<WallPlace> places;
+  std::vector<WallJoints> joints;           ///< of each wall; empty where none join
+  std::vector<std::size_t> wall_of;         ///< caller's number of the k-th
+  std::vector<std::int32_t> place_of_wall;  ///< its inverse
+};
+
+/// Pairs that touch or may come to touch soon.
+struct ContactList {
+  NearPairs near;
+  NearParts near_parts;
+  /// That are in none of the near lists; ordered by i, then j, walls last, then parts.
+  std::vector<Candidate> candidates;
+  std::vector<ExactPair> exact_pairs;  ///< simultaneous laws: one for each candidate
+  std::vector<PartPair> part_pairs;    ///< scenes with shapes: one for each candidate
+  NeighbourFinder finder;
+  std::vector<Circle> circles;   ///< bodies, for the finder
+  double margin = 0, moved = 0;  ///< of the candidates; how far bodies may have moved since they were found, m
+  double base_margin = 0;        ///< while bodies are slow, m
+};
+
+struct BondList {
+  std::vector<TiedPair> tied;  ///< ordered by i, then j
+  PackedBonds packed;
+};
+
 struct GrainSystem {
   GrainScene scene;  ///< walls and grains in the order of their places
   GrainOptions options;
   double length = 0;                 ///< d_c
   std::vector<double> dissipations;  ///< Law::dissipation of scene.pairs
   bool friction = false;
-  std::vector<std::size_t> grain_of, wall_of;  ///< caller's number of the k-th
-  std::vector<std::int32_t> place_of_grain, place_of_wall;
+  double smallest_radius = 0;  ///< of the circles that parts hold, m
+
+  Bodies bodies;
+  Shapes shapes;
+  Walls walls;
+  ContactList contacts;
+  BondList bonds;
 
   std::int64_t step = 0;
-  std::vector<GrainBody> bodies;
-  std::vector<GrainMotion> motions;
-  std::vector<Push> pushes;
-  std::vector<Push> pushes_before;  ///< of the step before, where friction asks for them
-  /// maps: mass times shift of the position, kg m; exact_flow: integral of (dt - t) force dt, N s²; other laws: empty
-  std::vector<Vec2> moments;
-  std::vector<WallPlace> walls;
-  std::vector<WallJoints> joints;  ///< of each wall; empty where none join
-  NearPairs near;
-  NearParts near_parts;
-  std::vector<Candidate>
-      candidates;  ///< that are in none of the near lists; ordered by i, then j, walls last, then parts
   std::vector<TouchImpulse> touch_impulses;  ///< of the step being made
-  std::vector<TiedPair> bonds;               ///< ordered by i, then j
-  PackedBonds packed_bonds;
-  NeighbourFinder finder;
-  std::vector<Circle> circles;         ///< bodies, for the finder
-  std::vector<ExactPair> exact_pairs;  ///< exact_flow: one for each candidate
-  // ellipses and clumps; all empty in scenes of discs alone
-  std::vector<GrainPart> parts;          ///< of body k: from first_part[k] to first_part[k + 1]
-  std::vector<std::int32_t> first_part;  ///< one more than bodies
-  std::vector<std::int32_t> body_of_part;
-  std::vector<std::int32_t> shaped;  ///< bodies that are no discs
-  std::vector<Vec2> axes;            ///< x-axis of each body where it is now
-  std::vector<PartPair> part_pairs;  ///< one for each candidate
-  double margin = 0, moved = 0;      ///< of the candidates; how far bodies may have moved since they were found, m
-  double base_margin = 0;            ///< while bodies are slow, m
-  std::vector<GrainMotion> next;     ///< after the step being made
-
-  bool free_flight = false;    ///< all pushes are zero
-  double longest_way = 0;      ///< of a body in the step being made, squared, m²
-  double smallest_radius = 0;  ///< of the circles that parts hold, m
-  double deepest = 0;          ///< overlap of the step, m
-  EnergyLedger lost;           ///< losses and work since the start
+  bool free_flight = false;                  ///< all impulses are zero
+  double longest_way = 0;                    ///< of a body in the step being made, squared, m²
+  double deepest = 0;                        ///< overlap of the step, m
+  EnergyLedger lost;                         ///< losses and work since the start
   GrainCounters counters;
 
   [[nodiscard]] const LawDescription& law() const { return describe(options.law); }
   [[nodiscard]] double dt() const { return options.time_step; }
   [[nodiscard]] double time() const { return static_cast<double>(step) * options.time_step; }
   [[nodiscard]] const PairProperties& properties(const Candidate& candidate) const {
-    const int other = candidate.j >= 0 ? bodies[static_cast<std::size_t>(candidate.j)].kind
+    const int other = candidate.j >= 0 ? bodies.constants[static_cast<std::size_t>(candidate.j)].kind
                                        : scene.walls[static_cast<std::size_t>(~candidate.j)].kind;
-    return scene.between(bodies[static_cast<std::size_t>(candidate.i)].kind, other);
+    return scene.between(bodies.constants[static_cast<std::size_t>(candidate.i)].kind, other);
   }
   [[nodiscard]] double dissipation(const Candidate& candidate) const {
     return dissipations[static_cast<std::size_t>(&properties(candidate) - scene.pairs.data())];
@@ -155,7 +180,7 @@ bool refresh_candidates(GrainSystem& system, double reach);
 double reach_of(const GrainSystem& system);
 
 /// Forget a contact that has ended.
-void let_go(GrainSystem& system, Candidate& candidate);
+void forget_contact(GrainSystem& system, Candidate& candidate);
 
 /// Where walls are at the start of the step, and their mean velocity over it.
 void place_walls(GrainSystem& system);

@@ -33,14 +33,14 @@ double share_of(const Grain& i, const Grain& j) {
 
 bool is_wide(const GrainSystem& system, const TiedPair& bond) {
   const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
-  const double radii = system.bodies[i].radius + system.bodies[j].radius;
-  return norm(system.motions[j].position - system.motions[i].position) > nearest_centres_of_bonds * radii;
+  const double radii = system.bodies.constants[i].radius + system.bodies.constants[j].radius;
+  return norm(system.bodies.motions[j].position - system.bodies.motions[i].position) > nearest_centres_of_bonds * radii;
 }
 
 /// From the start to now.
 BondMotion<double> motion_of(const GrainSystem& system, const TiedPair& bond) {
   const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
-  const GrainMotion &mi = system.motions[i], &mj = system.motions[j];
+  const GrainMotion &mi = system.bodies.motions[i], &mj = system.bodies.motions[j];
   const Vec2 way = mj.position - mi.position - bond.springs.branch;
   return {way.x, way.y, mi.angle - system.scene.grains[i].angle, mj.angle - system.scene.grains[j].angle};
 }
@@ -48,11 +48,11 @@ BondMotion<double> motion_of(const GrainSystem& system, const TiedPair& bond) {
 /// Springs by where the discs are at the start of the step.
 void push_springs(GrainSystem& system) {
   const double dt = system.dt();
-  for (const std::size_t b : system.packed_bonds.sprung) {
-    const TiedPair& bond = system.bonds[b];
+  for (const std::size_t b : system.bonds.packed.sprung) {
+    const TiedPair& bond = system.bonds.tied[b];
     const BondForces<double> force = bond_forces(bond.springs, motion_of(system, bond));
-    Push& on_i = system.pushes[static_cast<std::size_t>(bond.i)];
-    Push& on_j = system.pushes[static_cast<std::size_t>(bond.j)];
+    BodyImpulse& on_i = system.bodies.impulses[static_cast<std::size_t>(bond.i)];
+    BodyImpulse& on_j = system.bodies.impulses[static_cast<std::size_t>(bond.j)];
     const Vec2 impulse = dt * Vec2{force.x, force.y};
     on_i.impulse += impulse;
     on_j.impulse -= impulse;
@@ -63,24 +63,24 @@ void push_springs(GrainSystem& system) {
 
 /// Rates of a bond at the start of the step.
 BondModes rates_now(const GrainSystem& system, const TiedPair& bond) {
-  const GrainMotion& i = system.motions[static_cast<std::size_t>(bond.i)];
-  const GrainMotion& j = system.motions[static_cast<std::size_t>(bond.j)];
+  const GrainMotion& i = system.bodies.motions[static_cast<std::size_t>(bond.i)];
+  const GrainMotion& j = system.bodies.motions[static_cast<std::size_t>(bond.j)];
   return bond_rates(bond.frame, {i.velocity, i.spin}, {j.velocity, j.spin});
 }
 
-/// What the pushes as they stand add to the rates; gravity adds nothing.
-BondModes gain_by_pushes(const GrainSystem& system, const TiedPair& bond) {
+/// What the impulses as they stand add to the rates; gravity adds nothing.
+BondModes gain_by_impulses(const GrainSystem& system, const TiedPair& bond) {
   const auto gain = [&](std::int32_t body) {
     const auto b = static_cast<std::size_t>(body);
-    return DiscMotion{system.bodies[b].inverse_mass * system.pushes[b].impulse,
-                      system.bodies[b].inverse_moment * system.pushes[b].torque};
+    return DiscMotion{system.bodies.constants[b].inverse_mass * system.bodies.impulses[b].impulse,
+                      system.bodies.constants[b].inverse_moment * system.bodies.impulses[b].torque};
   };
   return bond_rates(bond.frame, gain(bond.i), gain(bond.j));
 }
 
 void give(GrainSystem& system, const TiedPair& bond, const BondModes& impulse) {
-  Push& on_i = system.pushes[static_cast<std::size_t>(bond.i)];
-  Push& on_j = system.pushes[static_cast<std::size_t>(bond.j)];
+  BodyImpulse& on_i = system.bodies.impulses[static_cast<std::size_t>(bond.i)];
+  BodyImpulse& on_j = system.bodies.impulses[static_cast<std::size_t>(bond.j)];
   const Vec2 on = impulse.normal * bond.frame.normal + impulse.tangential * bond.frame.tangent();
   on_i.impulse -= on;
   on_j.impulse += on;
@@ -93,7 +93,7 @@ void give(GrainSystem& system, const TiedPair& bond, const BondModes& impulse) {
 void resist_exactly(GrainSystem& system, TiedPair& bond, const BondModes& inverse) {
   const double dt = system.dt();
   const BondModes &c = bond.dashpots, &v = bond.rate, &g = bond.gained;
-  BondModes all = gain_by_pushes(system, bond);
+  BondModes all = gain_by_impulses(system, bond);
   const auto impulse = [&](double dashpot, double inverse_mass, double rate, double gained, double in_all) {
     if (dashpot == 0) return 0.0;
     return exact_dashpot_change(dashpot * inverse_mass * dt, rate, in_all - gained, gained) / inverse_mass;
@@ -102,7 +102,7 @@ void resist_exactly(GrainSystem& system, TiedPair& bond, const BondModes& invers
                   impulse(c.tangential, inverse.tangential, v.tangential, g.tangential, all.tangential), 0};
   give(system, bond, bond.impulse);
   if (c.rolling == 0) return;
-  all = gain_by_pushes(system, bond);  // spin of unequal discs has changed with the tangential impulse
+  all = gain_by_impulses(system, bond);  // spin of unequal discs has changed with the tangential impulse
   bond.impulse.rolling = impulse(c.rolling, inverse.rolling, v.rolling, g.rolling, all.rolling);
   give(system, bond, {0, 0, bond.impulse.rolling});
 }
@@ -118,12 +118,12 @@ void resist_explicitly(GrainSystem& system, TiedPair& bond, const BondModes& inv
   give(system, bond, bond.impulse);
 }
 
-/// What the motion loses: impulses times the rates when a share of all pushes has acted.
+/// What the motion loses: impulses times the rates when a share of all impulses has acted.
 double loss_of_bonds(const GrainSystem& system, double share) {
   double sum = 0;
-  for (const std::size_t b : system.packed_bonds.one_by_one) {
-    const TiedPair& bond = system.bonds[b];
-    const BondModes gained = gain_by_pushes(system, bond);
+  for (const std::size_t b : system.bonds.packed.one_by_one) {
+    const TiedPair& bond = system.bonds.tied[b];
+    const BondModes gained = gain_by_impulses(system, bond);
     const BondModes &v = bond.rate, &given = bond.impulse;
     sum -= given.normal * (v.normal + share * gained.normal) +
            given.tangential * (v.tangential + share * gained.tangential) +
@@ -136,10 +136,11 @@ BondDrift drift_of(const GrainSystem& system, const TiedPair& bond) {
   const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
   const BondMotion<double> motion = motion_of(system, bond);
   const ContactDeformation drift = bond_deformation(bond.springs, motion);
-  const double radii = system.bodies[i].radius + system.bodies[j].radius;
+  const double radii = system.bodies.constants[i].radius + system.bodies.constants[j].radius;
   const double roll = motion.theta_j - motion.theta_i;
-  const auto [first, second] = std::minmax(system.grain_of[i], system.grain_of[j]);
-  return {first, second, drift.normal / radii, drift.tangential / radii, first == system.grain_of[i] ? roll : -roll};
+  const auto [first, second] = std::minmax(system.bodies.grain_of[i], system.bodies.grain_of[j]);
+  return {first, second, drift.normal / radii, drift.tangential / radii,
+          first == system.bodies.grain_of[i] ? roll : -roll};
 }
 
 void check_bond(const GrainScene& scene, const GrainBond& bond) {
@@ -210,7 +211,7 @@ Rates rates_of(const GrainScene& scene, const GrainBond& bond, GrainOptions::Bon
 void tie_bonds(GrainSystem& system, const GrainScene& scene) {
   for (const GrainBond& bond : scene.bonds) {
     TiedPair pair;
-    std::tie(pair.i, pair.j) = std::minmax(system.place_of_grain[bond.i], system.place_of_grain[bond.j]);
+    std::tie(pair.i, pair.j) = std::minmax(system.bodies.place_of_grain[bond.i], system.bodies.place_of_grain[bond.j]);
     const Grain& i = system.scene.grains[static_cast<std::size_t>(pair.i)];
     const Grain& j = system.scene.grains[static_cast<std::size_t>(pair.j)];
     pair.dashpots = {bond.normal_dashpot, bond.tangential_dashpot, bond.rolling_dashpot};
@@ -218,57 +219,57 @@ void tie_bonds(GrainSystem& system, const GrainScene& scene) {
     const Vec2 branch = j.position - i.position;
     const ContactFrame frame = frame_of(branch, pair.share);
     pair.springs = {branch, frame.lever_i, frame.lever_j, {.kN = bond.normal_spring, .kT = bond.tangential_spring}};
-    system.bonds.push_back(pair);
+    system.bonds.tied.push_back(pair);
   }
-  std::sort(system.bonds.begin(), system.bonds.end(),
+  std::sort(system.bonds.tied.begin(), system.bonds.tied.end(),
             [](const TiedPair& a, const TiedPair& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
 }
 
 void refuse_crept_bonds(const GrainSystem& system) {
-  for (const TiedPair& bond : system.bonds) {
+  for (const TiedPair& bond : system.bonds.tied) {
     if (is_wide(system, bond)) continue;
     computation_failed(fmt::format("step {}: the centres of the bonded grains {} and {} have crept together",
-                                   system.step, system.grain_of[static_cast<std::size_t>(bond.i)],
-                                   system.grain_of[static_cast<std::size_t>(bond.j)]),
+                                   system.step, system.bodies.grain_of[static_cast<std::size_t>(bond.i)],
+                                   system.bodies.grain_of[static_cast<std::size_t>(bond.j)]),
                        "dashpots alone give way to a steady force, N/C_n, and bonded discs do not collide",
                        "Use larger dashpots, give normal_spring, or tie the discs as a clump");
   }
 }
 
-void push_bonds(GrainSystem& system) {
+void add_bond_impulses(GrainSystem& system) {
   system.free_flight = false;
   push_springs(system);
   push_packed_bonds(system);
-  const bool turns_rims = system.near.active && system.friction;
-  for (const std::size_t b : system.packed_bonds.one_by_one) {
-    TiedPair& bond = system.bonds[b];
+  const bool turns_rims = system.contacts.near.active && system.friction;
+  for (const std::size_t b : system.bonds.packed.one_by_one) {
+    TiedPair& bond = system.bonds.tied[b];
     const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
-    const Vec2 branch = system.motions[j].position - system.motions[i].position;
+    const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position;
     if (!is_wide(system, bond)) refuse_crept_bonds(system);
     if (turns_rims) {  // what others do to the spin is asked for
-      turn_rims(system.pushes[i], system.bodies[i]);
-      turn_rims(system.pushes[j], system.bodies[j]);
+      turn_rims(system.bodies.impulses[i], system.bodies.constants[i]);
+      turn_rims(system.bodies.impulses[j], system.bodies.constants[j]);
     }
     bond.frame = frame_of(branch, bond.share);
     bond.rate = rates_now(system, bond);
-    bond.gained = gain_by_pushes(system, bond);
+    bond.gained = gain_by_impulses(system, bond);
   }
   const auto resist = system.options.bond_step == GrainOptions::BondStep::exact ? resist_exactly : resist_explicitly;
-  for (const std::size_t b : system.packed_bonds.one_by_one) {
-    TiedPair& bond = system.bonds[b];
+  for (const std::size_t b : system.bonds.packed.one_by_one) {
+    TiedPair& bond = system.bonds.tied[b];
     resist(system, bond,
-           bond_inverse_masses(bond.frame, inverse_of(system.bodies[static_cast<std::size_t>(bond.i)]),
-                               inverse_of(system.bodies[static_cast<std::size_t>(bond.j)])));
+           bond_inverse_masses(bond.frame, inverse_of(system.bodies.constants[static_cast<std::size_t>(bond.i)]),
+                               inverse_of(system.bodies.constants[static_cast<std::size_t>(bond.j)])));
   }
   system.lost.lost_bond += system.options.verlet() ? 0.5 * loss_of_bonds(system, 0.25) : loss_of_bonds(system, 0.5);
 }
 
 void count_opening_kick(GrainSystem& system) {
   count_opening_kick_of_packed_bonds(system);
-  for (const std::size_t b : system.packed_bonds.one_by_one) {
-    TiedPair& bond = system.bonds[b];
+  for (const std::size_t b : system.bonds.packed.one_by_one) {
+    TiedPair& bond = system.bonds.tied[b];
     const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
-    bond.frame = frame_of(system.motions[j].position - system.motions[i].position, bond.share);
+    bond.frame = frame_of(system.bodies.motions[j].position - system.bodies.motions[i].position, bond.share);
     bond.rate = rates_now(system, bond);
   }
   system.lost.lost_bond += 0.5 * loss_of_bonds(system, 0.25);
@@ -276,7 +277,7 @@ void count_opening_kick(GrainSystem& system) {
 
 double elastic_of_bonds(const GrainSystem& system) {
   double sum = 0;
-  for (const TiedPair& bond : system.bonds) {
+  for (const TiedPair& bond : system.bonds.tied) {
     if (bond.has_springs()) sum += bond_energy(bond.springs, motion_of(system, bond));
   }
   return sum;
@@ -316,7 +317,8 @@ void check_bonds(const GrainScene& scene, const GrainOptions& options) {
 
 std::vector<BondDrift> GrainSimulation::bond_drifts() const {
   std::vector<BondDrift> drifts;
-  for (const TiedPair& bond : implementation_->system.bonds) drifts.push_back(drift_of(implementation_->system, bond));
+  for (const TiedPair& bond : implementation_->system.bonds.tied)
+    drifts.push_back(drift_of(implementation_->system, bond));
   std::sort(drifts.begin(), drifts.end(),
             [](const BondDrift& a, const BondDrift& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
   return drifts;
@@ -325,13 +327,13 @@ std::vector<BondDrift> GrainSimulation::bond_drifts() const {
 BondReport GrainSimulation::bonds() const {
   const GrainSystem& system = implementation_->system;
   BondReport report;
-  report.number = system.bonds.size();
+  report.number = system.bonds.tied.size();
   report.step_limit = implementation_->bond_limit;
   const auto add = [&](BondReport::Drift& sum, double amount) {
     sum.largest = std::max(sum.largest, std::abs(amount));
     sum.mean += std::abs(amount) / static_cast<double>(report.number);
   };
-  for (const TiedPair& bond : system.bonds) {
+  for (const TiedPair& bond : system.bonds.tied) {
     const BondDrift drift = drift_of(system, bond);
     add(report.distance, drift.distance);
     add(report.slip, drift.slip);

@@ -47,12 +47,12 @@ inline bool are_tied(const std::vector<TiedPair>& bonds, std::size_t& next, std:
   return next < bonds.size() && bonds[next].i == i && bonds[next].j == j;
 }
 
-/// Add to the pushes of the step what bonds give, when all contacts have given theirs.
+/// Add to the impulses of the step what bonds give, when all contacts have given theirs.
 /// \throws Error (computation_failed) where bonded discs have crept into one another until their centres all but meet
-void push_bonds(GrainSystem& system);
+void add_bond_impulses(GrainSystem& system);
 
-/// The Verlet schemes: count what dashpots take in the half kick that opens a step; push_bonds counts that which closes
-/// one.
+/// The Verlet schemes: count what dashpots take in the half kick that opens a step; add_bond_impulses counts that which
+/// closes one.
 void count_opening_kick(GrainSystem& system);
 
 /// Energy of the springs of bonds.

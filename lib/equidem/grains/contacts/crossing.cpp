@@ -19,17 +19,17 @@ constexpr double slow_way = 0.1;
   const auto i = static_cast<std::size_t>(candidate.i);
   std::string other;
   if (candidate.j >= 0) {
-    other = fmt::format("grain {}", system.grain_of[static_cast<std::size_t>(candidate.j)]);
+    other = fmt::format("grain {}", system.bodies.grain_of[static_cast<std::size_t>(candidate.j)]);
   } else {
     const Wall& wall = system.scene.walls[static_cast<std::size_t>(~candidate.j)];
-    other = wall.name.empty() ? fmt::format("wall {}", system.wall_of[static_cast<std::size_t>(~candidate.j)])
+    other = wall.name.empty() ? fmt::format("wall {}", system.walls.wall_of[static_cast<std::size_t>(~candidate.j)])
                               : fmt::format("wall \"{}\"", wall.name);
   }
   const double speed = norm(way) / system.dt();
   computation_failed(
-      fmt::format("step {}: grain {} would {} {}", system.step, system.grain_of[i], happening, other),
+      fmt::format("step {}: grain {} would {} {}", system.step, system.bodies.grain_of[i], happening, other),
       fmt::format("they move {:.4g} m against each other in a step of {:.4g} s, {:.4g} times the radius of the grain",
-                  norm(way), system.dt(), norm(way) / system.bodies[i].radius),
+                  norm(way), system.dt(), norm(way) / system.bodies.constants[i].radius),
       norm(way) > room
           ? fmt::format("Use a step below {:.3g} s, or stiffer contacts if they are pressed through", room / speed)
           : "Use stiffer contacts, or press less: a shorter step would not hold them");
@@ -60,12 +60,12 @@ void check_discs(const GrainSystem& system, const Candidate& candidate, const Pa
 void check_wall(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
   const auto i = static_cast<std::size_t>(candidate.i);
   const auto w = static_cast<std::size_t>(~candidate.j);
-  const WallPlace& place = system.walls[w];
+  const WallPlace& place = system.walls.places[w];
   const auto [start, end, radius_i, radius_j] = way_of_parts(system, candidate, parts);
   const Vec2 before = start - place.displacement;
   const Vec2 after = end - place.displacement - system.dt() * place.velocity;
   if (passes_through(system.scene.walls[w], before, after)) {
-    refuse(system, candidate, after - before, 0.5 * system.bodies[i].radius, "pass through");
+    refuse(system, candidate, after - before, 0.5 * system.bodies.constants[i].radius, "pass through");
   }
 }
 
@@ -89,24 +89,25 @@ void refuse_runaway(const GrainSystem& system, double reach) {
 void refuse_crossings(const GrainSystem& system, double reach) {
   // two bodies come nearer by twice the reach at most
   if (reach <= slow_way * system.smallest_radius && system.deepest + 2 * reach < system.smallest_radius) return;
-  for (std::size_t p = 0; p < system.near.count; ++p) {
+  for (std::size_t p = 0; p < system.contacts.near.count; ++p) {
     Candidate pair;
-    pair.i = system.near.first(p);
-    pair.j = system.near.second(p);
+    pair.i = system.contacts.near.first(p);
+    pair.j = system.contacts.near.second(p);
     const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
     check_discs(system, pair,
-                {system.motions[j].position - system.motions[i].position,
-                 system.next[j].position - system.next[i].position, system.bodies[i].radius, system.bodies[j].radius});
+                {system.bodies.motions[j].position - system.bodies.motions[i].position,
+                 system.bodies.next[j].position - system.bodies.next[i].position, system.bodies.constants[i].radius,
+                 system.bodies.constants[j].radius});
   }
-  for (const NearParts::List& list : system.near_parts.lists) {
+  for (const NearParts::List& list : system.contacts.near_parts.lists) {
     for (std::size_t p = 0; p < list.count; ++p) {
       const auto [candidate, pair] = candidate_of(system, list, p);
       check_parts(system, candidate, pair);
     }
   }
-  for (std::size_t c = 0; c < system.candidates.size(); ++c) {
-    const Candidate& candidate = system.candidates[c];
-    const PartPair parts = system.parts.empty() ? PartPair{} : system.part_pairs[c];
+  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c) {
+    const Candidate& candidate = system.contacts.candidates[c];
+    const PartPair parts = system.shapes.parts.empty() ? PartPair{} : system.contacts.part_pairs[c];
     if (candidate.j < 0) {
       check_wall(system, candidate, parts);
     } else {

@@ -11,8 +11,8 @@ namespace equidem {
 /// \throws Error (computation_failed) where that is no number
 void refuse_runaway(const GrainSystem& system, double reach);
 
-/// Compare system.motions with system.next.
-/// \throws Error (computation_failed) where the centre of a grain enters another grain or passes a wall, or a meeting
+/// Compare system.bodies.motions with system.bodies.next.
+/// \throws Error (computation_failed) where the centre of a grain enters another grain or passes a wall, or a geometry
 ///         deeper than half
 ///         the smaller radius would lie between the two instants unseen
 void refuse_crossings(const GrainSystem& system, double reach);

@@ -7,8 +7,8 @@
 #include "equidem/contact/laws/visit.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/contacts/crossing.hpp"
-#include "equidem/grains/contacts/meeting.hpp"
 #include "equidem/grains/contacts/move_bodies.hpp"
 
 namespace equidem {
@@ -39,26 +39,26 @@ void give(GrainSystem& system, const Candidate& candidate, const Trial& trial, d
   const Vec2 impulse = sign * (trial.impulse * trial.normal + trial.tangential * tangent);
   const Vec2 moment = sign * (trial.moment * trial.normal + (0.5 * system.dt() * trial.tangential) * tangent);
   const auto i = static_cast<std::size_t>(candidate.i);
-  system.pushes[i].impulse -= impulse;
-  system.moments[i] -= moment;
-  system.pushes[i].torque -= sign * trial.lever_i * trial.tangential;
+  system.bodies.impulses[i].impulse -= impulse;
+  system.bodies.moments[i] -= moment;
+  system.bodies.impulses[i].torque -= sign * trial.lever_i * trial.tangential;
   if (candidate.j < 0) return;
   const auto j = static_cast<std::size_t>(candidate.j);
-  system.pushes[j].impulse += impulse;
-  system.moments[j] += moment;
-  system.pushes[j].torque -= sign * trial.lever_j * trial.tangential;
+  system.bodies.impulses[j].impulse += impulse;
+  system.bodies.moments[j] += moment;
+  system.bodies.impulses[j].torque -= sign * trial.lever_j * trial.tangential;
 }
 
-/// What a body's velocity and position gain in the step by pushes and gravity.
+/// What a body's velocity and position gain in the step by impulses and gravity.
 struct Gain {
   Vec2 velocity, way;
 };
 
 Gain gain_of(const GrainSystem& system, std::size_t body) {
   const double dt = system.dt();
-  const double inverse = system.bodies[body].inverse_mass;
-  return {inverse * system.pushes[body].impulse + dt * system.scene.gravity,
-          inverse * system.moments[body] + (0.5 * dt * dt) * system.scene.gravity};
+  const double inverse = system.bodies.constants[body].inverse_mass;
+  return {inverse * system.bodies.impulses[body].impulse + dt * system.scene.gravity,
+          inverse * system.bodies.moments[body] + (0.5 * dt * dt) * system.scene.gravity};
 }
 
 /// Gain of j, or of the wall, over that of i.
@@ -90,9 +90,9 @@ Line line_of(const GrainSystem& system, const Candidate& candidate, const Trial&
   const auto w = static_cast<std::size_t>(~candidate.j);
   const Wall& wall = system.scene.walls[w];
   if (wall.shape == Wall::Shape::line) return {-wall.normal, 1};
-  const Vec2 centre = system.motions[static_cast<std::size_t>(candidate.i)].position;
+  const Vec2 centre = system.bodies.motions[static_cast<std::size_t>(candidate.i)].position;
   const auto normal_at = [&](double share) {
-    return -nearest(wall, system.walls[w].displacement, centre - share * way).normal;
+    return -nearest(wall, system.walls.places[w].displacement, centre - share * way).normal;
   };
   return {normal_at(0.5), std::max(0.5, 0.5 * norm(normal_at(0) + normal_at(1)))};
 }
@@ -102,7 +102,7 @@ Line line_of(const GrainSystem& system, const Candidate& candidate, const Trial&
 double speed_of_bodies(const GrainSystem& system, const Candidate& candidate) {
   const auto speed = [&](std::int32_t body) {
     const auto b = static_cast<std::size_t>(body);
-    return norm(system.motions[b].velocity) + norm(gain_of(system, b).velocity);
+    return norm(system.bodies.motions[b].velocity) + norm(gain_of(system, b).velocity);
   };
   return speed(candidate.i) + (candidate.j >= 0 ? speed(candidate.j) : 0);
 }
@@ -111,7 +111,7 @@ double speed_of_bodies(const GrainSystem& system, const Candidate& candidate) {
 /// \return change of its impulses, relative
 template <class Law>
 double solve(GrainSystem& system, Trial& trial) {
-  const Candidate& candidate = system.candidates[trial.candidate];
+  const Candidate& candidate = system.contacts.candidates[trial.candidate];
   const double dt = system.dt();
   const Vec2 relative = relative_velocity(system, candidate);
   const bool acted = trial.impulse != 0 || trial.tangential != 0 || trial.moment != 0;
@@ -130,23 +130,23 @@ double solve(GrainSystem& system, Trial& trial) {
   const double closing = -slope * dot(relative, normal);
   const double a = -slope * dot(outside.velocity, normal) / dt;
   const double b = -2 * slope * dot(outside.way, normal) / (dt * dt);
-  trial.normal_step = Law::step(system.exact_pairs[trial.candidate], trial.overlap, closing, candidate.touching,
-                                3 * b - 2 * a, 6 * (a - b) / dt);
+  trial.normal_step = Law::step(system.contacts.exact_pairs[trial.candidate], trial.overlap, closing,
+                                candidate.touching, 3 * b - 2 * a, 6 * (a - b) / dt);
   trial.impulse = trial.normal_step.impulse / slope;
   trial.moment = trial.normal_step.moment / slope;
   trial.closing = closing;
   trial.tangential = 0;
   if (candidate.sliding.coefficient > 0 && trial.impulse != 0) {
-    Meeting meeting{trial.overlap, trial.normal, trial.lever_i, trial.lever_j};
-    const double mass = tangential_mass(system, candidate, meeting);
+    ContactGeometry geometry{trial.overlap, trial.normal, trial.lever_i, trial.lever_j};
+    const double mass = tangential_mass(system, candidate, geometry);
     double gained = dot(outside.velocity, perpendicular(trial.normal));
     const auto i = static_cast<std::size_t>(candidate.i);
-    gained -= trial.lever_i * system.bodies[i].inverse_moment * system.pushes[i].torque;
+    gained -= trial.lever_i * system.bodies.constants[i].inverse_moment * system.bodies.impulses[i].torque;
     if (candidate.j >= 0) {
       const auto j = static_cast<std::size_t>(candidate.j);
-      gained -= trial.lever_j * system.bodies[j].inverse_moment * system.pushes[j].torque;
+      gained -= trial.lever_j * system.bodies.constants[j].inverse_moment * system.bodies.impulses[j].torque;
     }
-    const double velocity = slip_velocity(system, candidate, meeting, relative) + 0.5 * gained;
+    const double velocity = slip_velocity(system, candidate, geometry, relative) + 0.5 * gained;
     trial.sliding_step = sliding_step_midpoint(candidate.sliding, candidate.stretch, velocity, mass,
                                                std::max(trial.impulse, 0.0) / dt, dt);
     trial.tangential = trial.sliding_step.force * dt;
@@ -162,19 +162,19 @@ double solve(GrainSystem& system, Trial& trial) {
 
 std::vector<Trial> trials_of(GrainSystem& system) {
   std::vector<Trial> trials;
-  trials.reserve(system.candidates.size());
-  for (std::size_t c = 0; c < system.candidates.size(); ++c) {
-    const Candidate& candidate = system.candidates[c];
+  trials.reserve(system.contacts.candidates.size());
+  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c) {
+    const Candidate& candidate = system.contacts.candidates[c];
     if (candidate.covered) continue;
-    const Meeting meeting = meeting_of(system, candidate);
+    const ContactGeometry geometry = geometry_of(system, candidate);
     Trial trial;
     trial.candidate = c;
-    trial.overlap = meeting.overlap;
-    system.deepest = std::max(system.deepest, meeting.overlap);
-    trial.lever_i = meeting.lever_i;
-    trial.lever_j = meeting.lever_j;
-    trial.normal = meeting.normal;
-    if (candidate.j >= 0) trial.branch = (meeting.lever_i + meeting.lever_j) * meeting.normal;
+    trial.overlap = geometry.overlap;
+    system.deepest = std::max(system.deepest, geometry.overlap);
+    trial.lever_i = geometry.lever_i;
+    trial.lever_j = geometry.lever_j;
+    trial.normal = geometry.normal;
+    if (candidate.j >= 0) trial.branch = (geometry.lever_i + geometry.lever_j) * geometry.normal;
     if (candidate.touching) {
       // what the last step gave is near to what this one will give
       trial.impulse = candidate.impulse;
@@ -187,12 +187,12 @@ std::vector<Trial> trials_of(GrainSystem& system) {
 }
 
 /// Pushes from the contacts in their order: no trace of the way in which sweeps came to them.
-void sum_pushes(GrainSystem& system, const std::vector<Trial>& trials) {
-  std::fill(system.pushes.begin(), system.pushes.end(), Push{});
-  std::fill(system.moments.begin(), system.moments.end(), Vec2{});
+void sum_impulses(GrainSystem& system, const std::vector<Trial>& trials) {
+  std::fill(system.bodies.impulses.begin(), system.bodies.impulses.end(), BodyImpulse{});
+  std::fill(system.bodies.moments.begin(), system.bodies.moments.end(), Vec2{});
   for (const Trial& trial : trials) {
     if (trial.impulse == 0 && trial.tangential == 0 && trial.moment == 0) continue;
-    give(system, system.candidates[trial.candidate], trial, 1);
+    give(system, system.contacts.candidates[trial.candidate], trial, 1);
   }
 }
 
@@ -211,10 +211,10 @@ void sweep_until_settled(GrainSystem& system, std::vector<Trial>& trials) {
   std::vector<Visit> visits;
   visits.reserve(trials.size());
   for (const Trial& trial : trials) {
-    const Candidate& candidate = system.candidates[trial.candidate];
+    const Candidate& candidate = system.contacts.candidates[trial.candidate];
     visits.push_back({candidate.i, candidate.j});
   }
-  std::vector<std::int64_t> pushed(system.bodies.size(), 0);
+  std::vector<std::int64_t> pushed(system.bodies.constants.size(), 0);
   std::int64_t now = 0;
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     const double before = change;
@@ -245,11 +245,11 @@ void sweep_until_settled(GrainSystem& system, std::vector<Trial>& trials) {
 void move(GrainSystem& system) {
   const double dt = system.dt();
   move_bodies(system, [&](std::size_t i) {
-    GrainMotion motion = system.motions[i];
+    GrainMotion motion = system.bodies.motions[i];
     const Gain gain = gain_of(system, i);
     motion.position += dt * motion.velocity + gain.way;
     motion.velocity += gain.velocity;
-    const double turn = system.bodies[i].inverse_moment * system.pushes[i].torque;
+    const double turn = system.bodies.constants[i].inverse_moment * system.bodies.impulses[i].torque;
     motion.angle += dt * (motion.spin + 0.5 * turn);
     motion.spin += turn;
     return motion;
@@ -261,7 +261,7 @@ void move_freely(GrainSystem& system) {
   const double dt = system.dt();
   const Vec2 fall = dt * system.scene.gravity, drop = (0.5 * dt * dt) * system.scene.gravity;
   move_bodies(system, [&](std::size_t i) {
-    GrainMotion motion = system.motions[i];
+    GrainMotion motion = system.bodies.motions[i];
     motion.position += dt * motion.velocity + drop;
     motion.velocity += fall;
     motion.angle += dt * motion.spin;
@@ -272,14 +272,14 @@ void move_freely(GrainSystem& system) {
 /// What the contacts remember, and what was lost in them.
 void remember(GrainSystem& system, const std::vector<Trial>& trials) {
   for (const Trial& trial : trials) {
-    Candidate& candidate = system.candidates[trial.candidate];
+    Candidate& candidate = system.contacts.candidates[trial.candidate];
     const ExactStep& normal = trial.normal_step;
     const bool touched = trial.impulse != 0 || normal.touching_at_end;
     system.counters.contacts += normal.beginnings;
     system.lost.lost_dashpot += normal.loss;
     system.lost.lost_release += normal.released;
     if (!touched) {
-      if (candidate.touching) let_go(system, candidate);
+      if (candidate.touching) forget_contact(system, candidate);
       continue;
     }
     candidate.overlap = trial.overlap;
@@ -295,11 +295,11 @@ void remember(GrainSystem& system, const std::vector<Trial>& trials) {
     }
     if (candidate.j < 0) {
       const Vec2 impulse = trial.impulse * trial.normal + trial.tangential * perpendicular(trial.normal);
-      system.lost.work_of_walls -= dot(impulse, system.walls[static_cast<std::size_t>(~candidate.j)].velocity);
+      system.lost.work_of_walls -= dot(impulse, system.walls.places[static_cast<std::size_t>(~candidate.j)].velocity);
     }
     ++candidate.steps;
     candidate.touching = true;
-    if (!normal.touching_at_end) let_go(system, candidate);
+    if (!normal.touching_at_end) forget_contact(system, candidate);
   }
 }
 
@@ -310,27 +310,27 @@ void count_doubtful(GrainSystem& system, const std::vector<Trial>& trials) {
   constexpr double pi = 3.14159265358979323846;
   constexpr double most_contacts = 9;  // so many discs no smaller than it a disc never touches
   const auto square_step = [&](const Trial& trial) {
-    const double turn = system.exact_pairs[trial.candidate].frequency * system.dt();
+    const double turn = system.contacts.exact_pairs[trial.candidate].frequency * system.dt();
     return turn * turn;
   };
   if (std::none_of(trials.begin(), trials.end(),
                    [&](const Trial& trial) { return square_step(trial) * most_contacts > pi * pi; })) {
     return;
   }
-  std::vector<int> contacts(system.bodies.size(), 0);
+  std::vector<int> contacts(system.bodies.constants.size(), 0);
   const auto touches = [](const Trial& trial) { return trial.impulse != 0; };
   const auto count = [&](std::int32_t body) -> int& { return contacts[static_cast<std::size_t>(body)]; };
   for (const Trial& trial : trials) {
     if (!touches(trial)) continue;
-    const Candidate& candidate = system.candidates[trial.candidate];
+    const Candidate& candidate = system.contacts.candidates[trial.candidate];
     ++count(candidate.i);
     if (candidate.j >= 0) ++count(candidate.j);
   }
   for (const Trial& trial : trials) {
     if (!touches(trial)) continue;
-    const Candidate& candidate = system.candidates[trial.candidate];
+    const Candidate& candidate = system.contacts.candidates[trial.candidate];
     const auto others = [&](std::int32_t body) {
-      return body < 0 ? 0 : system.bodies[static_cast<std::size_t>(body)].inverse_mass * (count(body) - 1);
+      return body < 0 ? 0 : system.bodies.constants[static_cast<std::size_t>(body)].inverse_mass * (count(body) - 1);
     };
     const double coupling = candidate.reduced_mass * (others(candidate.i) + others(candidate.j));
     if (coupling > 0 && square_step(trial) * (1 + coupling) > pi * pi) ++system.counters.doubtful;
@@ -347,9 +347,9 @@ void flow(GrainSystem& system) {
     if (trials.empty()) {
       move_freely(system);
     } else {
-      sum_pushes(system, trials);
+      sum_impulses(system, trials);
       sweep_until_settled<Law>(system, trials);
-      sum_pushes(system, trials);
+      sum_impulses(system, trials);
       move(system);
     }
     reach = reach_of(system);

@@ -13,8 +13,8 @@
 
 namespace equidem {
 
-/// The step compiled for a simultaneous law: system.next, and what the contacts remember. Null for other laws. The step
-/// throws:
+/// The step compiled for a simultaneous law: system.bodies.next, and what the contacts remember. Null for other laws.
+/// The step throws:
 /// \throws Error (computation_failed) where sweeps do not settle or bodies would pass through one another; the contacts
 ///         remember
 ///         what they did

@@ -11,7 +11,7 @@ namespace equidem {
 
 using CollideFunction = void (*)(GrainSystem&);
 
-/// The loop over contacts compiled for a force law or a map, with or without friction: pushes of this step from
+/// The loop over contacts compiled for a force law or a map, with or without friction: impulses of this step from
 /// positions and velocities. Null for a simultaneous law.
 CollideFunction collide_function(NormalLaw law, bool friction);
 
@@ -30,12 +30,12 @@ double dashpot_heat(const Candidate& candidate, const ContactStep& step, double 
   return (spring - step.change) * unit * (closing + 0.5 * (eccentric * step.change * unit_speed + by_others));
 }
 
-/// system.next from the pushes: v' = v + a dt, x' = x + v' dt (+ the shifts of maps).
+/// system.bodies.next from the impulses: v' = v + a dt, x' = x + v' dt (+ the shifts of maps).
 void move_by_euler(GrainSystem& system);
 
-/// system.next: half a kick by the pushes of the last step, then the way of a step.
+/// system.bodies.next: half a kick by the impulses of the last step, then the way of a step.
 void drift_of_verlet(GrainSystem& system);
-/// The other half of the kick, by the pushes found with the velocities of the half step.
+/// The other half of the kick, by the impulses found with the velocities of the half step.
 void kick_of_verlet(GrainSystem& system);
 
 }  // namespace equidem

@@ -17,16 +17,16 @@ inline PairBody pair_body(const GrainBody& body, const GrainMotion& motion, Vec2
 }
 
 /// Torque of the forces that near pairs gave along the rim.
-inline void turn_rims(Push& push, const GrainBody& body) {
+inline void turn_rims(BodyImpulse& push, const GrainBody& body) {
   push.torque += body.radius * push.rim;
   push.rim = 0;
 }
 
-/// system.next[i] = motion(i), the motion after the step; and system.longest_way, while the numbers are at hand.
+/// system.bodies.next[i] = motion(i), the motion after the step; and system.longest_way, while the numbers are at hand.
 template <class Motion>
 void move_bodies(GrainSystem& system, const Motion& motion) {
-  const GrainMotion* before = system.motions.data();
-  GrainMotion* after = system.next.data();
+  const GrainMotion* before = system.bodies.motions.data();
+  GrainMotion* after = system.bodies.next.data();
   const auto move = [&](std::size_t i, double& longest) {
     after[i] = motion(i);
     const Vec2 way = after[i].position - before[i].position;
@@ -35,7 +35,7 @@ void move_bodies(GrainSystem& system, const Motion& motion) {
   };
   constexpr std::size_t lanes = 4;  // maxima: one alone would wait for itself
   std::array<double, lanes> longest{};
-  const std::size_t count = system.motions.size(), whole = count - count % lanes;
+  const std::size_t count = system.bodies.motions.size(), whole = count - count % lanes;
   for (std::size_t i = 0; i < whole; i += lanes) {
     for (std::size_t k = 0; k < lanes; ++k) move(i + k, longest[k]);
   }

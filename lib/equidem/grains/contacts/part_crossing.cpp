@@ -14,8 +14,8 @@ namespace {
 
 /// Within a step, `share` of it gone: ways and turns are uniform.
 GrainMotion motion_at(const GrainSystem& system, std::int32_t body, double share) {
-  const GrainMotion& from = system.motions[static_cast<std::size_t>(body)];
-  const GrainMotion& to = system.next[static_cast<std::size_t>(body)];
+  const GrainMotion& from = system.bodies.motions[static_cast<std::size_t>(body)];
+  const GrainMotion& to = system.bodies.next[static_cast<std::size_t>(body)];
   GrainMotion motion = from;
   motion.position += share * (to.position - from.position);
   motion.angle += share * (to.angle - from.angle);
@@ -30,11 +30,11 @@ struct Pose {
 
 Pose pose_at(const GrainSystem& system, std::int32_t body, std::int32_t part_index, double share) {
   const GrainMotion motion = motion_at(system, body, share);
-  if (system.parts.empty()) {
-    const double radius = system.bodies[static_cast<std::size_t>(body)].radius;
+  if (system.shapes.parts.empty()) {
+    const double radius = system.bodies.constants[static_cast<std::size_t>(body)].radius;
     return {{{}, radius, radius, radius}, motion.position, {1, 0}};
   }
-  const GrainPart& part = system.parts[static_cast<std::size_t>(part_index)];
+  const GrainPart& part = system.shapes.parts[static_cast<std::size_t>(part_index)];
   const Vec2 axis = axis_at(motion.angle);
   return {part, motion.position + offset_of(part, axis), axis};
 }
@@ -49,9 +49,9 @@ PartWay way_of_parts(const GrainSystem& system, const Candidate& candidate, cons
 }
 
 bool has_ellipse(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
-  if (system.parts.empty()) return false;
-  if (!system.parts[static_cast<std::size_t>(parts.i)].is_round()) return true;
-  return candidate.j >= 0 && !system.parts[static_cast<std::size_t>(parts.j)].is_round();
+  if (system.shapes.parts.empty()) return false;
+  if (!system.shapes.parts[static_cast<std::size_t>(parts.i)].is_round()) return true;
+  return candidate.j >= 0 && !system.shapes.parts[static_cast<std::size_t>(parts.j)].is_round();
 }
 
 const char* crossing_of_ellipses(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
@@ -70,7 +70,7 @@ const char* crossing_of_ellipses(const GrainSystem& system, const Candidate& can
   // how far a point of one goes against the other, at most
   const auto turn = [&](std::int32_t body, const GrainPart& part) {
     const auto b = static_cast<std::size_t>(body);
-    return std::abs(system.next[b].angle - system.motions[b].angle) * part.a;
+    return std::abs(system.bodies.next[b].angle - system.bodies.motions[b].angle) * part.a;
   };
   const double reach = norm(way.after - way.before) + turn(candidate.i, i.part) + turn(candidate.j, j.part);
   const double small = std::min(i.part.b, j.part.b);
@@ -82,20 +82,20 @@ const char* crossing_of_ellipses(const GrainSystem& system, const Candidate& can
   return -after.gap > small ? "pass through" : nullptr;
 }
 
-void refuse_bowls(const GrainSystem& system) {
-  if (system.parts.empty()) return;
-  for (std::size_t c = 0; c < system.candidates.size(); ++c) {
-    const Candidate& candidate = system.candidates[c];
-    if (candidate.j >= 0 || !has_ellipse(system, candidate, system.part_pairs[c])) continue;
+void refuse_ellipses_in_bowls(const GrainSystem& system) {
+  if (system.shapes.parts.empty()) return;
+  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c) {
+    const Candidate& candidate = system.contacts.candidates[c];
+    if (candidate.j >= 0 || !has_ellipse(system, candidate, system.contacts.part_pairs[c])) continue;
     const auto i = static_cast<std::size_t>(candidate.i), w = static_cast<std::size_t>(~candidate.j);
     const Wall& wall = system.scene.walls[w];
     if (wall.shape != Wall::Shape::arc) continue;
-    const Vec2 displacement = system.walls[w].displacement + system.dt() * system.walls[w].velocity;
-    const Vec2 position = system.next[i].position;
+    const Vec2 displacement = system.walls.places[w].displacement + system.dt() * system.walls.places[w].velocity;
+    const Vec2 position = system.bodies.next[i].position;
     if (norm(position - wall.point - displacement) >= wall.radius) continue;
-    if (nearest(wall, displacement, position).distance > system.bodies[i].radius) continue;
+    if (nearest(wall, displacement, position).distance > system.bodies.constants[i].radius) continue;
     computation_failed(fmt::format("step {}: grain {}, an ellipse, would come to the inside of the arc \"{}\"",
-                                   system.step, system.grain_of[i], wall.name),
+                                   system.step, system.bodies.grain_of[i], wall.name),
                        "there it may touch in two points at once, which one contact cannot tell",
                        "Make the arc of segments");
   }

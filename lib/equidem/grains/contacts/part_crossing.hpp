@@ -24,6 +24,6 @@ bool has_ellipse(const GrainSystem& system, const Candidate& candidate, const Pa
 const char* crossing_of_ellipses(const GrainSystem& system, const Candidate& candidate, const PartPair& parts);
 
 /// \throws Error (computation_failed) where the step leads an ellipse to the inside of an arc, within reach of it
-void refuse_bowls(const GrainSystem& system);
+void refuse_ellipses_in_bowls(const GrainSystem& system);
 
 }  // namespace equidem

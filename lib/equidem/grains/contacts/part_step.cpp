@@ -7,7 +7,7 @@
 #include "equidem/contact/laws/visit.hpp"
 #include "equidem/grains/contacts/force_step.hpp"
 #include "equidem/grains/contacts/move_bodies.hpp"
-#include "equidem/grains/contacts/part_meeting.hpp"
+#include "equidem/grains/contacts/part_geometry.hpp"
 #include "equidem/grains/contacts/verlet_contact.hpp"
 
 namespace equidem {
@@ -18,35 +18,39 @@ namespace {
 /// A contact with its two bodies; a wall has none.
 struct Contact {
   const Candidate& candidate;
-  const PartMeeting& meeting;
+  const PartGeometry& geometry;
   const GrainBody& body_i;
   const GrainBody* body_j;
 
-  Contact(const GrainSystem& system, const Candidate& of, const PartMeeting& met)
-      : candidate(of), meeting(met), body_i(system.bodies[i()]), body_j(of.j >= 0 ? &system.bodies[j()] : nullptr) {}
+  Contact(const GrainSystem& system, const Candidate& of, const PartGeometry& met)
+      : candidate(of),
+        geometry(met),
+        body_i(system.bodies.constants[i()]),
+        body_j(of.j >= 0 ? &system.bodies.constants[j()] : nullptr) {}
 
   [[nodiscard]] std::size_t i() const { return static_cast<std::size_t>(candidate.i); }
   [[nodiscard]] std::size_t j() const { return static_cast<std::size_t>(candidate.j); }
-  [[nodiscard]] Vec2 tangent() const { return perpendicular(meeting.normal); }
+  [[nodiscard]] Vec2 tangent() const { return perpendicular(geometry.normal); }
 };
 
 /// Of the contact point of j, or of the wall, over that of i.
 [[gnu::always_inline]] inline Vec2 relative_velocity(const GrainSystem& system, const Contact& contact) {
-  const GrainMotion& motion = system.motions[contact.i()];
-  const Vec2 of_i = motion.velocity + motion.spin * perpendicular(contact.meeting.arm_i);
-  if (!contact.body_j) return system.walls[static_cast<std::size_t>(~contact.candidate.j)].acting_velocity - of_i;
-  const GrainMotion& other = system.motions[contact.j()];
-  return other.velocity + other.spin * perpendicular(contact.meeting.arm_j) - of_i;
+  const GrainMotion& motion = system.bodies.motions[contact.i()];
+  const Vec2 of_i = motion.velocity + motion.spin * perpendicular(contact.geometry.arm_i);
+  if (!contact.body_j)
+    return system.walls.places[static_cast<std::size_t>(~contact.candidate.j)].acting_velocity - of_i;
+  const GrainMotion& other = system.bodies.motions[contact.j()];
+  return other.velocity + other.spin * perpendicular(contact.geometry.arm_j) - of_i;
 }
 
 /// 1/(1/m_i + 1/m_j + (arm_i x s)²/I_i + (arm_j x s)²/I_j).
 /// \param share of what the arms lack to the surface that is added
 [[gnu::always_inline]] inline double tangential_mass(const Contact& contact, double share) {
-  const PartMeeting& meeting = contact.meeting;
-  const double lever_i = cross(meeting.arm_i, contact.tangent()) + share * meeting.sunk_i;
+  const PartGeometry& geometry = contact.geometry;
+  const double lever_i = cross(geometry.arm_i, contact.tangent()) + share * geometry.sunk_i;
   double inverse = contact.body_i.inverse_mass + lever_i * lever_i * contact.body_i.inverse_moment;
   if (contact.body_j) {
-    const double lever_j = cross(meeting.arm_j, contact.tangent()) - share * meeting.sunk_j;
+    const double lever_j = cross(geometry.arm_j, contact.tangent()) - share * geometry.sunk_j;
     inverse += contact.body_j->inverse_mass + lever_j * lever_j * contact.body_j->inverse_moment;
   }
   return 1 / inverse;
@@ -54,26 +58,26 @@ struct Contact {
 
 /// (1/m' of the contact points along the normal)/(1/m of the centres); see collide_parts_function.
 [[gnu::always_inline]] inline double eccentricity(const Contact& contact) {
-  const PartMeeting& meeting = contact.meeting;
-  const double lever_i = cross(meeting.arm_i, meeting.normal);
+  const PartGeometry& geometry = contact.geometry;
+  const double lever_i = cross(geometry.arm_i, geometry.normal);
   double inverse = lever_i * lever_i * contact.body_i.inverse_moment;
   if (contact.body_j) {
-    const double lever_j = cross(meeting.arm_j, meeting.normal);
+    const double lever_j = cross(geometry.arm_j, geometry.normal);
     inverse += lever_j * lever_j * contact.body_j->inverse_moment;
   }
   return 1 + contact.candidate.reduced_mass * inverse;
 }
 
-/// What the pushes of the step before and gravity add in a step to the slip of a contact, its own tangential force
+/// What the impulses of the step before and gravity add in a step to the slip of a contact, its own tangential force
 /// aside.
 [[gnu::always_inline]] inline double gain_of_slip(const GrainSystem& system, const Contact& contact, double mass) {
-  const PartMeeting& meeting = contact.meeting;
-  const auto gain_of = [&](const GrainBody& body, const Push& push, Vec2 arm) {
+  const PartGeometry& geometry = contact.geometry;
+  const auto gain_of = [&](const GrainBody& body, const BodyImpulse& push, Vec2 arm) {
     return body.inverse_mass * push.impulse + (body.inverse_moment * push.torque) * perpendicular(arm);
   };
-  Vec2 gain = -gain_of(contact.body_i, system.pushes_before[contact.i()], meeting.arm_i);
+  Vec2 gain = -gain_of(contact.body_i, system.bodies.impulses_before[contact.i()], geometry.arm_i);
   if (contact.body_j) {
-    gain += gain_of(*contact.body_j, system.pushes_before[contact.j()], meeting.arm_j);
+    gain += gain_of(*contact.body_j, system.bodies.impulses_before[contact.j()], geometry.arm_j);
   } else {
     gain -= system.dt() * system.scene.gravity;
   }
@@ -109,7 +113,7 @@ TouchPlace place_before(const Candidate& candidate, const PartPair& pair) {
 ContactDrift drift_of(const GrainSystem& system, const Candidate& candidate, const TouchPlace& now,
                       const TouchPlace& before) {
   const auto at = [&](std::int32_t body, Vec2 arm) {
-    const GrainMotion& motion = system.motions[static_cast<std::size_t>(body)];
+    const GrainMotion& motion = system.bodies.motions[static_cast<std::size_t>(body)];
     return motion.velocity + motion.spin * perpendicular(arm);
   };
   const auto relative = [&](const TouchPlace& place) {
@@ -123,88 +127,90 @@ ContactDrift drift_of(const GrainSystem& system, const Candidate& candidate, con
 
 /// Give an impulse to j, its opposite to i; walls take it and do not move.
 [[gnu::always_inline]] inline void push(GrainSystem& system, const Contact& contact, Vec2 impulse) {
-  Push& on_i = system.pushes[contact.i()];
+  BodyImpulse& on_i = system.bodies.impulses[contact.i()];
   on_i.impulse -= impulse;
-  on_i.torque -= cross(contact.meeting.arm_i, impulse);
+  on_i.torque -= cross(contact.geometry.arm_i, impulse);
   if (contact.body_j) {
-    Push& on_j = system.pushes[contact.j()];
+    BodyImpulse& on_j = system.bodies.impulses[contact.j()];
     on_j.impulse += impulse;
-    on_j.torque += cross(contact.meeting.arm_j, impulse);
+    on_j.torque += cross(contact.geometry.arm_j, impulse);
   } else if (!system.options.verlet()) {
     system.lost.work_of_walls -=
-        dot(impulse, system.walls[static_cast<std::size_t>(~contact.candidate.j)].acting_velocity);
+        dot(impulse, system.walls.places[static_cast<std::size_t>(~contact.candidate.j)].acting_velocity);
   }
 }
 
 template <class Law, bool friction>
 void collide_parts(GrainSystem& system) {
   load_part_bodies(system);
-  if constexpr (friction) system.pushes_before.swap(system.pushes);
-  if (friction || !system.free_flight) std::fill(system.pushes.begin(), system.pushes.end(), Push{});
+  if constexpr (friction) system.bodies.impulses_before.swap(system.bodies.impulses);
+  if (friction || !system.free_flight)
+    std::fill(system.bodies.impulses.begin(), system.bodies.impulses.end(), BodyImpulse{});
   system.free_flight = true;
-  if (system.near.active) system.near.loop(system);
-  for (NearParts::List& list : system.near_parts.lists) {
+  if (system.contacts.near.active) system.contacts.near.loop(system);
+  for (NearParts::List& list : system.contacts.near_parts.lists) {
     if (list.count > 0) list.loop(system, list);
   }
-  if (system.near.active && friction && system.options.verlet()) {
-    for (std::size_t i = 0; i < system.bodies.size(); ++i) turn_rims(system.pushes[i], system.bodies[i]);
+  if (system.contacts.near.active && friction && system.options.verlet()) {
+    for (std::size_t i = 0; i < system.bodies.constants.size(); ++i)
+      turn_rims(system.bodies.impulses[i], system.bodies.constants[i]);
   }
   const bool verlet = system.options.verlet();
   const double dt = system.dt();
   const double length = system.length;
   const double per_length = 1 / length, per_speed = dt / length, unit_speed = length / dt;
-  for (std::size_t c = 0; c < system.candidates.size(); ++c) {
-    Candidate& candidate = system.candidates[c];
-    PartPair& pair = system.part_pairs[c];
-    const PartMeeting meeting = meeting_of_parts(system, candidate, pair);
-    if (!(meeting.overlap > 0)) {
+  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c) {
+    Candidate& candidate = system.contacts.candidates[c];
+    PartPair& pair = system.contacts.part_pairs[c];
+    const PartGeometry geometry = geometry_of_parts(system, candidate, pair);
+    if (!(geometry.overlap > 0)) {
       if (!candidate.touching) continue;
       if (verlet) {
         const TouchPlace place = place_before(candidate, pair);
         end_contact<Law>(system, candidate, place, drift_of(system, candidate, place, place));
       } else {
-        let_go(system, candidate);
+        forget_contact(system, candidate);
       }
       continue;
     }
     system.free_flight = false;
     if (!candidate.touching) ++system.counters.contacts;
     ++system.counters.evaluations;
-    const Contact contact(system, candidate, meeting);
+    const Contact contact(system, candidate, geometry);
     const Vec2 relative = relative_velocity(system, contact);
     if (verlet) {
-      const TouchPlace place{meeting.overlap, meeting.normal, meeting.arm_i, meeting.arm_j};
+      const TouchPlace place{geometry.overlap, geometry.normal, geometry.arm_i, geometry.arm_j};
       const ContactDrift drift =
           drift_of(system, candidate, place, candidate.steps > 0 ? place_before(candidate, pair) : place);
-      pair.arm_i = meeting.arm_i;
-      pair.arm_j = meeting.arm_j;
-      system.deepest = std::max(system.deepest, meeting.overlap);
+      pair.arm_i = geometry.arm_i;
+      pair.arm_j = geometry.arm_j;
+      system.deepest = std::max(system.deepest, geometry.overlap);
       const auto others = [&] {
         const double mass = tangential_mass(contact, 0);
         return SlipByOthers{gain_of_slip(system, contact, mass), mass};
       };
       push(system, contact,
-           step_contact<Law, friction>(system, candidate, place, -dot(relative, meeting.normal),
+           step_contact<Law, friction>(system, candidate, place, -dot(relative, geometry.normal),
                                        dot(relative, contact.tangent()), drift, sliding_of(candidate, pair, contact),
                                        others));
       continue;
     }
-    const double closing = -dot(relative, meeting.normal);
-    const double depth = meeting.overlap * per_length, sigma = closing * per_speed;
+    const double closing = -dot(relative, geometry.normal);
+    const double depth = geometry.overlap * per_length, sigma = closing * per_speed;
     const ContactStep step = force_step<Law>(depth, sigma, candidate.a, candidate.dissipation, candidate.attraction);
     const double unit = candidate.reduced_mass * unit_speed;
     system.lost.lost_dashpot +=
         dashpot_heat<Law>(candidate, step, depth, closing, unit, unit_speed, eccentricity(contact));
     candidate.touching = true;
     ++candidate.steps;
-    candidate.overlap = meeting.overlap;
-    system.deepest = std::max(system.deepest, meeting.overlap);
+    candidate.overlap = geometry.overlap;
+    system.deepest = std::max(system.deepest, geometry.overlap);
     candidate.closing = closing;
-    candidate.normal = meeting.normal;
-    pair.arm_i = meeting.arm_i;
-    pair.arm_j = meeting.arm_j;
+    candidate.normal = geometry.normal;
+    pair.arm_i = geometry.arm_i;
+    pair.arm_j = geometry.arm_j;
     candidate.impulse = -step.change * unit;
-    Vec2 impulse = candidate.impulse * meeting.normal;
+    Vec2 impulse = candidate.impulse * geometry.normal;
     if constexpr (friction) {
       if (candidate.sliding.coefficient > 0) {
         candidate.tangential_impulse = slide(system, candidate, pair, contact, dot(relative, contact.tangent()),

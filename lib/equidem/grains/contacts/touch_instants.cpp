@@ -25,11 +25,11 @@ TouchImpulse impulse_on(const TouchInstant& contact) {
 /// Of the contact point of j, or of the wall in the drift, over that of i.
 Vec2 relative_velocity(const GrainSystem& system, const TouchImpulse& impulse) {
   const auto at = [&](std::int32_t body, Vec2 arm) {
-    const GrainMotion& motion = system.motions[static_cast<std::size_t>(body)];
+    const GrainMotion& motion = system.bodies.motions[static_cast<std::size_t>(body)];
     return motion.velocity + motion.spin * perpendicular(arm);
   };
   const Vec2 other = impulse.j >= 0 ? at(impulse.j, impulse.arm_j)
-                                    : system.walls[static_cast<std::size_t>(~impulse.j)].passed_velocity;
+                                    : system.walls.places[static_cast<std::size_t>(~impulse.j)].passed_velocity;
   return other - at(impulse.i, impulse.arm_i);
 }
 
@@ -105,15 +105,15 @@ void give_touch_impulses(GrainSystem& system) {
                       (impulse.tangential_spring + impulse.tangential) * tangent;
     const auto push = [&](std::int32_t body, Vec2 arm, Vec2 on) {
       const auto b = static_cast<std::size_t>(body);
-      system.motions[b].velocity += system.bodies[b].inverse_mass * on;
-      system.motions[b].spin += system.bodies[b].inverse_moment * cross(arm, on);
+      system.bodies.motions[b].velocity += system.bodies.constants[b].inverse_mass * on;
+      system.bodies.motions[b].spin += system.bodies.constants[b].inverse_moment * cross(arm, on);
     };
     const Vec2 before = relative_velocity(system, impulse);
     push(impulse.i, impulse.arm_i, -on_j);
     if (impulse.j >= 0) {
       push(impulse.j, impulse.arm_j, on_j);
     } else {
-      system.lost.work_of_walls -= dot(on_j, system.walls[static_cast<std::size_t>(~impulse.j)].passed_velocity);
+      system.lost.work_of_walls -= dot(on_j, system.walls.places[static_cast<std::size_t>(~impulse.j)].passed_velocity);
     }
     const Vec2 mean = 0.5 * (before + relative_velocity(system, impulse));
     system.lost.lost_dashpot -= impulse.dashpot * dot(mean, impulse.normal);

@@ -44,7 +44,7 @@ inline Vec2 impulse_of(const Candidate& candidate) {
 }
 
 inline Vec2 passed_velocity(const GrainSystem& system, const Candidate& candidate) {
-  return candidate.j >= 0 ? Vec2{} : system.walls[static_cast<std::size_t>(~candidate.j)].passed_velocity;
+  return candidate.j >= 0 ? Vec2{} : system.walls.places[static_cast<std::size_t>(~candidate.j)].passed_velocity;
 }
 
 /// The end of a contact; it is let go without a further loss.
@@ -67,7 +67,7 @@ void end_contact(GrainSystem& system, Candidate& candidate, const TouchPlace& pl
   system.lost.work_of_walls -= 0.5 * dot(impulse_of(candidate), passed_velocity(system, candidate));
   end_within_drift(system, end);
   candidate.stretch = 0;
-  let_go(system, candidate);
+  forget_contact(system, candidate);
 }
 
 /// A step of a contact: candidate remembers it.

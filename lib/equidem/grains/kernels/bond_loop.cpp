@@ -15,7 +15,7 @@ namespace {
 
 using namespace eight;
 
-static_assert(sizeof(Push) == sizeof(Half));
+static_assert(sizeof(BodyImpulse) == sizeof(Half));
 
 enum class BondTask { resist_exactly, resist_explicitly };
 
@@ -60,18 +60,18 @@ EQUIDEM_ALWAYS_INLINE Lanes mean_of_decay(const Lanes& x) {
   return mean;
 }
 
-/// Bonds at the start of the step: the way they lie, rates, and what the pushes as they stand add to these.
+/// Bonds at the start of the step: the way they lie, rates, and what the impulses as they stand add to these.
 struct BondLanes {
   Lanes nx, ny, share;  ///< share: levers over radii
   Lanes normal_rate, tangential_rate, normal_gain, tangential_gain;
 };
 
-/// What the pushes as they stand add to the rates of bond k: along x, along y, to the speed of the rims by torques and
-/// by pushes along them.
-EQUIDEM_ALWAYS_INLINE Half gain_by_pushes(const BondGroup& group, const Push* pushes, int k) {
+/// What the impulses as they stand add to the rates of bond k: along x, along y, to the speed of the rims by torques
+/// and by impulses along them.
+EQUIDEM_ALWAYS_INLINE Half gain_by_impulses(const BondGroup& group, const BodyImpulse* impulses, int k) {
   Half push_i, push_j, gain_i, gain_j;
-  std::memcpy(&push_i, &pushes[group.i[k]], sizeof push_i);
-  std::memcpy(&push_j, &pushes[group.j[k]], sizeof push_j);
+  std::memcpy(&push_i, &impulses[group.i[k]], sizeof push_i);
+  std::memcpy(&push_j, &impulses[group.j[k]], sizeof push_j);
   std::memcpy(&gain_i, group.gain_i[k], sizeof gain_i);
   std::memcpy(&gain_j, group.gain_j[k], sizeof gain_j);
   return push_i * gain_i + push_j * gain_j;
@@ -87,7 +87,7 @@ EQUIDEM_ALWAYS_INLINE BondFrames frames_of(const BondGroup& group, const Lanes& 
   return {bx * inverse, by * inverse, distance * load(group.per_reach)};
 }
 
-EQUIDEM_ALWAYS_INLINE BondLanes look_at(const BondGroup& group, const Push* pushes, const PairBody* bodies) {
+EQUIDEM_ALWAYS_INLINE BondLanes look_at(const BondGroup& group, const BodyImpulse* impulses, const PairBody* bodies) {
   // differences j - i, sums of the speeds of the rims
   constexpr long long minus = std::numeric_limits<long long>::min();
   const Choice difference = {minus, minus, minus, minus, 0, 0, 0, 0};
@@ -96,7 +96,7 @@ EQUIDEM_ALWAYS_INLINE BondLanes look_at(const BondGroup& group, const Push* push
   for (int k = 0; k < 8; ++k) {
     const Lanes of_i = load(&bodies[group.i[k]].position.x), of_j = load(&bodies[group.j[k]].position.x);
     m[k] = of_j + reinterpret_cast<Lanes>(reinterpret_cast<Choice>(of_i) ^ difference);
-    row[k] = gain_by_pushes(group, pushes, k);
+    row[k] = gain_by_impulses(group, impulses, k);
   }
   transpose(m);
   const Lanes &u = m[2], &v = m[3], &rims = m[4];
@@ -112,13 +112,14 @@ EQUIDEM_ALWAYS_INLINE BondLanes look_at(const BondGroup& group, const Push* push
           gy * nx - gx * ny - share * (by_torque + by_rim)};
 }
 
-/// In the half kick that opens a step of a Verlet scheme, at the mean rates of which a quarter of all pushes has acted.
+/// In the half kick that opens a step of a Verlet scheme, at the mean rates of which a quarter of all impulses has
+/// acted.
 EQUIDEM_ALWAYS_INLINE void count_all_opening_kicks(GrainSystem& system) {
-  const GrainMotion* motions = system.motions.data();
-  const GrainBody* bodies = system.bodies.data();
-  const Push* pushes = system.pushes.data();
+  const GrainMotion* motions = system.bodies.motions.data();
+  const GrainBody* bodies = system.bodies.constants.data();
+  const BodyImpulse* impulses = system.bodies.impulses.data();
   Lanes lost{};
-  for (const BondGroup& group : system.packed_bonds.groups) {
+  for (const BondGroup& group : system.bonds.packed.groups) {
     Lanes m[8];
     for (int k = 0; k < 8; ++k) {
       const std::int32_t i = group.i[k], j = group.j[k];
@@ -126,8 +127,8 @@ EQUIDEM_ALWAYS_INLINE void count_all_opening_kicks(GrainSystem& system) {
       std::memcpy(&of_i, &motions[i], sizeof of_i);
       std::memcpy(&of_j, &motions[j], sizeof of_j);
       const Half rims = {0, 0, motions[i].spin * bodies[i].radius + motions[j].spin * bodies[j].radius, 0};
-      m[k] =
-          __builtin_shufflevector(of_j - of_i, rims + 0.25 * gain_by_pushes(group, pushes, k), 0, 1, 2, 3, 4, 5, 6, 7);
+      m[k] = __builtin_shufflevector(of_j - of_i, rims + 0.25 * gain_by_impulses(group, impulses, k), 0, 1, 2, 3, 4, 5,
+                                     6, 7);
     }
     transpose(m);
     const auto [nx, ny, share] = frames_of(group, m[0], m[1]);
@@ -142,13 +143,13 @@ EQUIDEM_ALWAYS_INLINE void count_all_opening_kicks(GrainSystem& system) {
 
 template <BondTask task>
 EQUIDEM_ALWAYS_INLINE void resist(GrainSystem& system) {
-  const PairBody* seen = system.near.bodies.data();
-  Push* pushes = system.pushes.data();
+  const PairBody* seen = system.contacts.near.bodies.data();
+  BodyImpulse* impulses = system.bodies.impulses.data();
   const bool verlet = system.options.verlet();
-  const Lanes half = all(verlet ? 0.25 : 0.5);  // share of all pushes of a step that has acted
+  const Lanes half = all(verlet ? 0.25 : 0.5);  // share of all impulses of a step that has acted
   Lanes lost{}, nearest = all(1);
-  for (BondGroup& group : system.packed_bonds.groups) {
-    const BondLanes bond = look_at(group, pushes, seen);
+  for (BondGroup& group : system.bonds.packed.groups) {
+    const BondLanes bond = look_at(group, impulses, seen);
     nearest = smaller(bond.share, nearest);
     const Lanes mass = load(group.mass), tangential_dashpot = load(group.tangential);
     const Lanes tangential_mass = mass + bond.share * bond.share * load(group.turning);
@@ -177,8 +178,8 @@ EQUIDEM_ALWAYS_INLINE void resist(GrainSystem& system) {
       rows_of(x, y, Lanes{}, -rim, on_j);
     }
     for (int k = 0; k < 8; ++k) {
-      subtract(&pushes[group.i[k]], on_i[k]);
-      add(&pushes[group.j[k]], on_j[k]);
+      subtract(&impulses[group.i[k]], on_i[k]);
+      add(&impulses[group.j[k]], on_j[k]);
     }
   }
   double sum = 0, least = 1;
@@ -235,8 +236,8 @@ void put_row(const GrainBody& body, double sign, BondGroup::Row& row) {
 
 /// Lanes not yet used do nothing, with bodies that are there.
 void put(const GrainSystem& system, const TiedPair& bond, BondGroup& group, std::size_t from) {
-  const GrainBody& i = system.bodies[static_cast<std::size_t>(bond.i)];
-  const GrainBody& j = system.bodies[static_cast<std::size_t>(bond.j)];
+  const GrainBody& i = system.bodies.constants[static_cast<std::size_t>(bond.i)];
+  const GrainBody& j = system.bodies.constants[static_cast<std::size_t>(bond.j)];
   const double dt = system.dt(), inverse_mass = i.inverse_mass + j.inverse_mass;
   const bool exact = system.options.bond_step == GrainOptions::BondStep::exact;
   const double mean = exact ? decay(bond.dashpots.normal * inverse_mass * dt).mean : 1;
@@ -261,30 +262,30 @@ void put(const GrainSystem& system, const TiedPair& bond, BondGroup& group, std:
 }  // namespace
 
 void pack_bonds(GrainSystem& system) {
-  std::vector<int> bonds_of(system.bodies.size());
-  for (const TiedPair& bond : system.bonds) {
+  std::vector<int> bonds_of(system.bodies.constants.size());
+  for (const TiedPair& bond : system.bonds.tied) {
     ++bonds_of[static_cast<std::size_t>(bond.i)];
     ++bonds_of[static_cast<std::size_t>(bond.j)];
   }
   std::int32_t packed = 0;
-  for (std::size_t b = 0; b < system.bonds.size(); ++b) {
-    TiedPair& bond = system.bonds[b];
-    if (bond.has_springs()) system.packed_bonds.sprung.push_back(b);
+  for (std::size_t b = 0; b < system.bonds.tied.size(); ++b) {
+    TiedPair& bond = system.bonds.tied[b];
+    if (bond.has_springs()) system.bonds.packed.sprung.push_back(b);
     const bool alone =
         bonds_of[static_cast<std::size_t>(bond.i)] == 1 && bonds_of[static_cast<std::size_t>(bond.j)] == 1;
-    if (!system.near.active || !alone || bond.dashpots.rolling > 0) {
-      system.packed_bonds.one_by_one.push_back(b);
+    if (!system.contacts.near.active || !alone || bond.dashpots.rolling > 0) {
+      system.bonds.packed.one_by_one.push_back(b);
       continue;
     }
     bond.packed = packed++;
     const std::size_t lane = static_cast<std::size_t>(bond.packed) % lanes_of_pairs;
-    if (lane == 0) system.packed_bonds.groups.emplace_back();
-    put(system, bond, system.packed_bonds.groups.back(), lane);
+    if (lane == 0) system.bonds.packed.groups.emplace_back();
+    put(system, bond, system.bonds.packed.groups.back(), lane);
   }
 }
 
 void push_packed_bonds(GrainSystem& system) {
-  if (system.packed_bonds.groups.empty()) return;
+  if (system.bonds.packed.groups.empty()) return;
   if (system.options.bond_step == GrainOptions::BondStep::exact) {
     push_by<BondTask::resist_exactly>(system);
   } else {
@@ -293,7 +294,7 @@ void push_packed_bonds(GrainSystem& system) {
 }
 
 void count_opening_kick_of_packed_bonds(GrainSystem& system) {
-  if (system.packed_bonds.groups.empty()) return;
+  if (system.bonds.packed.groups.empty()) return;
 #if defined(__x86_64__)
   if (vector_width() == VectorWidth::bits_512) return count_by_eights(system);
   if (vector_width() == VectorWidth::bits_256) return count_by_fours(system);
@@ -304,7 +305,7 @@ void count_opening_kick_of_packed_bonds(GrainSystem& system) {
 BondModes last_impulse(const GrainSystem& system, const TiedPair& bond) {
   if (bond.packed < 0) return bond.impulse;
   const auto p = static_cast<std::size_t>(bond.packed);
-  const BondGroup& group = system.packed_bonds.groups[p / lanes_of_pairs];
+  const BondGroup& group = system.bonds.packed.groups[p / lanes_of_pairs];
   return {group.normal_impulse[p % lanes_of_pairs], group.tangential_impulse[p % lanes_of_pairs], 0};
 }
 
@@ -312,7 +313,7 @@ void take_last_impulse(GrainSystem& system, TiedPair& bond, const BondModes& imp
   bond.impulse = impulse;
   if (bond.packed < 0) return;
   const auto p = static_cast<std::size_t>(bond.packed);
-  BondGroup& group = system.packed_bonds.groups[p / lanes_of_pairs];
+  BondGroup& group = system.bonds.packed.groups[p / lanes_of_pairs];
   group.normal_impulse[p % lanes_of_pairs] = impulse.normal;
   group.tangential_impulse[p % lanes_of_pairs] = impulse.tangential;
 }

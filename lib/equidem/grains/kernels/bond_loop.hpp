@@ -49,7 +49,7 @@ struct PackedBonds {
 /// Pack those bonds of the system that can go by eights.
 void pack_bonds(GrainSystem& system);
 
-/// Add what packed bonds give to the pushes, and count what they take; see push_bonds().
+/// Add what packed bonds give to the impulses, and count what they take; see add_bond_impulses().
 void push_packed_bonds(GrainSystem& system);
 
 /// See count_opening_kick().

@@ -219,7 +219,8 @@ EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers& numbers, const Geometry& g
   if constexpr (kind.verlet) {
     if (changes) [[unlikely]] {
       Lanes lever;
-      for (int k = 0; k < 8; ++k) lever[k] = numbers.system->bodies[static_cast<std::size_t>(group.i[k])].radius;
+      for (int k = 0; k < 8; ++k)
+        lever[k] = numbers.system->bodies.constants[static_cast<std::size_t>(group.i[k])].radius;
       lever = lever / load(group.reach) * geometry.distance;
       const Lanes other = lever - geometry.distance;
       count_instants(*numbers.system, {begun,
@@ -255,7 +256,7 @@ EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers& numbers, const Geometry& g
 }
 
 template <PairLoopKind kind>
-EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome& outcome, Push* pushes, LaneSums& sums) {
+EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome& outcome, BodyImpulse* impulses, LaneSums& sums) {
   constexpr long long minus = std::numeric_limits<long long>::min();
   if (!outcome.any) return;
   Half row[8];
@@ -270,15 +271,15 @@ EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome& outcome, 
   // of both bodies the rim is pushed the same way round, and its lever is the radius
   const HalfChoice turned = {0, 0, 0, minus};
   for (int k = 0; k < 8; ++k) {
-    subtract(&pushes[group.i[k]], row[k]);
+    subtract(&impulses[group.i[k]], row[k]);
     if constexpr (kind.friction) row[k] = reinterpret_cast<Half>(reinterpret_cast<HalfChoice>(row[k]) ^ turned);
-    add(&pushes[group.j[k]], row[k]);
+    add(&impulses[group.j[k]], row[k]);
   }
 }
 
 template <class Law, PairLoopKind kind>
 EQUIDEM_ALWAYS_INLINE void collide_all(GrainSystem& system) {
-  NearPairs& near = system.near;
+  NearPairs& near = system.contacts.near;
   const bool verlet = system.options.verlet();
   const PairLaw& law = near.law;
   const LoopNumbers numbers{{all(law.stiffness), all(law.least), all(law.friction), all(law.tangential_stiffness),
@@ -291,7 +292,7 @@ EQUIDEM_ALWAYS_INLINE void collide_all(GrainSystem& system) {
   near.records.resize(near.record ? near.groups.size() : 0);
   LaneSums sums;
   const PairBody* bodies = near.bodies.data();
-  Push* pushes = system.pushes.data();
+  BodyImpulse* impulses = system.bodies.impulses.data();
   Geometry geometry[groups_at_once];
   Outcome outcome[groups_at_once];
   const std::size_t count = near.groups.size();
@@ -307,7 +308,7 @@ EQUIDEM_ALWAYS_INLINE void collide_all(GrainSystem& system) {
                          kind.equal ? nullptr : laws + (first + g), near.record ? records + (first + g) : nullptr, sums,
                          outcome[g]);
     }
-    for (std::size_t g = 0; g < here; ++g) give<kind>(groups[first + g], outcome[g], pushes, sums);
+    for (std::size_t g = 0; g < here; ++g) give<kind>(groups[first + g], outcome[g], impulses, sums);
   }
   add(sums, system);
 }
@@ -341,7 +342,7 @@ NearPairs::Loop choose() {
 
 template <class Law, bool equal>
 NearPairs::Loop choose(const GrainSystem& system) {
-  if (system.near.rigid) {
+  if (system.contacts.near.rigid) {
     return system.options.verlet() ? choose<Law, PairLoopKind{true, equal, true, true}>()
                                    : choose<Law, PairLoopKind{true, equal, false, true}>();
   }
@@ -358,7 +359,7 @@ NearPairs::Loop choose(const GrainSystem& system) {
 NearPairs::Loop near_pair_loop(const GrainSystem& system) {
   return visit_law(system.options.law, [&]<class Law>(std::type_identity<Law>) -> NearPairs::Loop {
     if constexpr (Law::kind == LawKind::force) {
-      return system.near.equal ? choose<Law, true>(system) : choose<Law, false>(system);
+      return system.contacts.near.equal ? choose<Law, true>(system) : choose<Law, false>(system);
     } else {
       return nullptr;
     }

@@ -28,19 +28,19 @@ template <bool turning>
 double move(GrainSystem& system) {
   const double dt = system.dt();
   const Pair fall = dt * load_pair(system.scene.gravity);
-  const std::size_t count = system.motions.size();
-  const GrainBody* bodies = system.bodies.data();
-  const GrainMotion* motions = system.motions.data();
-  GrainMotion* next = system.next.data();
-  Push* pushes = system.pushes.data();
-  PairBody* pair_bodies = system.near.bodies.data();
+  const std::size_t count = system.bodies.motions.size();
+  const GrainBody* bodies = system.bodies.constants.data();
+  const GrainMotion* motions = system.bodies.motions.data();
+  GrainMotion* next = system.bodies.next.data();
+  BodyImpulse* impulses = system.bodies.impulses.data();
+  PairBody* pair_bodies = system.contacts.near.bodies.data();
   double longest = 0, none = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const GrainBody& body = bodies[i];
     const GrainMotion& before = motions[i];
     GrainMotion& after = next[i];
     PairBody& seen = pair_bodies[i];
-    const Pair gain = body.inverse_mass * load_pair(pushes[i].impulse);
+    const Pair gain = body.inverse_mass * load_pair(impulses[i].impulse);
     const Pair velocity = load_pair(before.velocity) + (gain + fall);
     const Pair position = load_pair(before.position), moved = position + dt * velocity;
     store_pair(moved, after.position);
@@ -51,8 +51,8 @@ double move(GrainSystem& system) {
     double spin = before.spin;
     if constexpr (turning) {
       // near pairs gave forces along the rim
-      const double torque = pushes[i].torque + body.radius * pushes[i].rim;
-      store_pair(Pair{torque, 0}, pushes[i].torque);
+      const double torque = impulses[i].torque + body.radius * impulses[i].rim;
+      store_pair(Pair{torque, 0}, impulses[i].torque);
       const double turn = body.inverse_moment * torque;
       spin += turn;
       seen.rim_speed = spin * body.radius;
@@ -70,7 +70,7 @@ double move(GrainSystem& system) {
 }  // namespace
 
 void move_pair_bodies(GrainSystem& system) {
-  const bool turning = system.friction || !system.bonds.empty() || !system.parts.empty();
+  const bool turning = system.friction || !system.bonds.tied.empty() || !system.shapes.parts.empty();
   system.longest_way = turning ? move<true>(system) : move<false>(system);
 }
 

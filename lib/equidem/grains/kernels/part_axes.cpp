@@ -32,12 +32,12 @@ EQUIDEM_ALWAYS_INLINE Lanes sines_of_turns(Lanes x) {
 /// Two eights at a time: of one alone each product would wait for the last.
 EQUIDEM_ALWAYS_INLINE void turn_all(GrainSystem& system) {
   constexpr std::size_t most = 16;
-  const std::size_t count = system.shaped.size();
+  const std::size_t count = system.shapes.shaped.size();
   for (std::size_t first = 0; first < count; first += most) {
     const std::size_t used = std::min(most, count - first);
     double angle[most] = {}, largest = 0;
     for (std::size_t k = 0; k < used; ++k) {
-      angle[k] = system.motions[static_cast<std::size_t>(system.shaped[first + k])].angle;
+      angle[k] = system.bodies.motions[static_cast<std::size_t>(system.shapes.shaped[first + k])].angle;
       largest = std::max(largest, std::abs(angle[k]));
     }
     double x[most], y[most];
@@ -48,7 +48,7 @@ EQUIDEM_ALWAYS_INLINE void turn_all(GrainSystem& system) {
       store(sines_of_turns(turns), y + k);
     }
     for (std::size_t k = 0; k < used; ++k) {
-      system.axes[static_cast<std::size_t>(system.shaped[first + k])] =
+      system.shapes.axes[static_cast<std::size_t>(system.shapes.shaped[first + k])] =
           largest < most_turns ? Vec2{x[k], y[k]} : axis_at(angle[k]);
     }
   }

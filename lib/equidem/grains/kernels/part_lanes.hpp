@@ -3,7 +3,7 @@
 /// How eight pairs of parts stand to each other, computed at once.
 #pragma once
 
-#include "equidem/grains/contacts/part_meeting.hpp"
+#include "equidem/grains/contacts/part_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/kernels/pair_lanes.hpp"
 
@@ -74,8 +74,8 @@ EQUIDEM_ALWAYS_INLINE Standing standing_of(const PartBody* bodies, const PartGro
   return s;
 }
 
-/// PartMeeting, and which lanes touch.
-struct Meetings {
+/// PartGeometry, and which lanes touch.
+struct GeometryLanes {
   Choice touch;
   Lanes overlap;
   Vectors normal;
@@ -83,7 +83,8 @@ struct Meetings {
   Lanes sunk_i, sunk_j;
 };
 
-EQUIDEM_ALWAYS_INLINE Meetings meetings_of_round_parts(const PartGroup& group, const Standing& s, const Choice& used) {
+EQUIDEM_ALWAYS_INLINE GeometryLanes geometry_of_round_parts(const PartGroup& group, const Standing& s,
+                                                            const Choice& used) {
   const Lanes square = dot(s.branch, s.branch), distance = square_root(square);
   const Lanes overlap = load(group.numbers[PartGroup::reach]) - distance;
   const Choice distinct = square > 0;
@@ -158,8 +159,8 @@ struct HardLanes {
 
 /// contact_of_parts(): from the last normal, by Newton's way where it is short and certain to lead to the highest
 /// maximum. What comes out in a lane depends on that lane alone.
-EQUIDEM_ALWAYS_INLINE Meetings meetings_of_ellipses(PartGroup& group, const Standing& s, const Choice& used,
-                                                    const Choice& alive) {
+EQUIDEM_ALWAYS_INLINE GeometryLanes geometry_of_ellipses(PartGroup& group, const Standing& s, const Choice& used,
+                                                         const Choice& alive) {
   constexpr int most_steps = 3;
   const Lanes a_i = load(group.numbers[PartGroup::a_i]), b_i = load(group.numbers[PartGroup::b_i]);
   const Lanes a_j = load(group.numbers[PartGroup::a_j]), b_j = load(group.numbers[PartGroup::b_j]);
@@ -201,7 +202,7 @@ EQUIDEM_ALWAYS_INLINE Meetings meetings_of_ellipses(PartGroup& group, const Stan
     n = choose(done, n, length * (n + turn * perpendicular(n)));
   }
   const Lanes turn = turn_to_top(first, of_i, of_j, per_bend);
-  Meetings result;
+  GeometryLanes result;
   gap = choose(apart, gap, gap + 0.5 * first * slope);
   Vectors normal = choose(apart, n, (1 - 0.5 * turn * turn) * n + turn * perpendicular(n));
   Vectors to_i = support_points(of_i, n, turn), to_j = Vectors{} - support_points(of_j, n, turn);

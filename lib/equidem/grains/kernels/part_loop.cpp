@@ -45,7 +45,7 @@ EQUIDEM_ALWAYS_INLINE LawLanes law_of(const PartGroup& group) {
 
 template <class Law, PartLoopKind kind>
 EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PartBody* bodies,
-                                         const std::int32_t* body_of_part, Push* pushes, PartGroup& group,
+                                         const std::int32_t* body_of_part, BodyImpulse* impulses, PartGroup& group,
                                          LaneSums& sums) {
   const double dt = numbers.dt;
   Choice since;
@@ -53,11 +53,11 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PartB
   const Choice used = ~negative(since - PairGroup::apart), alive = ~negative(since - (PairGroup::apart + 1));
   const Standing s = standing_of<kind.round>(bodies, group);
   const Vectors normal_before{load(group.numbers[PartGroup::normal_x]), load(group.numbers[PartGroup::normal_y])};
-  Meetings at;
+  GeometryLanes at;
   if constexpr (kind.round) {
-    at = meetings_of_round_parts(group, s, used);
+    at = geometry_of_round_parts(group, s, used);
   } else {
-    at = meetings_of_ellipses(group, s, used, alive);
+    at = geometry_of_ellipses(group, s, used, alive);
   }
   const Choice touch = at.touch, begun = touch & ~alive, ended = alive & ~touch;
   const bool changes = any(touch ^ alive);
@@ -207,20 +207,20 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PartB
   rows_of(only(touch, push.x), only(touch, push.y), only(touch, torque_i), Lanes{}, row);
   rows_of(only(touch, push.x), only(touch, push.y), only(touch, torque_j), Lanes{}, other);
   for (int k = 0; k < 8; ++k) {
-    subtract(&pushes[body_of_part[group.i[k]]], row[k]);
-    add(&pushes[body_of_part[group.j[k]]], other[k]);
+    subtract(&impulses[body_of_part[group.i[k]]], row[k]);
+    add(&impulses[body_of_part[group.j[k]]], other[k]);
   }
 }
 
 template <class Law, PartLoopKind kind>
 EQUIDEM_ALWAYS_INLINE void collide_all(GrainSystem& system, NearParts::List& list) {
   const LoopNumbers numbers{system.dt(), system.step - (kind.verlet ? 1 : 0),
-                            system.options.scheme == GrainOptions::Scheme::corrected_verlet, system.near.record,
-                            &system};
+                            system.options.scheme == GrainOptions::Scheme::corrected_verlet,
+                            system.contacts.near.record, &system};
   LaneSums sums;
   for (PartGroup& group : list.groups) {
-    collide_group<Law, kind>(numbers, system.near_parts.bodies.data(), system.body_of_part.data(), system.pushes.data(),
-                             group, sums);
+    collide_group<Law, kind>(numbers, system.contacts.near_parts.bodies.data(), system.shapes.body_of_part.data(),
+                             system.bodies.impulses.data(), group, sums);
   }
   add(sums, system);
 }

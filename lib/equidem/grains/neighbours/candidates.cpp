@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "equidem/contact/collision_stiffness.hpp"
-#include "equidem/grains/contacts/meeting.hpp"
+#include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/neighbours/part_pairs.hpp"
 
@@ -42,9 +42,9 @@ double dashpot_of(const GrainSystem& system, const Candidate& candidate) {
 }
 
 void set_constants(const GrainSystem& system, Candidate& candidate) {
-  const GrainBody& bi = system.bodies[static_cast<std::size_t>(candidate.i)];
+  const GrainBody& bi = system.bodies.constants[static_cast<std::size_t>(candidate.i)];
   double inverse_mass = bi.inverse_mass;
-  if (candidate.j >= 0) inverse_mass += system.bodies[static_cast<std::size_t>(candidate.j)].inverse_mass;
+  if (candidate.j >= 0) inverse_mass += system.bodies.constants[static_cast<std::size_t>(candidate.j)].inverse_mass;
   const PairProperties& properties = system.properties(candidate);
   const double dt = system.dt();
   const double m = candidate.reduced_mass = 1 / inverse_mass;
@@ -62,29 +62,29 @@ void set_constants(const GrainSystem& system, Candidate& candidate) {
     candidate.sliding.stiffness = properties.tangential_ratio * candidate.stiffness * length_factor;
     candidate.sliding.cap = properties.cap;
     // of bodies that just touch: it must not depend on where they were when they were found
-    const Meeting meeting{
-        0, {}, bi.radius, candidate.j >= 0 ? system.bodies[static_cast<std::size_t>(candidate.j)].radius : 0};
+    const ContactGeometry geometry{
+        0, {}, bi.radius, candidate.j >= 0 ? system.bodies.constants[static_cast<std::size_t>(candidate.j)].radius : 0};
     candidate.sliding.dashpot = 2 * properties.tangential_damping *
-                                std::sqrt(tangential_mass(system, candidate, meeting) * candidate.sliding.stiffness);
+                                std::sqrt(tangential_mass(system, candidate, geometry) * candidate.sliding.stiffness);
   }
 }
 
 void find_candidates(GrainSystem& system) {
-  std::vector<Circle>& circles = system.circles;
+  std::vector<Circle>& circles = system.contacts.circles;
   circles.clear();
-  for (std::size_t i = 0; i < system.bodies.size(); ++i) {
-    circles.push_back({system.motions[i].position, system.bodies[i].radius});
+  for (std::size_t i = 0; i < system.bodies.constants.size(); ++i) {
+    circles.push_back({system.bodies.motions[i].position, system.bodies.constants[i].radius});
   }
-  const NeighbourList& list = system.finder.within(circles, system.margin);
+  const NeighbourList& list = system.contacts.finder.within(circles, system.contacts.margin);
   std::vector<Candidate> before;
   std::vector<ExactPair> pairs_before;
   std::vector<PartPair> parts_before;
-  before.swap(system.candidates);
-  pairs_before.swap(system.exact_pairs);
-  parts_before.swap(system.part_pairs);
+  before.swap(system.contacts.candidates);
+  pairs_before.swap(system.contacts.exact_pairs);
+  parts_before.swap(system.contacts.part_pairs);
   const bool exact = is_simultaneous(system.options.law);
   std::size_t k = 0;
-  const bool shapes = !system.parts.empty();
+  const bool shapes = !system.shapes.parts.empty();
   const auto add = [&](std::int32_t i, std::int32_t j, const PartPair* parts = nullptr) {
     const auto key = [&](std::int32_t a, std::int32_t b, const PartPair* p) {
       return std::tuple(a, rank(b), p ? p->i : 0, p ? p->j : 0);
@@ -92,26 +92,29 @@ void find_candidates(GrainSystem& system) {
     const auto key_before = [&] { return key(before[k].i, before[k].j, shapes ? &parts_before[k] : nullptr); };
     while (k < before.size() && key_before() < key(i, j, parts)) ++k;
     if (k < before.size() && key_before() == key(i, j, parts)) {
-      system.candidates.push_back(before[k]);
-      if (exact) system.exact_pairs.push_back(pairs_before[k]);
-      if (shapes) system.part_pairs.push_back(parts_before[k]);
+      system.contacts.candidates.push_back(before[k]);
+      if (exact) system.contacts.exact_pairs.push_back(pairs_before[k]);
+      if (shapes) system.contacts.part_pairs.push_back(parts_before[k]);
       return;
     }
     Candidate candidate;
     candidate.i = i;
     candidate.j = j;
     set_constants(system, candidate);
-    if (shapes) system.part_pairs.push_back(with_damping(system, candidate, *parts));
-    system.candidates.push_back(candidate);
-    if (exact) system.exact_pairs.push_back(exact_pair_of(system, candidate));
+    if (shapes) system.contacts.part_pairs.push_back(with_damping(system, candidate, *parts));
+    system.contacts.candidates.push_back(candidate);
+    if (exact) system.contacts.exact_pairs.push_back(exact_pair_of(system, candidate));
   };
   std::size_t next_bond = 0;
-  const bool all_near = shapes ? system.near_parts.active && system.near.active : system.near.active;
-  for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+  const bool all_near =
+      shapes ? system.contacts.near_parts.active && system.contacts.near.active : system.contacts.near.active;
+  for (std::size_t i = 0; i < system.bodies.constants.size(); ++i) {
     for (std::int64_t p = list.begin[i]; !all_near && p < list.begin[i + 1]; ++p) {
       const std::int32_t j = list.partner[static_cast<std::size_t>(p)];
-      if (are_discs(system, static_cast<std::int32_t>(i), j) ? system.near.active : system.near_parts.active) continue;
-      if (are_tied(system.bonds, next_bond, static_cast<std::int32_t>(i), j)) continue;
+      if (are_discs(system, static_cast<std::int32_t>(i), j) ? system.contacts.near.active
+                                                             : system.contacts.near_parts.active)
+        continue;
+      if (are_tied(system.bonds.tied, next_bond, static_cast<std::int32_t>(i), j)) continue;
       if (!shapes) add(static_cast<std::int32_t>(i), j);
       if (!shapes) continue;
       for (const PartPair& parts : near_parts(system, i, static_cast<std::size_t>(j))) {
@@ -119,8 +122,9 @@ void find_candidates(GrainSystem& system) {
       }
     }
     for (std::size_t w = 0; w < system.scene.walls.size(); ++w) {
-      const WallContact contact = nearest(system.scene.walls[w], system.walls[w].displacement, circles[i].centre);
-      if (!(contact.distance <= circles[i].radius + system.margin)) continue;
+      const WallContact contact =
+          nearest(system.scene.walls[w], system.walls.places[w].displacement, circles[i].centre);
+      if (!(contact.distance <= circles[i].radius + system.contacts.margin)) continue;
       const std::int32_t j = ~static_cast<std::int32_t>(w);
       if (!shapes) add(static_cast<std::int32_t>(i), j);
       if (!shapes) continue;
@@ -128,36 +132,36 @@ void find_candidates(GrainSystem& system) {
     }
   }
   cover_joints(system);
-  system.near.outer = &list;
-  if (system.near.active) find_near_pairs(system, std::sqrt(system.longest_way));
-  if (system.near_parts.active) find_near_parts(system, reach_of(system));
-  system.moved = 0;
+  system.contacts.near.outer = &list;
+  if (system.contacts.near.active) find_near_pairs(system, std::sqrt(system.longest_way));
+  if (system.contacts.near_parts.active) find_near_parts(system, reach_of(system));
+  system.contacts.moved = 0;
   ++system.counters.rebuilds;
 }
 
 bool refresh_candidates(GrainSystem& system, double reach) {
-  if (2 * (system.moved + reach) <= system.margin) {
-    system.moved += reach;
-    if (system.near.active) refresh_near_pairs(system, reach);
-    if (system.near_parts.active) refresh_near_parts(system, reach);
+  if (2 * (system.contacts.moved + reach) <= system.contacts.margin) {
+    system.contacts.moved += reach;
+    if (system.contacts.near.active) refresh_near_pairs(system, reach);
+    if (system.contacts.near_parts.active) refresh_near_parts(system, reach);
     return false;
   }
-  system.margin = std::max(system.base_margin, 8 * reach);
+  system.contacts.margin = std::max(system.contacts.base_margin, 8 * reach);
   find_candidates(system);
-  system.moved = system.near.moved = system.near_parts.moved = reach;
+  system.contacts.moved = system.contacts.near.moved = system.contacts.near_parts.moved = reach;
   return true;
 }
 
 double reach_of(const GrainSystem& system) {
   double longest = system.longest_way;
-  for (const WallPlace& wall : system.walls) {
+  for (const WallPlace& wall : system.walls.places) {
     const Vec2 way = system.dt() * wall.velocity;
     if (dot(way, way) > longest) longest = dot(way, way);
   }
   return std::sqrt(longest) + longest_turn(system);
 }
 
-void let_go(GrainSystem& system, Candidate& candidate) {
+void forget_contact(GrainSystem& system, Candidate& candidate) {
   system.lost.lost_release += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
   candidate.stretch = 0;
   candidate.touching = candidate.parted = false;
@@ -169,18 +173,18 @@ void let_go(GrainSystem& system, Candidate& candidate) {
 void place_walls(GrainSystem& system) {
   const double now = system.time();
   const double next = static_cast<double>(system.step + 1) * system.dt();
-  for (std::size_t w = 0; w < system.walls.size(); ++w) {
+  for (std::size_t w = 0; w < system.walls.places.size(); ++w) {
     const Wall& wall = system.scene.walls[w];
     if (!wall.moves() && system.step > 0) continue;  // where it always was
     const Vec2 here = wall.displacement(now);
     const Vec2 there = wall.displacement(next);
     const Vec2 velocity = (there - here) / system.dt();
-    system.walls[w] = {here, velocity, velocity, velocity};
+    system.walls.places[w] = {here, velocity, velocity, velocity};
     if (!system.options.verlet() || system.step == 0) continue;
     const double past = static_cast<double>(system.step - 1) * system.dt();
     const Vec2 before = wall.displacement(past);
-    system.walls[w].acting_velocity = (there - before) / (2 * system.dt());
-    system.walls[w].passed_velocity = (here - before) / system.dt();
+    system.walls.places[w].acting_velocity = (there - before) / (2 * system.dt());
+    system.walls.places[w].passed_velocity = (here - before) / system.dt();
   }
 }
 

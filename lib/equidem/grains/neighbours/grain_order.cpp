@@ -49,21 +49,21 @@ std::vector<std::int32_t> inverse(const std::vector<std::size_t>& order) {
 }  // namespace
 
 void order_by_place(GrainSystem& system, const GrainScene& scene) {
-  system.grain_of = sorted_by_place(
+  system.bodies.grain_of = sorted_by_place(
       scene.grains, [&](const Grain& a, const Grain& b) { return has_lesser_discs(a, b, scene.clumps); });
-  system.wall_of = sorted_by_place(scene.walls, [](const Wall&, const Wall&) { return false; });
-  system.place_of_grain = inverse(system.grain_of);
-  system.place_of_wall = inverse(system.wall_of);
+  system.walls.wall_of = sorted_by_place(scene.walls, [](const Wall&, const Wall&) { return false; });
+  system.bodies.place_of_grain = inverse(system.bodies.grain_of);
+  system.walls.place_of_wall = inverse(system.walls.wall_of);
   system.scene = scene;
   for (std::size_t k = 0; k < scene.grains.size(); ++k) {
-    const Grain& grain = scene.grains[system.grain_of[k]];
+    const Grain& grain = scene.grains[system.bodies.grain_of[k]];
     system.scene.grains[k] = grain;
-    system.bodies.push_back({grain.radius, 1 / grain.inertia.mass, 1 / grain.inertia.moment, grain.kind});
-    system.motions.push_back({grain.position, grain.velocity, grain.spin, grain.angle});
+    system.bodies.constants.push_back({grain.radius, 1 / grain.inertia.mass, 1 / grain.inertia.moment, grain.kind});
+    system.bodies.motions.push_back({grain.position, grain.velocity, grain.spin, grain.angle});
   }
-  for (std::size_t k = 0; k < scene.walls.size(); ++k) system.scene.walls[k] = scene.walls[system.wall_of[k]];
-  system.pushes.resize(scene.grains.size());
-  system.walls.resize(scene.walls.size());
+  for (std::size_t k = 0; k < scene.walls.size(); ++k) system.scene.walls[k] = scene.walls[system.walls.wall_of[k]];
+  system.bodies.impulses.resize(scene.grains.size());
+  system.walls.places.resize(scene.walls.size());
   place_parts(system);
 }
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "equidem/grains/contacts/meeting.hpp"
+#include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/neighbours/near_parts.hpp"
@@ -40,12 +40,12 @@ std::vector<const PairProperties*> pairs_of_grains(const GrainScene& scene) {
 }
 
 /// Which pairs of grains with friction there are.
-struct Rubbing {
+struct FrictionKinds {
   bool with_springs = false, without_springs = false;
 };
 
-Rubbing rubbing_of(const GrainScene& scene) {
-  Rubbing found;
+FrictionKinds friction_kinds(const GrainScene& scene) {
+  FrictionKinds found;
   for (const PairProperties* pair : pairs_of_grains(scene)) {
     if (pair->friction > 0) (pair->tangential_ratio > 0 ? found.with_springs : found.without_springs) = true;
   }
@@ -57,7 +57,7 @@ class PairLists {
  public:
   explicit PairLists(GrainSystem& system)
       : system_(system),
-        near_(system.near),
+        near_(system.contacts.near),
         groups_(std::move(near_.groups)),
         slips_(std::move(near_.slips)),
         laws_(std::move(near_.laws)),
@@ -98,11 +98,11 @@ class PairLists {
     set_constants(system_, candidate);
     const std::size_t k = make_room(i, j);
     near_.groups.back().since[k] = PairGroup::apart;
-    near_.groups.back().reach[k] =
-        system_.bodies[static_cast<std::size_t>(i)].radius + system_.bodies[static_cast<std::size_t>(j)].radius;
+    near_.groups.back().reach[k] = system_.bodies.constants[static_cast<std::size_t>(i)].radius +
+                                   system_.bodies.constants[static_cast<std::size_t>(j)].radius;
     near_.groups.back().dashpot[k] = dashpot_of(system_, candidate);
-    const GrainBody &bi = system_.bodies[static_cast<std::size_t>(i)],
-                    &bj = system_.bodies[static_cast<std::size_t>(j)];
+    const GrainBody &bi = system_.bodies.constants[static_cast<std::size_t>(i)],
+                    &bj = system_.bodies.constants[static_cast<std::size_t>(j)];
     near_.groups.back().mass[k] = bi.inverse_mass + bj.inverse_mass;
     near_.groups.back().impulse[k] = 0;
     if (system_.friction) {
@@ -186,24 +186,24 @@ std::size_t NearPairs::bytes() const {
          records.capacity() * sizeof(PairRecords);
 }
 
-bool go_by_eights(const GrainSystem& system) {
-  return gives_force(system.options.law) && !rubbing_of(system.scene).without_springs;
+bool eight_at_a_time(const GrainSystem& system) {
+  return gives_force(system.options.law) && !friction_kinds(system.scene).without_springs;
 }
 
 double margin_of_near_pairs(const GrainSystem& system, double size, double reach) {
   const double wanted = std::max({least_margin * size, margin_of_mean * std::sqrt(reach * size), 4 * reach});
-  return std::min(wanted, system.margin);
+  return std::min(wanted, system.contacts.margin);
 }
 
 void prepare_near_pairs(GrainSystem& system) {
-  NearPairs& near = system.near;
+  NearPairs& near = system.contacts.near;
   const std::vector<Grain>& grains = system.scene.grains;
   const auto discs =
       std::count_if(grains.begin(), grains.end(), [](const Grain& grain) { return grain.shape() == GrainShape::disc; });
   if (discs < 2 || !gives_force(system.options.law)) return;
-  const Rubbing rubbing = rubbing_of(system.scene);
-  if (rubbing.without_springs && (rubbing.with_springs || !system.parts.empty())) return;
-  near.rigid = rubbing.without_springs;
+  const FrictionKinds kinds_of_friction = friction_kinds(system.scene);
+  if (kinds_of_friction.without_springs && (kinds_of_friction.with_springs || !system.shapes.parts.empty())) return;
+  near.rigid = kinds_of_friction.without_springs;
   const std::vector<const PairProperties*> pairs = pairs_of_grains(system.scene);
   near.active = true;
   near.equal = std::all_of(pairs.begin(), pairs.end(), [&](const PairProperties* pair) {
@@ -218,28 +218,28 @@ void prepare_near_pairs(GrainSystem& system) {
     near.law = law_of(candidate);
   }
   near.loop = near_pair_loop(system);
-  near.bodies.resize(system.bodies.size());
+  near.bodies.resize(system.bodies.constants.size());
   load_pair_bodies(system);
 }
 
 void find_near_pairs(GrainSystem& system, double reach) {
-  const NeighbourList& list = *system.near.outer;
-  NearPairs& near = system.near;
+  const NeighbourList& list = *system.contacts.near.outer;
+  NearPairs& near = system.contacts.near;
   near.margin = margin_of_near_pairs(system, system.smallest_radius, reach);
   near.moved = 0;
   PairLists lists(system);
-  const bool shapes = !system.parts.empty();
+  const bool shapes = !system.shapes.parts.empty();
   std::size_t next_bond = 0;
-  for (std::size_t i = 0; i < system.bodies.size(); ++i) {
-    const Vec2 centre = system.motions[i].position;
-    const double own = system.bodies[i].radius + near.margin;
+  for (std::size_t i = 0; i < system.bodies.constants.size(); ++i) {
+    const Vec2 centre = system.bodies.motions[i].position;
+    const double own = system.bodies.constants[i].radius + near.margin;
     for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
       const std::int32_t partner = list.partner[static_cast<std::size_t>(p)];
-      if (are_tied(system.bonds, next_bond, static_cast<std::int32_t>(i), partner)) continue;
+      if (are_tied(system.bonds.tied, next_bond, static_cast<std::int32_t>(i), partner)) continue;
       if (shapes && !are_discs(system, static_cast<std::int32_t>(i), partner)) continue;
       const auto j = static_cast<std::size_t>(partner);
-      const Vec2 branch = system.motions[j].position - centre;
-      const double far = own + system.bodies[j].radius;
+      const Vec2 branch = system.bodies.motions[j].position - centre;
+      const double far = own + system.bodies.constants[j].radius;
       lists.see(static_cast<std::int32_t>(i), partner, dot(branch, branch) <= far * far);
     }
   }
@@ -247,35 +247,35 @@ void find_near_pairs(GrainSystem& system, double reach) {
 }
 
 void refresh_near_pairs(GrainSystem& system, double reach) {
-  NearPairs& near = system.near;
+  NearPairs& near = system.contacts.near;
   if (2 * (near.moved + reach) > near.margin) find_near_pairs(system, reach);
   near.moved += reach;
 }
 
 void load_pair_bodies(GrainSystem& system) {
-  for (std::size_t i = 0; i < system.near.bodies.size(); ++i) {
-    const GrainBody& body = system.bodies[i];
-    const GrainMotion& motion = system.motions[i];
-    const Push& push = system.pushes[i];
-    system.near.bodies[i] =
+  for (std::size_t i = 0; i < system.contacts.near.bodies.size(); ++i) {
+    const GrainBody& body = system.bodies.constants[i];
+    const GrainMotion& motion = system.bodies.motions[i];
+    const BodyImpulse& push = system.bodies.impulses[i];
+    system.contacts.near.bodies[i] =
         pair_body(body, motion, body.inverse_mass * push.impulse, body.inverse_moment * push.torque);
   }
 }
 
 void touch_near_pairs(GrainSystem& system) {
-  NearPairs& near = system.near;
+  NearPairs& near = system.contacts.near;
   const bool verlet = system.options.verlet();
   for (std::size_t p = 0; p < near.count; ++p) {
     const auto i = static_cast<std::size_t>(near.first(p)), j = static_cast<std::size_t>(near.second(p));
-    const Vec2 branch = system.motions[j].position - system.motions[i].position;
-    if (!(meeting_of_grains(system.bodies[i], system.bodies[j], branch).overlap > 0)) continue;
+    const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position;
+    if (!(geometry_of_grains(system.bodies.constants[i], system.bodies.constants[j], branch).overlap > 0)) continue;
     near.groups[p / lanes_of_pairs].since[p % lanes_of_pairs] = system.step - (verlet ? 1 : 0);
     ++system.counters.contacts;
   }
 }
 
 Candidate candidate_of(const GrainSystem& system, std::size_t p) {
-  const NearPairs& near = system.near;
+  const NearPairs& near = system.contacts.near;
   const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
   Candidate candidate;
   candidate.i = near.first(p);
@@ -298,7 +298,7 @@ Candidate candidate_of(const GrainSystem& system, std::size_t p) {
 }
 
 std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system) {
-  const NearPairs& near = system.near;
+  const NearPairs& near = system.contacts.near;
   const auto energy = system.law().energy;
   double normal = 0, tangential = 0;
   for (std::size_t p = 0; p < near.count; ++p) {
@@ -307,8 +307,8 @@ std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system) {
       const double spring = near.equal ? near.law.tangential_stiffness : near.laws[g].tangential_stiffness[k];
       tangential += 0.5 * spring * near.slips[g].stretch[k] * near.slips[g].stretch[k];
     }
-    const Vec2 branch = system.motions[static_cast<std::size_t>(near.second(p))].position -
-                        system.motions[static_cast<std::size_t>(near.first(p))].position;
+    const Vec2 branch = system.bodies.motions[static_cast<std::size_t>(near.second(p))].position -
+                        system.bodies.motions[static_cast<std::size_t>(near.first(p))].position;
     const double overlap = near.groups[g].reach[k] - norm(branch);
     if (!(overlap > 0)) continue;
     const double stiffness = near.equal ? near.law.stiffness : near.laws[g].stiffness[k];
@@ -318,7 +318,7 @@ std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system) {
 }
 
 void take_near_pairs(GrainSystem& system, const std::vector<Candidate>& contacts) {
-  NearPairs& near = system.near;
+  NearPairs& near = system.contacts.near;
   near.groups.clear();
   near.slips.clear();
   near.laws.clear();

@@ -23,7 +23,7 @@ struct GrainSystem;
 struct Candidate;
 struct GrainBody;
 struct GrainMotion;
-struct Push;
+struct BodyImpulse;
 
 constexpr std::size_t lanes_of_pairs = 8;
 using PairLanes = double[lanes_of_pairs];
@@ -101,7 +101,7 @@ struct NearPairs {
 
 /// Whether contacts of parts can be computed several at a time: a law that gives a force, no contact that slides
 /// always.
-bool go_by_eights(const GrainSystem& system);
+bool eight_at_a_time(const GrainSystem& system);
 
 /// Margin of lists within that of the neighbour finder, for bodies of a size (of discs the radius) that move by about
 /// `reach` in a step.
@@ -116,13 +116,13 @@ void find_near_pairs(GrainSystem& system, double reach);
 /// See to it that they hold all that may touch while no body moves further than `reach` from where it is.
 void refresh_near_pairs(GrainSystem& system, double reach);
 
-/// What the loop reads of bodies, from their motions and the pushes of the last step.
+/// What the loop reads of bodies, from their motions and the impulses of the last step.
 void load_pair_bodies(GrainSystem& system);
 
 /// Bodies that overlap now touch.
 void touch_near_pairs(GrainSystem& system);
 
-/// system.next as move_by_euler(), and what the loop reads of bodies for the next step.
+/// system.bodies.next as move_by_euler(), and what the loop reads of bodies for the next step.
 void move_pair_bodies(GrainSystem& system);
 
 /// A pair with all that its contact remembers; without what does not change.
@@ -134,7 +134,7 @@ std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system);
 /// Take over contacts of a saved state, ordered by (i, j), in place of what pairs there are.
 void take_near_pairs(GrainSystem& system, const std::vector<Candidate>& contacts);
 
-/// The loop compiled for the law of the scene: pushes of this step.
+/// The loop compiled for the law of the scene: impulses of this step.
 NearPairs::Loop near_pair_loop(const GrainSystem& system);
 
 }  // namespace equidem

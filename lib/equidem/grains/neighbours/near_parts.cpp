@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "equidem/grains/contacts/part_meeting.hpp"
+#include "equidem/grains/contacts/part_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
 
 namespace equidem {
@@ -54,13 +54,13 @@ class NewList {
   /// A new pair. \param apart a direction along which they are apart, or {}
   void add(std::int32_t i, std::int32_t j, Vec2 apart) {
     Candidate candidate;
-    candidate.i = system_.body_of_part[static_cast<std::size_t>(i)];
-    candidate.j = system_.body_of_part[static_cast<std::size_t>(j)];
+    candidate.i = system_.shapes.body_of_part[static_cast<std::size_t>(i)];
+    candidate.j = system_.shapes.body_of_part[static_cast<std::size_t>(j)];
     set_constants(system_, candidate);
-    const GrainPart &part_i = system_.parts[static_cast<std::size_t>(i)],
-                    &part_j = system_.parts[static_cast<std::size_t>(j)];
-    const GrainBody &body_i = system_.bodies[static_cast<std::size_t>(candidate.i)],
-                    &body_j = system_.bodies[static_cast<std::size_t>(candidate.j)];
+    const GrainPart &part_i = system_.shapes.parts[static_cast<std::size_t>(i)],
+                    &part_j = system_.shapes.parts[static_cast<std::size_t>(j)];
+    const GrainBody &body_i = system_.bodies.constants[static_cast<std::size_t>(candidate.i)],
+                    &body_j = system_.bodies.constants[static_cast<std::size_t>(candidate.j)];
     const std::size_t k = make_room(i, j);
     PartGroup& group = list_.groups.back();
     group.since[k] = PairGroup::apart;
@@ -145,14 +145,14 @@ Apart apart_along_axes(const Ellipse& i, const Ellipse& j, Vec2 branch) {
 /// How far two parts are apart, or a bound of it that is enough; below 0: the overlap.
 /// \param[in,out] apart a direction along which they were apart, or {}
 double gap_of(const GrainSystem& system, std::int32_t p, std::int32_t q, double enough, Vec2& apart) {
-  const GrainPart &part_i = system.parts[static_cast<std::size_t>(p)],
-                  &part_j = system.parts[static_cast<std::size_t>(q)];
-  const auto i = static_cast<std::size_t>(system.body_of_part[static_cast<std::size_t>(p)]);
-  const auto j = static_cast<std::size_t>(system.body_of_part[static_cast<std::size_t>(q)]);
-  const Vec2 branch = system.motions[j].position - system.motions[i].position +
-                      (offset_of(part_j, system.axes[j]) - offset_of(part_i, system.axes[i]));
+  const GrainPart &part_i = system.shapes.parts[static_cast<std::size_t>(p)],
+                  &part_j = system.shapes.parts[static_cast<std::size_t>(q)];
+  const auto i = static_cast<std::size_t>(system.shapes.body_of_part[static_cast<std::size_t>(p)]);
+  const auto j = static_cast<std::size_t>(system.shapes.body_of_part[static_cast<std::size_t>(q)]);
+  const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position +
+                      (offset_of(part_j, system.shapes.axes[j]) - offset_of(part_i, system.shapes.axes[i]));
   if (part_i.is_round() && part_j.is_round()) return norm(branch) - (part_i.a + part_j.a);
-  const Ellipse of_i{part_i.a, part_i.b, system.axes[i]}, of_j{part_j.a, part_j.b, system.axes[j]};
+  const Ellipse of_i{part_i.a, part_i.b, system.shapes.axes[i]}, of_j{part_j.a, part_j.b, system.shapes.axes[j]};
   if (apart != Vec2{}) {
     const double along = separation_along(of_i, of_j, branch, apart);
     if (along > enough) return along;
@@ -168,8 +168,8 @@ double gap_of(const GrainSystem& system, std::int32_t p, std::int32_t q, double 
 }
 
 void find_met_parts(GrainSystem& system) {
-  NearParts& near = system.near_parts;
-  std::vector<bool> met(system.parts.size());
+  NearParts& near = system.contacts.near_parts;
+  std::vector<bool> met(system.shapes.parts.size());
   for (const NearParts::List& list : near.lists) {
     for (std::size_t p = 0; p < list.count; ++p) {
       const PartGroup& group = list.groups[p / lanes_of_pairs];
@@ -184,29 +184,29 @@ void find_met_parts(GrainSystem& system) {
 }
 
 std::size_t list_of(const GrainSystem& system, std::int32_t p, std::int32_t q) {
-  const bool round =
-      system.parts[static_cast<std::size_t>(p)].is_round() && system.parts[static_cast<std::size_t>(q)].is_round();
+  const bool round = system.shapes.parts[static_cast<std::size_t>(p)].is_round() &&
+                     system.shapes.parts[static_cast<std::size_t>(q)].is_round();
   return round ? 0 : 1;
 }
 
 /// All but pairs of whole discs.
 void find_close_parts(GrainSystem& system) {
-  const NeighbourList& neighbours = *system.near.outer;
-  NearParts& near = system.near_parts;
+  const NeighbourList& neighbours = *system.contacts.near.outer;
+  NearParts& near = system.contacts.near_parts;
   near.close.clear();
   near.travelled = near.moved = 0;
-  for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+  for (std::size_t i = 0; i < system.bodies.constants.size(); ++i) {
     const auto body = static_cast<std::int32_t>(i);
     const bool disc = are_discs(system, body, body);
-    for (std::int32_t p = system.first_part[i]; p < system.first_part[i + 1]; ++p) {
+    for (std::int32_t p = system.shapes.first_part[i]; p < system.shapes.first_part[i + 1]; ++p) {
       for (std::int64_t n = neighbours.begin[i]; n < neighbours.begin[i + 1]; ++n) {
         const std::int32_t partner = neighbours.partner[static_cast<std::size_t>(n)];
         if (disc && are_discs(system, body, partner)) continue;
         const auto j = static_cast<std::size_t>(partner);
-        for (std::int32_t q = system.first_part[j]; q < system.first_part[j + 1]; ++q) {
+        for (std::int32_t q = system.shapes.first_part[j]; q < system.shapes.first_part[j + 1]; ++q) {
           NearParts::Close pair{p, q, 0, {}};
-          pair.clear = gap_of(system, p, q, system.margin, pair.apart);
-          if (pair.clear <= system.margin) near.close.push_back(pair);
+          pair.clear = gap_of(system, p, q, system.contacts.margin, pair.apart);
+          if (pair.clear <= system.contacts.margin) near.close.push_back(pair);
         }
       }
     }
@@ -215,7 +215,7 @@ void find_close_parts(GrainSystem& system) {
 
 /// Those of the close parts that are nearer than the margin.
 void find_nearest_parts(GrainSystem& system, double reach) {
-  NearParts& near = system.near_parts;
+  NearParts& near = system.contacts.near_parts;
   near.margin = margin_of_near_pairs(system, near.size, reach);
   near.travelled += near.moved;
   near.moved = 0;
@@ -251,15 +251,15 @@ bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
 }
 
 void prepare_near_parts(GrainSystem& system) {
-  if (system.parts.empty() || system.bodies.size() < 2 || !go_by_eights(system)) return;
+  if (system.shapes.parts.empty() || system.bodies.constants.size() < 2 || !eight_at_a_time(system)) return;
   if (system.options.ellipse_law != GrainOptions::EllipseLaw::exact) return;
-  NearParts& near = system.near_parts;
+  NearParts& near = system.contacts.near_parts;
   near.active = true;
   near.lists[0].loop = near_part_loop(system, true);
   near.lists[1].loop = near_part_loop(system, false);
-  near.bodies.resize(system.parts.size());
+  near.bodies.resize(system.shapes.parts.size());
   near.size = std::numeric_limits<double>::infinity();
-  for (const GrainPart& part : system.parts) near.size = std::min(near.size, part.size);
+  for (const GrainPart& part : system.shapes.parts) near.size = std::min(near.size, part.size);
 }
 
 void find_near_parts(GrainSystem& system, double reach) {
@@ -268,20 +268,20 @@ void find_near_parts(GrainSystem& system, double reach) {
 }
 
 void refresh_near_parts(GrainSystem& system, double reach) {
-  NearParts& near = system.near_parts;
+  NearParts& near = system.contacts.near_parts;
   if (2 * (near.moved + reach) > near.margin) find_nearest_parts(system, reach);
   near.moved += reach;
 }
 
 void load_part_bodies(GrainSystem& system) {
-  for (const std::int32_t p : system.near_parts.met) {
-    const auto k = static_cast<std::size_t>(p), b = static_cast<std::size_t>(system.body_of_part[k]);
-    const GrainMotion& motion = system.motions[b];
-    const GrainBody& body = system.bodies[b];
-    const GrainPart& part = system.parts[k];
-    const Push& push = system.pushes[b];
-    PartBody& seen = system.near_parts.bodies[k];
-    seen.turned = part.is_round() ? offset_of(part, system.axes[b]) : system.axes[b];
+  for (const std::int32_t p : system.contacts.near_parts.met) {
+    const auto k = static_cast<std::size_t>(p), b = static_cast<std::size_t>(system.shapes.body_of_part[k]);
+    const GrainMotion& motion = system.bodies.motions[b];
+    const GrainBody& body = system.bodies.constants[b];
+    const GrainPart& part = system.shapes.parts[k];
+    const BodyImpulse& push = system.bodies.impulses[b];
+    PartBody& seen = system.contacts.near_parts.bodies[k];
+    seen.turned = part.is_round() ? offset_of(part, system.shapes.axes[b]) : system.shapes.axes[b];
     seen.centre = part.is_round() ? motion.position + seen.turned : motion.position;
     seen.velocity = motion.velocity;
     seen.middle_velocity = motion.velocity + (0.5 * body.inverse_mass) * push.impulse;
@@ -291,10 +291,10 @@ void load_part_bodies(GrainSystem& system) {
 }
 
 void touch_near_parts(GrainSystem& system) {
-  for (NearParts::List& list : system.near_parts.lists) {
+  for (NearParts::List& list : system.contacts.near_parts.lists) {
     for (std::size_t p = 0; p < list.count; ++p) {
       auto [candidate, pair] = candidate_of(system, list, p);
-      if (!(meeting_of_parts(system, candidate, pair).overlap > 0)) continue;
+      if (!(geometry_of_parts(system, candidate, pair).overlap > 0)) continue;
       PartGroup& group = list.groups[p / lanes_of_pairs];
       const std::size_t k = p % lanes_of_pairs;
       group.since[k] = system.step - (system.options.verlet() ? 1 : 0);
@@ -310,8 +310,8 @@ std::pair<Candidate, PartPair> candidate_of(const GrainSystem& system, const Nea
   const auto number = [&](Column column) { return group.numbers[column][k]; };
   const Vec2 normal{number(PartGroup::normal_x), number(PartGroup::normal_y)};
   Candidate candidate;
-  candidate.i = system.body_of_part[static_cast<std::size_t>(group.i[k])];
-  candidate.j = system.body_of_part[static_cast<std::size_t>(group.j[k])];
+  candidate.i = system.shapes.body_of_part[static_cast<std::size_t>(group.i[k])];
+  candidate.j = system.shapes.body_of_part[static_cast<std::size_t>(group.j[k])];
   set_constants(system, candidate);
   PartPair pair;
   pair.i = group.i[k];
@@ -335,7 +335,7 @@ std::pair<Candidate, PartPair> candidate_of(const GrainSystem& system, const Nea
 }
 
 void take_near_parts(GrainSystem& system, std::span<const std::pair<Candidate, PartPair>> contacts) {
-  std::array<NearParts::List, 2>& lists = system.near_parts.lists;
+  std::array<NearParts::List, 2>& lists = system.contacts.near_parts.lists;
   for (NearParts::List& list : lists) list.count = 0;
   std::array<NewList, 2> taken{NewList(system, lists[0]), NewList(system, lists[1])};
   for (const auto& [contact, pair] : contacts) {

@@ -114,7 +114,7 @@ void find_near_parts(GrainSystem& system, double reach);
 /// See to it that they hold all that may touch while no point of a body moves further than `reach` from where it is.
 void refresh_near_parts(GrainSystem& system, double reach);
 
-/// What the loops read, from the motions and the pushes of the last step.
+/// What the loops read, from the motions and the impulses of the last step.
 void load_part_bodies(GrainSystem& system);
 
 /// Parts that overlap now touch.
@@ -129,7 +129,7 @@ bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j);
 /// Take over contacts of a saved state, in the order of the lists, in place of what pairs there are.
 void take_near_parts(GrainSystem& system, std::span<const std::pair<Candidate, PartPair>> contacts);
 
-/// The loop compiled for pairs of a shape: pushes of this step.
+/// The loop compiled for pairs of a shape: impulses of this step.
 NearParts::List::Loop near_part_loop(const GrainSystem& system, bool round);
 
 }  // namespace equidem

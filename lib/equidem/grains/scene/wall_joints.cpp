@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "equidem/grains/contacts/part_meeting.hpp"
+#include "equidem/grains/contacts/part_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
 
 namespace equidem {
@@ -19,11 +19,11 @@ Vec2 end_of(const Wall& wall, int end) {
 
 /// The wall that covers a contact of grain i with an end of wall w; -1: none.
 std::int32_t cover_of(const GrainSystem& system, std::int32_t i, std::int32_t part, std::int32_t w) {
-  const WallJoints& joints = system.joints[static_cast<std::size_t>(w)];
+  const WallJoints& joints = system.walls.joints[static_cast<std::size_t>(w)];
   if (joints[0].empty() && joints[1].empty()) return -1;
   const auto nearest_to = [&](std::int32_t wall) {
     const auto k = static_cast<std::size_t>(wall);
-    return nearest(system.scene.walls[k], system.walls[k].displacement, viewpoint_on(system, i, part, wall));
+    return nearest(system.scene.walls[k], system.walls.places[k].displacement, viewpoint_on(system, i, part, wall));
   };
   const int end = nearest_to(w).end;
   if (end == 0) return -1;
@@ -112,25 +112,26 @@ std::vector<WallJoints> joints_of(std::span<const Wall> walls, double tolerance)
 }
 
 void cover_joints(GrainSystem& system) {
-  if (system.joints.empty()) return;
-  for (auto candidate = system.candidates.begin(); candidate != system.candidates.end(); ++candidate) {
+  if (system.walls.joints.empty()) return;
+  for (auto candidate = system.contacts.candidates.begin(); candidate != system.contacts.candidates.end();
+       ++candidate) {
     if (candidate->j >= 0) continue;
     const auto part_of = [&](const Candidate& other) {
-      if (system.part_pairs.empty()) return 0;
-      return system.part_pairs[static_cast<std::size_t>(&other - system.candidates.data())].i;
+      if (system.contacts.part_pairs.empty()) return 0;
+      return system.contacts.part_pairs[static_cast<std::size_t>(&other - system.contacts.candidates.data())].i;
     };
     const std::int32_t cover = cover_of(system, candidate->i, part_of(*candidate), ~candidate->j);
     candidate->covered = cover >= 0;
     if (!candidate->covered || !candidate->touching) continue;
     const Candidate left = *candidate;
     candidate->stretch = 0;  // not lost
-    let_go(system, *candidate);
+    forget_contact(system, *candidate);
     const auto same_body = [&](const Candidate& other) { return other.i == candidate->i; };
     auto other = candidate;  // candidates of a body stand together
-    while (other != system.candidates.begin() && same_body(*std::prev(other))) --other;
+    while (other != system.contacts.candidates.begin() && same_body(*std::prev(other))) --other;
     const auto is_cover = [&] { return other->j == ~cover && part_of(*other) == part_of(*candidate); };
-    while (other != system.candidates.end() && same_body(*other) && !is_cover()) ++other;
-    if (other == system.candidates.end() || !same_body(*other) || other->touching) continue;
+    while (other != system.contacts.candidates.end() && same_body(*other) && !is_cover()) ++other;
+    if (other == system.contacts.candidates.end() || !same_body(*other) || other->touching) continue;
     go_on(left, *other);
   }
 }

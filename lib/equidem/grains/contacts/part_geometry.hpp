@@ -11,19 +11,19 @@ namespace equidem {
 /// Arms go from the centres of the bodies to one common point, so that contact forces keep the angular momentum: within
 /// the overlap, which the parts share as the radii of discs of their areas (of discs: (r_i/(r_i + r_j))); on a wall the
 /// point of the grain.
-struct PartMeeting {
+struct PartGeometry {
   double overlap = 0;             ///< m; 0: apart
   Vec2 normal = {};               ///< unit, from i to j
   Vec2 arm_i = {}, arm_j = {};    ///< m
   double sunk_i = 0, sunk_j = 0;  ///< what of the overlap arms lack to the surface, m
 };
 
-/// Discs as meeting_of_grains and meeting_with_wall; ellipses by the options' law. As the bodies stand at the start of
-/// the step.
+/// Discs as geometry_of_grains and geometry_with_wall; ellipses by the options' law. As the bodies stand at the start
+/// of the step.
 /// \param pair remembers the normal along which ellipses are apart. The result depends on the candidate's last normal,
 ///         which a saved state
 ///        holds, where it was touching, and on nothing else of the past.
-PartMeeting meeting_of_parts(const GrainSystem& system, const Candidate& candidate, PartPair& pair);
+PartGeometry geometry_of_parts(const GrainSystem& system, const Candidate& candidate, PartPair& pair);
 
 /// The exact contact of two parts of which one is an ellipse.
 /// \param normal of the last step where it was touching, else a direction along which they were apart, or {}: saves

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/grains/contacts/part_meeting.hpp"
+#include "equidem/grains/contacts/part_geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "equidem/contact/shapes/enlarged_ellipse.hpp"
-#include "equidem/grains/contacts/meeting.hpp"
+#include "equidem/grains/contacts/contact_geometry.hpp"
 
 namespace equidem {
 namespace {
 
-PartMeeting meeting_of_grain_parts(const GrainSystem& system, const Candidate& candidate, PartPair& pair) {
+PartGeometry geometry_of_grain_parts(const GrainSystem& system, const Candidate& candidate, PartPair& pair) {
   const auto i = static_cast<std::size_t>(candidate.i), j = static_cast<std::size_t>(candidate.j);
-  const GrainPart& part_i = system.parts[static_cast<std::size_t>(pair.i)];
-  const GrainPart& part_j = system.parts[static_cast<std::size_t>(pair.j)];
-  const Vec2 to_i = offset_of(part_i, system.axes[i]), to_j = offset_of(part_j, system.axes[j]);
-  const Vec2 branch = system.motions[j].position - system.motions[i].position + (to_j - to_i);
+  const GrainPart& part_i = system.shapes.parts[static_cast<std::size_t>(pair.i)];
+  const GrainPart& part_j = system.shapes.parts[static_cast<std::size_t>(pair.j)];
+  const Vec2 to_i = offset_of(part_i, system.shapes.axes[i]), to_j = offset_of(part_j, system.shapes.axes[j]);
+  const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position + (to_j - to_i);
   const double reach = part_i.a + part_j.a, square = dot(branch, branch);
   if (square >= reach * reach) return {};
   const double share = part_i.size / (part_i.size + part_j.size);
@@ -29,7 +29,7 @@ PartMeeting meeting_of_grain_parts(const GrainSystem& system, const Candidate& c
             part_i.a - lever,
             part_j.a - (distance - lever)};
   }
-  const Ellipse e_i{part_i.a, part_i.b, system.axes[i]}, e_j{part_j.a, part_j.b, system.axes[j]};
+  const Ellipse e_i{part_i.a, part_i.b, system.shapes.axes[i]}, e_j{part_j.a, part_j.b, system.shapes.axes[j]};
   if (system.options.ellipse_law != GrainOptions::EllipseLaw::exact) {
     const EllipseContact contact = contact_by_enlarged_ellipse(e_i, e_j, branch, system.options.ellipse_law);
     if (!contact.is_contact()) return {};
@@ -50,11 +50,11 @@ PartMeeting meeting_of_grain_parts(const GrainSystem& system, const Candidate& c
           sunk_j};
 }
 
-/// From outside, where refuse_bowls keeps it: against the whole circle where that is met on the arc, else against the
-/// nearer end, a point.
+/// From outside, where refuse_ellipses_in_bowls keeps it: against the whole circle where that is met on the arc, else
+/// against the nearer end, a point.
 EllipseContact contact_with_arc(const GrainSystem& system, std::int32_t grain, const Ellipse& ellipse, const Wall& wall,
                                 Vec2 displacement) {
-  const Vec2 position = system.motions[static_cast<std::size_t>(grain)].position;
+  const Vec2 position = system.bodies.motions[static_cast<std::size_t>(grain)].position;
   const Vec2 middle = wall.point + displacement, to_middle = middle - position;
   if (nearest(wall, displacement, position).distance > ellipse.a) return {EllipseState::apart, 1, {}, {}, {}};
   const EllipseContact whole = contact_of_ellipses(ellipse, {wall.radius, wall.radius, {1, 0}}, to_middle);
@@ -73,9 +73,9 @@ EllipseContact contact_with_wall(const GrainSystem& system, std::int32_t grain, 
                                  std::int32_t wall_index, Vec2 last_normal) {
   const auto i = static_cast<std::size_t>(grain), w = static_cast<std::size_t>(wall_index);
   const Wall& wall = system.scene.walls[w];
-  const Vec2 displacement = system.walls[w].displacement;
-  const Ellipse ellipse{part.a, part.b, system.axes[i]};
-  const Vec2 to_point = wall.point + displacement - system.motions[i].position;
+  const Vec2 displacement = system.walls.places[w].displacement;
+  const Ellipse ellipse{part.a, part.b, system.shapes.axes[i]};
+  const Vec2 to_point = wall.point + displacement - system.bodies.motions[i].position;
   switch (wall.shape) {
     case Wall::Shape::line:
       return contact_with_line(ellipse, to_point, wall.normal);
@@ -91,15 +91,17 @@ EllipseContact contact_with_wall(const GrainSystem& system, std::int32_t grain, 
 bool is_clear_of_line(const GrainSystem& system, std::size_t i, const GrainPart& part, std::size_t w) {
   const Wall& wall = system.scene.walls[w];
   if (wall.shape != Wall::Shape::line) return false;
-  const double height = dot(system.motions[i].position - (wall.point + system.walls[w].displacement), wall.normal);
-  const double x = part.a * dot(system.axes[i], wall.normal), y = part.b * cross(system.axes[i], wall.normal);
+  const double height =
+      dot(system.bodies.motions[i].position - (wall.point + system.walls.places[w].displacement), wall.normal);
+  const double x = part.a * dot(system.shapes.axes[i], wall.normal),
+               y = part.b * cross(system.shapes.axes[i], wall.normal);
   return height > 0 && height * height * (1 - 1e-9) > x * x + y * y;
 }
 
-PartMeeting meeting_of_part_with_wall(const GrainSystem& system, const Candidate& candidate, const PartPair& pair) {
+PartGeometry meeting_of_part_with_wall(const GrainSystem& system, const Candidate& candidate, const PartPair& pair) {
   if (candidate.covered) return {};
   const auto i = static_cast<std::size_t>(candidate.i), w = static_cast<std::size_t>(~candidate.j);
-  const GrainPart& part = system.parts[static_cast<std::size_t>(pair.i)];
+  const GrainPart& part = system.shapes.parts[static_cast<std::size_t>(pair.i)];
   if (!part.is_round()) {
     if (is_clear_of_line(system, i, part, w)) return {};
     const EllipseContact contact =
@@ -107,9 +109,9 @@ PartMeeting meeting_of_part_with_wall(const GrainSystem& system, const Candidate
     if (contact.gap >= 0) return {};
     return {-contact.gap, contact.normal, contact.arm_i, {}, 0, 0};
   }
-  const Vec2 offset = offset_of(part, system.axes[i]);
+  const Vec2 offset = offset_of(part, system.shapes.axes[i]);
   const WallContact contact =
-      nearest(system.scene.walls[w], system.walls[w].displacement, system.motions[i].position + offset);
+      nearest(system.scene.walls[w], system.walls.places[w].displacement, system.bodies.motions[i].position + offset);
   const double overlap = part.a - contact.distance;
   if (!(overlap > 0)) return {};
   return {overlap, -contact.normal, offset - part.a * contact.normal, {}, 0, 0};
@@ -164,23 +166,23 @@ EllipseContact contact_of_parts(const Ellipse& i, const Ellipse& j, Vec2 branch,
   return contact_of_ellipses(i, j, branch, {}, quick);
 }
 
-PartMeeting meeting_of_parts(const GrainSystem& system, const Candidate& candidate, PartPair& pair) {
-  return candidate.j >= 0 ? meeting_of_grain_parts(system, candidate, pair)
+PartGeometry geometry_of_parts(const GrainSystem& system, const Candidate& candidate, PartPair& pair) {
+  return candidate.j >= 0 ? geometry_of_grain_parts(system, candidate, pair)
                           : meeting_of_part_with_wall(system, candidate, pair);
 }
 
 double overlap_of(const GrainSystem& system, std::size_t candidate) {
-  if (system.parts.empty()) return meeting_of(system, system.candidates[candidate]).overlap;
-  PartPair pair = system.part_pairs[candidate];
-  return meeting_of_parts(system, system.candidates[candidate], pair).overlap;
+  if (system.shapes.parts.empty()) return geometry_of(system, system.contacts.candidates[candidate]).overlap;
+  PartPair pair = system.contacts.part_pairs[candidate];
+  return geometry_of_parts(system, system.contacts.candidates[candidate], pair).overlap;
 }
 
 Vec2 viewpoint_on(const GrainSystem& system, std::int32_t grain, std::int32_t part_index, std::int32_t wall) {
   const auto i = static_cast<std::size_t>(grain);
-  const Vec2 position = system.motions[i].position;
-  if (system.parts.empty()) return position;
-  const GrainPart& part = system.parts[static_cast<std::size_t>(part_index)];
-  if (part.is_round()) return position + offset_of(part, system.axes[i]);
+  const Vec2 position = system.bodies.motions[i].position;
+  if (system.shapes.parts.empty()) return position;
+  const GrainPart& part = system.shapes.parts[static_cast<std::size_t>(part_index)];
+  if (part.is_round()) return position + offset_of(part, system.shapes.axes[i]);
   const EllipseContact contact = contact_with_wall(system, grain, part, wall, {});
   return position + contact.arm_i + contact.gap * contact.normal;
 }
