@@ -80,7 +80,7 @@ TEST_CASE("the_largest_rate_of_a_bond_is_that_of_its_matrix") {
   for (int k = 0; k < 50; ++k) {
     const Example e = random_example(random);
     const auto& [frame, i, j, c] = e;
-    const auto applied = [&](const BondModes& v) {
+    const auto applied = [&frame = frame, &i = i, &j = j, &c = c](const BondModes& v) {
       const BondModes f{c.normal * v.normal, c.tangential * v.tangential, c.rolling * v.rolling};
       const Vec2 on_j = f.normal * frame.normal + f.tangential * frame.tangent();
       const double turn_i = -frame.lever_i * f.tangential - f.rolling;

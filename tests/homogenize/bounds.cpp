@@ -245,7 +245,7 @@ TEST_CASE("without_tangential_springs_only_stresses_that_load_none_are_resisted"
   SECTION("any: it is the limit kT -> 0, wherever springs are absent") {
     for (const bool all : {true, false}) {
       for (const auto& [name, assembly] : assemblies(false)) {
-        const auto springs = [&](double kT) {
+        const auto springs = [&, &assembly = assembly](double kT) {
           Random random(36);
           std::vector<SpringConstants> k(assembly.contacts.size());
           for (SpringConstants& spring : k) {

@@ -43,7 +43,7 @@ TEST_CASE("disc_stresses_weighted_by_their_cells_are_the_macroscopic_stress") {
     // Two halves, weighted by their areas, make the whole.
     double left_area = 0;
     const double middle = 0.5 * (assembly.centres.front().x + assembly.centres.back().x);
-    const auto left = [&](std::size_t disc) { return assembly.centres[disc].x < middle; };
+    const auto left = [&, &assembly = assembly](std::size_t disc) { return assembly.centres[disc].x < middle; };
     for (std::size_t disc = 0; disc < assembly.size(); ++disc)
       if (left(disc)) left_area += assembly.cell_areas[disc];
     const double share = left_area / assembly.area();

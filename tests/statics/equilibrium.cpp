@@ -167,7 +167,7 @@ TEST_CASE("loads_are_meant_per_disc_in_total_or_per_length") {
   const ContactSprings springs(SpringConstants{1e9, 0.5e9});
   const std::vector<Support> supports{{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = {}}};
   const EquilibriumSolver solver(block, springs, supports);
-  const DiscGroup& right = group(block, "right");
+  const DiscGroup right = group(block, "right");
   double length = 0;
   for (const double share : right.tributary_lengths) length += share;
   const auto reaction = [&](const Load& load) {

@@ -68,7 +68,10 @@ void deformations_of(const SpringNetwork& network, const PreciseMotion& motion,
 void residual_force(const SpringNetwork& network, const PreciseMotion& motion,
                     std::span<const ContactDeformation> imposed, std::span<const double> f,
                     std::span<double> residual) {
-  const auto& [assembly, graph, springs, unknowns] = network;
+  const auto& assembly = network.assembly;
+  const auto& graph = network.graph;
+  const auto& springs = network.springs;
+  const auto& unknowns = network.unknowns;
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
   parallel_ranges(assembly.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t d = begin; d < end; ++d) {

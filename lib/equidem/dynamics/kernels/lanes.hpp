@@ -31,11 +31,11 @@ EQUIDEM_INLINE void gather(const double* motion, const std::int32_t* place, Lane
     load(motion + 4 * static_cast<std::ptrdiff_t>(place[1]), b);
     load(motion + 4 * static_cast<std::ptrdiff_t>(place[2]), c);
     load(motion + 4 * static_cast<std::ptrdiff_t>(place[3]), d);
-    const Lanes xt_ab = __builtin_shuffle(a, b, Choice{0, 4, 2, 6}), y_ab = __builtin_shuffle(a, b, Choice{1, 5, 3, 7});
-    const Lanes xt_cd = __builtin_shuffle(c, d, Choice{0, 4, 2, 6}), y_cd = __builtin_shuffle(c, d, Choice{1, 5, 3, 7});
-    x = __builtin_shuffle(xt_ab, xt_cd, Choice{0, 1, 4, 5});
-    y = __builtin_shuffle(y_ab, y_cd, Choice{0, 1, 4, 5});
-    theta = __builtin_shuffle(xt_ab, xt_cd, Choice{2, 3, 6, 7});
+    const Lanes xt_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), y_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    const Lanes xt_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6), y_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    x = __builtin_shufflevector(xt_ab, xt_cd, 0, 1, 4, 5);
+    y = __builtin_shufflevector(y_ab, y_cd, 0, 1, 4, 5);
+    theta = __builtin_shufflevector(xt_ab, xt_cd, 2, 3, 6, 7);
   } else {
     const auto two = [&](int first, int second) {
       Pair low, high;
@@ -44,8 +44,8 @@ EQUIDEM_INLINE void gather(const double* motion, const std::int32_t* place, Lane
       return __builtin_shufflevector(low, high, 0, 1, 2, 3);
     };
     const Lanes ac = two(0, 2), bd = two(1, 3);
-    x = __builtin_shuffle(ac, bd, Choice{0, 4, 2, 6});
-    y = __builtin_shuffle(ac, bd, Choice{1, 5, 3, 7});
+    x = __builtin_shufflevector(ac, bd, 0, 4, 2, 6);
+    y = __builtin_shufflevector(ac, bd, 1, 5, 3, 7);
     theta = Lanes{};
   }
 }
@@ -59,18 +59,18 @@ EQUIDEM_INLINE void load_group(const double* motion, Lanes& x, Lanes& y, Lanes& 
 
 template <int Width>
 EQUIDEM_INLINE void store_group(const Lanes& x, const Lanes& y, const Lanes& theta, double* motion) {
-  const Lanes even = __builtin_shuffle(x, y, Choice{0, 4, 2, 6}), odd = __builtin_shuffle(x, y, Choice{1, 5, 3, 7});
+  const Lanes even = __builtin_shufflevector(x, y, 0, 4, 2, 6), odd = __builtin_shufflevector(x, y, 1, 5, 3, 7);
   if constexpr (Width == 4) {
     const Lanes zero{};
-    const Lanes theta_even = __builtin_shuffle(theta, zero, Choice{0, 4, 2, 6});
-    const Lanes theta_odd = __builtin_shuffle(theta, zero, Choice{1, 5, 3, 7});
-    store(__builtin_shuffle(even, theta_even, Choice{0, 1, 4, 5}), motion);
-    store(__builtin_shuffle(odd, theta_odd, Choice{0, 1, 4, 5}), motion + 4);
-    store(__builtin_shuffle(even, theta_even, Choice{2, 3, 6, 7}), motion + 8);
-    store(__builtin_shuffle(odd, theta_odd, Choice{2, 3, 6, 7}), motion + 12);
+    const Lanes theta_even = __builtin_shufflevector(theta, zero, 0, 4, 2, 6);
+    const Lanes theta_odd = __builtin_shufflevector(theta, zero, 1, 5, 3, 7);
+    store(__builtin_shufflevector(even, theta_even, 0, 1, 4, 5), motion);
+    store(__builtin_shufflevector(odd, theta_odd, 0, 1, 4, 5), motion + 4);
+    store(__builtin_shufflevector(even, theta_even, 2, 3, 6, 7), motion + 8);
+    store(__builtin_shufflevector(odd, theta_odd, 2, 3, 6, 7), motion + 12);
   } else {
-    store(__builtin_shuffle(even, odd, Choice{0, 1, 4, 5}), motion);
-    store(__builtin_shuffle(even, odd, Choice{2, 3, 6, 7}), motion + 4);
+    store(__builtin_shufflevector(even, odd, 0, 1, 4, 5), motion);
+    store(__builtin_shufflevector(even, odd, 2, 3, 6, 7), motion + 4);
   }
 }
 

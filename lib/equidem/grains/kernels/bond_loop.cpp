@@ -25,11 +25,10 @@ EQUIDEM_ALWAYS_INLINE void columns_of(const Half (&row)[8], Lanes& a, Lanes& b, 
   for (int k = 0; k < 4; ++k) twos[k] = __builtin_shufflevector(row[k], row[k + 4], 0, 1, 2, 3, 4, 5, 6, 7);
   const Lanes even_low = even_of(twos[0], twos[1]), even_high = even_of(twos[2], twos[3]);
   const Lanes odd_low = odd_of(twos[0], twos[1]), odd_high = odd_of(twos[2], twos[3]);
-  constexpr Choice first = {0, 1, 8, 9, 4, 5, 12, 13}, second = {2, 3, 10, 11, 6, 7, 14, 15};
-  a = __builtin_shuffle(even_low, even_high, first);
-  b = __builtin_shuffle(odd_low, odd_high, first);
-  c = __builtin_shuffle(even_low, even_high, second);
-  d = __builtin_shuffle(odd_low, odd_high, second);
+  a = __builtin_shufflevector(even_low, even_high, 0, 1, 8, 9, 4, 5, 12, 13);
+  b = __builtin_shufflevector(odd_low, odd_high, 0, 1, 8, 9, 4, 5, 12, 13);
+  c = __builtin_shufflevector(even_low, even_high, 2, 3, 10, 11, 6, 7, 14, 15);
+  d = __builtin_shufflevector(odd_low, odd_high, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
 /// Decay::mean to 1e-15: the series of decay() at y = x/2^doublings <= 1/2, its even powers beside the odd ones,
@@ -200,9 +199,6 @@ void count_plain(GrainSystem& system) {
 }
 
 #if defined(__x86_64__)
-/// No products and sums fused: the same bits on every machine.
-#define EQUIDEM_BY_FOURS __attribute__((target("avx2")))
-#define EQUIDEM_BY_EIGHTS __attribute__((target("avx2,avx512f,avx512vl,avx512dq,prefer-vector-width=512")))
 template <BondTask task>
 EQUIDEM_BY_FOURS void resist_by_fours(GrainSystem& system) {
   resist<task>(system);

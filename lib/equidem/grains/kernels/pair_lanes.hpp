@@ -74,17 +74,17 @@ EQUIDEM_ALWAYS_INLINE bool any(const Choice& choice) {
 }
 
 EQUIDEM_ALWAYS_INLINE Lanes even_of(const Lanes& a, const Lanes& b) {
-  return __builtin_shuffle(a, b, Choice{0, 8, 2, 10, 4, 12, 6, 14});
+  return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
 }
 EQUIDEM_ALWAYS_INLINE Lanes odd_of(const Lanes& a, const Lanes& b) {
-  return __builtin_shuffle(a, b, Choice{1, 9, 3, 11, 5, 13, 7, 15});
+  return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
 }
 /// Of pairs of lanes: the first and third of a, then of b.
 EQUIDEM_ALWAYS_INLINE Lanes even_twos_of(const Lanes& a, const Lanes& b) {
-  return __builtin_shuffle(a, b, Choice{0, 1, 4, 5, 8, 9, 12, 13});
+  return __builtin_shufflevector(a, b, 0, 1, 4, 5, 8, 9, 12, 13);
 }
 EQUIDEM_ALWAYS_INLINE Lanes odd_twos_of(const Lanes& a, const Lanes& b) {
-  return __builtin_shuffle(a, b, Choice{2, 3, 6, 7, 10, 11, 14, 15});
+  return __builtin_shufflevector(a, b, 2, 3, 6, 7, 10, 11, 14, 15);
 }
 
 /// Eight rows of eight numbers turned into eight columns.
@@ -108,10 +108,10 @@ EQUIDEM_ALWAYS_INLINE void transpose(Lanes (&m)[8]) {
 /// Four columns turned into eight rows of four.
 EQUIDEM_ALWAYS_INLINE void rows_of(const Lanes& a, const Lanes& b, const Lanes& c, const Lanes& d, Half (&row)[8]) {
   const Lanes ab_even = even_of(a, b), ab_odd = odd_of(a, b), cd_even = even_of(c, d), cd_odd = odd_of(c, d);
-  const Lanes r02 = __builtin_shuffle(ab_even, cd_even, Choice{0, 1, 8, 9, 2, 3, 10, 11});
-  const Lanes r46 = __builtin_shuffle(ab_even, cd_even, Choice{4, 5, 12, 13, 6, 7, 14, 15});
-  const Lanes r13 = __builtin_shuffle(ab_odd, cd_odd, Choice{0, 1, 8, 9, 2, 3, 10, 11});
-  const Lanes r57 = __builtin_shuffle(ab_odd, cd_odd, Choice{4, 5, 12, 13, 6, 7, 14, 15});
+  const Lanes r02 = __builtin_shufflevector(ab_even, cd_even, 0, 1, 8, 9, 2, 3, 10, 11);
+  const Lanes r46 = __builtin_shufflevector(ab_even, cd_even, 4, 5, 12, 13, 6, 7, 14, 15);
+  const Lanes r13 = __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 8, 9, 2, 3, 10, 11);
+  const Lanes r57 = __builtin_shufflevector(ab_odd, cd_odd, 4, 5, 12, 13, 6, 7, 14, 15);
   row[0] = __builtin_shufflevector(r02, r02, 0, 1, 2, 3);
   row[2] = __builtin_shufflevector(r02, r02, 4, 5, 6, 7);
   row[4] = __builtin_shufflevector(r46, r46, 0, 1, 2, 3);

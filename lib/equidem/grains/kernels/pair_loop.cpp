@@ -319,14 +319,12 @@ void collide_plain(GrainSystem& system) {
 }
 
 #if defined(__x86_64__)
-/// No products and sums fused: the same bits on every machine.
 template <class Law, PairLoopKind kind>
-__attribute__((target("avx2"))) void collide_by_fours(GrainSystem& system) {
+EQUIDEM_BY_FOURS void collide_by_fours(GrainSystem& system) {
   collide_all<Law, kind>(system);
 }
 template <class Law, PairLoopKind kind>
-__attribute__((target("avx2,avx512f,avx512vl,avx512dq,prefer-vector-width=512"))) void collide_by_eights(
-    GrainSystem& system) {
+EQUIDEM_BY_EIGHTS void collide_by_eights(GrainSystem& system) {
   collide_all<Law, kind>(system);
 }
 #endif

@@ -59,12 +59,10 @@ void turn_plain(GrainSystem& system) {
 }
 
 #if defined(__x86_64__)
-/// No products and sums fused: the same bits on every machine.
-__attribute__((target("avx2"))) void turn_by_fours(GrainSystem& system) {
+EQUIDEM_BY_FOURS void turn_by_fours(GrainSystem& system) {
   turn_all(system);
 }
-__attribute__((target("avx2,avx512f,avx512vl,avx512dq,prefer-vector-width=512"))) void turn_by_eights(
-    GrainSystem& system) {
+EQUIDEM_BY_EIGHTS void turn_by_eights(GrainSystem& system) {
   turn_all(system);
 }
 #endif

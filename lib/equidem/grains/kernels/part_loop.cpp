@@ -231,14 +231,12 @@ void collide_plain(GrainSystem& system, NearParts::List& list) {
 }
 
 #if defined(__x86_64__)
-/// No products and sums fused: the same bits on every machine.
 template <class Law, PartLoopKind kind>
-__attribute__((target("avx2"))) void collide_by_fours(GrainSystem& system, NearParts::List& list) {
+EQUIDEM_BY_FOURS void collide_by_fours(GrainSystem& system, NearParts::List& list) {
   collide_all<Law, kind>(system, list);
 }
 template <class Law, PartLoopKind kind>
-__attribute__((target("avx2,avx512f,avx512vl,avx512dq,prefer-vector-width=512"))) void collide_by_eights(
-    GrainSystem& system, NearParts::List& list) {
+EQUIDEM_BY_EIGHTS void collide_by_eights(GrainSystem& system, NearParts::List& list) {
   collide_all<Law, kind>(system, list);
 }
 #endif

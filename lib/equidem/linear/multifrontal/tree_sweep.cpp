@@ -5,7 +5,6 @@
 #include <memory>
 #include <mutex>
 #include <numeric>
-#include <ranges>
 
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/large_buffer.hpp"
@@ -126,10 +125,10 @@ void TreeSweep::up(const Size& size, const Visit& visit, const std::function<voi
 }
 
 void TreeSweep::down(const std::function<void(std::size_t)>& visit) const {
-  for (const TreeSchedule::Wave& wave : std::views::reverse(schedule_.waves)) {
-    for (const std::int32_t t : std::views::reverse(wave.above)) visit(t);
-    parallel_tasks(wave.subtrees.size(), [&](std::size_t s, int) {
-      const std::int32_t root = wave.subtrees[s];
+  for (auto wave = schedule_.waves.rbegin(); wave != schedule_.waves.rend(); ++wave) {
+    std::for_each(wave->above.rbegin(), wave->above.rend(), visit);
+    parallel_tasks(wave->subtrees.size(), [&](std::size_t s, int) {
+      const std::int32_t root = wave->subtrees[s];
       for (std::int32_t t = root; t >= symbolic_.tree.nodes[root].first_descendant; --t) visit(t);
     });
   }
