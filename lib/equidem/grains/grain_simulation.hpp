@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Bodies that meet, rebound and part, stepped in time.
+/// Simulation of colliding bodies in time.
 #pragma once
 
 #include <cstdint>
@@ -14,53 +14,53 @@
 
 namespace equidem {
 
-/// A contact as it was in the last step.
+/// State of a contact in the last step.
 struct GrainContact {
-  std::int32_t i = 0;                             ///< grain; clumps may meet in several contacts
-  std::int32_t j = 0;                             ///< grain, or ~j a wall (negative)
-  double overlap = 0;                             ///< at the beginning of the last step, m
-  double closing = 0;                             ///< then, m/s
+  std::int32_t i = 0;                             ///< grain; two clumps may have several contacts
+  std::int32_t j = 0;                             ///< grain; negative: wall ~j
+  double overlap = 0;                             ///< overlap at the start of the last step, m
+  double closing = 0;                             ///< closing speed at the start of the last step, m/s
   Vec2 normal;                                    ///< unit, from i to j
-  Vec2 arm_i, arm_j;                              ///< from the centres of mass to the contact point, m; of a wall {}
-  double normal_force = 0, tangential_force = 0;  ///< mean over the step
-  int mode = 0;                                   ///< of the maps
-  std::int64_t steps = 0;                         ///< it has lasted
+  Vec2 arm_i, arm_j;                              ///< from the centres of mass to the contact point, m; {} for a wall
+  double normal_force = 0, tangential_force = 0;  ///< mean over the step, N
+  int mode = 0;            ///< case of the map that was used (ContactStep::mode); 0 for other laws
+  std::int64_t steps = 0;  ///< number of steps since the contact began
   bool operator==(const GrainContact&) const = default;
 };
 
-/// What was done since the start.
+/// Counters since the start.
 struct GrainCounters {
-  std::int64_t evaluations = 0;  ///< of the contact law
-  std::int64_t contacts = 0;     ///< begun
-  std::int64_t rebuilds = 0;     ///< of the neighbour lists
-  std::int64_t sweeps = 0;       ///< exact_flow: over all contacts
-  /// exact_flow: contacts in a step that is not stable for every arrangement of their neighbours; where it is 0 none
-  /// was.
+  std::int64_t evaluations = 0;  ///< evaluations of the contact law
+  std::int64_t contacts = 0;     ///< contacts begun
+  std::int64_t rebuilds = 0;     ///< constructions of the neighbour lists
+  std::int64_t sweeps = 0;       ///< exact_flow: sweeps over all contacts
+  /// exact_flow: contacts whose step is not proved stable for every arrangement of their neighbours; 0: every step was
+  /// stable.
   std::int64_t doubtful = 0;
 };
 
-/// How far a bond has given way since the start.
+/// Deformation of a bond since the start.
 struct BondDrift {
   std::size_t i = 0, j = 0;  ///< grains
-  double distance = 0;       ///< of the centres, over the sum of the radii
-  double slip = 0;           ///< of the surfaces at the point of the bond, over the same: whole turns are not counted
-  double roll = 0;           ///< of j against i, rad
+  double distance = 0;       ///< distance of the centres over the sum of the radii
+  double slip = 0;           ///< slip of the surfaces at the bond over the sum of the radii, without whole turns
+  double roll = 0;           ///< rotation of j relative to i, rad
 };
 
-/// The same of all bonds.
+/// Deformation of all bonds: extremes and means of BondDrift.
 struct BondReport {
   struct Drift {
-    double largest = 0, mean = 0;  ///< over the bonds, of absolute values
+    double largest = 0, mean = 0;  ///< of the absolute values over all bonds
   };
   std::size_t number = 0;
   Drift distance, slip, roll;  ///< as in BondDrift
-  double step_limit = 0;       ///< s, that the bonds impose; infinite: none
+  double step_limit = 0;       ///< largest time step that the bonds allow, s; infinite: no limit
 };
 
 class GrainSimulation final : public AnySimulation {
  public:
-  /// Decide the effects, pick the loop. Bodies and walls are kept in an order of their own, by place, so that the
-  /// caller's order changes no bit.
+  /// Determines the effects and chooses the loop. Bodies and walls are sorted by position internally, so results do not
+  /// depend on the caller's order.
   /// \throws Error as check(scene, options)
   GrainSimulation(const GrainScene& scene, const GrainOptions& options);
   ~GrainSimulation() override;
@@ -71,10 +71,9 @@ class GrainSimulation final : public AnySimulation {
 
   [[nodiscard]] BodyFamily family() const override { return BodyFamily::colliding; }
   [[nodiscard]] const Effects& effects() const override;
-  /// \throws Error (computation_failed) before the step in which a body would pass through a wall or another body
-  ///         unseen, or centres would pass each other; naming step, bodies, speed and the step that would do; on
-  ///         motions that are no numbers; where exact_flow finds no common solution of all contacts. The state is that
-  ///         before the step.
+  /// \throws Error (computation_failed) if a body would pass through a wall or another body undetected, or centres
+  ///         would pass each other (the message names step, bodies, speed and a sufficient time step); if motions are
+  ///         not finite; if exact_flow does not converge. The state remains that before the step.
   void advance(std::int64_t steps) override;
   [[nodiscard]] std::int64_t step() const override;
   [[nodiscard]] double time() const override;
@@ -82,21 +81,21 @@ class GrainSimulation final : public AnySimulation {
   [[nodiscard]] std::vector<DiscMotion> velocities() const override;
   [[nodiscard]] EnergyLedger energy() const override;
   [[nodiscard]] double bytes_per_body() const override;
-  /// Arrays: motions (n, 3): position, angle; velocities (n, 3): velocity, spin; contacts as the loop keeps them;
-  /// impulses (n, 3) of the last step and bonds (b, 3), where the next step needs them; losses: the terms of the
-  /// ledger; counters.
+  /// Arrays: motions (n, 3): position, angle; velocities (n, 3): velocity, spin; contacts as the loop stores them;
+  /// impulses (n, 3) and bonds (b, 3) of the last step, if the next step needs them; losses: the terms of the ledger;
+  /// counters.
   [[nodiscard]] SavedState save() const override;
   void restore(const SavedState& state) override;
 
-  /// In the caller's order.
+  /// Bodies in the caller's order.
   [[nodiscard]] std::vector<Grain> grains() const;
-  /// Of the last step, in the order of (i, j).
+  /// Contacts of the last step, ordered by (i, j).
   [[nodiscard]] std::vector<GrainContact> contacts() const;
   [[nodiscard]] const GrainCounters& counters() const;
   [[nodiscard]] BondReport bonds() const;
-  /// In the order of (i, j), i < j.
+  /// One entry per bond, ordered by (i, j), i < j.
   [[nodiscard]] std::vector<BondDrift> bond_drifts() const;
-  /// Set all velocities to 0; the energy taken counts as lost in normal dashpots.
+  /// Set all velocities to 0. The kinetic energy removed is counted in EnergyLedger::lost_dashpot.
   void stop_all();
 
  private:

@@ -16,39 +16,39 @@ struct GrainSimulation::Implementation {
   CollideFunction collide = nullptr;  ///< force laws and maps
   FlowFunction flow = nullptr;        ///< simultaneous laws
   double potential_at_start = 0, energy_at_start = 0;
-  double bond_limit = 0;  ///< step that bonds impose, s
-  SavedState kept;        ///< a state not long ago, to come back to
+  double bond_limit = 0;  ///< largest step that the bonds allow, s
+  SavedState kept;        ///< a recent state, restored when a step fails
 
   void make_step();
-  /// All contacts together, by a simultaneous law.
+  /// Step of a simultaneous law: all contacts together.
   void step_together();
-  /// Semi-implicit Euler, v' = v + a(x, v) dt, x' = x + v' dt; the maps give v' in place of a.
+  /// Semi-implicit Euler: v' = v + a(x, v) dt, x' = x + v' dt; the maps give v' directly.
   void step_by_euler();
-  /// Half a kick, drift, impulses with the velocities of the half step, the other half of the kick.
+  /// Velocity Verlet: half kick, drift, impulses from the velocities at the half step, half kick.
   void step_by_verlet();
-  // Their stages:
-  /// Impulses of contacts and bonds, from positions and velocities as they are.
+  // Stages of both schemes:
+  /// Compute the impulses of contacts and bonds from the present positions and velocities.
   void find_impulses();
-  /// Pairs that may touch where the bodies are after the step.
-  /// \throws Error (computation_failed) where bodies would pass through one another
+  /// Update the pairs that may touch at the positions after the step.
+  /// \throws Error (computation_failed) if bodies would pass through one another
   void update_candidates();
-  /// Bodies, walls and axes are those after the step.
+  /// Advance bodies, walls and axes to the end of the step.
   void start_next_step();
   [[nodiscard]] bool verlet() const { return system.options.verlet(); }
-  /// Whether a step needs the impulses of the one before.
+  /// Whether a step needs the impulses of the previous step.
   [[nodiscard]] bool keeps_impulses() const {
     return verlet() ||
            (collide && (system.friction || system.contacts.near.active || system.contacts.near_parts.active));
   }
-  /// Of gravity, where the velocities are.
+  /// Potential energy of gravity at the time of the velocities, J.
   [[nodiscard]] double potential() const;
   [[nodiscard]] double kinetic() const;
-  /// Normal and tangential springs as they stand.
+  /// Energies of the normal and the tangential springs at the present positions, J.
   [[nodiscard]] std::pair<double, double> elastic() const;
   [[nodiscard]] EnergyLedger energy() const;
 };
 
-/// Which effects a scene of colliding bodies has, and why not the others.
+/// The effects of a scene of colliding bodies, with the reason for each inactive one.
 Effects effects_of(const GrainScene& scene, const GrainOptions& options);
 
 }  // namespace equidem

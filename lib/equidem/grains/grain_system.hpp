@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What the steps of colliding bodies work on: bodies and walls in the order of their places, candidates for contact.
+/// Data of the steps of colliding bodies: bodies and walls sorted by position, candidates for contact.
 #pragma once
 
 #include <cstdint>
@@ -25,62 +25,62 @@ struct GrainMotion {
   double spin = 0, angle = 0;
 };
 
-/// What does not change; walls have the inverse mass 0.
+/// Constants of a body; walls have inverse mass 0.
 struct GrainBody {
   double radius = 0, inverse_mass = 0, inverse_moment = 0;
   std::int32_t kind = 0;
 };
 
-/// What contacts give a body in one step.
+/// Impulse on a body by its contacts in one step.
 struct alignas(32) BodyImpulse {
   Vec2 impulse;       ///< N s
-  double torque = 0;  ///< impulse of the moment, N m s
-  double rim = 0;     ///< impulse along the rim of a disc by near pairs, N s; the move of bodies makes a torque of it
+  double torque = 0;  ///< angular impulse, N m s
+  double rim = 0;  ///< tangential impulse on the rim of a disc by near pairs, N s; turn_rims() converts it to a torque
 };
 
-/// Two bodies near enough to touch soon, or a body and a wall, with what their contact remembers.
+/// Two bodies, or a body and a wall, that may touch soon, with the state of their contact.
 struct Candidate {
-  // what every step looks at comes first: bodies that are near but do not touch cost one line of the cache
+  // members read in every step come first: pairs that do not touch read one cache line
   std::int32_t i = 0;
-  std::int32_t j = 0;  ///< ~j: a wall, where negative
+  std::int32_t j = 0;  ///< negative: wall ~j
   bool touching = false;
-  bool parted = false;      // a map ended it with the step: what overlaps then is a new contact
-  bool attraction = false;  // does not change, like the next three
-  bool covered = false;     // with the end of a wall, where another wall goes on: does nothing (wall_joints.hpp)
+  bool parted = false;      // a map ended the contact in this step: a later overlap is a new contact
+  bool attraction = false;  // constant, like the next three
+  bool covered = false;     // contact with the end of a wall that another wall continues: ignored (wall_joints.hpp)
   int mode = 0;
   double reduced_mass = 0;
   double a = 0;  // dimensionless stiffness
   /// Force laws: dashpot coefficient over m/dt, Law::dissipation sqrt(a); others: Law::dissipation.
   double dissipation = 0;
   std::int64_t steps = 0;
-  // of the last step
+  // state after the last step
   double overlap = 0, closing = 0;
   Vec2 normal;
   double impulse = 0, moment = 0, tangential_impulse = 0;
   // springs
-  double stretch = 0;    // of the tangential one, m
-  double stiffness = 0;  // N/m, hertz: N/m^(3/2); does not change
-  Sliding sliding;       // does not change
+  double stretch = 0;    // stretch of the tangential spring, m
+  double stiffness = 0;  // normal stiffness, N/m, hertz: N/m^(3/2); constant
+  Sliding sliding;       // constant
 };
 
-/// A wall where it is now and how it moves in this step.
+/// Displacement and velocity of a wall in the present step.
 struct WallPlace {
   Vec2 displacement;
   Vec2 velocity;  ///< mean over the step
-  /// That contacts see and walls do work with: velocity_verlet, whose forces act half in the step before, the mean over
-  /// both.
+  /// Velocity used for contacts and for the work of walls. velocity_verlet: mean over this and the previous step, since
+  /// forces act half in each.
   Vec2 acting_velocity;
-  Vec2 passed_velocity;  ///< velocity_verlet: mean over the step before
+  Vec2 passed_velocity;  ///< velocity_verlet: mean over the previous step
 };
 
-/// The bodies in the order of their places.
+/// The bodies sorted by position.
 struct Bodies {
   std::vector<GrainBody> constants;
   std::vector<GrainMotion> motions;
-  std::vector<GrainMotion> next;  ///< after the step being made
+  std::vector<GrainMotion> next;  ///< motions after the present step
   std::vector<BodyImpulse> impulses;
-  std::vector<BodyImpulse> impulses_before;  ///< of the step before, where friction asks for them
-  /// maps: mass times shift of the position, kg m; exact_flow: integral of (dt - t) force dt, N s²; other laws: empty
+  std::vector<BodyImpulse> impulses_before;  ///< of the previous step; stored if friction needs them
+  /// Maps: mass times shift of the position, kg m. exact_flow: integral of (dt - t) force dt, N s². Other laws: empty.
   std::vector<Vec2> moments;
   std::vector<std::size_t> grain_of;         ///< caller's number of the k-th
   std::vector<std::int32_t> place_of_grain;  ///< its inverse
@@ -88,33 +88,33 @@ struct Bodies {
 
 /// Ellipses and clumps; all empty in scenes of discs alone.
 struct Shapes {
-  std::vector<GrainPart> parts;          ///< of body k: from first_part[k] to first_part[k + 1]
-  std::vector<std::int32_t> first_part;  ///< one more than bodies
+  std::vector<GrainPart> parts;          ///< parts of body k: first_part[k] .. first_part[k + 1] - 1
+  std::vector<std::int32_t> first_part;  ///< bodies + 1 entries
   std::vector<std::int32_t> body_of_part;
-  std::vector<std::int32_t> shaped;  ///< bodies that are no discs
-  std::vector<Vec2> axes;            ///< x-axis of each body where it is now
+  std::vector<std::int32_t> shaped;  ///< bodies that are not discs
+  std::vector<Vec2> axes;            ///< present x-axis of each body
 };
 
-/// The walls in the order of their places.
+/// The walls sorted by position.
 struct Walls {
   std::vector<WallPlace> places;
-  std::vector<WallJoints> joints;           ///< of each wall; empty where none join
+  std::vector<WallJoints> joints;           ///< joints of each wall; empty if no walls join
   std::vector<std::size_t> wall_of;         ///< caller's number of the k-th
   std::vector<std::int32_t> place_of_wall;  ///< its inverse
 };
 
-/// Pairs that touch or may come to touch soon.
+/// Pairs that touch or may touch soon.
 struct ContactList {
   NearPairs near;
   NearParts near_parts;
-  /// That are in none of the near lists; ordered by i, then j, walls last, then parts.
+  /// Contacts in none of the near lists, ordered by i, then j (walls last), then parts.
   std::vector<Candidate> candidates;
   std::vector<ExactPair> exact_pairs;  ///< simultaneous laws: one for each candidate
   std::vector<PartPair> part_pairs;    ///< scenes with shapes: one for each candidate
   NeighbourFinder finder;
   std::vector<Circle> circles;   ///< bodies, for the finder
-  double margin = 0, moved = 0;  ///< of the candidates; how far bodies may have moved since they were found, m
-  double base_margin = 0;        ///< while bodies are slow, m
+  double margin = 0, moved = 0;  ///< margin of the candidates; upper bound of the motion since they were found, m
+  double base_margin = 0;        ///< margin for slow bodies, m
 };
 
 struct BondList {
@@ -123,12 +123,12 @@ struct BondList {
 };
 
 struct GrainSystem {
-  GrainScene scene;  ///< walls and grains in the order of their places
+  GrainScene scene;  ///< walls and grains sorted by position
   GrainOptions options;
   double length = 0;                 ///< d_c
   std::vector<double> dissipations;  ///< Law::dissipation of scene.pairs
   bool friction = false;
-  double smallest_radius = 0;  ///< of the circles that parts hold, m
+  double smallest_radius = 0;  ///< smallest radius of the inscribed circles of all parts, m
 
   Bodies bodies;
   Shapes shapes;
@@ -137,10 +137,10 @@ struct GrainSystem {
   BondList bonds;
 
   std::int64_t step = 0;
-  std::vector<TouchImpulse> touch_impulses;  ///< of the step being made
+  std::vector<TouchImpulse> touch_impulses;  ///< of the present step
   bool free_flight = false;                  ///< all impulses are zero
-  double longest_way = 0;                    ///< of a body in the step being made, squared, m²
-  double deepest = 0;                        ///< overlap of the step, m
+  double longest_way = 0;                    ///< square of the longest displacement of a body in the present step, m²
+  double deepest = 0;                        ///< deepest overlap of the present step, m
   EnergyLedger lost;                         ///< losses and work since the start
   GrainCounters counters;
 
@@ -157,32 +157,32 @@ struct GrainSystem {
   }
 };
 
-/// Put grains and walls in the order of their places, so that the caller's order changes no bit.
+/// Sort grains and walls by position, so that results do not depend on the caller's order.
 void order_by_place(GrainSystem& system, const GrainScene& scene);
 
-/// Law::dissipation of the pairs of kinds.
+/// Compute Law::dissipation for every pair of kinds.
 void find_dissipations(GrainSystem& system);
 
 /// Coefficient of the normal dashpot of a pair under a force law: Law::dissipation sqrt(k m).
 double dashpot_of(const GrainSystem& system, const Candidate& candidate);
 
-/// Fill in what the law needs of a pair.
+/// Set the constants of a pair that the law needs.
 void set_constants(const GrainSystem& system, Candidate& candidate);
 
-/// Find all candidates within the margin anew; contacts keep what they remember.
+/// Find all candidates within the margin again; existing contacts keep their state.
 void find_candidates(GrainSystem& system);
 
-/// See to it that the candidates hold all that may touch while no body moves further than `reach` from where it is, and
-/// count that way as gone. \return whether they were found anew
+/// Ensure that the candidates contain every pair that may touch while no body moves further than `reach`, and add
+/// `reach` to the motion counted. \return whether the candidates were found again
 bool refresh_candidates(GrainSystem& system, double reach);
 
-/// The longest way that a body goes in this step, walls included.
+/// Longest displacement of a body or wall in this step, m.
 double reach_of(const GrainSystem& system);
 
-/// Forget a contact that has ended.
+/// Reset the state of a contact that has ended.
 void forget_contact(GrainSystem& system, Candidate& candidate);
 
-/// Where walls are at the start of the step, and their mean velocity over it.
+/// Set the displacement of walls at the start of the step and their mean velocity over it.
 void place_walls(GrainSystem& system);
 
 }  // namespace equidem

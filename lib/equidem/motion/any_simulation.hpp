@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What every simulation in time offers: run loops, files and reports work with this alone.
+/// Common interface of all simulations in time; run loops, files and reports use only this.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,9 @@ class AnySimulation {
   virtual ~AnySimulation() = default;
 
   [[nodiscard]] virtual BodyFamily family() const = 0;
-  /// Active effects, and why the others are not.
+  /// Active effects, and the reason for each inactive one.
   [[nodiscard]] virtual const Effects& effects() const = 0;
-  /// Make steps. The same bits however they are cut into calls.
+  /// Advance by a number of steps. Results are bit-identical for any division of the steps into calls.
   virtual void advance(std::int64_t steps) = 0;
   [[nodiscard]] virtual std::int64_t step() const = 0;
   [[nodiscard]] virtual double time() const = 0;  ///< s
@@ -33,7 +33,7 @@ class AnySimulation {
   [[nodiscard]] virtual double bytes_per_body() const = 0;
 
   [[nodiscard]] virtual SavedState save() const = 0;
-  /// \throws Error (bad_input) where the state is of another number of bodies
+  /// \throws Error (bad_input) if the state has a different number of bodies
   virtual void restore(const SavedState& state) = 0;
 
  protected:

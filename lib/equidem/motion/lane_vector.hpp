@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Memory of the arrays that loops read four numbers at a time.
+/// Aligned memory for the arrays of vectorized loops.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,11 @@
 
 namespace equidem {
 
-/// Memory that begins with a cache line, so that no four numbers lie across two of them; large arrays on huge pages
-/// where the system has them.
+/// Memory aligned to a cache line, so that no vector of four numbers crosses a line; large arrays use huge pages if the
+/// system provides them.
 template <typename T>
 struct LaneAllocator {
-  using value_type = T;  // NOLINT(readability-identifier-naming): the standard library asks for this name
+  using value_type = T;  // NOLINT(readability-identifier-naming): the standard library requires this name
   static constexpr std::size_t cache_line = 64, large = std::size_t{1} << 22;
 
   LaneAllocator() = default;

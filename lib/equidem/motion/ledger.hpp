@@ -11,14 +11,14 @@ namespace equidem {
 /// Energies at one time, J (spheres) or J per metre of depth (discs); losses and work are counted from the start. A
 /// simulation leaves the terms that it does not have at 0.
 ///
-/// Leapfrog does not keep the sum of kinetic and elastic energy, it lets it sway: by sway = h²/8 f.a, f the forces of
-/// springs, walls and gravity, a the accelerations (free vibration: h²/8 a.M a, the share (omega h)²/4 of the elastic
-/// energy of a mode). With it the balance is exact but for rounding where forces are linear in the motion; for finite
-/// motions and discs that meet walls it closes to the order of the integrator, work of loads and supports to the
-/// second.
+/// With leapfrog the sum of kinetic and elastic energy oscillates by sway = h²/8 f.a, f the forces of springs, walls
+/// and gravity, a the accelerations (free vibration: h²/8 a.M a, the share (omega h)²/4 of the elastic energy of a
+/// mode). With this term the balance is exact to rounding if forces are linear in the motion. For finite motions and
+/// for contacts with walls its error has the order of the integrator; the work of loads and supports is of second
+/// order.
 ///
-/// Of colliding bodies, maps and exact_flow keep all terms to one instant; the force laws by Euler keep velocities half
-/// a step behind, and the potential of gravity is taken where the body was then.
+/// Colliding bodies: for maps and exact_flow all terms refer to one instant. For force laws with semi-implicit Euler,
+/// velocities lag by half a step, and the potential of gravity is taken at the position of that instant.
 struct EnergyLedger {
   double kinetic = 0;
   double elastic_bonded = 0;                          ///< contacts of bonded discs, their walls included
@@ -28,9 +28,10 @@ struct EnergyLedger {
   double sway = 0;                                    ///< 0 at the start
   double damped_mass = 0, damped_contact = 0, damped_local = 0;
   double lost_restitution = 0;  ///< maps
-  double lost_dashpot = 0;      ///< normal
+  double lost_dashpot = 0;      ///< normal dashpots
   double lost_slip = 0, lost_tangential_dashpot = 0;
-  /// Tangential springs, and normal springs of contacts that end at zero force, released at the end of a contact.
+  /// Energy released at the end of a contact: tangential springs, and normal springs of contacts that end at zero
+  /// force.
   double lost_release = 0;
   double lost_bond = 0;  ///< dashpots of bonds
   double work_of_loads = 0, work_of_supports = 0, work_of_walls = 0;
@@ -47,21 +48,21 @@ struct EnergyLedger {
 
 enum class EnergyRole { stored, sway, lost, work, initial };
 
-/// The families of simulations: each has its own terms.
+/// The families of simulations; each has its own terms.
 enum class BodyFamily { bonded, colliding };
 
 struct EnergyTerm {
-  const char* key;    ///< in files
-  const char* label;  ///< in reports
+  const char* key;    ///< key in files
+  const char* label;  ///< label in reports
   EnergyRole role;
   double EnergyLedger::*value;
 };
 
-/// The terms of a family, in the order in which files list them; all terms.
+/// The terms of one family, or all terms, in the order of the files.
 std::span<const EnergyTerm> energy_terms(BodyFamily family);
 std::span<const EnergyTerm> energy_terms();
 
-/// Energies at a moment.
+/// Energies at one time.
 struct EnergySample {
   std::int64_t step = 0;
   double time = 0;  ///< s

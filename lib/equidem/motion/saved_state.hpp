@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The state of a simulation as named arrays, from which it continues with the same bits.
+/// The state of a simulation as named arrays; a restored run continues bit-identically.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace equidem {
 
-/// Rows of numbers; whole numbers up to 2^53 are exact.
+/// Rows of numbers; integers up to 2^53 are exact.
 struct SavedArray {
   std::string name;
   std::size_t columns = 1;
@@ -25,7 +25,7 @@ struct SavedState {
   std::int64_t step = 0;
   std::vector<SavedArray> arrays;
 
-  /// \throws Error (bad_input) where there is no such array
+  /// \throws Error (bad_input) if there is no such array
   [[nodiscard]] const std::vector<double>& operator[](std::string_view name) const;
   [[nodiscard]] std::vector<double>& operator[](std::string_view name);
   [[nodiscard]] bool contains(std::string_view name) const;

@@ -10,16 +10,16 @@
 
 namespace equidem {
 
-/// A wall of infinite mass. A line has an outside only on the side that its normal points to; segments and arcs are
-/// thin and have two sides and two ends. The own normal of a segment points to the left of the way from `point` to
-/// `end`, that of an arc away from its centre; a centre exactly on a wall counts as on that side.
+/// A wall of infinite mass. Bodies are outside a line on the side of its normal; segments and arcs are thin, with two
+/// sides and two ends. The normal of a segment points to the left of the direction from `point` to `end`, that of an
+/// arc away from its centre; a centre exactly on a wall counts as on that side.
 ///
 /// Bonded discs take lines with a spring kN, without friction. Colliding bodies take all shapes; stiffness, restitution
 /// and friction follow from `kind`.
 struct Wall {
   enum class Shape { line, segment, arc } shape = Shape::line;
   std::string name;
-  Vec2 point;               ///< line: on it; segment: first end; arc: centre. m
+  Vec2 point;               ///< line: a point on it; segment: first end; arc: centre. m
   Vec2 normal = {0, 1};     ///< line: unit, towards the bodies
   Vec2 end = {};            ///< segment: second end, m
   double radius = 0;        ///< arc, m, > 0
@@ -30,16 +30,16 @@ struct Wall {
 
   [[nodiscard]] bool moves() const { return move_x.changes() || move_y.changes(); }
   [[nodiscard]] Vec2 displacement(double time) const { return {move_x.at(time), move_y.at(time)}; }
-  /// Of a line, m.
+  /// Displacement of a line along its normal, m.
   [[nodiscard]] double displacement_along_normal(double time) const { return dot(normal, displacement(time)); }
 };
 
-/// The wall moves along a direction.
+/// Prescribe the displacement of a wall along a direction.
 /// \param direction unit
 void move_along(Wall& wall, Vec2 direction, const Schedule& displacement);
 
-/// \throws Error (bad_input) on numbers that are not finite, a normal that is no unit vector, a segment without length,
-///         an arc without radius or with angles out of order
+/// \throws Error (bad_input) on numbers that are not finite, a normal that is not a unit vector, a segment of length 0,
+///         an arc of radius 0 or with angles out of order
 void check(const Wall& wall);
 
 }  // namespace equidem

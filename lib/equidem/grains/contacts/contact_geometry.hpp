@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// How the two bodies of a candidate stand to each other.
+/// Contact geometry and relative motion of the two bodies of a candidate.
 #pragma once
 
 #include "equidem/grains/grain_system.hpp"
@@ -8,7 +8,7 @@
 namespace equidem {
 
 /// Overlap, normal from i to j, levers from the centres to the contact point. The levers of two grains add up to the
-/// distance of their centres: contact forces keep the angular momentum. That against a wall is the radius.
+/// distance of their centres, so that contact forces conserve angular momentum. The lever at a wall is the radius.
 struct ContactGeometry {
   double overlap = 0;
   Vec2 normal;
@@ -32,7 +32,7 @@ inline ContactGeometry geometry_with_wall(const GrainBody& bi, const Wall& wall,
   return {bi.radius - contact.distance, -contact.normal, bi.radius, 0};
 }
 
-/// As the bodies stand at the start of the step.
+/// Geometry at the start of the step.
 inline ContactGeometry geometry_of(const GrainSystem& system, const Candidate& candidate) {
   const auto i = static_cast<std::size_t>(candidate.i);
   if (candidate.j >= 0) {
@@ -47,14 +47,14 @@ inline ContactGeometry geometry_of(const GrainSystem& system, const Candidate& c
                             system.bodies.motions[i].position);
 }
 
-/// Velocity of j, or of the wall, over that of i.
+/// Velocity of j, or of the wall, relative to i.
 inline Vec2 relative_velocity(const GrainSystem& system, const Candidate& candidate) {
   const Vec2 other = candidate.j >= 0 ? system.bodies.motions[static_cast<std::size_t>(candidate.j)].velocity
                                       : system.walls.places[static_cast<std::size_t>(~candidate.j)].acting_velocity;
   return other - system.bodies.motions[static_cast<std::size_t>(candidate.i)].velocity;
 }
 
-/// Velocity of the surface of j over that of i at the contact, along the tangent.
+/// Tangential velocity of the surface of j relative to that of i at the contact.
 inline double slip_velocity(const GrainSystem& system, const Candidate& candidate, const ContactGeometry& geometry,
                             Vec2 relative) {
   double turning = system.bodies.motions[static_cast<std::size_t>(candidate.i)].spin * geometry.lever_i;
@@ -62,7 +62,7 @@ inline double slip_velocity(const GrainSystem& system, const Candidate& candidat
   return dot(relative, perpendicular(geometry.normal)) - turning;
 }
 
-/// 1/(1/m_i + 1/m_j + l_i²/I_i + l_j²/I_j).
+/// Tangential mass 1/(1/m_i + 1/m_j + l_i²/I_i + l_j²/I_j).
 inline double tangential_mass(const GrainSystem& system, const Candidate& candidate, const ContactGeometry& geometry) {
   const GrainBody& bi = system.bodies.constants[static_cast<std::size_t>(candidate.i)];
   double inverse = bi.inverse_mass + geometry.lever_i * geometry.lever_i * bi.inverse_moment;

@@ -10,19 +10,19 @@
 
 namespace equidem {
 
-/// \param gain,turn of velocity and spin by the contacts in the last step
+/// \param gain,turn change of velocity and of spin by the contacts in the last step
 inline PairBody pair_body(const GrainBody& body, const GrainMotion& motion, Vec2 gain, double turn) {
   return {motion.position, motion.velocity, motion.spin * body.radius, motion.velocity + 0.5 * gain,
           (motion.spin + 0.5 * turn) * body.radius};
 }
 
-/// Torque of the forces that near pairs gave along the rim.
+/// Add the torque of the tangential impulses of near pairs.
 inline void turn_rims(BodyImpulse& push, const GrainBody& body) {
   push.torque += body.radius * push.rim;
   push.rim = 0;
 }
 
-/// system.bodies.next[i] = motion(i), the motion after the step; and system.longest_way, while the numbers are at hand.
+/// Set system.bodies.next[i] = motion(i), the motion after the step, and system.longest_way in the same loop.
 template <class Motion>
 void move_bodies(GrainSystem& system, const Motion& motion) {
   const GrainMotion* before = system.bodies.motions.data();
@@ -31,9 +31,9 @@ void move_bodies(GrainSystem& system, const Motion& motion) {
     after[i] = motion(i);
     const Vec2 way = after[i].position - before[i].position;
     const double square = dot(way, way);
-    longest = square > longest || square != square ? square : longest;  // what is no number stays: nothing is larger
+    longest = square > longest || square != square ? square : longest;  // a NaN persists: no number compares as larger
   };
-  constexpr std::size_t lanes = 4;  // maxima: one alone would wait for itself
+  constexpr std::size_t lanes = 4;  // independent maxima, so that comparisons do not wait for one another
   std::array<double, lanes> longest{};
   const std::size_t count = system.bodies.motions.size(), whole = count - count % lanes;
   for (std::size_t i = 0; i < whole; i += lanes) {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The way of parts of bodies in a step, and whether ellipses pass through one another on it.
+/// Displacement of parts of bodies in a step, and detection of ellipses that pass through one another.
 #pragma once
 
 #include "equidem/grains/grain_system.hpp"
 
 namespace equidem {
 
-/// From part i to part j, or of part i alone where j is a wall, before and after the step.
+/// Branch from part i to part j, or position of part i if j is a wall, before and after the step.
 struct PartWay {
   Vec2 before, after;
-  double radius_i = 0, radius_j = 0;  ///< of the circles that they hold, m
+  double radius_i = 0, radius_j = 0;  ///< radii of the inscribed circles, m
 };
 
 PartWay way_of_parts(const GrainSystem& system, const Candidate& candidate, const PartPair& parts);
@@ -18,12 +18,12 @@ PartWay way_of_parts(const GrainSystem& system, const Candidate& candidate, cons
 /// Whether a part of a pair is an ellipse.
 bool has_ellipse(const GrainSystem& system, const Candidate& candidate, const PartPair& parts);
 
-/// What two ellipses would do in the step that they must not: one comes nearer with its centre in the other, the normal
-/// of an overlap turns round, an overlap of more than half the smaller short half-axis lies unseen between the two
-/// instants, or one of more than all of it comes from none. \return nullptr: nothing
+/// The error of two ellipses in the step: one approaches with its centre in the other, the normal of an overlap
+/// reverses, an overlap of more than half the smaller short half-axis occurs undetected between the two instants, or
+/// one larger than that half-axis occurs without a contact before. \return nullptr: no error
 const char* crossing_of_ellipses(const GrainSystem& system, const Candidate& candidate, const PartPair& parts);
 
-/// \throws Error (computation_failed) where the step leads an ellipse to the inside of an arc, within reach of it
+/// \throws Error (computation_failed) if an ellipse moves to the inside of an arc, within reach of it
 void refuse_ellipses_in_bowls(const GrainSystem& system);
 
 }  // namespace equidem

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// One contact in a step of the Verlet schemes: what it pushes, and what it took in the drift before.
+/// One contact in a step of the Verlet schemes: its impulse, and its losses in the drift before.
 ///
-/// The kick J of an instant works half with the velocity of the drift before it and half with that of the drift after
-/// it: in a drift a contact takes 0.5 (J_before + J_now) times its speed, less what its springs have stored. Nothing is
-/// to be predicted.
+/// The kick J of an instant does work half with the velocity of the drift before it and half with that of the drift
+/// after it: the loss of a contact in a drift is 0.5 (J_before + J_now) times its speed, less the energy stored in its
+/// springs. No prediction is needed.
 #pragma once
 
 #include <algorithm>
@@ -14,24 +14,24 @@
 
 namespace equidem {
 
-/// Where two bodies touch. The arms lead from the centres of mass to the contact point; that of a wall is {}.
+/// Contact point of two bodies. The arms lead from the centres of mass to the contact point; the arm of a wall is {}.
 struct TouchPlace {
   double overlap = 0;
   Vec2 normal, arm_i, arm_j;
 };
 
-/// How a contact moved in the drift before the instant, means over it, and its overlap at the start of it.
+/// Mean velocities of a contact in the drift before the instant, and its overlap at the start of that drift.
 struct ContactDrift {
   double closing = 0, slip = 0;  ///< m/s
   double overlap = 0;            ///< m
 };
 
-/// What all but the contact itself add to its slip in a step, m/s, and the tangential mass, kg.
+/// Change of slip velocity in a step by all forces but the contact's own, m/s, and the tangential mass, kg.
 struct SlipByOthers {
   double gain = 0, mass = 0;
 };
 
-/// Impulse of the spring in a whole kick.
+/// Impulse of the spring in a whole kick, N s.
 template <class Law>
 [[gnu::always_inline]] inline double spring_impulse(const GrainSystem& system, const Candidate& candidate,
                                                     double overlap) {
@@ -47,7 +47,7 @@ inline Vec2 passed_velocity(const GrainSystem& system, const Candidate& candidat
   return candidate.j >= 0 ? Vec2{} : system.walls.places[static_cast<std::size_t>(~candidate.j)].passed_velocity;
 }
 
-/// The end of a contact; it is let go without a further loss.
+/// End a contact without further loss.
 template <class Law>
 void end_contact(GrainSystem& system, Candidate& candidate, const TouchPlace& place, const ContactDrift& drift) {
   TouchInstant end;
@@ -70,9 +70,9 @@ void end_contact(GrainSystem& system, Candidate& candidate, const TouchPlace& pl
   forget_contact(system, candidate);
 }
 
-/// A step of a contact: candidate remembers it.
-/// \param closing, slip that the law sees
-/// \param others gives SlipByOthers: friction without a spring halts a slip, and does not turn it round
+/// One step of a contact; its state is stored in `candidate`.
+/// \param closing, slip velocities for the law, m/s
+/// \param others returns SlipByOthers: friction without a spring stops a slip but does not reverse it
 /// \return impulse on j
 template <class Law, bool friction, class Others>
 [[gnu::always_inline]] inline Vec2 step_contact(GrainSystem& system, Candidate& candidate, const TouchPlace& now,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Areas of bodies, and of what of them lies in a rectangle, exactly.
+/// Exact areas of bodies and of their parts within a rectangle.
 #pragma once
 
 #include <span>
@@ -16,24 +16,24 @@ struct Region {
   [[nodiscard]] double area() const { return (high.x - low.x) * (high.y - low.y); }
 };
 
-/// The area that a disc and a rectangle share, m².
+/// Area of the intersection of a disc and a rectangle, Area of a grain, m²..
 double clipped_area(Vec2 centre, double radius, const Region& region);
-/// The same of an ellipse.
+/// Area of the intersection of an ellipse and a rectangle, Area of a grain, m²..
 double clipped_area(const Ellipse& ellipse, Vec2 centre, const Region& region);
-/// The same of discs together: what several cover counts once.
+/// Area of the intersection of a union of discs and a rectangle, Area of a grain, m²..
 double clipped_area(std::span<const Clump::Disc> discs, const Region& region);
-/// The same of a grain of a scene.
+/// Area of the intersection of a grain and a rectangle, Area of a grain, m²..
 double clipped_area(const Grain& grain, std::span<const Clump> clumps, const Region& region);
 
-/// What discs cover together; what several cover counts once.
+/// Area moments of a union of discs.
 struct DiscUnion {
-  double area = 0;          ///< m²
-  Vec2 centre;              ///< of area, m
-  double polar_moment = 0;  ///< integral of the squared distance from that centre, m⁴
+  double area = 0;          ///< Area of a grain, m².
+  Vec2 centre;              ///< centroid, m
+  double polar_moment = 0;  ///< integral of the squared distance from the centroid, m⁴
 };
 DiscUnion union_of(std::span<const Clump::Disc> discs);
 
-/// m²
+/// Area of a grain, m².
 double area_of(const Grain& grain, std::span<const Clump> clumps);
 
 }  // namespace equidem

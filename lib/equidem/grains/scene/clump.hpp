@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Clumps: from discs anywhere to a body with mass, centre and moment of inertia.
+/// Clumps: discs tied rigidly, with mass, centre of mass and moment of inertia.
 #pragma once
 
 #include <vector>
@@ -10,18 +10,18 @@
 
 namespace equidem {
 
-/// The same discs shifted so that the centre of mass of the area they cover together is the origin.
-/// \param discs anywhere, overlapping or not
+/// The discs, shifted so that the centroid of their union is the origin.
+/// \param discs in any position, overlapping or not
 /// \throws Error (bad_input) on no discs, a radius that is not positive, numbers that are not finite, a disc within
 ///         another
 Clump centred_clump(std::vector<Clump::Disc> discs);
 
-/// Of the area that the discs cover together, what several cover once, about its own centre. Exact: an integral along
-/// its edge. \param density kg/m³
-/// \throws Error (bad_input) where the density is not positive and finite
+/// Mass and moment of inertia of the union of the discs about its centroid. Exact: an integral along the boundary.
+/// \param density kg/m³
+/// \throws Error (bad_input) if the density is not positive and finite
 Inertia inertia_of_clump(const Clump& clump, double density);
 
-/// Of the circle round the origin that holds all discs, m.
+/// Radius of the circle round the origin that contains all discs, m.
 double radius_of(const Clump& clump);
 
 }  // namespace equidem

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The parts of which bodies consist: what touches. A disc and an ellipse have one, a clump has its discs.
+/// The parts of bodies, between which contacts are found: one for a disc or an ellipse, the discs of a clump.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace equidem {
 
-/// In the frame of its body: a disc (a = b) or an ellipse whose long half-axis a lies along x.
+/// A part in the frame of its body: a disc (a = b) or an ellipse whose long half-axis a lies along x.
 struct GrainPart {
   Vec2 offset;          ///< of the centre, m
   double a = 0, b = 0;  ///< half-axes, m
@@ -19,13 +19,13 @@ struct GrainPart {
   [[nodiscard]] bool is_round() const { return a == b; }
 };
 
-/// Whether any body is more than a disc round its own centre.
+/// Whether any body is an ellipse or a clump.
 bool has_shapes(const GrainScene& scene);
 
-/// Parts of a grain; those of a clump in the order of their places, so that the caller's order changes no bit.
+/// Parts of a grain; those of a clump sorted by position, so that results do not depend on the caller's order.
 std::vector<GrainPart> parts_of(const Grain& grain, const std::vector<Clump>& clumps);
 
-/// The x-axis of a body as unit vector, to 1e-15; the same bits on every machine.
+/// The x-axis of a body as unit vector, to 1e-15; bit-identical on every machine.
 Vec2 axis_at(double angle);
 
 /// From the centre of mass of a body to the centre of a part.
@@ -40,11 +40,12 @@ inline bool holds(const GrainPart& part, Vec2 axis, Vec2 branch) {
   return x * x + y * y < 1;
 }
 
-/// What a contact of parts has beyond a Candidate; one for each candidate, none in scenes of discs alone.
+/// Data of a contact of parts in addition to its Candidate; one for each candidate, none in scenes with discs only.
 struct PartPair {
-  std::int32_t i = 0, j = 0;      ///< of GrainSystem::parts; j = 0 of a wall
-  double tangential_damping = 0;  ///< 2 zeta_T sqrt(kT): times the root of the tangential mass the dashpot
-  Vec2 apart;         ///< along it ellipses were apart a moment ago; {}: not known. Saves time, changes no result
+  std::int32_t i = 0, j = 0;      ///< indices in Shapes::parts; j = 0 for a wall
+  double tangential_damping = 0;  ///< 2 zeta_T sqrt(kT): the dashpot over the root of the tangential mass
+  Vec2 apart;  ///< direction along which ellipses were last apart; {}: unknown. Start of the iteration, without effect
+               ///< on results
   Vec2 arm_i, arm_j;  ///< of the last step: from the centres of the bodies to the contact point, m
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Bodies that collide: what is there, what acts, by which law.
+/// Scene of colliding bodies: bodies, walls, bonds, contact properties and options.
 #pragma once
 
 #include <cstddef>
@@ -22,18 +22,18 @@ enum class GrainShape { disc, ellipse, clump };
 /// A body. Units are those of its mass: kg and N for spheres, kg and N per metre of depth for discs, ellipses and
 /// clumps.
 struct Grain {
-  Vec2 position;  ///< of the centre of mass, m
-  /// Of the circle round the centre of mass that holds the body, m: the radius of a disc, the long half-axis of an
-  /// ellipse.
+  Vec2 position;  ///< centre of mass, m
+  /// Radius of the circle round the centre of mass that contains the body, m: of a disc its radius, of an ellipse the
+  /// long half-axis.
   double radius = 0;
   Inertia inertia;
   Vec2 velocity = {};
   double spin = 0;   ///< rad/s
   double angle = 0;  ///< rad
   int kind = 0;      ///< row of the table of pairs
-  /// Ellipse: the short half-axis, m; at angle 0 the long one lies along x. 0: no ellipse.
+  /// Ellipse: the short half-axis, m; at angle 0 the long half-axis lies along x. 0: not an ellipse.
   double short_half_axis = 0;
-  int clump = -1;  ///< of GrainScene::clumps; -1: no clump
+  int clump = -1;  ///< index in GrainScene::clumps; -1: not a clump
 
   [[nodiscard]] GrainShape shape() const {
     if (clump >= 0) return GrainShape::clump;
@@ -50,37 +50,37 @@ struct Clump {
   std::vector<Disc> discs;
 };
 
-/// Two discs tied by dashpots along and across the line of their centres (Sukegawa 2010, (5.1)-(5.19)), springs where
-/// wanted. They do not collide with each other.
+/// Two discs bonded by dashpots along and across the line of their centres (Sukegawa 2010, (5.1)-(5.19)), optionally
+/// with springs. They do not collide with each other.
 struct GrainBond {
   std::size_t i = 0, j = 0;
   double normal_dashpot = 0, tangential_dashpot = 0;  ///< C_n, C_s; N s/m, discs: per metre of depth
   double rolling_dashpot = 0;                         ///< against the relative spin, N m s
-  /// Springs between the discs as they are at the start, N/m; 0 in the thesis: what is pulled then creeps.
+  /// Springs, unstretched at the start, N/m. 0 in the thesis: a bond under tension then creeps.
   double normal_spring = 0, tangential_spring = 0;
 };
 
-/// How bodies of two kinds meet.
+/// Contact properties of two kinds of bodies.
 struct PairProperties {
-  /// linear laws N/m, hertz_dashpot N/m^(3/2); used where > 0, else `dimensionless`.
+  /// Stiffness: linear laws N/m, hertz_dashpot N/m^(3/2); used if > 0, else `dimensionless`.
   double stiffness = 0;
-  /// a = k dt²/m, held whatever the step and the masses (the paper's way); hertz_dashpot: k d_c^(1/2) dt²/m.
+  /// a = k dt²/m, constant for all steps and masses (as in the paper); hertz_dashpot: k d_c^(1/2) dt²/m.
   double dimensionless = 0;
   double restitution = 1;                      ///< of central impacts; eccentric ones of shapes: part_step.hpp
   ContactEnd end = ContactEnd::at_zero_force;  ///< linear_dashpot, hertz_dashpot, exact_flow
   double friction = 0;                         ///< mu
-  /// kT/kN >= 0; hertz_dashpot: kT/(k d_c^(1/2)). With friction > 0 and 0 here the contact slides always, Coulomb's law
-  /// regularized by the step alone.
+  /// kT/kN >= 0; hertz_dashpot: kT/(k d_c^(1/2)). With friction > 0 and a value of 0 the contact always slides:
+  /// Coulomb's law regularized only by the step.
   double tangential_ratio = 0;
   double tangential_damping = 0;  ///< zeta_T: dashpot 2 zeta_T sqrt(m kT), m the effective tangential mass
   FrictionCap cap = FrictionCap::whole_force;
   bool operator==(const PairProperties&) const = default;
 };
 
-/// What collides.
+/// Bodies, walls and bonds with the properties of their contacts.
 struct GrainScene {
   std::vector<Grain> grains;
-  std::vector<Clump> clumps;  ///< shapes, of any number of grains each
+  std::vector<Clump> clumps;  ///< shapes, each used by any number of grains
   std::vector<GrainBond> bonds;
   std::vector<Wall> walls;
   Vec2 gravity = {};  ///< m/s²
@@ -94,45 +94,43 @@ struct GrainScene {
 
 struct GrainOptions {
   NormalLaw law = NormalLaw::exact_flow;
-  /// exact_flow and the maps have their own step; the force laws take either.
+  /// Scheme of the force laws; exact_flow and the maps have their own step.
   enum class Scheme {
     semi_implicit_euler,  ///< v' = v + a(x, v) dt, x' = x + v' dt; gravity is added after the contact force (the
                           ///< paper's runs)
     velocity_verlet,      ///< half kick, drift, force with the velocities of the half step, half kick (LAMMPS)
-    corrected_verlet,     ///< the same; contacts that begin or end in the drift get what they push for their part of it
+    corrected_verlet,     ///< velocity_verlet, corrected for contacts that begin or end within a drift
                           ///< (touch_instants.hpp)
   } scheme = Scheme::semi_implicit_euler;
   [[nodiscard]] bool verlet() const { return scheme != Scheme::semi_implicit_euler; }
   double time_step = 0;         ///< s, > 0
-  double reference_length = 0;  ///< d_c, m; 0: twice the largest radius, of ellipses the long half-axis
-  double margin = 0;            ///< of the neighbour lists, m; 0: chosen from speeds and density
-  /// How two ellipses, or an ellipse and a disc, are found to touch.
+  double reference_length = 0;  ///< d_c, m; 0: twice the largest radius (ellipses: long half-axis)
+  double margin = 0;            ///< margin of the neighbour lists, m; 0: chosen from speeds and density
+  /// Contact detection of two ellipses, or of an ellipse and a disc.
   enum class EllipseLaw {
     exact,                ///< closest points and common normal (ellipse_contact.hpp)
     enlarged_as_printed,  ///< Sukegawa's test (4.1)-(4.49) (enlarged_ellipse.hpp): misses shallow contacts
-    enlarged_mended,      ///< the same with the quadrants of its angles mended
+    enlarged_mended,      ///< as enlarged_as_printed, with the quadrants of the angles corrected
   } ellipse_law = EllipseLaw::exact;
-  /// How the dashpots of bonds act over a step.
+  /// Integration of the dashpots of bonds over a step.
   enum class BondStep {
-    exact,  ///< decay exp(-C t/m) of each bond under the mean of all other forces, bond after bond: no limit to the
-            ///< step
-    explicit_euler,  ///< by the velocities at the start of the step (Sukegawa 2010, (5.2), (5.8)): limited
-                     ///< (bond_step.hpp)
+    exact,  ///< decay exp(-C t/m) of each bond under the mean of all other forces, bond after bond: no step limit
+    explicit_euler,  ///< velocities at the start of the step (Sukegawa 2010, (5.2), (5.8)): step limit (bond_step.hpp)
   } bond_step = BondStep::exact;
-  bool refuse_crossing = true;  ///< false: bodies may pass through one another, for studies of laws that let them
+  bool refuse_crossing = true;  ///< false: bodies may pass through one another (for studies of laws that allow it)
 };
 
-/// d_c, m: options.reference_length, or twice the largest radius where it is 0.
+/// d_c, m: options.reference_length, or twice the largest radius if that is 0.
 double reference_length(const GrainScene& scene, const GrainOptions& options);
 
 using PlaceOfGrain = std::function<std::string(std::size_t grain)>;
 
 /// \throws Error (bad_input): no grains, radius or mass not positive, numbers not finite or beyond 1e150, kinds and
-///         pairs that do not fit, a table that is
-///         not symmetric, neither or both of stiffness and dimensionless, restitution out of range for the law,
-///         friction negative, velocity_verlet with a map, shapes as in shape_check.hpp, the time step not positive,
-///         grains that start inside one another (centre within the other) or with the centre behind a line
-/// \param where the user wrote a grain, for errors; may be empty
+///         pairs that do not match, a table that is not symmetric, neither or both of stiffness and dimensionless,
+///         restitution out of range for the law, friction negative, velocity_verlet with a map, shapes as in
+///         shape_check.hpp, the time step not positive, grains that start inside one another (centre within the other)
+///         or with the centre behind a line
+/// \param where place of a grain in the user's input, for error messages; may be empty
 void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where = {});
 
 }  // namespace equidem
