@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What the contacts of a loop by eights add up in a step.
+/// Sums over the contacts of a vectorized loop in a step.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,8 @@
 namespace equidem::eight {
 
 struct LaneSums {
-  /// Normal dashpot, slip, tangential dashpot, release: one contact after another, so that pairs apart change no bit.
+  /// Losses: normal dashpot, slip, tangential dashpot, release. Summed contact by contact, so that pairs apart do not
+  /// change the result.
   Half lost{};
   Lanes deepest{};
   Choice evaluations{}, begun{};

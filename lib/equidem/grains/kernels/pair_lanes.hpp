@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Eight numbers computed on at once, one for each pair of a group. Plain C++ with the vector types of GCC and Clang.
+/// Vectors of eight numbers, one for each pair of a group. Plain C++ with the vector types of GCC and Clang.
 #pragma once
 
 #include <cmath>
@@ -40,13 +40,13 @@ EQUIDEM_ALWAYS_INLINE Lanes smaller(const Lanes& a, const Lanes& b) {
 EQUIDEM_ALWAYS_INLINE Lanes magnitude(const Lanes& x) {
   return reinterpret_cast<Lanes>(reinterpret_cast<Choice>(x) & std::numeric_limits<long long>::max());
 }
-/// |size| with the sign of another.
+/// |size| with the sign of `sign`.
 EQUIDEM_ALWAYS_INLINE Lanes with_sign(const Lanes& size, const Lanes& sign) {
   return reinterpret_cast<Lanes>(reinterpret_cast<Choice>(size) |
                                  (reinterpret_cast<Choice>(sign) & std::numeric_limits<long long>::min()));
 }
-/// Which lanes are below zero (-0 among them), as bits: choices by bits are joined without a way through scalars, which
-/// those of comparisons take under some compilers.
+/// Mask of the lanes below zero (-0 included). Masks from sign bits are combined in vector registers; some compilers
+/// move results of comparisons through scalars.
 EQUIDEM_ALWAYS_INLINE Choice negative(const Choice& x) {
   return x >> 63;
 }
@@ -59,11 +59,11 @@ EQUIDEM_ALWAYS_INLINE Choice choose(const Choice& bits, const Choice& a, const C
 EQUIDEM_ALWAYS_INLINE Lanes choose(const Choice& bits, const Lanes& a, const Lanes& b) {
   return reinterpret_cast<Lanes>(choose(bits, reinterpret_cast<Choice>(a), reinterpret_cast<Choice>(b)));
 }
-/// Zero elsewhere.
+/// a where the mask is set, zero elsewhere.
 EQUIDEM_ALWAYS_INLINE Lanes only(const Choice& bits, const Lanes& a) {
   return reinterpret_cast<Lanes>(bits & reinterpret_cast<Choice>(a));
 }
-/// Those that any lane has.
+/// Bitwise or of all lanes.
 EQUIDEM_ALWAYS_INLINE long long bits_of_all(const Choice& choice) {
   const HalfChoice half =
       __builtin_shufflevector(choice, choice, 0, 1, 2, 3) | __builtin_shufflevector(choice, choice, 4, 5, 6, 7);
@@ -79,7 +79,7 @@ EQUIDEM_ALWAYS_INLINE Lanes even_of(const Lanes& a, const Lanes& b) {
 EQUIDEM_ALWAYS_INLINE Lanes odd_of(const Lanes& a, const Lanes& b) {
   return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
 }
-/// Of pairs of lanes: the first and third of a, then of b.
+/// The first and third pairs of lanes of a, then of b.
 EQUIDEM_ALWAYS_INLINE Lanes even_twos_of(const Lanes& a, const Lanes& b) {
   return __builtin_shufflevector(a, b, 0, 1, 4, 5, 8, 9, 12, 13);
 }

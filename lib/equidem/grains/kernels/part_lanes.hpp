@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// How eight pairs of parts stand to each other, computed at once.
+/// Contact geometry of eight pairs of parts at once.
 #pragma once
 
 #include "equidem/grains/contacts/part_geometry.hpp"
@@ -35,15 +35,15 @@ EQUIDEM_ALWAYS_INLINE Vectors choose(const Choice& bits, const Vectors& a, const
   return {choose(bits, a.x, b.x), choose(bits, a.y, b.y)};
 }
 
-/// How eight pairs stand and move.
+/// Relative positions and velocities of eight pairs.
 struct Standing {
   Vectors branch;            ///< between the centres of the parts
-  Vectors velocity, middle;  ///< of body j over body i; with half of what the last step did
+  Vectors velocity, middle;  ///< of body j relative to body i; `middle` includes half the change in the last step
   Lanes spin_i, spin_j, middle_spin_i, middle_spin_j;
   Vectors axis_i, axis_j, offset_i, offset_j;
 };
 
-/// \tparam round no ellipse is among them
+/// \tparam round no ellipses in the list
 template <bool round>
 EQUIDEM_ALWAYS_INLINE Standing standing_of(const PartBody* bodies, const PartGroup& group) {
   Lanes way[8], own[8];
@@ -88,7 +88,7 @@ EQUIDEM_ALWAYS_INLINE GeometryLanes geometry_of_round_parts(const PartGroup& gro
   const Lanes square = dot(s.branch, s.branch), distance = square_root(square);
   const Lanes overlap = load(group.numbers[PartGroup::reach]) - distance;
   const Choice distinct = square > 0;
-  const Lanes inverse = distance * (1 / square);  // the division need not wait for the root
+  const Lanes inverse = distance * (1 / square);  // the division is independent of the root
   const Vectors normal{distinct ? s.branch.x * inverse : all(1), distinct ? s.branch.y * inverse : Lanes{}};
   const Lanes lever = load(group.numbers[PartGroup::share]) * distance, rest = distance - lever;
   return {used & negative(Lanes{} - overlap),
@@ -125,14 +125,14 @@ EQUIDEM_ALWAYS_INLINE Vectors support_points(const Supports& s, const Vectors& n
          (s.slope + turn * (s.radius + half * s.radius_slope)) * perpendicular(n);
 }
 
-/// Where f' - bend t - (R_i' + R_j') t²/2 = 0.
+/// Root t of f' - bend t - (R_i' + R_j') t²/2 = 0.
 /// \param first f'/bend
 EQUIDEM_ALWAYS_INLINE Lanes turn_to_top(const Lanes& first, const Supports& i, const Supports& j,
                                         const Lanes& per_bend) {
   return first - 0.5 * first * first * (i.radius_slope + j.radius_slope) * per_bend;
 }
 
-/// What lanes for which Newton's way is not short and certain are computed from, and what comes out.
+/// Input and results of lanes in which Newton's iteration is not certain to converge fast.
 struct HardLanes {
   Standing standing;
   PairLanes gap, normal_x, normal_y, arm_i_x, arm_i_y, arm_j_x, arm_j_y;
@@ -157,8 +157,8 @@ struct HardLanes {
   }
 }
 
-/// contact_of_parts(): from the last normal, by Newton's way where it is short and certain to lead to the highest
-/// maximum. What comes out in a lane depends on that lane alone.
+/// contact_of_parts() by Newton's iteration from the last normal, if it is short and certain to converge to the global
+/// maximum. The result of a lane depends on that lane alone.
 EQUIDEM_ALWAYS_INLINE GeometryLanes geometry_of_ellipses(PartGroup& group, const Standing& s, const Choice& used,
                                                          const Choice& alive) {
   constexpr int most_steps = 3;
@@ -166,7 +166,7 @@ EQUIDEM_ALWAYS_INLINE GeometryLanes geometry_of_ellipses(PartGroup& group, const
   const Lanes a_j = load(group.numbers[PartGroup::a_j]), b_j = load(group.numbers[PartGroup::b_j]);
   const Lanes arrived = load(group.numbers[PartGroup::arrived]), sharpest = load(group.numbers[PartGroup::sharpest]);
   const Vectors last{load(group.numbers[PartGroup::normal_x]), load(group.numbers[PartGroup::normal_y])};
-  // or the round-off of its length adds up over the steps
+  // renormalize: otherwise the round-off of the length accumulates over the steps
   Vectors n = choose(alive, (1.5 - 0.5 * dot(last, last)) * last, last);
   Supports of_i, of_j;
   Lanes gap, slope, per_bend, first;
@@ -196,7 +196,7 @@ EQUIDEM_ALWAYS_INLINE GeometryLanes geometry_of_ellipses(PartGroup& group, const
       hard |= ~done;
       break;
     }
-    // what is done stays; a step is of the third order
+    // finished lanes stay unchanged; the step has third order
     const Lanes turn = turn_to_top(first, of_i, of_j, per_bend), turned = turn * turn;
     const Lanes length = 1 - turned * (0.5 - 0.375 * turned);
     n = choose(done, n, length * (n + turn * perpendicular(n)));
@@ -222,7 +222,7 @@ EQUIDEM_ALWAYS_INLINE GeometryLanes geometry_of_ellipses(PartGroup& group, const
     to_i = {load(lanes.arm_i_x), load(lanes.arm_i_y)};
     to_j = {load(lanes.arm_j_x), load(lanes.arm_j_y)};
   }
-  // directions along which they were apart before stay
+  // keep earlier separating directions
   const Choice renew = alive | hard;
   store(choose(renew, normal.x, last.x), group.numbers[PartGroup::normal_x]);
   store(choose(renew, normal.y, last.y), group.numbers[PartGroup::normal_y]);

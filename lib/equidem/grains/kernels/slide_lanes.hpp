@@ -17,11 +17,11 @@ struct Tangent {
 };
 
 /// sliding_step (verlet) and sliding_step_midpoint for contacts that have a spring, or no friction.
-/// \tparam equal the dashpot rests while contacts slide, and all have a spring
-/// \param velocity slip at the start of the step; by the midpoint rule with half of what others do to it
-/// \param mean_slip over the drift before, to count losses; the Verlet schemes
-/// \param mobility by the midpoint rule, mean velocity per mean force
-/// \param before impulse on j in the last step; the Verlet schemes
+/// \tparam equal the dashpot is inactive while contacts slide, and all have a spring
+/// \param velocity slip at the start of the step; midpoint rule: with half the change by other forces
+/// \param mean_slip Verlet schemes: mean over the drift before, to count losses
+/// \param mobility midpoint rule: mean velocity per mean force
+/// \param before Verlet schemes: impulse on j in the last step
 template <bool verlet, bool equal>
 EQUIDEM_ALWAYS_INLINE Tangent slide(const LawLanes& law, const Lanes& dashpot, const Lanes& stretch,
                                     const Lanes& velocity, const Lanes& mean_slip, const Lanes& mobility,
@@ -59,14 +59,14 @@ EQUIDEM_ALWAYS_INLINE Tangent slide(const LawLanes& law, const Lanes& dashpot, c
     const Lanes dragged = choose(slides, drag, dashpot * mean);
     return {force, end, only(slides, friction * mean * dt + released), dragged * mean * dt, slides};
   }
-  // half of the kicks before and after the drift each, less what the spring has stored
+  // half of the kicks before and after the drift, less the energy stored in the spring
   const Lanes loss = 0.5 * mean_slip * (force * dt - before) + released;
   const Lanes dragged = drag * mean_slip * dt;
   return {force, end, only(slides, loss - dragged), choose(slides, dragged, only(negative(-dashpot), loss)), slides};
 }
 
-/// The same for contacts that have no spring: what halts the slip within the step, at most what friction carries.
-/// \param velocity,mobility as by the midpoint rule, in every scheme
+/// Tangential law of contacts without a spring: the force that stops the slip within the step, limited by friction.
+/// \param velocity,mobility as for the midpoint rule, in every scheme
 template <bool verlet>
 EQUIDEM_ALWAYS_INLINE Tangent slide_without_spring(const LawLanes& law, const Lanes& velocity, const Lanes& mean_slip,
                                                    const Lanes& mobility, const Lanes& before, const Lanes& yield,

@@ -8,13 +8,13 @@
 
 namespace equidem::eight {
 
-/// As TouchInstant; of what ends, and is not said otherwise, the numbers of the instant before.
+/// As TouchInstant. For contacts that end, values are those of the instant before unless stated otherwise.
 struct TouchLanes {
   Choice begun, ended, slides;
-  const std::int32_t *i, *j;  ///< eight bodies each
+  const std::int32_t *i, *j;  ///< indices of eight bodies each
   Lanes nx, ny, arm_i_x, arm_i_y, arm_j_x, arm_j_y;
   Lanes closing, slip;             ///< means over the drift
-  Lanes deep, spring, impulse;     ///< of the spring, and in all along the normal
+  Lanes deep, spring, impulse;     ///< overlap; normal impulse of the spring, and total normal impulse
   Lanes dashpot, mobility, least;  ///< as in PairGroup and PairLaws; 1/m_i + 1/m_j
   Lanes tangential, tangential_dashpot, stored;
 };

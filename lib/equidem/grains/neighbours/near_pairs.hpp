@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Pairs of discs under a law that gives a force: those that touch or nearly touch, packed by eights for the loop over
-/// them.
+/// Pairs of discs under a force law that touch or nearly touch, packed in groups of eight for the vectorized loop.
 ///
-/// They are a list within the list of the neighbour finder, with a smaller margin and found anew more often: in a
-/// packing at rest it holds hardly more than the contacts. Discs and walls, and all that meets by other laws, are
-/// Candidates.
+/// They are a subset of the list of the neighbour finder, with a smaller margin and updated more often: in a packing at
+/// rest it contains hardly more than the contacts. Contacts with walls and contacts under other laws are Candidates.
 #pragma once
 
 #include <cstddef>
@@ -28,11 +26,11 @@ struct BodyImpulse;
 constexpr std::size_t lanes_of_pairs = 8;
 using PairLanes = double[lanes_of_pairs];
 
-/// What pairs need of a body, in the order in which it is loaded.
+/// Data of a body for the loop over pairs, in loading order.
 struct alignas(64) PairBody {
   Vec2 position, velocity;
   double rim_speed = 0;  ///< spin times radius
-  /// With half of what the contacts of the last step did: predicts the mean over the step.
+  /// Velocity plus half the change by the contacts in the last step: predicts the mean over the step.
   Vec2 middle_velocity;
   double middle_rim_speed = 0;
 };
@@ -41,14 +39,15 @@ struct alignas(64) PairBody {
 struct alignas(64) PairGroup {
   static constexpr std::int64_t apart = -2, unused = -3;
   std::int32_t i[lanes_of_pairs], j[lanes_of_pairs];
-  std::int64_t since[lanes_of_pairs];  ///< step before the first of the contact; `apart`: none; `unused`: no pair
-  PairLanes reach;                     ///< r_i + r_j, m
-  PairLanes dashpot;                   ///< normal; N s/m, hertz: N s/m^(5/4)
-  PairLanes mass;                      ///< 1/m_i + 1/m_j
-  PairLanes impulse;                   ///< normal, of the last step, N s
+  std::int64_t
+      since[lanes_of_pairs];  ///< step before the first step of the contact; `apart`: no contact; `unused`: no pair
+  PairLanes reach;            ///< r_i + r_j, m
+  PairLanes dashpot;          ///< normal; N s/m, hertz: N s/m^(5/4)
+  PairLanes mass;             ///< 1/m_i + 1/m_j
+  PairLanes impulse;          ///< normal, of the last step, N s
 };
 
-/// The same pairs with friction. Mobility of the contact: PairGroup::mass + turning * distance².
+/// Friction data of the pairs of a PairGroup. Mobility of the contact: PairGroup::mass + turning * distance².
 struct alignas(64) PairSlips {
   PairLanes turning;  ///< (r_i²/I_i + r_j²/I_j)/(r_i + r_j)²
   PairLanes dashpot;  ///< N s/m
@@ -56,19 +55,19 @@ struct alignas(64) PairSlips {
   PairLanes impulse;  ///< tangential, of the last step, N s
 };
 
-/// What is a number for the loop where all pairs have the same.
+/// Law constants if all pairs have the same.
 struct PairLaw {
   double stiffness = 0;             ///< N/m, hertz: N/m^(3/2)
-  double least = 0;                 ///< of the normal impulse: 0, or minus infinity where contacts may attract
+  double least = 0;                 ///< least normal impulse: 0, or minus infinity if contacts may attract
   double friction = 0;              ///< mu
   double tangential_stiffness = 0;  ///< N/m
-  double beyond_cap = 0;            ///< share of the dashpot that adds to what friction carries: 0 or 1
+  double beyond_cap = 0;            ///< share of the dashpot force that is added to the friction limit: 0 or 1
 };
 struct alignas(64) PairLaws {
   PairLanes stiffness, least, friction, tangential_stiffness, beyond_cap;
 };
 
-/// What contacts() tells of the last step.
+/// Data of the last step for contacts().
 struct alignas(64) PairRecords {
   PairLanes overlap, closing, normal_x, normal_y;
 };
@@ -78,18 +77,18 @@ struct NearPairs {
 
   bool active = false;  ///< the scene has such pairs
   bool equal = false;   ///< one law for all pairs
-  bool rigid = false;   ///< friction, none with a tangential spring
-  bool record = false;  ///< the step being made is one that contacts() will be asked about
-  PairLaw law;          ///< where equal
+  bool rigid = false;   ///< friction without any tangential spring
+  bool record = false;  ///< record the present step for contacts()
+  PairLaw law;          ///< law of all pairs, if equal
   Loop loop = nullptr;
-  const NeighbourList* outer = nullptr;  ///< of the finder, with the margin of the candidates
+  const NeighbourList* outer = nullptr;  ///< list of the finder, with the margin of the candidates
   LaneVector<PairBody> bodies;
   std::size_t count = 0;
   LaneVector<PairGroup> groups;
   LaneVector<PairSlips> slips;      ///< with friction
-  LaneVector<PairLaws> laws;        ///< where not equal
-  LaneVector<PairRecords> records;  ///< after a step that was to be recorded
-  double margin = 0, moved = 0;     ///< of these pairs, m
+  LaneVector<PairLaws> laws;        ///< law of each pair, if not equal
+  LaneVector<PairRecords> records;  ///< set after a recorded step
+  double margin = 0, moved = 0;     ///< margin of these pairs; upper bound of the motion since they were found, m
 
   [[nodiscard]] std::size_t bytes() const;
   [[nodiscard]] std::int32_t first(std::size_t p) const { return groups[p / lanes_of_pairs].i[p % lanes_of_pairs]; }
@@ -99,42 +98,40 @@ struct NearPairs {
   }
 };
 
-/// Whether contacts of parts can be computed several at a time: a law that gives a force, no contact that slides
-/// always.
+/// Whether contacts of parts can be vectorized: a force law, no contact that always slides.
 bool eight_at_a_time(const GrainSystem& system);
 
-/// Margin of lists within that of the neighbour finder, for bodies of a size (of discs the radius) that move by about
-/// `reach` in a step.
+/// Margin of near lists, for bodies of a size (discs: the radius) that move by about `reach` in a step.
 double margin_of_near_pairs(const GrainSystem& system, double size, double reach);
 
-/// Decide whether discs meet in the loop over near pairs, and choose it.
+/// Determine whether contacts of discs use the loop over near pairs, and choose the loop.
 void prepare_near_pairs(GrainSystem& system);
 
-/// Find the pairs anew among those of the neighbour finder, for bodies that move by about `reach` in a step.
+/// Find the pairs again in the list of the neighbour finder, for bodies that move by about `reach` in a step.
 void find_near_pairs(GrainSystem& system, double reach);
 
-/// See to it that they hold all that may touch while no body moves further than `reach` from where it is.
+/// Ensure that the list contains every pair that may touch while no body moves further than `reach`.
 void refresh_near_pairs(GrainSystem& system, double reach);
 
-/// What the loop reads of bodies, from their motions and the impulses of the last step.
+/// Load the body data of the loop from the motions and the impulses of the last step.
 void load_pair_bodies(GrainSystem& system);
 
-/// Bodies that overlap now touch.
+/// Mark the bodies that overlap as touching.
 void touch_near_pairs(GrainSystem& system);
 
-/// system.bodies.next as move_by_euler(), and what the loop reads of bodies for the next step.
+/// Set system.bodies.next as move_by_euler(), and the body data of the loop for the next step.
 void move_pair_bodies(GrainSystem& system);
 
-/// A pair with all that its contact remembers; without what does not change.
+/// A pair with the state of its contact, without its constants.
 Candidate candidate_of(const GrainSystem& system, std::size_t p);
 
-/// What normal and tangential springs of the pairs hold as the bodies stand, J.
+/// Energies of the normal and the tangential springs of the pairs at the present positions, J.
 std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system);
 
-/// Take over contacts of a saved state, ordered by (i, j), in place of what pairs there are.
+/// Replace the pairs by the contacts of a saved state, ordered by (i, j).
 void take_near_pairs(GrainSystem& system, const std::vector<Candidate>& contacts);
 
-/// The loop compiled for the law of the scene: impulses of this step.
+/// The loop compiled for the law of the scene; it computes the impulses of this step.
 NearPairs::Loop near_pair_loop(const GrainSystem& system);
 
 }  // namespace equidem

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Pairs of parts of which not both are whole discs: those that touch or nearly touch, packed by eights for the loops
-/// over them.
+/// Pairs of parts, not both whole discs, that touch or nearly touch, packed in groups of eight for the vectorized
+/// loops.
 ///
 /// One list for each shape of pair: round parts (of clumps, and discs that meet them), and pairs with an ellipse; empty
-/// where the scene has none. As the near pairs of discs they are lists within that of the neighbour finder, found anew
-/// more often. The circles round needles overlap those of many others: between the two stand the close parts, by boxes
-/// round both, each looked at again only when bodies have moved by what lay between them.
+/// where the scene has none. Like the near pairs of discs they are subsets of the list of the neighbour finder, updated
+/// more often. The circles round slender ellipses overlap those of many others; an intermediate list of close parts
+/// therefore uses boxes round both, each pair checked again only after bodies have moved by its gap.
 #pragma once
 
 #include <array>
@@ -22,44 +22,43 @@
 
 namespace equidem {
 
-/// What pairs need of a part, in the two rows in which it is loaded.
+/// Data of a part for the loop over pairs, in the two rows in which it is loaded.
 struct alignas(64) PartBody {
-  /// Centre of the part, velocity of the body, and that with half of what its contacts did in the last step.
+  /// Centre of the part; velocity of the body; velocity plus half the change by contacts in the last step.
   Vec2 centre, velocity, middle_velocity, unused = {};
   double spin = 0, middle_spin = 0;
-  Vec2 turned;  ///< of an ellipse the axis; of what is round, whose axis does not matter, the offset of the centre from
-                ///< that of the body, m
+  Vec2 turned;  ///< ellipse: the axis; round part: the offset of its centre from that of the body, m
 };
 
 /// Eight pairs of parts, i < j.
 struct alignas(64) PartGroup {
   enum Column {
-    // do not change
+    // constants
     reach,  ///< a_i + a_j, m
     a_i,
     b_i,
     a_j,
     b_j,           ///< half-axes, m
-    share,         ///< of i in the overlap
-    arrived,       ///< angle at which Newton's way has arrived (contact_of_ellipses)
-    sharpest,      ///< b_i²/a_i + b_j²/a_j, m: overlaps less deep have one normal alone
+    share,         ///< share of i in the overlap
+    arrived,       ///< angle at which Newton's iteration has converged (contact_of_ellipses)
+    sharpest,      ///< b_i²/a_i + b_j²/a_j, m: shallower overlaps have a unique normal
     inverse_mass,  ///< 1/m_i + 1/m_j
     inverse_moment_i,
     inverse_moment_j,  ///< 1/I
     stiffness,         ///< N/m, hertz: N/m^(3/2)
     dashpot,           ///< normal; N s/m, hertz: N s/m^(5/4)
-    least,             ///< of the normal impulse: 0, or minus infinity where contacts may attract
+    least,             ///< least normal impulse: 0, or minus infinity if contacts may attract
     friction,
     tangential_stiffness,
     tangential_damping,  ///< as PartPair::tangential_damping
-    beyond_cap,          ///< share of the dashpot that adds to what friction carries: 0 or 1
+    beyond_cap,          ///< share of the dashpot force that is added to the friction limit: 0 or 1
     // of the last step
     normal_x,
     normal_y,  ///< apart: a direction along which they were apart, or {}
     impulse,
     tangential_impulse,  ///< N s
     stretch,             ///< m
-    // where NearPairs::record asks for them
+    // set if NearPairs::record
     overlap,
     closing,
     arm_i_x,
@@ -84,10 +83,10 @@ struct NearParts {
     }
   };
 
-  /// Two parts that may come to touch while the list of the neighbour finder lasts.
+  /// Two parts that may touch while the list of the neighbour finder is valid.
   struct Close {
     std::int32_t i = 0, j = 0;
-    double clear = 0;  ///< they are apart by at least this less twice `travelled`, m
+    double clear = 0;  ///< lower bound of the gap plus twice `travelled`, m
     Vec2 apart;        ///< a direction along which they were apart, or {}
   };
 
@@ -97,39 +96,40 @@ struct NearParts {
   LaneVector<PartBody> bodies;    ///< one for each part
   std::vector<std::int32_t> met;  ///< parts that are in the lists
   double size = 0;                ///< smallest GrainPart::size, m
-  double margin = 0, moved = 0;   ///< of the lists, m
-  double travelled = 0;  ///< way of any point since the close parts were found until the lists were, at most, m
+  double margin = 0, moved = 0;   ///< margin of the lists; upper bound of the motion since they were found, m
+  double travelled =
+      0;  ///< upper bound of the displacement of any point from the construction of `close` to that of the lists, m
 
   [[nodiscard]] std::size_t bytes() const;
 };
 
-/// Decide whether parts meet in the loops over near parts: a law that gives a force, the exact contact, no contact that
-/// slides always.
+/// Determine whether contacts of parts use the loops over near parts: a force law, the exact contact, no contact that
+/// always slides.
 void prepare_near_parts(GrainSystem& system);
 
-/// Find the close parts and the pairs anew among those of the neighbour finder, for bodies that move by about `reach`
+/// Find the close parts and the pairs again in the list of the neighbour finder, for bodies that move by about `reach`
 /// in a step.
 void find_near_parts(GrainSystem& system, double reach);
 
-/// See to it that they hold all that may touch while no point of a body moves further than `reach` from where it is.
+/// Ensure that the lists contain every pair that may touch while no point of a body moves further than `reach`.
 void refresh_near_parts(GrainSystem& system, double reach);
 
-/// What the loops read, from the motions and the impulses of the last step.
+/// Load the data of the loops from the motions and the impulses of the last step.
 void load_part_bodies(GrainSystem& system);
 
-/// Parts that overlap now touch.
+/// Mark the parts that overlap as touching.
 void touch_near_parts(GrainSystem& system);
 
-/// A pair with all that its contact remembers.
+/// A pair with the state of its contact.
 std::pair<Candidate, PartPair> candidate_of(const GrainSystem& system, const NearParts::List& list, std::size_t p);
 
-/// Whether the two bodies of a pair are whole discs, so that it is none of parts.
+/// Whether both bodies of a pair are whole discs, so that it is not a pair of parts.
 bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j);
 
-/// Take over contacts of a saved state, in the order of the lists, in place of what pairs there are.
+/// Replace the pairs by the contacts of a saved state, in the order of the lists.
 void take_near_parts(GrainSystem& system, std::span<const std::pair<Candidate, PartPair>> contacts);
 
-/// The loop compiled for pairs of a shape: impulses of this step.
+/// The loop compiled for round parts or for ellipses; it computes the impulses of this step.
 NearParts::List::Loop near_part_loop(const GrainSystem& system, bool round);
 
 }  // namespace equidem

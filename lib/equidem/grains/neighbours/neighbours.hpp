@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Which bodies may touch: lists with a margin that last for many steps.
+/// Neighbour lists of bodies that may touch, with a margin so that they are valid for many steps.
 #pragma once
 
 #include <cstdint>
@@ -24,13 +24,13 @@ struct NeighbourList {
   std::vector<std::int32_t> partner;  ///< ascending within i
 };
 
-/// Finds neighbours again and again in the same memory.
+/// Finds neighbours repeatedly in the same memory.
 ///
-/// Bodies are divided into size classes, a factor of four wide, and each class into rows as high as its bodies reach,
-/// sorted by x; a row then meets the rows within reach of it, of its own class and of the larger ones, in one sweep of
-/// both. Radii in ratio 100:1 and more cost little more than equal ones. Only rows where bodies lie are kept, so bodies
-/// may be scattered anywhere; time and memory are linear in bodies, pairs and size classes. Fastest where bodies close
-/// in space are close in `circles`.
+/// Bodies are divided into size classes, a factor of four wide, and each class into rows as high as the interaction
+/// range of its bodies, sorted by x; each row is then compared with the rows within range, of its own class and of
+/// larger ones, in one sweep of both. Radii in ratio 100:1 and more cost little more than equal ones. Only occupied
+/// rows are stored, so bodies may be scattered over any area; time and memory are linear in bodies, pairs and size
+/// classes. Fastest where bodies close in space are close in `circles`.
 class NeighbourFinder {
  public:
   NeighbourFinder();
@@ -40,10 +40,11 @@ class NeighbourFinder {
   NeighbourFinder(NeighbourFinder&&) noexcept;
   NeighbourFinder& operator=(NeighbourFinder&&) noexcept;
 
-  /// \param circles lengths whose squares are numbers: 0 or from 1e-150 to 1e150 m; radii >= 0; fewer than 2^31
+  /// \param circles lengths whose squares neither overflow nor underflow: 0 or from 1e-150 to 1e150 m; radii >= 0;
+  ///        fewer than 2^31
   /// \param margin >= 0, m
   /// \return valid until the next call; the same list for every number of threads and every grid
-  /// \throws Error (computation_failed) on a centre or radius that is no finite number
+  /// \throws Error (computation_failed) on a centre or radius that is not finite
   const NeighbourList& within(std::span<const Circle> circles, double margin);
 
  private:
@@ -51,10 +52,10 @@ class NeighbourFinder {
   std::unique_ptr<Memory> memory_;
 };
 
-/// The same, once.
+/// The neighbour list of one call to NeighbourFinder::within.
 NeighbourList neighbours_within(std::span<const Circle> circles, double margin);
 
-/// The same by comparing all pairs.
+/// The neighbour list by comparison of all pairs.
 NeighbourList neighbours_by_brute_force(std::span<const Circle> circles, double margin);
 
 }  // namespace equidem

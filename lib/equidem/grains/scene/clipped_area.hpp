@@ -16,18 +16,18 @@ struct Region {
   [[nodiscard]] double area() const { return (high.x - low.x) * (high.y - low.y); }
 };
 
-/// Area of the intersection of a disc and a rectangle, Area of a grain, m²..
+/// Area of the intersection of a disc and a rectangle, m².
 double clipped_area(Vec2 centre, double radius, const Region& region);
-/// Area of the intersection of an ellipse and a rectangle, Area of a grain, m²..
+/// Area of the intersection of an ellipse and a rectangle, m².
 double clipped_area(const Ellipse& ellipse, Vec2 centre, const Region& region);
-/// Area of the intersection of a union of discs and a rectangle, Area of a grain, m²..
+/// Area of the intersection of a union of discs and a rectangle, m².
 double clipped_area(std::span<const Clump::Disc> discs, const Region& region);
-/// Area of the intersection of a grain and a rectangle, Area of a grain, m²..
+/// Area of the intersection of a grain and a rectangle, m².
 double clipped_area(const Grain& grain, std::span<const Clump> clumps, const Region& region);
 
 /// Area moments of a union of discs.
 struct DiscUnion {
-  double area = 0;          ///< Area of a grain, m².
+  double area = 0;          ///< m²
   Vec2 centre;              ///< centroid, m
   double polar_moment = 0;  ///< integral of the squared distance from the centroid, m⁴
 };

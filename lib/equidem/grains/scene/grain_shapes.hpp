@@ -12,18 +12,18 @@
 
 namespace equidem {
 
-/// Gives bodies their shapes and keeps those of clumps, each once: GrainScene::clumps.
+/// Sets the shapes of bodies and stores each distinct clump once (GrainScene::clumps).
 class GrainShapes {
  public:
   explicit GrainShapes(Body body) : body_(body) {}
 
-  /// Each sets radius, half-axis or clump, and inertia of a grain.
+  /// Each function sets radius, half-axis or clump, and inertia of a grain.
   /// \param density kg/m³
   /// \throws Error (bad_input): lengths that are not positive, a short half-axis longer than the long one, no discs;
   ///         ellipses and clumps of spheres
   void make_disc(Grain& grain, double radius, double density) const;
   void make_ellipse(Grain& grain, double long_half_axis, double short_half_axis, double density) const;
-  /// \param discs anywhere, in the frame of the body: shifted so that the mass centre of their union is the origin
+  /// \param discs in the frame of the body, in any position; shifted so that the centroid of their union is the origin
   void make_clump(Grain& grain, std::vector<Clump::Disc> discs, double density);
 
   [[nodiscard]] const std::vector<Clump>& clumps() const { return clumps_; }

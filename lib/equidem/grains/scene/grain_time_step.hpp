@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Time step of colliding bodies: how long their contacts last, which step is stable.
+/// Time step of colliding bodies from the duration of contacts and the stability limit.
 #pragma once
 
 #include <cstdint>
@@ -13,43 +13,43 @@
 
 namespace equidem {
 
-/// Longest lever of a normal force about the mass centre of a body, m: a - b of an ellipse, 0 of a disc.
+/// Longest lever of a normal force about the centre of mass of a body, m: a - b for an ellipse, 0 for a disc.
 double longest_lever(const Grain& grain, std::span<const Clump> clumps);
 
 struct GrainStepOptions {
   std::optional<double> time_step = {};                      ///< s; none: by steps_per_contact
   std::optional<double> steps_per_contact = {};              ///< none: LawDescription::steps_per_contact
-  double longest = std::numeric_limits<double>::infinity();  ///< of a chosen step, s: the duration of the run
+  double longest = std::numeric_limits<double>::infinity();  ///< largest step to choose, s: the duration of the run
 };
 
-/// The step of a run beside the shortest of its contacts.
+/// The step of a run and its shortest contact.
 struct GrainTimeStep {
   double step = 0;      ///< s
-  double contact = 0;   ///< s, the shortest contact; 0: not known (no closing_speed, or no two bodies)
-  std::string between;  ///< its kinds, "grains and walls"
-  /// omega dt of it, omega = sqrt(k/m), the root of a; springs that are not linear: by the tangent stiffness at the
+  double contact = 0;   ///< duration of the shortest contact, s; 0: not known (no closing_speed, or no two bodies)
+  std::string between;  ///< kinds of that contact, "grains and walls"
+  /// omega dt of that contact, omega = sqrt(k/m), i.e. sqrt(a); nonlinear springs: with the tangent stiffness at the
   /// largest overlap; 0: not known.
   double omega_step = 0;
   double limit = 0;       ///< LawDescription::stable_step, the largest omega dt; 0: none
-  double bond_limit = 0;  ///< s, of bonds; 0: none
+  double bond_limit = 0;  ///< step limit of bonds, s; 0: none
   bool automatic = false;
 
   [[nodiscard]] double steps_in_contact() const { return contact / step; }
 };
 
-/// The step given, or a share of the shortest contact and at most half the limit of bonds (there the dashpots of a pair
-/// bring it to rest in one step).
-/// \param scene with kinds set, pairs are not read
+/// The given step, or a fraction of the shortest contact and at most half the limit of bonds (at which the dashpots of
+/// a pair bring it to rest in one step).
+/// \param scene with kinds set; pairs are not read
 /// \param options time_step is not read
 /// \throws Error (bad_input), its place the name of the option ("time_step", "law", "bonds"): a step that cannot be
-///         chosen (DimensionlessStiffness, a spring that is not linear without closing_speed, no two bodies that can
-///         meet), a step at which a force law is unstable even for one contact, bonds that check_bonds refuses
+///         chosen (DimensionlessStiffness, a nonlinear spring without closing_speed, no two bodies that can meet), a
+///         step at which a force law is unstable even for one contact, bonds that check_bonds refuses
 GrainTimeStep choose_time_step(const GrainScene& scene, const ContactTable& contacts, const GrainOptions& options,
                                const GrainStepOptions& wanted = {});
 
-/// Steps of the whole duration.
+/// Number of steps of the whole duration.
 /// \param duration, step s
-/// \throws Error (bad_input) where they are more than 1e15
+/// \throws Error (bad_input) if there are more than 1e15
 std::int64_t count_steps(double duration, double step);
 
 }  // namespace equidem

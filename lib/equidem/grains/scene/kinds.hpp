@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Kinds of bodies and walls, and the contact of every two kinds.
+/// Kinds of bodies and walls, and the contact properties of every two kinds.
 #pragma once
 
 #include <cstddef>
@@ -13,20 +13,20 @@
 
 namespace equidem {
 
-/// How the bodies of a scene meet.
+/// Contact options of the bodies of a scene.
 struct CollisionOptions {
   Body body = Body::disc;
   PairOptions bodies = {};                ///< contacts of two bodies
-  std::optional<PairOptions> walls = {};  ///< contacts of a body and a wall; none: as of two bodies
+  std::optional<PairOptions> walls = {};  ///< contacts of a body and a wall; none: as for two bodies
   /// Contacts of two groups of bodies, or of a group and the wall of that name.
   struct Pair {
     std::string group, with;
     PairOptions contact;
   };
-  std::vector<Pair> pairs = {};  ///< each two names at most once
+  std::vector<Pair> pairs = {};  ///< each pair of names at most once
 };
 
-/// The contact of every two kinds.
+/// Contact properties of every two kinds.
 struct ContactTable {
   /// Groups of bodies, then "walls", then walls with a pair of their own; with HertzModuli a group counts once for each
   /// radius.
@@ -40,7 +40,7 @@ struct ContactTable {
   [[nodiscard]] const std::string& kind(int a) const { return kinds[static_cast<std::size_t>(a)]; }
 };
 
-/// Gives bodies and walls of a scene their kinds, and every two kinds their contact.
+/// Sets the kinds of bodies and walls of a scene, and the contact properties of every two kinds.
 /// \param scene with all bodies and walls; Grain::kind, Wall::kind and GrainScene::kinds are set
 /// \param groups one name for each body; empty: all are "grains"
 /// \throws Error (bad_input) as contact_of, its place the name of the option, such as "restitution", "walls.stiffness",
@@ -48,7 +48,7 @@ struct ContactTable {
 ContactTable set_kinds(GrainScene& scene, std::span<const std::string> groups, const CollisionOptions& options,
                        NormalLaw law);
 
-/// GrainScene::pairs for a time step.
+/// Value of GrainScene::pairs for a time step.
 /// \param step s
 std::vector<PairProperties> pairs_at(const ContactTable& contacts, NormalLaw law, double step);
 
@@ -62,7 +62,7 @@ std::vector<KindMasses> masses_of_kinds(std::span<const Grain> grains, int kinds
 struct ReducedMasses {
   double smallest = 0, largest = 0;  ///< kg
 };
-/// Extremes over all pairs of two kinds; none where the scene has no two such bodies.
+/// Extremes over all pairs of two kinds; none if the scene has no two such bodies.
 std::optional<ReducedMasses> reduced_masses(const std::vector<KindMasses>& kinds, int a, int b);
 
 }  // namespace equidem

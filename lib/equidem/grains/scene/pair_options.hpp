@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Contact of two bodies as a user describes it, and the constants that follow from it.
+/// Contact options of two bodies, and the constants derived from them.
 #pragma once
 
 #include <optional>
@@ -11,20 +11,21 @@
 
 namespace equidem {
 
-/// k: linear laws N/m, hertz_dashpot N/m^(3/2), each per metre of depth for discs.
+/// Spring stiffness k: linear laws N/m, hertz_dashpot N/m^(3/2), each per metre of depth for discs.
 struct SpringStiffness {
   double value = 0;
 };
-/// a = k dt²/m, kept for every step and every reduced mass m; hertz_dashpot: k d_c^(1/2) dt²/m.
+/// Dimensionless stiffness a = k dt²/m, constant for every step and every reduced mass m; hertz_dashpot: k d_c^(1/2)
+/// dt²/m.
 struct DimensionlessStiffness {
   double value = 0;
 };
-/// Time until the overlap is zero again, s, the same for all masses. Not hertz_dashpot: its contacts last the shorter
-/// the faster they are.
+/// Duration of a contact until the overlap is zero again, s, equal for all masses. Not for hertz_dashpot, whose
+/// contacts are shorter at higher speed.
 struct ContactDuration {
   double value = 0;
 };
-/// Overlap, m, that no two bodies exceed which meet at PairOptions::closing_speed.
+/// Largest overlap of any two bodies that meet at PairOptions::closing_speed, m.
 struct LargestOverlap {
   double value = 0;
 };
@@ -34,7 +35,7 @@ struct HertzModuli {
   double poisson_ratio = 0;  ///< in (-1, 0.5]
 };
 /// Discs as squares of a continuum in plane strain: kN = pi/4 rho Vp², kT = pi/4 rho Vs² (Sukegawa 2010, (2.26)). Not
-/// hertz_dashpot.
+/// for hertz_dashpot.
 struct WaveSpeedStiffness {
   double density = 0;           ///< rho, kg/m³
   double shear_wave_speed = 0;  ///< Vs, m/s
@@ -56,34 +57,34 @@ struct DashpotDamping {
 /// One of these must be given.
 using ReboundOptions = std::variant<std::monostate, Restitution, DashpotDamping>;
 
-/// Contact of two bodies.
+/// Contact options of two bodies.
 struct PairOptions {
   StiffnessOptions stiffness = {};
   ReboundOptions rebound = {};
   /// Laws with a dashpot; none: LawDescription::usual_end.
   std::optional<ContactEnd> contact_end = {};
-  double closing_speed = 0;  ///< of the fastest impact expected, m/s; 0: not known
+  double closing_speed = 0;  ///< closing speed of the fastest impact expected, m/s; 0: not known
   double friction = 0;       ///< mu
-  /// kT/kN with friction; none: 2/7, that of the wave speeds with WaveSpeedStiffness, and 0 for the maps: they give all
-  /// of an impulse in one or two steps, in which no spring is stretched to the force of friction.
+  /// kT/kN with friction; none: 2/7; with WaveSpeedStiffness the ratio of the wave speeds; 0 for the maps, which apply
+  /// an impulse in one or two steps, in which no spring stretches to the friction force.
   std::optional<double> tangential_ratio = {};
-  /// zeta of the tangential dashpot, with a tangential spring; none: 0, with DashpotDamping that of its dashpot.
+  /// zeta of the tangential dashpot, with a tangential spring; none: 0, or with DashpotDamping its damping ratio.
   std::optional<double> tangential_damping = {};
   FrictionCap friction_cap = FrictionCap::whole_force;
 };
 
-/// The two kinds of bodies that meet.
+/// Data of the two kinds of bodies in contact.
 struct MeetingBodies {
   Body body = Body::disc;
   bool on_wall = false;
-  double largest_reduced_mass = 1;  ///< of all pairs of the two kinds, kg; for LargestOverlap
+  double largest_reduced_mass = 1;  ///< largest over all pairs of the two kinds, kg; for LargestOverlap
   double radius_i = 0;              ///< m; for HertzModuli
   double radius_j = 0;              ///< m; not used on a wall
 };
 
-/// Constants of the contact of two kinds of bodies.
+/// Contact constants of two kinds of bodies.
 struct PairContact {
-  /// Without stiffness and dimensionless where these follow from `duration`.
+  /// stiffness and dimensionless are not set if they follow from `duration`.
   PairProperties properties;
   double duration = 0;       ///< s; 0: not given
   double closing_speed = 0;  ///< m/s; 0: not known

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A box that shakes: its walls move all alike, by a displacement whose second derivative is the acceleration wanted.
+/// Shaking of a box: all its walls move by one displacement, whose second derivative is the prescribed acceleration.
 #pragma once
 
 #include <cstdint>
@@ -16,18 +16,18 @@ namespace equidem {
 constexpr double gal = 0.01;                  ///< m/s²
 constexpr double standard_gravity = 9.80665;  ///< m/s², the acceleration g
 
-/// Harmonic shaking, a cos(2 pi f (t - start)): the displacement a/(2 pi f)² (1 - cos(...)) begins and ends at rest
-/// where the box stands, without drift and without a jump in velocity. \param acceleration a, m/s²
+/// Harmonic shaking, a cos(2 pi f (t - start)): the displacement a/(2 pi f)² (1 - cos(...)) begins and ends at rest in
+/// the initial position, without drift and without a jump in velocity. \param acceleration a, m/s²
 /// \param frequency f, Hz
 /// \param start s
 /// \param cycles >= 1
 /// \throws Error (bad_input) as check(Schedule)
 Schedule harmonic_shaking(double acceleration, double frequency, double start, std::int64_t cycles);
 
-/// What is taken from a recorded acceleration, whose integral ends neither at rest nor in place.
+/// Baseline correction of a recorded acceleration, whose integral ends neither at rest nor in the initial position.
 enum class Baseline {
-  velocity,  ///< a constant: the box ends at rest, somewhere else
-  rest,      ///< a straight line in time: it ends at rest where it began
+  velocity,  ///< subtract a constant: the box ends at rest, displaced
+  rest,      ///< subtract a linear function of time: the box ends at rest in the initial position
 };
 
 /// A recorded motion as a displacement, and its extremes after the correction.
@@ -37,7 +37,7 @@ struct GroundMotion {
   double peak_velocity = 0;      ///< m/s
   double peak_displacement = 0;  ///< m, at the points of the record
   double final_displacement = 0;
-  double correction = 0;  ///< m/s²: the most that the baseline took away
+  double correction = 0;  ///< largest baseline correction, m/s²
 };
 
 /// The acceleration is linear between its points and integrated twice exactly; velocity and displacement begin at 0.
@@ -48,7 +48,7 @@ GroundMotion integrate_motion(std::span<const double> times, std::span<const dou
                               Baseline baseline);
 
 /// A recorded displacement: the cubic spline through its points, at rest at both ends (its acceleration is linear
-/// between them). The first point is where the box stands. \param displacements m
+/// between them). The first point is the initial position of the box. \param displacements m
 /// \throws Error (bad_input) as integrate_motion
 GroundMotion follow_motion(std::span<const double> times, std::span<const double> displacements, double start);
 
@@ -76,7 +76,7 @@ struct ShakingOptions {
   std::variant<HarmonicShaking, RecordedShaking> motion = {};
 };
 
-/// How a box shakes.
+/// The shaking of a box.
 struct Shaking {
   Vec2 direction;       ///< unit
   GroundMotion motion;  ///< along it
@@ -96,7 +96,7 @@ Shaking shaking_of(const ShakingOptions& options, double run_duration);
 
 /// Let walls move along a direction.
 /// \param direction unit
-/// \throws Error (bad_input) where a wall moves by itself
+/// \throws Error (bad_input) if a wall already has a prescribed motion
 void shake(std::span<Wall> walls, Vec2 direction, const Schedule& displacement);
 
 }  // namespace equidem

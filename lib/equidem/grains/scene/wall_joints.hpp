@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Where walls join, a grain meets one of them: two contacts with one point would be twice as stiff and lose twice.
+/// Joints of walls. At a joint only one wall has a contact with a grain: two contacts at one point would double
+/// stiffness and losses.
 #pragma once
 
 #include <array>
@@ -17,28 +18,27 @@ namespace equidem {
 
 struct GrainSystem;
 
-/// Of the smallest radius: walls no further apart join.
+/// Largest gap of walls that join, over the smallest radius.
 constexpr double joint_gap = 1e-6;
 
 /// An end of a wall that lies on another wall, which moves with it.
 struct WallJoint {
-  std::int32_t wall = 0;  ///< the other one
-  int end = 0;            ///< of the other one, 1 or 2; 0: between its ends
+  std::int32_t wall = 0;  ///< index of the other wall
+  int end = 0;            ///< end of the other wall, 1 or 2; 0: between its ends
 };
 
-/// Of the first and of the second end of a wall.
+/// Joints of the first and of the second end of a wall.
 using WallJoints = std::array<std::vector<WallJoint>, 2>;
 
-/// \param tolerance gaps no wider than this are none, m
-/// \return one for each wall; empty where no walls join
+/// \param tolerance largest gap of walls that join, m
+/// \return one for each wall; empty if no walls join
 std::vector<WallJoints> joints_of(std::span<const Wall> walls, double tolerance);
 
-/// Walls that lie on one another for some length, where every contact would be counted twice; parts of arcs are not
-/// looked at.
+/// Walls that coincide over some length, where every contact would be counted twice; parts of arcs are not checked.
 std::optional<std::pair<std::size_t, std::size_t>> coinciding_walls(std::span<const Wall> walls, double tolerance);
 
-/// Find out which contacts with ends of walls are covered by a contact with a wall that goes on there; these do
-/// nothing. What such a contact remembers goes over to the one that takes its place.
+/// Find the contacts with ends of walls that are covered by a contact with a wall that continues there; these are
+/// ignored. The state of such a contact passes to the contact that replaces it.
 void cover_joints(GrainSystem& system);
 
 }  // namespace equidem
