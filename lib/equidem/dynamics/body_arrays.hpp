@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Motions and velocities of discs as the loop keeps them.
+/// Motions and velocities of discs in the layout of the loop.
 #pragma once
 
 #include <vector>
@@ -12,10 +12,10 @@
 
 namespace equidem {
 
-/// Arrays by place, and the way to them from discs.
+/// Arrays by place, with conversion from and to discs.
 class BodyArrays {
  public:
-  /// All at rest in the reference position.
+  /// All discs at rest in the reference position.
   BodyArrays(DiscLayout layout, const LoopKind& kind);
 
   LaneVector<double> motion[2];       ///< places x width
@@ -27,9 +27,9 @@ class BodyArrays {
   [[nodiscard]] std::vector<DiscMotion> discs_of(const LaneVector<double>& motions) const;
   void put(const std::vector<DiscMotion>& discs, LaneVector<double>& motions) const;
   [[nodiscard]] std::vector<DiscMotion> disc_velocities(const LaneVector<double>& velocities) const;
-  /// Into `velocity` and, where there are dashpots, into both `velocity_at`.
+  /// Set `velocity` and, with dashpots, both `velocity_at`.
   void put_velocities(const std::vector<DiscMotion>& discs);
-  /// Let a loop work on these arrays.
+  /// Set the pointers of a loop to these arrays.
   void connect(LoopData& data);
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The few discs that supports, loads and walls act on: stepped with all others, then corrected.
+/// Discs with supports, loads or wall contacts: stepped with all others, then corrected.
 #pragma once
 
 #include <cstdint>
@@ -20,18 +20,18 @@ struct DrivingWork {
   double loads = 0, supports = 0, walls = 0;
 };
 
-/// Everything that acts on single discs, kept by strip. A disc that nothing drives costs nothing.
+/// Supports, loads and walls that act on single discs, stored by strip. Other discs cost nothing.
 class DrivenDiscs {
  public:
   /// \throws Error (bad_input) on a group that does not exist or is empty, a motion prescribed twice, a load that is
   ///         not finite
   DrivenDiscs(const Scene& scene, const DiscLayout& layout, const LoopKind& kind);
 
-  /// See which discs are acted upon, and keep the velocities of these that the loop will overwrite. `time` is that of
-  /// the motions read.
+  /// Find the discs that are acted upon and store their velocities, which the loop overwrites. `time` is that of the
+  /// motions read.
   void before(std::int32_t strip, const LoopData& data, int parity, double time);
-  /// Add forces, prescribe motions, sum up work, and correct what the loop counted as dissipated on the discs that
-  /// before() has found. `time_after` is that of the motions written.
+  /// Add forces, prescribe motions, sum up work, and correct the dissipation that the loop counted for the discs found
+  /// by before(). `time_after` is that of the motions written.
   void after(std::int32_t strip, const LoopData& data, const Stage& stage, int parity, double time, double time_after,
              Dissipation& dissipation);
 
@@ -39,10 +39,10 @@ class DrivenDiscs {
   [[nodiscard]] std::size_t bytes() const {
     return discs_.size() * (sizeof(Disc) + sizeof(Place)) + loads_.size() * sizeof(DiscLoad);
   }
-  /// Prescribed components at the start.
+  /// Set the prescribed components at the start.
   void prescribe(double* motion, double time) const;
   [[nodiscard]] DrivingWork work() const;
-  /// The sums of work of every strip, for a later run that goes on.
+  /// The sums of work of every strip, for the continuation of a run.
   [[nodiscard]] const std::vector<DrivingWork>& sums() const { return work_; }
   void set_sums(std::vector<DrivingWork> sums) { work_ = std::move(sums); }
 
@@ -57,12 +57,12 @@ class DrivenDiscs {
     double before[3] = {0, 0, 0};  // velocities
     [[nodiscard]] bool any_held() const { return held[0] >= 0 || held[1] >= 0 || held[2] >= 0; }
   };
-  /// What tells whether a wall touches a disc, next to each other for all: most are far from every wall.
+  /// Data that decide whether a wall touches a disc, stored contiguously, since most discs are far from every wall.
   struct Place {
     Vec2 centre;
     double radius = 0;
     std::int32_t place = 0;
-    bool always = false;  ///< acted upon, walls or not
+    bool always = false;  ///< acted upon by a support or load
   };
   struct DiscLoad {
     double force[3] = {0, 0, 0};  // N/m, N/m, N
@@ -73,11 +73,12 @@ class DrivenDiscs {
   void add_loads(const Scene& scene, std::vector<std::vector<DiscLoad>>& loads) const;
   [[nodiscard]] double with_damping(double free, double v, double share) const;
   [[nodiscard]] double without_damping(double a, double v, double share) const;
-  /// How far a wall has moved, and the way over which it works, m.
+  /// Displacement of a wall, and the displacement over which it does work, m.
   struct WallMotion {
     double moved = 0, way = 0;
   };
-  /// Of all walls, kept for the strip: the way is that which velocities before and after the kick go, as that of loads.
+  /// Motions of all walls, stored for the strip. `way` follows from the velocities before and after the kick, as for
+  /// loads.
   [[nodiscard]] std::span<const WallMotion> move_walls(std::int32_t strip, double time, double time_after);
   /// Force of all walls on a disc displaced by u, and the work that their motion does.
   struct Push {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// How discs and their contacts lie in memory while they are stepped in time.
+/// Memory layout of discs and contacts in the loops.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@
 
 namespace equidem {
 
-/// Discs in an order of strips along x, so thick that contacts join a strip only to itself and the next ones, and
-/// within strips in groups of four whose lanes are computed at once. Places without a disc fill a strip up.
+/// Discs are ordered in strips along x, wide enough that contacts connect a strip only to itself and its neighbours,
+/// and within strips in groups of four whose lanes are computed at once. Strips are padded with empty places.
 ///
-/// Strips let several steps be made while data are near: strip l can be at step k + 1 as soon as its neighbours are at
-/// step k. Where the assembly repeats along y a strip holds discs of its lower and of its upper half: the ring lies
-/// flat.
+/// Strips allow several steps while data are in the cache: strip l can be at step k + 1 as soon as its neighbours are
+/// at step k. In an assembly periodic along the strips' order, a strip contains discs of both halves: the ring is
+/// folded flat.
 struct DiscLayout {
   static constexpr int lanes = 4;
 
@@ -30,13 +30,12 @@ struct DiscLayout {
 
 DiscLayout lay_out(const Assembly& assembly);
 
-/// The contacts of every group: slot k of a group holds the k-th contact of each of its four discs, a disc that has
-/// fewer being paired with itself at no stiffness.
+/// The contacts of every group: slot k of a group holds the k-th contact of each of its four discs, a disc with fewer
+/// contacts is paired with itself at zero stiffness.
 struct ContactSlots {
   LaneVector<std::int32_t> first;      ///< groups + 1
   LaneVector<std::int32_t> neighbour;  ///< slots x lanes: place of the other disc
-  std::vector<std::int32_t>
-      contact;  ///< slots x lanes: contact c as c + 1, as -(c + 1) where the disc is its j; 0: none
+  std::vector<std::int32_t> contact;   ///< slots x lanes: c + 1 for contact c, -(c + 1) if the disc is its j; 0: none
 };
 
 ContactSlots list_slots(const Assembly& assembly, const DiscLayout& layout);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Which loop a scene needs: decided once, before the first step.
+/// Choice of the loop for a scene, made once before the first step.
 #pragma once
 
 #include "equidem/dynamics/kernels/step_kernel.hpp"
@@ -8,18 +8,18 @@
 
 namespace equidem {
 
-/// \throws Error (bad_input) where contacts lie off the lines of centres: no loop knows of them
+/// \throws Error (bad_input) if contacts lie off the lines of centres, which no loop supports
 void check_contacts(const Assembly& assembly);
 
-/// \throws Error (bad_input) as check_contacts, where a mass is not positive, a damping is out of range, or several
+/// \throws Error (bad_input) as check_contacts; if a mass is not positive, a damping is out of range, or dampings
 ///         exclude one another
 void check(const Scene& scene, const SimulationOptions& options);
 
-/// What is active in a run, and why each other effect is not: those of statics, then damping, gravity, loads, supports,
-/// walls, large motions, unequal contacts and discs.
+/// The effects of a run, with the reason for each inactive one: those of statics, then damping, gravity, loads,
+/// supports, walls, large motions, unequal contacts and discs.
 Effects effects_of(const Scene& scene, const SimulationOptions& options);
 
-/// The plainest loop that still holds everything that can change the answer.
+/// The simplest loop that contains every active effect.
 LoopKind loop_for(const Scene& scene, const SimulationOptions& options, const Effects& effects);
 
 /// Dashpots of a contact, N s/m per m: beta k, or 2 zeta sqrt(m k) with the reduced mass m.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The same assembly, springs and contact law as statics, stepped in time.
+/// Simulation in time of bonded discs, with the assembly, springs and contact law of statics.
 #pragma once
 
 #include <cstdint>
@@ -28,14 +28,14 @@ struct TimedSupport {
   std::optional<Schedule> ux, uy, rotation;
 };
 
-/// A load times a factor that changes with time; give a constant factor its value, 1.
+/// A load times a factor that changes with time; a constant factor needs its value, 1.
 struct TimedLoad {
   Load load;
   Schedule factor;
 };
 
-/// Velocity at the start of the discs of a group; a prescribed motion overrules it, and where rotations are no unknowns
-/// no spin is kept.
+/// Initial velocity of the discs of a group. A prescribed motion overrides it; the spin is ignored if rotations are not
+/// unknowns.
 struct InitialVelocity {
   std::string group;
   Vec2 velocity;    ///< m/s
@@ -57,10 +57,10 @@ struct SimulationOptions {
   Damping damping = {};
   Vec2 gravity = {};                    ///< m/s²
   double time_step = 0;                 ///< s, > 0
-  std::size_t discs_per_thread = 4000;  ///< with fewer, threads wait longer for one another than they work
+  std::size_t discs_per_thread = 4000;  ///< with fewer discs per thread, synchronization takes longer than the work
 };
 
-/// What is simulated; the assembly and the springs must outlive the simulation.
+/// The scene of a simulation; the assembly and the springs must outlive the simulation.
 struct Scene {
   const Assembly& assembly;
   const ContactSprings& springs;
@@ -71,7 +71,7 @@ struct Scene {
   std::vector<InitialVelocity> velocities = {};
 };
 
-/// Resultant of all that acts on a disc.
+/// Resultant force and moment on a disc.
 struct DiscForce {
   Vec2 force;         ///< N/m
   double moment = 0;  ///< N
@@ -79,9 +79,9 @@ struct DiscForce {
 
 class Simulation final : public AnySimulation {
  public:
-  /// Decide the effects, pick the loop, lay out memory.
+  /// Determines the effects, chooses the loop, lays out memory.
   /// \throws Error (bad_input) on a group that does not exist, motions prescribed twice, a mass that is not positive, a
-  ///         damping out of range or not known to the integrator
+  ///         damping out of range or not supported by the integrator
   Simulation(const Scene& scene, const SimulationOptions& options);
   ~Simulation() override;
   Simulation(Simulation&&) noexcept;
@@ -91,7 +91,7 @@ class Simulation final : public AnySimulation {
 
   [[nodiscard]] BodyFamily family() const override { return BodyFamily::bonded; }
   [[nodiscard]] const Effects& effects() const override;
-  /// The same bits for every number of threads, too.
+  /// Results are also bit-identical for every number of threads.
   void advance(std::int64_t steps) override;
   [[nodiscard]] std::int64_t step() const override;
   [[nodiscard]] double time() const override;
@@ -101,15 +101,15 @@ class Simulation final : public AnySimulation {
   /// Kinetic energy of velocities(), elastic energy of motions().
   [[nodiscard]] EnergyLedger energy() const override;
   [[nodiscard]] double bytes_per_body() const override;
-  /// Arrays: motions and previous (one step before), (n, 3); velocities as the integrator keeps them (leapfrog: half a
+  /// Arrays: motions and previous (one step before), (n, 3); velocities as stored by the integrator (leapfrog: half a
   /// step behind), (n, 3); sums of losses and work of the loop.
   [[nodiscard]] SavedState save() const override;
   void restore(const SavedState& state) override;
 
-  /// What contacts, loads, walls and gravity leave unbalanced now on every disc displaced by `motions`, dampers aside;
-  /// 0 where the motion is prescribed.
+  /// Resultant of contacts, loads, walls and gravity at the present time on every disc displaced by `motions`, without
+  /// damping; 0 where the motion is prescribed.
   [[nodiscard]] std::vector<DiscForce> unbalanced_forces(const std::vector<DiscMotion>& motions) const;
-  /// The loop that was picked.
+  /// The loop in use.
   [[nodiscard]] const LoopKind& loop() const;
   /// The first disc whose motion or velocity is not finite; -1: none.
   [[nodiscard]] std::int64_t first_runaway() const;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What a Simulation is made of; for its own sources alone.
+/// Data of a Simulation, for its own source files.
 #pragma once
 
 #include <vector>
@@ -27,7 +27,7 @@ struct Simulation::Implementation {
   std::vector<Dissipation> dissipation;  // per strip
   std::int64_t steps = 0;
   int parity = 0;
-  EnergyLedger at_start;  // sums that begin half a step before the start included
+  EnergyLedger at_start;  // including sums that begin half a step before the start
 
   Implementation(const Scene& scene_in, const SimulationOptions& options_in);
 
@@ -39,7 +39,7 @@ struct Simulation::Implementation {
   void start();
   void advance(std::int64_t count);
   void do_strip(std::int32_t strip, const Stage& stage, int from, double time, double time_after);
-  /// What a stage would make of velocities, and what it would add to the ledger.
+  /// Velocities after a trial stage, and its contributions to the ledger.
   struct Trial {
     std::vector<DiscMotion> velocities;
     Dissipation dissipation;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What a slot of the loop knows of its four contacts.
+/// Contact data in a slot of the loop.
 #pragma once
 
 #include "equidem/core/vector.hpp"
@@ -19,10 +19,10 @@ constexpr int slot_doubles(const LoopKind& kind) {
 
 }  // namespace lanes
 
-/// Write the contact of one lane into its slot, in the order that LoopData::geometry states; c_N and c_T are left
-/// alone. A lane that is all zeros is no contact. \param branch from the disc of this lane to its neighbour, at rest, m
+/// Write the contact of one lane into its slot, in the order that LoopData::geometry states; c_N and c_T are not
+/// changed. A lane of zeros means no contact. \param branch from the disc of this lane to its neighbour, at rest, m
 /// \param lever_own, lever_other of the disc and of its neighbour, m
-/// \param k of this contact, Pa; equal contacts have theirs in LoopData
+/// \param k of this contact, Pa; equal contacts use those of LoopData
 /// \param slot slot_doubles(kind) x 4 doubles
 /// \param lane 0 .. 3
 void fill_geometry(const LoopKind& kind, Vec2 branch, double lever_own, double lever_other, SpringConstants k,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// In which order strips are stepped: several steps at once while data are near, on all threads.
+/// Order of strips in time stepping: several steps at once while data are in the cache, on all threads.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@ namespace equidem {
 /// stage before left them.
 using StripWork = std::function<void(std::int32_t strip, std::int64_t stage)>;
 
-/// Do stages 0 .. stages - 1 on all strips, each only once its own and both neighbouring strips have done the one
-/// before.
+/// Perform stages 0 .. stages - 1 on all strips. A stage of a strip starts after this strip and both neighbours have
+/// completed the previous stage.
 ///
 /// Stage s begins two waves after stage s - 1 and follows it from strip to strip: `depth` stages (as many per thread)
-/// are under way at a time, on data that still lie in the cache, and at any moment on strips that do not touch, so that
-/// threads share them. With fewer stages than threads the strips of one stage are shared out.
-/// \param threads at most these, and no more than parallel loops use: strips of few discs are not worth waiting for one
-///         another
-/// Every strip does the same work on the same data in any case: the bits do not depend on threads or depth.
+/// are in progress at a time, on data in the cache and on strips that are not adjacent, so that threads share them.
+/// With fewer stages than threads the strips of one stage are divided among threads.
+/// \param threads largest number of threads, limited to that of parallel loops: with few discs per strip,
+///        synchronization costs more than it gains The work and data of every strip do not depend on threads or depth;
+///        results are bit-identical.
 void step_strips(std::int32_t strips, std::int64_t stages, int depth, int threads, const StripWork& work);
 
 }  // namespace equidem

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The unknowns of a scene as statics counts them.
+/// The unknowns of a scene in statics.
 #pragma once
 
 #include "equidem/contact/effects.hpp"
@@ -9,7 +9,7 @@
 
 namespace equidem {
 
-/// What the supports of the scene leave free, with the motions that they prescribe at that time (s).
+/// The unknowns left free by the supports of the scene, with the motions prescribed at the given time (s).
 /// \throws Error (bad_input) as number_unknowns does
 DegreesOfFreedom unknowns_at(const Scene& scene, const Effects& effects, double time);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Runs that went wrong, seen between chunks of steps.
+/// Detection of unstable runs, between chunks of steps.
 #pragma once
 
 #include <cstdint>
@@ -10,24 +10,24 @@
 
 namespace equidem {
 
-/// What tells a runaway and its likely cause.
+/// Criteria of a runaway and data on its likely cause.
 struct RunawayLimits {
-  /// Kinetic and elastic energy over all that the run was ever given (start, loads, supports, walls, gravity), beyond
-  /// which it is a runaway. That of a stable run is within a small multiple of 1.
+  /// Limit of kinetic and elastic energy over all energy supplied (start, loads, supports, walls, gravity); a run above
+  /// it is a runaway. In a stable run the ratio is a small multiple of 1 at most.
   double growth = 100;
   double critical_step = 0;  ///< s; 0: not known
-  double growth_rate = 0;    ///< 1/s, of motions that grow whatever the step
+  double growth_rate = 0;    ///< 1/s, of motions that grow for any step
 };
 
-/// Looks at a run from time to time and stops it where motions are no numbers, energy comes from nowhere, or bonded
-/// discs of a finite motion pass through each other: the law of a bond does not hinder them.
+/// Checks a run between chunks and stops it if motions are not finite, energy is created, or bonded discs in finite
+/// motion pass through each other, which the law of a bond does not prevent.
 class RunawayWatch {
  public:
   /// The scene must outlive the watch.
   explicit RunawayWatch(const Scene& scene, const SimulationOptions& options, const RunawayLimits& limits = {});
 
-  /// To be called at the start and after every chunk of steps.
-  /// \throws Error (computation_failed) naming the step, the disc that is furthest off and the likely cause
+  /// Must be called at the start and after every chunk of steps.
+  /// \throws Error (computation_failed) naming the step, the disc with the largest motion and the likely cause
   void look(const Simulation& run, const EnergyLedger& energy);
   void look(const Simulation& run) { look(run, run.energy()); }
 
@@ -39,7 +39,7 @@ class RunawayWatch {
   const Scene& scene_;
   SimulationOptions options_;
   RunawayLimits limits_;
-  double given_ = 0;  // most energy that was ever there to have, N
+  double given_ = 0;  // largest energy supplied so far, N
   std::int64_t last_good_step_ = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The position-extended scheme like Forest & Ruth's of Omelyan, Mryglod & Folk (2002): symplectic, order 4. Drifts xi,
+/// The position-extended Forest-Ruth-like scheme of Omelyan, Mryglod & Folk (2002): symplectic, order 4. Drifts xi,
 /// chi, 1 - 2(chi + xi), chi, xi around kicks (1 - 2 lambda)/2, lambda, lambda, (1 - 2 lambda)/2.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace omelyan {
 
 inline constexpr double xi = 0.1786178958448091, lambda = -0.2123418310626054, chi = -0.06626458266981849;
 inline constexpr std::array<double, 4> kicks = {0.5 - lambda, lambda, lambda, 0.5 - lambda};
-/// After each kick; the last one includes the drift before the first kick of the next step.
+/// Drift after each kick; the last one includes the drift before the first kick of the next step.
 inline constexpr std::array<double, 4> drifts = {chi, 1 - 2 * (chi + xi), chi, 2 * xi};
 
 /// Half the trace of the matrix of one step of an oscillator with w = omega h; stable while in [-1, 1].
@@ -55,8 +55,8 @@ inline std::vector<Stage> stages(double h, double alpha) {
 
 }  // namespace omelyan
 
-/// Motions are kept ahead between steps by the first drift: a step begins and ends with the same short drift, and two
-/// of them are one.
+/// Between steps, motions are stored ahead by the first drift: a step begins and ends with the same short drift, and
+/// two successive ones are merged.
 inline constexpr IntegrationScheme fourth_order{
     .order = 4,
     .force_evaluations = 4,

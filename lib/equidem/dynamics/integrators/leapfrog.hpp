@@ -9,8 +9,8 @@
 
 namespace equidem::integrators {
 
-/// Mass-proportional damping is central and leaves the limit omega h = 2; a contact dashpot (zeta > 0, from relative
-/// velocities) is evaluated half a step behind: 2 (sqrt(1 + zeta²) - zeta).
+/// Mass-proportional damping is central and does not change the limit omega h = 2; a contact dashpot (zeta > 0, from
+/// relative velocities) is evaluated half a step behind: 2 (sqrt(1 + zeta²) - zeta).
 inline constexpr IntegrationScheme leapfrog{
     .order = 2,
     .force_evaluations = 1,

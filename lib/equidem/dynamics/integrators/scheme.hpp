@@ -12,14 +12,14 @@
 
 namespace equidem {
 
-/// How the longest stable step is found.
+/// Method to find the longest stable step.
 enum class StabilityLimit {
   central_differences,  ///< with all damping, from the energy of the highest mode and its dashpots
   thesis,               ///< with all damping, for the scheme of Sukegawa (2010)
   undamped,             ///< stability_limit(0) over the highest frequency
 };
 
-/// What mass-proportional damping, an acceleration -alpha v, does over a step h.
+/// Effect of mass-proportional damping, an acceleration -alpha v, over a step h.
 enum class MassDamping {
   central,    ///< factor (1 - alpha h/2)/(1 + alpha h/2)
   one_sided,  ///< factor 1 - alpha h
@@ -27,20 +27,21 @@ enum class MassDamping {
 };
 
 struct IntegrationScheme {
-  int order = 2;                 ///< where forces depend on positions, and for mass-proportional damping
-  int force_evaluations = 1;     ///< per step
-  bool velocities_lag = false;   ///< by half a step
-  bool half_step_start = false;  ///< forces of the start advance velocities by half a step, before the first step
-  bool takes_dashpots = true;    ///< forces may depend on velocities
+  int order = 2;                ///< where forces depend on positions, and for mass-proportional damping
+  int force_evaluations = 1;    ///< per step
+  bool velocities_lag = false;  ///< velocities lag by half a step
+  bool half_step_start =
+      false;  ///< forces of the start advance velocities velocities lag by half a step, before the first step
+  bool takes_dashpots = true;  ///< forces may depend on velocities
   StabilityLimit limit = StabilityLimit::undamped;
   MassDamping mass_damping = MassDamping::central;
   /// Largest stable omega dt of the oscillator u'' + 2 zeta omega u' + omega² u = 0; 0: never stable.
   double (*stability_limit)(double zeta);
-  /// Stages of one step, motion by motion; keep, kick and drift as of step_kernel.hpp.
+  /// Stages of one step, motion by motion; keep, kick and drift as in step_kernel.hpp.
   /// \param h time step, s
   /// \param alpha mass-proportional damping, 1/s
   std::vector<Stage> (*stages)(double h, double alpha);
-  double first_drift = 0;  ///< time by which motions are kept ahead between steps, in time steps
+  double first_drift = 0;  ///< time by which motions are stored ahead between steps, in time steps
 };
 
 }  // namespace equidem

@@ -3,10 +3,9 @@
 /// One stage of an integrator for finite motions: normals and contact points follow the bodies, by the law of
 /// contact/finite_bond.hpp.
 ///
-/// The law takes two roots, two divisions and an arctangent. Where the neighbour has hardly turned as seen from the
-/// body, by less than 1/64 rad, whatever the body itself has done, one division and short polynomials give the same
-/// numbers to rounding in less than half the time. A group is summed so, and anew by the law itself where one of its
-/// contacts is further from rest.
+/// The law takes two roots, two divisions and an arctangent. If the neighbour has turned by less than 1/64 rad relative
+/// to the body, one division and short polynomials give the same values to rounding in less than half the time. A group
+/// is summed in this way, and again by the full law if one of its contacts is further from rest.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +33,7 @@ EQUIDEM_INLINE BondAtRest load_bond(const double* geometry) {
   return bond;
 }
 
-/// Where body i lies between the two: r_i/L, L = r_i + r_j.
+/// Share of body i in the branch: r_i/L, L = r_i + r_j.
 template <LoopKind kind>
 EQUIDEM_INLINE Lanes share_of(const double* geometry) {
   Lanes share = Lanes{} + 0.5;
@@ -42,7 +41,7 @@ EQUIDEM_INLINE Lanes share_of(const double* geometry) {
   return share;
 }
 
-/// The same contacts as they are now.
+/// Present state of the contacts of a slot.
 struct BondNow {
   Lanes x, y;     ///< l
   Lanes stretch;  ///< dn/|l|
@@ -72,7 +71,7 @@ EQUIDEM_INLINE BondNow deform(const double* geometry, const Lanes& dx, const Lan
   return bond;
 }
 
-/// A bond as body i sees it: with p = l0 turned by theta_i, v = l - p, and m = p.l = l0² + p.v.
+/// A bond relative to body i: with p = l0 turned by theta_i, v = l - p, and m = p.l = l0² + p.v.
 struct BondSeen {
   Lanes x, y;     ///< l
   Lanes stretch;  ///< (p.v)/m
@@ -104,8 +103,8 @@ EQUIDEM_INLINE BondSeen see(const double* geometry, const SineVersine& turn, con
   return bond;
 }
 
-/// The law for a neighbour that has turned little as seen from body i: with t = tan(psi - theta_i), z = t², and
-/// C = 1/sqrt(1 + z) = 1 - z Q(z),
+/// The law for a neighbour that has turned little relative to body i: with t = tan(psi - theta_i), z = t², and C =
+/// 1/sqrt(1 + z) = 1 - z Q(z),
 ///   |l0|/|l| = (l0²/m) C,   dn/|l| = 1 - |l0|/|l| = (p.v)/m + (l0²/m) z Q,   psi - theta_i = atan t.
 /// \param far its signs are set where a lane is too far from rest
 template <LoopKind kind>
@@ -131,8 +130,8 @@ EQUIDEM_INLINE BondNow deform_little(const double* geometry, const BondSeen& see
   return bond;
 }
 
-/// What discs sum over their contacts: forces f_N n + f_T L/|l| s and moments f_T r_i of stresses f_N and f_T. Equal
-/// springs come out of the sums, where L = |l0|.
+/// Sums of discs over their contacts: forces f_N n + f_T L/|l| s and moments f_T r_i of stresses f_N and f_T. With
+/// equal springs, constants are factored out of the sums (L = |l0|).
 struct BondSums {
   Lanes normal_x{}, normal_y{};  ///< f_N n, or dn n
   Lanes across_x{}, across_y{};  ///< f_T L/|l| s, or ds L/|l| s
@@ -235,8 +234,8 @@ struct GroupBonds {
     }
   }
 
-  /// In two passes, each of which does the same to slots that do not wait for one another: that keeps the processor
-  /// busy. \return whether all are near their rest; if not, the sums mean nothing
+  /// Two passes, each over independent slots, for instruction-level parallelism. \return whether all contacts are near
+  /// rest; if not, the sums are invalid
   EQUIDEM_INLINE bool sum_near() {
     if (last - first > most_seen) return false;
     BondSeen seen[most_seen];

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Four numbers computed on at once. Plain C++ with the vector types of GCC and Clang: the compiler picks the
-/// instructions.
+/// Vectors of four numbers. Plain C++ with the vector types of GCC and Clang: the compiler selects the instructions.
 #pragma once
 
 #include <cstdint>

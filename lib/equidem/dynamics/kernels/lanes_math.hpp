@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Square root and angles of four numbers at once: no branches, no tables, the same bits on every machine.
+/// Square root and angles of four numbers at once: no branches, no tables, bit-identical on every machine.
 #pragma once
 
 #include <cmath>
@@ -18,16 +18,15 @@ namespace equidem::lanes {
 EQUIDEM_INLINE Choice sign_of(const Lanes& x) {
   return reinterpret_cast<Choice>(x) & std::numeric_limits<long long>::min();
 }
-/// x with its sign changed where that bit is set.
+/// x with its sign flipped if the sign bit of the other is set.
 EQUIDEM_INLINE Lanes change_sign(const Lanes& x, const Choice& sign) {
   return reinterpret_cast<Lanes>(reinterpret_cast<Choice>(x) ^ sign);
 }
 
-/// Correctly rounded, as IEEE 754 asks. x >= 0.
+/// Square root, correctly rounded (IEEE 754). x >= 0.
 EQUIDEM_INLINE Lanes square_root(const Lanes& x) {
 #if defined(__x86_64__)
-  // By halves, which every such processor has; no way through memory, where the halves would have to wait for one
-  // another.
+  // In halves, which every such processor supports, without a round trip through memory.
   const Pair low = _mm_sqrt_pd(__builtin_shufflevector(x, x, 0, 1));
   const Pair high = _mm_sqrt_pd(__builtin_shufflevector(x, x, 2, 3));
   return __builtin_shufflevector(low, high, 0, 1, 2, 3);
@@ -58,7 +57,8 @@ EQUIDEM_INLINE Lanes angle_of(const Lanes& x, const Lanes& y) {
       (-0x1.745cf8c36d549p-4 + z * 0x1.3b1117948652dp-4) + z2 * (-0x1.10eba8c075af4p-4 + z * 0x1.df0e7fb248f05p-5);
   const Lanes high = (-0x1.9ccf7cd2124b5p-5 + z * 0x1.37ce1ac095656p-5) - z2 * 0x1.255b341c4b7f1p-6;
   const Lanes zero{}, octant = zero + pi / 4, quadrant = zero + pi / 2, half_turn = zero + pi;
-  const Lanes octant_rest = zero + 0x1.1a62633145c07p-55;  // what pi/4 has beyond its double: it would cost half an ulp
+  const Lanes octant_rest =
+      zero + 0x1.1a62633145c07p-55;  // pi/4 minus its double; without it the error would grow by half an ulp
   Lanes angle = t + (t * z * (low + z4 * (middle + z4 * high)) + (turned ? octant_rest : zero));
   angle = turned ? octant + angle : angle;
   angle = steep ? quadrant - angle : angle;
@@ -66,7 +66,7 @@ EQUIDEM_INLINE Lanes angle_of(const Lanes& x, const Lanes& y) {
   return change_sign(angle, below);
 }
 
-/// The angle without whole turns, in [-pi, pi]; with the error of an ulp of what is given. |angle| < 1e15.
+/// The angle modulo 2 pi, in [-pi, pi], with the error of an ulp of the argument. |angle| < 1e15.
 EQUIDEM_INLINE Lanes without_whole_turns(const Lanes& angle) {
   using std::numbers::pi;
   constexpr double to_integer = 0x1.8p52;  // adding it rounds to the nearest integer, the spacing of numbers there

@@ -17,7 +17,7 @@ struct Resultant {
   Lanes x{}, y{}, moment{};
 };
 
-/// What discs sum over their contacts. Equal springs come out of the sums: with d = u_j - u_i, l the branch, the
+/// Sums of discs over their contacts. Equal springs are factored out of the sums: with d = u_j - u_i, l the branch, the
 /// contact in its middle, and e the relative motion of the two bodies there (Abe 1996 (1)-(5): dn = n.d, ds = s.e, n.d
 /// = n.e),
 ///   force on i = kN dn n + kT ds s = kT sum e + (kN - kT) sum (n.d) n,   moment on i = kT/2 sum l x e.
@@ -106,7 +106,7 @@ EQUIDEM_INLINE void damp_locally(double alpha, const Lanes& velocity, Lanes& for
   force -= velocity != 0 ? along : Lanes{};
 }
 
-/// Energies that dampers took from the discs of a group, lanes apart.
+/// Energies dissipated on the discs of a group, by lane.
 struct DissipationLanes {
   Lanes mass{}, contact{}, local{};
 };
@@ -115,8 +115,8 @@ EQUIDEM_INLINE double sum_of(const Lanes& lanes) {
   return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
 }
 
-/// The integrator's stage for one group, from the resultant of its springs and, apart, that of its dashpots. Powers are
-/// taken with the mean of the velocities before and after, which makes the balance of leapfrog exact.
+/// The integrator's stage for one group, from the resultant of its springs and, separately, that of its dashpots.
+/// Powers are computed with the mean of the velocities before and after, which makes the balance of leapfrog exact.
 template <LoopKind kind>
 EQUIDEM_INLINE void advance(const LoopData& data, const Stage& stage, int parity, std::int32_t group, Lanes x, Lanes y,
                             Lanes theta, Resultant force, const Resultant& dashpots, DissipationLanes& dissipation) {
@@ -201,7 +201,7 @@ EQUIDEM_INLINE void advance(const LoopData& data, const Stage& stage, int parity
   }
 }
 
-/// Add what the lanes gathered to the sums of a range.
+/// Add the sums of the lanes to those of a range.
 EQUIDEM_INLINE void add_dissipation(const DissipationLanes& lanes, Dissipation& sum) {
   sum.mass += sum_of(lanes.mass);
   sum.contact += sum_of(lanes.contact);
@@ -211,7 +211,7 @@ EQUIDEM_INLINE void add_dissipation(const DissipationLanes& lanes, Dissipation& 
 template <LoopKind kind>
 EQUIDEM_INLINE void small_motion_step(const LoopData& data_in, const Stage& stage_in, int parity, std::int32_t begin,
                                       std::int32_t end, Dissipation& sum) {
-  // Copies: for all the compiler knows, a store to a velocity may change what it has not seen declared here.
+  // Local copies: otherwise the compiler must assume that a store to a velocity may alias these data.
   const LoopData data = data_in;
   const Stage stage = stage_in;
   constexpr bool dashpot = kind.resistance == LoopKind::Resistance::dashpot;

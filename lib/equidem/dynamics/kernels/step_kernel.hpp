@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The compiled loops: what one step does to a range of groups. A scene picks one of them before its first step.
+/// The compiled loops: one step of a range of groups. One loop is chosen for a scene before its first step.
 #pragma once
 
 #include <cstdint>
 
 namespace equidem {
 
-/// What of a scene changes the code of the loop; each absent part costs nothing.
+/// The properties of a scene that select the code of the loop; absent effects cost nothing.
 struct LoopKind {
   enum class Motion : std::uint8_t {
     small,   ///< fixed normals and contact points: forces are linear in the motion, K u
@@ -37,22 +37,23 @@ struct LoopKind {
 struct LoopData {
   const std::int32_t* first = nullptr;      ///< slots of group g: first[g] .. first[g + 1]
   const std::int32_t* neighbour = nullptr;  ///< per slot and lane: place
-  /// Per slot, lanes together, with l the branch at rest, r the lever of the disc and r' that of its neighbour.
-  /// Small motions: l_x, l_y, 1/l² where contacts are equal, else n_x, n_y, r, r', kN, kT.
-  /// Finite motions: l_x, l_y, l², and where contacts are not equal (r + r')/|l|, r/(r + r'), kN, kT.
-  /// Dashpots append c_N, c_T where contacts are not equal.
+  /// Per slot, lanes together, with l the branch at rest, r the lever of the disc and r' that of its neighbour. Small
+  /// motions: l_x, l_y, 1/l² where contacts are equal, else n_x, n_y, r, r', kN, kT. Finite motions: l_x, l_y, l², and
+  /// where contacts are not equal (r + r')/|l|, r/(r + r'), kN, kT. Dashpots append c_N, c_T where contacts are not
+  /// equal.
   const double* geometry = nullptr;
-  const double* inverse_inertia = nullptr;      ///< per group: 1/m, 1/I, lanes together; absent where discs are equal
-  double* motion[2] = {nullptr, nullptr};       ///< places x width; a step reads one and writes the other
-  double* velocity = nullptr;                   ///< groups x unknowns x lanes
-  double* velocity_at[2] = {nullptr, nullptr};  ///< dashpots only: velocities once more, places x width, as motions
-  double* dashpot = nullptr;                    ///< dashpots only: their resultants, groups x unknowns x lanes
-  double kN = 0, kT = 0;                        ///< equal contacts
+  const double* inverse_inertia = nullptr;  ///< per group: 1/m, 1/I, lanes together; absent where discs are equal
+  double* motion[2] = {nullptr, nullptr};   ///< places x width; a step reads one and writes the other
+  double* velocity = nullptr;               ///< groups x unknowns x lanes
+  double* velocity_at[2] = {nullptr,
+                            nullptr};  ///< dashpots only: second copy of velocities, places x width, as motions
+  double* dashpot = nullptr;           ///< dashpots only: their resultants, groups x unknowns x lanes
+  double kN = 0, kT = 0;               ///< equal contacts
   double inverse_mass = 0, inverse_moment = 0;  ///< equal discs
   double cN = 0, cT = 0;                        ///< equal contacts with dashpots
   double gravity_x = 0, gravity_y = 0;          ///< m/s²
   double local_damping = 0;                     ///< share
-  double mass_damping = 0;                      ///< alpha, 1/s, for the ledger: Stage::keep does the damping
+  double mass_damping = 0;                      ///< alpha, 1/s, for the ledger; the damping itself is in Stage::keep
 };
 
 /// One stage of an integrator: v' = keep v + kick a(u), u' = u + drift v' + drift_before v.
@@ -64,7 +65,7 @@ struct Stage {
   double duration = 0;      ///< s, over which forces act, for the ledger
 };
 
-/// Energy that dampers took, N; only loops with a resistance count it.
+/// Energy dissipated by dampers, N; counted only by loops with damping.
 struct Dissipation {
   double mass = 0, contact = 0, local = 0;
 };
