@@ -35,7 +35,7 @@ struct CommonOptions {
   bool overwrite = false;
 };
 
-/// --out, --json, --threads, --quiet and --overwrite; verbs without a case file take these alone.
+/// --out, --json, --threads, --quiet and --overwrite; the only options of verbs without a case file.
 void add_result_options(CLI::App& command, CommonOptions& options);
 /// The case file, its overrides, and add_result_options.
 void add_common_options(CLI::App& command, CommonOptions& options);
@@ -55,7 +55,7 @@ class OutputPlan {
   /// A file NAME in --out, if there is one.
   /// \throws Error (bad_input) where it could not be written
   void expect(const std::string& name) const;
-  /// A file that the user names, in a folder that exists: a new one is more likely a slip than a wish.
+  /// A file named by the user, in an existing folder: a missing folder is probably a typing error.
   /// \throws Error (bad_input) where it could not be written
   void expect_file(const std::filesystem::path& path) const;
   /// The file of --json, if there is one.
@@ -77,12 +77,12 @@ class OutputPlan {
 void deliver(const CommonOptions& options, const std::string& report, const Results& object);
 
 /// Report and JSON of a list of results, with the times of the stages, to stdout, --json and OUT/result.json; then the
-/// folder on stderr. A dry run leaves the folder alone.
+/// folder on stderr. A dry run does not write to the folder.
 /// \param status the first key of the JSON: "solved", "dry_run", ...
 /// \throws Error (bad_input) where they cannot be written
 void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times);
 
-/// case.toml in --out, if there is one, from which the verb computes the same again.
+/// case.toml in --out, if there is one, which reproduces the computation.
 /// \param resolved a Case or the document of another kind of case
 template <typename Resolved>
 void write_case(const CommonOptions& options, const Resolved& resolved) {
@@ -90,7 +90,7 @@ void write_case(const CommonOptions& options, const Resolved& resolved) {
 }
 
 /// \param done "3 of 12 points are done"
-/// \param again how a run with --out goes on, "Run the same command with --resume to do the rest"
+/// \param again how to continue a run with --out, "Run the same command with --resume to do the rest"
 /// \throws Error (interrupted)
 [[noreturn]] void throw_stopped(const CommonOptions& options, const std::string& done, const std::string& again);
 

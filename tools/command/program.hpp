@@ -14,7 +14,7 @@ class App;
 
 namespace equidem {
 
-/// Carries out a command once its options are read; returns the exit code.
+/// Runs a command after its options are read; returns the exit code.
 using Run = std::function<int()>;
 
 /// A command is one file with one declare function, and one line in the list of its program.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// From the case file to what is computed on: the assembly and its springs.
+/// Construction of the assembly and its springs from the case file.
 #pragma once
 
 #include <optional>
@@ -14,8 +14,8 @@
 namespace equidem {
 
 /// The assembly of a case, checked, with cells measured and the groups of [[group]] added.
-/// \throws Error (bad_input), with the line of the case file: no such file, a group that names an absent disc, holds
-///         none or takes a name that is taken, a support or load on a group that does not exist
+/// \throws Error (bad_input), with the line of the case file: no such file, a group that names an absent disc, is empty
+///         or has a name in use, a support or load on a group that does not exist
 Assembly build_assembly(const Case& resolved);
 
 /// disc_density and spring_relation of a case.
@@ -23,11 +23,11 @@ Assembly build_assembly(const Case& resolved);
 std::optional<double> disc_density(const Case& resolved, const Assembly& assembly);
 ChosenRelation spring_relation(const Case& resolved, const Assembly& assembly);
 
-/// The springs of every contact and where they come from.
+/// The springs of every contact and their source.
 struct BuiltSprings {
   ContactSprings springs;
-  std::optional<SpringConstants> constants;  ///< before weighting; none where the assembly file gives all springs
-  std::string report;                        ///< one or two sentences for people
+  std::optional<SpringConstants> constants;  ///< before weighting; none if the assembly file gives all springs
+  std::string report;                        ///< report, one or two sentences
 };
 
 /// [material] is turned into springs by spring_relation.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// From the case file to what is simulated.
+/// Construction of the scene and the options of a simulation from the case file.
 #pragma once
 
 #include "equidem/assembly/assembly.hpp"
@@ -10,16 +10,17 @@
 
 namespace equidem {
 
-/// Discs with their inertia and everything that acts on them; the supports and loads of [test] act from the start.
+/// The scene: discs with their inertia, supports, loads, walls and velocities; the supports and loads of [test] act
+/// from the start.
 /// \param assembly, springs built from the case; they must outlive the scene
 /// \throws Error (bad_input), with the line of the case file: no [run], no density, an assembly that is too small for
-///         [test], a component of a disc that two supports prescribe differently, a disc with two velocities, walls as
-///         check_wall refuses them
+///         [test], a component of a disc that two supports prescribe differently, a disc with two velocities, walls
+///         that the check of walls rejects
 Scene build_scene(const Case& resolved, const Assembly& assembly, const ContactSprings& springs);
 
 /// The settings of a run.
 /// \param resolved with [run]
-/// \param time_step s, > 0: that of [run], or the one its rule gave
+/// \param time_step s, > 0: that of [run], or that of its rule
 SimulationOptions simulation_options(const Case& resolved, double time_step);
 
 }  // namespace equidem

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The case file: what is computed, as typed values.
+/// The case file as typed values.
 #pragma once
 
 #include <cstdint>
@@ -32,11 +32,11 @@ enum class AssemblyKind { lattice, delaunay, file };
 /// [assembly]; the options of the other kinds keep their defaults.
 struct AssemblyCase {
   AssemblyKind kind = AssemblyKind::lattice;
-  const Lattice* arrangement = nullptr;  ///< of kind lattice: which one; else null
+  const Lattice* arrangement = nullptr;  ///< the lattice, for the kind lattice; else null
   LatticeOptions lattice;
   DelaunayOptions delaunay;
-  std::filesystem::path path;     ///< as the program opens it
-  bool own_springs = true;        ///< springs of the file count
+  std::filesystem::path path;     ///< path resolved against the folder of the file
+  bool own_springs = true;        ///< use the springs of the file
   std::optional<double> density;  ///< kg/m³, of the discs themselves
   Body body = Body::disc;
 };
@@ -53,11 +53,11 @@ struct GroupCase {
 
 /// [[load]] entries that act together.
 struct NamedLoads {
-  std::string name;  ///< empty where the file names no load cases
+  std::string name;  ///< empty if the file has no load cases
   LoadCase loads;
 };
 
-/// [output]: what is written with --out, beside result.json and case.toml.
+/// [output]: files written with --out, in addition to result.json and case.toml.
 struct OutputCase {
   bool csv = true;
   bool vtk = true;
@@ -67,10 +67,10 @@ struct OutputCase {
   double checkpoint_interval = 60;       ///< s, wall-clock time
 };
 
-/// Which bounds are printed beside the effective stiffness.
+/// Bounds printed with the effective stiffness.
 enum class BoundsWanted {
-  automatic,  ///< all of them where that costs little
-  affine,     ///< those that need no solution
+  automatic,  ///< all bounds if they are cheap to compute
+  affine,     ///< bounds that need no solution
   all,        ///< also those by uniform displacements and tractions at the boundary
 };
 
@@ -83,7 +83,8 @@ struct EnumNames<BoundsWanted> {
 
 /// [homogenize].
 struct HomogenizeCase {
-  std::optional<Boundary> boundary;  ///< none: periodic where the assembly is, else displacement and traction both
+  std::optional<Boundary>
+      boundary;  ///< none: periodic if the assembly is periodic, else both displacement and traction
   BoundsWanted bounds = BoundsWanted::automatic;
 };
 
@@ -91,7 +92,7 @@ struct HomogenizeCase {
 struct EnsembleCase {
   std::vector<std::int64_t> discs = {100, 400, 1600};  ///< in a sample, ascending; instead of that of the assembly
   int samples = 10;                                    ///< of each size
-  std::optional<double> accuracy;                      ///< wanted of the moduli, relative
+  std::optional<double> accuracy;                      ///< target relative accuracy of the moduli
   double confidence = 0.95;                            ///< of intervals
 };
 
@@ -102,8 +103,8 @@ struct MaterialCase {
   bool static_only = false;       ///< kT < 0 allowed
 };
 
-/// A checked case file: complete, in range and without contradiction. What only the assembly can tell (whether a
-/// group holds discs, whether supports suffice) is checked where the case is built and solved.
+/// A checked case file: complete, in range and without contradiction. Conditions that depend on the assembly (non-empty
+/// groups, sufficient supports) are checked when the case is built and solved.
 struct Case {
   std::string title;
   AssemblyCase assembly;
@@ -122,10 +123,10 @@ struct Case {
   SolverOptions solver;
   OutputCase output;
 
-  /// The document behind it: defaults filled in, a springs file replaced by what it says.
+  /// The document of the case: defaults filled in, a springs file replaced by its content.
   TomlValue document;
 
-  /// "cases/a.toml:7: load.0.group": where the user wrote it, for errors.
+  /// "cases/a.toml:7: load.0.group": place in the user's input, for error messages.
   [[nodiscard]] std::string where(std::string_view key) const;
 };
 
@@ -135,7 +136,7 @@ struct Case {
 ///         out of range, contradiction
 Case read_case(const std::filesystem::path& path, std::span<const std::string> overrides = {});
 
-/// The same from text.
+/// Read and check a case from text.
 /// \param name of the file, for messages
 /// \param folder to which paths in the text are relative
 Case parse_case(std::string_view text, const std::string& name, const std::filesystem::path& folder,
@@ -148,7 +149,7 @@ std::string describe_case_file();
 bool is_case_key(std::string_view path);
 
 /// The resolved case as TOML: every default written out, overrides applied. Reading it back gives the same case.
-/// \param folder where it will lie: paths are written relative to it
+/// \param folder of the new file: paths are written relative to it
 std::string to_toml(const Case& resolved, const std::filesystem::path& folder);
 
 }  // namespace equidem

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The tables of the case file of an assembly, bound to a Case and to what is completed from several tables.
+/// The tables of the case file of an assembly, bound to a Case and to data completed from several tables.
 #pragma once
 
 #include <filesystem>
@@ -28,7 +28,7 @@ struct EnumNames<LoopKind::Motion> {
   static constexpr NamedValue<LoopKind::Motion> list[] = {{small, "small"}, {finite, "finite"}};
 };
 
-/// The kinds that a file can ask for.
+/// The kinds of assemblies in a file.
 template <>
 struct EnumNames<Schedule::Kind> {
   using enum Schedule::Kind;
@@ -89,7 +89,7 @@ const File<CaseTables>& case_file();
 /// The springs file, schema "equidem-springs/1".
 const File<SpringsTable>& springs_file_format();
 
-/// Keys that mean the same in every case file.
+/// Keys common to all case files.
 std::vector<Key<ScheduleTable>> schedule_keys();
 std::vector<Key<OutputCase>> output_keys();
 
@@ -98,8 +98,8 @@ void bind_run_tables(File<CaseTables>& file);
 /// Complete [run] by the tables that act in a run, with their schedules.
 /// \param tables with supports, load cases and schedules
 /// \throws Error (bad_input) with line and key: both or neither of duration and until_rest, a time step longer than the
-///         run, two kinds of dashpots, a schedule that does not exist, a wall without a normal, tables that act in a
-///         run alone where there is none, several load cases (a run is one motion)
+///         run, two kinds of dashpots, a schedule that does not exist, a wall without a normal, tables that require a
+///         run without [run], several load cases (a run is one motion)
 void complete_run(const TomlValue& root, CaseTables& tables);
 
 }  // namespace equidem::casefile

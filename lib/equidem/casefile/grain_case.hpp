@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A case of bodies that collide, as typed values.
+/// A case of colliding bodies as typed values.
 #pragma once
 
 #include <cstdint>
@@ -26,35 +26,35 @@ struct GrainProbe {
   std::vector<std::string> quantities;  ///< words of the key probe.quantities
 };
 
-/// A checked case: complete, in range and without contradiction; what only all bodies together can tell is checked
-/// where the simulation begins.
+/// A checked case: complete, in range and without contradiction; conditions on all bodies together are checked at the
+/// start of the simulation.
 struct GrainCase {
   std::string title;
   Body body = Body::disc;
-  GrainScene scene;               ///< bodies: those of the file, then those of the case; without its pairs
+  GrainScene scene;               ///< bodies of the file, then those of the case; `pairs` is not set
   std::vector<double> densities;  ///< kg/m³, of each grain
-  std::string grain_file;         ///< that of [grains] path; empty: none
-  std::vector<int> grain_lines;   ///< of its grains, in that file
+  std::string grain_file;         ///< file of [grains] path; empty: none
+  std::vector<int> grain_lines;   ///< line numbers of the grains in that file
   ContactTable contacts;
   GrainOptions options;            ///< without its time step
-  GrainStepOptions step;           ///< how that is chosen
+  GrainStepOptions step;           ///< options of its choice
   double duration = 0;             ///< s
-  std::optional<Shaking> shaking;  ///< its motion is in the walls
+  std::optional<Shaking> shaking;  ///< shaking; its motion is also set in the walls
   std::optional<MeasureOptions> measures;
   std::vector<GrainProbe> probes;
   OutputCase output;
 
-  /// The document behind it, defaults filled in.
+  /// The document of the case, defaults filled in.
   TomlValue document;
 
-  /// "cases/a.toml:7: wall.0": where the user wrote it, for errors.
+  /// "cases/a.toml:7: wall.0": place in the user's input, for error messages.
   [[nodiscard]] std::string where(std::string_view key) const;
-  /// The same of a grain: "cases/a.toml:12: grain", "cases/grains.csv:3".
+  /// Place of a grain in the user's input: "cases/a.toml:12: grain", "cases/grains.csv:3".
   [[nodiscard]] std::string where_grain(std::size_t grain) const;
 };
 
-/// Whether a case file describes bodies that collide.
-/// \throws Error (bad_input) where it cannot be read, is no TOML, or has an [assembly] too
+/// Whether a case file describes colliding bodies.
+/// \throws Error (bad_input) if it cannot be read, is not TOML, or also has an [assembly]
 bool describes_grains(const std::filesystem::path& path, std::span<const std::string> overrides = {});
 
 /// Read and check a case file.
@@ -62,7 +62,7 @@ bool describes_grains(const std::filesystem::path& path, std::span<const std::st
 /// \throws Error (bad_input) with file, line and key
 GrainCase read_grain_case(const std::filesystem::path& path, std::span<const std::string> overrides = {});
 
-/// The same from text.
+/// Read and check a case from text.
 /// \param name of the file, for messages
 /// \param folder to which paths in the text are relative
 GrainCase parse_grain_case(std::string_view text, const std::string& name, const std::filesystem::path& folder,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// From the case to what is simulated: the step, the scene, the options.
+/// Time step, scene and options of a simulation from the case.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace equidem {
 /// \throws Error (bad_input) as choose_time_step, with line and key
 GrainTimeStep choose_grain_step(const GrainCase& resolved);
 
-/// Steps of the whole duration.
+/// Number of steps of the whole duration.
 /// \throws Error (bad_input) as count_steps(double, double), with line and key
 std::int64_t count_steps(const GrainCase& resolved, double step);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The tables of the case file of bodies that collide, bound to a GrainCase and to what is completed from several
-/// tables.
+/// The tables of the case file of colliding bodies, bound to a GrainCase and to data completed from several tables.
 #pragma once
 
 #include <filesystem>
@@ -82,7 +81,7 @@ struct GrainTable {
   std::string group = "grains";
 };
 
-/// An arc goes round once by default.
+/// By default an arc is a full circle.
 inline Wall full_circle() {
   Wall wall;
   wall.to = 2 * std::numbers::pi;
@@ -136,14 +135,14 @@ struct GrainTables : GrainCase {
   std::optional<ShakingTable> shaking_table;
 };
 
-/// Whether a document describes bodies that collide.
-/// \throws Error (bad_input) where it has an [assembly] too
+/// Whether a document describes colliding bodies.
+/// \throws Error (bad_input) if it also has an [assembly]
 bool describes_grains(const TomlValue& root);
 
-/// The case file of bodies that collide, schema "equidem/1".
+/// The case file of colliding bodies, schema "equidem/1".
 const File<GrainTables>& grain_file();
 
-/// The keys of a contact. In [collisions] they have defaults and help; elsewhere they replace those.
+/// The keys of a contact. In [collisions] they have defaults and help; elsewhere they override those.
 std::vector<Key<PairOptions>> contact_keys(bool base);
 /// The dashpots and springs of a bond.
 std::vector<Key<GrainBond>> bond_keys(bool base);
@@ -152,7 +151,7 @@ void bind_collisions(File<GrainTables>& file);
 void bind_bonds(File<GrainTables>& file);
 void bind_shaking(File<GrainTables>& file);
 
-/// Read [shaking] and move the walls by it, but for those with shaken = false.
+/// Read [shaking] and apply it to the walls, except those with shaken = false.
 /// \param tables with walls and with [shaking]
 /// \throws Error (bad_input) with line and key: no motion or two, a duration of no whole cycles, no wall that moves, a
 ///         wall that moves by itself as well, a record that is no table
@@ -163,15 +162,15 @@ Shaking read_shaking(const TomlValue& root, GrainTables& tables);
 /// \throws Error (bad_input) with line and key: no grains, no density, a file that is not a table of grains
 std::vector<std::string> read_bodies(const TomlValue& root, GrainTables& tables);
 
-/// Give grains and walls their kinds, and every two kinds their contact.
+/// Set the kinds of grains and walls, and the contact properties of every two kinds.
 /// \param groups of each grain
 /// \throws Error (bad_input) with line and key as set_kinds; also: keys that exclude one another, wave speeds with
 ///         several densities
 void read_collisions(const TomlValue& root, const std::vector<std::string>& groups, GrainTables& tables);
 
 /// The bonds of the file, then those of the case.
-/// \throws Error (bad_input) with line and key: grains that are not there, tied to themselves or twice to one another,
-///         no dashpot, a file that is no table of bonds
+/// \throws Error (bad_input) with line and key: grains that do not exist or are bonded to themselves or twice to one
+///         another, no dashpot, a file that is not a table of bonds
 std::vector<GrainBond> read_bonds(const TomlValue& root, const BondsTable& given, std::size_t grains);
 
 }  // namespace equidem::casefile

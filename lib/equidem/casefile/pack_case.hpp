@@ -20,9 +20,9 @@ namespace equidem {
 struct PackCase {
   std::string title;
   PackingOptions packing;
-  std::optional<Region> region;  ///< to measure in
+  std::optional<Region> region;  ///< region of measurement
   bool csv = true, picture = true;
-  TomlValue document;  ///< behind it, defaults filled in
+  TomlValue document;  ///< document of the case, defaults filled in
 };
 
 /// The tables and keys of a case that fills a box.
@@ -32,7 +32,7 @@ const casefile::FileSpec& pack_file_spec();
 /// \throws Error (bad_input) with file, line and key
 PackCase read_pack_case(const std::filesystem::path& path, std::span<const std::string> overrides = {});
 
-/// The same from text.
+/// Read and check a case from text.
 PackCase parse_pack_case(std::string_view text, const std::string& name, const std::filesystem::path& folder,
                          std::span<const std::string> overrides = {});
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// [run] and what acts in a run alone: schedules of supports and loads, walls, velocities, probes.
+/// [run] and the tables used only in a run: schedules of supports and loads, walls, velocities, probes.
 #pragma once
 
 #include <optional>
@@ -31,7 +31,7 @@ struct RunCase {
   LoopKind::Motion motion = SimulationOptions{}.motion;
   Vec2 gravity;  ///< m/s²
   Damping damping;
-  std::vector<TimedSupport> supports;  ///< those of the case with their schedules; empty with [test], as loads
+  std::vector<TimedSupport> supports;  ///< supports of the case with their schedules; empty with [test], like loads
   std::vector<TimedLoad> loads;
   std::vector<Wall> walls;
   std::vector<InitialVelocity> velocities;

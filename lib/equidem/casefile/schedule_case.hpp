@@ -34,13 +34,13 @@ struct ScheduleTable {
 std::vector<NamedSchedule> read_schedules(const TomlValue& root, const std::vector<ScheduleTable>& tables);
 
 /// The rows "time,value" of a file as the points of a table; '#' begins a comment.
-/// \param column what a first row that names the columns calls the second one
-/// \throws Error (bad_input) with file and line: a row that is no two numbers, times that do not ascend, no rows
+/// \param column name of the second column in an optional header row
+/// \throws Error (bad_input) with file and line: a row that is not two numbers, times that do not ascend, no rows
 void read_points(const std::filesystem::path& path, Schedule& table, std::string_view column);
 
-/// `value` times the schedule that the table names; constant where it names none.
+/// `value` times the schedule that the table names; constant if it names none.
 /// \param key of the table, for errors: "load"
-/// \throws Error (bad_input) where there is no schedule of that name
+/// \throws Error (bad_input) if there is no schedule of that name
 Schedule scheduled(const TomlValue& table, const std::string& key, double value,
                    std::span<const NamedSchedule> schedules);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The springs file, schema "equidem-springs/1": what `springs = "springs.toml"` of a case file reads.
+/// The springs file, schema "equidem-springs/1": the file that `springs = "springs.toml"` of a case file refers to.
 #pragma once
 
 #include <string>

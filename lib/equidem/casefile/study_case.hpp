@@ -43,14 +43,14 @@ struct EnumNames<VariedKey::Refines> {
 struct StudyCase {
   std::string title;
   std::string verb = "solve";
-  std::filesystem::path case_file;  ///< as the program opens it
+  std::filesystem::path case_file;  ///< path resolved against the folder of the file
   std::string measure;              ///< "poisson_ratio.plane_strain"
   Truth truth = Truth::finest;
   double value = 0;  ///< Truth::known
   std::optional<double> order;
   bool relative = true;
   std::vector<VariedKey> varied;  ///< at least one
-  TomlValue document;             ///< behind it, defaults filled in
+  TomlValue document;             ///< document of the study, defaults filled in
 };
 
 /// The tables and keys of a study file.
@@ -59,10 +59,10 @@ const casefile::FileSpec& study_file_spec();
 /// \throws Error (bad_input) with file, line and key
 StudyCase read_study_case(const std::filesystem::path& path);
 
-/// The same from text.
+/// Read and check a study from text.
 StudyCase parse_study_case(std::string_view text, const std::string& name, const std::filesystem::path& folder);
 
-/// What is tried: every combination of the values, as overrides "assembly.rows=33" of the case, with its setting.
+/// The trials: every combination of the values, as overrides "assembly.rows=33" of the case, with its setting.
 struct StudyPoint {
   Setting setting;
   std::vector<std::string> overrides;

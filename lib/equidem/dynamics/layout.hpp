@@ -11,12 +11,13 @@
 
 namespace equidem {
 
-/// Discs are ordered in strips along x, wide enough that contacts connect a strip only to itself and its neighbours,
-/// and within strips in groups of four whose lanes are computed at once. Strips are padded with empty places.
+/// Discs are ordered in strips parallel to x, high enough that contacts connect a strip only to itself and its
+/// neighbours, and within strips in groups of four whose lanes are computed at once. Strips are padded with empty
+/// places.
 ///
 /// Strips allow several steps while data are in the cache: strip l can be at step k + 1 as soon as its neighbours are
-/// at step k. In an assembly periodic along the strips' order, a strip contains discs of both halves: the ring is
-/// folded flat.
+/// at step k. In an assembly periodic along y, a strip contains discs of the lower and of the upper half: the ring of
+/// strips is folded flat.
 struct DiscLayout {
   static constexpr int lanes = 4;
 

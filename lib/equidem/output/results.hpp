@@ -65,7 +65,7 @@ class ResultValue {
   Variant value;
 };
 
-/// How the report shows a number.
+/// Format of a number in the report.
 struct Shown {
   enum As {
     number,      ///< that many significant digits
@@ -84,7 +84,7 @@ struct Shown {
 /// A part of a list of results.
 struct Result {
   enum class Part {
-    value,  ///< of both, or of the JSON alone where it is hidden, or of the report alone where the key is empty
+    value,  ///< in report and JSON; only in the JSON if hidden; only in the report if the key is empty
     line,   ///< the report begins a line; label: its name
     note,   ///< text of the report after the values before it
     block,  ///< lines of the report as they are
@@ -104,7 +104,7 @@ struct Result {
 /// "label value unit".
 class Results {
  public:
-  /// A value of both. \param key empty: of the report alone
+  /// A value of the report and the JSON. \param key empty: of the report alone
   Results& add(std::string key, std::string label, ResultValue value, std::string unit = {}, Shown shown = {});
   /// A value of the JSON alone.
   Results& set(std::string key, ResultValue value);
@@ -121,7 +121,7 @@ class Results {
   /// All parts of another list.
   Results& append(const Results& others);
 
-  /// With the keys in a nested object of the JSON.
+  /// The results with their keys in a nested object of the JSON.
   [[nodiscard]] Results under(const std::string& object) const;
   /// The values for the JSON alone.
   [[nodiscard]] Results hidden() const;

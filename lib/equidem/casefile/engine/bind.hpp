@@ -35,7 +35,7 @@
 
 namespace equidem::casefile {
 
-/// The member at the end of a chain; an empty std::optional on the way is given a value.
+/// The member at the end of a chain; an empty std::optional in the chain is given a value.
 template <class S>
 S& member(S& object) {
   return object;
@@ -56,7 +56,7 @@ struct Required {
   void operator()(TableSpec& table) const { table.required = true; }
 };
 inline constexpr Required required;
-/// Absent, the member keeps its value and the echo does not show the key.
+/// If the key is absent, the member keeps its value and the echo omits the key.
 inline constexpr auto optional = [](KeySpec& key) { key.fallback = KeySpec::none; };
 /// The default is "auto", which leaves the member as it is.
 inline constexpr auto or_auto = [](KeySpec& key) {
@@ -70,7 +70,7 @@ inline constexpr auto bytes = [](KeySpec& key) {
   key.type = KeyType::bytes;
   key.unit = "bytes";
 };
-/// Where the table is missing it is added with its defaults.
+/// A missing table is added with its defaults.
 inline constexpr auto completed = [](TableSpec& table) { table.completed = true; };
 /// A table [[name]] that is read elsewhere.
 inline constexpr auto repeated_table = [](TableSpec& table) { table.repeated = true; };
@@ -195,7 +195,7 @@ void read_table(const std::vector<Key<S>>& keys, TomlValue& table, const std::fi
   }
 }
 
-/// The table at a path such as "run.damping"; nullptr where there is none.
+/// The table at a path such as "run.damping"; nullptr if there is none.
 TomlValue* find_table(TomlValue& root, std::string_view path);
 
 template <class T>

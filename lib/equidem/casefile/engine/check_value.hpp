@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Whether one value is what its key wants.
+/// Check of a value against the description of its key.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace equidem::casefile {
 
-/// "a number in Pa, > 0", `one of "square", "hexagonal"`: what a key wants.
+/// "a number in Pa, > 0", `one of "square", "hexagonal"`: the values that a key accepts.
 std::string expected(const KeySpec& key);
 
 /// \throws Error (bad_input), where = "file:line: table.key": wrong type, out of range, not finite, no choice

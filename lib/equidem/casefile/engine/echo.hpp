@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Documents as text again.
+/// Conversion of documents to TOML text.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 namespace equidem {
 
 /// \param document of a case, its paths as the program opens them
-/// \param folder where the text will lie: paths are written relative to it
+/// \param folder of the new file: paths are written relative to it
 std::string to_toml(TomlValue document, const std::filesystem::path& folder);
 
 }  // namespace equidem

@@ -51,7 +51,7 @@ struct Range {
   [[nodiscard]] std::string text() const;
 };
 
-/// One key. A key whose meaning or need depends on the kind of its table has one entry for each.
+/// One key. A key whose meaning or necessity depends on the kind of its table has one entry for each kind.
 struct KeySpec {
   std::string table;  ///< "assembly", "assembly.radii", "load"; "" at the top of the file
   std::string name;
@@ -96,7 +96,7 @@ struct FileSpec {
 };
 
 /// Check a document against its table of keys and fill in the defaults: afterwards every key that applies and has a
-/// default is there, with the right type and in range.
+/// default is present, with the right type and in range.
 /// \throws Error (bad_input), where = "file:line: table.key": unknown key (with the nearest known one), wrong type,
 ///         missing key, a number that is not finite or out of range, a key that does not apply
 void check_and_complete(TomlValue& root, const FileSpec& spec);
@@ -108,14 +108,14 @@ bool is_known_key(const FileSpec& spec, std::string_view path);
 std::string describe_keys(const FileSpec& spec, std::string_view table);
 std::string describe_table(const FileSpec& spec, const TableSpec& table);
 
-/// Bytes meant by a value of KeyType::bytes; none where it is not one.
+/// Number of bytes of a value of KeyType::bytes; none if it is invalid.
 std::optional<double> bytes_of(const TomlValue& value);
 
 /// Set one key of a document as `--set` does: "springs.kT=0.3e9", "load.0.moment=2" (entries of repeated tables count
-/// from 0). The value is TOML; a bare word is taken as text, but none takes out the key, or one of several tables.
-/// Missing tables are made.
-/// \throws Error (bad_input) where this is no assignment, the value is no TOML, the path leads through a value, or
-///         there is nothing to take out
+/// from 0). The value is TOML; a bare word is text, except `none`, which removes the key, or one of several tables.
+/// Missing tables are created.
+/// \throws Error (bad_input) if the text is not an assignment, the value is not TOML, the path leads through a value,
+///         or there is nothing to remove
 void apply_override(TomlValue& root, const std::string& assignment, const std::string& option = "--set");
 
 }  // namespace equidem::casefile

@@ -24,8 +24,8 @@ namespace equidem::casefile {
 }
 
 /// Check that exactly one of two keys is given.
-/// \param missing the problem where none is; where both are, it is "a and b are both given"
-/// \param remedy what to do; `remedy_of_both` where both are given and that is something else
+/// \param missing the problem if neither is given; if both are given, the problem is "a and b are both given"
+/// \param remedy what to do; `remedy_of_both` if both are given and the remedy differs
 /// \throws Error (bad_input) at the second of both keys, or at the table
 void check_one_of(const TomlValue& table, const std::string& path, const std::array<const char*, 2>& keys,
                   const std::string& missing, const std::string& why, const std::string& remedy,
@@ -45,7 +45,7 @@ void at_key(const TomlValue& table, const std::string& path, const Check& check)
   }
 }
 
-/// The entry must exist and have the type: check_and_complete has seen to it.
+/// Precondition: the entry exists and has the type, as check_and_complete ensures.
 inline double number(const TomlValue& table, const char* key) {
   return table.find(key)->real;
 }
@@ -62,22 +62,22 @@ inline Vec2 vector(const TomlValue& table, const char* key) {
   const auto& items = table.find(key)->items;
   return {items[0].real, items[1].real};
 }
-/// Where the key may be missing.
+/// Value of a key that may be missing.
 inline std::optional<double> optional_number(const TomlValue& table, const char* key) {
   const TomlValue* value = table.find(key);
   return value == nullptr ? std::nullopt : std::optional(value->real);
 }
 
-/// The tables of a list such as [[load]]; empty where there are none.
+/// The tables of a list such as [[load]]; empty if there are none.
 const std::vector<TomlValue>& repeated(const TomlValue& root, const char* name);
 
-/// A path of the file as the program opens it.
+/// A path of the file, resolved against its folder.
 std::filesystem::path opened(const std::filesystem::path& written, const std::filesystem::path& folder);
 
 /// \throws Error (bad_input) where two tables of a list have one name, or a name is empty
 void check_names(const TomlValue& root, const char* list);
 
-/// Of letters, digits, '_' and '-' alone.
+/// Whether the text consists of letters, digits, '_' and '-' only.
 bool is_plain_name(std::string_view name);
 
 /// \param what "a load case"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// TOML as a plain tree of values that know their line; toml.cpp is the only place that includes toml++.
+/// TOML as a plain tree of values with their line numbers; toml.cpp is the only place that includes toml++.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,8 @@ struct TomlValue {
   std::int64_t integer = 0;
   double real = 0;  ///< also set where type is integer
   bool boolean = false;
-  bool is_path = false;  ///< text is a path as the program opens it; the echo makes it relative to its folder
+  bool is_path =
+      false;  ///< text is a path resolved against the folder of the file; the echo makes it relative to its folder
   std::string text;
   std::vector<TomlValue> items;                            ///< of an array
   std::vector<std::pair<std::string, TomlValue>> entries;  ///< of a table
@@ -31,7 +32,7 @@ struct TomlValue {
   [[nodiscard]] bool is_table() const { return type == Type::table; }
   [[nodiscard]] bool is_array() const { return type == Type::array; }
   [[nodiscard]] bool is_number() const { return type == Type::integer || type == Type::real; }
-  /// The entry of that name of a table; nullptr where there is none.
+  /// The entry of that name of a table; nullptr if there is none.
   [[nodiscard]] const TomlValue* find(std::string_view name) const;
   [[nodiscard]] TomlValue* find(std::string_view name);
   /// "cases/a.toml:7", or the option of the command line.
@@ -42,7 +43,7 @@ struct TomlValue {
   [[nodiscard]] std::string shown() const;
 };
 
-/// The value at a path such as "load.0.group"; where it ends early, the last value on it.
+/// The value at a path such as "load.0.group"; if the path ends early, the last value on it.
 const TomlValue& value_at(const TomlValue& root, std::string_view path);
 
 /// \param source name of the file, for messages

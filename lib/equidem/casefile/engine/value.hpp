@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Values of a file as C++ values, by the type of the member that takes them.
+/// Conversion of values of a file to the C++ type of a member.
 #pragma once
 
 #include <concepts>
@@ -33,7 +33,7 @@ template <class T>
 concept BoxLike = requires(T box) {
   Vec2{box.low}, Vec2{box.high};
 };
-/// A disc at a place, [x, y, radius].
+/// A disc, [x, y, radius].
 template <class T>
 concept CircleLike = requires(T circle) {
   Vec2{circle.offset}, double{circle.radius};
@@ -112,9 +112,9 @@ std::string default_text(const T& value) {
   }
 }
 
-/// The number that a checked value stands for: `true` is 0 (KeyType::held), text is bytes.
+/// The number of a checked value: `true` is 0 (KeyType::held), text is bytes.
 double number_of(const TomlValue& value);
-/// The path of a checked value as the program opens it; the value is changed to it.
+/// The path of a checked value, resolved against the folder of the file; the value is replaced by it.
 std::filesystem::path path_of(TomlValue& value, const std::filesystem::path& folder);
 
 /// A checked value as a T. "auto" leaves `result` as it is (a std::optional: without a value), unless it is a name of

@@ -27,12 +27,11 @@ enum class MassDamping {
 };
 
 struct IntegrationScheme {
-  int order = 2;                ///< where forces depend on positions, and for mass-proportional damping
-  int force_evaluations = 1;    ///< per step
-  bool velocities_lag = false;  ///< velocities lag by half a step
-  bool half_step_start =
-      false;  ///< forces of the start advance velocities velocities lag by half a step, before the first step
-  bool takes_dashpots = true;  ///< forces may depend on velocities
+  int order = 2;                 ///< where forces depend on positions, and for mass-proportional damping
+  int force_evaluations = 1;     ///< per step
+  bool velocities_lag = false;   ///< velocities lag by half a step
+  bool half_step_start = false;  ///< initial half kick before the first step
+  bool takes_dashpots = true;    ///< forces may depend on velocities
   StabilityLimit limit = StabilityLimit::undamped;
   MassDamping mass_damping = MassDamping::central;
   /// Largest stable omega dt of the oscillator u'' + 2 zeta omega u' + omega² u = 0; 0: never stable.

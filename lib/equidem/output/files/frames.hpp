@@ -17,7 +17,7 @@
 
 namespace equidem {
 
-/// Of every disc a number that stays: `discs/NAME` (n).
+/// A constant number of every disc: `discs/NAME` (n).
 struct DiscNumbers {
   std::string name;  ///< of letters and '_'
   std::string unit;  ///< empty: none
@@ -31,13 +31,13 @@ struct FramePart {
 };
 
 struct FrameOptions {
-  /// Frames to leave room for, >= 1. Where more come the file is copied into one of twice the room.
+  /// Frames to reserve space for, >= 1. If there are more, the file is copied into one of twice the size.
   std::int64_t expected = 100;
   bool overwrite = false;  ///< files of that name
-  /// Of bodies that travel: positions and angles, as `position` and `angle`, in place of displacements and rotations;
-  /// ParaView shows the points where they are.
+  /// Travelling bodies: write positions and angles, as `position` and `angle`, in place of displacements and rotations;
+  /// ParaView shows the points at their positions.
   bool travelling = false;
-  /// Go on with the files of an earlier run: frames later than this step are dropped.
+  /// Continue the files of an earlier run: frames later than this step are dropped.
   std::optional<std::int64_t> continue_after = {};
   std::vector<DiscNumbers> of_discs = {};  ///< beside the radius
   std::vector<FramePart> parts = {};       ///< of each disc; empty: every disc is a body
@@ -46,17 +46,16 @@ struct FrameOptions {
 /// Writes frames. NAME.h5 (schema "equidem-frames/1"), n discs, m contacts, room for K frames:
 ///   discs/centre (n, 2) and discs/radius (n), m; discs/number (n); what FrameOptions::of_discs adds; contacts/discs
 ///   (m, 2), contacts/shift (m, 2), contacts/lever (m, 2), m; period (2), m, where there is one; frames (1): how many
-///   are finished; of the others the arrays hold nothing, and their times are NaN; time (K), s; step (K); displacement
+/// are finished; the arrays of the others are undefined, and their times are NaN; time (K), s; step (K); displacement
 ///   (K, n, 3), m; rotation (K, n), rad; velocity (K, n, 3), m/s; spin (K, n), rad/s; the third component of vectors is
-///   zero, as ParaView wants vectors.
-/// Killed at any moment the file opens and holds all finished frames. NAME.xdmf2 is replaced at once by one that lists
-/// the new frame too; past 200 frames that is done once in every 200th part of them, and in finish().
+/// zero, as ParaView requires 3-vectors. Killed at any moment the file opens and holds all finished frames. NAME.xdmf2
+/// is replaced at once by one that lists the new frame too; past 200 frames that is done once in every 200th part of
+/// them, and in finish().
 class FrameWriter {
  public:
   /// \param assembly must outlive the writer
   /// \throws Error (bad_input) where a file exists and neither `overwrite` nor `continue_after` is set, where it cannot
-  ///         be
-  ///         written, or where the file to go on with holds no frames of this assembly
+  ///         be written, or where the file to go on with holds no frames of this assembly
   FrameWriter(const std::filesystem::path& folder, const std::string& name, const Assembly& assembly,
               const FrameOptions& options);
 
@@ -67,13 +66,13 @@ class FrameWriter {
   /// \throws Error (computation_failed) where the disk is full; earlier frames stay
   void append(std::int64_t step, double time, std::span<const DiscMotion> motions,
               std::span<const DiscMotion> velocities);
-  /// Return once all frames are on the disk, as they must be before a checkpoint counts on them.
+  /// Sync all frames to disk, as required before a checkpoint refers to them.
   void sync() { file_->sync(); }
-  /// Give back room for frames that did not come, and list all in NAME.xdmf2.
+  /// Release the space of unused frames, and list all frames in NAME.xdmf2.
   void finish();
 
   [[nodiscard]] std::int64_t frames() const { return static_cast<std::int64_t>(times_.size()); }
-  /// Of the last frame; -1: none.
+  /// Step of the last frame; -1: none.
   [[nodiscard]] std::int64_t last_step() const { return steps_.empty() ? -1 : steps_.back(); }
 
  private:

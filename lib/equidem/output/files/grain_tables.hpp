@@ -14,7 +14,7 @@
 
 namespace equidem {
 
-/// Bodies with what a row says of them.
+/// Bodies with the data of their rows.
 struct GrainRows {
   std::span<const Grain> grains;
   std::span<const Clump> clumps;
@@ -24,9 +24,8 @@ struct GrainRows {
 
 /// One row per grain: grain, group, x_m, y_m, radius_m, [short_half_axis_m,] vx_m_per_s, vy_m_per_s, spin_rad_per_s,
 /// angle_rad, density_kg_per_m3[, discs_m]. The columns in brackets are there where there are ellipses (empty of other
-/// bodies) and clumps
-/// ("x y r; x y r" in the frame of the body, empty of other bodies). A case file reads it back with [grains] path, to
-/// the same bits.
+/// bodies) and clumps ("x y r; x y r" in the frame of the body, empty of other bodies). A case file reads it back with
+/// [grains] path, to the same bits.
 /// \throws Error (bad_input) as write_file does
 void write_grain_csv(const std::filesystem::path& path, const GrainRows& rows, bool overwrite);
 
@@ -39,8 +38,8 @@ void write_grain_contact_csv(const std::filesystem::path& path, std::span<const 
 
 /// One row per bond: i, j, normal_dashpot, tangential_dashpot, rolling_dashpot, normal_spring, tangential_spring
 /// (units: GrainBond), and where `drifts` are given what each has drifted since the start: distance_drift, slip_drift
-/// (over the sum of the radii), roll_rad. A case file reads it back with [bonds] path; springs are then as long as the
-/// bonds are there. \param drifts of the same bonds in the same order, or none
+/// (over the sum of the radii), roll_rad. A case file reads it back with [bonds] path; springs are then unstretched in
+/// that file's configuration. \param drifts of the same bonds in the same order, or none
 /// \throws Error (bad_input) as write_file does
 void write_bond_csv(const std::filesystem::path& path, std::span<const GrainBond> bonds,
                     std::span<const BondDrift> drifts, bool overwrite);

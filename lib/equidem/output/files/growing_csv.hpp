@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A table as CSV that grows while a run goes on, and is gone on with where the run is.
+/// A CSV table that grows during a run and is continued when the run is resumed.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@
 namespace equidem {
 
 struct GrowingCsvOptions {
-  double interval = 5;     ///< s of the clock on the wall between two writes; 64 KiB of rows are written at once
+  double interval = 5;     ///< wall-clock seconds between two writes; 64 KiB of rows are written at once
   bool overwrite = false;  ///< a file of that name
-  /// Go on with the file of an earlier run: rows later than this step, and a row cut short, are dropped.
+  /// Continue the file of an earlier run: rows later than this step, and a row cut short, are dropped.
   std::optional<std::int64_t> continue_after = {};
 };
 
@@ -27,10 +27,9 @@ class GrowingCsv {
  public:
   /// \param columns the first is the step
   /// \throws Error (bad_input) where the file exists and neither `overwrite` nor `continue_after` is set, where it
-  ///         cannot be written,
-  ///         or where the file to go on with has other columns
+  ///         cannot be written, or where the file to go on with has other columns
   GrowingCsv(std::filesystem::path path, std::vector<std::string> columns, const GrowingCsvOptions& options);
-  /// Writes what is left; errors are lost: flush() before.
+  /// Writes the remaining rows and ignores errors; call flush() before.
   ~GrowingCsv();
   GrowingCsv(const GrowingCsv&) = delete;
   GrowingCsv& operator=(const GrowingCsv&) = delete;
@@ -40,12 +39,12 @@ class GrowingCsv {
   /// \param cells of the other columns
   /// \throws Error (computation_failed) where the disk is full
   void add(std::int64_t step, const std::vector<double>& cells);
-  /// Hand all rows to the operating system.
+  /// Write all rows to the operating system.
   void flush();
-  /// Return once all rows are on the disk, as they must be before a checkpoint counts on them.
+  /// Sync all rows to disk, as required before a checkpoint refers to them.
   void sync();
 
-  /// Of the last row; -1: none.
+  /// Step of the last row; -1: none.
   [[nodiscard]] std::int64_t last_step() const { return last_step_; }
 
  private:
@@ -57,7 +56,7 @@ class GrowingCsv {
   std::string header_;
   CsvText rows_;  ///< the header, and rows that are not yet written
   std::optional<OpenFile> file_;
-  std::uint64_t end_ = 0;  ///< of what is written
+  std::uint64_t end_ = 0;  ///< end of the written data
   std::int64_t last_step_ = -1;
   Stopwatch since_flush_;
 };

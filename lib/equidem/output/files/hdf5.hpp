@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// HDF5 files whose arrays have fixed places. The HDF5 library lays a file out once; numbers are then written and read
-/// in place like those of any file, and nothing of the structure is ever touched again: a program killed while it
-/// writes numbers leaves a file that every reader opens. (HDF5 itself rewrites its indices in place as a file grows,
-/// and a kill in between can cost the whole file. The price: arrays cannot grow and are not compressed.)
+/// in place, and the structure is not changed again: a program killed while it writes leaves a file that every reader
+/// opens. (HDF5 itself rewrites its indices in place as a file grows, and a kill in between can cost the whole file.
+/// Limits: arrays cannot grow and are not compressed.)
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct Hdf5Array {
   Hdf5Number number = Hdf5Number::float64;
   std::vector<std::uint64_t> shape;  ///< text: its one length in bytes
   std::string unit = {};             ///< kept as the attribute "unit" where not empty
-  std::uint64_t offset = 0;          ///< of its first byte in the file
+  std::uint64_t offset = 0;          ///< offset of its first byte in the file
 
   [[nodiscard]] std::uint64_t size() const;  ///< numbers
   [[nodiscard]] std::uint64_t bytes() const;
@@ -33,7 +33,7 @@ struct Hdf5Layout {
   std::vector<Hdf5Array> arrays;
   std::uint64_t user_block = 0;  ///< bytes before the HDF5 part: 0, or a power of two from 512 on
 
-  /// A promise of the caller that it is there.
+  /// Precondition: the array exists.
   [[nodiscard]] const Hdf5Array& operator[](const std::string& name) const;
 };
 
@@ -43,10 +43,9 @@ struct Hdf5Layout {
 /// \throws Error (computation_failed) where the file cannot be written
 Hdf5Layout write_hdf5_layout(const std::filesystem::path& path, Hdf5Layout layout);
 
-/// Where the arrays of those names lie, and all attributes of the file that are texts.
+/// Offsets of the arrays of those names, and all text attributes of the file.
 /// \throws Error (bad_input) where the file is no HDF5 file, lacks one of the arrays, or keeps one in pieces or in a
-///         type
-///         that is not the one of this machine (as a file does that another program has rewritten)
+///         type that is not the one of this machine (as a file does that another program has rewritten)
 Hdf5Layout read_hdf5_layout(const std::filesystem::path& path, const std::vector<std::string>& names);
 
 }  // namespace equidem

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Files that are written in place while a computation goes on.
+/// Files written in place during a computation.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace equidem {
 
-/// An open file. A write goes straight to the operating system: what was written stays, also where the process is
-/// killed the moment after; where the machine itself may fail, sync().
+/// An open file. A write goes directly to the operating system, so that data survive a kill of the process; sync()
+/// protects against failure of the machine.
 class OpenFile {
  public:
   enum class Mode {
@@ -34,7 +34,7 @@ class OpenFile {
   void read_at(std::uint64_t offset, std::span<std::byte> bytes) const;
   [[nodiscard]] std::uint64_t size() const;
   void truncate(std::uint64_t bytes);
-  /// Return once all that was written is on the disk.
+  /// Sync all written data to disk.
   void sync();
 
  private:
@@ -42,16 +42,16 @@ class OpenFile {
   int descriptor_ = -1;
 };
 
-/// A file in the making that will take the place of another at once: whoever opens that finds the old or the new one.
+/// A temporary file that replaces another atomically: a reader finds the old or the new file.
 class Replacement {
  public:
   explicit Replacement(std::filesystem::path path);
-  /// Removes what was made and not committed.
+  /// Removes a file that was not committed.
   ~Replacement();
   Replacement(const Replacement&) = delete;
   Replacement& operator=(const Replacement&) = delete;
 
-  /// Where to make it: the name to be taken and ".part".
+  /// Name of the temporary file: the final name and ".part".
   [[nodiscard]] const std::filesystem::path& path() const { return part_; }
   /// \throws Error (computation_failed) where that fails
   void commit();
@@ -60,7 +60,7 @@ class Replacement {
   std::filesystem::path path_, part_;
 };
 
-/// Return once the names in the folder of `path` are on the disk.
+/// Sync the entries of the folder of `path` to disk.
 void sync_folder_of(const std::filesystem::path& path);
 
 }  // namespace equidem

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The discs of a clump where its body has carried them.
+/// The discs of a clump at the present position of its body.
 #pragma once
 
 #include <numbers>
@@ -11,7 +11,7 @@
 
 namespace equidem {
 
-/// A vector of the frame of a body, as the body is turned.
+/// Rotation of a vector from the frame of a body.
 /// \param angle of the body, rad
 inline Vec2 turned(Vec2 vector, double angle) {
   const double turns = angle / (2 * std::numbers::pi);

@@ -47,15 +47,15 @@ struct Probe {
 };
 
 struct ProbeOptions {
-  BodyFamily family = BodyFamily::bonded;  ///< whose terms of the ledger
+  BodyFamily family = BodyFamily::bonded;  ///< family whose ledger terms are written
   Body body = Body::disc;                  ///< unit of energies: J per metre of depth, of spheres J
   double interval = 5;     ///< s of wall-clock time between two writes; 64 KiB of rows are written at once
   bool overwrite = false;  ///< a file of that name
-  /// Go on with the file of an earlier run: rows later than this step, and a row cut short, are dropped.
+  /// Continue the file of an earlier run: rows later than this step, and a row cut short, are dropped.
   std::optional<std::int64_t> continue_after = {};
 };
 
-/// Writes rows: step, time_s; for every probe what it asks for: NAME_ux_m, NAME_uy_m; NAME_rotation_rad; NAME_x_m,
+/// Writes rows: step, time_s; the quantities of every probe: NAME_ux_m, NAME_uy_m; NAME_rotation_rad; NAME_x_m,
 /// NAME_y_m; NAME_angle_rad; NAME_vx_m_per_s, NAME_vy_m_per_s; NAME_spin_rad_per_s; then the columns of the energy
 /// ledger (energies.hpp).
 class ProbeWriter {
@@ -72,12 +72,12 @@ class ProbeWriter {
   /// \throws Error (computation_failed) where the disk is full
   void record(std::int64_t step, double time, std::span<const DiscMotion> motions,
               std::span<const DiscMotion> velocities, const EnergyLedger& ledger);
-  /// Hand all rows to the operating system.
+  /// Write all rows to the operating system.
   void flush() { table_.flush(); }
-  /// Return once all rows are on the disk, as they must be before a checkpoint counts on them.
+  /// Sync all rows to disk, as required before a checkpoint refers to them.
   void sync() { table_.sync(); }
 
-  /// Of the last row; -1: none.
+  /// Step of the last row; -1: none.
   [[nodiscard]] std::int64_t last_step() const { return table_.last_step(); }
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// An assembly with what was computed on it: what every writer of files and pictures is given.
+/// An assembly with its computed results, the input of writers of files and pictures.
 #pragma once
 
 #include <cassert>
@@ -12,8 +12,7 @@
 
 namespace equidem {
 
-/// A view: all that it names must outlive it. An empty span means "not computed": the columns, arrays and colours
-/// made of it are left out.
+/// A view: the data must outlive it. An empty span means "not computed": its columns, arrays and colours are omitted.
 struct AssemblyState {
   const Assembly& assembly;
   std::span<const DiscMotion> motions = {};           ///< per disc
@@ -21,7 +20,7 @@ struct AssemblyState {
   std::span<const Tensor2> stresses = {};             ///< per disc, Pa
 };
 
-/// Sizes agree: a promise of the caller.
+/// Precondition: sizes agree.
 inline void assert_consistent([[maybe_unused]] const AssemblyState& state) {
   assert(state.motions.empty() || state.motions.size() == state.assembly.size());
   assert(state.contact_forces.empty() || state.contact_forces.size() == state.assembly.contacts.size());

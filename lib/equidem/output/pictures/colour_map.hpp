@@ -28,7 +28,7 @@ Colour colour_at(ColourMap map, double t);
 /// Perceived lightness of a colour, the L of Oklab, in [0, 1].
 double lightness(const Colour& colour);
 
-/// Which numbers the colours stand for.
+/// Range of the numbers shown by colours.
 struct ColourScale {
   ColourMap map = ColourMap::sequential;
   double low = 0;  ///< the number at t = 0; with the sequential map of negative numbers the larger one

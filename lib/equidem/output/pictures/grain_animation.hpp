@@ -13,7 +13,7 @@
 
 namespace equidem {
 
-/// Where all bodies are at a moment.
+/// Positions of all bodies at one time.
 struct GrainFrame {
   double time = 0;             ///< s, by which walls have moved
   std::vector<Vec2> places;    ///< m
@@ -24,7 +24,7 @@ GrainFrame frame_of(std::span<const Grain> grains, double time);
 struct GrainAnimation {
   std::string title = {};
   std::string caption = {};            ///< a line under the picture, such as what the colours mean
-  std::span<const Grain> shapes = {};  ///< their places are not looked at
+  std::span<const Grain> shapes = {};  ///< their positions are not used
   std::span<const Clump> clumps = {};
   std::span<const int> groups = {};  ///< of each grain: its colour; empty: all alike
   std::span<const Wall> walls = {};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Pictures of colliding bodies: where they are, the walls, the paths of a few.
+/// Pictures of colliding bodies, walls and the paths of a few bodies.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace equidem {
 
-/// Paths of more grains are a tangle.
+/// Largest number of grains whose paths are drawn; more are illegible.
 inline constexpr std::size_t most_drawn_paths = 60;
 
 struct GrainPicture {

@@ -15,7 +15,7 @@
 
 namespace equidem {
 
-/// What the colour of a disc stands for.
+/// Quantity shown by the colour of a disc.
 enum class DiscColour { none, mean_stress, stress_xx, stress_yy, stress_xy, displacement };
 
 template <>
@@ -42,11 +42,11 @@ struct DrawnSupport {
 
 struct PictureOptions {
   std::string title = {};
-  DiscColour colour = DiscColour::mean_stress;  ///< none is taken where the state does not know it
+  DiscColour colour = DiscColour::mean_stress;  ///< none is used if the state does not contain the quantity
   /// Lines along the branches, width in proportion to |normal force|; left out where the mean radius is below 5
   /// pixels (a wider picture shows them).
   bool force_chains = true;
-  bool undeformed = false;  ///< outlines of the discs where they were
+  bool undeformed = false;  ///< outlines of the discs at their initial positions
   /// Factor of the displacements; none: a factor 1, 2 or 5 times a power of ten, at least 1, with which the largest
   /// one is between 2 and 5 % of the larger side of the assembly.
   std::optional<double> displacement_scale = {};
@@ -71,8 +71,7 @@ struct PictureResult {
 /// the period is drawn as two halves. Numbers of both signs are coloured on a diverging map, of one sign on a
 /// sequential one (colour_map.hpp says how the range is chosen).
 /// \throws Error (bad_input) on an empty assembly, motions or radii that are not finite, a width out of range, a load
-///         or
-///         support at an absent disc, and as write_file does
+///         or support at an absent disc, and as write_file does
 PictureResult write_picture(const std::filesystem::path& folder, const std::string& name, const AssemblyState& state,
                             const PictureOptions& options, bool overwrite);
 

@@ -8,10 +8,10 @@
 
 namespace equidem {
 
-/// What gnuplot did.
+/// Result of a run of gnuplot.
 struct GnuplotRun {
   bool succeeded = false;
-  std::string reason;  ///< why not: "gnuplot is not installed", or the first line it complained with
+  std::string reason;  ///< reason of a failure: "gnuplot is not installed", or the first line of its error output
 };
 
 /// Run `gnuplot script` in a folder, no shell between; ended after `time_limit` seconds.

@@ -66,21 +66,19 @@ struct Plot {
   bool mark_points_outside = true;
 };
 
-/// What came of a plot.
+/// Result of writing a plot.
 struct PlotResult {
-  bool drawn = false;        ///< the SVG and the PNG are there
-  std::string message = {};  ///< one sentence: what was written, or why there is no picture
+  bool drawn = false;        ///< the SVG and the PNG were written
+  std::string message = {};  ///< one sentence: files written, or reason without a picture
   std::vector<std::filesystem::path> files = {};
 };
 
 /// Write NAME.csv (the data), NAME.gp (the script; `gnuplot NAME.gp` in that folder draws again) and, by gnuplot,
-/// NAME.svg and NAME.png (900 x 650 pixels). Where gnuplot is absent or fails, data and script are there and the
-/// result says so. The legend takes the corner with the fewest points, or stands under the plot where all are
+/// NAME.svg and NAME.png (900 x 650 pixels). If gnuplot is absent or fails, data and script are still written and the
+/// result states the reason. The legend is in the corner with the fewest points, or below the plot if all corners are
 /// crowded.
-/// \throws Error (bad_input) on a plot that cannot be drawn (x and y of different length, no finite point, a value
-///         not
-///         positive on a logarithmic axis, an empty range, a name that is no plain file name), and as
-///         write_file does
+/// \throws Error (bad_input) on a plot that cannot be drawn (x and y of different length, no finite point, a value not
+///         positive on a logarithmic axis, an empty range, a name that is no plain file name), and as write_file does
 PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const Plot& plot, bool overwrite);
 
 }  // namespace equidem

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Where the parts of a plot go: ranges of the axes, legend, labels of vertical lines.
+/// Layout of a plot: ranges of the axes, legend, labels of vertical lines.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct AxisRange {
   double max = 1;
 };
 
-/// Where the label of a vertical line stands.
+/// Position of the label of a vertical line.
 struct LineLabelPlace {
   bool top = true;    ///< at the upper or the lower end of the line
   bool right = true;  ///< right or left of it

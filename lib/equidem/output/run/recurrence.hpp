@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What happens at intervals while a run goes on.
+/// Events at regular intervals of a run.
 #pragma once
 
 #include <cmath>
@@ -9,8 +9,7 @@
 
 namespace equidem {
 
-/// Steps at which something happens every so many seconds of the run, each the nearest to its time; never where there
-/// is no interval.
+/// Steps of events at a regular interval in s of the run, each nearest to its time; no events without an interval.
 class Recurrence {
  public:
   Recurrence(std::optional<double> interval, double step) : interval_(interval.value_or(0) / step) {}
