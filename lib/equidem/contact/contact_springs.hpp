@@ -14,7 +14,7 @@
 
 namespace equidem {
 
-/// How the springs of the case become the springs of a contact.
+/// Weighting of the given springs at each contact.
 enum class SpringWeighting {
   uniform,          ///< the same at every contact
   contact_density,  ///< k / psi(theta), psi the measured contacts per radian around a disc (Abe 1996, eqs. 11
@@ -57,8 +57,8 @@ class ContactSprings {
 ///         assembly without facet lengths, where a shared edge has no length, or psi is not positive at a contact
 ContactSprings contact_springs(const Assembly& assembly, SpringConstants springs, SpringWeighting weighting);
 
-/// How contacts are directed: psi(theta) = (z/2pi) (1 + sum a_k cos k theta + b_k sin k theta), k = 2, 4, the harmonics
-/// that stiffness, a fourth-order tensor, can see. Measured: a_k = 2 <cos k theta> over the contacts.
+/// Distribution of contact directions: psi(theta) = (z/2pi) (1 + sum a_k cos k theta + b_k sin k theta), k = 2, 4, the
+/// harmonics that affect stiffness, a fourth-order tensor. Measured: a_k = 2 <cos k theta> over the contacts.
 struct ContactHarmonics {
   double a2 = 0, b2 = 0, a4 = 0, b4 = 0;
 };

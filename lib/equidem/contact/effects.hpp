@@ -35,7 +35,7 @@ struct Effects {
   std::vector<Entry> entries;
   bool tangential_springs = false;
   bool rotation = false;    ///< rotations are unknowns
-  bool restrained = false;  ///< rotations that contacts would resist are none
+  bool restrained = false;  ///< rotations are fixed although contacts would resist them
 
   [[nodiscard]] int unknowns_per_disc() const { return rotation ? 3 : 2; }
   /// "active: normal springs, tangential springs. inactive: rotation (kT = 0 everywhere: nothing can turn a disc)."
@@ -43,8 +43,8 @@ struct Effects {
 };
 
 /// Normal springs always; tangential springs where some kT != 0; rotation where moreover it is not restrained. Free
-/// rotation with kT = 0 would leave rotations without stiffness: they are no unknowns, unless contacts
-/// lie off the lines of centres, where normal springs resist them.
+/// rotation with kT = 0 would leave rotations without stiffness: they are not unknowns, unless contacts lie off the
+/// lines of centres, where normal springs resist them.
 Effects derive_effects(const Assembly& assembly, const ContactSprings& springs, Rotation rotation);
 /// As above, for contacts that all lie on the lines of centres.
 Effects derive_effects(const ContactSprings& springs, Rotation rotation);

@@ -3,21 +3,21 @@
 /// A contact of linear spring and dashpot over one step, solved exactly, under an outside force that is linear in time.
 ///
 /// u'' + 2 zeta w u' + w² u = h0 + h1 t while in contact, u'' = h0 + h1 t while apart; u the overlap, w = sqrt(k/m).
-/// Contacts begin and end inside the step, as often as it takes. The outside force stands for gravity and for all other
+/// Contacts may begin and end any number of times in a step. The outside force stands for gravity and for all other
 /// contacts of the two bodies: where it has their impulse and its first moment, the steps of all contacts together are
 /// symplectic for zeta = 0, of fourth order on a straight chain, and exact for one contact.
 ///
-/// Limit of the step. Contacts that all do the same and push each other, so that their common motion has the frequency
-/// w sqrt(1 + rho) (rho = 0: one contact alone; rho = 1: a straight chain whose discs move against their neighbours),
-/// are stable while a step is shorter than half a period of it, w sqrt(1 + rho) dt < pi. Their frequency is too low by
-/// a part rho (1 + rho) (w dt)⁴/1440.
+/// Limit of the step. Contacts that move alike and interact, with the frequency of their common motion w sqrt(1 + rho)
+/// (rho = 0: one contact alone; rho = 1: a straight chain whose discs move against their neighbours), are stable while
+/// a step is shorter than half a period of it, w sqrt(1 + rho) dt < pi. The relative error of their frequency is -rho
+/// (1 + rho) (w dt)⁴/1440.
 #pragma once
 
 #include "equidem/contact/restitution.hpp"
 
 namespace equidem {
 
-/// The part of a pair that does not change from step to step.
+/// Constants of a pair for all steps.
 struct ExactPair {
   double reduced_mass = 0;  ///< kg
   double stiffness = 0;     ///< N/m
@@ -25,10 +25,10 @@ struct ExactPair {
   ContactEnd end = ContactEnd::at_zero_force;
   double step = 0;       ///< s
   double frequency = 0;  ///< w, 1/s
-  /// Of a whole step in contact, impulse and moment over the reduced mass as factors of [overlap, closing, h0, h1].
+  /// Impulse and moment of a whole step in contact over the reduced mass, as factors of [overlap, closing, h0, h1].
   double impulse[4] = {}, moment[4] = {};
-  /// What stays positive while the contact lasts, force over reduced mass or, where the contact ends with it, overlap:
-  /// now as factors of [overlap, closing], after the step of [overlap, closing, h0, h1].
+  /// Criterion, positive during contact: force over reduced mass, or overlap if the contact ends at zero overlap. At
+  /// the start as factors of [overlap, closing], after the step of [overlap, closing, h0, h1].
   double hold[2] = {}, hold_after[4] = {};
   /// Loss over the reduced mass as a form of (v, b, h1), b = h0 - w² u: factors of v², b², h1², v b, v h1, b h1.
   double loss[6] = {};
@@ -37,26 +37,25 @@ struct ExactPair {
 /// \throws Error (bad_input) on numbers that are not positive (zeta: negative)
 ExactPair exact_pair(double reduced_mass, double stiffness, double damping_ratio, ContactEnd end, double step);
 
-/// What a contact does in one step. With v' = v - impulse/m + h0 dt + h1 dt²/2 and u' = u + v dt - moment/m + h0 dt²/2
+/// Result of a contact in one step. With v' = v - impulse/m + h0 dt + h1 dt²/2 and u' = u + v dt - moment/m + h0 dt²/2
 /// + h1 dt³/6 the energy m v²/2 (+ k u²/2 while touching) plus loss and release changes by the work of the outside
 /// force, to round-off.
 struct ExactStep {
   double impulse = 0;  ///< of the contact force over the step, >= 0 pushes, N s
   double moment = 0;   ///< integral of (dt - t) force dt, N s²: displaces each body by moment/mass
   double loss = 0;     ///< in the dashpot, J, >= 0
-  /// k u²/2 left in springs where contacts ended at zero force, less what they have where they resume before the bodies
-  /// are apart, J. The spring is lost with what it holds: the material relaxes on its own (Schwager & Poeschel 2007).
+  /// Energy k u²/2 left in springs of contacts that ended at zero force, less that of contacts that resume before the
+  /// bodies are apart, J. This energy is lost: the material relaxes without contact (Schwager & Poeschel 2007).
   double released = 0;
   bool touching_at_end = false;
   int beginnings = 0;  ///< contacts begun in the step
 };
 
-/// A step of more than 1000 beginnings and ends (which needs w dt > 1500) goes on as a plastic impact and rest at zero
-/// overlap.
+/// A step of more than 1000 beginnings and ends (which needs w dt > 1500) continues as a plastic impact and rest at
+/// zero overlap.
 /// \param overlap, closing at the start of the step, m and m/s (closing > 0 approaches); overlap < 0: apart
-/// \param touching whether the contact lasts from the step before. One that ended at zero force while the bodies
-///         overlap
-///        resumes where k u + c v, by which it ended, is positive again: before they close, with no energy won
+/// \param touching whether the contact continues from the previous step. A contact that ended at zero force while the
+///        bodies overlap resumes when k u + c v is positive again: before they approach, without gain of energy
 /// \param h0, h1 outside closing acceleration, m/s², and its rate, m/s³
 ExactStep exact_step(const ExactPair& pair, double overlap, double closing, bool touching, double h0, double h1);
 

@@ -12,11 +12,11 @@
 ///   force on i, -dW/du_i:         kN dn n + kT ds (r_i + r_j)/|l| s;  on j its negative
 ///   moment on i, -dW/dtheta_i:    kT ds r_i;                          on j: kT ds r_j
 ///
-/// W is a function of the motion alone: without dashpots energy is conserved. A common rigid motion costs nothing,
-/// forces and moments balance for any levers. psi is known but for whole turns: psi - theta is taken in [-pi, pi], so
-/// that turns of an assembly, rolling discs (theta_i = -theta_j) and rotations that have gone round many times all cost
-/// what they should; only a bond that slips by half a turn, pi (r_i + r_j), lets go. Where r_i + r_j = |l0|, the law is
-/// to first order that of linear_spring.hpp (Abe 1996, eqs. 1-5), and the tangent at rest is the stiffness matrix.
+/// W is a function of the motion alone: without dashpots energy is conserved. A rigid motion stores no energy, and
+/// forces and moments balance for any levers. psi is defined modulo 2 pi: psi - theta is taken in [-pi, pi], which is
+/// correct for turns of an assembly, rolling discs (theta_i = -theta_j) and any number of whole turns; only a bond that
+/// slips by half a turn, pi (r_i + r_j), is released. Where r_i + r_j = |l0|, the law is to first order that of
+/// linear_spring.hpp (Abe 1996, eqs. 1-5), and the tangent at rest is the stiffness matrix.
 #pragma once
 
 #include <cmath>
@@ -40,8 +40,8 @@ inline FiniteBond bond_of(const Assembly& assembly, const Contact& contact, cons
   return {assembly.branch(contact), contact.lever_i, contact.lever_j, springs};
 }
 
-/// What a bond sees of the motion of its two discs (or of their velocity): u_j - u_i (m) and the rotations (rad), which
-/// count whole turns.
+/// Relative motion (or velocity) of the two discs of a bond: u_j - u_i (m) and the rotations (rad), including whole
+/// turns.
 template <typename Number>
 struct BondMotion {
   Number x = 0, y = 0;
@@ -53,7 +53,7 @@ inline BondMotion<double> bond_motion(const DiscMotion& i, const DiscMotion& j) 
   return {du.x, du.y, i.theta, j.theta};
 }
 
-/// Force on i (N/m; j feels its negative) and the moments on both (N).
+/// Force on i (N/m; its negative acts on j) and the moments on both (N).
 template <typename Number>
 struct BondForces {
   Number x = 0, y = 0;
@@ -76,7 +76,7 @@ DeformationOf<Number> bond_deformation(const FiniteBond& bond, const BondMotion<
   return {stretch, levers * std::remainder(turn - mean_rotation, 2 * std::numbers::pi_v<Number>)};
 }
 
-/// d/dt of the deformation at the given velocity: what dashpots resist.
+/// Rate of the deformation at the given velocity, for dashpots.
 template <typename Number>
 DeformationOf<Number> bond_deformation_rate(const FiniteBond& bond, const BondMotion<Number>& motion,
                                             const BondMotion<Number>& velocity) {
@@ -88,7 +88,8 @@ DeformationOf<Number> bond_deformation_rate(const FiniteBond& bond, const BondMo
               bond.lever_j * velocity.theta_j};
 }
 
-/// What the two bodies feel of a stress (f_N, f_T) that works on (dn, ds): the transpose of the rate.
+/// Forces and moments on the two bodies by the generalized force (f_N, f_T) conjugate to (dn, ds): the transpose of the
+/// rate.
 template <typename Number>
 BondForces<Number> bond_forces(const FiniteBond& bond, const BondMotion<Number>& motion, const ForceOf<Number>& force) {
   const Number lx = bond.branch.x + motion.x, ly = bond.branch.y + motion.y;
@@ -105,7 +106,7 @@ BondForces<Number> bond_forces(const FiniteBond& bond, const BondMotion<Number>&
   return bond_forces(bond, motion, linear_spring_force(bond.springs, bond_deformation(bond, motion)));
 }
 
-/// N (J per metre, per metre of depth).
+/// Elastic energy, N (J/m).
 template <typename Number>
 Number bond_energy(const FiniteBond& bond, const BondMotion<Number>& motion) {
   const DeformationOf<Number> d = bond_deformation(bond, motion);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// From the motion of two bodies to stretch and slip at their contact, and back from contact forces to the bodies.
+/// Kinematics of a contact: stretch and slip from the motion of two bodies, and forces on the bodies from the contact
+/// force.
 #pragma once
 
 #include <cstddef>
@@ -45,7 +46,7 @@ struct ForceOf {
 };
 using ContactForce = ForceOf<double>;
 
-/// Of a contact of the assembly, by its number: the one place that knows where contacts lie.
+/// Frame of a contact of the assembly, by its number.
 inline ContactFrame frame_of(const Assembly& assembly, std::size_t contact) {
   const Contact& c = assembly.contacts[contact];
   if (!assembly.contact_arms.empty()) {
@@ -56,8 +57,8 @@ inline ContactFrame frame_of(const Assembly& assembly, std::size_t contact) {
   return {l / norm(l), c.lever_i, c.lever_j};
 }
 
-/// Whether a rotation deforms a contact with the tangential spring kT, of which it moves the point by `lever` along and
-/// by `offset` across the contact.
+/// Whether a rotation deforms a contact with the tangential spring kT, if it moves the contact point by `lever` along
+/// and by `offset` across the contact.
 constexpr bool turns_against(double lever, double offset, double kT) {
   return offset != 0 || (kT != 0 && lever != 0);
 }
@@ -78,7 +79,7 @@ inline ContactDeformation deformation(const ContactFrame& frame, const DiscMotio
                      frame.offset_i * i.theta + frame.offset_j * j.theta);
 }
 
-/// The force that disc i feels through the contact; disc j feels its negative.
+/// The contact force on disc i; its negative acts on disc j.
 inline Vec2 force_on_i(const ContactFrame& frame, const ContactForce& f) {
   return f.normal * frame.normal + f.tangential * frame.tangent();
 }
@@ -93,7 +94,7 @@ Number moment_on_j(const ContactFrame& frame, const ForceOf<Number>& f) {
   return frame.lever_j * f.tangential - frame.offset_j * f.normal;
 }
 
-/// From the centre of i to the contact point, and from there to the centre of j, m.
+/// Vectors from the centre of i to the contact point, and from there to the centre of j, m.
 inline Vec2 arm_of_i(const ContactFrame& frame) {
   return frame.lever_i * frame.normal + frame.offset_i * frame.tangent();
 }

@@ -22,12 +22,12 @@ ForceOf<Number> linear_spring_force(const SpringConstants& k, const DeformationO
   return {k.kN * d.normal, k.kT * d.tangential};
 }
 
-/// N (J per metre, per metre of depth).
+/// Elastic energy, N (J/m).
 inline double linear_spring_energy(const SpringConstants& k, const ContactDeformation& d) {
   return 0.5 * (k.kN * d.normal * d.normal + k.kT * d.tangential * d.tangential);
 }
 
-/// The same from the force: f_N²/2kN + f_T²/2kT, a spring that is absent storing nothing.
+/// Elastic energy from the force: f_N²/2kN + f_T²/2kT; an absent spring stores none.
 inline double linear_spring_energy_of(const SpringConstants& k, const ContactForce& f) {
   const double tangential = k.kT != 0 ? f.tangential * f.tangential / k.kT : 0.0;
   return 0.5 * (f.normal * f.normal / k.kN + tangential);

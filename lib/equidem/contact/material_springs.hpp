@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The springs by which an assembly stands for a given continuum.
+/// The springs with which an assembly represents a given continuum.
 #pragma once
 
 #include <optional>
@@ -13,20 +13,20 @@
 
 namespace equidem {
 
-/// A relation between springs and moduli (Abe 1996) with the measures that it asks for.
+/// A relation between springs and moduli (Abe 1996) with the measures that it needs.
 struct ChosenRelation {
   SpringRelation relation;
   IsotropicMeasures measures;
 };
 
-/// The relation that holds for an assembly: that of its lattice where springs are equal,
-/// else the isotropic one, (20) and (21), with the solid fraction and the coordination number; of springs weighted by
-/// contact_density k psi = K/phi by (21); of springs weighted by voronoi K = kN/2, since the facets of Voronoi cells
-/// obey sum h l = 2 V and uniform strain then stores w = kN <(n e n)²>.
+/// The relation that holds for an assembly: that of its lattice where springs are equal, else the isotropic one, (20)
+/// and (21), with the solid fraction and the coordination number; of springs weighted by contact_density k psi = K/phi
+/// by (21); of springs weighted by voronoi K = kN/2, since the facets of Voronoi cells obey sum h l = 2 V and uniform
+/// strain then stores w = kN <(n e n)²>.
 /// \param lattice of the assembly; null: none
 ChosenRelation spring_relation(const Assembly& assembly, SpringWeighting weighting, const Lattice* lattice);
 
-/// The springs, before weighting, for which the assembly stands for a continuum of these moduli.
+/// The springs, before weighting, with which the assembly represents a continuum of these moduli.
 /// \throws Error (bad_input) as springs_for; weighted springs on a lattice whose relation is for equal springs
 SpringConstants springs_of_moduli(const ElasticModuli& moduli, const Assembly& assembly, SpringWeighting weighting,
                                   const Lattice* lattice, NegativeTangential negative = NegativeTangential::refuse);

@@ -6,7 +6,7 @@
 
 namespace equidem {
 
-/// At one time x.
+/// Values at one time x.
 struct Response {
   double slope = 1;  ///< g'
   double g[5] = {};  ///< g[k]: the k-fold integral of g from 0

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The damping that gives a wanted coefficient of restitution.
+/// Damping ratio from the coefficient of restitution.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace equidem {
 
-/// When a contact of spring and dashpot ends; the same dashpot gives another restitution.
+/// Criterion of the end of a contact of spring and dashpot; the restitution depends on it.
 enum class ContactEnd {
   at_zero_overlap,  ///< the force may attract while the bodies part: e = exp(-pi zeta/sqrt(1 - zeta²))
   at_zero_force,    ///< the force is never attractive (Schwager & Poeschel 2007)
@@ -27,7 +27,7 @@ struct EnumNames<ContactEnd> {
 /// acosh(zeta)/sqrt(zeta² - 1) above. \param damping_ratio zeta = c/(2 sqrt(m k)), m the reduced mass, >= 0
 double contact_phase_of(double damping_ratio, ContactEnd end);
 
-/// Restitution of the same impact: exp(-zeta contact_phase), whichever way it ends.
+/// Restitution of such an impact: exp(-zeta contact_phase), for either end.
 double restitution_of(double damping_ratio, ContactEnd end);
 
 /// The zeta with restitution_of(zeta, end) = e to round-off.

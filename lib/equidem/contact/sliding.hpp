@@ -3,15 +3,15 @@
 /// Tangential contact in one step: spring, dashpot, Coulomb's limit.
 ///
 /// The spring is stretched by the slip x, x' = v; it resists with kT x, the dashpot with c v. Friction carries at most
-/// mu N, N the normal force (none where N < 0). While sliding the spring keeps what it holds, at most mu N/kT; the rest
+/// mu N, N the normal force (none where N < 0). While sliding the spring keeps its stretch, at most mu N/kT; the rest
 /// of the work is lost. Without spring and dashpot (kT = c = 0) the contact always slides: mu N against the velocity.
 #pragma once
 
 namespace equidem {
 
-/// What the tangential force is capped with.
+/// Force that is limited by friction.
 enum class FrictionCap {
-  whole_force,   ///< |T| <= mu N of spring and dashpot together; the dashpot rests while sliding
+  whole_force,   ///< |T| <= mu N of spring and dashpot together; the dashpot is inactive while sliding
   spring_alone,  ///< only the spring (Sukegawa (2.16)); the dashpot adds to it
 };
 
@@ -23,7 +23,7 @@ struct Sliding {
   FrictionCap cap = FrictionCap::whole_force;
 };
 
-/// Neither spring nor dashpot.
+/// Whether there is neither spring nor dashpot.
 inline bool is_rigid(const Sliding& law) {
   return law.stiffness == 0 && law.dashpot == 0;
 }
@@ -39,14 +39,14 @@ struct SlidingStep {
 
 /// Explicit: force from the stretch at the end of the step with the velocity given (LAMMPS, YADE, Sukegawa
 /// (2.9)-(2.16)). The work of a spring that sticks exceeds the energy it stores by kT (v dt)²/2: the error of the
-/// integrator, counted nowhere. kT = c = 0: mu N even where that turns the slip round within the step; use the midpoint
-/// rule. The losses are those at the velocity given.
+/// integrator, counted nowhere. kT = c = 0: mu N even if that reverses the slip within the step; use the midpoint rule.
+/// The losses are those at the velocity given.
 SlidingStep sliding_step(const Sliding& law, double stretch, double velocity, double normal_force, double step);
 
 /// Midpoint rule: force, stretch and velocity consistent over the step, so that sticking keeps energy and sliding only
 /// loses it. kT = c = 0: at most what stops the slip within the step, so that a slip that stops stays stopped; under a
 /// steady outside acceleration g that friction can hold, a slip of g dt/2 remains.
-/// \param velocity at the start of the step, what other forces do to it over the step included by half
+/// \param velocity at the start of the step plus half its change by other forces over the step
 /// \param mass effective tangential mass: 1/(1/m_i + 1/m_j + r_i²/I_i + r_j²/I_j), kg
 SlidingStep sliding_step_midpoint(const Sliding& law, double stretch, double velocity, double mass, double normal_force,
                                   double step);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Two discs tied by dashpots (Sukegawa 2010, (5.1)-(5.19)): along the line of their centres, across it at the point of
-/// the bond, and, where wanted, against their relative spin.
+/// Two discs bonded by dashpots (Sukegawa 2010, (5.1)-(5.19)): along the line of their centres, across it at the point
+/// of the bond, and optionally against their relative spin.
 ///
 /// With n from i to j, s = (-n_y, n_x) and levers a_i, a_j that add up to the distance of the centres, so that the
 /// point of the bond is the same of both (5.16) and angular momentum is kept:
@@ -11,7 +11,7 @@
 ///   friction masses      1/m_n = 1/m_i + 1/m_j,  1/m_s = 1/m_n + a_i²/I_i + a_j²/I_j,  1/m_r = 1/I_i + 1/I_j
 ///
 /// A bond alone decays as exp(-C t/m) in each. Dashpots leave free the rigid motions and the rolling v_s = 0, w_i =
-/// -w_j (unless C_r > 0), and what pulls steadily with N makes them creep at N/C_n.
+/// -w_j (unless C_r > 0), and a steady tension N makes them creep at the rate N/C_n.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 
 namespace equidem {
 
-/// Of any three numbers that belong to the three dashpots: C (N s/m, N s/m, N m s), rates, inverse masses, impulses.
+/// Three numbers of the three dashpots: C (N s/m, N s/m, N m s), rates, inverse masses, impulses.
 struct BondModes {
   double normal = 0, tangential = 0, rolling = 0;
 };
@@ -56,13 +56,13 @@ inline double largest_bond_rate(const BondModes& c, const ContactFrame& frame, c
   return std::max(c.normal * inverse.normal, turning);
 }
 
-/// What a dashpot leaves of a rate after a step, x = C dt/m >= 0.
+/// Decay of a rate by a dashpot over a step, x = C dt/m >= 0.
 struct Decay {
   double keep = 1;  ///< e^-x
   double mean = 1;  ///< (1 - e^-x)/x, the mean of e^(-x t) over t in 0..1
 };
 
-/// To 1e-15, with the same bits on every machine: the series of (1 - e^-y)/y for y = x/2^k <= 1/2, doubled k times.
+/// Decay to 1e-15, bit-identical on every machine: the series of (1 - e^-y)/y for y = x/2^k <= 1/2, doubled k times.
 inline Decay decay(double x) {
   if (x > 40) return {0, 1 / x};
   int doublings = 0;
@@ -82,7 +82,7 @@ inline Decay decay(double x) {
   return {keep, mean};
 }
 
-/// What a dashpot alone makes of a rate v: v' = -(C/m) v + g. `before`: jumps of v at the start of the step (other
+/// Change of a rate v by a dashpot alone: v' = -(C/m) v + g. `before`: jumps of v at the start of the step (other
 /// bonds); `gained` = g dt, what steady forces add over the step. Exact, whatever x = C dt/m: no limit to the step, and
 /// where g is steady v comes to g m/C. \return change of the rate over the step by the dashpot
 inline double exact_dashpot_change(double x, double rate, double before, double gained) {
@@ -90,7 +90,7 @@ inline double exact_dashpot_change(double x, double rate, double before, double 
   return -x * left.mean * (rate + before) - (1 - left.mean) * gained;
 }
 
-/// The same by the rate at the start of the step (Sukegawa (5.2), (5.8)): stable for x < 2.
+/// The change by the rate at the start of the step (Sukegawa (5.2), (5.8)): stable for x < 2.
 inline double explicit_dashpot_change(double x, double rate) {
   return -x * rate;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The map P of Fujioka & Ushijima (2005 b), section 2: the first step of a contact is corrected to the true instant at
-/// which it began and loses what the restitution says; later steps keep (sigma² + a d²)/2.
+/// which it began and loses energy according to the restitution; later steps conserve (sigma² + a d²)/2.
 ///
 /// With the slope s = sigma/d; bodies move by sigma + f, so that d' = d + sigma + f. Roots are rewritten so that f is
 /// right to round-off for any a and s.
@@ -34,7 +34,7 @@ inline ContactStep later_step(double depth, double closing, double a) {
   return step;
 }
 
-/// The members that the maps have in common.
+/// The common members of the maps.
 struct Map : LinearSpring {
   static constexpr LawKind kind = LawKind::map;
   static constexpr bool has_dashpot = false;
@@ -43,7 +43,7 @@ struct Map : LinearSpring {
   /// The restitution itself.
   static double dissipation(double restitution, ContactEnd /*end*/) { return checked_restitution(restitution); }
   static double damping_ratio(double /*restitution*/, ContactEnd /*end*/) { return 0; }
-  /// Stable at any step; past omega dt = 1 a contact is over in a step.
+  /// Stable at any step; above omega dt = 1 a contact ends within a step.
   static double stable_step(double /*damping_ratio*/) { return 1; }
 };
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The pieces of a law of normal contact.
+/// The members of a law of normal contact.
 ///
 /// A law is a struct without data in a file of its own and one line of laws/list.hpp; linear_dashpot.hpp is a model to
-/// copy. check_law() names a missing piece when the law is compiled.
+/// copy. check_law() reports a missing member at compile time.
 ///
 /// A force law is F = spring(k, d) + dashpot(c, d) v with the overlap d and the closing speed v. Loops over eight
 /// contacts at a time evaluate it in SI units; loops over single contacts evaluate it without dimensions, as the maps
@@ -21,12 +21,12 @@
 namespace equidem {
 
 enum class LawKind {
-  force,         ///< a force from overlap and closing speed; GrainOptions::Scheme makes the step
+  force,         ///< a force from overlap and closing speed; GrainOptions::Scheme sets the step
   map,           ///< the velocity after a step in place of a force, each contact by itself
   simultaneous,  ///< the law solves the step, all contacts together
 };
 
-/// Change of one contact in one step, without dimensions.
+/// Dimensionless change of one contact in one step.
 struct ContactStep {
   /// Maps: 1 first step (10, 11: five_case_map, 1a and 1b), 2 deepening, 3 still touching, 4 parting; else 0.
   int mode = 0;
@@ -93,7 +93,7 @@ DriftShares shares_of_power_law(double part) {
 
 }  // namespace laws
 
-/// Compiles where a law has every piece that its kind needs.
+/// Compiles if a law has every member that its kind needs.
 template <class Law>
 consteval bool check_law() {
 #define EQUIDEM_LAW_NEEDS(expression, type, message) \

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The laws of normal contact: this list alone says which there are. NormalLaw, the loops over contacts, the choices
-/// and help of the case file and the reports follow from it.
+/// The laws of normal contact: the only list of them. NormalLaw, the loops over contacts, the choices and help of the
+/// case file and the reports follow from it.
 ///
 /// To add a law, write laws/NAME.hpp with a struct that has the pieces of laws/law.hpp, include it here, and add
 /// a line to the list.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The laws of normal contact by name, with all that is not evaluated in a loop over contacts.
+/// The laws of normal contact by name, with all functions used outside the loops over contacts.
 #pragma once
 
 #include <span>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// An ellipse seen through its support function: how far it reaches in every direction.
+/// An ellipse and its support function.
 #pragma once
 
 #include <cmath>
@@ -41,12 +41,12 @@ inline Vec2 support_point(const EllipseSupport& s, Vec2 n) {
   return s.reach * n + s.slope * perpendicular(n);
 }
 
-/// b/a, of points and segments 1. The sharpest radius of curvature is b roundness.
+/// b/a; 1 for points and segments. The sharpest radius of curvature is b roundness.
 inline double roundness(const Ellipse& e) {
   return e.b > 0 ? e.b / e.a : 1;
 }
 
-/// Signed distance of two ellipses along n: branch . n - h_i(n) - h_j(n). Above 0 for any n: they are apart.
+/// Signed distance of two ellipses along n: branch . n - h_i(n) - h_j(n). They are apart if it is positive for any n.
 /// \param branch from the centre of i to that of j, m
 inline double separation_along(const Ellipse& i, const Ellipse& j, Vec2 branch, Vec2 n) {
   return dot(branch, n) - (support(i, n).reach + support(j, n).reach);

@@ -9,25 +9,25 @@
 ///
 /// f'' = -(f + R) with R the sum of the radii of curvature. As long as -f is below the sum of the sharpest radii,
 /// b_i²/a_i + b_j²/a_j, a maximum is the only one that deep (its ellipses shrunk by discs of these radii are apart);
-/// deeper, up to four are compared. There the normal jumps where two ways out are equally long, and either of them is
-/// given.
+/// deeper, up to four are compared. There the normal jumps where two separating displacements are equally short; either
+/// is returned.
 #pragma once
 
 #include "equidem/contact/shapes/ellipse.hpp"
 
 namespace equidem {
 
-/// How two ellipses stand to each other.
+/// Relative position of two ellipses.
 enum class EllipseState {
   apart,     ///< gap > 0
   touching,  ///< gap <= 0, also with a centre inside the other ellipse
-  /// One lies in the other: gap, normal and points are those of the shortest way out, but no contact force follows from
-  /// them.
+  /// One lies in the other: gap, normal and points are those of the shortest separating displacement, but no contact
+  /// force follows from them.
   nested,
-  concentric,  ///< the centres coincide: the same, and the normal might as well be its opposite
+  concentric,  ///< the centres coincide: as nested, and the sign of the normal is arbitrary
 };
 
-/// What to find out about ellipses that are apart.
+/// Result required for ellipses that are apart.
 enum class WhenApart {
   distance,         ///< closest points
   only_that_it_is,  ///< a normal that separates them, and as gap a lower bound of the distance, > 0; arms are not
@@ -43,8 +43,9 @@ struct EllipseContact {
   [[nodiscard]] bool is_contact() const { return state == EllipseState::touching; }
 };
 
-/// Gap to some round-off of the sizes, points the same times R/(R + gap). Swapping i and j mirrors the result bit by
-/// bit. Finite numbers give finite numbers. \param branch from the centre of i to that of j, m
+/// The error of the gap is of the order of round-off of the sizes, that of the points R/(R + gap) times as large.
+/// Swapping i and j mirrors the result bit by bit. Finite numbers give finite numbers. \param branch from the centre of
+/// i to that of j, m
 /// \param last_normal of the same pair a moment ago, unit: from it the way is short; {} where unknown. It does not
 ///         change what is found.
 EllipseContact contact_of_ellipses(const Ellipse& i, const Ellipse& j, Vec2 branch, Vec2 last_normal = {},
@@ -56,8 +57,7 @@ double angle_of_arrival(const Ellipse& i, const Ellipse& j);
 /// Ellipse i against the half-plane behind a line.
 /// \param to_line from the centre of the ellipse to any point of the line, m
 /// \param normal of the line, unit, towards the ellipse; that of the result is opposite. Never nested: gap is the
-///         distance of the
-///        nearest point from the line, however deep
+///        distance of the nearest point from the line, however deep
 /// \return arm_j from the given point of the line
 EllipseContact contact_with_line(const Ellipse& i, Vec2 to_line, Vec2 normal);
 

@@ -13,10 +13,10 @@
 
 namespace equidem {
 
-/// How the angles of contact are read.
+/// Evaluation of the angles of contact.
 enum class AngleReading {
-  printed,  ///< phi = (acos + asin)/2 (4.44)-(4.45), right only for phi from 0 to pi/2; omega (4.49) in the half that
-            ///< the heights of the centres tell
+  printed,  ///< phi = (acos + asin)/2 (4.44)-(4.45), right only for phi from 0 to pi/2; omega (4.49) in the half-plane
+            ///< given by the heights of the centres
   mended,   ///< phi = atan2(sin phi_b, cos phi_a), omega by atan2: outwards of ellipse i
 };
 
@@ -40,8 +40,8 @@ struct EnlargedEllipseContact {
   [[nodiscard]] bool is_contact() const { return judgement <= 0; }
 };
 
-/// Points and angle mean something in contact and near it only; they are numbers everywhere. Not symmetric in i and j
-/// but for the judgement.
+/// Points and angle are meaningful only in or near contact, but always finite. Only the judgement is symmetric in i and
+/// j.
 EnlargedEllipseContact enlarged_ellipse_contact(const Ellipse& i, const Ellipse& j, Vec2 branch, AngleReading reading);
 
 }  // namespace equidem
