@@ -42,7 +42,7 @@ struct Program {
   const char* name;
   const char* description;  ///< one line of the help
   const char* noun;         ///< of a command: "verb"
-  const char* usage;        ///< what follows the name of the program
+  const char* usage;        ///< arguments after the name of the program
   const char* footer;       ///< examples and exit codes
   std::span<const Verb> verbs;
   std::vector<HelpTopic> topics = {};

@@ -20,10 +20,10 @@ using AccuracySetting = std::vector<std::pair<std::string, double>>;
 struct ReachedAccuracy {
   double requested = 0;
   double estimated = 0;
-  std::string of;            ///< what the numbers are errors of, and from what
-  std::string knob;          ///< what was chosen, in words; empty: there was nothing to choose
-  AccuracySetting value;     ///< what it was set to
-  std::string pilots;        ///< what was computed to choose it, in words; empty: nothing
+  std::string of;            ///< quantity and source of the errors
+  std::string knob;          ///< name of the chosen setting; empty: no choice
+  AccuracySetting value;     ///< value of the chosen setting
+  std::string pilots;        ///< description of the pilot computations; empty: none
   double pilots_factor = 0;  ///< their work, times that of what was chosen
   /// The settings and the time of a tenth of the error.
   struct TenTimesMore {

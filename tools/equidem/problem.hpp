@@ -47,7 +47,7 @@ Problem build_problem(Case resolved, std::optional<Assembly> assembly = {});
 
 /// One load case, solved and evaluated.
 struct SolvedCase {
-  std::string name;  ///< of the load case, may be empty
+  std::string name;  ///< name of the load case, may be empty
   Equilibrium equilibrium;
   std::vector<Tensor2> stresses;  ///< Pa, per disc; empty where the cells are unknown
   std::optional<Tensor2> stress;  ///< Pa, of the assembly, not made symmetric

@@ -17,7 +17,7 @@ namespace {
 constexpr double never = std::numeric_limits<double>::infinity();
 constexpr int most_events = 1000;
 
-/// Where the two bodies are, and what drives them from then on.
+/// State of the two bodies, and the outside force from then on.
 struct Motion {
   double u, v, h0, h1;
 };

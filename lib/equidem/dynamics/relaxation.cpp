@@ -74,7 +74,7 @@ class StillScene {
     return u;
   }
 
-  /// What contacts and walls exert, 0 on components that are not free.
+  /// Forces of contacts and walls; 0 for components that are not free.
   [[nodiscard]] Vector internal(const Vector& u) const { return components(contacts_.unbalanced_forces(motions(u))); }
   [[nodiscard]] Vector unbalanced(const Vector& u) const {
     Vector f = internal(u);

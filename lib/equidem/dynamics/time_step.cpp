@@ -26,7 +26,7 @@ constexpr std::size_t most_discs_of_lanczos = 100000;
 /// Largest omega² of M^-1 K for given springs.
 using SquaredFrequency = std::function<double(const ContactSprings&)>;
 
-/// What of a scene bears on stability.
+/// Data of a scene for the stability limit.
 struct Vibration {
   const Scene& scene;
   const SimulationOptions& options;
@@ -76,9 +76,8 @@ struct Vibration {
 };
 
 /// 4 M - 2 h C - h² K = 4 M - h² K(k + 2 c/h): h = 2/omega(h), solved by secants on a logarithmic scale, where the
-/// slope of
-/// the difference lies between -1 and -1/2. Local damping, which excludes dashpots, makes forces against the velocity
-/// larger by its share, and at the limit every force is one.
+/// slope of the difference lies between -1 and -1/2. Local damping, which excludes dashpots, makes forces against the
+/// velocity larger by its share, and at the limit every force is one.
 double critical_of_leapfrog(const Vibration& vibration, const SquaredFrequency& squared, double omega) {
   const double h = 2 / (omega * std::sqrt(1 + vibration.options.damping.local));
   if (!vibration.dashpots() || omega == 0) return h;

@@ -12,7 +12,7 @@
 namespace equidem {
 namespace {
 
-/// What a contact remembers, in numbers: i, j, steps, mode, then the rest; of parts theirs and their arms.
+/// The state of a contact as numbers: i, j, steps, mode, then the other members; for parts also their indices and arms.
 constexpr std::size_t numbers_per_plain_contact = 13;
 constexpr std::size_t numbers_per_pair_of_parts = 6;
 constexpr std::size_t numbers_per_impulse = 3;

@@ -12,7 +12,7 @@ namespace equidem {
 namespace {
 
 constexpr double whole_turn = 2 * std::numbers::pi;
-/// Of angles that are meant to be a whole turn apart, rad per rad.
+/// Relative tolerance of angles that differ by a whole turn, rad per rad.
 constexpr double rounding = 1e-15;
 /// A vector shorter than this has no direction: its square is no number.
 constexpr double shortest = 1e-150;

@@ -23,7 +23,7 @@ namespace {
 
 struct CalibrateVerb {
   CommonOptions common;
-  std::optional<std::filesystem::path> springs;  ///< where the springs file goes
+  std::optional<std::filesystem::path> springs;  ///< path of the springs file
 
   /// The path given, else springs.toml in --out.
   [[nodiscard]] std::optional<std::filesystem::path> springs_path() const {

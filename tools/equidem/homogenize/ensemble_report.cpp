@@ -149,7 +149,7 @@ void add_sizes(Results& out, const EnsembleStatistics& statistics) {
   out.set("ensemble", sizes);
 }
 
-/// How a quantity depends on the size of the cell, and the size it needs.
+/// Dependence of a quantity on the size of the cell, and the required size.
 void add_dependence(Results& out, const EnsembleResult& result, std::size_t quantity) {
   const SizeDependence& d = result.statistics.dependence[quantity];
   const std::string key = std::string("/") + quantity_keys[quantity];

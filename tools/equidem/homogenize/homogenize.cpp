@@ -38,7 +38,7 @@ constexpr std::size_t most_discs_for_bounds = 20000;
 /// Strains of the states that are written, and the names of their files.
 constexpr double written_strain = 1e-3;
 struct WrittenState {
-  const char* suffix;  ///< of the names of its files
+  const char* suffix;  ///< suffix of the names of its files
   const char* label;
   Tensor2 gradient;
 };
@@ -59,7 +59,7 @@ EffectiveStiffness homogenize_with(const Problem& problem, Boundary boundary) {
       {.boundary = boundary, .rotation = problem.resolved.rotation, .solver = problem.resolved.solver});
 }
 
-/// A bound by another boundary; a sample that has none says why.
+/// A bound by another boundary; or the reason why a sample has none.
 StiffnessBeside bound_by(const Problem& problem, Boundary boundary) {
   StiffnessBeside bound{.key = to_string(boundary), .name = to_string(boundary), .stiffness = {}, .missing = {}};
   try {

@@ -16,7 +16,7 @@ namespace equidem {
 /// Equilibrium of settled bodies by statics on the same contacts.
 struct ConfirmedRest {
   std::optional<RestConfirmation> confirmation;
-  std::string why_not = {};  ///< where there is none
+  std::string why_not = {};  ///< reason if there is none
 };
 
 /// Bodies, box, method and springs of the case; the report alone.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What `equidem run` says of bonds; nothing where there are none.
+/// Report of `equidem run` on bonds; empty if there are none.
 #pragma once
 
 #include <string>
@@ -12,9 +12,9 @@
 
 namespace equidem {
 
-/// How many, how they act over a step, the step that they allow.
+/// Number of bonds, their integration over a step, the step limit.
 std::string describe_bonds(const GrainSetup& setup);
-/// How far they gave way since the start.
+/// Deformation of the bonds since the start.
 std::string describe_drift_of_bonds(const BondReport& bonds);
 
 /// bonds {number, critical_time_step (null: none), distance_drift, slip_drift, roll_drift {largest, mean}}.

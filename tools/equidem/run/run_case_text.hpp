@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What the case texts of checkpoints are made of, and events that steps are too long for.
+/// Parts of the case texts of checkpoints, and events that time steps cannot resolve.
 #pragma once
 
 #include <initializer_list>

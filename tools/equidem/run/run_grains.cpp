@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::int64_t samples = 200, samples_of_few = 1000;  // of the energies, the latter where paths are drawn
 
-/// What rounding of positions can make of kinetic energy and of potential.
+/// Possible error of kinetic and potential energy by the rounding of positions.
 double rounding_of_energy(const GrainSetup& setup, const std::vector<Grain>& grains) {
   constexpr double rounding = 1e-15;
   double sum = 0;

@@ -51,7 +51,7 @@ class GrainMeasures final : public RunRecorder {
   std::optional<GrowingCsv> table_, profiles_;
 };
 
-/// How the box shakes, as a line of the report; empty without [shaking].
+/// The shaking of the box as a line of the report; empty without [shaking].
 std::string describe_shaking(const GrainCase& resolved);
 /// shaking: direction, peak_acceleration, ...; nothing without [shaking].
 void add_shaking(JsonObject& object, const GrainCase& resolved);

@@ -24,7 +24,7 @@ std::string range(double smallest, double largest) {
   return smallest == largest ? fmt::format("{:.6g}", smallest) : fmt::format("{:.6g} to {:.6g}", smallest, largest);
 }
 
-/// How many bodies have each shape, in the order of GrainShape.
+/// Number of bodies of each shape, in the order of GrainShape.
 std::array<std::int64_t, 3> counts_of_shapes(const GrainCase& resolved) {
   std::array<std::int64_t, 3> counts{};
   for (const Grain& grain : resolved.scene.grains) ++counts[static_cast<std::size_t>(grain.shape())];
@@ -158,7 +158,7 @@ std::string describe_limit_of_maps(const GrainCase& resolved) {
       "press on one another energy comes and goes; for beds exact_flow or linear_dashpot");
 }
 
-/// Where a balance that lacks much comes from, and what to do.
+/// Likely cause of a large error of the balance, and the remedy.
 std::string advice_on_balance(const GrainSetup& setup, const GrainSimulation& simulation, const EnergyLedger& ledger) {
   const GrainCase& resolved = setup.resolved;
   if (is_map(resolved.options.law)) {

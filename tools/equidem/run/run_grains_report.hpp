@@ -15,7 +15,7 @@ namespace equidem {
 
 /// Bodies, walls, effects, contacts, step.
 std::string describe_grains(const GrainSetup& setup, const GrainSimulation& simulation);
-/// What to do about the balance, and about contacts that were doubtful.
+/// Advice on the energy balance, and on contacts that were doubtful.
 std::string describe_grain_balance(const GrainSetup& setup, const GrainSimulation& simulation, const Balance& balance);
 
 /// time_step, contact_duration, steps_in_contact, omega_time_step, critical_time_step; null where unknown.

@@ -17,12 +17,12 @@ struct GrainSetup {
 
   GrainCase resolved;
   GrainTimeStep step;
-  std::int64_t steps = 0;  ///< of the whole duration
+  std::int64_t steps = 0;  ///< number of steps of the whole duration
 
   /// \throws Error as GrainSimulation does, with its place in the case
   [[nodiscard]] GrainSimulation simulation() const;
-  /// The case as a checkpoint knows it: all that changes the motion, files that it names too, without how long it lasts
-  /// and what is written.
+  /// The case text in a checkpoint: all data that affect the motion, including files that it names, without how long it
+  /// lasts and what is written.
   [[nodiscard]] std::string fingerprint() const;
 };
 

@@ -34,9 +34,9 @@ class RunJob {
 
   /// Lines of the report: scene, effects, step.
   [[nodiscard]] virtual std::string describe() const = 0;
-  /// What happened besides energies.
+  /// Events of the run other than energies.
   [[nodiscard]] virtual std::string describe_events() const { return {}; }
-  /// What to do about the balance.
+  /// Advice on the energy balance.
   [[nodiscard]] virtual std::string describe_balance(const Balance& balance) const = 0;
   /// The time step and the limits that it keeps.
   virtual void add_step(JsonObject& object) const = 0;

@@ -19,7 +19,7 @@
 namespace equidem {
 namespace {
 
-/// Of the fingerprint: "# step 1e-06 s, rule lanczos".
+/// Line of the fingerprint: "# step 1e-06 s, rule lanczos".
 constexpr std::string_view step_line = "\n# step ", step_rule = " s, rule ";
 
 Case with_run(Case resolved) {
@@ -56,7 +56,7 @@ TimeStep step_of(Problem& problem, const Scene& scene, const std::optional<KeptS
   return step;
 }
 
-/// What changes faster than steps can follow.
+/// Schedules that change faster than the steps can resolve.
 void check_events(const Case& resolved, TimeStep& step) {
   constexpr double share_to_mention = 0.05;
   const double end = resolved.run->duration.value_or(0);

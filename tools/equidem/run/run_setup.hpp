@@ -43,8 +43,8 @@ struct RunSetup {
   /// Steps of the whole duration; 0 where the run goes to rest.
   /// \throws Error (bad_input) where they are too many to be counted
   [[nodiscard]] std::int64_t steps() const;
-  /// The case as a checkpoint knows it: all that changes the motion, files that it names too, without how long it lasts
-  /// and what is written.
+  /// The case text in a checkpoint: all data that affect the motion, including files that it names, without how long it
+  /// lasts and what is written.
   [[nodiscard]] std::string fingerprint() const;
 };
 

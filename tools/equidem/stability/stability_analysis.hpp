@@ -49,7 +49,7 @@ struct Stability {
   double element_bound = 0;                 ///< (rad/s)²
   TimeStepRules rules;
 
-  std::int64_t cell_discs = 0;       ///< of the smallest cell of a periodic assembly
+  std::int64_t cell_discs = 0;       ///< number of discs in the smallest cell of a periodic assembly
   std::optional<WaveSurvey> survey;  ///< of a periodic assembly with a small enough cell
   std::vector<PlaneWaves> sound;     ///< of the homogenized continuum, for the directions of the survey, or for two
   double mass_per_area = 0;          ///< kg/m²
@@ -77,8 +77,7 @@ double signed_root(double squared);
 /// Report and JSON of the verb.
 Results stability_results(const Stability& stability);
 
-/// \name Tables and plots of the survey.
-/// \{
+/// \name Tables and plots of the survey. \{
 void write_survey(const std::filesystem::path& folder, const Stability& stability, bool overwrite);
 /// \throws Error (bad_input) where a file of write_survey could not be written
 void expect_survey(const OutputPlan& plan);

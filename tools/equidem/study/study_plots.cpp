@@ -142,7 +142,7 @@ Plot time_plot(const StudyReport& report, const std::string& problem) {
   }
   if (plot.x.label.empty()) plot.x.label = "setting";
   if (plot.x.logarithmic) {
-    // What varies nothing is a level to compare with.
+    // A setting that varies no key is a reference level.
     double least = INFINITY, most = 0;
     for (const StudyRow& row : report.result.rows) {
       if (row.setting.problem != problem || row.setting.values.empty()) continue;

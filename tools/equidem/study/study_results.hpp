@@ -25,10 +25,10 @@ struct StudyReport {
   StudyResult result;
   StudyOptions options;
   Machine machine;
-  std::string command;   ///< that repeats it
+  std::string command;   ///< command that repeats the study
   std::string checksum;  ///< of its settings on this machine and build
   std::optional<double> accuracy;
-  std::vector<Recommendation> recommendations;  ///< where an accuracy is asked for
+  std::vector<Recommendation> recommendations;  ///< set if an accuracy is requested
 };
 
 /// Report and JSON of the verb.

@@ -18,7 +18,7 @@ namespace equidem {
 struct SweepPoint {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-  double value = 0;     ///< of the key
+  double value = 0;     ///< value of the key
   std::string status;   ///< "solved", "unstable", "failed"
   std::string message;  ///< of a point that failed: why
   double poisson_ratio = unknown;

@@ -58,7 +58,7 @@ struct Pair {
   }
 };
 
-/// Of a vector without length: along x.
+/// Direction of a vector; along x for the zero vector.
 Vec2 direction(Vec2 v) {
   const double length = norm(v);
   return length > 0 ? v / length : Vec2{1, 0};

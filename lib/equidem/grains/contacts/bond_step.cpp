@@ -68,7 +68,7 @@ BondModes rates_now(const GrainSystem& system, const TiedPair& bond) {
   return bond_rates(bond.frame, {i.velocity, i.spin}, {j.velocity, j.spin});
 }
 
-/// What the impulses as they stand add to the rates; gravity adds nothing.
+/// Contribution of the present impulses to the rates; gravity has none.
 BondModes gain_by_impulses(const GrainSystem& system, const TiedPair& bond) {
   const auto gain = [&](std::int32_t body) {
     const auto b = static_cast<std::size_t>(body);
@@ -118,7 +118,7 @@ void resist_explicitly(GrainSystem& system, TiedPair& bond, const BondModes& inv
   give(system, bond, bond.impulse);
 }
 
-/// What the motion loses: impulses times the rates when a share of all impulses has acted.
+/// Energy lost by the motion: impulses times the rates after a share of all impulses has acted.
 double loss_of_bonds(const GrainSystem& system, double share) {
   double sum = 0;
   for (const std::size_t b : system.bonds.packed.one_by_one) {

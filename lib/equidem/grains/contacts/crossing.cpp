@@ -11,7 +11,7 @@
 namespace equidem {
 namespace {
 
-/// Of the smallest radius: no body crosses another in so short a way.
+/// Displacement over the smallest radius below which no body can cross another.
 constexpr double slow_way = 0.1;
 
 [[noreturn]] void refuse(const GrainSystem& system, const Candidate& candidate, Vec2 way, double room,

@@ -15,7 +15,7 @@ namespace equidem {
 namespace {
 
 constexpr int most_sweeps = 400;
-/// Of the impulse of a contact: what still changes when sweeps end.
+/// Tolerance of the sweeps: change of the impulse of a contact, relative.
 constexpr double settled = 1e-14;
 /// Below it, changes that do not shrink any more are rounding.
 constexpr double rounding = 1e-12;
@@ -49,7 +49,7 @@ void give(GrainSystem& system, const Candidate& candidate, const Trial& trial, d
   system.bodies.impulses[j].torque -= sign * trial.lever_j * trial.tangential;
 }
 
-/// What a body's velocity and position gain in the step by impulses and gravity.
+/// Change of a body's velocity and position in the step by impulses and gravity.
 struct Gain {
   Vec2 velocity, way;
 };
@@ -256,7 +256,7 @@ void move(GrainSystem& system) {
   });
 }
 
-/// The same where nothing is near enough to push.
+/// The step without any contact in reach.
 void move_freely(GrainSystem& system) {
   const double dt = system.dt();
   const Vec2 fall = dt * system.scene.gravity, drop = (0.5 * dt * dt) * system.scene.gravity;
@@ -269,7 +269,7 @@ void move_freely(GrainSystem& system) {
   });
 }
 
-/// What the contacts remember, and what was lost in them.
+/// Store the state of the contacts, and count their losses.
 void remember(GrainSystem& system, const std::vector<Trial>& trials) {
   for (const Trial& trial : trials) {
     Candidate& candidate = system.contacts.candidates[trial.candidate];

@@ -43,7 +43,7 @@ void shift(GrainSystem& system, const Candidate& candidate, Vec2 moment) {
   if (candidate.j >= 0) system.bodies.moments[static_cast<std::size_t>(candidate.j)] -= moment;
 }
 
-/// What the impulses of the step before and gravity add in a step to the slip of a contact, its own tangential force
+/// Change of the slip of a contact in a step by the impulses of the previous step and gravity, its own tangential force
 /// aside.
 double gain_of_slip(const GrainSystem& system, const Candidate& candidate, const ContactGeometry& geometry,
                     double mass) {

@@ -33,7 +33,7 @@ struct Contact {
   [[nodiscard]] Vec2 tangent() const { return perpendicular(geometry.normal); }
 };
 
-/// Of the contact point of j, or of the wall, over that of i.
+/// Velocity of the contact point of j, or of the wall, relative to that of i.
 [[gnu::always_inline]] inline Vec2 relative_velocity(const GrainSystem& system, const Contact& contact) {
   const GrainMotion& motion = system.bodies.motions[contact.i()];
   const Vec2 of_i = motion.velocity + motion.spin * perpendicular(contact.geometry.arm_i);
@@ -68,7 +68,7 @@ struct Contact {
   return 1 + contact.candidate.reduced_mass * inverse;
 }
 
-/// What the impulses of the step before and gravity add in a step to the slip of a contact, its own tangential force
+/// Change of the slip of a contact in a step by the impulses of the previous step and gravity, its own tangential force
 /// aside.
 [[gnu::always_inline]] inline double gain_of_slip(const GrainSystem& system, const Contact& contact, double mass) {
   const PartGeometry& geometry = contact.geometry;

@@ -22,7 +22,7 @@ TouchImpulse impulse_on(const TouchInstant& contact) {
   return impulse;
 }
 
-/// Of the contact point of j, or of the wall in the drift, over that of i.
+/// Velocity of the contact point of j, or of the wall in the drift, relative to that of i.
 Vec2 relative_velocity(const GrainSystem& system, const TouchImpulse& impulse) {
   const auto at = [&](std::int32_t body, Vec2 arm) {
     const GrainMotion& motion = system.bodies.motions[static_cast<std::size_t>(body)];

@@ -65,7 +65,7 @@ struct BondLanes {
   Lanes normal_rate, tangential_rate, normal_gain, tangential_gain;
 };
 
-/// What the impulses as they stand add to the rates of bond k: along x, along y, to the speed of the rims by torques
+/// Contribution of the present impulses to the rates of bond k: along x, along y, to the speed of the rims by torques
 /// and by impulses along them.
 EQUIDEM_ALWAYS_INLINE Half gain_by_impulses(const BondGroup& group, const BodyImpulse* impulses, int k) {
   Half push_i, push_j, gain_i, gain_j;

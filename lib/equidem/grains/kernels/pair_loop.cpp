@@ -22,7 +22,7 @@ constexpr Lanes all_one = {1, 1, 1, 1, 1, 1, 1, 1};
 /// does not wait for the roots and quotients of one.
 constexpr std::size_t groups_at_once = 8;
 
-/// What a loop does, known where it is compiled.
+/// Compile-time properties of a loop.
 struct PairLoopKind {
   bool friction = false;
   bool equal = false;   ///< one law for all pairs, where the dashpot rests while contacts slide
@@ -51,7 +51,7 @@ EQUIDEM_ALWAYS_INLINE LawLanes law_of(const LoopNumbers& numbers, const PairLaws
   }
 }
 
-/// How eight pairs stand and move: from i to j, along the normal and across it.
+/// Relative positions and velocities of eight pairs: from i to j, along the normal and across it.
 struct Geometry {
   Lanes square, distance, share, overlap, nx, ny, closing;
   Lanes inverse, along, rims;  ///< Verlet schemes; 1/distance
@@ -59,7 +59,7 @@ struct Geometry {
   Lanes middle_closing, middle_slip, middle_rims;
 };
 
-/// What the contacts of a group give.
+/// Results of the contacts of a group.
 struct Outcome {
   Lanes px, py, rim;  ///< impulse on j
   Lanes normal_loss, slip_loss, dashpot_loss, release;

@@ -24,7 +24,7 @@ PairLaw law_of(const Candidate& candidate) {
           candidate.sliding.cap == FrictionCap::spring_alone ? 1.0 : 0.0};
 }
 
-/// Of all kinds but those that are of walls alone.
+/// All kinds except those of walls only.
 std::vector<const PairProperties*> pairs_of_grains(const GrainScene& scene) {
   std::vector<bool> of_walls(static_cast<std::size_t>(scene.kinds)), met(of_walls);
   for (const Wall& wall : scene.walls) of_walls[static_cast<std::size_t>(wall.kind)] = true;

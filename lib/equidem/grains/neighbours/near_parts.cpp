@@ -39,7 +39,7 @@ class NewList {
     ++at_;
     return true;
   }
-  /// Of the pair gone on to, which is apart: a direction along which it was, or {}.
+  /// For the next pair, if it is apart: a direction along which it was apart, or {}.
   [[nodiscard]] Vec2 apart() const {
     if (!listed_) return {};
     return {old().numbers[PartGroup::normal_x][lane()], old().numbers[PartGroup::normal_y][lane()]};
@@ -142,7 +142,7 @@ Apart apart_along_axes(const Ellipse& i, const Ellipse& j, Vec2 branch) {
   return best;
 }
 
-/// How far two parts are apart, or a bound of it that is enough; below 0: the overlap.
+/// Gap of two parts, or a sufficient lower bound of it; negative: overlap.
 /// \param[in,out] apart a direction along which they were apart, or {}
 double gap_of(const GrainSystem& system, std::int32_t p, std::int32_t q, double enough, Vec2& apart) {
   const GrainPart &part_i = system.shapes.parts[static_cast<std::size_t>(p)],

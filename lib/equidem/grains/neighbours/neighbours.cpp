@@ -59,7 +59,8 @@ constexpr int most_row_bits = 44;
 constexpr std::size_t size_classes = 513;  ///< one for each power of four
 constexpr std::size_t bodies_per_task = 8192;
 
-/// How far a body may be from another whose radius is at most `radius`, and more than any rounding of a distance.
+/// Largest distance of a body from another whose radius is at most `radius`, plus an allowance for the rounding of
+/// distances.
 double far_reach(double radius_a, double radius, double margin) {
   return (radius_a + radius + margin) * (1 + 1e-14);
 }

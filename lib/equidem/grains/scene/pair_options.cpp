@@ -34,7 +34,7 @@ std::string linear_laws_with_dashpot() {
   return names;
 }
 
-/// What each way to the stiffness of a contact needs.
+/// Requirements of each way to give the stiffness of a contact.
 class StiffnessCheck {
  public:
   StiffnessCheck(const PairOptions& options, const LawDescription& law, Body body)

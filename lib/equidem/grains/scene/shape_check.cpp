@@ -13,7 +13,7 @@
 namespace equidem {
 namespace {
 
-/// Of the radius: what is left to rounding where a clump was put in place.
+/// Tolerance over the radius, for rounding in the placement of clumps.
 constexpr double tolerance = 1e-6;
 
 void check_clump(const Clump& clump, const Grain& grain, std::size_t i) {

@@ -38,7 +38,7 @@ bool move_alike(const Wall& a, const Wall& b) {
   return a.move_x == b.move_x && a.move_y == b.move_y;
 }
 
-/// What a contact remembers, taken up by another one in the same place.
+/// Transfer of the state of a contact to another one at the same point.
 void go_on(const Candidate& left, Candidate& contact) {
   contact.touching = true;
   contact.parted = left.parted;
