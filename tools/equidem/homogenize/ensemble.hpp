@@ -23,8 +23,7 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
 /// As many random cells, as large as the accuracy needs, whatever sizes and numbers the case names; the case that is
 /// written names those that were chosen.
 /// \throws Error (bad_input) where the case has no periodic cells; (computation_failed) where the accuracy is beyond
-///         all means;
-///         (interrupted)
+///         all means; (interrupted)
 int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, double accuracy);
 
 // Shared by both.
