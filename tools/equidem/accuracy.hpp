@@ -30,7 +30,7 @@ struct ReachedAccuracy {
     double time_factor = 1;  ///< times the time of what was chosen
     double seconds = 0;      ///< by that
     AccuracySetting value;
-    std::string note;  ///< said in its place, where nothing would have to be done or could be done; may be empty
+    std::string note;  ///< text in its place if no action is necessary or possible; may be empty
   } ten_times_more;
 };
 

@@ -72,7 +72,7 @@ void add_groups(Assembly& assembly, const Case& resolved) {
   }
 }
 
-/// Whatever acts on a group needs one that exists and holds discs.
+/// Tables that act on a group need an existing group that contains discs.
 void check_group_names(const Assembly& assembly, const Case& resolved) {
   for (const char* table : {"support", "load", "velocity", "probe"}) {
     const TomlValue* list = resolved.document.find(table);

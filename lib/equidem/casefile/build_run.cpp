@@ -60,7 +60,7 @@ void check_velocities(const Case& resolved, const Assembly& assembly) {
   }
 }
 
-/// No velocity is given where a support says how a disc moves, no spin where nothing turns with it.
+/// No velocity is set where a support prescribes the motion, no spin where rotation is not an unknown.
 void check_velocities_count(const Case& resolved, const Scene& scene) {
   struct Component {
     const char *name, *key;

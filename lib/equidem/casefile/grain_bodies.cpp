@@ -44,10 +44,10 @@ std::vector<std::string_view> cells_of(std::string_view row) {
 enum Column { x, y, radius, short_half_axis, vx, vy, spin, angle, density, discs, group, columns };
 constexpr std::array<const char*, columns> names = {"x",    "y",     "radius",  "short_half_axis", "vx",   "vy",
                                                     "spin", "angle", "density", "discs",           "group"};
-/// What a run writes beside, and this reader passes over.
+/// Columns that a run also writes, ignored by this reader.
 constexpr std::array ignored = {"grain", "mass_kg", "mass_kg_per_m"};
 
-/// As a run writes them.
+/// Columns as written by a run.
 constexpr std::array<const char*, columns> with_units = {"x_m",
                                                          "y_m",
                                                          "radius_m",

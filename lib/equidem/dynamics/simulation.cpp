@@ -97,7 +97,7 @@ void Simulation::Implementation::keep_inertia() {
   data.mass_damping = options.damping.mass;
 }
 
-// Velocities are given at time 0. Leapfrog wants them half a step earlier, the fourth-order scheme positions a little
+// Velocities are given at time 0. Leapfrog needs them half a step earlier, the fourth-order scheme positions a little
 // later.
 void Simulation::Implementation::start() {
   std::vector<DiscMotion> given(scene.assembly.size());

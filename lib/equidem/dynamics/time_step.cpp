@@ -94,8 +94,8 @@ double critical_of_leapfrog(const Vibration& vibration, const SquaredFrequency& 
   return std::exp(x - std::abs(f));
 }
 
-/// v' = v - h M^-1 (C v + K u), u' = u + h (v + v')/2 wants h K < 2 C and h C < 2 M. The first holds where it does at
-/// every contact, mass-proportional damping alpha M >= alpha/omega² K helping.
+/// v' = v - h M^-1 (C v + K u), u' = u + h (v + v')/2 requires h K < 2 C and h C < 2 M. The first holds where it does
+/// at every contact, mass-proportional damping alpha M >= alpha/omega² K helping.
 double critical_of_thesis(const Vibration& vibration, const SquaredFrequency& squared, double omega) {
   const double alpha = vibration.options.damping.mass;
   double slowest = vibration.scene.assembly.contacts.empty() ? 0 : infinite, fastest = 0;  // c/k, lambda of M^-1 C

@@ -20,8 +20,8 @@ namespace equidem {
 ///         (computation_failed) where every sample is refused; (interrupted), with what is done kept in --out
 int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool resume = false);
 
-/// As many random cells, as large as the accuracy needs, whatever sizes and numbers the case names; the case that is
-/// written names those that were chosen.
+/// Random cells in the number and size that the accuracy requires, regardless of the sizes and numbers in the case; the
+/// case that is written names those that were chosen.
 /// \throws Error (bad_input) where the case has no periodic cells; (computation_failed) where the accuracy is beyond
 ///         all means; (interrupted)
 int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, double accuracy);

@@ -25,7 +25,7 @@ class GrainMeasures final : public RunRecorder {
   GrainMeasures(const GrainCase& resolved, const GrainSimulation& simulation);
 
   /// Write measures.csv, surface.csv and thrown.csv (when a body was first seen apart) into a folder.
-  /// \param continue_after go on with the files of an earlier run
+  /// \param continue_after continue the files of an earlier run
   /// \throws Error (bad_input) as GrowingCsv
   void open(const std::filesystem::path& folder, bool overwrite, std::optional<std::int64_t> continue_after) override;
   [[nodiscard]] std::int64_t last_step() const override {

@@ -15,7 +15,7 @@
 
 namespace equidem {
 
-/// The step of a run that goes on.
+/// The step of a resumed run.
 struct KeptStep {
   double step = 0;   ///< s
   std::string rule;  ///< by which it was chosen

@@ -58,7 +58,7 @@ std::string in_one_line(std::string text) {
   return text;
 }
 
-/// toml++ says "Error while parsing X: what"; the user needs what.
+/// Messages of toml++ are "Error while parsing X: what"; only `what` is reported.
 std::string reason_of(const toml::parse_error& error) {
   std::string reason(error.description());
   if (reason.starts_with("Error while parsing ")) reason = "in the " + reason.substr(20);

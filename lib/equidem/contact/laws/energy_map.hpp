@@ -63,7 +63,7 @@ struct EnergyMap : Map {
     // equals.
     const double e = restitution;
     const double t =
-        std::fmin(depth / closing, 1e100);  // far above 1 only where the caller says first; squares must not overflow
+        std::fmin(depth / closing, 1e100);  // large only if `first` is set at a deep overlap; squares must not overflow
     const double at = a * t;
     const double r = std::sqrt(1 + at * t);
     const double less_c = (1 - e) + e * (at * t / (r * (1 + r)));                 // 1 - c

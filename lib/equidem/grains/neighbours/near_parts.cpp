@@ -126,7 +126,7 @@ struct Apart {
   Vec2 normal = {};
 };
 
-/// The best of the axes of both, towards j: what a box round each says.
+/// The axis of either part, towards j, with the largest gap of their bounding boxes.
 Apart apart_along_axes(const Ellipse& i, const Ellipse& j, Vec2 branch) {
   Apart best;
   const double c = dot(i.axis, j.axis), s = cross(i.axis, j.axis);

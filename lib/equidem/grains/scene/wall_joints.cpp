@@ -68,7 +68,7 @@ std::optional<std::pair<std::size_t, std::size_t>> coinciding_walls(std::span<co
     if (b.shape == arc) return false;  // a chord
     if (first && second) return true;
     if (b.shape == line || first == second) return false;
-    // one end of a is on b: do they go on in the same direction?
+    // one end of a is on b: check whether they continue in the same direction
     const Vec2& common = first ? a.point : a.end;
     const Vec2 way = (first ? a.end : a.point) - common;
     const double apart = tolerance * (norm(way) + norm(b.end - b.point));

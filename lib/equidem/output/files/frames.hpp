@@ -55,7 +55,7 @@ class FrameWriter {
  public:
   /// \param assembly must outlive the writer
   /// \throws Error (bad_input) where a file exists and neither `overwrite` nor `continue_after` is set, where it cannot
-  ///         be written, or where the file to go on with holds no frames of this assembly
+  ///         be written, or if the file to continue contains no frames of this assembly
   FrameWriter(const std::filesystem::path& folder, const std::string& name, const Assembly& assembly,
               const FrameOptions& options);
 

@@ -27,7 +27,7 @@ class GrowingCsv {
  public:
   /// \param columns the first is the step
   /// \throws Error (bad_input) where the file exists and neither `overwrite` nor `continue_after` is set, where it
-  ///         cannot be written, or where the file to go on with has other columns
+  ///         cannot be written, or if the file to continue has other columns
   GrowingCsv(std::filesystem::path path, std::vector<std::string> columns, const GrowingCsvOptions& options);
   /// Writes the remaining rows and ignores errors; call flush() before.
   ~GrowingCsv();

@@ -34,7 +34,7 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// Errors are returned, not printed. Files are not locked: others may look at a run that goes on.
+/// Errors are returned, not printed. Files are not locked, so that other programs can read them during a run.
 Handle file_access() {
   H5dont_atexit();  // its clean-up at the end of the process crashes where a file could not be closed: disk full
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);

@@ -62,8 +62,8 @@ class ProbeWriter {
  public:
   /// \param bodies of the scene
   /// \throws Error (bad_input) where two probes share a name or one has no body or one that is not there, where the
-  ///         file exists and neither `overwrite` nor `continue_after` is set, where it cannot be written, or where the
-  ///         file to go on with has other columns
+  ///         file exists and neither `overwrite` nor `continue_after` is set, where it cannot be written, or if the
+  ///         file to continue has other columns
   ProbeWriter(std::filesystem::path path, std::vector<Probe> probes, std::size_t bodies, const ProbeOptions& options);
 
   /// Add a row.

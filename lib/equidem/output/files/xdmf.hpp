@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// XDMF 2: the index by which ParaView finds frames in an HDF5 file. Of ParaView's readers of XDMF only "Xdmf Reader"
-/// reads slabs of arrays (those of XDMF 3 skip them), and of the endings it knows xdmf2 is the one that calls no other.
+/// reads slabs of arrays (those of XDMF 3 skip them), and of its file name extensions only xdmf2 selects no other
+/// reader.
 #pragma once
 
 #include <cstdint>

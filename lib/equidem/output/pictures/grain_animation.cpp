@@ -112,7 +112,7 @@ std::string parts_of(const GrainAnimation& animation) {
   return text + "]";
 }
 
-/// Of a line what crosses the view, and more for when it moves.
+/// The piece of a line within the view, longer if the line moves.
 std::string wall_points(const Wall& wall, const View& view) {
   std::vector<Vec2> points;
   if (wall.shape == Wall::Shape::line) {

@@ -176,7 +176,7 @@ void draw_clump(Canvas& canvas, const PageFrame& frame, const Grain& grain, std:
   }
 }
 
-/// What ties the discs of a clump: from its mass centre to their centres.
+/// Lines that connect the discs of a clump: from its centre of mass to their centres.
 void draw_ties(Canvas& canvas, const PageFrame& frame, const Grain& grain, std::span<const Clump::Disc> discs,
                const Colour& colour) {
   constexpr double width = 2;
@@ -228,7 +228,7 @@ void draw_bonds(Canvas& canvas, const PageFrame& frame, const GrainPicture& pict
   }
 }
 
-/// Of bodies that are no discs only the places are known: a circle in the middle.
+/// For bodies that are not discs only the positions are known: a circle at the centre.
 void draw_starts(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
   if (picture.paths.empty()) return;
   for (std::size_t g = 0; g < picture.grains.size(); ++g) {

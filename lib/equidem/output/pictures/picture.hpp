@@ -55,8 +55,8 @@ struct PictureOptions {
   std::vector<DrawnSupport> supports = {};
 };
 
-/// Above this many discs they are drawn as an image in which each point has the colour of the nearest disc, in the
-/// SVG too, and outlines and force chains, too fine to be seen, are left out (the caption says so).
+/// Above this many discs they are drawn as an image in which each point has the colour of the nearest disc, in the SVG
+/// too, and outlines and force chains, too fine to be seen, are omitted (stated in the caption).
 inline constexpr std::size_t most_drawn_discs = 10000;
 
 struct PictureResult {
@@ -69,7 +69,7 @@ struct PictureResult {
 
 /// Write NAME.svg and NAME.png. Positions are those of the discs moved by the scaled displacements; a contact through
 /// the period is drawn as two halves. Numbers of both signs are coloured on a diverging map, of one sign on a
-/// sequential one (colour_map.hpp says how the range is chosen).
+/// sequential one (colour_map.hpp describes the choice of the range).
 /// \throws Error (bad_input) on an empty assembly, motions or radii that are not finite, a width out of range, a load
 ///         or support at an absent disc, and as write_file does
 PictureResult write_picture(const std::filesystem::path& folder, const std::string& name, const AssemblyState& state,

@@ -31,7 +31,7 @@ constexpr std::size_t longest_complaint = 4096;
   _exit(not_installed);
 }
 
-/// What the child writes until it closes its end; false where it takes longer than the limit.
+/// Reads the output of the child until it closes the pipe; false if it exceeds the time limit.
 bool read_until_closed(int pipe_end, double time_limit, std::string& text) {
   const Stopwatch watch;
   char buffer[1024];
@@ -47,7 +47,7 @@ bool read_until_closed(int pipe_end, double time_limit, std::string& text) {
   }
 }
 
-/// gnuplot echoes the line with a caret under the fault and says "line 7: what" last.
+/// gnuplot echoes the line with a caret under the fault and prints "line 7: what" last.
 std::string last_line(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
   const std::size_t start = text.rfind('\n');

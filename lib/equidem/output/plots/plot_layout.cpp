@@ -66,7 +66,7 @@ double to_graph(double value, const AxisRange& range, bool logarithmic) {
   return (value - range.min) / (range.max - range.min);
 }
 
-/// What the legend and the labels must not cover: markers, and lines as dense points.
+/// Points that the legend and the labels must not cover: markers, and lines as dense points.
 std::vector<Point> obstacles_of(const Plot& plot, const PlotLayout& layout) {
   std::vector<Point> obstacles;
   for (const Series& series : plot.series) {

@@ -111,7 +111,7 @@ class RunLoop {
     }
   }
 
-  /// Where the run goes on: an entry that was made there only because the run ended is dropped.
+  /// Continuation of the run: an entry made only because the run ended is dropped.
   [[nodiscard]] std::int64_t last_entry(const Recurrence& times) const {
     return times.at(simulation_.step()) ? simulation_.step() : simulation_.step() - 1;
   }
