@@ -165,7 +165,7 @@ void GrainSimulation::advance(std::int64_t steps) {
       self.system.contacts.near.record = k + 1 == steps || now + 1 - self.kept.step >= steps_between_kept_states;
       self.make_step();
     } catch (...) {
-      // it has changed contacts before it was refused: come to its start again, from a state before it
+      // the failed step has changed contacts: repeat the steps from an earlier state to its start
       go_back_to(self.kept);
       while (self.system.step < now) {
         self.system.contacts.near.record = self.system.step + 1 == now;

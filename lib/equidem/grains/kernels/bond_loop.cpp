@@ -230,7 +230,7 @@ void put_row(const GrainBody& body, double sign, BondGroup::Row& row) {
   std::copy(std::begin(numbers), std::end(numbers), row);
 }
 
-/// Lanes not yet used do nothing, with bodies that are there.
+/// Sets lane `from`; lane 0 also sets the others as unused, with its bodies and zero impulse coefficients.
 void put(const GrainSystem& system, const TiedPair& bond, BondGroup& group, std::size_t from) {
   const GrainBody& i = system.bodies.constants[static_cast<std::size_t>(bond.i)];
   const GrainBody& j = system.bodies.constants[static_cast<std::size_t>(bond.j)];

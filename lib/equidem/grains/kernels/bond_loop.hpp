@@ -16,7 +16,7 @@ namespace equidem {
 
 struct TiedPair;
 
-/// Eight bonds; an unused lane has the bodies of the first and zero constants.
+/// Eight bonds; an unused lane has the bodies of the first and zero impulse coefficients.
 struct alignas(64) BondGroup {
   /// Factors from a body's impulse, a row of four, to the gain of velocity and of rim speed.
   using Row = double[4];
