@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/case.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "equidem/casefile/build.hpp"
@@ -189,6 +190,17 @@ TEST_CASE("the_description_names_every_key_and_its_example_is_valid") {
   REQUIRE(begin != std::string::npos);
   REQUIRE(end != std::string::npos);
   CHECK(error_of(text.substr(begin, end - begin)).empty());
+}
+
+TEST_CASE("the_reference_page_is_what_the_program_says") {
+  const std::string written = read_file(std::filesystem::path(EQUIDEM_SOURCE_DIR) / "docs/case_file.md");
+  const std::string page = case_file_page();
+  const auto [in_file, in_page] = std::ranges::mismatch(written, page);
+  INFO("docs/case_file.md is stale; make it again: build/dev/tools/equidem help case --markdown > docs/case_file.md");
+  INFO("first difference in line " << 1 + std::count(page.begin(), in_page, '\n'));
+  CHECK(std::string(in_file, std::find(in_file, written.end(), '\n')) ==
+        std::string(in_page, std::find(in_page, page.end(), '\n')));
+  CHECK(written.size() == page.size());
 }
 
 TEST_CASE("a_springs_file_stands_in_for_the_springs") {

@@ -7,7 +7,7 @@ import os
 import pathlib
 import unittest
 
-from program import CASES, TENSION, ProgramTest, equidem, parse_json
+from program import CASES, SOURCE, TENSION, ProgramTest, equidem, parse_json
 
 
 class Usage(ProgramTest):
@@ -28,6 +28,10 @@ class Usage(ProgramTest):
         for word in ("[assembly]", "[springs]", "[material]", "[test]", "[[support]]", "[[load]]", "kN", "default"):
             self.assertIn(word, text)
         self.assertLessEqual(max(map(len, text.splitlines())), 110)
+
+    def test_help_case_as_markdown_is_the_reference_page(self):
+        page = (SOURCE / "docs" / "case_file.md").read_text(encoding="utf-8")
+        self.assertEqual(self.check_done(equidem("help", "case", "--markdown")).stdout, page)
 
     def test_version_names_version_and_libraries(self):
         text = self.check_done(equidem("--version")).stdout

@@ -19,6 +19,8 @@
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/json.hpp"
 
+#include "command.hpp"
+
 namespace equidem {
 namespace {
 
@@ -101,7 +103,8 @@ void show_help(const Program& program, const CLI::App& app, const std::vector<st
   std::vector<std::string> topics;
   for (const HelpTopic& topic : program.topics) {
     if (arguments[1] == topic.name) {
-      std::fputs(topic.text().c_str(), stdout);
+      const bool markdown = topic.markdown && arguments.size() > 2 && arguments[2] == "--markdown";
+      std::fputs((markdown ? topic.markdown : topic.text)().c_str(), stdout);
       return;
     }
     topics.emplace_back(topic.name);

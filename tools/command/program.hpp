@@ -36,6 +36,7 @@ struct Refusal {
 struct HelpTopic {
   const char* name;
   std::string (*text)();
+  std::string (*markdown)() = nullptr;  ///< printed with --markdown
 };
 
 struct Program {

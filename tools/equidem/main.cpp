@@ -16,7 +16,7 @@ constexpr const char* footer = R"(Examples:
   equidem run data/cases/grains_cradle.toml --out cradle
   equidem pack data/cases/pack_jammed.toml --out jammed
   equidem study integrators --accuracy 1e-4
-  equidem help case          every key of the case file
+  equidem help case          every key of the case file; with --markdown as a page
 
 The tables and figures of published papers are computed by the program equidem-papers.
 
@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
       .usage = "VERB CASE.toml [OPTIONS]",
       .footer = footer,
       .verbs = verbs,
-      .topics = {{"case", describe_case_file}},
+      .topics = {{"case", describe_case_file, case_file_page}},
       .refusals = {{"--accuracy", "this verb takes no --accuracy", "it has no setting that could be chosen for one",
                     "solve, homogenize, run and study do; 'equidem study --list' shows what accuracy costs"},
                    {"reproduce", "equidem has no verb 'reproduce'", "papers have a program of their own",

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include "equidem/casefile/case_tables.hpp"
 #include "equidem/casefile/grain_tables.hpp"
 #include "equidem/casefile/pack_case.hpp"
 #include "equidem/casefile/study_case.hpp"
+#include "equidem/core/text.hpp"
 
 namespace equidem {
 namespace {
@@ -90,22 +93,77 @@ A study, for 'equidem study': error against time over the keys of a case. An exa
   values = [9, 17, 33, 65]
 )";
 
-std::string describe_tables(const casefile::FileSpec& spec) {
+/// One kind of case file in help and page.
+struct Part {
+  const char* title;
+  const char* introduction;
+  const casefile::FileSpec& spec;
+  bool describes_top = false;
+  std::vector<std::string_view> left_out = {};  ///< tables that an earlier part describes
+};
+
+std::vector<Part> parts() {
+  return {{"Assemblies of discs", example, casefile::case_file().spec(), true},
+          {"Bodies that collide", grain_example, casefile::grain_file().spec(), false, {"schedule", "output"}},
+          {"Packings", pack_example, pack_file_spec()},
+          {"Studies", study_example, study_file_spec()}};
+}
+
+using Describe = std::string(const casefile::FileSpec&, const casefile::TableSpec&);
+
+std::string tables_of(const Part& part, Describe& describe) {
   std::string out;
-  for (const casefile::TableSpec& table : spec.tables) out += describe_table(spec, table);
+  for (const casefile::TableSpec& table : part.spec.tables)
+    if (std::ranges::find(part.left_out, table.name) == part.left_out.end()) out += describe(part.spec, table);
   return out;
+}
+
+constexpr const char* page_top = R"(# The case file
+
+The keys of all case files: [assemblies of discs](#assemblies-of-discs), [bodies that collide](#bodies-that-collide),
+[packings](#packings) and [studies](#studies). `equidem help case --markdown` prints this page, `equidem help case` its
+content as plain text.
+)";
+
+/// The introduction with its example, the lines indented by two spaces, as a block of code.
+std::string markdown_introduction(std::string_view introduction) {
+  std::string out;
+  bool in_example = false;
+  if (introduction.starts_with('\n')) introduction.remove_prefix(1);
+  while (!introduction.empty()) {
+    const std::size_t end = introduction.find('\n');
+    std::string_view line = introduction.substr(0, end);
+    introduction.remove_prefix(end == std::string_view::npos ? introduction.size() : end + 1);
+    if (line.starts_with("  ") != in_example) {
+      out += in_example ? "```\n" : "```toml\n";
+      in_example = !in_example;
+    }
+    if (in_example) line.remove_prefix(2);
+    out += fmt::format("{}\n", line);
+  }
+  return in_example ? out + "```\n" : out;
 }
 
 }  // namespace
 
 std::string describe_case_file() {
-  const casefile::FileSpec& spec = casefile::case_file().spec();
-  std::string out = example;
-  out += "At the top of the file\n" + describe_keys(spec, "") + describe_tables(spec) + grain_example;
-  const casefile::FileSpec& grains = casefile::grain_file().spec();
-  for (const casefile::TableSpec& table : grains.tables)
-    if (table.name != "schedule" && table.name != "output") out += describe_table(grains, table);
-  return out + pack_example + describe_tables(pack_file_spec()) + study_example + describe_tables(study_file_spec());
+  std::string out;
+  for (const Part& part : parts()) {
+    out += part.introduction;
+    if (part.describes_top) out += "At the top of the file\n" + describe_keys(part.spec, "");
+    out += tables_of(part, casefile::describe_table);
+  }
+  return out;
+}
+
+std::string case_file_page() {
+  std::string out = page_top;
+  for (const Part& part : parts()) {
+    out += fmt::format("\n## {}\n\n{}", part.title, markdown_introduction(part.introduction));
+    if (part.describes_top) out += "### Top of the file\n" + markdown_keys(part.spec, "");
+    out += tables_of(part, casefile::markdown_table);
+  }
+  return out;
 }
 
 }  // namespace equidem

@@ -48,12 +48,12 @@ struct FirstThrow {
 
 /// Strongest period of the slope of the surface.
 struct Sloshing {
-  double from = 0;                ///< s, start of the history examined
-  double period = not_measured;   ///< s
-  double amplitude = 0;           ///< of the slope
+  double from = 0;                  ///< s, start of the history examined
+  double period = not_measured;     ///< s
+  double amplitude = 0;             ///< of the slope
   double frequency_resolution = 0;  ///< Hz
-  double theory = not_measured;   ///< s, sloshing_period of a liquid of the depth before the shaking
-  std::string missing = {};       ///< why there is no period
+  double theory = not_measured;     ///< s, sloshing_period of a liquid of the depth before the shaking
+  std::string missing = {};         ///< why there is no period
 };
 
 class BoxMeasures {

@@ -74,7 +74,7 @@ struct WallPlace {
 };
 
 /// The bodies sorted by position.
-struct Bodies {
+struct GrainBodies {
   std::vector<GrainBody> constants;
   std::vector<GrainMotion> motions;
   std::vector<GrainMotion> next;  ///< motions after the present step
@@ -130,7 +130,7 @@ struct GrainSystem {
   bool friction = false;
   double smallest_radius = 0;  ///< smallest radius of the inscribed circles of all parts, m
 
-  Bodies bodies;
+  GrainBodies bodies;
   Shapes shapes;
   Walls walls;
   ContactList contacts;

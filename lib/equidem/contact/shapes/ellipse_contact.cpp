@@ -37,8 +37,8 @@ struct Pair {
   Vec2 branch;
   double near;  ///< angle_of_arrival
 
-  Pair(const Ellipse& first, const Ellipse& second, Vec2 branch_)
-      : i(first), j(second), branch(branch_), near(angle_of_arrival(first, second)) {}
+  Pair(const Ellipse& first, const Ellipse& second, Vec2 between)
+      : i(first), j(second), branch(between), near(angle_of_arrival(first, second)) {}
 
   /// Inlined, or the numbers would go through memory: a third of the time.
   [[nodiscard, gnu::always_inline]] Sample at(Vec2 n) const {
