@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What every law of the list promises. tests/laws runs these tests for a longer list as well.
+/// Properties that every law of the list has. tests/laws runs these tests for a longer list as well.
 #include <algorithm>
 #include <cmath>
 #include <vector>

@@ -11,7 +11,7 @@
 
 namespace equidem::test {
 
-/// The same scene with a kind that no body is of, whose contacts slide always with each other and have springs with the
+/// That scene with a kind that no body is of, whose contacts slide always with each other and have springs with the
 /// rest: with both in a scene contacts are computed one by one.
 inline GrainScene one_by_one(GrainScene scene) {
   PairProperties sprung = scene.pairs[0], sliding = scene.pairs[0];

@@ -24,8 +24,8 @@ inline std::string name_of(BodyKind kind) {
   return names[static_cast<std::size_t>(kind)];
 }
 
-/// Of mass 1, a bonded pair of mass 2, in a circle of the radius given: an ellipse of aspect 2, a clump of three discs,
-/// a pair of two.
+/// A body of mass 1, or a bonded pair of mass 2, in a circle of the radius given: an ellipse of aspect 2, a clump of
+/// three discs, a pair of two.
 inline void add_body(GrainScene& scene, BodyKind kind, Vec2 place, double radius, double angle = 0,
                      Vec2 velocity = {}) {
   const double r = radius;

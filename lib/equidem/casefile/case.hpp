@@ -145,7 +145,7 @@ Case parse_case(std::string_view text, const std::string& name, const std::files
 /// Every key of every kind of case file with type, unit, range, default and meaning, as text of at most 100 columns.
 std::string describe_case_file();
 
-/// The same as a page in Markdown, docs/case_file.md.
+/// The help of the case file as a page in Markdown, docs/case_file.md.
 std::string case_file_page();
 
 /// Whether a path such as "springs.kT" or "load.0.moment" names a key of the case file.

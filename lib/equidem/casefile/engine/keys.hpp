@@ -108,7 +108,7 @@ bool is_known_key(const FileSpec& spec, std::string_view path);
 std::string describe_keys(const FileSpec& spec, std::string_view table);
 std::string describe_table(const FileSpec& spec, const TableSpec& table);
 
-/// The same as a table in Markdown: key, value, default and meaning.
+/// These keys as a table in Markdown: key, value, default and meaning.
 std::string markdown_keys(const FileSpec& spec, std::string_view table);
 std::string markdown_table(const FileSpec& spec, const TableSpec& table);
 
