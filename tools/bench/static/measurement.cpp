@@ -12,6 +12,7 @@
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/cholmod_factorization.hpp"
 #include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
+#include "equidem/statics/assemble_stiffness.hpp"
 
 #include "fill.hpp"
 #include "problem.hpp"
