@@ -7,10 +7,10 @@ set(EQUIDEM_PRECOMPILED <algorithm> <array> <cmath> <cstdint> <filesystem> <func
 
 # Flags of every target of the project, on an interface target that is not installed.
 add_library(equidem_compiler INTERFACE)
-# Contraction to fused multiply-add is left to the compiler's taste and the machine's: without it a seed gives the
-# same assembly everywhere. Kernels that want it say so themselves.
-target_compile_options(equidem_compiler INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off)
+# Products and sums are fused only in targets with the property EQUIDEM_FUSED: whether they are depends on the compiler
+# and the processor, and without it a seed gives the same assembly everywhere.
+target_compile_options(equidem_compiler INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+  -ffp-contract=$<IF:$<BOOL:$<TARGET_PROPERTY:EQUIDEM_FUSED>>,fast,off>)
 if(EQUIDEM_WARNINGS_AS_ERRORS)
   target_compile_options(equidem_compiler INTERFACE -Werror)
 endif()
