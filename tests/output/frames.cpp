@@ -176,7 +176,8 @@ TEST_CASE("a_killed_run_leaves_all_finished_frames_readable") {
     CAPTURE(listed);
     CHECK(index.ends_with("</Xdmf>\n"));
     CHECK(listed <= found.finished);
-    CHECK(listed >= found.finished - 1);
+    // Of many frames the index is written after every few: it may lack the last percent of them.
+    CHECK(listed >= found.finished - 1 - found.finished / 100);
     most = std::max(most, found.finished);
     least = std::min(least, found.finished);
     if (found.finished == 1) longest = std::min<std::uint64_t>(longest + longest / 4, 300000);
