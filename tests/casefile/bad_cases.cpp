@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "equidem/casefile/build.hpp"
-#include "equidem/casefile/case_tables.hpp"
+#include "equidem/casefile/assembly/build.hpp"
+#include "equidem/casefile/assembly/case_tables.hpp"
 #include "equidem/core/nearest.hpp"
 
 #include "example.hpp"

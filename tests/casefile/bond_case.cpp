@@ -4,8 +4,8 @@
 #include <fstream>
 #include <string>
 
-#include "equidem/casefile/grain_case.hpp"
-#include "equidem/casefile/grain_step.hpp"
+#include "equidem/casefile/grains/grain_case.hpp"
+#include "equidem/casefile/grains/grain_step.hpp"
 #include "equidem/core/error.hpp"
 
 #include "support/catch.hpp"

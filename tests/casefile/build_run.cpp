@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/build_run.hpp"
+#include "equidem/casefile/assembly/build_run.hpp"
 
 #include <filesystem>
 #include <numbers>
 #include <string>
 #include <vector>
 
-#include "equidem/casefile/build.hpp"
+#include "equidem/casefile/assembly/build.hpp"
 
 #include "example.hpp"
 #include "support/catch.hpp"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 
 #include <algorithm>
 #include <filesystem>
 
-#include "equidem/casefile/build.hpp"
-#include "equidem/casefile/case_tables.hpp"
+#include "equidem/casefile/assembly/build.hpp"
+#include "equidem/casefile/assembly/case_tables.hpp"
 #include "equidem/core/file.hpp"
 
 #include "example.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/error.hpp"
 
 namespace equidem::test {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <string>
 
-#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/random.hpp"
 
 #include "example.hpp"

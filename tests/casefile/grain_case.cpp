@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/grain_case.hpp"
+#include "equidem/casefile/grains/grain_case.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "equidem/casefile/engine/echo.hpp"
-#include "equidem/casefile/grain_step.hpp"
+#include "equidem/casefile/grains/grain_step.hpp"
 #include "equidem/core/text.hpp"
 
 #include "example.hpp"

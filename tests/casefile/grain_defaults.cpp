@@ -3,9 +3,9 @@
 /// A case file of grains or of a packing that gives no more than it must means the defaults of the options.
 #include <string>
 
-#include "equidem/casefile/grain_case.hpp"
-#include "equidem/casefile/grain_step.hpp"
-#include "equidem/casefile/pack_case.hpp"
+#include "equidem/casefile/grains/grain_case.hpp"
+#include "equidem/casefile/grains/grain_step.hpp"
+#include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/core/text.hpp"
 
 #include "support/catch.hpp"

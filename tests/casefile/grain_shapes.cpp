@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "equidem/casefile/grain_case.hpp"
-#include "equidem/casefile/grain_step.hpp"
+#include "equidem/casefile/grains/grain_case.hpp"
+#include "equidem/casefile/grains/grain_step.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/material/wave_speed_springs.hpp"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <filesystem>
 
-#include "equidem/casefile/build.hpp"
-#include "equidem/casefile/case.hpp"
-#include "equidem/casefile/springs_file.hpp"
+#include "equidem/casefile/assembly/build.hpp"
+#include "equidem/casefile/assembly/case.hpp"
+#include "equidem/casefile/assembly/springs_file.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 

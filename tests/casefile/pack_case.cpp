@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/pack_case.hpp"
+#include "equidem/casefile/packing/pack_case.hpp"
 
 #include <filesystem>
 #include <string>

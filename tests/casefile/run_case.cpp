@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/run_case.hpp"
+#include "equidem/casefile/assembly/run_case.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-#include "equidem/casefile/grain_case.hpp"
+#include "equidem/casefile/grains/grain_case.hpp"
 
 #include "casefile/grain_example.hpp"
 #include "support/catch.hpp"

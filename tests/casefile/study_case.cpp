@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/study_case.hpp"
+#include "equidem/casefile/study/study_case.hpp"
 
 #include <cmath>
 #include <string>

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "equidem/casefile/grain_case.hpp"
+#include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/output/files/grain_frames.hpp"
 #include "equidem/output/files/grain_tables.hpp"

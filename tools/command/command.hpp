@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/casefile/engine/echo.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/stopwatch.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 
 #include "verbs.hpp"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "equidem/casefile/build.hpp"
-#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/assembly/build.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/vector.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/output/files/state.hpp"
 #include "equidem/output/pictures/picture.hpp"
 

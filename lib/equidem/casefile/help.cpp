@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
-#include "equidem/casefile/case_tables.hpp"
-#include "equidem/casefile/grain_tables.hpp"
-#include "equidem/casefile/pack_case.hpp"
-#include "equidem/casefile/study_case.hpp"
+#include "equidem/casefile/assembly/case_tables.hpp"
+#include "equidem/casefile/grains/grain_tables.hpp"
+#include "equidem/casefile/packing/pack_case.hpp"
+#include "equidem/casefile/study/study_case.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <memory>
 
-#include "equidem/casefile/build.hpp"
+#include "equidem/casefile/assembly/build.hpp"
 #include "equidem/core/text.hpp"
 
 #include "command.hpp"

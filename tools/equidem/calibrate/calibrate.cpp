@@ -9,7 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "equidem/casefile/springs_file.hpp"
+#include "equidem/casefile/assembly/springs_file.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "equidem/casefile/build.hpp"
+#include "equidem/casefile/assembly/build.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"

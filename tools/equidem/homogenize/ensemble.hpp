@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/homogenize/ensemble/ensemble.hpp"
 
 #include "command.hpp"

@@ -3,7 +3,7 @@
 
 #include "equidem/assembly/files.hpp"
 #include "equidem/casefile/engine/echo.hpp"
-#include "equidem/casefile/pack_case.hpp"
+#include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"

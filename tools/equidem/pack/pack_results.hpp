@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "equidem/casefile/pack_case.hpp"
+#include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/output/results.hpp"
 #include "equidem/packing/measures.hpp"
 #include "equidem/packing/network.hpp"

@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "equidem/casefile/grain_case.hpp"
+#include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "equidem/casefile/grain_case.hpp"
+#include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/fields/box_measures.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/output/files/growing_csv.hpp"

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string>
 
-#include "equidem/casefile/grain_case.hpp"
-#include "equidem/casefile/grain_step.hpp"
+#include "equidem/casefile/grains/grain_case.hpp"
+#include "equidem/casefile/grains/grain_step.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 
 namespace equidem {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/output/files/json.hpp"
 #include "equidem/output/run/run_loop.hpp"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "equidem/casefile/build_run.hpp"
+#include "equidem/casefile/assembly/build_run.hpp"
 #include "equidem/core/checksum.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"

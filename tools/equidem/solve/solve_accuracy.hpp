@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/study/refinement.hpp"
 
 #include "accuracy.hpp"

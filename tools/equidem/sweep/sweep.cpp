@@ -9,7 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/progress.hpp"

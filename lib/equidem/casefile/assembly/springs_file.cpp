@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/springs_file.hpp"
+#include "equidem/casefile/assembly/springs_file.hpp"
 
 #include <sstream>
 
-#include "equidem/casefile/case_tables.hpp"
+#include "equidem/casefile/assembly/case_tables.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/material/elastic_material.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/case_tables.hpp"
+#include "equidem/casefile/assembly/case_tables.hpp"
 
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/core/names.hpp"

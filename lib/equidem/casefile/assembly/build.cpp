@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/build.hpp"
+#include "equidem/casefile/assembly/build.hpp"
 
 #include <algorithm>
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "equidem/assembly/assembly.hpp"
-#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/material_springs.hpp"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/grain_case.hpp"
+#include "equidem/casefile/grains/grain_case.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "equidem/casefile/engine/read_value.hpp"
-#include "equidem/casefile/grain_tables.hpp"
+#include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/nearest.hpp"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/study_case.hpp"
+#include "equidem/casefile/study/study_case.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <sstream>
 
-#include "equidem/casefile/case_tables.hpp"
+#include "equidem/casefile/assembly/case_tables.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/core/file.hpp"
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "equidem/assembly/assembly.hpp"
-#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/dynamics/simulation.hpp"
 

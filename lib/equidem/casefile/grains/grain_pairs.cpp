@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "equidem/casefile/engine/read_value.hpp"
-#include "equidem/casefile/grain_tables.hpp"
+#include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/contact/laws/normal_law.hpp"
 #include "equidem/core/text.hpp"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "equidem/casefile/engine/bind.hpp"
-#include "equidem/casefile/grain_case.hpp"
+#include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/grains/scene/shaking.hpp"
 
 namespace equidem {

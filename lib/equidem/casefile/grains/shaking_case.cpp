@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "equidem/casefile/engine/read_value.hpp"
-#include "equidem/casefile/grain_tables.hpp"
+#include "equidem/casefile/grains/grain_tables.hpp"
 
 namespace equidem {
 namespace {

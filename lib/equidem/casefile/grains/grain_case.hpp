@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/fields/box_measures.hpp"
 #include "equidem/grains/scene/grain_time_step.hpp"

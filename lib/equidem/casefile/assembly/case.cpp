@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/case.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 
 #include <algorithm>
 
-#include "equidem/casefile/case_tables.hpp"
+#include "equidem/casefile/assembly/case_tables.hpp"
 #include "equidem/casefile/engine/echo.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
-#include "equidem/casefile/grain_tables.hpp"
+#include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/build_run.hpp"
+#include "equidem/casefile/assembly/build_run.hpp"
 
 #include <cassert>
 #include <map>
 #include <set>
 
 #include "equidem/assembly/body_inertia.hpp"
-#include "equidem/casefile/build.hpp"
+#include "equidem/casefile/assembly/build.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/dynamics/walls.hpp"

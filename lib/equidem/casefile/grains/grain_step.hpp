@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "equidem/casefile/grain_case.hpp"
+#include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/grains/scene/grain_time_step.hpp"
 
 namespace equidem {

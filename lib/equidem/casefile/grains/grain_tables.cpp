@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/grain_tables.hpp"
+#include "equidem/casefile/grains/grain_tables.hpp"
 
-#include "equidem/casefile/case_tables.hpp"
+#include "equidem/casefile/assembly/case_tables.hpp"
 
 namespace equidem::casefile {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/grain_step.hpp"
+#include "equidem/casefile/grains/grain_step.hpp"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/pack_case.hpp"
+#include "equidem/casefile/packing/pack_case.hpp"
 
-#include "equidem/casefile/case_tables.hpp"
+#include "equidem/casefile/assembly/case_tables.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/material/wave_speed_springs.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "equidem/casefile/engine/read_value.hpp"
-#include "equidem/casefile/grain_tables.hpp"
+#include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 

@@ -13,8 +13,8 @@
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
+#include "equidem/casefile/assembly/run_case.hpp"
 #include "equidem/casefile/engine/toml.hpp"
-#include "equidem/casefile/run_case.hpp"
 #include "equidem/casefile/schedule_case.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
