@@ -7,7 +7,7 @@
 
 #include "equidem/casefile/assembly/build.hpp"
 #include "equidem/casefile/assembly/case_tables.hpp"
-#include "equidem/core/nearest.hpp"
+#include "equidem/core/names.hpp"
 
 #include "example.hpp"
 #include "support/catch.hpp"

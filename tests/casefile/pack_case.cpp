@@ -105,7 +105,7 @@ TEST_CASE("contradictions_of_a_packing_are_told_with_their_line") {
       {{"packing.solid_fraction=0.5"}, "all given"},
       {{"packing.grains=none"}, "amount to pack is missing"},
       {{"packing.method=falling", "packing.solid_fraction=auto"}, "falling"},
-      {{"packing.method=falling", "packing.sides=periodic"}, "for ever"},
+      {{"packing.method=falling", "packing.sides=periodic"}, "never come to rest"},
       {{"packing.method=local_moves", "packing.solid_fraction=auto"}, "local_moves"},
       {{"packing.method=grow"}, "growth"},
       {{"springs.shear_wave_speed=150.0"}, "how stiff"},

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Strain from the motion of discs: gauges and the fitted displacement gradient.
-#include "equidem/homogenize/strain.hpp"
-
 #include <string>
 #include <vector>
+
+#include "equidem/homogenize/tension_test.hpp"
 
 #include "homogenize/samples.hpp"
 #include "support/catch.hpp"

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "equidem/assembly/body_inertia.hpp"
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/homogenize/bounds.hpp"

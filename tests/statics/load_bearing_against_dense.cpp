@@ -14,9 +14,9 @@
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/random.hpp"
+#include "equidem/linear/contact_graph.hpp"
 #include "equidem/statics/load_bearing.hpp"
 #include "equidem/statics/number_unknowns.hpp"
-#include "equidem/statics/unwrapped_pieces.hpp"
 
 #include "support/catch.hpp"
 

@@ -15,6 +15,7 @@
 #include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/rigidity.hpp"
 
+#include "statics/rigidity_report.hpp"
 #include "support/catch.hpp"
 #include "support/off_line_networks.hpp"
 #include "support/sturm.hpp"

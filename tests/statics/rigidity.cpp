@@ -13,6 +13,7 @@
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 
+#include "statics/rigidity_report.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;

@@ -14,6 +14,7 @@
 #include "equidem/statics/assemble_stiffness.hpp"
 #include "equidem/statics/rigidity.hpp"
 
+#include "statics/rigidity_report.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/study/front.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "equidem/core/random.hpp"
+#include "equidem/study/evaluate.hpp"
 
 #include "support/catch.hpp"
 

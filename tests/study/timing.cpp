@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/study/timing.hpp"
-
 #include <cmath>
 #include <vector>
 
 #include "equidem/core/random.hpp"
 #include "equidem/core/stopwatch.hpp"
+#include "equidem/study/run_study.hpp"
 
 #include "support/catch.hpp"
 

@@ -18,14 +18,14 @@ using namespace equidem::test;
 
 namespace {
 
-const ContactSprings equal_springs(SpringConstants{1, 1});
+const ContactSprings unit_springs(SpringConstants{1, 1});
 
 }  // namespace
 
 // The wave M is one of the motions that repeat with a cell of even size.
 TEST_CASE("a_periodic_hexagonal_cell_gives_way_at_minus_one_third") {
   const auto [columns, rows] = GENERATE(std::pair{2, 2}, std::pair{6, 4}, std::pair{5, 8});
-  const CriticalRatio found = find_critical_ratio(periodic_hexagonal(columns, rows), equal_springs, {});
+  const CriticalRatio found = find_critical_ratio(periodic_hexagonal(columns, rows), unit_springs, {});
   CAPTURE(columns, rows, found.ratio, found.factorizations);
   CHECK(std::abs(found.ratio + 1.0 / 3) < 1e-10);
   CHECK(found.mechanisms == 0);
@@ -34,7 +34,7 @@ TEST_CASE("a_periodic_hexagonal_cell_gives_way_at_minus_one_third") {
 TEST_CASE("the_square_cell_gives_way_at_zero") {
   for (const int n : {2, 3, 6}) {
     CAPTURE(n);
-    const CriticalRatio found = find_critical_ratio(periodic_square(n, n), equal_springs, {});
+    const CriticalRatio found = find_critical_ratio(periodic_square(n, n), unit_springs, {});
     CHECK(std::abs(found.ratio) <= 1e-10);
   }
 }
@@ -42,13 +42,13 @@ TEST_CASE("the_square_cell_gives_way_at_zero") {
 TEST_CASE("inertia_and_waves_agree_on_random_cells") {
   const Assembly cell = random_cell(GENERATE(6, 30), GENERATE(1, 2, 3));
   const bool rotation = GENERATE(true, false);
-  const BlochWaves waves(given_cell(cell, equal_springs), unit_masses(cell), rotation);
+  const BlochWaves waves(given_cell(cell, unit_springs), unit_masses(cell), rotation);
   const Vec2 period = *cell.period;
   for (const auto& [x, y] :
        {std::pair{false, false}, std::pair{true, false}, std::pair{false, true}, std::pair{true, true}}) {
     const Vec2 q{x ? std::numbers::pi / period.x : 0, y ? std::numbers::pi / period.y : 0};
     const CriticalRatio found =
-        find_critical_ratio(cell, equal_springs, {}, {.rotation = rotation, .antiperiodic_x = x, .antiperiodic_y = y});
+        find_critical_ratio(cell, unit_springs, {}, {.rotation = rotation, .antiperiodic_x = x, .antiperiodic_y = y});
     const double expected = waves.critical_ratio(q);
     CAPTURE(cell.size(), rotation, x, y, found.ratio, expected, found.factorizations);
     if (expected < -1) {
@@ -81,13 +81,13 @@ TEST_CASE("the_tension_test_loses_its_edges_first") {
   for (const Known& known : {Known{5, -0.3360}, Known{7, -0.2995}, Known{11, -0.2754}, Known{19, -0.2658}}) {
     const Assembly block = hexagonal_lattice({.columns = known.size, .rows = known.size});
     const TensionSetup setup = tension_setup(block, {});
-    const CriticalRatio found = find_critical_ratio(block, equal_springs, setup.supports);
+    const CriticalRatio found = find_critical_ratio(block, unit_springs, setup.supports);
     CAPTURE(known.size, found.ratio, found.factorizations);
     CHECK(found.ratio == Approx(known.ratio).margin(5e-5));
     CHECK(found.factorizations < 20);
     CHECK(found.ratio > before);
     before = found.ratio;
-    const CriticalRatio coarse = find_critical_ratio(block, equal_springs, setup.supports, {.tolerance = 1e-4});
+    const CriticalRatio coarse = find_critical_ratio(block, unit_springs, setup.supports, {.tolerance = 1e-4});
     CHECK(std::abs(coarse.ratio - found.ratio) < 1e-4);
   }
 }

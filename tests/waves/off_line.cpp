@@ -4,10 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "equidem/assembly/body_inertia.hpp"
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
-#include "equidem/waves/sound.hpp"
 #include "equidem/waves/vibration.hpp"
 #include "equidem/waves/wave_survey.hpp"
 

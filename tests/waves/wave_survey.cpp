@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "equidem/homogenize/effective_stiffness.hpp"
-#include "equidem/waves/sound.hpp"
 
 #include "support/catch.hpp"
 #include "support/fields.hpp"

@@ -14,7 +14,7 @@
 
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/nearest.hpp"
+#include "equidem/core/names.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/json.hpp"

@@ -44,7 +44,7 @@ void check_discs(const Assembly& assembly) {
       bad_input(fmt::format("disc {} has its centre at ({}, {})", d, x, y),
                 fmt::format("centres must lie within {} m of the origin", longest_length), "Choose other units");
     }
-    if (!(assembly.radii[d] > 0) || !std::isfinite(assembly.radii[d])) {
+    if (!is_positive(assembly.radii[d])) {
       bad_input(fmt::format("disc {} has the radius {}", d, assembly.radii[d]), "radii must be positive and finite",
                 "Correct it");
     }
@@ -175,7 +175,7 @@ void check_contacts(const Assembly& assembly) {
   check_count("normal springs", assembly.contact_kN.size(), "contacts", m);
   check_count("tangential springs", assembly.contact_kT.size(), "contacts", m);
   for (std::size_t c = 0; c < m; ++c) {
-    if (!(assembly.contact_kN[c] > 0) || !std::isfinite(assembly.contact_kN[c])) {
+    if (!is_positive(assembly.contact_kN[c])) {
       bad_input(fmt::format("{}, has kN = {} Pa", described(assembly.contacts[c], c), assembly.contact_kN[c]),
                 "a normal spring must be positive and finite", "Correct it or remove the contact");
     }
@@ -207,6 +207,24 @@ void check_group(const Assembly& assembly, const std::string& name, const DiscGr
                             discs.tributary_lengths[k]),
                 "tributary lengths must be finite and not negative", "Correct it");
     }
+  }
+}
+
+void check_box(const Assembly& assembly) {
+  if (!assembly.box) return;
+  const auto& [low, high] = *assembly.box;
+  const std::string box = fmt::format("the box from ({:g}, {:g}) to ({:g}, {:g}) m", low.x, low.y, high.x, high.y);
+  if (assembly.period)
+    bad_input(box + " stands beside a period", "a periodic cell fills its period", "Remove one of the two");
+  if (!(measurable(high.x - low.x) && measurable(high.y - low.y))) {
+    bad_input(fmt::format("{} is {:g} m wide and {:g} m high", box, high.x - low.x, high.y - low.y), length_limits(),
+              "Give its lower left corner, then its upper right one");
+  }
+  for (std::size_t d = 0; d < assembly.size(); ++d) {
+    const Vec2 x = assembly.centres[d];
+    if (x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y) continue;
+    bad_input(fmt::format("the centre of disc {}, ({:g}, {:g}) m, lies outside {}", d, x.x, x.y, box),
+              "the cells of all discs fill the box", "Correct the box, or remove it");
   }
 }
 
@@ -250,28 +268,6 @@ std::string length_limits() {
                      shortest_length, longest_length);
 }
 
-namespace {
-
-void check_box(const Assembly& assembly) {
-  if (!assembly.box) return;
-  const auto& [low, high] = *assembly.box;
-  const std::string box = fmt::format("the box from ({:g}, {:g}) to ({:g}, {:g}) m", low.x, low.y, high.x, high.y);
-  if (assembly.period)
-    bad_input(box + " stands beside a period", "a periodic cell fills its period", "Remove one of the two");
-  if (!(measurable(high.x - low.x) && measurable(high.y - low.y))) {
-    bad_input(fmt::format("{} is {:g} m wide and {:g} m high", box, high.x - low.x, high.y - low.y), length_limits(),
-              "Give its lower left corner, then its upper right one");
-  }
-  for (std::size_t d = 0; d < assembly.size(); ++d) {
-    const Vec2 x = assembly.centres[d];
-    if (x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y) continue;
-    bad_input(fmt::format("the centre of disc {}, ({:g}, {:g}) m, lies outside {}", d, x.x, x.y, box),
-              "the cells of all discs fill the box", "Correct the box, or remove it");
-  }
-}
-
-}  // namespace
-
 void check(const Assembly& assembly) {
   if (assembly.period && !(finite(*assembly.period) && assembly.period->x > 0 && assembly.period->y > 0)) {
     bad_input(fmt::format("the period is ({}, {}) m", assembly.period->x, assembly.period->y),
@@ -295,6 +291,17 @@ const DiscGroup& group(const Assembly& assembly, const std::string& name) {
   bad_input(fmt::format("the assembly has no group '{}'", name),
             names.empty() ? std::string("it has no groups at all") : "its groups are " + names,
             assembly.periodic() ? "Name one of them; a periodic cell has no sides of its own" : "Name one of them");
+}
+
+std::vector<Inertia> inertia_of(const Assembly& assembly, double density, Body body) {
+  std::vector<Inertia> all = inertia_of(assembly.radii, density, body);
+  if (!assembly.sections.empty() && body != Body::disc) {
+    bad_input("the bodies of the assembly are set to be spheres", "its file gives their cross-sections",
+              "Write body = \"disc\", or remove \"sections\" from the file");
+  }
+  for (std::size_t d = 0; d < assembly.sections.size(); ++d)
+    all[d] = {density * assembly.sections[d].area, density * assembly.sections[d].polar_moment};
+  return all;
 }
 
 }  // namespace equidem

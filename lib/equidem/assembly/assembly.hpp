@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Discs, the contacts that join them, and the cell they live in.
+/// Discs, the contacts that join them, and their cell.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "equidem/core/vector.hpp"
+#include "equidem/material/inertia.hpp"
 
 namespace equidem {
 
@@ -26,7 +27,7 @@ struct Contact {
   double lever_j = 0;  ///< m
 };
 
-/// Where a contact lies that is not on the line of centres. With the normal n and s = (-n_y, n_x) the contact point is
+/// The place of a contact off the line of centres. With the normal n and s = (-n_y, n_x) the contact point is
 ///
 ///   x_i + lever_i n + offset_i s   and, the same point,   x_j - lever_j n - offset_j s,
 ///
@@ -62,8 +63,9 @@ struct Assembly {
   std::vector<Vec2> centres;  ///< m
   std::vector<double> radii;  ///< m
   std::vector<Contact> contacts;
-  std::optional<Vec2> period;         ///< (Lx, Ly) in m of a periodic cell; none: free boundary
-  std::optional<Rectangle> box;       ///< free: what the cells fill; none: the smallest rectangle that holds all discs
+  std::optional<Vec2> period;  ///< (Lx, Ly) in m of a periodic cell; none: free boundary
+  std::optional<Rectangle>
+      box;  ///< free: the region that the cells fill; none: the smallest rectangle that holds all discs
   std::vector<double> cell_areas;     ///< m², the Voronoi (power) cell of each disc, clipped to the sides where free
   std::vector<double> facet_lengths;  ///< m, per contact: the edge its two cells share; empty where unknown
   std::vector<ContactArms> contact_arms;    ///< per contact; empty: all lie on the lines of centres, n = l/|l|
@@ -112,5 +114,9 @@ void check(const Assembly& assembly);
 /// The disc group of that name.
 /// \throws Error (bad_input) where there is none, naming those that exist
 const DiscGroup& group(const Assembly& assembly, const std::string& name);
+
+/// Inertia of every body: from its section where the assembly has sections, else that of the disc or sphere of its
+/// radius. \throws Error (bad_input) as inertia_of a disc; on spheres where there are sections
+std::vector<Inertia> inertia_of(const Assembly& assembly, double density, Body body);
 
 }  // namespace equidem

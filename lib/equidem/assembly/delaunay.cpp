@@ -32,7 +32,7 @@ void check(const DelaunayOptions& options) {
               "Correct it, or ask for poisson_disc points");
   }
   const RadiusDistribution& radii = options.radii;
-  if (!(radii.smallest > 0) || !std::isfinite(radii.smallest)) {
+  if (!is_positive(radii.smallest)) {
     bad_input(fmt::format("the smallest radius is {} m", radii.smallest), "radii must be positive and finite",
               "Correct it");
   }

@@ -28,14 +28,14 @@ struct DelaunayOptions {
   bool periodic = false;
 };
 
-/// The mean spacing of neighbours is the mean diameter: the rectangle, from the origin to its upper right corner, has
-/// 2 sqrt3 a² for each disc, a = (smallest + largest)/2. Contacts are the edges of the triangulation, each at the
+/// The mean spacing of neighbours is the mean diameter: the rectangle, from the origin to its upper right corner, has 2
+/// sqrt3 a² for each disc, a = (smallest + largest)/2. Contacts are the edges of the triangulation, each at the
 /// midpoint of its branch (equal radii) or at the radical axis, kept between the two centres; facet lengths are those
 /// of the Voronoi (power) cells, clipped to the rectangle where free. An edge whose facet is a single point or lies
-/// outside the rectangle is no contact. Discs that fewer than two contacts would hold are
-/// left out: one whose power cell its neighbours have taken, one in a corner with a single neighbour. Discs are
-/// numbered along a Hilbert curve. Groups of a free assembly: the discs whose cells touch a side or hold a corner, with
-/// the length of the side in their cell. Same options, same assembly, on every machine.
+/// outside the rectangle is no contact. Discs that fewer than two contacts would hold are left out: one whose power
+/// cell its neighbours have taken, one in a corner with a single neighbour. Discs are numbered along a Hilbert curve.
+/// Groups of a free assembly: the discs whose cells touch a side or hold a corner, with the length of the side in their
+/// cell. Same options, same assembly, on every machine.
 /// \throws Error (bad_input) on options out of range
 Assembly delaunay_assembly(const DelaunayOptions& options);
 

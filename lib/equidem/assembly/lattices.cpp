@@ -26,12 +26,11 @@ const Lattice* find_lattice(std::string_view name) {
 }
 
 std::string lattice_counts() {
-  std::string text;
+  std::vector<std::string> sentences;
   for (const Lattice& lattice : known_lattices) {
-    if (*lattice.counts == '\0') continue;
-    text += fmt::format("{}{}, {}", text.empty() ? "" : ". ", lattice.name, lattice.counts);
+    if (*lattice.counts != '\0') sentences.push_back(fmt::format("{}, {}", lattice.name, lattice.counts));
   }
-  return text;
+  return joined(sentences, ". ");
 }
 
 }  // namespace equidem

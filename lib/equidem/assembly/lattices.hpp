@@ -6,7 +6,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "equidem/assembly/lattices/hexagonal.hpp"
 #include "equidem/assembly/lattices/lattice.hpp"
@@ -14,7 +13,7 @@
 
 namespace equidem {
 
-/// In the order of the choices of the case file.
+/// All lattices, in the order of the choices of the case file.
 std::span<const Lattice> all_lattices();
 
 /// The lattice with this name; null where there is none. With Assembly::kind: the lattice of an assembly.

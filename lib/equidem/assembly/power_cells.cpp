@@ -90,7 +90,8 @@ class DualGeometry {
   }
 
  private:
-  /// Where on the line of a and b, along s, the power of the site c is the same too. With u = b - a, v = c - a, w = c
+  /// The place on the line of a and b, along s, at which the power of the site c is the same too. With u = b - a, v = c
+  /// - a, w = c
   /// - b: t = |u| (v.w + (w_a - w_c) - (w_a - w_b) u.v/|u|²) / (2 u x v), for equal weights |u|/2 times the cotangent
   /// of the angle at c. The product u x v is taken of the two shorter sides, where it loses least.
   [[nodiscard]] double radical_centre(const TriangulationEdge& edge, std::int32_t c, Vec2 u, double length) const {

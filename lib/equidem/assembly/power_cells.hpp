@@ -4,7 +4,6 @@
 /// the sides of a rectangle that the cells take.
 #pragma once
 
-#include <array>
 #include <map>
 #include <optional>
 #include <string>

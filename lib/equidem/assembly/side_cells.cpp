@@ -2,7 +2,6 @@
 #include "equidem/assembly/side_cells.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace equidem {
@@ -16,7 +15,7 @@ struct Parabola {
   double excess = 0;    ///< m², distance² - radius²
 };
 
-/// Where two parabolas cross; before it the one with the lesser `along` is the lower.
+/// Abscissa at which two parabolas cross; before it the one with the lesser `along` is the lower.
 double crossing(const Parabola& p, const Parabola& q) {
   return 0.5 * (p.along + q.along) + (q.excess - p.excess) / (2 * (q.along - p.along));
 }

@@ -8,7 +8,7 @@
 
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/core/file.hpp"
-#include "equidem/core/nearest.hpp"
+#include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/contact/contact_springs.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -19,19 +18,6 @@ std::string name_of(const Assembly& assembly, std::size_t contact) {
   return fmt::format("contact {} (discs {} and {})", contact, c.i, c.j);
 }
 
-/// \param where the contact, or empty for the springs of the case
-void check(const SpringConstants& k, const std::string& where) {
-  const std::string of = where.empty() ? "" : " of " + where;
-  if (!(k.kN > 0 && std::isfinite(k.kN))) {
-    bad_input(fmt::format("the normal spring{} is kN = {:.6g} Pa", of, k.kN), "it must be positive and finite",
-              "Give a kN above 0 Pa");
-  }
-  if (!std::isfinite(k.kT)) {
-    bad_input(fmt::format("the tangential spring{} is kT = {:.6g} Pa", of, k.kT), "it must be finite",
-              "Give a number of Pa");
-  }
-}
-
 /// cos 2 theta, sin 2 theta, cos 4 theta, sin 4 theta at the direction of a contact. Odd harmonics of psi vanish: each
 /// contact is seen from both of its discs.
 std::array<double, 4> harmonics_at(const Assembly& assembly, std::size_t contact) {
@@ -41,7 +27,7 @@ std::array<double, 4> harmonics_at(const Assembly& assembly, std::size_t contact
   return {c2, s2, c2 * c2 - s2 * s2, 2 * c2 * s2};
 }
 
-/// By how much the springs of the case are multiplied at each contact.
+/// Factors of the springs of the case at each contact.
 std::vector<double> weights(const Assembly& assembly, SpringWeighting weighting) {
   const std::size_t count = assembly.contacts.size();
   std::vector<double> weight(count);
@@ -59,7 +45,7 @@ std::vector<double> weights(const Assembly& assembly, SpringWeighting weighting)
   }
   if (assembly.facet_lengths.size() != count) {
     bad_input("the weighting \"voronoi\" has no cell edges to weight with",
-              "only assemblies made by triangulation know the edge that the cells of two discs share",
+              "only assemblies made by triangulation have the edges that the cells of two discs share",
               "Use an assembly of kind \"delaunay\", or another weighting");
   }
   for (std::size_t c = 0; c < count; ++c) {
@@ -73,16 +59,6 @@ std::vector<double> weights(const Assembly& assembly, SpringWeighting weighting)
 }
 
 }  // namespace
-
-bool ContactSprings::any_tangential() const {
-  if (uniform()) return uniform_.kT != 0;
-  return std::any_of(per_contact_.begin(), per_contact_.end(), [](const SpringConstants& k) { return k.kT != 0; });
-}
-
-bool ContactSprings::any_negative() const {
-  if (uniform()) return uniform_.kT < 0;
-  return std::any_of(per_contact_.begin(), per_contact_.end(), [](const SpringConstants& k) { return k.kT < 0; });
-}
 
 double ContactSprings::largest() const {
   const auto larger = [](const SpringConstants& k) { return std::max(std::abs(k.kN), std::abs(k.kT)); };
@@ -99,7 +75,7 @@ ContactSprings contact_springs(const Assembly& assembly, SpringConstants springs
   assert(!own_kT || assembly.contact_kT.size() == count);
   const bool case_is_used = !own_kN || !own_kT;
   if (case_is_used) {
-    check({own_kN ? 1.0 : springs.kN, own_kT ? 0.0 : springs.kT}, "");
+    check({own_kN ? 1.0 : springs.kN, own_kT ? 0.0 : springs.kT});
     if (weighting == SpringWeighting::uniform && !own_kN && !own_kT) return ContactSprings(springs);
   }
 
@@ -109,7 +85,7 @@ ContactSprings contact_springs(const Assembly& assembly, SpringConstants springs
   for (std::size_t c = 0; c < count; ++c) {
     result[c] = {own_kN ? assembly.contact_kN[c] : weight[c] * springs.kN,
                  own_kT ? assembly.contact_kT[c] : weight[c] * springs.kT};
-    check(result[c], name_of(assembly, c));
+    check(result[c], "of " + name_of(assembly, c));
   }
   return ContactSprings(std::move(result));
 }
@@ -137,6 +113,38 @@ std::vector<double> contact_density(const Assembly& assembly) {
     psi.push_back(psi_mean * (1 + mean.a2 * h[0] + mean.b2 * h[1] + mean.a4 * h[2] + mean.b4 * h[3]));
   }
   return psi;
+}
+
+ContactSprings equal_springs(const ContactSprings& springs) {
+  return springs.changed([](SpringConstants k) {
+    return SpringConstants{k.kN != 0 ? 1.0 : 0.0, k.kT != 0 ? 1.0 : 0.0};
+  });
+}
+
+ContactSprings scaled_springs(const ContactSprings& springs, double factor) {
+  return springs.changed([factor](SpringConstants k) { return SpringConstants{factor * k.kN, factor * k.kT}; });
+}
+
+double spring_unit(const ContactSprings& springs) {
+  const double largest = springs.largest();
+  constexpr int least = -1000;  // its inverse does not overflow
+  return largest > 0 ? std::ldexp(1.0, std::max(least, std::ilogb(largest))) : 1.0;
+}
+
+double spring_spread(const Assembly& assembly, const ContactSprings& springs) {
+  double smallest = springs.largest();
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    const SpringConstants k = springs[c];
+    smallest = std::min(smallest, k.kN);
+    if (k.kT != 0) smallest = std::min(smallest, std::abs(k.kT));
+  }
+  return springs.largest() / smallest;
+}
+
+void refuse_spread(double spread) {
+  bad_input(fmt::format("the springs differ by a factor of {:.1e}", spread),
+            "the softest of them is lost in the round-off of the stiffest",
+            "Choose springs within a factor of 1e10 of each other");
 }
 
 }  // namespace equidem

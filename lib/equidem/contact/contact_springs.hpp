@@ -3,8 +3,8 @@
 /// The springs of every contact of an assembly.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -40,14 +40,31 @@ class ContactSprings {
     return per_contact_.empty() ? uniform_ : per_contact_[contact];
   }
   [[nodiscard]] bool uniform() const { return per_contact_.empty(); }
+  /// The springs change(k) in place of every k.
+  template <typename Change>
+  [[nodiscard]] ContactSprings changed(const Change& change) const {
+    ContactSprings result = *this;
+    result.uniform_ = change(uniform_);
+    for (SpringConstants& k : result.per_contact_) k = change(k);
+    return result;
+  }
   /// Whether some contact has a tangential spring.
-  [[nodiscard]] bool any_tangential() const;
+  [[nodiscard]] bool any_tangential() const {
+    return any([](const SpringConstants& k) { return k.kT != 0; });
+  }
   /// Whether some contact has a negative tangential spring (static-only).
-  [[nodiscard]] bool any_negative() const;
+  [[nodiscard]] bool any_negative() const {
+    return any([](const SpringConstants& k) { return k.kT < 0; });
+  }
   /// Largest |kN| and |kT| of any contact, Pa.
   [[nodiscard]] double largest() const;
 
  private:
+  template <typename Predicate>
+  [[nodiscard]] bool any(const Predicate& holds) const {
+    return uniform() ? holds(uniform_) : std::any_of(per_contact_.begin(), per_contact_.end(), holds);
+  }
+
   SpringConstants uniform_;
   std::vector<SpringConstants> per_contact_;
 };
@@ -66,5 +83,21 @@ ContactHarmonics contact_harmonics(const Assembly& assembly);
 
 /// Contacts per radian around one disc at each contact's direction, psi(theta) of its harmonics (Abe 1996, eq. 11).
 std::vector<double> contact_density(const Assembly& assembly);
+
+/// Every spring replaced by one of 1 Pa, which keeps the zero-energy modes but not the energies of the other modes.
+ContactSprings equal_springs(const ContactSprings& springs);
+
+/// All springs times a factor.
+ContactSprings scaled_springs(const ContactSprings& springs, double factor);
+
+/// The power of two at or below the largest spring, Pa, or 1: dividing by it rounds nothing.
+double spring_unit(const ContactSprings& springs);
+
+/// The stiffest spring over the softest that there is, by magnitude.
+double spring_spread(const Assembly& assembly, const ContactSprings& springs);
+
+/// Refuse springs so far apart that the softest leaves too few digits of a double beside the stiffest.
+/// \throws Error (bad_input) with their ratio
+[[noreturn]] void refuse_spread(double spread);
 
 }  // namespace equidem

@@ -16,7 +16,19 @@ Effects::Entry rotation_entry(bool tangential_springs, bool off_lines, Rotation 
   return {"rotation", true, "tangential springs turn the discs"};
 }
 
-Effects derive(const ContactSprings& springs, bool off_lines, Rotation rotation) {
+}  // namespace
+
+std::string Effects::report() const {
+  std::vector<std::string> active, inactive;
+  for (const Entry& entry : entries) {
+    if (entry.active) active.push_back(entry.name);
+    if (!entry.active) inactive.push_back(fmt::format("{} ({})", entry.name, entry.why));
+  }
+  const std::string text = "active: " + joined(active) + ".";
+  return inactive.empty() ? text : text + " inactive: " + joined(inactive) + ".";
+}
+
+Effects derive_effects(const ContactSprings& springs, Rotation rotation, bool off_lines) {
   Effects effects;
   effects.tangential_springs = springs.any_tangential();
   const Effects::Entry turning = rotation_entry(effects.tangential_springs, off_lines, rotation);
@@ -24,36 +36,14 @@ Effects derive(const ContactSprings& springs, bool off_lines, Rotation rotation)
   effects.restrained = !turning.active && (effects.tangential_springs || off_lines);
 
   effects.entries.push_back({"normal springs", true, "every contact has one"});
-  if (effects.tangential_springs) {
-    effects.entries.push_back({"tangential springs", true, "kT is not 0 at some contact"});
-  } else {
-    effects.entries.push_back({"tangential springs", false, "kT = 0 everywhere"});
-  }
+  effects.entries.push_back({"tangential springs", effects.tangential_springs,
+                             effects.tangential_springs ? "kT is not 0 at some contact" : "kT = 0 everywhere"});
   effects.entries.push_back(turning);
   return effects;
 }
 
-}  // namespace
-
-std::string Effects::report() const {
-  std::string active;
-  std::string inactive;
-  for (const Entry& entry : entries) {
-    std::string& list = entry.active ? active : inactive;
-    if (!list.empty()) list += ", ";
-    list += entry.active ? entry.name : fmt::format("{} ({})", entry.name, entry.why);
-  }
-  std::string text = "active: " + active + ".";
-  if (!inactive.empty()) text += " inactive: " + inactive + ".";
-  return text;
-}
-
 Effects derive_effects(const Assembly& assembly, const ContactSprings& springs, Rotation rotation) {
-  return derive(springs, !on_lines_of_centres(assembly), rotation);
-}
-
-Effects derive_effects(const ContactSprings& springs, Rotation rotation) {
-  return derive(springs, false, rotation);
+  return derive_effects(springs, rotation, !on_lines_of_centres(assembly));
 }
 
 }  // namespace equidem

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Which effects can change the answer: decided once, from the scene alone, before any loop.
+/// The effects that can change the result: determined once, from the scene alone, before any loop.
 #pragma once
 
 #include <string>
@@ -46,7 +46,7 @@ struct Effects {
 /// rotation with kT = 0 would leave rotations without stiffness: they are not unknowns, unless contacts lie off the
 /// lines of centres, where normal springs resist them.
 Effects derive_effects(const Assembly& assembly, const ContactSprings& springs, Rotation rotation);
-/// As above, for contacts that all lie on the lines of centres.
-Effects derive_effects(const ContactSprings& springs, Rotation rotation);
+/// \param off_lines whether some contact lies off the lines of centres
+Effects derive_effects(const ContactSprings& springs, Rotation rotation, bool off_lines = false);
 
 }  // namespace equidem

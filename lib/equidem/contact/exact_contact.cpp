@@ -36,8 +36,7 @@ bool ends_at_zero_force(const ExactPair& p) {
   return p.end == ContactEnd::at_zero_force && p.damping_ratio > 0;
 }
 
-/// f, what stays positive while the contact lasts, with derivatives and bounds of |f''| and |f'''| over some time to
-/// come.
+/// f, which is positive while the contact lasts, with derivatives, and bounds of |f''| and |f'''| over a given time.
 struct Course {
   double f, slope, bend, most_bend, most_jolt;
 };
@@ -112,7 +111,7 @@ double zero_between(double low, double high, Function f) {
 }
 
 /// The first time in [0, within] at which the cubic c0 + c1 t + c2 t²/2 + c3 t³/6 comes up to zero, from at or below;
-/// or never. It is looked for between the extremes.
+/// or never; searched for between the extremes.
 double first_rise(double c0, double c1, double c2, double c3, double within) {
   const auto cubic = [&](double t) {
     return ValueAndSlope{c0 + t * (c1 + t * (c2 / 2 + t * c3 / 6)), c1 + t * (c2 + t * c3 / 2)};
@@ -150,7 +149,7 @@ double contact_end(const ExactPair& p, const Motion& start, double within) {
   for (double t = 0; t < within;) {
     const double f = std::max(0.0, now.f);
     const double root = std::sqrt(now.slope * now.slope + 2 * now.most_bend * f);
-    // 0/0: at rest for ever
+    // 0/0: permanently at rest
     double sure = now.slope < 0 ? 2 * f / (root - now.slope) : (now.slope + root) / now.most_bend;
     if (now.slope >= 0 && now.bend > 0) sure = std::max(sure, 3 * now.bend / now.most_jolt);
     if (!(sure < within - t)) return never;
@@ -192,7 +191,7 @@ class EventfulStep {
  private:
   [[nodiscard]] double spring_energy() const { return p_.frequency * p_.frequency * m_.u * m_.u / 2; }
 
-  /// What round-off leaves open is decided by whether the bodies touched: within 1e-9 of the step of an end, and 1e-6
+  /// Where round-off leaves the state undecided, the previous one decides: within 1e-9 of the step of an end, and 1e-6
   /// of it before a beginning, the contact is as it was.
   void decide_state() {
     const bool touched = contact_;

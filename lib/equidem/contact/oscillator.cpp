@@ -2,7 +2,6 @@
 #include "equidem/contact/oscillator.hpp"
 
 #include <cmath>
-#include <cstdlib>
 
 namespace equidem {
 

@@ -3,8 +3,6 @@
 /// Damping ratio from the coefficient of restitution.
 #pragma once
 
-#include <string>
-
 #include "equidem/core/names.hpp"
 
 namespace equidem {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Tells whether data is still what it was.
+/// Checksum that detects changes of data.
 #pragma once
 
 #include <bit>
@@ -17,7 +17,7 @@ namespace equidem {
 /// FNV-1a (Fowler, Noll & Vo), 64 bits. Not a protection against forgery.
 class Checksum {
  public:
-  /// Every change of a single byte changes the sum.
+  /// A change of a single byte always changes the sum.
   void add(std::span<const std::byte> bytes) {
     for (const std::byte byte : bytes) sum_ = (sum_ ^ static_cast<std::uint64_t>(byte)) * prime;
   }

@@ -2,6 +2,7 @@
 #include "equidem/core/error.hpp"
 
 #include <utility>
+#include "equidem/core/text.hpp"
 
 namespace equidem {
 namespace {
@@ -32,6 +33,13 @@ Error Error::at(const std::string& where) const {
 
 void bad_input(std::string problem, std::string why, std::string remedy) {
   throw Error(ErrorKind::bad_input, std::move(problem), std::move(why), std::move(remedy));
+}
+
+double check_positive(double value, const std::string& name, const std::string& unit) {
+  if (is_positive(value)) return value;
+  const std::string with_unit = unit.empty() ? "" : " " + unit;
+  bad_input(fmt::format("the {} is {:.6g}{}", name, value, with_unit), "it must be positive and finite",
+            fmt::format("Give a {} above 0{}", name, with_unit));
 }
 
 void computation_failed(std::string problem, std::string why, std::string remedy) {

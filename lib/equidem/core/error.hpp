@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cassert>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -42,6 +43,15 @@ class Error : public std::runtime_error {
 
 /// Throw an Error of kind bad_input.
 [[noreturn]] void bad_input(std::string problem, std::string why, std::string remedy);
+/// Whether a number is positive and finite.
+inline bool is_positive(double value) {
+  return value > 0 && std::isfinite(value);
+}
+
+/// \return the value
+/// \throws Error (bad_input) where it is not positive and finite
+double check_positive(double value, const std::string& name, const std::string& unit = {});
+
 /// Throw an Error of kind computation_failed.
 [[noreturn]] void computation_failed(std::string problem, std::string why, std::string remedy);
 

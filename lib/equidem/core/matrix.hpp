@@ -36,6 +36,11 @@ constexpr SquareMatrix<N> operator+(SquareMatrix<N> a, const SquareMatrix<N>& b)
 }
 
 template <std::size_t N>
+constexpr SquareMatrix<N> operator-(SquareMatrix<N> a, const SquareMatrix<N>& b) {
+  return a + (-1.0) * b;
+}
+
+template <std::size_t N>
 constexpr SquareMatrix<N> operator*(const SquareMatrix<N>& a, const SquareMatrix<N>& b) {
   SquareMatrix<N> result{};
   for (std::size_t r = 0; r < N; ++r) {

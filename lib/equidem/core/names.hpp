@@ -10,10 +10,12 @@
 ///   };
 ///
 /// Conversions, error messages and the choices of the case file follow from the list. Its entries may be of any type
-/// with members `value` and `name`, so that a list can also hold what else distinguishes the values.
+/// with members `value` and `name`, so that a list can also hold what else distinguishes the values. An unknown name is
+/// refused with the nearest known one.
 #pragma once
 
 #include <cassert>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -94,5 +96,13 @@ template <NamedEnum Enum>
 std::vector<std::string> names_of() {
   return names_in(EnumNames<Enum>::list);
 }
+
+/// Number of letters to insert, delete, replace or swap with their neighbour to turn one word into the other (optimal
+/// string alignment), upper and lower case taken as equal.
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The candidate nearest to `name`; none where even that is further than a third of its letters (at least one, two
+/// from four letters on). The first of equally near ones.
+std::optional<std::string> nearest(std::string_view name, std::span<const std::string> candidates);
 
 }  // namespace equidem

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Progress on stderr and the user's wish to stop.
+/// Progress on stderr, and interruption by the user.
 #pragma once
 
 #include <string>

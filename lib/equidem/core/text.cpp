@@ -11,6 +11,13 @@ std::string joined(const std::vector<std::string>& words, std::string_view separ
   return text;
 }
 
+std::string listed(std::vector<std::string> words, std::string_view last) {
+  if (words.size() < 2) return joined(words);
+  const std::string end = words.back();
+  words.pop_back();
+  return joined(words).append(last).append(end);
+}
+
 std::string grouped(std::int64_t value) {
   std::string digits = fmt::format("{}", value);
   for (auto k = static_cast<std::ptrdiff_t>(digits.size()) - 3; k > (value < 0 ? 1 : 0); k -= 3)

@@ -22,12 +22,15 @@ inline std::string counted(long long count, const std::string& singular, const s
 /// The words with a separator between them.
 std::string joined(const std::vector<std::string>& words, std::string_view separator = ", ");
 /// The words word_of(element) of the elements of a range, with a separator between them.
-template <std::ranges::input_range Range, std::invocable<std::ranges::range_reference_t<const Range>> WordOf>
-std::string joined(const Range& range, const WordOf& word_of, std::string_view separator = ", ") {
+template <std::ranges::input_range Range, std::invocable<std::ranges::range_reference_t<Range>> WordOf>
+std::string joined(Range&& range, const WordOf& word_of, std::string_view separator = ", ") {
   std::vector<std::string> words;
   for (const auto& element : range) words.emplace_back(word_of(element));
   return joined(words, separator);
 }
+
+/// "a, b and c".
+std::string listed(std::vector<std::string> words, std::string_view last = " and ");
 
 /// The digits in groups of three: "1 293 000".
 std::string grouped(std::int64_t value);
@@ -44,7 +47,7 @@ std::string_view trimmed(std::string_view text);
 /// Without the mark that some programs put before a UTF-8 text.
 std::string_view without_byte_order_mark(std::string_view text);
 
-/// How many characters a UTF-8 text has.
+/// Number of characters of a UTF-8 text.
 std::size_t columns_of(std::string_view text);
 
 }  // namespace equidem

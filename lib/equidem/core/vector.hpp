@@ -19,27 +19,14 @@ struct Vec2 {
   constexpr Vec2& operator+=(Vec2 b) { return x += b.x, y += b.y, *this; }
   constexpr Vec2& operator-=(Vec2 b) { return x -= b.x, y -= b.y, *this; }
   constexpr Vec2& operator*=(double c) { return x *= c, y *= c, *this; }
+  friend constexpr Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
+  friend constexpr Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
+  friend constexpr Vec2 operator-(Vec2 a) { return {-a.x, -a.y}; }
+  friend constexpr Vec2 operator*(double c, Vec2 a) { return {c * a.x, c * a.y}; }
+  friend constexpr Vec2 operator*(Vec2 a, double c) { return c * a; }
+  friend constexpr Vec2 operator/(Vec2 a, double c) { return {a.x / c, a.y / c}; }
   constexpr bool operator==(const Vec2&) const = default;
 };
-
-constexpr Vec2 operator+(Vec2 a, Vec2 b) {
-  return {a.x + b.x, a.y + b.y};
-}
-constexpr Vec2 operator-(Vec2 a, Vec2 b) {
-  return {a.x - b.x, a.y - b.y};
-}
-constexpr Vec2 operator-(Vec2 a) {
-  return {-a.x, -a.y};
-}
-constexpr Vec2 operator*(double c, Vec2 a) {
-  return {c * a.x, c * a.y};
-}
-constexpr Vec2 operator*(Vec2 a, double c) {
-  return c * a;
-}
-constexpr Vec2 operator/(Vec2 a, double c) {
-  return {a.x / c, a.y / c};
-}
 
 constexpr double dot(Vec2 a, Vec2 b) {
   return a.x * b.x + a.y * b.y;
@@ -66,14 +53,10 @@ struct Tensor2 {
 
   constexpr Tensor2& operator+=(const Tensor2& b) { return xx += b.xx, xy += b.xy, yx += b.yx, yy += b.yy, *this; }
   constexpr Tensor2& operator*=(double c) { return xx *= c, xy *= c, yx *= c, yy *= c, *this; }
+  friend constexpr Tensor2 operator*(double c, Tensor2 a) { return a *= c; }
+  friend constexpr Tensor2 operator+(Tensor2 a, const Tensor2& b) { return a += b; }
 };
 
-constexpr Tensor2 operator+(Tensor2 a, const Tensor2& b) {
-  return a += b;
-}
-constexpr Tensor2 operator*(double c, Tensor2 a) {
-  return a *= c;
-}
 /// a_i b_j.
 constexpr Tensor2 outer(Vec2 a, Vec2 b) {
   return {a.x * b.x, a.x * b.y, a.y * b.x, a.y * b.y};

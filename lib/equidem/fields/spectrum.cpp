@@ -76,7 +76,7 @@ SpectralPeak spectral_peak(std::span<const double> times, std::span<const double
   constexpr std::size_t fewest = 8;
   if (times.size() < fewest)
     bad_input(fmt::format("the history has {}", counted(static_cast<long long>(times.size()), "moment")),
-              fmt::format("a period is looked for in {} or more", fewest), "Look more often, or longer");
+              fmt::format("a period needs {} or more", fewest), "Measure more often, or longer");
   const HarmonicFit fit(times, values);
   const double low = std::max(lowest, 1.5 / fit.duration());
   const double high = std::min(highest, 0.5 * static_cast<double>(times.size() - 1) / fit.duration());

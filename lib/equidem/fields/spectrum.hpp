@@ -27,8 +27,7 @@ std::vector<double> amplitude_spectrum(std::span<const double> times, std::span<
 /// amplitude_spectrum); one that stands at a bound is the flank of another outside.
 /// \param lowest, highest Hz; the lowest is at least 1.5/T, the highest at most half the sampling rate
 /// \throws Error (bad_input) on fewer than 8 moments, or no frequency between the bounds; (computation_failed) where
-///         the most
-///         lies at a bound, or the history is constant
+///         the most lies at a bound, or the history is constant
 SpectralPeak spectral_peak(std::span<const double> times, std::span<const double> values, double lowest,
                            double highest);
 

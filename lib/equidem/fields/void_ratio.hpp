@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// How densely bodies lie in a box, away from its walls and from their surface.
+/// Density of the bodies in a box, away from its walls and from their surface.
 #pragma once
 
 #include <optional>

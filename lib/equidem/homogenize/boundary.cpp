@@ -2,7 +2,6 @@
 #include "equidem/homogenize/boundary.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "equidem/contact/frame.hpp"

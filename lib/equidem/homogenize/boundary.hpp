@@ -5,8 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
@@ -16,8 +14,8 @@
 
 namespace equidem {
 
-/// How the macroscopic strain enters. As quadratic forms on the same cell: traction <= periodic <= displacement <=
-/// Voigt (Huet 1990).
+/// Boundary conditions that impose the macroscopic strain. As quadratic forms on the same cell: traction <= periodic <=
+/// displacement <= Voigt (Huet 1990).
 enum class Boundary {
   periodic,      ///< images move with the mean strain: the cell repeats without end
   displacement,  ///< the discs at the boundary follow a uniform displacement gradient (and turn freely)

@@ -9,7 +9,6 @@
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/homogenize/fabric.hpp"
-#include "equidem/statics/spring_sizes.hpp"
 
 namespace equidem {
 namespace {
@@ -109,7 +108,7 @@ Matrix3 uniform_stress_estimate(const Assembly& assembly, const ContactSprings& 
   const bool off_line = !assembly.contact_arms.empty();
   if (off_line) refuse_absent_springs(assembly, given);
   const double unit = spring_unit(given);
-  const ContactSprings springs = scaled_springs(assembly, given, 1 / unit);
+  const ContactSprings springs = scaled_springs(given, 1 / unit);
   const double area = assembly.area();
   const Tensor2 h_inverse = (1 / (h.xx * h.yy - h.xy * h.yx)) * Tensor2{h.yy, -h.xy, -h.yx, h.xx};
 

@@ -24,8 +24,7 @@ Matrix3 voigt_stiffness(const Assembly& assembly, const ContactSprings& springs)
 /// Where springs are absent (kT = 0) this is the limit kT -> 0: no stress that loads them is resisted. What is left is
 /// at least the stress sigma = B/A, whose forces F = l load no tangential spring: for isotropic assemblies K without G.
 /// \throws Error (bad_input) where some kT < 0, or kT = 0 off the lines of centres, there are no contacts, their
-///         branches do not span the plane, or a free
-///         assembly has no cell areas
+///         branches do not span the plane, or a free assembly has no cell areas
 Matrix3 uniform_stress_estimate(const Assembly& assembly, const ContactSprings& springs);
 
 }  // namespace equidem

@@ -10,9 +10,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
-#include "equidem/homogenize/strain_stiffness.hpp"
-#include "equidem/homogenize/traction_stiffness.hpp"
-#include "equidem/statics/spring_sizes.hpp"
+#include "equidem/homogenize/sample_solver.hpp"
 
 namespace equidem {
 namespace {
@@ -42,7 +40,7 @@ void check_levers(const Assembly& assembly, const ContactSprings& springs, const
 /// Solve with springs of sizes near 1, so that no sum of squares leaves the range of a double.
 EffectiveStiffness solve(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options) {
   const double unit = spring_unit(springs);
-  const ContactSprings scaled = scaled_springs(assembly, springs, 1 / unit);
+  const ContactSprings scaled = scaled_springs(springs, 1 / unit);
   EffectiveStiffness result;
   result.boundary = options.boundary;
   result.effects = derive_effects(assembly, springs, options.rotation);
@@ -82,7 +80,7 @@ std::optional<WeakStrain> judge(EffectiveStiffness& result) {
 bool resists_with_equal_springs(const Assembly& assembly, const ContactSprings& springs,
                                 const HomogenizeOptions& options) {
   try {
-    EffectiveStiffness equal = solve(assembly, equal_springs(assembly, springs), options);
+    EffectiveStiffness equal = solve(assembly, equal_springs(springs), options);
     return !judge(equal);
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::interrupted) throw;

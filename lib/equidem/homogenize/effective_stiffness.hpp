@@ -14,7 +14,6 @@
 #include "equidem/core/matrix.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/homogenize/boundary.hpp"
-#include "equidem/homogenize/zero_energy_modes.hpp"
 #include "equidem/linear/linear_solver.hpp"
 
 namespace equidem {
@@ -25,7 +24,13 @@ struct HomogenizeOptions {
   SolverOptions solver = {};
 };
 
-/// Effective stiffness with what is needed to trust it.
+/// A motion without energy that leaves the effective stiffness unchanged.
+struct ZeroEnergyMode {
+  std::string kind;         ///< "gear", "local"
+  std::string description;  ///< which discs, which motion
+};
+
+/// Effective stiffness with measures of its accuracy.
 struct EffectiveStiffness {
   Boundary boundary = Boundary::periodic;
   double area = 0;  ///< m², by which energies are divided
@@ -75,9 +80,8 @@ struct EffectiveStiffness {
 
 /// Solve for unit strains xx, yy and xy (and the unit rotation where rotation is restrained) on one factorization.
 /// \throws Error (bad_input) where the boundary does not suit the assembly, levers do not add up to their branch where
-///         they
-///         matter, no piece spans the cell, the network is a mechanism (named) or some strain has no energy (named),
-///         since a floppy network has no modulus; springs too far apart for a double; (computation_failed) as
+///         they matter, no piece spans the cell, the network is a mechanism (named) or some strain has no energy
+///         (named), since a floppy network has no modulus; springs too far apart for a double; (computation_failed) as
 ///         EquilibriumSolver; at the limit of stability
 EffectiveStiffness effective_stiffness(const Assembly& assembly, const ContactSprings& springs,
                                        const HomogenizeOptions& options = {});

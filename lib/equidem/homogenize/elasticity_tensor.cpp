@@ -35,24 +35,6 @@ double tensor_norm(const Matrix3& c) {
   return std::sqrt(squares);
 }
 
-Matrix3 difference(const Matrix3& a, const Matrix3& b) {
-  Matrix3 d;
-  for (std::size_t r = 0; r < 3; ++r) {
-    for (std::size_t s = 0; s < 3; ++s) d[r][s] = a[r][s] - b[r][s];
-  }
-  return d;
-}
-
-Matrix3 product(const Matrix3& a, const Matrix3& b) {
-  Matrix3 c{};
-  for (std::size_t r = 0; r < 3; ++r) {
-    for (std::size_t s = 0; s < 3; ++s) {
-      for (std::size_t k = 0; k < 3; ++k) c[r][s] += a[r][k] * b[k][s];
-    }
-  }
-  return c;
-}
-
 Matrix3 transposed(const Matrix3& a) {
   return {{{a[0][0], a[1][0], a[2][0]}, {a[0][1], a[1][1], a[2][1]}, {a[0][2], a[1][2], a[2][2]}}};
 }
@@ -95,7 +77,7 @@ EffectiveModuli effective_moduli(const Matrix3& stiffness) {
           .poisson_stress = (K - G) / (K + G),
           .young_strain = unit * (2 * G * (1 + nu)),
           .young_stress = unit * (4 * K * G / (K + G)),
-          .anisotropy = tensor_norm(difference(c, nearest)) / size};
+          .anisotropy = tensor_norm(c - nearest) / size};
 }
 
 Matrix3 isotropic_stiffness(double bulk_modulus_2d, double shear_modulus) {
@@ -107,7 +89,7 @@ Matrix3 rotated(const Matrix3& stiffness, double angle) {
   // s' = T s for stresses, e = T^T e' for strains with engineering shear, as both do the same work: C' = T C T^T.
   const double c = std::cos(angle), s = std::sin(angle);
   const Matrix3 turn{{{c * c, s * s, 2 * c * s}, {s * s, c * c, -2 * c * s}, {-c * s, c * s, c * c - s * s}}};
-  return product(product(turn, stiffness), transposed(turn));
+  return turn * stiffness * transposed(turn);
 }
 
 StiffnessEigen eigenstrains(const Matrix3& stiffness) {
@@ -157,7 +139,7 @@ Matrix3 inverse(const Matrix3& stiffness) {
 double margin(const Matrix3& a, const Matrix3& b) {
   const double largest = eigenstrains(b).values[2];
   assert(largest > 0);
-  return eigenstrains(difference(b, a)).values[0] / largest;
+  return eigenstrains(b - a).values[0] / largest;
 }
 
 }  // namespace equidem

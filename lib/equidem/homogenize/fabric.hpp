@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Fabric: how contacts are directed.
+/// Fabric: the distribution of contact directions.
 #pragma once
 
 #include "equidem/assembly/assembly.hpp"

@@ -7,6 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/contact/frame.hpp"
+#include "equidem/core/matrix.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/load_bearing.hpp"
@@ -55,5 +58,27 @@ class SampleSolver {
   std::optional<StiffnessSolver> solver_;
   double energy_error_ = 0;
 };
+
+/// Twice the energies of pairs of three load cases in normal and in tangential springs, sum kN dn_a dn_b and sum kT
+/// ds_a ds_b, N.
+struct PairEnergies {
+  Matrix3 normal{}, tangential{};
+};
+
+/// \param deformations per load case (the first three count), per contact, m
+PairEnergies pair_energies(const ContactSprings& springs,
+                           const std::vector<std::vector<ContactDeformation>>& deformations);
+
+/// Unit mean strains, and the unit mean rotation where discs cannot turn. Fills the stiffness, its parts, the
+/// unsymmetric tensor, the fluctuations and the error bound (without rounding) of `result`.
+/// \throws Error as effective_stiffness
+void solve_strains(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options,
+                   EffectiveStiffness& result);
+
+/// The compliance of a sample whose boundary carries the tractions of unit stresses, inverted: see TractionSample.
+/// Fills the stiffness, its parts and the error bound (without rounding) of `result`.
+/// \throws Error as effective_stiffness
+void solve_tractions(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options,
+                     EffectiveStiffness& result);
 
 }  // namespace equidem

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/homogenize/strain_stiffness.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +9,6 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/homogenize/affine.hpp"
 #include "equidem/homogenize/contact_sums.hpp"
-#include "equidem/homogenize/pair_energies.hpp"
 #include "equidem/homogenize/sample_solver.hpp"
 #include "equidem/homogenize/stress.hpp"
 

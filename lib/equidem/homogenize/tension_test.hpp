@@ -3,17 +3,40 @@
 /// Abe's numerical test (1996, section 3, Fig. 6): uniaxial tension of a block along x.
 #pragma once
 
-#include <string>
+#include <cstdint>
+#include <functional>
+#include <span>
 #include <vector>
 
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
+#include "equidem/contact/frame.hpp"
 #include "equidem/core/names.hpp"
-#include "equidem/homogenize/strain.hpp"
+#include "equidem/core/vector.hpp"
 #include "equidem/statics/equilibrium.hpp"
 
 namespace equidem {
 
-/// Where the two strain gauges A-B (along x) and C-D (along y) sit. On the lattices A and B are discs of the middle
+/// Two discs between which an elongation is read.
+struct StrainGauge {
+  std::int32_t first = 0;
+  std::int32_t second = 0;
+};
+
+/// Distance of the two centres, m.
+double gauge_length(const Assembly& assembly, const StrainGauge& gauge);
+
+/// Elongation of a gauge along its own direction over its length: (u_second - u_first) . l / l². The centres must
+/// differ. Across a period the motion of images is not known: on a periodic cell the branch is the one inside it.
+double gauge_strain(const Assembly& assembly, std::span<const DiscMotion> motions, const StrainGauge& gauge);
+
+/// The displacement gradient h_ij = du_i/dx_j that fits the motion of the chosen discs best (least squares, each disc
+/// weighted by its cell area where known). Exact for any uniform gradient.
+/// \throws Error (bad_input) where fewer than three discs are chosen or all lie on one line
+Tensor2 fitted_displacement_gradient(const Assembly& assembly, std::span<const DiscMotion> motions,
+                                     const std::function<bool(std::size_t disc)>& inside);
+
+/// Places of the two strain gauges A-B (along x) and C-D (along y). On the lattices A and B are discs of the middle
 /// row (of two middle rows of a hexagonal block, the one with a disc in its middle), the nearest pair symmetric about
 /// its middle that is at least as far out as wanted. C and D share one x, that of the disc in or next to the middle,
 /// and lie as many rows above as below the middle one; `ends` leaves out the last of an even number of hexagonal

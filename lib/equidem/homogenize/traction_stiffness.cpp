@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/homogenize/traction_stiffness.hpp"
-
-#include <cmath>
 
 #include "equidem/homogenize/elasticity_tensor.hpp"
-#include "equidem/homogenize/pair_energies.hpp"
 #include "equidem/homogenize/sample_solver.hpp"
 
 namespace equidem {

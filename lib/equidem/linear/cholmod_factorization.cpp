@@ -57,7 +57,7 @@ struct Library<SuiteSparse_long> {
 /// Keeps CHOLMOD on the calling thread. As built by Debian, it requests four OpenMP threads at every supernode, a
 /// request that outranks omp_set_num_threads and OMP_NUM_THREADS: most supernodes are small, and the threads cost
 /// more than they bring. With no active parallel region allowed, each runs on its caller. The OpenMP runtime is the
-/// one that CHOLMOD has brought along, if any, so it is looked up by name.
+/// one that CHOLMOD was linked with, if any, so its functions are found by name.
 class OneThread {
  public:
   explicit OneThread(bool wanted) {
@@ -229,15 +229,6 @@ class CholmodCholesky final : public Factorization {
   cholmod_factor* factor_ = nullptr;
   FactorReport report_;
 };
-
-/// The diagonal entry of held components; 1 where none is held.
-double held_stiffness(const StiffnessMatrix& matrix, const DegreesOfFreedom& unknowns) {
-  const auto found = std::find(unknowns.held.begin(), unknowns.held.end(), 1);
-  if (found == unknowns.held.end()) return 1;
-  const auto component = static_cast<std::size_t>(found - unknowns.held.begin());
-  const auto block = static_cast<std::size_t>(matrix.block);
-  return matrix.diagonal_block(component / block)[component % block * (block + 1)];
-}
 
 struct Attempt {
   Outcome outcome;

@@ -14,7 +14,7 @@
 
 namespace equidem {
 
-/// Who chooses the elimination order.
+/// Origin of the elimination order.
 enum class CholmodOrdering {
   ours,   ///< the given order of discs
   metis,  ///< METIS nested dissection on the graph of unknowns

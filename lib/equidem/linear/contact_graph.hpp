@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The graph of an assembly: which contacts each disc has.
+/// The graph of an assembly: the contacts of each disc, and its connected pieces.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -28,13 +29,20 @@ class ContactGraph {
     return {incidences_.data() + first_[disc], incidences_.data() + first_[disc + 1]};
   }
 
-  /// A number for every disc that is the same within one connected piece; pieces are numbered from 0 in the order of
-  /// their first disc.
-  [[nodiscard]] std::vector<std::int32_t> pieces() const;
-
  private:
   std::vector<std::int64_t> first_;
   std::vector<Incidence> incidences_;
 };
+
+/// The connected pieces of an assembly, each laid out as one cluster even where contacts cross the period.
+struct UnwrappedPieces {
+  std::vector<std::int32_t> piece;  ///< per disc: pieces are numbered from 0 in the order of their first disc
+  std::vector<Vec2> centres;        ///< m, per disc: of the image that contacts join to the piece's first disc
+  std::vector<std::uint8_t> winds;  ///< per piece: 1 where it meets an image of itself across the period
+
+  [[nodiscard]] std::size_t count() const { return winds.size(); }
+};
+
+UnwrappedPieces unwrap_pieces(const Assembly& assembly, const ContactGraph& graph);
 
 }  // namespace equidem

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The unknowns of statics: u_x, u_y and, where rotation is an effect of the scene, a*theta of every disc, less what
-/// is held.
+/// The unknowns of statics: u_x, u_y and, where rotation is an effect of the scene, a*theta of every disc, less the
+/// components that are held.
 #pragma once
 
 #include <cstdint>

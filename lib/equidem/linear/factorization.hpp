@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The seam behind which every factorization of a stiffness matrix stands.
+/// Interface of all factorizations of a stiffness matrix.
 #pragma once
 
 #include <cstdint>

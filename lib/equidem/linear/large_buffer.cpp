@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstdlib>
-#include <utility>
 
 #include <sys/mman.h>
 
@@ -28,22 +27,6 @@ void* allocate_large(std::size_t bytes) {
 
 void free_large(void* memory) {
   std::free(memory);
-}
-
-LargeBuffer::LargeBuffer(std::size_t doubles)
-    : data_(doubles > 0 ? static_cast<double*>(allocate_large(doubles * sizeof(double))) : nullptr), size_(doubles) {}
-
-LargeBuffer::~LargeBuffer() {
-  free_large(data_);
-}
-
-LargeBuffer::LargeBuffer(LargeBuffer&& other) noexcept
-    : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
-
-LargeBuffer& LargeBuffer::operator=(LargeBuffer&& other) noexcept {
-  std::swap(data_, other.data_);
-  std::swap(size_, other.size_);
-  return *this;
 }
 
 LargeBuffer BufferPool::take(std::size_t doubles) {

@@ -17,31 +17,10 @@ namespace equidem {
 void* allocate_large(std::size_t bytes);
 void free_large(void* memory);
 
-/// Uninitialized doubles on huge pages where the system has them: the first touch of small pages would cost a good
-/// part of a factorization.
-class LargeBuffer {
- public:
-  LargeBuffer() = default;
-  /// \throws Error (computation_failed) where there is not enough memory
-  explicit LargeBuffer(std::size_t doubles);
-  ~LargeBuffer();
-  LargeBuffer(LargeBuffer&& other) noexcept;
-  LargeBuffer& operator=(LargeBuffer&& other) noexcept;
-  LargeBuffer(const LargeBuffer&) = delete;
-  LargeBuffer& operator=(const LargeBuffer&) = delete;
-
-  [[nodiscard]] double* data() const { return data_; }
-  [[nodiscard]] std::size_t size() const { return size_; }
-
- private:
-  double* data_ = nullptr;
-  std::size_t size_ = 0;
-};
-
-/// Memory of a LargeVector. It is not touched before it is written: the threads that fill it bring its pages in.
+/// Memory of a LargeVector. Its pages are first touched by the threads that fill it.
 template <typename T>
 struct UntouchedAllocator {
-  using value_type = T;  // NOLINT(readability-identifier-naming): the standard library asks for this name
+  using value_type = T;  // NOLINT(readability-identifier-naming): the standard library requires this name
   UntouchedAllocator() = default;
   template <typename U>
   explicit UntouchedAllocator(const UntouchedAllocator<U>&) {}
@@ -61,6 +40,9 @@ struct UntouchedAllocator {
 /// A vector whose resize leaves new elements uninitialized.
 template <typename T>
 using LargeVector = std::vector<T, UntouchedAllocator<T>>;
+/// Uninitialized doubles on huge pages where the system has them: the first touch of small pages would cost a good part
+/// of a factorization.
+using LargeBuffer = LargeVector<double>;
 
 /// Buffers that come and go, kept for reuse: fresh memory is slow to touch. Safe to use from several threads.
 class BufferPool {

@@ -21,7 +21,7 @@ struct BackEnd {
   bool definite_only = false;  ///< needs a positive definite matrix: refuses kT < 0
   double memory_factor = 1;    ///< estimated peak memory, over that of the multifrontal factorization
   /// Null: our multifrontal factorizations, which also name mechanisms. Others return null where they meet a zero or
-  /// (definite_only) negative pivot; K is then judged by ours.
+  /// (definite_only) negative pivot; K is then factorized by ours.
   std::unique_ptr<Factorization> (*factorize)(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
                                               const SymbolicFactor& symbolic) = nullptr;
 };

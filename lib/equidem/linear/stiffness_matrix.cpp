@@ -12,6 +12,14 @@ constexpr std::size_t discs_at_once = 1 << 12;
 
 }  // namespace
 
+double held_stiffness(const StiffnessMatrix& matrix, const DegreesOfFreedom& unknowns) {
+  const auto found = std::find(unknowns.held.begin(), unknowns.held.end(), 1);
+  if (found == unknowns.held.end()) return 1;
+  const auto component = static_cast<std::size_t>(found - unknowns.held.begin());
+  const auto block = static_cast<std::size_t>(matrix.block);
+  return matrix.diagonal_block(component / block)[component % block * (block + 1)];
+}
+
 void multiply(const StiffnessMatrix& matrix, const Assembly& assembly, const ContactGraph& graph,
               std::span<const double> x, std::span<double> y) {
   const int b = matrix.block;

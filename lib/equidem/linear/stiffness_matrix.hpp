@@ -34,6 +34,9 @@ struct MatrixOnGraph {
   const ContactGraph& graph;
 };
 
+/// The diagonal entry of held components, Pa; 1 where none is held.
+double held_stiffness(const StiffnessMatrix& matrix, const DegreesOfFreedom& unknowns);
+
 /// y = K x; vectors hold discs x block components.
 void multiply(const StiffnessMatrix& matrix, const Assembly& assembly, const ContactGraph& graph,
               std::span<const double> x, std::span<double> y);

@@ -58,13 +58,7 @@ FullColumns mirror(const CompressedColumns& lower) {
 
 class UmfpackLu final : public Factorization {
  public:
-  explicit UmfpackLu(const DegreesOfFreedom& unknowns, const StiffnessMatrix& matrix) {
-    const auto held = std::find(unknowns.held.begin(), unknowns.held.end(), 1);
-    if (held != unknowns.held.end()) {
-      const auto at = static_cast<std::size_t>(held - unknowns.held.begin());
-      const auto block = static_cast<std::size_t>(matrix.block);
-      held_stiffness_ = matrix.diagonal_block(at / block)[at % block * (block + 1)];
-    }
+  explicit UmfpackLu(double held_stiffness) : held_stiffness_(held_stiffness) {
     umfpack_dl_defaults(control_.data());
     control_[UMFPACK_SCALE] = UMFPACK_SCALE_NONE;  // all entries of K have one unit
     // Diagonal pivots must pass the same test as others: where K is indefinite the default, 0.001, is lax.
@@ -143,7 +137,7 @@ class UmfpackLu final : public Factorization {
                        "Choose another solver: method = \"multifrontal\"");
   }
 
-  double held_stiffness_ = 1;
+  double held_stiffness_;
   std::array<double, UMFPACK_CONTROL> control_{};
   std::vector<std::int64_t> component_;  // of each column
   void* numeric_ = nullptr;
@@ -155,7 +149,7 @@ class UmfpackLu final : public Factorization {
 std::unique_ptr<Factorization> umfpack_lu(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
                                           FactorReport* report) {
   dense::use_one_thread_per_call();
-  auto factor = std::make_unique<UmfpackLu>(unknowns, matrix.matrix);
+  auto factor = std::make_unique<UmfpackLu>(held_stiffness(matrix.matrix, unknowns));
   const bool regular = factor->factorize(compress(matrix.matrix, matrix.assembly, matrix.graph, unknowns));
   if (report != nullptr) *report = factor->report();
   if (!regular) return nullptr;

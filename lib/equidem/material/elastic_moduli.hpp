@@ -4,7 +4,7 @@
 /// bulk modulus, but its Poisson's ratio and Young's modulus depend on the reading, plane strain or plane stress.
 #pragma once
 
-#include <string>
+#include <optional>
 
 #include "equidem/core/names.hpp"
 
@@ -42,5 +42,28 @@ ElasticModuli moduli_from_young(double young_modulus, double poisson_ratio, Plan
 ElasticModuli moduli_from_bulk(double bulk_modulus_2d, double shear_modulus, Plane plane);
 /// \throws Error (bad_input) where a modulus is not positive and finite or nu is outside its range
 void check(const ElasticModuli& moduli);
+
+/// An isotropic elastic continuum, described by one of four sets: G and nu, E and nu, K and G, or the two wave speeds
+/// and the density. A density beside the first three does not bear on the moduli.
+struct ElasticMaterial {
+  std::optional<double> shear_modulus;    ///< G, Pa
+  std::optional<double> young_modulus;    ///< E, Pa
+  std::optional<double> poisson_ratio;    ///< nu
+  std::optional<double> bulk_modulus_2d;  ///< K, Pa
+  std::optional<double> p_wave_speed;     ///< Vp, m/s
+  std::optional<double> s_wave_speed;     ///< Vs, m/s
+  std::optional<double> density;          ///< kg/m³, gamma: of the continuum, discs and voids together
+  Plane plane = Plane::strain;            ///< reading of nu and E
+};
+
+/// By the wave speeds
+///
+///   G = gamma Vs²,   K = gamma (Vp² - Vs²),
+///
+/// since in plane strain lambda + 2G = K + G = gamma Vp² (Sukegawa 2010, section 2). Vp of a sheet in plane stress is
+/// that of its plane waves, with the same relation.
+/// \throws Error (bad_input), with the name of the member at fault as its place: none of the four sets, moduli out of
+///         range, Vs not below Vp
+ElasticModuli moduli_of(const ElasticMaterial& material);
 
 }  // namespace equidem

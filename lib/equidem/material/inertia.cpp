@@ -2,24 +2,11 @@
 #include "equidem/material/inertia.hpp"
 
 #include <cassert>
-#include <cmath>
 #include <numbers>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/text.hpp"
 
 namespace equidem {
-
-namespace {
-
-void check_density(double density, const char* bodies) {
-  if (!(density > 0 && std::isfinite(density))) {
-    bad_input(fmt::format("the density of the {} is {:.6g} kg/m³", bodies, density), "it must be positive and finite",
-              "Give a density above 0 kg/m³");
-  }
-}
-
-}  // namespace
 
 double inertia_factor(Body body) {
   return body == Body::disc ? 0.5 : 0.4;
@@ -27,7 +14,7 @@ double inertia_factor(Body body) {
 
 Inertia inertia_of(double radius, double density, Body body) {
   assert(radius > 0);
-  check_density(density, "discs");
+  check_positive(density, "density of the discs", "kg/m³");
   const double section = std::numbers::pi * radius * radius;
   const double mass = density * (body == Body::disc ? section : 4.0 / 3 * section * radius);
   return {mass, inertia_factor(body) * mass * radius * radius};
@@ -42,7 +29,7 @@ std::vector<Inertia> inertia_of(const std::vector<double>& radii, double density
 
 Inertia inertia_of_ellipse(double a, double b, double density) {
   assert(a > 0 && b > 0);
-  check_density(density, "ellipses");
+  check_positive(density, "density of the ellipses", "kg/m³");
   const double mass = density * std::numbers::pi * a * b;
   return {mass, mass * (a * a + b * b) / 4};
 }

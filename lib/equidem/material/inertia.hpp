@@ -3,7 +3,6 @@
 /// Mass and moment of inertia of discs and ellipses.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "equidem/core/names.hpp"

@@ -3,6 +3,8 @@
 /// The two springs of a contact.
 #pragma once
 
+#include <string>
+
 namespace equidem {
 
 /// Normal and tangential contact spring, N/m per metre of depth = Pa.
@@ -12,5 +14,9 @@ struct SpringConstants {
 
   [[nodiscard]] double ratio() const { return kT / kN; }
 };
+
+/// \param of "of contact 7" for the message, or empty
+/// \throws Error (bad_input) where kN is not positive and finite, or kT not finite
+void check(const SpringConstants& springs, const std::string& of = {});
 
 }  // namespace equidem

@@ -21,21 +21,10 @@ void check(const IsotropicMeasures& measures) {
               "the isotropic relation (Abe 1996, eq. 21) divides by it, and it lies above 0 and not above 1",
               "Give the solid fraction of the assembly");
   }
-  if (!(psi > 0 && std::isfinite(psi))) {
+  if (!is_positive(psi)) {
     bad_input(fmt::format("the contact density is {:.6g} contacts per radian", psi),
               "the isotropic relation (Abe 1996, eq. 21) divides by it",
               "Give z/(2 pi), z the mean number of contacts of a disc");
-  }
-}
-
-void check(const SpringConstants& springs) {
-  if (!(springs.kN > 0 && std::isfinite(springs.kN))) {
-    bad_input(fmt::format("the normal spring is kN = {:.6g} Pa", springs.kN), "it must be positive and finite",
-              "Give a kN above 0 Pa");
-  }
-  if (!std::isfinite(springs.kT)) {
-    bad_input(fmt::format("the tangential spring is kT = {:.6g} Pa", springs.kT), "it must be finite",
-              "Give a number of Pa");
   }
 }
 
@@ -57,6 +46,18 @@ double tangential_factor(const ElasticModuli& moduli) {
 }
 
 }  // namespace
+
+void check(const SpringConstants& springs, const std::string& of) {
+  const std::string which = of.empty() ? "" : " " + of;
+  if (!is_positive(springs.kN)) {
+    bad_input(fmt::format("the normal spring{} is kN = {:.6g} Pa", which, springs.kN), "it must be positive and finite",
+              "Give a kN above 0 Pa");
+  }
+  if (!std::isfinite(springs.kT)) {
+    bad_input(fmt::format("the tangential spring{} is kT = {:.6g} Pa", which, springs.kT), "it must be finite",
+              "Give a number of Pa");
+  }
+}
 
 constinit const SpringRelation isotropic_relation{
     .name = "mean field, eqs. (21), (22)",

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/material/wave_speed_springs.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -10,11 +9,6 @@
 
 namespace equidem {
 namespace {
-
-void need_positive(const char* name, double value) {
-  if (value > 0 && std::isfinite(value)) return;
-  bad_input(fmt::format("the {} is {}", name, value), "it must be positive and finite", "Correct it");
-}
 
 void need_damping(double value) {
   if (value >= 0 && std::isfinite(value)) return;
@@ -25,13 +19,13 @@ void need_damping(double value) {
 
 WaveSpeeds wave_speeds_of(const ElasticModuli& moduli, double density) {
   check(moduli);
-  need_positive("density", density);
+  check_positive(density, "density", "kg/m³");
   const double g = moduli.shear_modulus;
   return {std::sqrt(g / density), std::sqrt((moduli.bulk_modulus_2d() + g) / density)};
 }
 
 WaveSpeeds wave_speeds_from_shear(double shear_speed, double poisson_ratio) {
-  need_positive("shear wave speed", shear_speed);
+  check_positive(shear_speed, "shear wave speed", "m/s");
   if (!(poisson_ratio > -1 && poisson_ratio < 0.5)) {
     bad_input(fmt::format("Poisson's ratio is {}", poisson_ratio), "in plane strain it lies between -1 and 1/2",
               "Correct it");
@@ -40,23 +34,23 @@ WaveSpeeds wave_speeds_from_shear(double shear_speed, double poisson_ratio) {
 }
 
 SpringConstants springs_of_wave_speeds(double density, const WaveSpeeds& speeds) {
-  need_positive("density", density);
-  need_positive("shear wave speed", speeds.shear);
-  need_positive("pressure wave speed", speeds.pressure);
+  check_positive(density, "density", "kg/m³");
+  check_positive(speeds.shear, "shear wave speed", "m/s");
+  check_positive(speeds.pressure, "pressure wave speed", "m/s");
   const double quarter = std::numbers::pi / 4 * density;
   return {quarter * speeds.pressure * speeds.pressure, quarter * speeds.shear * speeds.shear};
 }
 
 double dashpot_of(double damping, double mass, double stiffness) {
   need_damping(damping);
-  need_positive("mass", mass);
-  need_positive("stiffness", stiffness);
+  check_positive(mass, "mass", "kg");
+  check_positive(stiffness, "stiffness", "N/m");
   return 2 * damping * std::sqrt(mass * stiffness);
 }
 
 ContactDamping contact_damping_of(double damping, bool at_wall, double inertia_factor) {
   need_damping(damping);
-  need_positive("inertia factor", inertia_factor);
+  check_positive(inertia_factor, "inertia factor");
   const double normal = at_wall ? damping : damping * std::numbers::sqrt2;
   return {normal, normal * std::sqrt(1 + 1 / inertia_factor)};
 }

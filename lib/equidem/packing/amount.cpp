@@ -20,10 +20,10 @@ namespace {
 void check(const PackingAmount& amount, const PackingOptions& options) {
   const bool falls = entry_of(options.method).open_top, dense = options.as_dense_as_possible;
   if (falls && options.box.periodic())
-    fail("sides", "bodies fall into a periodic box", "they would fall for ever", "Take walls, or another method");
+    fail("sides", "bodies fall into a periodic box", "they would never come to rest", "Take walls, or another method");
   if (falls && (amount.solid_fraction || dense))
     fail("solid_fraction", "a solid fraction is asked for falling bodies",
-         "it comes about by itself, lower with more friction", "Remove it");
+         "it results from the fall, lower with more friction", "Remove it");
   if (dense && !entry_of(options.method).as_dense_as_possible)
     fail("solid_fraction", fmt::format("solid_fraction = \"auto\" with {}", to_string(options.method)),
          "the method has no rule to stop", "Give a number, or take growth");
@@ -31,7 +31,7 @@ void check(const PackingAmount& amount, const PackingOptions& options) {
       int{amount.grains.has_value()} + int{amount.box.has_value()} + int{amount.solid_fraction.has_value()};
   if (given > 2)
     fail("", "grains, box and solid_fraction are all given",
-         falls || dense ? "grains and box say it" : "two of them give the third", "Remove one of them");
+         falls || dense ? "grains and box give the amount" : "two of them give the third", "Remove one of them");
   if (given < 2)
     fail("", "the amount to pack is missing",
          falls || dense ? "grains and box give it" : "two of grains, box and solid_fraction give it",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// How much is packed: box and radii from two of number, box and solid fraction.
+/// Amount to pack: box and radii from two of number, box and solid fraction.
 #pragma once
 
 #include <cstdint>

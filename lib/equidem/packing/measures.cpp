@@ -37,38 +37,28 @@ double radius_of(const GrainPacking& packing, std::int32_t grain) {
   return packing.radii[packing.body_of(static_cast<std::size_t>(grain))];
 }
 
-/// Bodies with fewer contacts than needed, taken out one after the other.
-void count_rattlers(const std::vector<std::vector<std::int32_t>>& partners, std::size_t needed,
-                    PackingMeasures& result) {
-  std::vector<std::size_t> held(partners.size());
+}  // namespace
+
+std::vector<char> rattlers_of(const std::vector<std::vector<std::int32_t>>& partners, std::size_t needed) {
+  std::vector<std::size_t> left;
   std::vector<std::int32_t> loose;
-  std::size_t ends = 0;
-  for (std::size_t k = 0; k < held.size(); ++k) {
-    held[k] = partners[k].size();
-    ends += held[k];
-    if (held[k] < needed) loose.push_back(static_cast<std::int32_t>(k));
+  for (std::size_t k = 0; k < partners.size(); ++k) {
+    left.push_back(partners[k].size());
+    if (left[k] < needed) loose.push_back(static_cast<std::int32_t>(k));
   }
-  result.coordination = static_cast<double>(ends) / static_cast<double>(held.size());
-  std::vector<char> out(held.size(), 0);
+  std::vector<char> out(partners.size(), 0);
   while (!loose.empty()) {
     const auto k = static_cast<std::size_t>(loose.back());
     loose.pop_back();
     if (out[k]) continue;
     out[k] = 1;
-    ++result.rattlers;
     for (const std::int32_t other : partners[k]) {
-      if (other < 0) continue;
       const auto j = static_cast<std::size_t>(other);
-      if (!out[j] && --held[j] < needed) loose.push_back(other);
+      if (other >= 0 && !out[j] && --left[j] < needed) loose.push_back(other);
     }
   }
-  ends = 0;
-  for (std::size_t k = 0; k < held.size(); ++k) ends += out[k] ? 0 : held[k];
-  const auto rest = static_cast<std::int64_t>(held.size()) - result.rattlers;
-  result.coordination_without_rattlers = rest > 0 ? static_cast<double>(ends) / static_cast<double>(rest) : 0;
+  return out;
 }
-
-}  // namespace
 
 std::vector<PackingContact> contacts_of(const GrainPacking& packing) {
   std::vector<PackingContact> contacts;
@@ -185,7 +175,20 @@ PackingMeasures measure(const GrainPacking& packing, std::optional<Region> regio
     result.largest_overlap = std::max(result.largest_overlap, contact.overlap / smaller);
   }
   // Two contacts carry a body that lies under its weight; without weight and friction three are needed.
-  count_rattlers(partners, packing.box.sides == PackingBox::Sides::open_top ? 2 : 3, result);
+  const std::vector<char> rattles = rattlers_of(partners, packing.box.sides == PackingBox::Sides::open_top ? 2 : 3);
+  result.rattlers = std::count(rattles.begin(), rattles.end(), 1);
+  double ends = 0, ends_without_rattlers = 0;
+  for (std::size_t k = 0; k < partners.size(); ++k) {
+    ends += static_cast<double>(partners[k].size());
+    if (rattles[k]) continue;
+    ends_without_rattlers +=
+        static_cast<double>(std::count_if(partners[k].begin(), partners[k].end(), [&](std::int32_t other) {
+          return other < 0 || !rattles[static_cast<std::size_t>(other)];
+        }));
+  }
+  const double count = static_cast<double>(partners.size()), rest = count - static_cast<double>(result.rattlers);
+  result.coordination = ends / count;
+  result.coordination_without_rattlers = rest > 0 ? ends_without_rattlers / rest : 0;
   return result;
 }
 

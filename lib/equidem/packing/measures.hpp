@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// How dense a packing is, and how its bodies touch.
+/// Density and contacts of a packing.
 #pragma once
 
 #include <cstdint>
@@ -27,6 +27,10 @@ struct PackingContact {
 /// All pairs that overlap or whose gap is at most 1e-8 of the smaller radius; i < j, ordered. The grains of a bonded
 /// pair do not touch each other.
 std::vector<PackingContact> contacts_of(const GrainPacking& packing);
+
+/// 1 for the bodies that are left out where those with fewer than `needed` contacts are removed, one after another.
+/// \param partners of each body, one for each contact; negative: a wall
+std::vector<char> rattlers_of(const std::vector<std::vector<std::int32_t>>& partners, std::size_t needed);
 
 struct PackingMeasures {
   Region region;  ///< in which the next three are measured

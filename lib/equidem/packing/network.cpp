@@ -138,29 +138,15 @@ std::vector<Lack> lacks_of(const GrainPacking& packing, double gravity) {
   return lacks;
 }
 
-/// Which bodies are left once those with fewer than two contacts are taken out, one after the other.
+/// 1 for the bodies with two contacts or more, counted without the bodies that have fewer.
 std::vector<char> held_by_two(const std::vector<PackingContact>& contacts, std::size_t bodies) {
   std::vector<std::vector<std::int32_t>> partners(bodies);
   for (const PackingContact& c : contacts) {
     partners[static_cast<std::size_t>(c.i)].push_back(c.j);
     if (c.j >= 0) partners[static_cast<std::size_t>(c.j)].push_back(c.i);
   }
-  std::vector<std::size_t> left(bodies);
-  std::vector<std::size_t> loose;
-  for (std::size_t k = 0; k < bodies; ++k) {
-    left[k] = partners[k].size();
-    if (left[k] < 2) loose.push_back(k);
-  }
-  std::vector<char> held(bodies, 1);
-  while (!loose.empty()) {
-    const std::size_t k = loose.back();
-    loose.pop_back();
-    held[k] = 0;
-    for (const std::int32_t other : partners[k]) {
-      const auto j = static_cast<std::size_t>(other);
-      if (other >= 0 && held[j] && --left[j] == 1) loose.push_back(j);
-    }
-  }
+  std::vector<char> held = rattlers_of(partners, 2);
+  for (char& value : held) value = value ? 0 : 1;
   return held;
 }
 

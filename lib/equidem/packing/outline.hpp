@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Where two bodies touch, or a body and a side of the box: exact contacts, several of clumps.
+/// Exact contacts of two bodies, or of a body and a side of the box; clumps may have several.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
 
 #include "equidem/contact/shapes/ellipse_contact.hpp"
@@ -45,9 +46,20 @@ inline Vec2 axis_of_turns(double turns) {
 inline Outline outline_of(const UnitBody& body, double radius, double turns) {
   return {body.a * radius, body.b * radius, axis_of_turns(turns), body.discs, radius};
 }
-Outline outline_of(const Grain& grain, std::span<const Clump> clumps);
+inline Outline outline_of(const Grain& grain, std::span<const Clump> clumps) {
+  const Vec2 axis = axis_of_turns(grain.angle / (2 * std::numbers::pi));
+  switch (grain.shape()) {
+    case GrainShape::clump:
+      return {.axis = axis, .discs = clumps[static_cast<std::size_t>(grain.clump)].discs};
+    case GrainShape::ellipse:
+      return {.a = grain.radius, .b = grain.short_half_axis, .axis = axis};
+    case GrainShape::disc:
+      break;
+  }
+  return {.a = grain.radius, .b = grain.radius};
+}
 
-/// How far a body reaches from its centre in a direction, m.
+/// Reach of a body from its centre in a direction, m.
 inline double reach_along(const Outline& outline, Vec2 direction) {
   double reach = -INFINITY;
   for (std::size_t p = 0; p < outline.parts(); ++p)

@@ -2,7 +2,6 @@
 #include "equidem/packing/packing.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "equidem/core/error.hpp"
@@ -14,17 +13,13 @@
 namespace equidem {
 namespace {
 
-bool positive(double value) {
-  return value > 0 && std::isfinite(value);
-}
-
 void check(const PackingOptions& options) {
   const bool falls = entry_of(options.method).open_top;
   const UnitBody shape = unit_body_of(options.shape);
   const std::string noun = noun_of(options.shape.kind);
   if (options.radii.empty()) bad_input("there are no bodies to pack", "the box would stay empty", "Give their number");
   const PackingBox& box = options.box;
-  if (!positive(box.size.x) || (!falls && !positive(box.size.y))) {
+  if (!is_positive(box.size.x) || (!falls && !is_positive(box.size.y))) {
     bad_input(fmt::format("the box is {} m wide and {} m high", box.size.x, box.size.y), "it must have an area",
               "Correct it");
   }
@@ -36,7 +31,7 @@ void check(const PackingOptions& options) {
   }
   double largest = 0;
   for (std::size_t k = 0; k < options.radii.size(); ++k) {
-    if (!positive(options.radii[k])) {
+    if (!is_positive(options.radii[k])) {
       bad_input(fmt::format("{} {} has the radius {} m", noun, k, options.radii[k]), "it must be positive and finite",
                 "Correct the sizes");
     }

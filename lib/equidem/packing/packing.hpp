@@ -31,7 +31,7 @@ struct PackingOptions {
   PackingMethod method = PackingMethod::growth;
   PackingBox box;
   PackingShape shape;
-  std::vector<double> radii;  ///< of each body as the shape says, m
+  std::vector<double> radii;  ///< of each body (PackingShape), m
   std::uint64_t seed = 1;
   /// Not all bodies need to fit: rejection and insertion leave out what does not (they take the bodies in the order
   /// given), growth scales the radii until the bodies jam.
@@ -49,7 +49,7 @@ struct GrainPacking {
   std::vector<Grain> grains;
   std::vector<Clump> clumps;
   std::vector<GrainBond> bonds;  ///< with their dashpots where they fell
-  std::vector<double> radii;     ///< of each body as the shape says, m
+  std::vector<double> radii;     ///< of each body (PackingShape), m
   bool complete = true;          ///< all wanted bodies are there, in the wanted sizes
   double seconds = 0;
   std::int64_t work = 0;  ///< attempts, sweeps, evaluations of all contacts or time steps: as the method counts

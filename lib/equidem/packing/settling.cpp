@@ -16,12 +16,8 @@ namespace {
 
 constexpr double moment_of_disc = 0.5;  // I/(m r²)
 
-bool positive(double value) {
-  return value > 0 && std::isfinite(value);
-}
-
 void check(const SettlingOptions& options) {
-  if (!positive(options.density) || !positive(options.springs.kN) || !positive(options.gravity)) {
+  if (!is_positive(options.density) || !is_positive(options.springs.kN) || !is_positive(options.gravity)) {
     bad_input(fmt::format("density {} kg/m³, kN {} Pa, gravity {} m/s²", options.density, options.springs.kN,
                           options.gravity),
               "bodies that fall need all three", "Give numbers > 0");
@@ -40,7 +36,7 @@ void check(const SettlingOptions& options) {
               "without it nothing comes to rest, far above 1 steps become tiny",
               "Give a number above 0, at most 10; 1 is usual");
   }
-  if (!(options.rest >= 1e-12 && options.rest < 1) || !positive(options.longest) || !(options.time_step >= 0)) {
+  if (!(options.rest >= 1e-12 && options.rest < 1) || !is_positive(options.longest) || !(options.time_step >= 0)) {
     bad_input(fmt::format("unbalanced force ratio {}, longest time {} s, time step {} s", options.rest, options.longest,
                           options.time_step),
               "the ratio lies between 1e-12 and 1, times are positive", "Correct it");

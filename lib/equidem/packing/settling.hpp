@@ -61,12 +61,12 @@ GrainScene scene_of_box(double width, const SettlingOptions& options);
 /// lever of its forces. Several contacts of a body lower it.
 double contact_step_limit(const GrainScene& scene, const SettlingOptions& options);
 
-/// The grains of a scene of a box are let go until all is at rest. Bonds get their dashpots.
+/// The grains of a scene of a box move under gravity until all are at rest. Bonds get their dashpots.
 /// \throws Error (bad_input) on options out of range; (computation_failed) where no rest comes in `longest`, and as
 ///         GrainSimulation
 SettledBodies settle(GrainScene scene, const SettlingOptions& options);
 
-/// How far the contact forces are from carrying the weights. Bonded grains are one body.
+/// Unbalanced forces: contact forces plus weights. Bonded grains are one body.
 SettlingReport unbalance(std::span<const Grain> grains, std::span<const GrainContact> contacts,
                          std::span<const GrainBond> bonds, Vec2 gravity);
 

@@ -18,10 +18,6 @@ namespace {
 
 constexpr double cut = 3;  // standard deviations of log_normal
 
-bool positive(double value) {
-  return value > 0 && std::isfinite(value);
-}
-
 /// e^x by its series, for |x| < 700; the one of the C library may differ in the last bit from machine to machine.
 double exponential(double x) {
   const double halvings = std::nearbyint(x / std::numbers::ln2);
@@ -107,11 +103,11 @@ double quantile(const SizeDistribution& sizes, const std::vector<double>& below,
 void check(const SizeDistribution& sizes) {
   switch (sizes.kind) {
     case SizeDistribution::Kind::uniform:
-      if (positive(sizes.smallest) && positive(sizes.largest) && sizes.smallest <= sizes.largest) return;
+      if (is_positive(sizes.smallest) && is_positive(sizes.largest) && sizes.smallest <= sizes.largest) return;
       bad_input(fmt::format("radii from {} to {} m", sizes.smallest, sizes.largest),
                 "the first is the smaller, both are > 0", "Correct them");
     case SizeDistribution::Kind::log_normal:
-      if (positive(sizes.median) && sizes.deviation >= 0 && sizes.deviation <= 2) return;
+      if (is_positive(sizes.median) && sizes.deviation >= 0 && sizes.deviation <= 2) return;
       bad_input(fmt::format("radii with the median {} m and the deviation {}", sizes.median, sizes.deviation),
                 "the median is > 0, the deviation of the logarithm from 0 to 2", "Correct them");
     case SizeDistribution::Kind::sieve_curve:
@@ -125,7 +121,7 @@ void check(const SizeDistribution& sizes) {
   for (std::size_t k = 0; k < sieves.size(); ++k) {
     const bool ascends =
         k == 0 || (sieves[k].diameter > sieves[k - 1].diameter && sieves[k].passing >= sieves[k - 1].passing);
-    if (positive(sieves[k].diameter) && std::isfinite(sieves[k].passing) && ascends) continue;
+    if (is_positive(sieves[k].diameter) && std::isfinite(sieves[k].passing) && ascends) continue;
     bad_input(fmt::format("point {} of the sieve curve is {} m, {}", k + 1, sieves[k].diameter, sieves[k].passing),
               "diameters ascend, and what passes never falls", "Correct it");
   }
@@ -138,19 +134,16 @@ std::vector<Sieve> read_sieve_curve(const std::filesystem::path& path) {
   bool named = false;
   for (int line = 1; !rest.empty(); ++line) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
-    std::string_view row = rest.substr(0, end);
+    const std::string_view row = trimmed(rest.substr(0, end));
     rest.remove_prefix(std::min(end + 1, rest.size()));
-    row = row.substr(0, row.find_last_not_of(" \t\r") + 1);
     if (row.empty() || row.front() == '#') continue;
-    const std::size_t comma = row.find(',');
-    const std::string_view cells[] = {row.substr(0, comma), comma == row.npos ? "" : row.substr(comma + 1)};
+    const std::size_t comma = std::min(row.find(','), row.size());
     double values[2] = {};
-    bool numbers = true;
-    for (int c = 0; c < 2; ++c) {
-      const std::string_view cell = cells[c].substr(std::min(cells[c].find_first_not_of(" \t"), cells[c].size()));
-      const std::string_view trimmed = cell.substr(0, cell.find_last_not_of(" \t") + 1);
-      const auto [stop, problem] = std::from_chars(trimmed.data(), trimmed.data() + trimmed.size(), values[c]);
-      numbers = numbers && problem == std::errc() && stop == trimmed.data() + trimmed.size();
+    bool numbers = comma < row.size();
+    for (int c = 0; c < 2 && numbers; ++c) {
+      const std::string_view cell = trimmed(c == 0 ? row.substr(0, comma) : row.substr(comma + 1));
+      const auto [stop, problem] = std::from_chars(cell.data(), cell.data() + cell.size(), values[c]);
+      numbers = problem == std::errc() && stop == cell.data() + cell.size();
     }
     if (!numbers && sieves.empty() && !std::exchange(named, true)) continue;  // the row of names
     if (!numbers) {

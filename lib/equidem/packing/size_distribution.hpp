@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// How large the grains of a packing are.
+/// Size distributions of the grains of a packing.
 #pragma once
 
 #include <cstdint>

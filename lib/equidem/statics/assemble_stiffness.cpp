@@ -2,7 +2,6 @@
 #include "equidem/statics/assemble_stiffness.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/threads.hpp"

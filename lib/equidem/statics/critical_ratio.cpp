@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/statics/critical_ratio.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <utility>
-#include <vector>
 
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/linear_spring.hpp"
@@ -30,13 +27,9 @@ void check(const CriticalRatioOptions& options) {
 }
 
 /// kT = ratio kN, except where the given springs have kT = 0.
-ContactSprings with_ratio(const Assembly& assembly, const ContactSprings& springs, double ratio) {
+ContactSprings with_ratio(const ContactSprings& springs, double ratio) {
   const bool all = !springs.any_tangential();
-  if (springs.uniform()) return ContactSprings(SpringConstants{springs[0].kN, ratio * springs[0].kN});
-  std::vector<SpringConstants> scaled(assembly.contacts.size());
-  for (std::size_t c = 0; c < scaled.size(); ++c)
-    scaled[c] = {springs[c].kN, all || springs[c].kT != 0 ? ratio * springs[c].kN : 0};
-  return ContactSprings(std::move(scaled));
+  return springs.changed([&](SpringConstants k) { return SpringConstants{k.kN, all || k.kT != 0 ? ratio * k.kN : 0}; });
 }
 
 /// The stiffness matrix as a function of the ratio.
@@ -45,7 +38,7 @@ class RatioPencil {
   RatioPencil(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
               const CriticalRatioOptions& options)
       : assembly_(assembly), springs_(springs), options_(options), graph_(assembly) {
-    const ContactSprings one = with_ratio(assembly, springs, 1);
+    const ContactSprings one = with_ratio(springs, 1);
     unknowns_ = number_unknowns(assembly, one,
                                 derive_effects(assembly, one, options.rotation ? Rotation::free : Rotation::restrained),
                                 supports);
@@ -77,7 +70,7 @@ class RatioPencil {
       factor->solve(t, 1);
       clear_held(t);
       const double size = std::sqrt(product(t, t));
-      if (!(size > 0) || !std::isfinite(size)) break;
+      if (!is_positive(size)) break;
       for (std::size_t c = 0; c < x.size(); ++c) x[c] = t[c] / size;
       apply(normal, x, n);
       apply(tangential, x, t);
@@ -89,11 +82,7 @@ class RatioPencil {
   }
 
   [[nodiscard]] std::vector<DiscMotion> motions_of(const std::vector<double>& x) const {
-    const auto b = static_cast<std::size_t>(unknowns_.per_disc);
-    std::vector<DiscMotion> motions(assembly_.size());
-    for (std::size_t d = 0; d < motions.size(); ++d)
-      motions[d] = {{x[d * b], x[d * b + 1]}, b == 3 ? x[d * b + 2] / unknowns_.rotation_scale : 0.0};
-    return motions;
+    return disc_motions(unknowns_, x);
   }
   [[nodiscard]] std::vector<double> random_motion() const {
     Random random(1);
@@ -105,7 +94,7 @@ class RatioPencil {
 
  private:
   [[nodiscard]] StiffnessMatrix stiffness(double ratio) const {
-    const ContactSprings springs = with_ratio(assembly_, springs_, ratio);
+    const ContactSprings springs = with_ratio(springs_, ratio);
     StiffnessMatrix matrix = assemble_stiffness(assembly_, graph_, springs, unknowns_);
     if (options_.antiperiodic_x || options_.antiperiodic_y) change_signs(springs, matrix);
     return matrix;
@@ -156,7 +145,7 @@ class RatioPencil {
 
   /// The rotational block is r times that at r = 1: one negative eigenvalue for each rotation that is resisted.
   void count_rotations() {
-    const ContactSprings springs = with_ratio(assembly_, springs_, -1);
+    const ContactSprings springs = with_ratio(springs_, -1);
     const StiffnessMatrix matrix = stiffness(-1);
     const MatrixOnGraph k{matrix, assembly_, graph_};
     negative_rotations_ = negative_rotations({k, springs, unknowns_, symbolic_});
@@ -228,9 +217,9 @@ CriticalRatio find_critical_ratio(const Assembly& assembly, const ContactSprings
   check(options);
   equidem::check(assembly);
   if (!on_lines_of_centres(assembly)) {
-    bad_input("the critical kT/kN is sought of contacts that lie off the lines of centres",
+    bad_input("the critical kT/kN is asked of contacts that lie off the lines of centres",
               "there normal springs resist rotations too, so that the stiffness without them is not linear in kT/kN",
-              "Seek it of discs; judge other bodies by their mechanisms");
+              "Ask for it of discs only; for other bodies examine the mechanisms");
   }
   RatioPencil pencil(assembly, springs, supports, options);
   CriticalRatio result;

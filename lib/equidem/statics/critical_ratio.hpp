@@ -39,8 +39,7 @@ struct CriticalRatio {
 /// cell the translations; other mechanisms are counted as they are at r = 1.
 /// \param springs kN of every contact; where some kT are zero and others are not, the former have none for any r
 /// \throws Error (bad_input) on options out of range, on contacts off the lines of centres, as number_unknowns does;
-///         (computation_failed) where K cannot be
-///         factorized
+///         (computation_failed) where K cannot be factorized
 CriticalRatio find_critical_ratio(const Assembly& assembly, const ContactSprings& springs,
                                   std::span<const Support> supports, const CriticalRatioOptions& options = {});
 

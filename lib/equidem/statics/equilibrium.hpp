@@ -26,22 +26,20 @@ struct Reaction {
   double moment = 0;  ///< N
 };
 
-/// The state of rest of one load case, with what is needed to trust it.
+/// The state of rest of one load case, with measures of its accuracy.
 struct Equilibrium {
   std::vector<DiscMotion> motions;           ///< per disc
   std::vector<ContactForce> contact_forces;  ///< per contact
   std::vector<Reaction> reactions;           ///< discs with a held component
   std::vector<double> rotation_moments;  ///< N, per disc: moment that holds it where rotation is restrained; else empty
   /// |f - K u| over |f| (prescribed motions included in f), 2-norms over the unknowns, for the motion u that refinement
-  /// keeps to
-  /// twice the digits of a double: the residual of the contact forces.
+  /// keeps to twice the digits of a double: the residual of the contact forces.
   double relative_residual = 0;
   double rounded_residual = 0;  ///< the same for `motions`, which are u rounded to doubles
   int refinements = 0;          ///< steps of iterative refinement done
   /// |K| |K^-1|, estimated (2-norm of the inverse by inverse iteration from the solution), and the bound on the
-  /// relative error of
-  /// `motions` (2-norm) that follows from it, the residual and the rounding of normals, with a margin of 10; 0 unless
-  /// asked for.
+  /// relative error of `motions` (2-norm) that follows from it, the residual and the rounding of normals, with a margin
+  /// of 10; 0 unless asked for.
   double condition = 0;
   double error_bound = 0;
   std::int64_t unknowns = 0;
@@ -58,7 +56,7 @@ struct Equilibrium {
 
   /// Total elastic energy, N (J/m per m).
   double energy = 0;
-  /// A few lines for people.
+  /// A report of a few lines.
   [[nodiscard]] std::string report() const;
 };
 
@@ -86,8 +84,7 @@ class EquilibriumSolver {
 
   /// A load on a component that is held goes straight into its reaction.
   /// \throws Error (bad_input) where a load names no group or an empty one, or gives a moment to a disc that nothing
-  ///         keeps
-  ///         from turning; Error (computation_failed) where the residual shows that K is too near to singular
+  ///         keeps from turning; Error (computation_failed) where the residual shows that K is too near to singular
   [[nodiscard]] Equilibrium solve(const LoadCase& loads) const;
   [[nodiscard]] const Effects& effects() const;
   [[nodiscard]] std::int64_t unknowns() const;

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "equidem/statics/unwrapped_pieces.hpp"
-
 namespace equidem {
 namespace {
 

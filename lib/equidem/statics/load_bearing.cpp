@@ -27,7 +27,7 @@ struct Shift {
   [[nodiscard]] bool zero() const { return x == 0 && y == 0; }
 };
 
-/// How many directions the windings met so far span.
+/// Number of directions that the windings found so far span.
 struct Span {
   Shift first;
   int rank = 0;
@@ -78,7 +78,7 @@ class Pruning {
     LoadBearingNetwork network;
     network.pieces = pieces_;
     network.spanned = assembly_.periodic() ? span_.rank : 2;
-    tell(network);
+    describe(network);
     if (network.removed() > 0) network.part = part();
     return network;
   }
@@ -242,7 +242,7 @@ class Pruning {
 
   /// A stretch is joined to the rest of its piece at its parent alone where low is not before the parent, and by a
   /// single contact where low is after it. The side without anchors dangles. Stretches that hold all anchors lie
-  /// within one another: the last one says what is left.
+  /// within one another: the last one is what is left.
   void leave_out_dangling() {
     const auto end = static_cast<std::int32_t>(steps_.size());
     std::int32_t core = 0;
@@ -264,7 +264,7 @@ class Pruning {
   }
 
   /// Counts, and a sentence for each kind of disc left out.
-  void tell(LoadBearingNetwork& network) const {
+  void describe(LoadBearingNetwork& network) const {
     const auto add = [&](Fate fate, const char* name, const char* one, const char* several) {
       std::int64_t count = 0;
       std::vector<std::string> names;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <utility>
 
 #include "equidem/core/text.hpp"
 #include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
@@ -40,28 +39,13 @@ struct HeldSystem {
   }
 };
 
-ContactSprings with_magnitudes(const Assembly& assembly, const ContactSprings& springs) {
-  if (!springs.any_negative()) return springs;
-  if (springs.uniform()) return ContactSprings(SpringConstants{springs[0].kN, std::abs(springs[0].kT)});
-  std::vector<SpringConstants> each(assembly.contacts.size());
-  for (std::size_t c = 0; c < each.size(); ++c) each[c] = {springs[c].kN, std::abs(springs[c].kT)};
-  return ContactSprings(std::move(each));
-}
-
-std::vector<DiscMotion> motions_of(const DegreesOfFreedom& unknowns, const std::vector<double>& x) {
-  const auto b = static_cast<std::size_t>(unknowns.per_disc);
-  std::vector<DiscMotion> motions(x.size() / b);
-  for (std::size_t d = 0; d < motions.size(); ++d) {
-    motions[d] = {{x[d * b], x[d * b + 1]}, b == 3 ? x[d * b + 2] / unknowns.rotation_scale : 0.0};
-  }
-  return motions;
-}
-
 }  // namespace
 
 MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& springs, Rotation rotation,
                                 std::span<const Support> supports) {
-  const ContactSprings positive = with_magnitudes(assembly, springs);
+  const ContactSprings positive = springs.changed([](SpringConstants k) {
+    return SpringConstants{k.kN, std::abs(k.kT)};
+  });
   const HeldSystem system(assembly, positive, rotation, supports);
   MechanismReport report;
   report.gears = static_cast<std::int64_t>(system.held.gears.size());
@@ -86,7 +70,7 @@ MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& 
     const std::vector<double> motion = system.factor->softest_motion();
     report.sentences.push_back(fmt::format(
         "{} in which no contact stretches or slips{}", counted(report.others, "motion"),
-        motion.empty() ? "" : ", such as " + describe_motion(assembly, motions_of(system.unknowns, motion))));
+        motion.empty() ? "" : ", such as " + describe_motion(assembly, disc_motions(system.unknowns, motion))));
   }
   if (assembly.periodic() && supports.empty()) {
     const ContactSprings equal(SpringConstants{1, 1});  // contacts without slip carry no load, but join their discs

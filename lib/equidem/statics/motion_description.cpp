@@ -11,7 +11,6 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/contact_graph.hpp"
-#include "equidem/statics/unwrapped_pieces.hpp"
 
 namespace equidem {
 namespace {
@@ -233,7 +232,7 @@ class Description {
       const Vec2 apart = u_[c.j] - u_[c.i];
       if (dot(apart, apart) <= negligible) rigid.contacts.push_back({.i = c.i, .j = c.j});
     }
-    const std::vector<std::int32_t> group = ContactGraph(rigid).pieces();
+    const std::vector<std::int32_t> group = unwrap_pieces(rigid, ContactGraph(rigid)).piece;
     std::vector<std::size_t> sizes(assembly_.size(), 0);
     for (const std::size_t d : moving_) ++sizes[group[d]];
     if (std::count(sizes.begin(), sizes.end(), 1) > 0) return {};

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "equidem/contact/frame.hpp"
-#include "equidem/statics/unwrapped_pieces.hpp"
 
 namespace equidem {
 namespace {
@@ -275,7 +274,8 @@ class Equations {
     }
   }
 
-  /// Rows of held rotations; then gamma is eliminated and what a component asks of omega goes to its piece.
+  /// Rows of held rotations; then gamma is eliminated, and the equation of a component for omega is added to those of
+  /// its piece.
   void hold_rotations() {
     std::vector<std::uint8_t> no_stiffness(components_.size());
     for (std::size_t k = 0; k < components_.size(); ++k) no_stiffness[k] = components_[k].without_stiffness() ? 1 : 0;

@@ -10,18 +10,17 @@
 ///
 /// must vanish where kT != 0: a disc that rolls on its neighbour turns by theta_j = (omega l - r_i theta_i) / r_j.
 /// Along contacts with kT != 0 all rotations of a component thus follow from omega and the rotation gamma of one
-/// disc, theta_i = alpha_i omega + beta_i gamma, and every contact that closes a ring asks
+/// disc, theta_i = alpha_i omega + beta_i gamma, and every contact that closes a ring requires
 ///
 ///   (r_i alpha_i + r_j alpha_j - l) omega + (r_i beta_i + r_j beta_j) gamma = 0.
 ///
-/// Together with one row for each held component these are the equations for (t, omega, gamma), and their null space
-/// is what can move. gamma alone is the gear mode: it exists where every ring of the component closes, that is, has
-/// an even number of contacts and equal products of lever arms either way round. With rotation restrained every theta
-/// is zero and any kT != 0 resists omega. Off the lines of centres the arms of a contact meet in one point, so that
-/// omega has no energy where all bodies turn with it: rotations beside it, theta_i - omega = beta_i gamma, must leave
-/// r_i theta_i + r_j theta_j (where kT
-/// != 0) and o_i theta_i + o_j theta_j without change, o the offsets. A piece that winds around the period cannot
-/// rotate.
+/// Together with one row for each held component these are the equations for (t, omega, gamma), and their null space is
+/// what can move. gamma alone is the gear mode: it exists where every ring of the component closes, that is, has an
+/// even number of contacts and equal products of lever arms either way round. With rotation restrained every theta is
+/// zero and any kT != 0 resists omega. Off the lines of centres the arms of a contact meet in one point, so that omega
+/// has no energy where all bodies turn with it: rotations beside it, theta_i - omega = beta_i gamma, must leave r_i
+/// theta_i + r_j theta_j (where kT != 0) and o_i theta_i + o_j theta_j without change, o the offsets. A piece that
+/// winds around the period cannot rotate.
 #pragma once
 
 #include <cstdint>

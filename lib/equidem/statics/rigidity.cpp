@@ -54,11 +54,12 @@ std::string describe_free(const PieceMotions& piece) {
 
 void check_discs_without_contacts(const Assembly& assembly, const std::vector<PieceMotions>& pieces) {
   std::int64_t count = 0;
-  std::string names;
+  std::vector<std::string> first_names;
   for (const PieceMotions& piece : pieces) {
     if (piece.has_contacts || piece.free.empty()) continue;
-    if (++count <= 3) names += (names.empty() ? "" : ", ") + describe_disc(assembly, piece.first_disc);
+    if (++count <= 3) first_names.push_back(describe_disc(assembly, piece.first_disc));
   }
+  const std::string names = joined(first_names);
   if (count == 0) return;
   if (assembly.size() == 1) {
     bad_input(fmt::format("the assembly is a single disc that is free to move, {}", names),
@@ -80,12 +81,11 @@ std::string sizes_of(const std::vector<PieceMotions>& pieces) {
     if (piece.has_contacts) sizes.push_back(piece.discs);
   }
   std::sort(sizes.rbegin(), sizes.rend());
-  constexpr std::size_t most = 5;
-  std::string text = fmt::format("of {}", sizes[0]);
-  for (std::size_t k = 1; k < std::min(sizes.size(), most); ++k) {
-    text += fmt::format("{}{}", k + 1 == sizes.size() ? " and " : ", ", sizes[k]);
-  }
-  return text + (sizes.size() > most ? ", ... discs" : " discs");
+  const bool many = sizes.size() > 5;
+  if (many) sizes.resize(5);
+  std::vector<std::string> words;
+  for (const std::int64_t size : sizes) words.push_back(fmt::format("{}", size));
+  return fmt::format("of {} discs", many ? joined(words) + ", ..." : listed(words));
 }
 
 /// Components to hold so that the motions stop. They are held along x or y, so that a translation that is free while
@@ -144,18 +144,6 @@ void check_gears(const Assembly& assembly, const std::vector<GearMode>& gears) {
 }
 
 }  // namespace
-
-RigidityReport examine_rigidity(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
-                                const DegreesOfFreedom& unknowns) {
-  const FreeMotions motions = find_free_motions(assembly, graph, springs, unknowns);
-  RigidityReport report;
-  for (const PieceMotions& piece : motions.pieces) {
-    ++(piece.has_contacts ? report.pieces : report.discs_without_contacts);
-    report.free_rigid_motions += static_cast<std::int64_t>(piece.free.size());
-  }
-  report.gear_modes = static_cast<std::int64_t>(motions.gears.size());
-  return report;
-}
 
 void check_rigidity(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
                     const DegreesOfFreedom& unknowns) {

@@ -14,19 +14,6 @@
 
 namespace equidem {
 
-/// How many independent motions nothing resists.
-struct RigidityReport {
-  std::int64_t pieces = 0;  ///< connected, of discs that have contacts
-  std::int64_t discs_without_contacts = 0;
-  std::int64_t free_rigid_motions = 0;  ///< of pieces and of discs without contacts, under the supports
-  std::int64_t gear_modes = 0;          ///< groups of discs that can counter-rotate
-
-  [[nodiscard]] bool rigid() const { return free_rigid_motions == 0 && gear_modes == 0; }
-};
-
-RigidityReport examine_rigidity(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
-                                const DegreesOfFreedom& unknowns);
-
 /// Refuse an assembly that can move without resistance.
 /// \throws Error (bad_input) where there is no disc, a single free disc, a disc without contacts that is not held, a
 ///         piece that is not held, a rigid motion (named) that the supports leave free, or discs that can

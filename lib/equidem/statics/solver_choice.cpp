@@ -3,17 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <limits>
+#include <string>
 #include <utility>
 #include <vector>
+
+#include <sys/resource.h>
 
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/linear/memory.hpp"
 #include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
 #include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
 #include "equidem/statics/motion_description.hpp"
-#include "equidem/statics/spring_sizes.hpp"
 
 namespace equidem {
 namespace {
@@ -84,7 +87,7 @@ void check_null_motions(const System& system, const Factorization& factor) {
   constexpr std::int64_t most = 32;
   const Assembly& assembly = system.k.assembly;
   const bool far_apart = factor.report().zero_pivots > 0 && spring_spread(assembly, system.springs) > enough_digits;
-  const ContactSprings judged = far_apart ? equal_springs(assembly, system.springs) : system.springs;
+  const ContactSprings judged = far_apart ? equal_springs(system.springs) : system.springs;
   for (std::int64_t k = 0; k < std::min(most, factor.report().zero_pivots); ++k) {
     const std::vector<double> motion = factor.null_motion(k);
     if (!costs_no_energy(system, judged, motion)) report_singular(system, motion);
@@ -128,6 +131,46 @@ std::unique_ptr<Factorization> by_back_end(SolverMethod method, const System& sy
               "some kT is negative, and the method needs a positive definite matrix", "Use method = \"auto\"");
   }
   return judged(back_end.factorize(system.k, system.unknowns, *system.symbolic), system, mechanisms);
+}
+
+/// A number of bytes in a file of the control group; infinity where there is no limit.
+double bytes_in(const std::string& path) {
+  std::ifstream file(path);
+  double bytes = 0;
+  return file >> bytes ? bytes : std::numeric_limits<double>::infinity();
+}
+
+/// Memory of this process, bytes: "VmRSS:" resident, "VmSize:" address space, "VmData:" data segment.
+double bytes_of_process(const std::string& what) {
+  std::ifstream status("/proc/self/status");
+  std::string word;
+  while (status >> word) {
+    double kilobytes = 0;
+    if (word == what && status >> kilobytes) return 1024 * kilobytes;
+  }
+  return 0;
+}
+
+/// Bytes that this process can still take without swapping: the smaller of the available memory that the system states
+/// and of what its limits leave; 0 where neither is known.
+double available_memory() {
+  double available = std::numeric_limits<double>::infinity();
+  std::ifstream meminfo("/proc/meminfo");
+  std::string word;
+  while (meminfo >> word) {
+    double kilobytes = 0;
+    if (word == "MemAvailable:" && meminfo >> kilobytes) available = 1024 * kilobytes;
+  }
+  // Caches of the control group are released on demand, so only resident memory counts against its limit.
+  available = std::min(available, bytes_in("/sys/fs/cgroup/memory.max") - bytes_of_process("VmRSS:"));
+  const auto limited = [&](auto resource, const std::string& used) {
+    rlimit limit{};
+    if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
+    available = std::min(available, static_cast<double>(limit.rlim_cur) - bytes_of_process(used));
+  };
+  limited(RLIMIT_AS, "VmSize:");
+  limited(RLIMIT_DATA, "VmData:");
+  return available == std::numeric_limits<double>::infinity() ? 0 : std::max(available, 1.0);
 }
 
 }  // namespace

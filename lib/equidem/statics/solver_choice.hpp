@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// From the wish of the user to a factorization that can be trusted.
+/// Choice of a factorization by the options of the user, and checks of its result.
 #pragma once
 
 #include <memory>

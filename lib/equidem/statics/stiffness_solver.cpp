@@ -232,17 +232,31 @@ double StiffnessSolver::twice_energy(std::span<const double> x) const {
 }
 
 SoftestMotion StiffnessSolver::softest_motion(std::span<const double> start) const {
+  return iterate_inverse(start, std::vector<double>(unknowns_.held.size(), 1.0));
+}
+
+double StiffnessSolver::scaled_inverse_norm(std::span<const double> start) const {
+  std::vector<double> root = row_sums();
+  for (double& value : root) value = std::sqrt(value);
+  return iterate_inverse(start, std::move(root)).inverse_norm;
+}
+
+SoftestMotion StiffnessSolver::iterate_inverse(std::span<const double> start, std::vector<double> scale) const {
+  for (std::size_t k = 0; k < scale.size(); ++k) {
+    if (unknowns_.held[k] != 0) scale[k] = 0;
+  }
   std::vector<double> x(start.begin(), start.end());
+  x.resize(scale.size());
+  const auto multiply_by_scale = [&] {
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] *= scale[k];
+  };
+  multiply_by_scale();
   if (norm_of_free(x) == 0) {
-    x.resize(unknowns_.held.size());
     Random random(1);
     for (double& value : x) value = random.uniform() - 0.5;
   }
   SoftestMotion result;
   const auto make_unit = [&] {
-    for (std::size_t k = 0; k < x.size(); ++k) {
-      if (unknowns_.held[k] != 0) x[k] = 0;
-    }
     const double size = norm_of_free(x);
     if (size > 0) {
       for (double& value : x) value /= size;
@@ -251,12 +265,15 @@ SoftestMotion StiffnessSolver::softest_motion(std::span<const double> start) con
   };
   if (!(make_unit() > 0)) return result;
   for (int pass = 0; pass < 2; ++pass) {
+    multiply_by_scale();
     factor_->solve(x, 1);
+    multiply_by_scale();
     result.inverse_norm = std::max(result.inverse_norm, make_unit());
   }
+  for (std::size_t k = 0; k < x.size(); ++k) x[k] = scale[k] > 0 ? x[k] / scale[k] : 0;
   // Round-off of the factor may make the motion stiffer than it is.
-  const double stiffness = twice_energy(x);
-  if (!springs_.any_negative() && stiffness > 0) result.inverse_norm = std::max(result.inverse_norm, 1 / stiffness);
+  const double stiffness = springs_.any_negative() ? 0 : twice_energy(x);
+  if (stiffness > 0) result.inverse_norm = std::max(result.inverse_norm, 1 / stiffness);
   result.motion = std::move(x);
   return result;
 }
@@ -282,37 +299,6 @@ double StiffnessSolver::scaled_residual_bound(const RightHandSide& given, const 
   constexpr double alike = 100;
   if (!(least > 0) || most > alike * least) return scaled_residual(given, solution.motion);
   return solution.residual / std::sqrt(least);
-}
-
-double StiffnessSolver::scaled_inverse_norm(std::span<const double> start) const {
-  std::vector<double> root = row_sums();
-  for (std::size_t k = 0; k < root.size(); ++k) root[k] = unknowns_.held[k] == 0 ? std::sqrt(root[k]) : 0;
-  std::vector<double> y(root.size());
-  for (std::size_t k = 0; k < y.size(); ++k) y[k] = root[k] * start[k];
-  if (norm_of_free(y) == 0) {
-    Random random(1);
-    for (double& value : y) value = random.uniform() - 0.5;
-  }
-  const auto make_unit = [&] {
-    const double size = norm_of_free(y);
-    if (size > 0) {
-      for (double& value : y) value /= size;
-    }
-    return size;
-  };
-  if (!(make_unit() > 0)) return 0;
-  double largest = 0;
-  for (int pass = 0; pass < 2; ++pass) {
-    for (std::size_t k = 0; k < y.size(); ++k) y[k] *= root[k];
-    factor_->solve(y, 1);
-    for (std::size_t k = 0; k < y.size(); ++k) y[k] *= root[k];
-    largest = std::max(largest, make_unit());
-  }
-  if (springs_.any_negative()) return largest;
-  // Round-off of the factor may make the motion stiffer than it is.
-  for (std::size_t k = 0; k < y.size(); ++k) y[k] = root[k] > 0 ? y[k] / root[k] : 0;
-  const double stiffness = twice_energy(y);
-  return stiffness > 0 ? std::max(largest, 1 / stiffness) : largest;
 }
 
 double normal_rounding(const Assembly& assembly, const Contact& contact) {

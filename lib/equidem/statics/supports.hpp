@@ -19,7 +19,7 @@ struct Support {
   std::optional<double> rotation;  ///< rad, counter-clockwise
 };
 
-/// How the force of a load is meant.
+/// Meaning of the force of a load.
 enum class LoadKind {
   per_disc,  ///< N/m on each disc of the group
   total,     ///< N/m on the whole group, equal shares

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Abe (1996), section 3: the tension test reads the moduli of the infinite lattice off a block with sides.
-#include <memory>
-#include <numbers>
 
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/core/text.hpp"
@@ -53,14 +51,12 @@ Study abe_lattice_study(bool quick) {
       Setting setting{.method = "gauge at " + to_string(gauge),
                       .values = {{"rows", static_cast<double>(rows)}},
                       .resolution = 1.0 / rows};
-      study.tasks.push_back({std::move(setting), [rows, gauge] {
-                               const auto result = std::make_shared<Tension>();
-                               return Trial{.work = [=] { *result = tension_of(rows, gauge); },
-                                            .values =
-                                                [=] {
-                                                  return std::vector{result->poisson_ratio, result->shear_modulus};
-                                                }};
-                             }});
+      study.tasks.push_back(task_on(
+          std::move(setting), [] { return Tension{}; },
+          [rows, gauge](Tension& result) { result = tension_of(rows, gauge); },
+          [](const Tension& result) {
+            return std::vector{result.poisson_ratio, result.shear_modulus};
+          }));
     }
   }
   study.notes = {"A periodic cell of two rows has no sides: equidem homogenize gives both moduli to round-off."};

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/nearest.hpp"
+#include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {

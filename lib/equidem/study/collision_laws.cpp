@@ -3,7 +3,6 @@
 /// Fujioka & Ushijima (2005), section 5: laws of collision that stand for rigid bodies, their dimensionless stiffness
 /// held while the step changes; Figs. 10 and 11 with the time of computing as the axis.
 #include <cmath>
-#include <memory>
 #include <numbers>
 
 #include "equidem/core/text.hpp"
@@ -40,9 +39,8 @@ Grain ball_at(Vec2 position, double radius) {
   return {.position = position, .radius = radius, .inertia = inertia_of(radius, 1, Body::sphere)};
 }
 
-std::shared_ptr<GrainSimulation> start(const GrainScene& scene, const Law& law, double step) {
-  return std::make_shared<GrainSimulation>(scene,
-                                           GrainOptions{.law = law.law, .time_step = step, .refuse_crossing = false});
+GrainSimulation start(const GrainScene& scene, const Law& law, double step) {
+  return {scene, GrainOptions{.law = law.law, .time_step = step, .refuse_crossing = false}};
 }
 
 // One impact: balls of 1 m side by side fall from heights about 0.1 m, each meeting the floor at another instant of its
@@ -62,23 +60,24 @@ double rigid_height(double from, double time) {
 
 StudyTask one_impact(const Law& law, double step) {
   const auto steps = std::llround(watched / step);
-  return {{.problem = "one impact", .method = law.name, .values = {{"time_step", step}}, .resolution = step}, [=] {
-            GrainScene scene = on_floor(law);
-            for (int k = 0; k < balls; ++k) scene.grains.push_back(ball_at({3.0 * k, 1 + height_of(k)}, 1));
-            const auto run = start(scene, law, step);
-            return Trial{.work = [=] { run->advance(steps); },
-                         .values =
-                             [=] {
-                               const std::vector<Grain> grains = run->grains();
-                               double sum = 0;
-                               for (int k = 0; k < balls; ++k) {
-                                 const double truth = rigid_height(height_of(k), static_cast<double>(steps) * step);
-                                 const double off = grains[static_cast<std::size_t>(k)].position.y - 1 - truth;
-                                 sum += off * off;
-                               }
-                               return std::vector{std::sqrt(sum / balls) / height, unknown, unknown};
-                             }};
-          }};
+  const auto begin = [=] {
+    GrainScene scene = on_floor(law);
+    for (int k = 0; k < balls; ++k) scene.grains.push_back(ball_at({3.0 * k, 1 + height_of(k)}, 1));
+    return start(scene, law, step);
+  };
+  const auto values = [=](const GrainSimulation& run) {
+    const std::vector<Grain> grains = run.grains();
+    double sum = 0;
+    for (int k = 0; k < balls; ++k) {
+      const double truth = rigid_height(height_of(k), static_cast<double>(steps) * step);
+      const double off = grains[static_cast<std::size_t>(k)].position.y - 1 - truth;
+      sum += off * off;
+    }
+    return std::vector{std::sqrt(sum / balls) / height, unknown, unknown};
+  };
+  return task_on(
+      {.problem = "one impact", .method = law.name, .values = {{"time_step", step}}, .resolution = step}, begin,
+      [=](GrainSimulation& run) { run.advance(steps); }, values);
 }
 
 // Three stacked spheres (Fig. 9), section 5.6.
@@ -95,27 +94,23 @@ GrainScene stacked(const Law& law) {
 
 StudyTask stacked_spheres(const Law& law, double step) {
   const auto last = static_cast<std::int64_t>(std::ceil(1.3 * exact_parting / step));
-  return {
-      {.problem = "stacked spheres", .method = law.name, .values = {{"time_step", step}}, .resolution = step}, [=] {
-        const auto run = start(stacked(law), law, step);
-        return Trial{
-            .work = [=] { run->advance(last); },
-            .values =
-                [=] {
-                  // an Euler step lists what touched at its start, exact_flow what touches at its end
-                  const std::int64_t late = law.law == NormalLaw::exact_flow ? 1 : 0;
-                  const auto watch = start(stacked(law), law, step);
-                  double parting = 0;
-                  while (watch->step() < last) {
-                    watch->advance(1);
-                    for (const GrainContact& contact : watch->contacts()) {
-                      if (contact.i == 1 && contact.j == 2) parting = static_cast<double>(watch->step() + late) * step;
-                    }
-                  }
-                  const double speed = run->grains()[1].velocity.x / std::sqrt(4 * gravity * stacked_radius);
-                  return std::vector{unknown, std::abs(speed / exact_speed - 1), std::abs(parting / exact_parting - 1)};
-                }};
-      }};
+  const auto values = [=](const GrainSimulation& run) {
+    // an Euler step lists what touched at its start, exact_flow what touches at its end
+    const std::int64_t late = law.law == NormalLaw::exact_flow ? 1 : 0;
+    GrainSimulation watch = start(stacked(law), law, step);
+    double parting = 0;
+    while (watch.step() < last) {
+      watch.advance(1);
+      for (const GrainContact& contact : watch.contacts()) {
+        if (contact.i == 1 && contact.j == 2) parting = static_cast<double>(watch.step() + late) * step;
+      }
+    }
+    const double speed = run.grains()[1].velocity.x / std::sqrt(4 * gravity * stacked_radius);
+    return std::vector{unknown, std::abs(speed / exact_speed - 1), std::abs(parting / exact_parting - 1)};
+  };
+  return task_on(
+      {.problem = "stacked spheres", .method = law.name, .values = {{"time_step", step}}, .resolution = step},
+      [=] { return start(stacked(law), law, step); }, [=](GrainSimulation& run) { run.advance(last); }, values);
 }
 
 }  // namespace

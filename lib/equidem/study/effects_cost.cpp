@@ -23,15 +23,11 @@ template <class Run>
 StudyTask task_of(const std::string& problem, const std::string& method, std::size_t discs,
                   std::function<Run()> start) {
   const auto steps = static_cast<std::int64_t>(work / static_cast<double>(discs));
-  return {{.problem = problem, .method = method}, [=] {
-            const auto run = std::make_shared<Run>(start());
-            return Trial{.work = [=] { run->advance(steps); },
-                         .values =
-                             [=] {
-                               const double unknowns = run->effects().rotation ? 3 : 2;
-                               return std::vector{run->bytes_per_body(), unknowns};
-                             }};
-          }};
+  return task_on(
+      {.problem = problem, .method = method}, std::move(start), [steps](Run& run) { run.advance(steps); },
+      [](const Run& run) {
+        return std::vector{run.bytes_per_body(), run.effects().rotation ? 3.0 : 2.0};
+      });
 }
 
 /// A scene is the one before with something more.

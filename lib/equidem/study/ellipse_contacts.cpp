@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// How two overlapping ellipses touch: exactly, from the best of n directions, and by Sukegawa's enlarged ellipse.
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -108,28 +107,23 @@ std::vector<Pair> random_pairs(double aspect, int count) {
 using Pairs = std::shared_ptr<const std::vector<Pair>>;
 
 StudyTask task_of(Setting setting, const Pairs& pairs, Method method) {
-  return {std::move(setting), [pairs, method = std::move(method)] {
-            const auto found = std::make_shared<std::vector<Found>>(pairs->size());
-            return Trial{.work =
-                             [=] {
-                               for (std::size_t k = 0; k < pairs->size(); ++k) (*found)[k] = method((*pairs)[k]);
-                             },
-                         .values =
-                             [=] {
-                               double angle = 0, overlap = 0;
-                               for (std::size_t k = 0; k < pairs->size(); ++k) {
-                                 const Pair& pair = (*pairs)[k];
-                                 const Found& one = (*found)[k];
-                                 const double off =
-                                     std::atan2(cross(pair.normal, one.normal), dot(pair.normal, one.normal));
-                                 const double less = one.overlap / pair.overlap - 1;
-                                 angle += off * off;
-                                 overlap += less * less;
-                               }
-                               const auto count = static_cast<double>(pairs->size());
-                               return std::vector{std::sqrt(angle / count), std::sqrt(overlap / count)};
-                             }};
-          }};
+  const auto work = [pairs, method = std::move(method)](std::vector<Found>& found) {
+    for (std::size_t k = 0; k < pairs->size(); ++k) found[k] = method((*pairs)[k]);
+  };
+  const auto values = [pairs](const std::vector<Found>& found) {
+    double angle = 0, overlap = 0;
+    for (std::size_t k = 0; k < pairs->size(); ++k) {
+      const Pair& pair = (*pairs)[k];
+      const double off = std::atan2(cross(pair.normal, found[k].normal), dot(pair.normal, found[k].normal));
+      const double less = found[k].overlap / pair.overlap - 1;
+      angle += off * off;
+      overlap += less * less;
+    }
+    const auto count = static_cast<double>(pairs->size());
+    return std::vector{std::sqrt(angle / count), std::sqrt(overlap / count)};
+  };
+  return task_on(
+      std::move(setting), [pairs] { return std::vector<Found>(pairs->size()); }, work, values);
 }
 
 }  // namespace

@@ -3,15 +3,15 @@
 /// Evaluation of the measurements of a study: errors, orders, fronts, advice.
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "equidem/study/front.hpp"
 #include "equidem/study/order.hpp"
 #include "equidem/study/run_study.hpp"
 #include "equidem/study/study.hpp"
-#include "equidem/study/timing.hpp"
 
 namespace equidem {
 
@@ -21,8 +21,8 @@ struct StudyRow {
   Timing time;
   std::vector<double> values;  ///< one per quantity; empty where refused
   std::vector<double> errors;  ///< likewise; not a number: a fact, or no part of this problem, or itself the truth
-  /// The largest error of this and all finer settings of the same problem and method: what one may count on. An error
-  /// that is small by luck, between two levels where it changes its sign, does not make a setting good.
+  /// The largest error of this and all finer settings of the same problem and method: an error that is small only
+  /// because it changes its sign between two levels does not count.
   std::vector<double> assured;
   std::string refusal;
 };
@@ -70,5 +70,18 @@ std::vector<std::string> problems_of(const Study& study);
 
 /// "1.2 ms", "34 s".
 std::string readable_seconds(double seconds);
+
+/// Cost and error of a setting.
+struct CostPoint {
+  double seconds = 0;
+  double error = 0;  ///< not a number: it takes no part
+};
+
+/// The Pareto front: the points than which none is both faster and at least as accurate, in the order of time. Errors
+/// fall along it.
+std::vector<std::size_t> front_of(std::span<const CostPoint> points);
+
+/// The fastest point with at most that error; empty where there is none.
+std::optional<std::size_t> cheapest_within(std::span<const CostPoint> points, double error);
 
 }  // namespace equidem

@@ -101,12 +101,10 @@ Study integrators_study(bool quick) {
       Setting setting{.method = to_string(range.integrator),
                       .values = {{"steps_per_period", 1 / fraction}},
                       .resolution = fraction};
-      study.tasks.push_back({std::move(setting), [=] {
-                               const auto run = std::make_shared<Simulation>(wave->start(range.integrator, step));
-                               return Trial{
-                                   .work = [=] { run->advance(steps); },
-                                   .values = [=] { return std::vector{wave->error(run->motions(), run->time())}; }};
-                             }});
+      study.tasks.push_back(task_on(
+          std::move(setting), [=] { return wave->start(range.integrator, step); },
+          [=](Simulation& run) { run.advance(steps); },
+          [=](const Simulation& run) { return std::vector{wave->error(run.motions(), run.time())}; }));
     }
     study.orders.push_back({.method = to_string(range.integrator),
                             .order = static_cast<double>(scheme_of(range.integrator).order),

@@ -51,16 +51,13 @@ Study neighbour_margin_study(bool quick) {
   for (const double margin : {0.0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6}) {
     Setting setting{.method = margin > 0 ? "" : "chosen by the program", .values = {{"margin_over_radius", margin}}};
     if (margin == 0) setting.values.clear();
-    study.tasks.push_back(
-        {std::move(setting), [=] {
-           const auto run = std::make_shared<GrainSimulation>(
-               *scene, GrainOptions{.law = NormalLaw::linear_dashpot, .time_step = step, .margin = margin * radius});
-           return Trial{.work = [=] { run->advance(steps); },
-                        .values =
-                            [=] {
-                              return std::vector{static_cast<double>(run->counters().rebuilds), run->energy().kinetic};
-                            }};
-         }});
+    const GrainOptions options{.law = NormalLaw::linear_dashpot, .time_step = step, .margin = margin * radius};
+    study.tasks.push_back(task_on(
+        std::move(setting), [=] { return GrainSimulation(*scene, options); },
+        [](GrainSimulation& run) { run.advance(steps); },
+        [](const GrainSimulation& run) {
+          return std::vector{static_cast<double>(run.counters().rebuilds), run.energy().kinetic};
+        }));
   }
   study.notes = {"The energy at the end is the same for every margin: no list misses a contact."};
   return study;

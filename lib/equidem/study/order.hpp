@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// How fast errors fall: order of convergence, extrapolation to the limit.
+/// Order of convergence, extrapolation to the limit.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Moduli of random periodic cells: how well the mean of S cells of N discs is known.
-#include <memory>
 #include <vector>
 
 #include "equidem/assembly/delaunay.hpp"
@@ -30,26 +29,20 @@ struct Sampled {
 };
 
 StudyTask task_of(Setting setting, std::int64_t discs, int seeds) {
-  return {std::move(setting), [=] {
-            const auto sampled = std::make_shared<Sampled>();
-            return Trial{.work =
-                             [=] {
-                               *sampled = {};
-                               for (int seed = 1; seed <= seeds; ++seed) {
-                                 const EffectiveModuli moduli = moduli_of_cell(discs, static_cast<std::uint64_t>(seed));
-                                 sampled->poisson.push_back(moduli.poisson_strain);
-                                 sampled->shear.push_back(moduli.shear_modulus);
-                               }
-                             },
-                         .values =
-                             [=] {
-                               const auto error = [](const std::vector<double>& samples) {
-                                 return estimate_mean(samples, 0.95).standard_error;
-                               };
-                               const MeanEstimate shear = estimate_mean(sampled->shear, 0.95);
-                               return std::vector{error(sampled->poisson), shear.standard_error / shear.mean};
-                             }};
-          }};
+  const auto work = [=](Sampled& sampled) {
+    sampled = {};
+    for (int seed = 1; seed <= seeds; ++seed) {
+      const EffectiveModuli moduli = moduli_of_cell(discs, static_cast<std::uint64_t>(seed));
+      sampled.poisson.push_back(moduli.poisson_strain);
+      sampled.shear.push_back(moduli.shear_modulus);
+    }
+  };
+  const auto values = [](const Sampled& sampled) {
+    const MeanEstimate shear = estimate_mean(sampled.shear, 0.95);
+    return std::vector{estimate_mean(sampled.poisson, 0.95).standard_error, shear.standard_error / shear.mean};
+  };
+  return task_on(
+      std::move(setting), [] { return Sampled{}; }, work, values);
 }
 
 }  // namespace

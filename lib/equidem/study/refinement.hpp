@@ -44,8 +44,8 @@ class Refinement {
 
   /// The coarsest level that should reach the accuracy, by all that is known so far.
   /// \throws Error (computation_failed) as soon as it is plain that no level up to `most` does, naming what can be
-  ///         reached, or where errors
-  ///         do not fall as theory says up to 64 times the first level; any error that `pilot` throws
+  ///         reached, or where errors do not fall as theory says up to 64 times the first level; any error that `pilot`
+  ///         throws
   std::int64_t propose();
   /// Whether the error of what a level gave, estimated with it, is within the accuracy.
   bool accepts(std::int64_t level, Values values);

@@ -2,7 +2,6 @@
 /// \file
 /// Discs that fall into a box and come to rest: does the void ratio depend on the time step?
 #include <cmath>
-#include <memory>
 #include <numbers>
 
 #include "equidem/core/random.hpp"
@@ -47,30 +46,26 @@ Study settled_void_ratio_study(bool quick) {
     const double step = contact / n;
     Setting setting{.values = {{"steps_in_a_contact", static_cast<double>(n)}, {"time_step", step}},
                     .resolution = step};
-    study.tasks.push_back({std::move(setting), [=] {
-                             const auto packings = std::make_shared<std::vector<GrainPacking>>();
-                             return Trial{.work =
-                                              [=] {
-                                                for (int seed = 1; seed <= seeds; ++seed)
-                                                  packings->push_back(
-                                                      pack(options_of(discs, step, static_cast<std::uint64_t>(seed))));
-                                              },
-                                          .values =
-                                              [=] {
-                                                double voids = 0, contacts = 0;
-                                                for (const GrainPacking& packing : *packings) {
-                                                  const PackingMeasures measures = measure(packing);
-                                                  voids += measures.void_ratio / seeds;
-                                                  contacts += measures.coordination / seeds;
-                                                }
-                                                return std::vector{voids, contacts};
-                                              }};
-                           }});
+    const auto work = [=](std::vector<GrainPacking>& packings) {
+      for (int seed = 1; seed <= seeds; ++seed)
+        packings.push_back(pack(options_of(discs, step, static_cast<std::uint64_t>(seed))));
+    };
+    const auto values = [=](const std::vector<GrainPacking>& packings) {
+      double voids = 0, contacts = 0;
+      for (const GrainPacking& packing : packings) {
+        const PackingMeasures measures = measure(packing);
+        voids += measures.void_ratio / seeds;
+        contacts += measures.coordination / seeds;
+      }
+      return std::vector{voids, contacts};
+    };
+    study.tasks.push_back(task_on(
+        std::move(setting), [] { return std::vector<GrainPacking>(); }, work, values));
   }
   study.notes = {
       "No order is expected: falling is chaotic, so that another step is another packing of the same kind. What is "
-      "left of the "
-      "difference is the scatter of packings, which more discs and seeds make smaller and finer steps do not."};
+      "left of the difference is the scatter of packings, which more discs and seeds make smaller and finer steps do "
+      "not."};
   return study;
 }
 

@@ -87,15 +87,12 @@ struct Solved {
 using Solve = std::function<Solved(const Block&)>;
 
 StudyTask task_of(const std::shared_ptr<LazyBlock>& lazy, Setting setting, Solve solve) {
-  return {std::move(setting), [lazy, solve = std::move(solve)] {
-            const Block& block = lazy->get();
-            const auto solved = std::make_shared<Solved>();
-            return Trial{.work = [=, &block] { *solved = solve(block); },
-                         .values =
-                             [=, &block] {
-                               return std::vector{block.error(solved->motions), solved->unbalanced};
-                             }};
-          }};
+  return task_on(
+      std::move(setting), [lazy] { return static_cast<void>(lazy->get()), Solved{}; },
+      [lazy, solve = std::move(solve)](Solved& solved) { solved = solve(lazy->get()); },
+      [lazy](const Solved& solved) {
+        return std::vector{lazy->get().error(solved.motions), solved.unbalanced};
+      });
 }
 
 }  // namespace
@@ -143,8 +140,7 @@ Study solvers_study(bool quick) {
       {.method = "relaxation", .order = 1, .why = "the error is K^-1 times the unbalanced force that is left"}};
   study.notes = {
       "The order of relaxation is that of the error over the unbalanced force that is left, not over the tolerance: "
-      "the "
-      "force is checked every 25 steps and may be 10,000 times smaller than at the check before, so that several "
+      "the force is checked every 25 steps and may be 10,000 times smaller than at the check before, so that several "
       "tolerances end in the same state."};
   return study;
 }

@@ -9,9 +9,10 @@
 namespace equidem {
 
 std::string Setting::label() const {
-  std::string text = method;
-  for (const auto& [name, value] : values) text += fmt::format("{}{} = {:.6g}", text.empty() ? "" : ", ", name, value);
-  return text;
+  std::vector<std::string> words;
+  if (!method.empty()) words.push_back(method);
+  for (const auto& [name, value] : values) words.push_back(fmt::format("{} = {:.6g}", name, value));
+  return joined(words);
 }
 
 const ExpectedOrder* Study::expected(const Setting& setting, const std::string& quantity) const {

@@ -3,12 +3,11 @@
 /// Definition of a study: settings to try, quantities to measure, reference values.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <limits>
-#include <optional>
+#include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -26,7 +25,7 @@ struct Setting {
   [[nodiscard]] std::string label() const;
 };
 
-/// How errors follow from what was measured.
+/// Reference values of errors.
 enum class Truth {
   known,   ///< from a closed form or an independent method: Quantity::truth; 0 where a setting measures an error itself
   finest,  ///< the value at the finest level of the same problem and method, whose own error is not known
@@ -66,6 +65,16 @@ struct StudyTask {
   Setting setting;
   std::function<Trial()> prepare;  ///< not timed
 };
+
+/// A task on a state of its own, which all its steps share.
+/// \param start() makes the state; work(state) is timed; values(state) are read afterwards
+template <class Start, class Work, class Values>
+StudyTask task_on(Setting setting, Start start, Work work, Values values) {
+  return {std::move(setting), [=] {
+            const auto state = std::make_shared<std::invoke_result_t<Start>>(start());
+            return Trial{.work = [=] { work(*state); }, .values = [=] { return values(*state); }};
+          }};
+}
 
 struct Study {
   std::string name;

@@ -67,9 +67,9 @@ struct LongWaveLoss {
   double angle = 0;  ///< rad in [0, pi), direction of the wave vector
 };
 
-/// Where long waves lose their stiffness: the limit q -> 0 of the critical ratio, exact and over all directions at
-/// once. As q -> 0 along n a wave is the motion a/q of the discs together and, of order 1, what they do beside it. The
-/// stiffness (with the orders above) leaves
+/// The ratio at which long waves lose their stiffness: the limit q -> 0 of the critical ratio, exact and over all
+/// directions at once. As q -> 0 along n a wave is the motion a/q of the discs together and, of order 1, what they do
+/// beside it. The stiffness (with the orders above) leaves
 ///
 ///   A(n; r) = Q(n) - L(n) D^-1 L(n)^T,   Q = Z^T K2(n) Z,   L = Z^T K1(n) Y,   D = Y^T K0 Y,   K = N + r T,
 ///
@@ -77,7 +77,7 @@ struct LongWaveLoss {
 /// homogenized assembly, which waves lose where it first has an eigenvalue 0 as r falls from 0.
 ///
 /// \param normal, tangential N and T of K = N + r T, both positive semidefinite for every q
-/// \param rotation per row: 1 where the unknown is a rotation, of which N knows nothing
+/// \param rotation per row: 1 where the unknown is a rotation, on which N does not depend
 LongWaveLoss find_long_wave_loss(const StiffnessOrders& normal, const StiffnessOrders& tangential,
                                  const std::vector<char>& rotation);
 

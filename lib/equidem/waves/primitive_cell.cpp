@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/waves/primitive_cell.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>

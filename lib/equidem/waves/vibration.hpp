@@ -3,7 +3,6 @@
 /// The highest frequency of an assembly and the time steps that follow from it or replace it.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
@@ -15,8 +14,7 @@
 namespace equidem {
 
 /// \throws Error (bad_input) where a mass, a moment or a kN/m is not within 1e-150 to 1e150: squares of frequencies and
-///         speeds
-///         would leave the range of numbers
+///         speeds would leave the range of numbers
 void check_magnitudes(const Assembly& assembly, const ContactSprings& springs, const std::vector<Inertia>& inertia);
 
 /// An end of the spectrum of M^-1 K, (rad/s)², over the components that are not held; in a periodic cell: of the

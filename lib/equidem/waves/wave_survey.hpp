@@ -5,12 +5,13 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
+#include "equidem/core/matrix.hpp"
+#include "equidem/core/vector.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/waves/bloch.hpp"
 #include "equidem/waves/brillouin_zone.hpp"
@@ -61,5 +62,16 @@ std::size_t survey_size(const PrimitiveCell& cell);
 ///        where some kT is not 0
 /// \throws Error (interrupted)
 WaveSurvey survey_waves(const PrimitiveCell& cell, const std::vector<Inertia>& inertia, Rotation rotation);
+
+/// c² in (m/s)²; negative where the continuum is unstable.
+struct PlaneWaves {
+  double longitudinal_squared = 0;  ///< of the wave whose motion is most along its direction
+  double transverse_squared = 0;
+};
+
+/// Eigenvalues of A_ik = n_j n_l C_ijkl over the density: rho c² u = A u.
+/// \param gradient_stiffness stress by displacement gradient, rows and columns (xx, yy, xy, yx), Pa
+/// \param mass_per_area kg/m² (per metre of depth: of the assembly, not of its discs)
+PlaneWaves plane_waves(const Matrix4& gradient_stiffness, double mass_per_area, Vec2 direction);
 
 }  // namespace equidem

@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "equidem/assembly/body_inertia.hpp"
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "equidem/assembly/body_inertia.hpp"
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"

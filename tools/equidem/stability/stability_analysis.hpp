@@ -13,7 +13,6 @@
 #include "equidem/output/results.hpp"
 #include "equidem/statics/critical_ratio.hpp"
 #include "equidem/statics/mechanisms.hpp"
-#include "equidem/waves/sound.hpp"
 #include "equidem/waves/vibration.hpp"
 #include "equidem/waves/wave_survey.hpp"
 

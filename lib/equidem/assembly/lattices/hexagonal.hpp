@@ -3,7 +3,6 @@
 /// The hexagonal lattice: close-packed rows (Abe 1996, Figs. 5 and 6).
 #pragma once
 
-#include <cmath>
 #include <numbers>
 
 #include "equidem/assembly/lattices/lattice.hpp"

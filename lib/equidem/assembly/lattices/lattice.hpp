@@ -25,7 +25,7 @@ struct TensionTheory {
   double stiffness_ratio = 0;  ///< s11/(kN e11) = 2G/((1 - nu) kN)
 };
 
-/// How the discs of the rows of a lattice lie over one another, which decides where strain gauges sit.
+/// Arrangement of the discs of different rows of a lattice, by which strain gauges are placed.
 enum class RowAlignment {
   aligned,    ///< every row has discs at the same x
   staggered,  ///< rows an even number apart have discs at the same x

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/assembly/lattices/row_lattice.hpp"
 
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -19,7 +18,7 @@ void check_counts(const LatticeOptions& o, const RowPattern& pattern) {
   if (o.rows < 1) {
     bad_input(fmt::format("rows = {}", o.rows), "a lattice has at least one row", "Ask for 1 or more");
   }
-  if (!(o.radius > 0) || !std::isfinite(o.radius)) {
+  if (!is_positive(o.radius)) {
     bad_input(fmt::format("radius = {} m", o.radius), "a radius must be positive and finite", "Correct it");
   }
   if (!measurable(o.radius)) bad_input(fmt::format("radius = {} m", o.radius), length_limits(), "Choose other units");

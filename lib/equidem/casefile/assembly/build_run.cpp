@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "equidem/assembly/body_inertia.hpp"
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/casefile/assembly/build.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"

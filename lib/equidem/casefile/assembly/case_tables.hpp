@@ -10,7 +10,7 @@
 
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/casefile/engine/bind.hpp"
-#include "equidem/material/elastic_material.hpp"
+#include "equidem/material/elastic_moduli.hpp"
 
 namespace equidem {
 

@@ -6,7 +6,7 @@
 #include "equidem/casefile/engine/check_value.hpp"
 #include "equidem/casefile/engine/keys.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/nearest.hpp"
+#include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem::casefile {

@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/nearest.hpp"
+#include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem::casefile {

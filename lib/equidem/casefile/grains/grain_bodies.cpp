@@ -11,7 +11,7 @@
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/core/file.hpp"
-#include "equidem/core/nearest.hpp"
+#include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 

@@ -7,7 +7,7 @@
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/core/file.hpp"
-#include "equidem/core/nearest.hpp"
+#include "equidem/core/names.hpp"
 
 namespace equidem {
 namespace {

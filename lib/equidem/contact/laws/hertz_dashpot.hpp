@@ -52,10 +52,7 @@ struct HertzDashpot {
   }
   /// As for linear_dashpot, with the tangent stiffness 3/2 k d^(1/2) at the largest overlap. The dashpot alpha sqrt(m
   /// k) d^(1/4) over the critical one of that stiffness is sqrt(5/6) zeta.
-  static double stable_step(double damping_ratio) {
-    const double zeta = std::sqrt(5.0 / 6) * damping_ratio;
-    return 2 / (std::sqrt(1 + zeta * zeta) + zeta);
-  }
+  static double stable_step(double damping_ratio) { return semi_implicit_limit(std::sqrt(5.0 / 6) * damping_ratio); }
   static void check_range(double /*a*/, double /*restitution*/) {}
 };
 

@@ -17,6 +17,7 @@
 #include "equidem/contact/exact_contact.hpp"
 #include "equidem/contact/restitution.hpp"
 #include "equidem/core/square_root.hpp"
+#include "equidem/material/wave_speed_springs.hpp"
 
 namespace equidem {
 

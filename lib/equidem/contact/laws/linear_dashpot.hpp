@@ -4,8 +4,6 @@
 /// Ushijima 2005).
 #pragma once
 
-#include <cmath>
-
 #include "equidem/contact/laws/law.hpp"
 
 namespace equidem::laws {
@@ -34,9 +32,7 @@ struct LinearDashpot : LinearSpring {
   static double dissipation(double restitution, ContactEnd end) { return 2 * damping_ratio(restitution, end); }
   static double damping_ratio(double restitution, ContactEnd end) { return damping_ratio_of(restitution, end); }
   /// Largest omega dt of one contact: 2/(sqrt(1 + zeta²) + zeta), omega² = k/m.
-  static double stable_step(double damping_ratio) {
-    return 2 / (std::sqrt(1 + damping_ratio * damping_ratio) + damping_ratio);
-  }
+  static double stable_step(double damping_ratio) { return semi_implicit_limit(damping_ratio); }
   static void check_range(double /*a*/, double /*restitution*/) {}
 };
 

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "equidem/core/names.hpp"
+#include "equidem/core/text.hpp"
 
 namespace equidem {
 namespace {
@@ -69,11 +70,11 @@ std::string letter_of(NormalLaw law) {
 }
 
 std::string names_of_laws(LawKind kind) {
-  std::string names;
+  std::vector<std::string> names;
   for (const LawDescription& law : descriptions) {
-    if (law.kind == kind) names += (names.empty() ? "" : " or ") + std::string(law.name);
+    if (law.kind == kind) names.emplace_back(law.name);
   }
-  return names;
+  return joined(names, " or ");
 }
 
 }  // namespace equidem

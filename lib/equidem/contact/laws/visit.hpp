@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// From the name of a law to its struct. Few files include this: they are compiled anew for another list of laws
+/// The struct of a law by its name. Few files include this: they are compiled anew for another list of laws
 /// (tests/laws).
 #pragma once
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/nearest.hpp"
+#include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {

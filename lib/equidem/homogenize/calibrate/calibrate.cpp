@@ -28,21 +28,6 @@ double poisson_ratio_of(double shear_to_bulk, Plane plane) {
   return std::isfinite(q) ? (1 - q) / (1 + q) : -1;
 }
 
-template <std::size_t N>
-void scale(SquareMatrix<N>& matrix, double factor) {
-  for (auto& row : matrix)
-    for (double& entry : row) entry *= factor;
-}
-
-/// The stiffness with all springs `factor` times as stiff: the motions stay.
-void scale_springs(EffectiveStiffness& c, double factor) {
-  scale(c.stiffness, factor);
-  scale(c.tangential_part, factor);
-  scale(c.normal_part, factor);
-  scale(c.gradient_stiffness, factor);
-  c.error_bound *= factor;
-}
-
 void check(const Assembly& assembly, const CalibrateOptions& options) {
   if (!(options.tolerance >= 1e-14 && options.tolerance <= 1e-2)) {
     bad_input(fmt::format("the tolerance of the calibration is {:.6g}", options.tolerance),
@@ -87,7 +72,7 @@ class Homogenizer {
 
   /// The last sample, with springs `kN` times as stiff.
   void deliver(double kN, Calibration& result) {
-    scale_springs(last_, kN);
+    last_.scale(kN);
     result.springs = {kN, ratio_ * kN};
     result.achieved = std::move(last_);
     result.times = times_;

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <limits>
-#include <optional>
 #include <string>
 
 #include "equidem/assembly/assembly.hpp"

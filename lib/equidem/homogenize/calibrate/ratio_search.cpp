@@ -115,7 +115,7 @@ struct Cubic {
   }
 };
 
-/// Sign change of f in [0, 1], judged by its ends.
+/// Sign change of f in [0, 1], given the signs at its ends.
 template <class Function>
 double root(const Function& f) {
   double low = 0, high = 1;

@@ -28,7 +28,7 @@ struct RatioRange {
   double at_zero = 0, at_infinity = 0;
   bool closed = true;              ///< r = 0 can be had; false: G or K is lost there
   double least = 0, greatest = 0;  ///< q of both ends; after find_by_scan its extremes in between, too
-  /// q rises at both ends, and from one to the other. No theorem says that it must: sparse networks have K grow faster
+  /// q rises at both ends, and from one to the other. No theorem requires it: sparse networks have K grow faster
   /// than G in some decades.
   bool rising = true;
 };
@@ -36,7 +36,7 @@ struct RatioRange {
 /// Two samples, more only where those at the ends are lost in rounding. Neither is stable where none could be had.
 RatioRange sample_range(const RatioSampler& sample);
 
-/// Where a search ended.
+/// Result of a search.
 struct FoundRatio {
   RatioSample at;        ///< the last sample, where `reached`
   bool reached = false;  ///< q is the wanted one, to the tolerance

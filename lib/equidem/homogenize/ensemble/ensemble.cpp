@@ -72,7 +72,7 @@ EnsembleSamples sample_ensemble(const EnsemblePlan& plan, const CellSampler& sam
       }
       try {
         progress.update(static_cast<double>(begin + count) / plan.samples);
-      } catch (const Error&) {  // the wish to stop: the next cell, if there is one, hears of it
+      } catch (const Error&) {  // interrupted: the next cell, if there is one, throws again
       }
     }
     if (result.stopped) break;

@@ -12,7 +12,7 @@
 
 namespace equidem {
 
-/// Which cells are sampled: `samples` of each size, with the seeds first_seed, first_seed + 1, ...
+/// The cells to sample: `samples` of each size, with the seeds first_seed, first_seed + 1, ...
 struct EnsemblePlan {
   std::vector<std::int64_t> discs;  ///< wanted in a cell, ascending
   int samples = 10;                 ///< of each size
@@ -45,7 +45,7 @@ struct EnsembleSamples {
 };
 
 /// Sample the cells of a plan. Small cells are done several at a time, each by one thread; large ones one by one: the
-/// bits are the same. A cell that the sampler refuses is kept with its reason; the user's wish to stop ends the
+/// bits are the same. A cell that the sampler refuses is kept with its reason; an interruption ends the
 /// sampling and keeps the cells that are done.
 /// \param kept samples of an earlier run, which are not computed again; those outside the plan are left out
 /// \param save called now and then, and at the end, with the samples done so far; may be empty

@@ -45,11 +45,10 @@ struct AccurateEnsemble {
 ///   P(|normal(drift/N, s)| > accuracy), summed over K, G and nu, <= 1 - confidence,   s² = amplitude²/(N S) + (error
 ///   of drift)²/N²,
 ///
-/// at least eight cells; they are sampled, and more of them until their own scatter
-/// reaches the accuracy. The choice depends on the samples alone, not on the clock.
+/// at least eight cells; they are sampled, and more of them until their own scatter reaches the accuracy. The choice
+/// depends on the samples alone, not on the clock.
 /// \throws Error (computation_failed) where that takes more discs than most_discs, naming what can be reached, or where
-///         no two cells have
-///         moduli
+///         no two cells have moduli
 AccurateEnsemble sample_to_accuracy(const CellSampler& sampler, const EnsembleAccuracy& options,
                                     const std::function<void(const std::vector<EnsembleSample>& done)>& save = {});
 

@@ -43,7 +43,7 @@ struct EnsembleSize {
   PerQuantity<MeanEstimate> estimates;
 };
 
-/// How one quantity depends on the number N of discs in a cell. Scatter: sd = amplitude N^-exponent; many independent
+/// Dependence of one quantity on the number N of discs in a cell. Scatter: sd = amplitude N^-exponent; many independent
 /// patches of a cell average as 1/sqrt(N) (Kanit et al. 2003). Drift: mean = limit + drift/N.
 struct SizeDependence {
   bool scattered = false;    ///< false: all cells agree to round-off, or no size has two of them; nothing below is set

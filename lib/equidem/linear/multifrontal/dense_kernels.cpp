@@ -20,8 +20,35 @@ namespace {
 int as_int(std::size_t n) {
   return static_cast<int>(n);
 }
-CBLAS_DIAG diagonal(bool unit) {
-  return unit ? CblasUnit : CblasNonUnit;
+struct Shape {
+  std::size_t m, n, k;
+};
+
+/// C (m x n) -= op(A) B.
+void subtract_product_of(CBLAS_TRANSPOSE op, Shape shape, const double* a, std::size_t lda, const double* b,
+                         std::size_t ldb, double* c, std::size_t ldc) {
+  const auto [m, n, k] = shape;
+  if (m == 0 || n == 0 || k == 0) return;
+  if (n == 1) {
+    const std::size_t rows = op == CblasNoTrans ? m : k, columns = op == CblasNoTrans ? k : m;
+    cblas_dgemv(CblasColMajor, op, as_int(rows), as_int(columns), -1.0, a, as_int(lda), b, 1, 1.0, c, 1);
+  } else {
+    cblas_dgemm(CblasColMajor, op, CblasNoTrans, as_int(m), as_int(n), as_int(k), -1.0, a, as_int(lda), b, as_int(ldb),
+                1.0, c, as_int(ldc));
+  }
+}
+
+/// X := op(L)^-1 X.
+void solve_triangular(CBLAS_TRANSPOSE op, std::size_t n, std::size_t columns, const double* l, std::size_t ldl,
+                      double* x, std::size_t ldx, bool unit) {
+  if (n == 0 || columns == 0) return;
+  const CBLAS_DIAG diagonal = unit ? CblasUnit : CblasNonUnit;
+  if (columns == 1) {
+    cblas_dtrsv(CblasColMajor, CblasLower, op, diagonal, as_int(n), l, as_int(ldl), x, 1);
+  } else {
+    cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, op, diagonal, as_int(n), as_int(columns), 1.0, l, as_int(ldl), x,
+                as_int(ldx));
+  }
 }
 
 }  // namespace
@@ -58,46 +85,22 @@ void subtract_product_transposed(std::size_t m, std::size_t n, std::size_t k, co
 
 void subtract_product(std::size_t m, std::size_t n, std::size_t k, const double* a, std::size_t lda, const double* b,
                       std::size_t ldb, double* c, std::size_t ldc) {
-  if (m == 0 || n == 0 || k == 0) return;
-  if (n == 1) {
-    cblas_dgemv(CblasColMajor, CblasNoTrans, as_int(m), as_int(k), -1.0, a, as_int(lda), b, 1, 1.0, c, 1);
-  } else {
-    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, as_int(m), as_int(n), as_int(k), -1.0, a, as_int(lda), b,
-                as_int(ldb), 1.0, c, as_int(ldc));
-  }
+  subtract_product_of(CblasNoTrans, {m, n, k}, a, lda, b, ldb, c, ldc);
 }
 
 void subtract_transposed_product(std::size_t m, std::size_t n, std::size_t k, const double* a, std::size_t lda,
                                  const double* b, std::size_t ldb, double* c, std::size_t ldc) {
-  if (m == 0 || n == 0 || k == 0) return;
-  if (n == 1) {
-    cblas_dgemv(CblasColMajor, CblasTrans, as_int(k), as_int(m), -1.0, a, as_int(lda), b, 1, 1.0, c, 1);
-  } else {
-    cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, as_int(m), as_int(n), as_int(k), -1.0, a, as_int(lda), b,
-                as_int(ldb), 1.0, c, as_int(ldc));
-  }
+  subtract_product_of(CblasTrans, {m, n, k}, a, lda, b, ldb, c, ldc);
 }
 
 void solve_lower(std::size_t n, std::size_t columns, const double* l, std::size_t ldl, double* x, std::size_t ldx,
                  bool unit) {
-  if (n == 0 || columns == 0) return;
-  if (columns == 1) {
-    cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, diagonal(unit), as_int(n), l, as_int(ldl), x, 1);
-  } else {
-    cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, diagonal(unit), as_int(n), as_int(columns), 1.0, l,
-                as_int(ldl), x, as_int(ldx));
-  }
+  solve_triangular(CblasNoTrans, n, columns, l, ldl, x, ldx, unit);
 }
 
 void solve_lower_transposed(std::size_t n, std::size_t columns, const double* l, std::size_t ldl, double* x,
                             std::size_t ldx, bool unit) {
-  if (n == 0 || columns == 0) return;
-  if (columns == 1) {
-    cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, diagonal(unit), as_int(n), l, as_int(ldl), x, 1);
-  } else {
-    cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans, diagonal(unit), as_int(n), as_int(columns), 1.0, l,
-                as_int(ldl), x, as_int(ldx));
-  }
+  solve_triangular(CblasTrans, n, columns, l, ldl, x, ldx, unit);
 }
 
 // Divide and conquer; sizes of work arrays by LAPACK's documentation.

@@ -9,7 +9,7 @@
 
 namespace equidem::dense {
 
-/// Keep BLAS from starting threads of its own; called once by whoever uses these kernels.
+/// Keep BLAS from starting threads of its own; every user of these kernels calls it once.
 void use_one_thread_per_call();
 
 /// A = L L^T in the lower triangle of the n x n matrix a. Returns 0, or the 1-based index of the first pivot that is

@@ -25,7 +25,7 @@ struct FrontFactor {
   std::size_t delayed = 0;
 };
 
-/// Index of each unknown in the front at hand; one per thread, never cleared: only ids of the front are looked up.
+/// Index of each unknown in the front at hand; one per thread, never cleared: only ids of the front are read.
 std::vector<std::int32_t>& index_of_unknown(std::size_t unknowns) {
   thread_local std::vector<std::int32_t> index;
   if (index.size() < unknowns) index.resize(unknowns);

@@ -89,7 +89,8 @@ class Dissection {
     divide_all({0, static_cast<std::int32_t>(items_.size()), 0});
     tree.order.reserve(items_.size());
     for (const Item& it : items_) tree.order.push_back(it.disc);
-    emit(0, tree);
+    std::vector<std::int32_t> roots;
+    emit(0, tree, roots);
     return tree;
   }
 
@@ -208,17 +209,17 @@ class Dissection {
     return cut;
   }
 
-  /// The smallest separator in a strip about the median coordinate, or, in a small part, along the median itself.
+  /// The smallest separator in a strip about the median coordinate, or, in a part of fewer than 64 discs, along the
+  /// median itself. Half of the strip holds 5 layers of sqrt(n) of the n discs, and at most a share of 0.12 of them.
   Cut median_cut(const Part& part, int axis, Scratch& scratch) {
     auto& x = scratch.coordinates;
     x.clear();
     for (std::int32_t k = part.begin; k < part.end; ++k) x.push_back(items_[k].at[axis]);
     const auto middle = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
     std::nth_element(x.begin(), middle, x.end());
-    if (part.size() >= options_.strip_from) {
+    if (part.size() >= 64) {
       const double n = part.size();
-      const auto half_strip =
-          static_cast<std::ptrdiff_t>(std::min(options_.strip_layers * std::sqrt(n), options_.strip_share * n));
+      const auto half_strip = static_cast<std::ptrdiff_t>(std::min(5 * std::sqrt(n), 0.12 * n));
       std::nth_element(x.begin(), middle - half_strip, middle);
       std::nth_element(middle, middle + half_strip, x.end());
       const float lowest = *std::min_element(x.begin(), middle - half_strip + 1);
@@ -285,12 +286,8 @@ class Dissection {
     return cut;
   }
 
-  /// Append the nodes of a division in postorder; nodes without discs are left out. The index of the node of `label`,
-  /// or -1 where it is left out and its children stay without a parent here; they are then adopted by the caller.
-  void emit(std::int32_t label, DissectionTree& tree) {
-    std::vector<std::int32_t> orphans;  // roots that wait for a parent
-    emit(label, tree, orphans);
-  }
+  /// Append the nodes of a division in postorder. Nodes without discs are left out: their children are roots, for the
+  /// caller to adopt, as is the node of `label`.
   void emit(std::int32_t label, DissectionTree& tree, std::vector<std::int32_t>& roots) {
     const Division& division = divisions_[label];
     const auto first = static_cast<std::int32_t>(tree.nodes.size());

@@ -26,10 +26,7 @@ struct DissectionTree {
 };
 
 struct DissectionOptions {
-  int leaf_size = 8;          ///< discs that are not divided any further, >= 1
-  int strip_from = 64;        ///< discs of a part from which the separator is sought in a strip, not along a line
-  double strip_layers = 5;    ///< half the width of the strip in layers of discs, sqrt(discs of the part) each
-  double strip_share = 0.12;  ///< half the width of the strip at most, as a share of the discs of the part; below 1/2
+  int leaf_size = 8;  ///< discs that are not divided any further, >= 1
 };
 
 /// Divide the discs across the longer side of their bounding box (both sides are tried where they are alike): the

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The structure of the factor: which discs each front holds.
+/// The structure of the factor: the discs of each front.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +45,7 @@ struct RowRun {
   std::int32_t count;
 };
 
-/// Where the rows of a child lie in its parent's front.
+/// The places of the rows of a child in its parent's front.
 void match_rows(const SymbolicFactor& symbolic, std::size_t child, std::vector<RowRun>& runs);
 
 /// A vector of discs x block components, from the order of discs to the order of elimination and back.

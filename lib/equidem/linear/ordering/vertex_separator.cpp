@@ -6,7 +6,7 @@
 namespace equidem {
 namespace {
 
-// What precedes or follows a vertex on its path.
+// Values in place of the predecessor or the successor of a vertex: it is on no path; it is the first or the last one.
 constexpr std::int32_t off_path = -1, terminal = -2;
 
 // Every vertex is split: a path enters at `in` and leaves at `out`, and the arc between takes one path.

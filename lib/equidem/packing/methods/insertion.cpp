@@ -27,7 +27,7 @@ std::optional<Vec2> tangent_place(Vec2 a, Vec2 way, double from_a, double from_b
   return a + along * unit + (left ? across : -across) * perpendicular(unit);
 }
 
-/// How far from the centre of a, along a unit vector, that of b lies when it comes from far away and first touches a.
+/// Distance of the centre of b from that of a, along a unit vector, when b comes from far away and first touches a.
 /// The gap between convex parts is a convex function of the way, so that Newton's method comes nearer from outside and
 /// never passes.
 double touching_distance(const Outline& a, const Outline& b, double far, Vec2 along) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "equidem/core/error.hpp"
@@ -13,7 +12,7 @@
 namespace equidem {
 namespace {
 
-/// How much a body at a place overlaps others and walls: sum of squares, and the largest one, m.
+/// Overlaps of a body at a place with others and walls: sum of squares, m², and the largest one, m.
 struct Crowding {
   double squares = 0, largest = 0;
   void add(double overlap) {
