@@ -7,7 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "scenes/fujioka2005_scenes.hpp"
+#include "equidem/study/fujioka2005_scenes.hpp"
+
 #include "support/catch.hpp"
 
 using namespace equidem;

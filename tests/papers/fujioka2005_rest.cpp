@@ -3,7 +3,8 @@
 /// Where the laws of Fujioka & Ushijima (2005) end: rest and clusters, beside exact_flow.
 #include <cmath>
 
-#include "scenes/fujioka2005_scenes.hpp"
+#include "equidem/study/fujioka2005_scenes.hpp"
+
 #include "support/catch.hpp"
 
 using namespace equidem;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Rows of results as text, CSV columns and curves.
+/// Rows of results as CSV columns, JSON objects and curves.
 #pragma once
 
 #include <functional>
@@ -14,20 +14,9 @@
 #include "equidem/output/plots/plot.hpp"
 #include "equidem/output/results.hpp"
 
+#include "text_table.hpp"
+
 namespace equidem {
-
-/// A table of a report: columns as wide as their widest cell, the first one aligned to the left, the others to the
-/// right.
-class TextTable {
- public:
-  explicit TextTable(std::vector<std::string> head) : rows_{std::move(head)} {}
-  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
-  [[nodiscard]] bool empty() const { return rows_.size() < 2; }
-  [[nodiscard]] std::string text() const;
-
- private:
-  std::vector<std::vector<std::string>> rows_;
-};
 
 /// Add a CSV column with one value per row. \param take member or function of a row: a number or a text
 template <class Rows, class Take>

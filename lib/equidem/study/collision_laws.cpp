@@ -3,45 +3,29 @@
 /// Fujioka & Ushijima (2005), section 5: laws of collision that stand for rigid bodies, their dimensionless stiffness
 /// held while the step changes; Figs. 10 and 11 with the time of computing as the axis.
 #include <cmath>
-#include <numbers>
+#include <limits>
 
 #include "equidem/core/text.hpp"
-#include "equidem/grains/grain_simulation.hpp"
 #include "equidem/study/built_in.hpp"
+#include "equidem/study/fujioka2005_scenes.hpp"
 
 namespace equidem {
+namespace fujioka2005 {
 namespace {
 
-constexpr double restitution = 0.7, gravity = 9.8, unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 struct Law {
   NormalLaw law;
-  double a;  ///< dimensionless stiffness of section 5.1, as Table 2 gives it away
+  double a;  ///< dimensionless stiffness
   const char* name;
 };
-constexpr Law compared[] = {
-    {NormalLaw::linear_dashpot, 0.10, "C linear_dashpot"},  {NormalLaw::hertz_dashpot, 4.62, "T hertz_dashpot"},
-    {NormalLaw::five_case_map, 0.10, "F five_case_map"},    {NormalLaw::energy_map, 0.10, "P energy_map"},
-    {NormalLaw::exact_flow, 0.10, "X exact_flow, a = 0.1"}, {NormalLaw::exact_flow, 4, "X exact_flow, a = 4"}};
-
-GrainScene on_floor(const Law& law) {
-  const bool flow = law.law == NormalLaw::exact_flow;
-  GrainScene scene;
-  scene.walls.emplace_back();
-  scene.gravity = {0, -gravity};
-  scene.pairs = {{.dimensionless = law.a,
-                  .restitution = restitution,
-                  .end = flow ? ContactEnd::at_zero_force : ContactEnd::at_zero_overlap}};
-  return scene;
-}
-
-Grain ball_at(Vec2 position, double radius) {
-  return {.position = position, .radius = radius, .inertia = inertia_of(radius, 1, Body::sphere)};
-}
-
-GrainSimulation start(const GrainScene& scene, const Law& law, double step) {
-  return {scene, GrainOptions{.law = law.law, .time_step = step, .refuse_crossing = false}};
-}
+constexpr Law compared[] = {{NormalLaw::linear_dashpot, stiffness_of(NormalLaw::linear_dashpot), "C linear_dashpot"},
+                            {NormalLaw::hertz_dashpot, stiffness_of(NormalLaw::hertz_dashpot), "T hertz_dashpot"},
+                            {NormalLaw::five_case_map, stiffness_of(NormalLaw::five_case_map), "F five_case_map"},
+                            {NormalLaw::energy_map, stiffness_of(NormalLaw::energy_map), "P energy_map"},
+                            {NormalLaw::exact_flow, 0.10, "X exact_flow, a = 0.1"},
+                            {NormalLaw::exact_flow, 4, "X exact_flow, a = 4"}};
 
 // One impact: balls of 1 m side by side fall from heights about 0.1 m, each meeting the floor at another instant of its
 // step.
@@ -52,24 +36,22 @@ double height_of(int ball) {
   return height * (1 + 0.2 * ball / balls);
 }
 
-/// Height of a rigid ball above the floor, m, at a time after its first impact.
-double rigid_height(double from, double time) {
-  const double fall = std::sqrt(2 * from / gravity), speed = restitution * gravity * fall, t = time - fall;
-  return t * (speed - 0.5 * gravity * t);
-}
-
 StudyTask one_impact(const Law& law, double step) {
   const auto steps = std::llround(watched / step);
   const auto begin = [=] {
-    GrainScene scene = on_floor(law);
-    for (int k = 0; k < balls; ++k) scene.grains.push_back(ball_at({3.0 * k, 1 + height_of(k)}, 1));
-    return start(scene, law, step);
+    const PairProperties pair = pair_of(law.law, restitution, law.a);
+    GrainScene scene = column(pair, 1, 0.5 * height_of(0), 2);
+    for (int k = 1; k < balls; ++k) {
+      scene.grains.push_back(column(pair, 1, 0.5 * height_of(k), 2).grains[0]);
+      scene.grains.back().position.x = 3.0 * k;
+    }
+    return start(scene, law.law, step, false);
   };
   const auto values = [=](const GrainSimulation& run) {
     const std::vector<Grain> grains = run.grains();
     double sum = 0;
     for (int k = 0; k < balls; ++k) {
-      const double truth = rigid_height(height_of(k), static_cast<double>(steps) * step);
+      const double truth = rigid_height(height_of(k), restitution, static_cast<double>(steps) * step);
       const double off = grains[static_cast<std::size_t>(k)].position.y - 1 - truth;
       sum += off * off;
     }
@@ -81,23 +63,12 @@ StudyTask one_impact(const Law& law, double step) {
 }
 
 // Three stacked spheres (Fig. 9), section 5.6.
-constexpr double stacked_radius = 0.02;             // m
-constexpr double exact_speed = 0.271462651012440;   // d', eq. (28)
-constexpr double exact_parting = 0.10673687246956;  // s, T0, eq. (30) with the singular end of its integral
-
-GrainScene stacked(const Law& law) {
-  constexpr double r = stacked_radius;
-  GrainScene scene = on_floor(law);
-  scene.grains = {ball_at({-r, r}, r), ball_at({r, r}, r), ball_at({0, (1 + std::numbers::sqrt3) * r}, r)};
-  return scene;
-}
-
 StudyTask stacked_spheres(const Law& law, double step) {
   const auto last = static_cast<std::int64_t>(std::ceil(1.3 * exact_parting / step));
   const auto values = [=](const GrainSimulation& run) {
-    // an Euler step lists what touched at its start, exact_flow what touches at its end
+    // An Euler step lists the contacts at its start, exact_flow those at its end.
     const std::int64_t late = law.law == NormalLaw::exact_flow ? 1 : 0;
-    GrainSimulation watch = start(stacked(law), law, step);
+    GrainSimulation watch = start(stacked(pair_of(law.law, restitution, law.a)), law.law, step, false);
     double parting = 0;
     while (watch.step() < last) {
       watch.advance(1);
@@ -105,17 +76,20 @@ StudyTask stacked_spheres(const Law& law, double step) {
         if (contact.i == 1 && contact.j == 2) parting = static_cast<double>(watch.step() + late) * step;
       }
     }
-    const double speed = run.grains()[1].velocity.x / std::sqrt(4 * gravity * stacked_radius);
+    const double speed = dimensionless_speed(run.grains()[1].velocity.x);
     return std::vector{unknown, std::abs(speed / exact_speed - 1), std::abs(parting / exact_parting - 1)};
   };
   return task_on(
       {.problem = "stacked spheres", .method = law.name, .values = {{"time_step", step}}, .resolution = step},
-      [=] { return start(stacked(law), law, step); }, [=](GrainSimulation& run) { run.advance(last); }, values);
+      [=] { return start(stacked(pair_of(law.law, restitution, law.a)), law.law, step, false); },
+      [=](GrainSimulation& run) { run.advance(last); }, values);
 }
 
 }  // namespace
+}  // namespace fujioka2005
 
 Study collision_laws_study(bool quick) {
+  using namespace fujioka2005;
   Study study{.name = "collision_laws",
               .title = "Laws of collision for rigid bodies",
               .quantities = {{.name = "rebound",

@@ -1,107 +1,249 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What collisions cost, law by law: bench_collisions --help.
-#include <cstdio>
-#include <fstream>
-#include <string>
-#include <vector>
+/// \file
+/// Cost of a step of colliding discs, law by law, and of effects that the scene lacks: bench_collisions --help.
+#include <cmath>
+#include <numbers>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 
 #include "equidem/core/error.hpp"
+#include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/json.hpp"
+#include "equidem/grains/grain_simulation.hpp"
 
-#include "absent_effects.hpp"
-#include "accuracy.hpp"
-#include "laws.hpp"
+#include "bench.hpp"
+#include "loops.hpp"
+#include "machine.hpp"
+#include "text_table.hpp"
 
 namespace equidem::bench {
 namespace {
 
-struct Request {
-  int rounds = 9, halvings = 10;
-  std::vector<std::string> scenes = {"ball", "stack", "gas"};
-  std::string file;
+constexpr double radius = 0.5;  // m, of all discs; their mass is 1 kg
+
+struct Variant {
+  std::string name;
+  NormalLaw law = NormalLaw::linear_dashpot;
+  double dimensionless = 0;  ///< a = k dt²/m
+  GrainOptions::Scheme scheme = GrainOptions::Scheme::semi_implicit_euler;
 };
 
-class Report {
- public:
-  void add(const std::string& text) {
-    std::printf("%s", text.c_str());
-    std::fflush(stdout);
-    text_ += text;
+/// C first. The stiffness of Fujioka & Ushijima (2005), Table 2: a = 0.1, for T 4.62; X also at w dt = 2.
+const std::vector<Variant> variants{
+    {"C", NormalLaw::linear_dashpot, 0.1},
+    {"C, velocity Verlet", NormalLaw::linear_dashpot, 0.1, GrainOptions::Scheme::velocity_verlet},
+    {"T", NormalLaw::hertz_dashpot, 4.62},
+    {"F", NormalLaw::five_case_map, 0.1},
+    {"P", NormalLaw::energy_map, 0.1},
+    {"X", NormalLaw::exact_flow, 0.1},
+    {"X, a = 4", NormalLaw::exact_flow, 4}};
+
+PairProperties pair_of(const Variant& variant, double restitution) {
+  return {.dimensionless = variant.dimensionless,
+          .restitution = restitution,
+          .end = variant.law == NormalLaw::exact_flow ? ContactEnd::at_zero_force : ContactEnd::at_zero_overlap};
+}
+
+GrainSimulation start(const GrainScene& scene, const Variant& variant, double step) {
+  return {scene, {.law = variant.law, .scheme = variant.scheme, .time_step = step}};
+}
+
+Grain disc_at(Vec2 position, Vec2 velocity = {}) {
+  const double density = 1 / (std::numbers::pi * radius * radius);
+  return {
+      .position = position, .radius = radius, .inertia = inertia_of(radius, density, Body::disc), .velocity = velocity};
+}
+
+/// Discs in a square box on a grid of the given solid fraction, with velocities of 1 m/s in random directions.
+GrainScene gas(int discs, double fraction, const PairProperties& pair) {
+  const double spacing = radius * std::sqrt(std::numbers::pi / fraction);
+  const int columns = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(discs))));
+  GrainScene scene;
+  scene.pairs = {pair};
+  Random random(1);
+  for (int k = 0; k < discs; ++k) {
+    const double angle = random.uniform(0, 2 * std::numbers::pi);
+    scene.grains.push_back(disc_at({(k % columns + 0.5) * spacing, (std::floor(k / columns) + 0.5) * spacing},
+                                   {std::cos(angle), std::sin(angle)}));
   }
-  [[nodiscard]] const std::string& text() const { return text_; }
+  scene.walls = box_walls(columns * spacing, columns * spacing);
+  return scene;
+}
 
- private:
-  std::string text_;
-};
+/// Discs on a wide grid that fall and drift apart without contact.
+GrainScene free_flight(int discs) {
+  GrainScene scene = gas(discs, 0.03, {.dimensionless = 0.1});
+  scene.walls.clear();
+  scene.gravity = {0, -9.8};
+  for (Grain& grain : scene.grains) grain.velocity = 0.01 * grain.velocity;
+  return scene;
+}
+
+/// Rows of discs that rest on a floor between two walls, pressed together by gravity.
+GrainScene packed_bed(int columns, int rows, const PairProperties& pair) {
+  constexpr double spacing = 2 * radius - 5e-4;  // overlapping from the start
+  GrainScene scene;
+  scene.pairs = {pair};
+  scene.gravity = {0, -1};
+  for (int row = 0; row < rows; ++row)
+    for (int k = 0; k < columns; ++k)
+      scene.grains.push_back(
+          disc_at({(k + 0.5 + 0.5 * (row % 2)) * spacing, (0.5 + 0.5 * std::numbers::sqrt3 * row) * spacing}));
+  scene.walls = box_walls((columns + 0.5) * spacing);
+  return scene;
+}
+
+Entry entry_of(const std::string& name, GrainSimulation& simulation) {
+  return {name, [&simulation](std::int64_t steps) { simulation.advance(steps); }};
+}
+
+/// 2500 discs in a box stepped by every law: "gas", colliding without loss, or "bed", at rest under gravity.
+std::string compare_laws(std::string_view scene, int rounds) {
+  constexpr std::int64_t steps = 100;
+  constexpr int side = 50, discs = side * side;
+  const bool is_gas = scene == "gas";
+  std::vector<GrainSimulation> simulations;
+  std::vector<std::string> names;
+  std::string failed;
+  for (const Variant& variant : variants) {
+    if (!is_gas && variant.law == NormalLaw::exact_flow && variant.dimensionless > 1) continue;
+    GrainSimulation simulation =
+        start(is_gas ? gas(discs, 0.6, pair_of(variant, 1)) : packed_bed(side, side, pair_of(variant, 0.7)), variant,
+              is_gas ? 2e-3 : 1e-3);
+    const double energy = simulation.energy().kinetic + simulation.energy().elastic_normal;
+    std::string fate;
+    try {
+      simulation.advance(500);  // away from the grid, or to rest
+      const double kinetic = simulation.energy().kinetic;
+      if (kinetic > 10 * energy) fate = fmt::format("has {:.2g} times its initial energy", kinetic / energy);
+    } catch (const Error&) {
+      fate = fmt::format("is refused at step {}", simulation.step());
+    }
+    if (fate.empty()) {
+      simulations.push_back(std::move(simulation));
+      names.push_back(variant.name);
+    } else {
+      failed += fmt::format("\n{} is unstable here: within 500 steps the scene {}.\n", variant.name, fate);
+    }
+  }
+  std::vector<Entry> entries;
+  std::vector<std::int64_t> before;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    before.push_back(simulations[k].counters().evaluations);
+    entries.push_back(entry_of(names[k], simulations[k]));
+  }
+  const std::vector<Seconds> seconds = take_turns(entries, steps, rounds);
+  TextTable table("law & evaluations per disc and step & ns per disc and step & over C & bytes per disc");
+  constexpr auto disc_steps = static_cast<double>(discs * steps);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto evaluations = static_cast<double>(simulations[k].counters().evaluations - before[k]);
+    table.add("{} & {:.3f} & {} & {} & {:.0f}", names[k], evaluations / (disc_steps * (rounds + 1)),
+              (range_of(seconds[k]) * (1e9 / disc_steps)).text("{:.1f}"),
+              ratio_of(seconds[k], seconds[0]).text("{:.2f}"), simulations[k].bytes_per_body());
+  }
+  return table.markdown() + failed;
+}
+
+/// \throws Error (computation_failed) where positions differ
+template <class Loop>
+void check_alike(const GrainSimulation& simulation, const Loop& loop, double tolerance) {
+  const std::vector<Grain> grains = simulation.grains();
+  double worst = 0;
+  for (std::size_t i = 0; i < grains.size(); ++i) worst = std::max(worst, norm(grains[i].position - loop.position(i)));
+  if (worst <= tolerance) return;
+  computation_failed(fmt::format("the loop by hand and the simulation are {:.3g} m apart", worst),
+                     "both compute the same motion", "One of the two is wrong");
+}
+
+/// The first entry is the loop by hand.
+std::string table_beside_hand_loop(std::span<const Entry> entries, const std::vector<Seconds>& seconds,
+                                   std::span<const double> bytes, double disc_steps) {
+  TextTable table("loop & ns per disc and step & over the loop by hand & bytes per disc");
+  for (std::size_t k = 0; k < entries.size(); ++k)
+    table.add("{} & {} & {} & {}", entries[k].label, (range_of(seconds[k]) * (1e9 / disc_steps)).text("{:.2f}"),
+              ratio_of(seconds[k], seconds[0]).text("{:.2f}"), bytes[k] > 0 ? fmt::format("{:.0f}", bytes[k]) : "");
+  return table.markdown();
+}
+
+std::string compare_free_flight(int rounds) {
+  constexpr double dt = 1e-4;
+  constexpr std::int64_t steps = 200;
+  constexpr int discs = 10000;
+  const GrainScene scene = free_flight(discs);
+  FallingPoints points(scene);
+  std::vector<GrainSimulation> simulations;
+  std::vector<Entry> entries{{"by hand", [&](std::int64_t n) { points.advance(n, dt); }}};
+  std::vector<double> bytes{32};
+  simulations.reserve(variants.size());
+  for (const Variant& variant : variants) {
+    if (variant.name != "C" && variant.name != "C, velocity Verlet" && variant.name != "P" && variant.name != "X")
+      continue;  // the steps of the others are the same without contacts
+    simulations.push_back(start(scene, variant, dt));
+    entries.push_back(entry_of(variant.name, simulations.back()));
+  }
+  const std::vector<Seconds> seconds = take_turns(entries, steps, rounds);
+  check_alike(simulations[0], points, 1e-9);
+  for (const GrainSimulation& simulation : simulations) bytes.push_back(simulation.bytes_per_body());
+  return table_beside_hand_loop(entries, seconds, bytes, static_cast<double>(discs * steps)) +
+         fmt::format("\nNeighbour lists made in {} steps: {}.\n", simulations[0].step(),
+                     simulations[0].counters().rebuilds);
+}
+
+std::string compare_friction(int rounds) {
+  constexpr double dt = 1e-3;
+  constexpr std::int64_t steps = 100;
+  constexpr int side = 50;
+  PairProperties pair = pair_of(variants[0], 0.7);
+  const GrainScene smooth = packed_bed(side, side, pair);
+  pair.friction = 0.5;
+  pair.tangential_ratio = 0.5;
+  FrictionlessDiscs by_hand(smooth, 0.1, dt);
+  GrainSimulation without = start(smooth, variants[0], dt), with = start(packed_bed(side, side, pair), variants[0], dt);
+  const Entry entries[] = {{"by hand, without friction", [&](std::int64_t n) { by_hand.advance(n); }},
+                           entry_of("C, friction 0", without),
+                           entry_of("C, friction 0.5 with springs", with)};
+  const std::vector<Seconds> seconds = take_turns(entries, steps, rounds);
+  check_alike(without, by_hand, 1e-6);
+  const double bytes[] = {0, without.bytes_per_body(), with.bytes_per_body()};
+  return table_beside_hand_loop(entries, seconds, bytes, static_cast<double>(side * side * steps));
+}
 
 constexpr const char* introduction = R"(# Collisions
 
-equidem {0}, compiler {1}, `bench_collisions --rounds {2} --halvings {3}`. One thread, processor time; medians
-(smallest .. largest) of {2} rounds in which all take turns. Laws: C linear spring and dashpot, T Hertz spring and
-dashpot, F and P the maps of Fujioka & Ushijima, X the linear spring and dashpot solved exactly within the step.
-Dimensionless stiffness a = k dt²/m = 0.1 (T: 4.62) where nothing else is said.
+{}, `bench_collisions --rounds {}`. One thread, processor time; medians (smallest .. largest) of rounds in which all
+take turns. Laws: C linear spring and dashpot, T Hertz spring and dashpot, F and P the maps of Fujioka & Ushijima, X the
+linear spring and dashpot solved exactly within the step. Dimensionless stiffness a = k dt²/m = 0.1 (T: 4.62) unless
+stated. `equidem-papers fujioka2005` measures the evaluation of each law alone, `equidem study collision_laws` error
+against time.
 
-## An evaluation of each law
+## A step with each law
 
-The law alone, on all steps of impacts with random speed and phase, in random order; e = 0.7.
+2500 discs that keep colliding in a box, solid fraction 0.6, e = 1:
 
 )";
 
-void run(const Request& request) {
-  Report report;
-  report.add(fmt::format(introduction, library_version(), __VERSION__, request.rounds, request.halvings));
-  report.add(compare_laws(2000, request.rounds));
+void run(Report& report, int rounds) {
+  report.add(fmt::format(introduction, this_machine().text(), rounds) + compare_laws("gas", rounds));
+  report.add("\n2500 discs packed by gravity, e = 0.7, with lasting contacts:\n\n" + compare_laws("bed", rounds));
   report.add(
-      "\nIn the simulation, everything that a step does. 2500 discs that keep colliding in a box, solid fraction 0.6, "
-      "e = 1:\n\n");
-  report.add(compare_in_simulation("gas", request.rounds));
-  report.add("\n2500 discs packed by gravity, e = 0.7, contacts that last:\n\n");
-  report.add(compare_in_simulation("bed", request.rounds));
+      "\n## Cost of absent effects\n\nFree flight: 10000 discs that fall and drift without contact, beside `v += g dt; "
+      "x += v dt`.\n\n" +
+      compare_free_flight(rounds));
   report.add(
-      "\n## Time at equal accuracy\n\nThe dimensionless stiffness is held as the step falls: all laws tend to rigid "
-      "bodies, for which the truth is known.\n");
-  for (const std::string& scene : request.scenes) report.add("\n" + compare_accuracy(scene, request.halvings, 3));
-  report.add(
-      "\n## What is not there\n\nFree flight: 10000 discs that fall, drift and touch nothing, beside `v += g dt; x "
-      "+= v dt`.\n\n");
-  report.add(compare_free_flight(10000, request.rounds));
-  report.add(
-      "\nFriction: 2500 discs packed in a box, beside a loop for discs without friction, spin, ledger and search "
-      "for neighbours.\n\n");
-  report.add(compare_friction(50, 50, request.rounds));
-  if (request.file.empty()) return;
-  std::ofstream out(request.file);
-  out << report.text();
-  if (!out.flush()) bad_input(fmt::format("'{}' cannot be written", request.file), "", "Choose another path");
-}
-
-int parse_and_run(int argc, char** argv) {
-  CLI::App program("What collisions cost: laws side by side, at equal accuracy, and what is not there.",
-                   "bench_collisions");
-  Request request;
-  program.add_option("--rounds", request.rounds, "of all contenders in turn")->check(CLI::PositiveNumber);
-  program.add_option("--halvings", request.halvings, "of the coarsest step, at equal accuracy")
-      ->check(CLI::PositiveNumber);
-  program.add_option("--scenes", request.scenes, "at equal accuracy")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"ball", "stack", "gas"}));
-  program.add_option("--markdown", request.file, "file for the tables");
-  CLI11_PARSE(program, argc, argv);
-  run(request);
-  return 0;
+      "\nFriction: 2500 discs packed in a box, beside a loop for discs without friction, spin, ledger and search for "
+      "neighbours.\n\n" +
+      compare_friction(rounds));
 }
 
 }  // namespace
 }  // namespace equidem::bench
 
 int main(int argc, char** argv) {
-  try {
-    return equidem::bench::parse_and_run(argc, argv);
-  } catch (const equidem::Error& error) {
-    std::fprintf(stderr, "bench_collisions: %s\n", error.what());
-    return error.exit_code();
-  }
+  using namespace equidem::bench;
+  int rounds = 9;
+  return run_benchmark(
+      "bench_collisions", "Cost of a step of colliding discs, law by law, and of absent effects", argc, argv,
+      [&](CLI::App& app) { app.add_option("--rounds", rounds, "of all entries in turn")->check(CLI::PositiveNumber); },
+      [&](Report& report) { run(report, rounds); });
 }

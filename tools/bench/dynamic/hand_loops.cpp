@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hand_loops.hpp"
-
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -10,6 +8,7 @@
 #include "equidem/dynamics/kernels/lanes.hpp"
 #include "equidem/dynamics/layout.hpp"
 
+#include "loops.hpp"
 #include "scene.hpp"
 
 #if defined(__x86_64__)

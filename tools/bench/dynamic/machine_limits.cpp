@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "machine_limits.hpp"
-
 #include <algorithm>
 #include <cstddef>
 #include <vector>
 
-#include "processor_time.hpp"
+#include "bench.hpp"
+#include "loops.hpp"
 
 namespace equidem::bench {
+namespace {
 
 double triad_bandwidth() {
   constexpr std::size_t count = std::size_t{1} << 24;
@@ -17,7 +17,7 @@ double triad_bandwidth() {
     const double begin = processor_time();
     for (std::size_t i = 0; i < count; ++i) a[i] = b[i] + 0.5 * c[i];
     best = std::max(best, 24.0 * static_cast<double>(count) / (processor_time() - begin));
-    b[static_cast<std::size_t>(round)] = a[count - 1];  // or else the compiler could leave rounds out
+    b[static_cast<std::size_t>(round)] = a[count - 1];  // otherwise the compiler could omit rounds
   }
   return best;
 }
@@ -34,9 +34,15 @@ double peak_arithmetic() {
       for (Lanes& sum : sums) sum = sum * 0.999 + 0.001;
     }
     best = std::max(best, 8.0 * chains * repetitions / (processor_time() - begin));
-    for (Lanes& sum : sums) asm volatile("" : "+m"(sum));  // or else nothing of it would be computed
+    for (Lanes& sum : sums) asm volatile("" : "+m"(sum));  // otherwise the compiler could omit all of it
   }
   return best;
+}
+
+}  // namespace
+
+Limits machine_limits() {
+  return {.bandwidth = triad_bandwidth(), .arithmetic = peak_arithmetic()};
 }
 
 }  // namespace equidem::bench

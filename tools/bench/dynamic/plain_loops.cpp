@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "plain_loops.hpp"
-
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
 #include <utility>
 #include <vector>
 
+#include "loops.hpp"
 #include "scene.hpp"
 
 namespace equidem::bench {

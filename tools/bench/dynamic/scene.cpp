@@ -3,12 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
-
-#include "equidem/assembly/delaunay.hpp"
-#include "equidem/assembly/lattices.hpp"
-#include "equidem/core/error.hpp"
-#include "equidem/core/text.hpp"
 
 namespace equidem::bench {
 namespace {
@@ -36,50 +30,14 @@ Simulation simulation_of(const Assembly& assembly, const ContactSprings& springs
   return simulation;
 }
 
-std::vector<Variant> list_variants() {
-  std::vector<Variant> list(13);
-  list[0].name = "springs, rotation";
-  list[1].name = "normal springs only";
-  list[1].springs.kT = 0;
-  list[2].name = "rotation restrained";
-  list[2].options.rotation = Rotation::restrained;
-  list[3].name = "springs of every contact";
-  list[3].own_springs = true;
-  list[4].name = "masses of every disc";
-  list[4].own_masses = true;
-  list[5].name = "gravity";
-  list[5].options.gravity = {0, -1e-6};
-  list[6].name = "mass damping";
-  list[6].options.damping.mass = 1e-3;
-  list[7].name = "local damping";
-  list[7].options.damping.local = 0.1;
-  list[8].name = "dashpots";
-  list[8].options.damping.stiffness = 1e-3;
-  list[9].name = "driven sides";
-  list[9].driven_sides = true;
-  list[10].name = "fourth-order integrator";
-  list[10].options.integrator = Integrator::fourth_order;
-  list[11].name = "finite motions";
-  list[11].options.motion = LoopKind::Motion::finite;
-  list[12].name = "finite motions, dashpots";
-  list[12].options.motion = LoopKind::Motion::finite;
-  list[12].options.damping.stiffness = 1e-3;
-  return list;
+template <class Change>
+Variant with(const char* name, Change change) {
+  Variant variant{.name = name};
+  change(variant);
+  return variant;
 }
 
 }  // namespace
-
-std::vector<std::string> assembly_kinds() {
-  return {"hexagonal", "delaunay"};
-}
-
-Assembly build_assembly(const std::string& kind, std::int64_t discs) {
-  if (kind == "delaunay") return delaunay_assembly({.discs = discs, .radii = {1, 1}});
-  if (kind != "hexagonal")
-    bad_input(fmt::format("there is no kind '{}'", kind), "they are hexagonal and delaunay", "Choose one");
-  const auto side = static_cast<int>(std::lround(std::sqrt(static_cast<double>(discs))));
-  return hexagonal_lattice({.columns = side, .rows = side, .radius = 1});
-}
 
 std::vector<DiscMotion> start_motions(const Assembly& assembly) {
   double width = 1;
@@ -93,7 +51,23 @@ std::vector<DiscMotion> start_motions(const Assembly& assembly) {
 }
 
 const std::vector<Variant>& variants() {
-  static const std::vector<Variant> list = list_variants();
+  static const std::vector<Variant> list{
+      {.name = "springs, rotation"},
+      {.name = "normal springs only", .springs = {.kN = scene_springs.kN, .kT = 0}},
+      with("rotation restrained", [](Variant& v) { v.options.rotation = Rotation::restrained; }),
+      {.name = "springs of every contact", .own_springs = true},
+      {.name = "masses of every disc", .own_masses = true},
+      with("gravity", [](Variant& v) { v.options.gravity.y = -1e-6; }),
+      with("mass damping", [](Variant& v) { v.options.damping.mass = 1e-3; }),
+      with("local damping", [](Variant& v) { v.options.damping.local = 0.1; }),
+      with("dashpots", [](Variant& v) { v.options.damping.stiffness = 1e-3; }),
+      {.name = "driven sides", .driven_sides = true},
+      with("fourth-order integrator", [](Variant& v) { v.options.integrator = Integrator::fourth_order; }),
+      with("finite motions", [](Variant& v) { v.options.motion = LoopKind::Motion::finite; }),
+      with("finite motions, dashpots", [](Variant& v) {
+        v.options.motion = LoopKind::Motion::finite;
+        v.options.damping.stiffness = 1e-3;
+      })};
   return list;
 }
 

@@ -3,13 +3,10 @@
 /// The scenes that are stepped: an assembly set in smooth motion.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
-#include "equidem/contact/contact_springs.hpp"
-#include "equidem/contact/frame.hpp"
 #include "equidem/dynamics/simulation.hpp"
 
 namespace equidem::bench {
@@ -19,16 +16,10 @@ inline constexpr SpringConstants scene_springs = {.kN = 1.0, .kT = 0.5};
 inline constexpr Inertia scene_inertia = {.mass = 1.0, .moment = 0.5};
 inline constexpr double time_step = 0.2;
 
-std::vector<std::string> assembly_kinds();
-
-/// Discs of radius 1, free on all sides.
-/// \param kind hexagonal or delaunay
-Assembly build_assembly(const std::string& kind, std::int64_t discs);
-
 /// A wave as long as the assembly, of one hundredth of a radius.
 std::vector<DiscMotion> start_motions(const Assembly& assembly);
 
-/// What is switched on beyond springs, for the table of what effects cost.
+/// Options beyond springs, for the table of the cost of effects.
 struct Variant {
   std::string name;
   SimulationOptions options = {.time_step = time_step};
@@ -37,9 +28,10 @@ struct Variant {
   bool own_masses = false;    ///< for every disc
   bool driven_sides = false;  ///< left side held, right side pulled
 };
+/// "springs, rotation", "normal springs only", "rotation restrained", and one effect each.
 const std::vector<Variant>& variants();
 
-/// A simulation of a variant with what it refers to.
+/// A simulation of a variant with the springs that it refers to.
 class Scenery {
  public:
   Scenery(const Assembly& assembly, const Variant& variant);

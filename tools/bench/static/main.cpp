@@ -1,124 +1,244 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Static solves side by side with CHOLMOD: bench_static --help.
+/// \file
+/// Static solves side by side with CHOLMOD: bench_static --help.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
-#include <exception>
-#include <fstream>
-#include <string>
-#include <vector>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
 
 #include <CLI/CLI.hpp>
 #include <unistd.h>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/json.hpp"
+#include "equidem/output/results.hpp"
 
-#include "comparison.hpp"
-#include "matrix_file.hpp"
+#include "bench.hpp"
+#include "machine.hpp"
 #include "measurement.hpp"
-#include "problem.hpp"
+#include "text_table.hpp"
 
 namespace equidem::bench {
 namespace {
 
 struct Request {
   std::vector<double> discs = {1e4, 1e5};
-  std::vector<std::string> kinds = problem_kinds();
+  std::vector<std::string> kinds = assembly_kinds();
   std::vector<std::string> solvers;
   std::vector<int> threads = {1, 2};
   int repetitions = 0;
-  std::string json_file, markdown_file, matrix_file;
+  std::string json_file, matrix_file;
+  std::vector<std::string> measured;  ///< by this process alone: solver, kind, discs, threads
+  double warm_up = 0;                 ///< bytes to touch
 };
 
-int default_repetitions(double discs) {
-  return discs < 3e4 ? 9 : discs < 3e5 ? 5 : 3;
+/// The numbers of a measurement by name.
+constexpr std::pair<const char*, double Measurement::*> fields[] = {
+    {"discs", &Measurement::discs},
+    {"unknowns", &Measurement::unknowns},
+    {"assembly", &Measurement::assembly},
+    {"convert", &Measurement::convert},
+    {"order", &Measurement::order},
+    {"analyze", &Measurement::analyze},
+    {"factorize", &Measurement::factorize},
+    {"solve", &Measurement::solve},
+    {"nonzeros", &Measurement::nonzeros},
+    {"factor_bytes", &Measurement::factor_bytes},
+    {"residual", &Measurement::residual},
+    {"peak_bytes", &Measurement::peak_bytes},
+    {"cpu", &Measurement::cpu},
+};
+
+/// Runs this program again. \param settings environment variables of the shell \return its output
+std::string run_again(const std::string& settings, const std::string& arguments) {
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
+  std::FILE* output = popen(fmt::format("{} exec '{}' {}", settings, program, arguments).c_str(), "r");
+  if (output == nullptr) computation_failed("a fresh process could not be started", "", "");
+  std::string text;
+  std::array<char, 4096> buffer{};
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), output))
+    text.append(buffer.data(), count);
+  if (pclose(output) != 0) computation_failed(fmt::format("'bench_static {}' failed", arguments), "", "");
+  return text;
 }
 
-void write(const std::string& path, const std::string& text) {
-  std::ofstream file(path);
-  file << text;
-  if (!file.flush()) bad_input(fmt::format("'{}' cannot be written", path), "", "Choose another path");
+/// Measure in a fresh process, with peak memory and thread settings of its own. Another process first touches as much
+/// memory as the solution needs, because memory that the system hands out for the first time is slow.
+Measurement measure_in_fresh_process(const Trial& trial) {
+  const double free = static_cast<double>(sysconf(_SC_AVPHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  run_again("", fmt::format("--warm-up {}", std::min(2e8 + 8e3 * static_cast<double>(trial.discs), 0.5 * free)));
+  // Threads for BLAS and none for OpenMP, which CHOLMOD would otherwise start four of at each supernode. equidem sets
+  // its threads itself.
+  const std::string output =
+      run_again(fmt::format("OPENBLAS_NUM_THREADS={} OMP_NUM_THREADS=1 OMP_THREAD_LIMIT=1",
+                            trial.solver == "equidem" ? 1 : trial.threads),
+                fmt::format("--measure {} {} {} {}", trial.solver, trial.kind, trial.discs, trial.threads));
+  Measurement result;
+  std::istringstream numbers(output);
+  for (const auto& [name, member] : fields) numbers >> result.*member;
+  return result;
 }
 
-void run(const Request& request) {
-  std::string report = fmt::format("equidem {}, {}\n\n{}", library_version(), describe_machine(), explain_tables());
-  std::printf("%s", report.c_str());
+/// One solver with one number of threads; run r of every solver stems from the same round.
+struct Series {
+  Trial trial;
+  std::vector<Measurement> runs;
+
+  /// \param value member or function of a measurement
+  template <class Value>
+  [[nodiscard]] std::vector<double> values(Value value) const {
+    std::vector<double> all;
+    for (const Measurement& run : runs) all.push_back(std::invoke(value, run));
+    return all;
+  }
+  template <class Value>
+  [[nodiscard]] double median(Value value) const {
+    return range_of(values(value)).median;
+  }
+  [[nodiscard]] const std::string& label() const {
+    return std::ranges::find(solvers(), trial.solver, &Solver::name)->label;
+  }
+};
+
+/// Every solver runs once in every round, so that a disturbance of the machine affects all of them.
+std::vector<Series> compare(const Request& request, const std::string& kind, double discs) {
+  std::vector<Series> all;
+  for (const std::string& solver : request.solvers)
+    for (const int threads : request.threads) all.push_back({{solver, kind, std::llround(discs), threads}, {}});
+  const int rounds = request.repetitions > 0 ? request.repetitions : discs < 3e4 ? 9 : discs < 3e5 ? 5 : 3;
+  const bool watched = isatty(STDERR_FILENO) != 0;
+  for (int round = 0; round < rounds; ++round) {
+    for (Series& series : all) {
+      if (watched)
+        std::fprintf(stderr, "\r\033[K%s, %.0f discs, round %d of %d: %s, %s", kind.c_str(), discs, round + 1, rounds,
+                     series.trial.solver.c_str(), counted(series.trial.threads, "thread").c_str());
+      series.runs.push_back(measure_in_fresh_process(series.trial));
+    }
+  }
+  if (watched) std::fprintf(stderr, "\r\033[K");
+  return all;
+}
+
+std::string medians(const std::vector<Series>& all) {
+  using M = Measurement;
+  TextTable table(
+      "solver & threads & order & analyze & factorize & solve & total, s & K & nnz(L) & stored/nnz(L) & factor, MB & "
+      "peak, MB & peak/factor & CPU & residual");
+  for (const Series& s : all)
+    table.add(
+        "{} & {} & {:.3g} & {:.3g} & {:.3g} & {:.3g} & {} & {:.3g} & {:.3e} & {:.2f} & {:.0f} & {:.0f} & {:.2f} & "
+        "{:.3g} "
+        "& {:.1e}",
+        s.label(), s.trial.threads, s.median(&M::order), s.median(&M::analyze), s.median(&M::factorize),
+        s.median(&M::solve), range_of(s.values(&M::total)).text("{:.3g}"), s.median(&M::assembly),
+        s.median(&M::nonzeros), s.median(&M::stored_over_nonzeros), 1e-6 * s.median(&M::factor_bytes),
+        1e-6 * s.median(&M::peak_bytes), s.median(&M::peak_over_factor), s.median(&M::cpu), s.median(&M::residual));
+  return table.markdown();
+}
+
+/// equidem over CHOLMOD with its own orderings: medians of the ratios within each round.
+std::string ratios(const std::vector<Series>& all) {
+  using M = Measurement;
+  TextTable table("equidem over & threads & total & nnz(L) & peak & K / total of equidem");
+  for (const Series& ours : all) {
+    for (const Series& theirs : all) {
+      const bool peer = theirs.trial.solver == "cholmod-metis" || theirs.trial.solver == "cholmod-amd";
+      if (ours.trial.solver != "equidem" || !peer || theirs.trial.threads != ours.trial.threads) continue;
+      const auto ratio = [&](auto value) { return ratio_of(ours.values(value), theirs.values(value)); };
+      table.add("{} & {} & {} & {:.3f} & {:.2f} & {:.1f} %", theirs.label(), ours.trial.threads,
+                ratio(&M::total).text("{:.3g}"), ratio(&M::nonzeros).median, ratio(&M::peak_bytes).median,
+                100 * ratio_of(ours.values(&M::assembly), ours.values(&M::total)).median);
+    }
+  }
+  return table.empty() ? "" : "\n" + table.markdown();
+}
+
+Results json(const std::string& kind, const std::vector<Series>& all) {
+  std::vector<Results> list;
+  for (const Series& series : all) {
+    Results entry;
+    entry.set("solver", series.trial.solver).set("threads", series.trial.threads);
+    for (const auto& [name, member] : fields) entry.set(name, series.values(member));
+    list.push_back(entry);
+  }
+  return Results().set("kind", kind).set("series", list);
+}
+
+void run(Report& report, const Request& request) {
+  const std::string threads = joined(
+      solvers(), [](const Solver& solver) { return fmt::format("{}: {}", solver.label, solver.threads); }, "; ");
+  report.add(fmt::format(
+      "# Static solves\n\n{}\n\nkT/kN = 0.5, 3 unknowns per disc, left side fixed, load on the right side. Seconds, "
+      "medians (smallest .. largest); total = order + analyze + factorize + solve, one right-hand side, no refinement. "
+      "K: assembly of the stiffness matrix, not in the total. nnz(L): lower triangle, without explicit zeros. Factor: "
+      "stored of L. Peak: of the whole process, the assembly and K included. CPU: seconds of all threads since the "
+      "start of the process, the set-up of the problem included; it depends least on other load of the machine. Every "
+      "run is a fresh process, solvers take turns.\nThreads of {}. CHOLMOD runs supernodal, with 32-bit indices and "
+      "OMP_THREAD_LIMIT=1.\n",
+      this_machine().text(), threads));
   std::vector<Results> comparisons;
   for (const std::string& kind : request.kinds) {
     for (const double discs : request.discs) {
-      ComparisonOptions options{
-          .kind = kind,
-          .discs = std::llround(discs),
-          .solvers = request.solvers,
-          .threads = request.threads,
-          .repetitions = request.repetitions > 0 ? request.repetitions : default_repetitions(discs)};
-      const bool watched = isatty(STDERR_FILENO) != 0;
-      const Comparison comparison = compare(options, [&](int repetition, const Trial& trial) {
-        if (!watched) return;
-        std::fprintf(stderr, "\r\033[K%s, %lld discs, round %d of %d: %s, %s", kind.c_str(),
-                     static_cast<long long>(trial.discs), repetition + 1, options.repetitions, trial.solver.c_str(),
-                     counted(trial.threads, "thread").c_str());
-      });
-      if (watched) std::fprintf(stderr, "\r\033[K");
-      const std::string text = "\n" + tables(comparison);
-      std::printf("%s", text.c_str());
-      std::fflush(stdout);
-      report += text;
-      comparisons.push_back(json(comparison));
+      const std::vector<Series> all = compare(request, kind, discs);
+      const Measurement& first = all.at(0).runs.at(0);
+      report.add(fmt::format("\n{}, {:.0f} discs, {:.0f} unknowns, {} rounds\n\n{}{}", kind, first.discs,
+                             first.unknowns, all[0].runs.size(), medians(all), ratios(all)));
+      comparisons.push_back(json(kind, all));
     }
   }
-  if (!request.markdown_file.empty()) write(request.markdown_file, "# Static solves\n" + report);
-  if (!request.json_file.empty()) {
-    Results object;
-    object.set("version", library_version()).set("machine", describe_machine());
-    write(request.json_file, object.set("comparisons", comparisons).json());
-  }
+  if (request.json_file.empty()) return;
+  const Machine machine = this_machine();
+  write(
+      request.json_file,
+      Results().set("version", machine.version).set("machine", machine.text()).set("comparisons", comparisons).json());
 }
 
-int parse_and_run(int argc, char** argv) {
-  CLI::App program("Static solves side by side with CHOLMOD, each in a fresh process.", "bench_static");
-  Request request;
-  std::vector<std::string> names;
-  for (const Solver& solver : solvers()) names.push_back(solver.name);
-  request.solvers = names;
-  program.add_option("--discs", request.discs, "numbers of discs")->delimiter(',')->check(CLI::PositiveNumber);
-  program.add_option("--kinds", request.kinds, "assemblies")->delimiter(',')->check(CLI::IsMember(problem_kinds()));
-  program.add_option("--solvers", request.solvers, "who takes part")->delimiter(',')->check(CLI::IsMember(names));
-  program.add_option("--threads", request.threads, "numbers of threads")->delimiter(',')->check(CLI::PositiveNumber);
-  program.add_option("--repetitions", request.repetitions, "rounds; the default falls with the size");
-  program.add_option("--json", request.json_file, "file for all numbers");
-  program.add_option("--markdown", request.markdown_file, "file for the tables");
-  program.add_option("--write-matrix", request.matrix_file,
-                     "no comparison: write the matrix of the first kind and size to this file, see matrix_file.hpp");
-  CLI11_PARSE(program, argc, argv);
-  if (!request.matrix_file.empty()) {
-    write_matrix_file(request.matrix_file, request.kinds.front(), std::llround(request.discs.front()));
-    return 0;
-  }
-  run(request);
-  return 0;
+void touch_memory(double bytes) {
+  const auto size = static_cast<std::size_t>(bytes);
+  auto* memory = static_cast<volatile char*>(std::malloc(size));
+  for (std::size_t at = 0; memory != nullptr && at < size; at += 4096) memory[at] = 1;
+}
+
+void measure_here(const std::vector<std::string>& words) {
+  const Measurement result =
+      measure({.solver = words[0], .kind = words[1], .discs = std::stoll(words[2]), .threads = std::stoi(words[3])});
+  for (const auto& [name, member] : fields) std::printf("%.17g\n", result.*member);
 }
 
 }  // namespace
 }  // namespace equidem::bench
 
 int main(int argc, char** argv) {
-  using namespace equidem;
-  const std::vector<std::string> arguments(argv + 1, argv + argc);
-  try {
-    if (!arguments.empty() && arguments[0] == bench::measure_option) {
-      return bench::serve_measurement({arguments.begin() + 1, arguments.end()});
-    }
-    if (arguments.size() == 2 && arguments[0] == bench::warm_up_option) {
-      return bench::serve_warm_up(std::stod(arguments[1]));
-    }
-    return bench::parse_and_run(argc, argv);
-  } catch (const Error& error) {
-    std::fprintf(stderr, "bench_static: %s\n", error.what());
-    return error.exit_code();
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench_static: %s\n", error.what());
-    return 1;
-  }
+  using namespace equidem::bench;
+  Request request;
+  std::vector<std::string> names;
+  for (const Solver& solver : solvers()) names.push_back(solver.name);
+  request.solvers = names;
+  return run_benchmark(
+      "bench_static", "Static solves side by side with CHOLMOD, each in a fresh process", argc, argv,
+      [&](CLI::App& app) {
+        app.add_option("--discs", request.discs, "numbers of discs")->delimiter(',')->check(CLI::PositiveNumber);
+        app.add_option("--kinds", request.kinds, "assemblies")->delimiter(',')->check(CLI::IsMember(assembly_kinds()));
+        app.add_option("--solvers", request.solvers, "solvers to compare")->delimiter(',')->check(CLI::IsMember(names));
+        app.add_option("--threads", request.threads, "numbers of threads")->delimiter(',')->check(CLI::PositiveNumber);
+        app.add_option("--repetitions", request.repetitions, "rounds; the default falls with the size");
+        app.add_option("--json", request.json_file, "file for all numbers");
+        app.add_option("--write-matrix", request.matrix_file,
+                       "no comparison: write the matrix of the first kind and size to this file (measurement.hpp)");
+        app.add_option("--measure", request.measured)->expected(4)->group("");  // not in the help
+        app.add_option("--warm-up", request.warm_up)->group("");
+      },
+      [&](Report& report) {
+        if (!request.measured.empty())
+          measure_here(request.measured);
+        else if (request.warm_up > 0)
+          touch_memory(request.warm_up);
+        else if (!request.matrix_file.empty())
+          write_matrix_file(request.matrix_file, request.kinds.front(), std::llround(request.discs.front()));
+        else
+          run(report, request);
+      });
 }

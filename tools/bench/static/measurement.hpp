@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// One measured solution of the problem by one solver.
+/// One measured solution of a problem by one solver: a plate of discs, its left side held, its right side pulled.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +9,16 @@
 
 namespace equidem::bench {
 
-/// A solver in the comparison.
 struct Solver {
   std::string name;     ///< on the command line
   std::string label;    ///< in tables
-  std::string threads;  ///< what a number of threads means to it
+  std::string threads;  ///< meaning of a number of threads
 };
 const std::vector<Solver>& solvers();
 
-/// What is measured, on what.
 struct Trial {
   std::string solver;
-  std::string kind;  ///< of the assembly
+  std::string kind;  ///< of the assembly, one of assembly_kinds()
   std::int64_t discs = 0;
   int threads = 1;
 };
@@ -36,48 +34,24 @@ struct Measurement {
   double factorize = 0;
   double solve = 0;
   double nonzeros = 0;      ///< entries of L, lower triangle, without explicit zeros
-  double factor_bytes = 0;  ///< what is stored of it
+  double factor_bytes = 0;  ///< stored of L
   double residual = 0;      ///< |f - K u| / |f|, 2-norms, without refinement
   double peak_bytes = 0;    ///< of the process
-  double cpu = 0;           ///< of all threads of the process, from its start to its end
+  double cpu = 0;           ///< of all threads of the process since its start
 
   [[nodiscard]] double total() const { return order + analyze + factorize + solve; }
+  [[nodiscard]] double stored_over_nonzeros() const { return factor_bytes / sizeof(double) / nonzeros; }
+  [[nodiscard]] double peak_over_factor() const { return peak_bytes / factor_bytes; }
 };
 
-/// A number of a measurement, by name.
-struct Field {
-  const char* name;
-  double Measurement::*value;
-};
-inline constexpr Field fields[] = {
-    {"discs", &Measurement::discs},
-    {"unknowns", &Measurement::unknowns},
-    {"assembly", &Measurement::assembly},
-    {"convert", &Measurement::convert},
-    {"order", &Measurement::order},
-    {"analyze", &Measurement::analyze},
-    {"factorize", &Measurement::factorize},
-    {"solve", &Measurement::solve},
-    {"nonzeros", &Measurement::nonzeros},
-    {"factor_bytes", &Measurement::factor_bytes},
-    {"residual", &Measurement::residual},
-    {"peak_bytes", &Measurement::peak_bytes},
-    {"cpu", &Measurement::cpu},
-};
-
-/// Solve the problem once, in this process; all but peak_bytes and cpu.
+/// Solve the problem once, in this process.
+/// \throws Error (computation_failed) where the matrix is not positive definite
 Measurement measure(const Trial& trial);
 
-/// Measure in a fresh process, whose peak memory and thread settings are its own. Before it another process
-/// touches as much memory as the solution will need: memory that the system hands out for the first time is
-/// slow.
-/// \throws Error (computation_failed) where the process fails
-Measurement measure_in_fresh_process(const Trial& trial);
-
-/// What such a process does: `arguments` are what follows the hidden option that starts it.
-int serve_measurement(const std::vector<std::string>& arguments);
-inline constexpr const char* measure_option = "--measure";
-inline constexpr const char* warm_up_option = "--warm-up";
-int serve_warm_up(double bytes);
+/// Write the stiffness matrix of a problem to a file, for solvers of other programs. Little-endian: four int64
+/// (unknowns n, entries, components of a disc, 0); n + 1 and `entries` int32, the lower triangle in compressed columns;
+/// then doubles: its values; the load (n); x and y of the disc of each unknown over the scale of rotations (2 n); then
+/// n int32: component (0, 1, 2) of each unknown. \throws Error (bad_input) where the file cannot be written
+void write_matrix_file(const std::string& path, const std::string& kind, std::int64_t discs);
 
 }  // namespace equidem::bench

@@ -12,35 +12,33 @@ namespace equidem::abe1996 {
 namespace {
 
 std::string table_of_ratios(const Reproduction& result) {
-  TextTable table({"kT/kN", "nu (35)", "(1-r)/4", "difference", "(36)", "(37)", "difference", "negative pivots", ""});
+  TextTable table("kT/kN & nu (35) & (1-r)/4 & difference & (36) & (37) & difference & negative pivots & ");
   for (const RatioPoint& p : result.points) {
     const double nu = poisson_ratio_of_ratio(p.ratio), stiffness = hexagonal_stiffness_ratio(p.ratio);
-    table.add({fmt::format("{:>5.2f}", p.ratio), fmt::format("{:.5f}", p.poisson_ratio), fmt::format("{:.5f}", nu),
-               fmt::format("{:.1e}", p.poisson_ratio - nu), fmt::format("{:.5f}", p.stiffness_ratio),
-               fmt::format("{:.5f}", stiffness), fmt::format("{:.1e}", p.stiffness_ratio - stiffness),
-               fmt::format("{}", p.negative_pivots),
-               p.stable() ? "stable" : fmt::format("UNSTABLE by {}", counted(p.unstable_modes, "mode"))});
+    table.add("{:>5.2f} & {:.5f} & {:.5f} & {:.1e} & {:.5f} & {:.5f} & {:.1e} & {} & {}", p.ratio, p.poisson_ratio, nu,
+              p.poisson_ratio - nu, p.stiffness_ratio, stiffness, p.stiffness_ratio - stiffness, p.negative_pivots,
+              p.stable() ? "stable" : fmt::format("UNSTABLE by {}", counted(p.unstable_modes, "mode")));
   }
   return "Figs. 7 and 8: the tension test against theory\n" + table.text();
 }
 
 std::string table_of_sizes(const Reproduction& result) {
-  std::vector<std::string> head{"rows"}, slopes{"slope"};
-  std::vector<std::vector<std::string>> rows;
-  for (const SizePoint& p : result.convergence.front().points) rows.push_back({fmt::format("{:>5}", p.rows)});
+  const std::size_t sizes = result.convergence.front().points.size();
+  std::string head = "rows", slopes = "slope";
+  std::vector<std::string> rows;
+  for (const SizePoint& p : result.convergence.front().points) rows.push_back(fmt::format("{:>5}", p.rows));
   for (const Convergence& c : result.convergence) {
-    const SizePoint &before = c.points[c.points.size() - 2], &last = c.points.back();
+    const SizePoint &before = c.points[sizes - 2], &last = c.points.back();
+    head += fmt::format(" & kT/kN = {:.1f}: nu & (36)", c.ratio);
     for (const auto error : {&SizePoint::poisson_ratio_error, &SizePoint::stiffness_ratio_error}) {
-      head.push_back(error == &SizePoint::poisson_ratio_error ? fmt::format("kT/kN = {:.1f}: nu", c.ratio) : "(36)");
-      for (std::size_t k = 0; k < rows.size(); ++k) rows[k].push_back(fmt::format("{:.1e}", c.points[k].*error));
-      slopes.push_back(c.ratio == 0 ? "round-off"
-                                    : fmt::format("{:.2f}", std::log(last.*error / (before.*error)) /
-                                                                std::log(double(last.rows) / before.rows)));
+      for (std::size_t k = 0; k < sizes; ++k) rows[k] += fmt::format(" & {:.1e}", c.points[k].*error);
+      const double slope = std::log(last.*error / (before.*error)) / std::log(double(last.rows) / before.rows);
+      slopes += c.ratio == 0 ? " & round-off" : fmt::format(" & {:.2f}", slope);
     }
   }
   TextTable table(head);
-  for (const auto& row : rows) table.add(row);
-  table.add(slopes);
+  for (const std::string& row : rows) table.add_row(row);
+  table.add_row(slopes);
   return "Error against size (n rows of n discs): nu against (22), and (36) against (37), relative\n" + table.text();
 }
 

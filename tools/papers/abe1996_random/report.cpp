@@ -48,20 +48,18 @@ std::string place(const Result& result, const Point& p) {
 }
 
 std::string describe_families(const Result& result) {
-  TextTable table(
-      {"assemblies", "branch lengths, sd/mean", "contacts of a disc, sd", "anisotropy of psi(theta)", "phi", "z"});
+  TextTable table("assemblies & branch lengths, sd/mean & contacts of a disc, sd & anisotropy of psi(theta) & phi & z");
   for (std::size_t f = 0; f < result.disorder.size(); ++f) {
     const Disorder& d = result.disorder[f];
-    table.add({result.plan.families[f].name, fmt::format("{:.4f}", d.branch_scatter),
-               fmt::format("{:.3f}", d.coordination_scatter), fmt::format("{:.4f}", d.contact_anisotropy),
-               fmt::format("{:.4f}", d.solid_fraction), fmt::format("{:.3f}", d.coordination_number)});
+    table.add("{} & {:.4f} & {:.3f} & {:.4f} & {:.4f} & {:.3f}", result.plan.families[f].name, d.branch_scatter,
+              d.coordination_scatter, d.contact_anisotropy, d.solid_fraction, d.coordination_number);
   }
   return table.text();
 }
 
-std::vector<std::string> head_of_ratios(const Result& result) {
-  std::vector<std::string> head{"kT/kN"};
-  for (const double ratio : result.plan.ratios) head.push_back(fmt::format("{:g}", ratio));
+std::string head_of_ratios(const Result& result, const std::string& first = "kT/kN") {
+  std::string head = first;
+  for (const double ratio : result.plan.ratios) head += fmt::format(" & {:g}", ratio);
   return head;
 }
 
@@ -71,21 +69,21 @@ std::string grid(const Result& result, std::size_t weighting, const std::string&
   TextTable table(head_of_ratios(result));
   double error = 0;
   for (std::size_t f = 0; f < result.plan.families.size(); ++f) {
-    std::vector<std::string> row{result.plan.families[f].name};
+    std::string row = result.plan.families[f].name;
     for (std::size_t r = 0; r < result.plan.ratios.size(); ++r) {
       const MeanEstimate e = result.at(f, weighting, r).numbers[number];
       error = std::max(error, e.standard_error);
       constexpr double half_of_last_digit = 5e-5;
       const double value = std::abs(e.mean) < half_of_last_digit ? 0 : e.mean;  // without a sign
-      row.push_back(shares ? fmt::format("{:+.2f} %", 100 * value) : fmt::format("{:.4f}", value));
+      row += shares ? fmt::format(" & {:+.2f} %", 100 * value) : fmt::format(" & {:.4f}", value);
     }
-    table.add(row);
+    table.add_row(row);
   }
   if (!shares) {
-    std::vector<std::string> row{"mean field (1 - kT/kN)/4"};
+    std::string row = "mean field (1 - kT/kN)/4";
     for (std::size_t r = 0; r < result.plan.ratios.size(); ++r)
-      row.push_back(fmt::format("{:.4f}", result.at(0, weighting, r).mean(mean_field, poisson)));
-    table.add(row);
+      row += fmt::format(" & {:.4f}", result.at(0, weighting, r).mean(mean_field, poisson));
+    table.add_row(row);
   }
   return fmt::format("{} (standard errors up to {})\n{}\n", title,
                      shares ? fmt::format("{:.2g} %", 100 * error) : fmt::format("{:.2g}", error), table.text());
@@ -141,27 +139,25 @@ std::string conclude_disorder(const Result& result) {
       "2. Without disorder the error is {:.0e}. From disorder {:g} to {:g}, at kT/kN = {:g}, errors grow as "
       "disorder^p:\n",
       without, small, larger, result.plan.ratios.front());
-  TextTable exponents({"", "p of nu", "p of G"});
-  std::vector<std::string> head = head_of_ratios(result);
-  head[0] += ", root mean square over isotropic random assemblies";
-  TextTable against_ratio(head);
+  TextTable exponents(" & p of nu & p of G");
+  TextTable against_ratio(head_of_ratios(result, "kT/kN, root mean square over isotropic random assemblies"));
   for (std::size_t w = 0; w < weightings.size(); ++w) {
     const std::string name = to_string(weightings[w]);
     const auto exponent = [&](Modulus m) {
       const double growth =
           result.at(lattices[1], w, 0).mean(error_of(m)) / result.at(lattices[0], w, 0).mean(error_of(m));
-      return fmt::format("{:.2f}", std::log(growth) / std::log(larger / small));
+      return std::log(growth) / std::log(larger / small);
     };
-    exponents.add({name, exponent(poisson), exponent(shear)});
-    std::vector<std::string> nu{name + ": error of nu"}, g{name + ": error of G, %"};
+    exponents.add("{} & {:.2f} & {:.2f}", name, exponent(poisson), exponent(shear));
+    std::string nu = name + ": error of nu", g = name + ": error of G, %";
     for (const double ratio : result.plan.ratios) {
       Points points = random_points(result, weightings[w]);
       std::erase_if(points, [&](const Point* p) { return p->ratio != ratio; });
-      nu.push_back(fmt::format("{:.4f}", root_mean_square(points, error_of(poisson))));
-      g.push_back(fmt::format("{:.2f}", 100 * root_mean_square(points, error_of(shear))));
+      nu += fmt::format(" & {:.4f}", root_mean_square(points, error_of(poisson)));
+      g += fmt::format(" & {:.2f}", 100 * root_mean_square(points, error_of(shear)));
     }
-    against_ratio.add(nu);
-    against_ratio.add(g);
+    against_ratio.add_row(nu);
+    against_ratio.add_row(g);
   }
   return text + exponents.text() + against_ratio.text();
 }
@@ -175,11 +171,12 @@ std::string conclude_causes(const Result& result) {
       widest = f;
   }
   const std::size_t r = result.plan.ratios.size() / 2;
-  TextTable table({"", "branch lengths", "non-uniform strain", "both"});
+  TextTable table(" & branch lengths & non-uniform strain & both");
   for (std::size_t w = 0; w < weightings.size(); ++w) {
     const Point& p = result.at(widest, w, r);
     const auto change = [&](Answer from, Answer to) { return percent(p.mean(to, shear) / p.mean(from, shear) - 1); };
-    table.add({to_string(weightings[w]), change(mean_field, voigt), change(voigt, exact), change(mean_field, exact)});
+    table.add("{} & {} & {} & {}", to_string(weightings[w]), change(mean_field, voigt), change(voigt, exact),
+              change(mean_field, exact));
   }
   return fmt::format(
              "3. Two causes: branch lengths differ from 2a (Voigt against mean field), and discs depart from the "
@@ -214,13 +211,13 @@ std::string conclude_correction(const Result& result) {
     if (result.plan.families[f].isotropic()) continue;
     text += fmt::format("   '{}' (anisotropy of psi(theta) {:.3f}): anisotropy of the exact tensor, error of nu\n",
                         result.plan.families[f].name, result.disorder[f].contact_anisotropy);
-    TextTable table({"kT/kN", "uniform", "nu", "contact_density", "change", "nu", "voronoi", "nu"});
+    TextTable table("kT/kN & uniform & nu & contact_density & change & nu & voronoi & nu");
     for (std::size_t r = 0; r < result.plan.ratios.size(); ++r) {
       const auto number = [&](std::size_t w, std::size_t n) { return result.at(f, w, r).mean(n); };
-      const auto tensor = [&](std::size_t w) { return fmt::format("{:.4f}", number(w, anisotropy)); };
-      const auto nu = [&](std::size_t w) { return fmt::format("{:+.4f}", number(w, error_of(poisson))); };
-      table.add({fmt::format("{:g}", result.plan.ratios[r]), tensor(0), nu(0), tensor(1),
-                 percent(number(1, anisotropy) / number(0, anisotropy) - 1), nu(1), tensor(2), nu(2)});
+      const auto nu = [&](std::size_t w) { return number(w, error_of(poisson)); };
+      table.add("{:g} & {:.4f} & {:+.4f} & {:.4f} & {} & {:+.4f} & {:.4f} & {:+.4f}", result.plan.ratios[r],
+                number(0, anisotropy), nu(0), number(1, anisotropy),
+                percent(number(1, anisotropy) / number(0, anisotropy) - 1), nu(1), number(2, anisotropy), nu(2));
     }
     text += table.text();
   }
@@ -228,7 +225,7 @@ std::string conclude_correction(const Result& result) {
 }
 
 std::string conclude_weighting(const Result& result) {
-  TextTable table({"weighting", "error of nu", "error of G", "error of K", "scatter of G, one cell", "anisotropy"});
+  TextTable table("weighting & error of nu & error of G & error of K & scatter of G, one cell & anisotropy");
   std::array<std::array<double, 3>, weightings.size()> scores{};
   for (std::size_t w = 0; w < weightings.size(); ++w) {
     const Points points = random_points(result, weightings[w]);
@@ -238,10 +235,9 @@ std::string conclude_weighting(const Result& result) {
       squares += std::pow(g.standard_deviation / g.mean, 2);
     }
     for (const Modulus m : {bulk, shear, poisson}) scores[w][m] = root_mean_square(points, error_of(m));
-    table.add({to_string(weightings[w]), fmt::format("{:.4f}", scores[w][poisson]),
-               fmt::format("{:.2f} %", 100 * scores[w][shear]), fmt::format("{:.2f} %", 100 * scores[w][bulk]),
-               fmt::format("{:.2f} %", 100 * std::sqrt(squares / static_cast<double>(points.size()))),
-               fmt::format("{:.4f}", root_mean_square(points, anisotropy))});
+    table.add("{} & {:.4f} & {:.2f} % & {:.2f} % & {:.2f} % & {:.4f}", to_string(weightings[w]), scores[w][poisson],
+              100 * scores[w][shear], 100 * scores[w][bulk],
+              100 * std::sqrt(squares / static_cast<double>(points.size())), root_mean_square(points, anisotropy));
   }
   const auto best = [&](Modulus m) {
     const auto least =

@@ -11,9 +11,9 @@
 
 #include "equidem/core/progress.hpp"
 #include "equidem/core/stopwatch.hpp"
+#include "equidem/study/fujioka2005_scenes.hpp"
 
 #include "papers.hpp"
-#include "scenes/fujioka2005_scenes.hpp"
 
 namespace equidem::fujioka2005 {
 

@@ -10,9 +10,9 @@
 namespace equidem::fujioka2005 {
 namespace {
 
-/// Law and stiffness.
-std::vector<std::string> cells_of(const Variant& variant) {
-  return {variant.label, fmt::format("{:g}", variant.a)};
+/// Begins a row: law and stiffness.
+std::string cells_of(const Variant& variant) {
+  return fmt::format("{} & {:g}", variant.label, variant.a);
 }
 
 std::string table_1(const Table1& table1) {
@@ -22,20 +22,17 @@ std::string table_1(const Table1& table1) {
   };
   constexpr std::array printed{Printed{423, 1.88, 1.87e7}, Printed{341, 1.91, 1.26e7}, Printed{269, 1.95, 5.62e6},
                                Printed{306, 1.96, 1.07e7}};
-  TextTable table({"law", "a", "step", "evaluations", "gravity first", "run", "law alone", "printed: evaluations",
-                   "run", "one evaluation"});
+  TextTable table(
+      "law & a & step & evaluations & gravity first & run & law alone & printed: evaluations & run & one evaluation");
   const std::vector<Table1Row>& rows = table1.rows;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const Table1Row& row = rows[k];
-    std::vector<std::string> cells = cells_of(row.variant);
-    cells.insert(cells.end(),
-                 {fmt::format("{:.0e} s", row.step), fmt::format("{:.3g}", double(row.evaluations)),
-                  row.gravity_first > 0 ? fmt::format("{:.3g}", double(row.gravity_first)) : "-",
-                  fmt::format("{:.3g} s", row.run_seconds), fmt::format("{:.3g} ns", row.evaluation_nanoseconds)});
-    if (k < printed.size())
-      cells.insert(cells.end(), {fmt::format("{:.3g}", printed[k].count), fmt::format("{} s", printed[k].run),
-                                 fmt::format("{:.2f} µs", printed[k].evaluation)});
-    table.add(cells);
+    const std::string first = row.gravity_first > 0 ? fmt::format("{:.3g}", double(row.gravity_first)) : "-";
+    const std::string beside = k < printed.size() ? fmt::format(" & {:.3g} & {} s & {:.2f} µs", printed[k].count,
+                                                                printed[k].run, printed[k].evaluation)
+                                                  : "";
+    table.add("{} & {:.0e} s & {:.3g} & {} & {:.3g} s & {:.3g} ns{}", cells_of(row.variant), row.step,
+              double(row.evaluations), first, row.run_seconds, row.evaluation_nanoseconds, beside);
   }
   const double c = printed[0].count;
   return fmt::format("Table 1: 16 balls fall and come to rest, {:g} s\n", table1.duration) + table.text() +
@@ -59,33 +56,27 @@ std::string table_1(const Table1& table1) {
 }
 
 std::string table_2(const std::vector<Table2Row>& rows) {
-  TextTable table({"law", "a", "1e-3 s", "1e-4 s", "1e-5 s", "printed"});
+  TextTable table("law & a & 1e-3 s & 1e-4 s & 1e-5 s & printed");
   constexpr std::array printed{"9, 10, 10", "14, 23, 37", "2, 1, 1", "3, 3, 3"};
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    std::vector<std::string> cells = cells_of(rows[k].variant);
-    for (const std::int64_t steps : rows[k].steps) cells.push_back(fmt::format("{}", steps));
-    if (k < printed.size()) cells.emplace_back(printed[k]);
-    table.add(cells);
+    const auto& steps = rows[k].steps;
+    table.add("{} & {} & {} & {}{}", cells_of(rows[k].variant), steps[0], steps[1], steps[2],
+              k < printed.size() ? fmt::format(" & {}", printed[k]) : "");
   }
   return "Table 2: steps in contact at three time steps, first impact of the slow ball\n" + table.text();
 }
 
 std::string table_of(const std::vector<Impacts>& laws) {
-  constexpr std::array<std::size_t, 6> shown{1, 2, 5, 10, 15, 20};
-  std::vector<std::string> head{"law", "a", "impacts"};
-  for (const std::size_t n : shown) head.push_back(fmt::format("N = {}", n));
-  head.insert(head.end(), {"worst |ratio - 0.49|", "deepest", ""});
-  TextTable table(head);
+  TextTable table(
+      "law & a & impacts & N = 1 & N = 2 & N = 5 & N = 10 & N = 15 & N = 20 & worst |ratio - 0.49| & deepest & ");
   for (const Impacts& law : laws) {
-    std::vector<std::string> cells = cells_of(law.variant);
-    cells.push_back(fmt::format("{}{}", law.ratio.size(), law.ratio.size() == 20 ? "+" : " "));
-    for (const std::size_t n : shown)
-      cells.push_back(n <= law.ratio.size() ? fmt::format("{:.5f}", law.ratio[n - 1]) : "-");
+    std::string cells =
+        fmt::format("{} & {}{}", cells_of(law.variant), law.ratio.size(), law.ratio.size() == 20 ? "+" : " ");
+    for (const std::size_t n : {1, 2, 5, 10, 15, 20})
+      cells += n <= law.ratio.size() ? fmt::format(" & {:.5f}", law.ratio[n - 1]) : " & -";
     double worst = 0;
     for (const double ratio : law.ratio) worst = std::max(worst, std::abs(ratio - restitution * restitution));
-    cells.insert(cells.end(),
-                 {fmt::format("{:.1e}", worst), fmt::format("{:.2g} d", law.deepest), law.ran_away ? "unstable" : ""});
-    table.add(cells);
+    table.add("{} & {:.1e} & {:.2g} d & {}", cells, worst, law.deepest, law.ran_away ? "unstable" : "");
   }
   return table.text();
 }
@@ -98,19 +89,19 @@ const CurvePoint* point_at(const Curve& curve, double step) {
 }
 
 std::string stacked_spheres(const std::vector<Curve>& curves) {
-  TextTable table({"law", "a", "d': 1e-3 s", "1e-4 s", "1e-5 s", "1e-6 s", "order", "T0: 1e-3 s", "1e-4 s", "1e-5 s",
-                   "1e-6 s", "order"});
+  TextTable table(
+      "law & a & d': 1e-3 s & 1e-4 s & 1e-5 s & 1e-6 s & order & T0: 1e-3 s & 1e-4 s & 1e-5 s & 1e-6 s & order");
   for (const Curve& curve : curves) {
-    std::vector<std::string> cells{curve.label, fmt::format("{:g}", curve.variant.a)};
-    for (const auto error : {&CurvePoint::speed_error, &CurvePoint::parting_error}) {
+    std::string cells = fmt::format("{} & {:g}", curve.label, curve.variant.a);
+    for (const auto& [error, order] :
+         {std::pair{&CurvePoint::speed_error, curve.speed_order}, {&CurvePoint::parting_error, curve.parting_order}}) {
       for (const double step : {1e-3, 1e-4, 1e-5, 1e-6}) {
         const CurvePoint* at = point_at(curve, step);
-        cells.push_back(at == nullptr ? "-" : fmt::format("{:.1e}", at->*error));
+        cells += at == nullptr ? " & -" : fmt::format(" & {:.1e}", at->*error);
       }
-      cells.push_back(
-          fmt::format("{:.2f}", error == &CurvePoint::speed_error ? curve.speed_order : curve.parting_order));
+      cells += fmt::format(" & {:.2f}", order);
     }
-    table.add(cells);
+    table.add_row(cells);
   }
   return fmt::format(
              "Figs. 10, 11: stacked spheres; exact d' = {:.12f}, T0 = {:.12f} s (the paper's sum (31) is low by {:g})\n"
@@ -133,46 +124,40 @@ std::string stacked_spheres(const std::vector<Curve>& curves) {
 /// Times of the cheapest point with at most the wanted error.
 std::string costs(const std::string& title, const std::vector<Curve>& curves, double CurvePoint::*error,
                   std::initializer_list<double> wanted) {
-  std::vector<std::string> head{"law", "a"};
-  for (const double accuracy : wanted) head.push_back(fmt::format("{:.0e}", accuracy));
+  std::string head = "law & a";
+  for (const double accuracy : wanted) head += fmt::format(" & {:.0e}", accuracy);
   TextTable table(head);
   for (const Curve& curve : curves) {
     if (curve.points.front().seconds <= 0) continue;
-    std::vector<std::string> cells = cells_of(curve.variant);
-    if (curve.label != curve.variant.label) cells = {curve.label, "any"};
+    std::string cells = curve.label == curve.variant.label ? cells_of(curve.variant) : curve.label + " & any";
     for (const double accuracy : wanted) {
       double least = INFINITY;
       for (const CurvePoint& point : curve.points)
         if (point.seconds > 0 && point.*error <= accuracy) least = std::min(least, point.seconds);
-      cells.push_back(std::isfinite(least) ? fmt::format("{:.2g} s", least) : "-");
+      cells += std::isfinite(least) ? fmt::format(" & {:.2g} s", least) : " & -";
     }
-    table.add(cells);
+    table.add_row(cells);
   }
   return title + "\n" + table.text();
 }
 
 std::string at_rest(const std::string& title, const std::vector<Rest>& laws) {
-  TextTable table({"law", "a", "speed, of g dt", "energy above rest, of weight x d",
-                   "overlap at the floor, of the static one", "steps in contact"});
-  for (const Rest& law : laws) {
-    std::vector<std::string> cells = cells_of(law.variant);
-    cells.insert(cells.end(),
-                 {fmt::format("{:.2g}", law.speed), fmt::format("{:.1e}", std::max(0.0, law.energies.back())),
-                  fmt::format("{:.6f}", law.overlap), fmt::format("{:.1f} %", 100 * law.contact)});
-    table.add(cells);
-  }
+  TextTable table(
+      "law & a & speed, of g dt & energy above rest, of weight x d & overlap at the floor, of the static one & steps "
+      "in "
+      "contact");
+  for (const Rest& law : laws)
+    table.add("{} & {:.2g} & {:.1e} & {:.6f} & {:.1f} %", cells_of(law.variant), law.speed,
+              std::max(0.0, law.energies.back()), law.overlap, 100 * law.contact);
   return title + " at rest (not in the paper)\n" + table.text();
 }
 
 std::string lossless(const std::vector<Rest>& laws) {
-  TextTable table({"law", "a", "at the end", "largest"});
+  TextTable table("law & a & at the end & largest");
   for (const Rest& law : laws) {
     double largest = 0;
     for (std::size_t k = 0; k < law.energies.size(); ++k) largest = std::max(largest, std::abs(law.change(k)));
-    std::vector<std::string> cells = cells_of(law.variant);
-    cells.insert(cells.end(),
-                 {fmt::format("{:+.1e}", law.change(law.energies.size() - 1)), fmt::format("{:.1e}", largest)});
-    table.add(cells);
+    table.add("{} & {:+.1e} & {:.1e}", cells_of(law.variant), law.change(law.energies.size() - 1), largest);
   }
   return fmt::format(
              "A column of {} balls without loss, e = 1, bounces for {:.0f} s: relative change of the energy (not in "

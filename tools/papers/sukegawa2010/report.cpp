@@ -21,14 +21,15 @@ std::string spread(const MeanEstimate& sample, int digits) {
 }
 
 std::string table_of_void_ratios(const Reproduction& result, double Outcome::*first, double Outcome::*last) {
-  TextTable table({"", "before", "printed", "after", "printed", "change", "printed", "seeds"});
+  TextTable table(" & before & printed & after & printed & change & printed & seeds");
   for (const Printed& printed : printed_void_ratios) {
     const Kind kind{.shape = printed.shape};
     const MeanEstimate changes = sample_of(result, kind, [&](const Outcome& o) { return o.*last - o.*first; });
     const auto beside = [&](double value) { return printed.before > 0 ? figures(value, 3) : ""; };
-    table.add({words(plural_of(printed.shape)), spread(sample_of(result, kind, first), 4), beside(printed.before),
-               spread(sample_of(result, kind, last), 4), beside(printed.after), spread(changes, 4),
-               beside(printed.after - printed.before), fmt::format("{}", changes.samples)});
+    table.add("{} & {} & {} & {} & {} & {} & {} & {}", words(plural_of(printed.shape)),
+              spread(sample_of(result, kind, first), 4), beside(printed.before),
+              spread(sample_of(result, kind, last), 4), beside(printed.after), spread(changes, 4),
+              beside(printed.after - printed.before), changes.samples);
   }
   return table.text();
 }
@@ -79,13 +80,13 @@ std::string variants(const Reproduction& result) {
        "bonded pairs, (2.16), 5 s"},
       {{.shape = Shape::bonded_pair, .gal = 0}, "bonded pairs at rest for the same time"},
       {{.shape = Shape::bonded_pair, .variant = "strong_bonds"}, "bonded pairs, C_n and C_s tenfold"}};
-  TextTable table({"", "before", "after", "change", "inner: before", "change", "seeds"});
+  TextTable table(" & before & after & change & inner: before & change & seeds");
   for (const auto& [kind, name] : rows) {
     const auto cell = [&, of = kind](const auto& value) { return spread(sample_of(result, of, value), 4); };
     const std::int64_t seeds = sample_of(result, kind, &Outcome::void_ratio).samples;
     if (seeds == 0) continue;
-    table.add({name, cell(&Outcome::whole_before), cell(&Outcome::whole), cell(&Outcome::whole_change),
-               cell(&Outcome::void_ratio_before), cell(&Outcome::change), fmt::format("{}", seeds)});
+    table.add("{} & {} & {} & {} & {} & {} & {}", name, cell(&Outcome::whole_before), cell(&Outcome::whole),
+              cell(&Outcome::whole_change), cell(&Outcome::void_ratio_before), cell(&Outcome::change), seeds);
   }
   if (table.empty()) return "";
   return "Dependence of the void ratio on one parameter at a time: over the whole width, and in the inner region\n" +
@@ -95,8 +96,7 @@ std::string variants(const Reproduction& result) {
 }
 
 std::string shakings(const Reproduction& result) {
-  TextTable table(
-      {"", "e before", "e after", "change", "surface, mm", "centre, mm", "rough, mm", "after, mm", "slope", "thrown"});
+  TextTable table(" & e before & e after & change & surface, mm & centre, mm & rough, mm & after, mm & slope & thrown");
   for (const Shape shape : {Shape::disc, Shape::bonded_pair}) {
     std::vector<Done> runs = mapped(result, shape);
     std::erase_if(runs, [](const Done& done) {
@@ -109,12 +109,11 @@ std::string shakings(const Reproduction& result) {
     });
     for (const Done& done : runs) {
       const Outcome& o = done.outcome;
-      table.add({fmt::format("{}, {:g} gal, {:g} Hz", words(plural_of(shape)), done.run.shaking->gal,
-                             done.run.shaking->frequency),
-                 figures(o.void_ratio_before, 4), figures(o.void_ratio, 4), figures(o.change(), 4),
-                 figures(1e3 * (o.height_before - o.height), 1), figures(1e3 * (o.centre_before - o.centre), 2),
-                 figures(1e3 * o.roughness_before, 1), figures(1e3 * o.roughness, 1), figures(o.slope, 2),
-                 figures(o.thrown, 0)});
+      table.add("{}, {:g} gal, {:g} Hz & {} & {} & {} & {} & {} & {} & {} & {} & {}", words(plural_of(shape)),
+                done.run.shaking->gal, done.run.shaking->frequency, figures(o.void_ratio_before, 4),
+                figures(o.void_ratio, 4), figures(o.change(), 4), figures(1e3 * (o.height_before - o.height), 1),
+                figures(1e3 * (o.centre_before - o.centre), 2), figures(1e3 * o.roughness_before, 1),
+                figures(1e3 * o.roughness, 1), figures(o.slope, 2), figures(o.thrown, 0));
     }
   }
   return "Shaking of one filling of each shape: settlement of the surface and of the centre of mass, roughness and "
@@ -144,19 +143,19 @@ std::string periods(const Reproduction& result) {
   });
   if (discs == result.runs.end()) return "";
   const double width = discs->run.fill.grid.width(), depth = discs->outcome.height_before;
-  TextTable table({"", "linear theory", "(7.2) as printed"});
+  TextTable table(" & linear theory & (7.2) as printed");
   const auto add = [&](const std::string& name, double h) {
-    table.add({name, figures(sloshing_period(width, h, gravity), 4) + " s",
-               figures(printed_formula_period(width, h), 4) + " s"});
+    table.add("{} & {} s & {} s", name, figures(sloshing_period(width, h, gravity), 4),
+              figures(printed_formula_period(width, h), 4));
   };
   add("height of the start, 2.25 m", printed_box_height);
   add(fmt::format("depth of the heap, {:.3f} m", depth), depth);
-  TextTable sweep({"period", "swing, mm", "amplification", "liquid without loss", "slope", "thrown"});
+  TextTable sweep("period & swing, mm & amplification & liquid without loss & slope & thrown");
   for (const Done& done : resonance_runs(result)) {
     const double period = 1 / done.run.shaking->frequency;
-    sweep.add({fmt::format("discs, 400 gal, {:.3g} s", period), figures(1e3 * done.outcome.swing, 2),
-               figures(amplification_of(done), 3), figures(liquid_amplification(period, width, depth), 3),
-               figures(done.outcome.slope, 3), figures(done.outcome.thrown, 0)});
+    sweep.add("discs, 400 gal, {:.3g} s & {} & {} & {} & {} & {}", period, figures(1e3 * done.outcome.swing, 2),
+              figures(amplification_of(done), 3), figures(liquid_amplification(period, width, depth), 3),
+              figures(done.outcome.slope, 3), figures(done.outcome.thrown, 0));
   }
   return "First sloshing period T1 of a tank of the same width\n" + table.text() +
          fmt::format(
@@ -171,11 +170,10 @@ std::string periods(const Reproduction& result) {
 }
 
 std::string bonds(const Reproduction& result) {
-  TextTable table({"", "distance", "rotation, rad"});
+  TextTable table(" & distance & rotation, rad");
   for (const Done& done : result.runs) {
     if (done.run.fill.shape != Shape::bonded_pair || !std::isfinite(done.outcome.creep)) continue;
-    table.add(
-        {words(done.run.name()), fmt::format("{:.3g}", done.outcome.creep), fmt::format("{:.3g}", done.outcome.roll)});
+    table.add("{} & {:.3g} & {:.3g}", words(done.run.name()), done.outcome.creep, done.outcome.roll);
   }
   if (table.empty()) return "";
   return fmt::format(
@@ -187,16 +185,15 @@ std::string bonds(const Reproduction& result) {
 }
 
 std::string numerics(const Reproduction& result) {
-  TextTable table({"", "step, s", "steps", "largest overlap", "energy error", "contacts per body", "seconds"});
+  TextTable table(" & step, s & steps & largest overlap & energy error & contacts per body & seconds");
   for (const Done& done : result.runs) {
     const Shaking& shaking = *done.run.shaking;
     const Fill& fill = done.run.fill;
     const bool usual = fill.variant.empty() && shaking.cycles <= 10;
     if (fill.seed != 1 || !(usual || fill.step) || shaking.gal != 400 || shaking.frequency != 10) continue;
     const Outcome& o = done.outcome;
-    table.add({words(plural_of(fill.shape)), fmt::format("{:.3g}", o.time_step), fmt::format("{:.0f}", o.steps),
-               fmt::format("{:.2g} of r_min", o.overlap), fmt::format("{:+.2g}", o.energy_error),
-               fmt::format("{:.2f}", o.coordination), fmt::format("{:.0f}", o.seconds)});
+    table.add("{} & {:.3g} & {:.0f} & {:.2g} of r_min & {:+.2g} & {:.2f} & {:.0f}", words(plural_of(fill.shape)),
+              o.time_step, o.steps, o.overlap, o.energy_error, o.coordination, o.seconds);
   }
   return "Computation, seed 1, 400 gal, 10 Hz\n" + table.text();
 }

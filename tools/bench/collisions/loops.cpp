@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hand_loops.hpp"
+#include "loops.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Scenes of Fujioka & Ushijima (2005), "An evaluation method of normal contact force with energy conservation in
-/// distinct element method", section 5, for papers, benchmarks and tests.
+/// distinct element method", section 5.
 #pragma once
 
 #include <optional>
@@ -35,9 +35,9 @@ GrainScene column(const PairProperties& pair, int balls, double gap = drop, doub
 /// The three spheres of Fig. 9: A and B on the floor, C on top of them.
 GrainScene stacked(const PairProperties& pair);
 
-// Exact values of section 5.6; T0 without the singular end of the sum (31).
+// Exact values of section 5.6.
 constexpr double exact_speed = 0.271462651012440;   ///< d', eq. (28)
-constexpr double exact_parting = 0.10673687246956;  ///< T0, s, eq. (30)
+constexpr double exact_parting = 0.10673687246956;  ///< T0, s, eq. (30); the sum (31) omits the singular end
 /// v/sqrt(4 g r0) of the stacked spheres.
 double dimensionless_speed(double speed);
 

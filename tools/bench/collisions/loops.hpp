@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Loops written by hand for one scene and nothing else.
+/// Loops written by hand for one scene each, without anything that the scene does not need.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +26,8 @@ class FallingPoints {
   Vec2 gravity_;
 };
 
-/// Equal discs of mass 1 with law C between lines; pairs that may touch are given once and for all, there is no
-/// friction, no spin, no ledger.
+/// Equal discs of mass 1 with law C between lines. Pairs that may touch are found once at the start; friction, spin and
+/// ledger are absent.
 class FrictionlessDiscs {
  public:
   FrictionlessDiscs(const GrainScene& scene, double margin, double dt);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scenes/fujioka2005_scenes.hpp"
+#include "equidem/study/fujioka2005_scenes.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <exception>
+#include <fstream>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+#include "equidem/assembly/delaunay.hpp"
+#include "equidem/assembly/lattices.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/stopwatch.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
+
+namespace equidem::bench {
+
+void Report::add(const std::string& text) {
+  std::fputs(text.c_str(), stdout);
+  std::fflush(stdout);
+  text_ += text;
+}
+
+void write(const std::string& path, const std::string& text) {
+  std::ofstream file(path);
+  file << text;
+  if (!file.flush()) bad_input(fmt::format("'{}' cannot be written", path), "", "Choose another path");
+}
+
+int run_benchmark(const char* name, const char* purpose, int argc, char** argv,
+                  const std::function<void(CLI::App&)>& declare, const std::function<void(Report&)>& run) {
+  CLI::App app(purpose, name);
+  std::string file;
+  declare(app);
+  app.add_option("--markdown", file, "file for the report");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    Report report;
+    run(report);
+    if (!file.empty()) write(file, report.text());
+    return 0;
+  } catch (const Error& error) {
+    std::fprintf(stderr, "%s: %s\n", name, error.what());
+    return error.exit_code();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", name, error.what());
+    return 1;
+  }
+}
+
+double processor_time() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+std::vector<Seconds> take_turns(std::span<const Entry> entries, std::int64_t steps, int rounds) {
+  std::vector<Seconds> seconds(entries.size());
+  for (int round = -1; round < rounds; ++round) {
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      set_thread_count(entries[k].threads);
+      const Stopwatch watch;
+      const double begin = processor_time();
+      entries[k].advance(steps);
+      const double taken = entries[k].threads == 1 ? processor_time() - begin : watch.seconds();
+      if (round >= 0) seconds[k].push_back(taken);
+    }
+  }
+  set_thread_count(1);
+  return seconds;
+}
+
+std::string Range::text(const char* format) const {
+  const auto one = [&](double value) { return fmt::format(fmt::runtime(format), value); };
+  return fmt::format("{} ({} .. {})", one(median), one(smallest), one(largest));
+}
+
+Range range_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return {0.5 * (values[(n - 1) / 2] + values[n / 2]), values.front(), values.back()};
+}
+
+Range ratio_of(const Seconds& a, const Seconds& b) {
+  std::vector<double> ratios(a.size());
+  for (std::size_t k = 0; k < a.size(); ++k) ratios[k] = a[k] / b[k];
+  return range_of(std::move(ratios));
+}
+
+std::vector<std::string> assembly_kinds() {
+  return {"hexagonal", "delaunay"};
+}
+
+Assembly build_assembly(const std::string& kind, std::int64_t discs, double radius) {
+  if (kind == "delaunay") return delaunay_assembly({.discs = discs, .radii = {radius, radius}});
+  const auto rows = static_cast<int>(std::lround(std::sqrt(static_cast<double>(discs))));
+  // every other row is one disc short
+  const auto columns = static_cast<int>(std::lround(static_cast<double>(discs) / rows + 0.5));
+  return hexagonal_lattice({.columns = columns, .rows = rows, .radius = radius});
+}
+
+std::vector<Wall> box_walls(double width, double height) {
+  std::vector<Wall> walls{{.name = "floor", .point = {0, 0}, .normal = {0, 1}},
+                          {.name = "left", .point = {0, 0}, .normal = {1, 0}},
+                          {.name = "right", .point = {width, 0}, .normal = {-1, 0}}};
+  if (height > 0) walls.push_back({.name = "lid", .point = {0, height}, .normal = {0, -1}});
+  return walls;
+}
+
+}  // namespace equidem::bench

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What the benchmarks share: options and report, rounds in which all contenders take turns, medians, scenes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/motion/wall.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace equidem::bench {
+
+/// Text that is printed at once and written to the file of --markdown in the end.
+class Report {
+ public:
+  void add(const std::string& text);
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+/// \throws Error (bad_input) where the file cannot be written
+void write(const std::string& path, const std::string& text);
+
+/// The main function of a benchmark: options, --markdown, errors on stderr.
+/// \param declare adds the options of this benchmark
+/// \return exit code
+int run_benchmark(const char* name, const char* purpose, int argc, char** argv,
+                  const std::function<void(CLI::App&)>& declare, const std::function<void(Report&)>& run);
+
+/// Processor time of this thread, s: time in which other processes have the processor is not counted.
+double processor_time();
+
+struct Entry {
+  std::string label;
+  std::function<void(std::int64_t steps)> advance;
+  int threads = 1;
+};
+
+/// Seconds per round: processor time with one thread, wall time with more.
+using Seconds = std::vector<double>;
+
+/// In every round each entry in turn makes that many steps, so that a disturbance of the machine affects all of them;
+/// one round before the first is not counted.
+std::vector<Seconds> take_turns(std::span<const Entry> entries, std::int64_t steps, int rounds);
+
+struct Range {
+  double median = 0, smallest = 0, largest = 0;
+
+  [[nodiscard]] Range operator*(double factor) const { return {median * factor, smallest * factor, largest * factor}; }
+  /// "median (smallest .. largest)". \param format of a number, "{:.2f}"
+  [[nodiscard]] std::string text(const char* format) const;
+};
+Range range_of(std::vector<double> values);
+/// a over b, round by round.
+Range ratio_of(const Seconds& a, const Seconds& b);
+
+/// hexagonal, delaunay.
+std::vector<std::string> assembly_kinds();
+/// A free assembly about as wide as high. \param kind one of assembly_kinds()
+Assembly build_assembly(const std::string& kind, std::int64_t discs, double radius);
+
+/// Floor at y = 0, left wall at x = 0, right wall; a lid where `height` > 0.
+std::vector<Wall> box_walls(double width, double height = 0);
+
+}  // namespace equidem::bench

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Cost of the effective stiffness of a cell beside one factorization and one solution of the same matrix:
+/// bench_homogenize --help.
+#include <CLI/CLI.hpp>
+
+#include "equidem/assembly/delaunay.hpp"
+#include "equidem/core/stopwatch.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
+#include "equidem/homogenize/affine.hpp"
+#include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/statics/hold_free_motions.hpp"
+#include "equidem/statics/stiffness_solver.hpp"
+
+#include "bench.hpp"
+#include "machine.hpp"
+#include "text_table.hpp"
+
+namespace equidem::bench {
+namespace {
+
+/// Order, analyze, assemble, factorize, and solve (refined to full accuracy) for one mean strain.
+double one_solution(const Assembly& assembly, const ContactSprings& springs) {
+  const Stopwatch watch;
+  StageTimes times;
+  ContactGraph graph(assembly);
+  DegreesOfFreedom unknowns = number_unknowns(assembly, springs, derive_effects(springs, Rotation::from_scene), {});
+  hold_free_motions(assembly, graph, springs, unknowns);
+  const StiffnessSolver solver(assembly, springs, std::move(graph), std::move(unknowns), {}, Mechanisms::hold, times);
+  RightHandSide strain;
+  strain.imposed = affine_deformations(assembly, {1, 0, 0, 0}, 0);
+  static_cast<void>(solver.solve({&strain, 1}, times));
+  return watch.seconds();
+}
+
+double whole_stiffness(const Assembly& assembly, const ContactSprings& springs) {
+  const Stopwatch watch;
+  static_cast<void>(effective_stiffness(assembly, springs));
+  return watch.seconds();
+}
+
+void compare(TextTable& table, std::int64_t discs, int threads, int rounds) {
+  set_thread_count(threads);
+  const Assembly cell = delaunay_assembly({.discs = discs, .periodic = true});
+  const ContactSprings springs(SpringConstants{1e9, 0.5e9});
+  Seconds one, whole;
+  static_cast<void>(one_solution(cell, springs));  // the first use of memory is slow
+  for (int round = 0; round < rounds; ++round) {
+    one.push_back(one_solution(cell, springs));
+    whole.push_back(whole_stiffness(cell, springs));
+  }
+  table.add("{} & {} & {} & {:.3f} & {:.3f} & {}", cell.size(), threads, rounds, range_of(one).median,
+            range_of(whole).median, ratio_of(whole, one).text("{:.2f}"));
+}
+
+}  // namespace
+}  // namespace equidem::bench
+
+int main(int argc, char** argv) {
+  using namespace equidem::bench;
+  std::vector<double> discs = {1e4, 1e5};
+  std::vector<int> threads = {1, 2};
+  int rounds = 5;
+  return run_benchmark(
+      "bench_homogenize", "The effective stiffness of a periodic Delaunay cell beside one solution of the same matrix",
+      argc, argv,
+      [&](CLI::App& app) {
+        app.add_option("--discs", discs, "numbers of discs")->delimiter(',')->check(CLI::PositiveNumber);
+        app.add_option("--threads", threads, "numbers of threads")->delimiter(',')->check(CLI::PositiveNumber);
+        app.add_option("--rounds", rounds, "of both, one after the other")->check(CLI::PositiveNumber);
+      },
+      [&](Report& report) {
+        equidem::TextTable table("discs & threads & rounds & one solution & effective stiffness & ratio");
+        for (const double count : discs)
+          for (const int each : threads) compare(table, static_cast<std::int64_t>(count), each, rounds);
+        report.add(fmt::format("# Effective stiffness\n\n{}: three load cases, error bound and rigidity included, over "
+                               "one solution; medians of rounds, s\n\n",
+                               equidem::this_machine().text()) +
+                   table.markdown());
+      });
+}
