@@ -4,6 +4,12 @@
 ///
 /// A lattice is one file of this folder that defines a constant of type Lattice, and one line of the list in
 /// lattices.cpp. The case file, reports, the tension test and calibration take it from the list.
+///
+/// make() checks columns, rows (periodic: what of them repeats) and the radius (`measurable`). Of the Assembly it fills
+/// kind (the name of the lattice), centres, radii, contacts (each once, with both levers), cell_areas, facet_lengths,
+/// and the period or, of a free block, the groups that row_lattice.hpp lists; left and right are of equal height. Rows
+/// of touching discs, in line or staggered, are made by row_lattice. In a free block leave out discs with one contact:
+/// they can roll, and solve reports a mechanism.
 #pragma once
 
 #include "equidem/assembly/assembly.hpp"
@@ -39,12 +45,16 @@ struct Lattice {
   /// \throws Error (bad_input) on options that make no such lattice
   Assembly (*make)(const LatticeOptions& options);
 
-  SpringRelation relation;  ///< between equal springs and moduli
+  /// Between equal springs and moduli as the stress shows them; calibrate uses it with rotation restrained, too.
+  /// Neither function may be null. `moduli` throws Error (bad_input) where nothing is known: homogenize then leaves the
+  /// theory out. `springs` throws there, and for a Poisson's ratio that no springs give; above nu = 1/4 (plane strain)
+  /// springs_for() asks for kT < 0 before it is called. Reports print `equation` after "Abe 1996, eq.".
+  SpringRelation relation;
   /// With rotation restrained: the relation that fits the equation of the displacements; null where none is known.
   const SpringRelation* restrained = nullptr;
   double critical_ratio = 0;  ///< kT/kN at and below which the infinite lattice is unstable
   /// \param ratio kT/kN
-  TensionTheory (*tension)(double ratio) = nullptr;  ///< null where no theory is known
+  TensionTheory (*tension)(double ratio) = nullptr;  ///< null where none is known; reports ignore the rotation
 };
 
 }  // namespace equidem

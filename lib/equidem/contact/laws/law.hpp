@@ -2,13 +2,27 @@
 /// \file
 /// The members of a law of normal contact.
 ///
-/// A law is a struct without data in a file of its own and one line of laws/list.hpp; linear_dashpot.hpp is a model to
-/// copy. check_law() reports a missing member at compile time.
+/// A law is a struct without data in a file of its own and one line of laws/list.hpp; models to copy are
+/// linear_dashpot.hpp for p = 1, hertz_dashpot.hpp for other p. check_law() reports a missing member at compile time.
 ///
 /// A force law is F = spring(k, d) + dashpot(c, d) v with the overlap d and the closing speed v. Loops over eight
 /// contacts at a time evaluate it in SI units; loops over single contacts evaluate it without dimensions, as the maps
 /// (Fujioka & Ushijima 2005, section 2): depth = d/d_c, sigma = v dt/d_c, a = k length_factor(d_c) dt²/m, forces in
-/// units of m d_c/dt², m the reduced mass.
+/// units of m d_c/dt², m the reduced mass. Both see the same law because spring and dashpot are powers of d without a
+/// length of their own:
+///
+///   spring_power            p of spring(k, d) = k d^p; length_factor(d) = d^(p - 1)
+///   dashpot(c, d)           c d^((p - 1)/2): velocity against d^((p + 1)/2) is then that of a linear spring of
+///                           stiffness 2 k/(p + 1) with dashpot, whose zeta gives the same restitution
+///   damping_ratio(e, end)   that zeta; 0 without dashpot
+///   dissipation(e, end)     c/sqrt(m k) = sqrt(2 (p + 1)) zeta; of maps the restitution
+///   stiffness_from_overlap  k of an impact whose largest overlap is the given one
+///   stable_step(zeta)       largest omega dt of one contact, omega² = p k d^(p - 1)/m at the largest overlap; 0: any
+///   usual_end               the default of `contact_end`
+///   check_range(a, e)       throws Error (bad_input) where the law is not valid
+///   shares_of_drift         shares_of_power_law<Law> for p > 1
+///
+/// The letter is one that no other law has.
 #pragma once
 
 #include <concepts>
