@@ -44,7 +44,7 @@ PARTS = [
     ("catch2/*", ["tests/support/*"], 0),
 ]
 # Headers of the operating system and the compiler.
-SYSTEM = ["sys/*", "unistd.h", "dlfcn.h", "fcntl.h", "poll.h", "pthread.h", "sched.h", "immintrin.h", "malloc.h"]
+SYSTEM = ["sys/*", "unistd.h", "dlfcn.h", "fcntl.h", "pthread.h", "spawn.h", "sched.h", "immintrin.h", "malloc.h"]
 
 SOURCES = (".cpp", ".hpp", ".h", ".c", ".py")
 SCRIPTS = ("tools/prepare", "tools/test", "tools/demo", ".ci/run", ".ci/format", ".ci/headers", ".ci/tidy", ".ci/sanitize")

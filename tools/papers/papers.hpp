@@ -45,7 +45,7 @@ Run declare_with_quick(CLI::App& command, const std::string& footer,
 void start_paper(const CommonOptions& options, const std::vector<std::string>& plots,
                  const std::vector<std::string>& files);
 
-/// What the computation of a paper gave.
+/// Results of the computation of a paper.
 struct PaperResult {
   std::string paper;
   std::string report;

@@ -76,75 +76,42 @@ class HandLoop : public Contender {
   LaneVector<double> geometry_, before_, after_, velocity_;
 };
 
-class RotationLoop : public HandLoop {
+template <LoopKind::Springs springs>
+class SpringLoop : public HandLoop {
  public:
-  explicit RotationLoop(const Assembly& assembly) : HandLoop(assembly, 3) {}
+  explicit SpringLoop(const Assembly& assembly) : HandLoop(assembly, unknowns) {}
 
  private:
-  EQUIDEM_WIDE void one_step() override {
-    const double kT = scene_springs.kT, excess = scene_springs.kN - scene_springs.kT, h = time_step;
-    for (std::int32_t group = 0; group < layout_.groups(); ++group) {
-      Lanes x, y, theta, sum_x{}, sum_y{}, sum_moment{}, normal_x{}, normal_y{};
-      load_group<4>(before_.data() + 16 * static_cast<std::ptrdiff_t>(group), x, y, theta);
-      for (std::int32_t k = slots_.first[group]; k < slots_.first[group + 1]; ++k) {
-        const double* at = geometry_.data() + 12 * static_cast<std::ptrdiff_t>(k);
-        Lanes xj, yj, theta_j, lx, ly, over_square;
-        gather<4>(before_.data(), slots_.neighbour.data() + 4 * static_cast<std::ptrdiff_t>(k), xj, yj, theta_j);
-        load(at, lx);
-        load(at + 4, ly);
-        load(at + 8, over_square);
-        const Lanes dx = xj - x, dy = yj - y, turn = 0.5 * (theta + theta_j);
-        const Lanes normal = over_square * (lx * dx + ly * dy), ex = dx + turn * ly, ey = dy - turn * lx;
-        normal_x += normal * lx;
-        normal_y += normal * ly;
-        sum_x += ex;
-        sum_y += ey;
-        sum_moment += lx * ey - ly * ex;
-      }
-      double* velocity = velocity_.data() + 12 * static_cast<std::ptrdiff_t>(group);
-      Lanes vx, vy, omega;
-      load(velocity, vx);
-      load(velocity + 4, vy);
-      load(velocity + 8, omega);
-      vx += h / scene_inertia.mass * (kT * sum_x + excess * normal_x);
-      vy += h / scene_inertia.mass * (kT * sum_y + excess * normal_y);
-      omega += h / scene_inertia.moment * 0.5 * kT * sum_moment;
-      store(vx, velocity);
-      store(vy, velocity + 4);
-      store(omega, velocity + 8);
-      store_group<4>(x + h * vx, y + h * vy, theta + h * omega,
-                     after_.data() + 16 * static_cast<std::ptrdiff_t>(group));
-    }
-  }
-};
+  static constexpr bool rotation = springs == LoopKind::Springs::rotation;
+  static constexpr bool tangential = springs != LoopKind::Springs::normal;
+  static constexpr int unknowns = rotation ? 3 : 2, width = rotation ? 4 : 2;
 
-template <bool tangential>
-class TranslationLoop : public HandLoop {
- public:
-  explicit TranslationLoop(const Assembly& assembly) : HandLoop(assembly, 2) {}
-
- private:
   EQUIDEM_WIDE void one_step() override {
     const double kT = tangential ? scene_springs.kT : 0, excess = scene_springs.kN - kT, h = time_step;
     for (std::int32_t group = 0; group < layout_.groups(); ++group) {
-      Lanes x, y, none, sum_x{}, sum_y{}, normal_x{}, normal_y{};
-      load_group<2>(before_.data() + 8 * static_cast<std::ptrdiff_t>(group), x, y, none);
+      Lanes x, y, theta, sum_x{}, sum_y{}, sum_moment{}, normal_x{}, normal_y{};
+      load_group<width>(before_.data() + 4 * width * static_cast<std::ptrdiff_t>(group), x, y, theta);
       for (std::int32_t k = slots_.first[group]; k < slots_.first[group + 1]; ++k) {
         const double* at = geometry_.data() + 12 * static_cast<std::ptrdiff_t>(k);
-        Lanes xj, yj, lx, ly, over_square;
-        gather<2>(before_.data(), slots_.neighbour.data() + 4 * static_cast<std::ptrdiff_t>(k), xj, yj, none);
+        Lanes xj, yj, theta_j, lx, ly, over_square;
+        gather<width>(before_.data(), slots_.neighbour.data() + 4 * static_cast<std::ptrdiff_t>(k), xj, yj, theta_j);
         load(at, lx);
         load(at + 4, ly);
         load(at + 8, over_square);
         const Lanes dx = xj - x, dy = yj - y, normal = over_square * (lx * dx + ly * dy);
         normal_x += normal * lx;
         normal_y += normal * ly;
-        if constexpr (tangential) {
+        if constexpr (rotation) {
+          const Lanes turn = 0.5 * (theta + theta_j), ex = dx + turn * ly, ey = dy - turn * lx;
+          sum_x += ex;
+          sum_y += ey;
+          sum_moment += lx * ey - ly * ex;
+        } else if constexpr (tangential) {
           sum_x += dx;
           sum_y += dy;
         }
       }
-      double* velocity = velocity_.data() + 8 * static_cast<std::ptrdiff_t>(group);
+      double* velocity = velocity_.data() + 4 * unknowns * static_cast<std::ptrdiff_t>(group);
       Lanes vx, vy;
       load(velocity, vx);
       load(velocity + 4, vy);
@@ -152,7 +119,14 @@ class TranslationLoop : public HandLoop {
       vy += h / scene_inertia.mass * (tangential ? kT * sum_y + excess * normal_y : excess * normal_y);
       store(vx, velocity);
       store(vy, velocity + 4);
-      store_group<2>(x + h * vx, y + h * vy, none, after_.data() + 8 * static_cast<std::ptrdiff_t>(group));
+      if constexpr (rotation) {
+        Lanes omega;
+        load(velocity + 8, omega);
+        omega += h / scene_inertia.moment * 0.5 * kT * sum_moment;
+        store(omega, velocity + 8);
+        theta += h * omega;
+      }
+      store_group<width>(x + h * vx, y + h * vy, theta, after_.data() + 4 * width * static_cast<std::ptrdiff_t>(group));
     }
   }
 };
@@ -162,11 +136,11 @@ class TranslationLoop : public HandLoop {
 std::unique_ptr<Contender> loop_by_hand(const Assembly& assembly, LoopKind::Springs springs) {
   switch (springs) {
     case LoopKind::Springs::normal:
-      return std::make_unique<TranslationLoop<false>>(assembly);
+      return std::make_unique<SpringLoop<LoopKind::Springs::normal>>(assembly);
     case LoopKind::Springs::tangential:
-      return std::make_unique<TranslationLoop<true>>(assembly);
+      return std::make_unique<SpringLoop<LoopKind::Springs::tangential>>(assembly);
     case LoopKind::Springs::rotation:
-      return std::make_unique<RotationLoop>(assembly);
+      return std::make_unique<SpringLoop<LoopKind::Springs::rotation>>(assembly);
   }
   return nullptr;
 }

@@ -66,7 +66,7 @@ Table csv_of(const std::vector<Table2Row>& rows) {
   return table;
 }
 
-/// One object per row: law, letter, a, and what `add` sets.
+/// One object per row: law, letter, a, and the keys that `add` sets.
 template <class Row, class Add>
 std::vector<Results> json_of(const std::vector<Row>& rows, Add add) {
   std::vector<Results> all;
@@ -150,7 +150,7 @@ Run declare(CLI::App& command) {
   return declare_with_quick(
       command,
       "Tables 1, 2 and Figs. 4 to 7, 10, 11 of normal contact in collisions, the law exact_flow beside the paper's;\n"
-      "and what the paper does not test: coming to rest, and time of computing for an accuracy.",
+      "and two tests that are not in the paper: coming to rest, and time of computing for an accuracy.",
       reproduce);
 }
 

@@ -89,7 +89,7 @@ class Store {
 class Work {
  public:
   explicit Work(double total) : total_(total) {}
-  /// \param counted of `now`, the work done by the calling thread, what is in the total already
+  /// \param now work done by the calling thread \param counted part of it that is already in the total
   void add(double& counted, double now) {
     const std::lock_guard lock(mutex_);
     done_ += now - counted;

@@ -214,11 +214,11 @@ std::vector<Done> resonance_runs(const Reproduction& result);
 
 /// First period of sloshing, s, by linear theory, for the width of the box and the depth of the heap.
 double first_period(const Done& done);
-/// The same by (7.2) as printed, s: omega² = (pi g/l) tanh(2 pi h/l).
+/// First period by (7.2) as printed, s: omega² = (pi g/l) tanh(2 pi h/l).
 double printed_formula_period(double width, double depth);
 /// Swing of the centre of mass along x over that of a liquid whose surface tilts by a/g at once, l² a/(12 h g).
 double amplification_of(const Done& done);
-/// The same of a liquid without viscosity that sloshes at that period.
+/// Amplification of a liquid without viscosity that is shaken at that period.
 double liquid_amplification(double period, double width, double depth);
 
 std::string report(const Reproduction& result);

@@ -45,7 +45,7 @@ std::size_t character_length(const std::string& text, std::size_t at) {
   return length;
 }
 
-/// cairo gives up on a page when it meets text that is not UTF-8.
+/// Text that is not UTF-8 makes cairo reject the whole page.
 std::string valid_utf8(const std::string& text) {
   std::string valid;
   for (std::size_t at = 0; at < text.size();) {
@@ -100,6 +100,20 @@ struct Canvas::Implementation {
     cairo_surface_destroy(surface);
   }
   void source(const Colour& c) const { cairo_set_source_rgb(context, c.red, c.green, c.blue); }
+  void fill(const Colour& colour) const {
+    source(colour);
+    cairo_fill(context);
+  }
+  void stroke(double width, const Colour& colour) const {
+    source(colour);
+    cairo_set_line_width(context, width);
+    cairo_stroke(context);
+  }
+  void circle(Vec2 centre, double radius) const {
+    cairo_new_path(context);
+    cairo_arc(context, centre.x, centre.y, radius, 0, 2 * std::numbers::pi);
+    cairo_close_path(context);
+  }
   void polygon(const std::vector<Vec2>& corners) const {
     for (const Vec2 corner : corners) cairo_line_to(context, corner.x, corner.y);
     cairo_close_path(context);
@@ -139,57 +153,41 @@ Canvas::Canvas(PageFormat format, int width, int height, double unit)
 Canvas::~Canvas() = default;
 
 void Canvas::fill_circle(Vec2 centre, double radius, const Colour& colour) {
-  cairo_t* context = implementation_->context;
-  implementation_->source(colour);
-  cairo_new_path(context);
-  cairo_arc(context, centre.x, centre.y, radius, 0, 2 * std::numbers::pi);
-  cairo_fill(context);
+  implementation_->circle(centre, radius);
+  implementation_->fill(colour);
 }
 
 void Canvas::stroke_circle(Vec2 centre, double radius, double width, const Colour& colour) {
-  cairo_t* context = implementation_->context;
-  implementation_->source(colour);
-  cairo_set_line_width(context, width);
-  cairo_new_path(context);
-  cairo_arc(context, centre.x, centre.y, radius, 0, 2 * std::numbers::pi);
-  cairo_close_path(context);
-  cairo_stroke(context);
+  implementation_->circle(centre, radius);
+  implementation_->stroke(width, colour);
 }
 
 void Canvas::fill_ellipse(Vec2 centre, Vec2 half_axes, double angle, const Colour& colour) {
-  implementation_->source(colour);
   implementation_->ellipse(centre, half_axes, angle);
-  cairo_fill(implementation_->context);
+  implementation_->fill(colour);
 }
 
 void Canvas::stroke_ellipse(Vec2 centre, Vec2 half_axes, double angle, double width, const Colour& colour) {
-  implementation_->source(colour);
-  cairo_set_line_width(implementation_->context, width);
   implementation_->ellipse(centre, half_axes, angle);
-  cairo_stroke(implementation_->context);
+  implementation_->stroke(width, colour);
 }
 
 void Canvas::line(Vec2 from, Vec2 to, double width, const Colour& colour) {
   cairo_t* context = implementation_->context;
-  implementation_->source(colour);
-  cairo_set_line_width(context, width);
   cairo_set_line_cap(context, CAIRO_LINE_CAP_ROUND);
   cairo_move_to(context, from.x, from.y);
   cairo_line_to(context, to.x, to.y);
-  cairo_stroke(context);
+  implementation_->stroke(width, colour);
 }
 
 void Canvas::fill_polygon(const std::vector<Vec2>& corners, const Colour& colour) {
-  implementation_->source(colour);
   implementation_->polygon(corners);
-  cairo_fill(implementation_->context);
+  implementation_->fill(colour);
 }
 
 void Canvas::stroke_polygon(const std::vector<Vec2>& corners, double width, const Colour& colour) {
-  implementation_->source(colour);
-  cairo_set_line_width(implementation_->context, width);
   implementation_->polygon(corners);
-  cairo_stroke(implementation_->context);
+  implementation_->stroke(width, colour);
 }
 
 void Canvas::image(const Raster& raster, Vec2 upper_left, double width, double height) {

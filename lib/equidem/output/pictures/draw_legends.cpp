@@ -8,7 +8,6 @@
 namespace equidem {
 namespace {
 
-constexpr Colour grey{0.42, 0.42, 0.42};
 constexpr Colour load_colour{0.0, 0.45, 0.32};
 constexpr double text_size = 14, small_text = 12.5, title_size = 18;
 
@@ -59,8 +58,7 @@ void draw_colour_bar(Canvas& canvas, const PictureScene& scene) {
   canvas.text(scene.colour_unit, {left, top - tip - 11}, small_text, TextAnchor::left, ink);
 }
 
-void draw_scale_bar(Canvas& canvas, const PictureScene& scene, double left, double y) {
-  const PageFrame& frame = scene.frame;
+void draw_scale_bar(Canvas& canvas, const PageFrame& frame, double left, double y) {
   const double length = scale_bar_length(0.2 * frame.room.x / frame.scale);  // m
   const double right = left + length * frame.scale;
   canvas.line({left, y}, {right, y}, 1.4, ink);
@@ -147,17 +145,17 @@ void draw_supports_and_loads(Canvas& canvas, const PictureScene& scene) {
   }
 }
 
+void draw_texts(Canvas& canvas, const PageFrame& frame, const std::string& title, const std::string& caption) {
+  if (!title.empty()) canvas.text(title, {page_margin, 38}, title_size, TextAnchor::left, ink, true);
+  draw_scale_bar(canvas, frame, page_margin, frame.height - 50.0);
+  canvas.text(caption, {page_margin, frame.height - 18.0}, small_text, TextAnchor::left, grey);
+}
+
 void draw_legends(Canvas& canvas, const PictureScene& scene) {
   const PageFrame& frame = scene.frame;
-  constexpr double left = 40;
-  if (!scene.options.title.empty()) {
-    canvas.text(scene.options.title, {left, 38}, title_size, TextAnchor::left, ink, true);
-  }
   if (!scene.values.empty()) draw_colour_bar(canvas, scene);
-  const double row = frame.height - 50.0;
-  draw_scale_bar(canvas, scene, left, row);
-  if (scene.force_chains) draw_force_legend(canvas, scene, left + frame.room.x, row);
-  canvas.text(scene.caption, {left, frame.height - 18.0}, small_text, TextAnchor::left, grey);
+  if (scene.force_chains) draw_force_legend(canvas, scene, page_margin + frame.room.x, frame.height - 50.0);
+  draw_texts(canvas, frame, scene.options.title, scene.caption);
 }
 
 }  // namespace equidem

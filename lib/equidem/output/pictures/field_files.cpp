@@ -99,7 +99,7 @@ void draw_map(Canvas& canvas, const CoarseGrid& grid, const Column& column, cons
     raster.set(static_cast<int>(k % grid.columns), static_cast<int>(grid.rows - 1 - k / grid.columns),
                scale.colour_of(column.values[k]));
   canvas.text(title, {corner.x, corner.y - 12}, 14, TextAnchor::left, black, true);
-  // Cells stay sharp: an image would be smoothed.
+  // Few cells are drawn as polygons: viewers smooth an image, which blurs its cells.
   const double cw = w / static_cast<double>(grid.columns), ch = h / static_cast<double>(grid.rows);
   if (grid.size() > 20'000) {
     canvas.image(raster, corner, w, h);

@@ -17,11 +17,8 @@
 namespace equidem {
 namespace {
 
-constexpr double margin = 40, bottom = 92, title_room = 66, no_title_room = 26;  // units
-constexpr double tallest = 1.4;                                                  // drawing area, in its own widths
-constexpr double smallest_marked = 6;                                            // units, radius
-constexpr double text_size = 12.5, title_size = 18;
-constexpr Colour grey{0.42, 0.42, 0.42}, wall_colour{0.25, 0.25, 0.28}, hatch_colour{0.62, 0.62, 0.66};
+constexpr double smallest_marked = 6;  // units, radius
+constexpr Colour wall_colour{0.25, 0.25, 0.28}, hatch_colour{0.62, 0.62, 0.66};
 
 /// Light tones of Okabe and Ito (2008), and the same darker for outlines, marks and paths.
 constexpr std::array fills = {Colour{0.68, 0.83, 0.93}, Colour{0.97, 0.83, 0.58}, Colour{0.66, 0.87, 0.78},
@@ -29,21 +26,9 @@ constexpr std::array fills = {Colour{0.68, 0.83, 0.93}, Colour{0.97, 0.83, 0.58}
 constexpr std::array inks = {Colour{0.00, 0.45, 0.70}, Colour{0.75, 0.50, 0.00}, Colour{0.00, 0.50, 0.37},
                              Colour{0.70, 0.30, 0.00}, Colour{0.65, 0.35, 0.52}, Colour{0.55, 0.52, 0.00}};
 
-struct Bounds {
-  Vec2 low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
-  void include(Vec2 centre, double radius) {
-    low = {std::min(low.x, centre.x - radius), std::min(low.y, centre.y - radius)};
-    high = {std::max(high.x, centre.x + radius), std::max(high.y, centre.y + radius)};
-  }
-};
-
-Vec2 displacement(const Wall& wall, double time) {
-  return wall.displacement(time);
-}
-
 /// Points along a segment or an arc.
 std::vector<Vec2> outline(const Wall& wall, double time) {
-  const Vec2 moved = displacement(wall, time);
+  const Vec2 moved = wall.displacement(time);
   if (wall.shape == Wall::Shape::segment) return {wall.point + moved, wall.end + moved};
   std::vector<Vec2> points;
   constexpr int per_turn = 180;
@@ -70,32 +55,22 @@ Bounds bounds_of(const GrainPicture& picture) {
     if (wall.shape == Wall::Shape::line) continue;
     for (const Vec2 point : outline(wall, picture.time)) bounds.include(point, 0);
   }
-  // A line near by is seen with some ground under it.
-  const double edge = 0.04 * std::max(bounds.high.x - bounds.low.x, bounds.high.y - bounds.low.y);
+  // Room for the hatching of a line that touches the bodies.
+  const double edge = 0.04 * bounds.larger_side();
   bounds.low -= Vec2{edge, edge};
   bounds.high += Vec2{edge, edge};
   return bounds;
 }
 
+/// A path straight up or along x still gets a picture of usual proportions.
 PageFrame lay_out(const GrainPicture& picture) {
   Bounds bounds = bounds_of(picture);
-  // A path straight up is no reason for a picture as thin.
   const double narrowest = 0.5 * (bounds.high.y - bounds.low.y), flattest = 0.25 * (bounds.high.x - bounds.low.x);
   const Vec2 missing{std::max(0.0, narrowest - (bounds.high.x - bounds.low.x)),
                      std::max(0.0, flattest - (bounds.high.y - bounds.low.y))};
   bounds.low -= 0.5 * missing;
   bounds.high += 0.5 * missing;
-  PageFrame frame;
-  frame.corner = bounds.low;
-  frame.extent = bounds.high - bounds.low;
-  const double room = PageFrame::width - 2 * margin;
-  frame.scale = std::min(room / frame.extent.x, tallest * room / frame.extent.y);
-  const Vec2 size = frame.scale * frame.extent;
-  const double top = picture.title.empty() ? no_title_room : title_room;
-  frame.room = {room, size.y};
-  frame.origin = {margin + 0.5 * (room - size.x), top};
-  frame.height = top + size.y + bottom;
-  return frame;
+  return lay_out_page(bounds, !picture.title.empty(), page_margin, 0, 1);
 }
 
 /// The piece of the line through `point` along `along` that lies in the view.
@@ -116,9 +91,9 @@ std::optional<std::array<Vec2, 2>> clipped(const PageFrame& frame, Vec2 point, V
   return std::array{point + from * along, point + to * along};
 }
 
-/// With strokes on the side where no grain can be.
+/// Hatched on the side without grains.
 void draw_line_wall(Canvas& canvas, const PageFrame& frame, const Wall& wall, double time) {
-  const auto ends = clipped(frame, wall.point + displacement(wall, time), perpendicular(wall.normal));
+  const auto ends = clipped(frame, wall.point + wall.displacement(time), perpendicular(wall.normal));
   if (!ends) return;
   const Vec2 a = frame.to_page((*ends)[0]), b = frame.to_page((*ends)[1]);
   const double length = norm(b - a);
@@ -151,7 +126,7 @@ std::span<const Clump::Disc> discs_of(const GrainPicture& picture, const Grain& 
   return picture.clumps[static_cast<std::size_t>(grain.clump)].discs;
 }
 
-/// The smallest half-width of what is drawn, m.
+/// The smallest half-width of a body, m.
 double smallest_radius(const GrainPicture& picture, const Grain& grain) {
   switch (grain.shape()) {
     case GrainShape::ellipse:
@@ -164,7 +139,7 @@ double smallest_radius(const GrainPicture& picture, const Grain& grain) {
   return grain.radius;
 }
 
-/// One outline round all discs: their edges first, then what lies inside.
+/// One outline round all discs: first discs in the colour of the edge, then smaller ones in that of the fill.
 void draw_clump(Canvas& canvas, const PageFrame& frame, const Grain& grain, std::span<const Clump::Disc> discs,
                 const Colour& fill, const Colour& edge, double width) {
   for (const bool inside : {false, true}) {
@@ -238,7 +213,7 @@ void draw_starts(Canvas& canvas, const PageFrame& frame, const GrainPicture& pic
   }
 }
 
-/// Whether the points between two of a path lie beside their chord by no more than can be seen.
+/// Whether the points between two of a path lie on their chord to within a visible width.
 bool is_straight(const std::vector<Vec2>& path, std::size_t from, std::size_t to) {
   constexpr double visible = 0.15;  // units
   const Vec2 chord = path[to] - path[from];
@@ -253,7 +228,7 @@ bool is_straight(const std::vector<Vec2>& path, std::size_t from, std::size_t to
   return true;
 }
 
-/// With no more strokes than are seen.
+/// Points that lie on a straight line to within a visible width are joined by one stroke.
 void draw_paths(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
   if (picture.paths.empty()) return;
   std::vector<Vec2> path(picture.paths.size());
@@ -268,19 +243,11 @@ void draw_paths(Canvas& canvas, const PageFrame& frame, const GrainPicture& pict
   }
 }
 
-void draw_legend(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
-  if (!picture.title.empty()) canvas.text(picture.title, {margin, 38}, title_size, TextAnchor::left, ink, true);
-  const double length = scale_bar_length(0.2 * frame.room.x / frame.scale);  // m
-  const double y = frame.height - 50.0, right = margin + length * frame.scale;
-  canvas.line({margin, y}, {right, y}, 1.4, ink);
-  for (const double x : {margin, right}) canvas.line({x, y - 5}, {x, y + 5}, 1.4, ink);
-  const UnitPrefix prefix = unit_prefix(length);
-  canvas.text(fmt::format("{:.3g} {}m", length * prefix.factor, prefix.prefix), {0.5 * (margin + right), y - 9},
-              text_size, TextAnchor::centre, ink);
+std::string caption_of(const GrainPicture& picture) {
   std::string caption =
       fmt::format("{}, t = {:.6g} s", counted(static_cast<long long>(picture.grains.size()), "grain"), picture.time);
   if (!picture.paths.empty()) caption += ", paths from the pale circles";
-  canvas.text(caption, {margin, frame.height - 18.0}, text_size, TextAnchor::left, grey);
+  return caption;
 }
 
 std::string draw(const GrainPicture& picture, const PageFrame& frame, PageFormat format_of_page) {
@@ -290,7 +257,7 @@ std::string draw(const GrainPicture& picture, const PageFrame& frame, PageFormat
   draw_grains(canvas, frame, picture);
   draw_bonds(canvas, frame, picture);
   draw_paths(canvas, frame, picture);
-  draw_legend(canvas, frame, picture);
+  draw_texts(canvas, frame, picture.title, caption_of(picture));
   return canvas.finish();
 }
 

@@ -29,7 +29,7 @@ struct GrainPicture {
 };
 
 /// Write NAME.png, 1000 pixels wide, and NAME.svg where no more than most_drawn_discs (picture.hpp) are drawn. The view
-/// holds all grains, their paths, segments and arcs; of a line what crosses it.
+/// holds all grains, their paths, segments and arcs; lines are clipped to it.
 /// \throws Error (bad_input) without grains, on places that are not finite, and as write_file does
 std::vector<std::filesystem::path> write_grain_picture(const std::filesystem::path& folder, const std::string& name,
                                                        const GrainPicture& picture, bool overwrite);

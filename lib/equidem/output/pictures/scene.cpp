@@ -10,14 +10,13 @@
 namespace equidem {
 namespace {
 
-constexpr double margin_left = 40, margin_right = 40, margin_bottom = 92;  // units
-constexpr double title_room = 66, no_title_room = 26, colour_bar_room = 124;
-constexpr int narrowest = 400, widest = 5000;  // pixels
-constexpr double tallest = 1.4;                // drawing area, in its own widths
-constexpr double shortest = 250;               // units, so that the colour bar has room
-constexpr double shown_displacement = 0.05;    // of the larger side, at most
-constexpr double finest_chained = 5;           // pixels, mean radius
-constexpr double arrow_length = 0.075;         // of the larger side
+constexpr double margin_bottom = 92, title_room = 66, no_title_room = 26, colour_bar_room = 124;  // units
+constexpr int narrowest = 400, widest = 5000;                                                     // pixels
+constexpr double tallest = 1.4;              // drawing area, in its own widths
+constexpr double shortest = 250;             // units, so that the colour bar has room
+constexpr double shown_displacement = 0.05;  // of the larger side, at most
+constexpr double finest_chained = 5;         // pixels, mean radius
+constexpr double arrow_length = 0.075;       // of the larger side
 
 void check(const AssemblyState& state, const PictureOptions& options) {
   const Assembly& assembly = state.assembly;
@@ -47,83 +46,42 @@ void check(const AssemblyState& state, const PictureOptions& options) {
   }
 }
 
-struct Bounds {
-  Vec2 low{INFINITY, INFINITY};
-  Vec2 high{-INFINITY, -INFINITY};
-
-  void include(Vec2 centre, double radius) {
-    low = {std::min(low.x, centre.x - radius), std::min(low.y, centre.y - radius)};
-    high = {std::max(high.x, centre.x + radius), std::max(high.y, centre.y + radius)};
-  }
-  [[nodiscard]] double larger_side() const { return std::max(high.x - low.x, high.y - low.y); }
-};
-
-/// 1, 2 or 5 times a power of ten, the largest not above.
-double round_down(double value) {
-  const double power = std::pow(10.0, std::floor(std::log10(value)));
-  const double lead = value / power;
-  return power * (lead >= 5 ? 5 : lead >= 2 ? 2 : 1);
-}
-
 double choose_displacement_scale(const AssemblyState& state, const PictureOptions& options, double side) {
   if (options.displacement_scale) return *options.displacement_scale;
   double largest = 0;
   for (const DiscMotion& motion : state.motions) largest = std::max(largest, norm(motion.u));
   if (largest == 0) return 1;
-  return std::max(1.0, round_down(shown_displacement * side / largest));
+  return std::max(1.0, scale_bar_length(shown_displacement * side / largest));
 }
 
-double colour_value(const AssemblyState& state, DiscColour colour, std::size_t disc) {
-  switch (colour) {
-    case DiscColour::none:
-      return 0;
-    case DiscColour::mean_stress:
-      return mean_stress(state.stresses[disc]);
-    case DiscColour::stress_xx:
-      return state.stresses[disc].xx;
-    case DiscColour::stress_yy:
-      return state.stresses[disc].yy;
-    case DiscColour::stress_xy:
-      return state.stresses[disc].xy;
-    case DiscColour::displacement:
-      return norm(state.motions[disc].u);
-  }
-  return 0;
-}
-
-std::string colour_name(DiscColour colour) {
-  switch (colour) {
-    case DiscColour::none:
-      return "";
-    case DiscColour::mean_stress:
-      return "mean stress";
-    case DiscColour::stress_xx:
-      return "stress σxx";
-    case DiscColour::stress_yy:
-      return "stress σyy";
-    case DiscColour::stress_xy:
-      return "stress σxy";
-    case DiscColour::displacement:
-      return "displacement";
-  }
-  return "";
-}
+/// Label of a colouring, and the stress that it shows; null: another quantity.
+struct Colouring {
+  DiscColour colour;
+  const char* label;
+  double (*stress)(const Tensor2& stress);
+};
+constexpr Colouring colourings[] = {
+    {DiscColour::none, "", nullptr},
+    {DiscColour::mean_stress, "mean stress", [](const Tensor2& s) { return mean_stress(s); }},
+    {DiscColour::stress_xx, "stress σxx", [](const Tensor2& s) { return s.xx; }},
+    {DiscColour::stress_yy, "stress σyy", [](const Tensor2& s) { return s.yy; }},
+    {DiscColour::stress_xy, "stress σxy", [](const Tensor2& s) { return s.xy; }},
+    {DiscColour::displacement, "displacement", nullptr}};
 
 void colour_discs(PictureScene& scene) {
   const AssemblyState& state = scene.state;
   const bool by_motion = scene.options.colour == DiscColour::displacement;
   const bool known = by_motion ? !state.motions.empty() : !state.stresses.empty();
   if (!known || scene.options.colour == DiscColour::none) return;
-  scene.coloured_by = scene.options.colour;
   scene.values.resize(state.assembly.size());
-  for (std::size_t disc = 0; disc < scene.values.size(); ++disc) {
-    scene.values[disc] = colour_value(state, scene.coloured_by, disc);
-  }
+  const Colouring& colouring = *std::ranges::find(colourings, scene.options.colour, &Colouring::colour);
+  for (std::size_t disc = 0; disc < scene.values.size(); ++disc)
+    scene.values[disc] = by_motion ? norm(state.motions[disc].u) : colouring.stress(state.stresses[disc]);
   const ColourScale pure = colour_scale(scene.values);
   const UnitPrefix unit = unit_prefix(std::max(std::abs(pure.low), std::abs(pure.high)));
   for (double& value : scene.values) value *= unit.factor;
   scene.colours = colour_scale(scene.values);
-  scene.colour_label = colour_name(scene.coloured_by);
+  scene.colour_label = colouring.label;
   scene.colour_unit = fmt::format("({}{})", unit.prefix, by_motion ? "m" : "Pa");
 }
 
@@ -146,21 +104,6 @@ void plan_force_chains(PictureScene& scene, double mean_radius) {
   scene.force_chains = scene.widest_force > 0;
 }
 
-PageFrame lay_out_page(const Bounds& bounds, const PictureOptions& options, bool coloured) {
-  PageFrame frame;
-  frame.corner = bounds.low;
-  frame.extent = bounds.high - bounds.low;
-  const double room = PageFrame::width - margin_left - (coloured ? colour_bar_room : margin_right);
-  frame.scale = std::min(room / frame.extent.x, tallest * room / frame.extent.y);
-  const Vec2 size = frame.scale * frame.extent;
-  const double top = options.title.empty() ? no_title_room : title_room;
-  frame.room = {room, std::max(size.y, shortest)};
-  frame.origin = {margin_left + 0.5 * (room - size.x), top + 0.5 * (frame.room.y - size.y)};
-  frame.height = top + frame.room.y + margin_bottom;
-  frame.pixels = options.width / PageFrame::width;
-  return frame;
-}
-
 std::string caption_of(const PictureScene& scene) {
   const Assembly& assembly = scene.state.assembly;
   std::string text = fmt::format(
@@ -181,6 +124,25 @@ std::string caption_of(const PictureScene& scene) {
 }
 
 }  // namespace
+
+void Bounds::include(Vec2 centre, double radius) {
+  low = {std::min(low.x, centre.x - radius), std::min(low.y, centre.y - radius)};
+  high = {std::max(high.x, centre.x + radius), std::max(high.y, centre.y + radius)};
+}
+
+PageFrame lay_out_page(const Bounds& bounds, bool titled, double right, double shortest, double pixels) {
+  PageFrame frame;
+  frame.corner = bounds.low;
+  frame.extent = bounds.high - bounds.low;
+  const double room = PageFrame::width - page_margin - right, top = titled ? title_room : no_title_room;
+  frame.scale = std::min(room / frame.extent.x, tallest * room / frame.extent.y);
+  const Vec2 size = frame.scale * frame.extent;
+  frame.room = {room, std::max(size.y, shortest)};
+  frame.origin = {page_margin + 0.5 * (room - size.x), top + 0.5 * (frame.room.y - size.y)};
+  frame.height = top + frame.room.y + margin_bottom;
+  frame.pixels = pixels;
+  return frame;
+}
 
 PictureScene plan_scene(const AssemblyState& state, const PictureOptions& options) {
   assert_consistent(state);
@@ -217,7 +179,8 @@ PictureScene plan_scene(const AssemblyState& state, const PictureOptions& option
     const double reach = assembly.radii[support.disc] + 0.35 * scene.longest_arrow;
     shown.include(scene.centres[support.disc] - (support.y ? Vec2{0, reach} : Vec2{reach, 0}), 0);
   }
-  scene.frame = lay_out_page(shown, options, !scene.values.empty());
+  scene.frame = lay_out_page(shown, !options.title.empty(), scene.values.empty() ? page_margin : colour_bar_room,
+                             shortest, options.width / PageFrame::width);
   plan_force_chains(scene, mean_radius);
   scene.caption = caption_of(scene);
   return scene;

@@ -3,6 +3,8 @@
 /// A picture before it is drawn: positions on the page, colours, widths. Drawn once as SVG and once as PNG.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -19,7 +21,7 @@ struct PageFrame {
   static constexpr double width = 1000;
   double height = 0;
   double pixels = 1;  ///< per unit
-  Vec2 corner;        ///< m, the lower left corner of what is shown
+  Vec2 corner;        ///< m, the lower left corner of the view
   Vec2 extent;        ///< m
   double scale = 1;   ///< units per metre
   Vec2 origin;        ///< units, the upper left corner of the drawing
@@ -30,6 +32,20 @@ struct PageFrame {
   }
 };
 
+/// The smallest rectangle round circles, m.
+struct Bounds {
+  Vec2 low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
+
+  void include(Vec2 centre, double radius);
+  [[nodiscard]] double larger_side() const { return std::max(high.x - low.x, high.y - low.y); }
+};
+
+/// A page with room for a title, a scale bar and a caption.
+/// \param right width that stays free to the right, units
+/// \param shortest height of the drawing area, units, at least
+/// \param pixels per unit
+PageFrame lay_out_page(const Bounds& bounds, bool titled, double right, double shortest, double pixels);
+
 struct PictureScene {
   const AssemblyState& state;
   const PictureOptions& options;
@@ -37,7 +53,6 @@ struct PictureScene {
   std::vector<Vec2> centres = {};  ///< m, displaced
   double displacement_scale = 1;
 
-  DiscColour coloured_by = DiscColour::none;
   std::vector<double> values = {};  ///< per disc, in shown units; empty: not coloured
   ColourScale colours = {};         ///< of the values
   std::string colour_label = {};    ///< "mean stress"
@@ -68,9 +83,12 @@ void draw_supports_and_loads(Canvas& canvas, const PictureScene& scene);
 
 /// Title, colour bar, scale bar, legend of the force chains, caption.
 void draw_legends(Canvas& canvas, const PictureScene& scene);
+/// Title and caption of any picture, and its scale bar.
+void draw_texts(Canvas& canvas, const PageFrame& frame, const std::string& title, const std::string& caption);
 
+inline constexpr double page_margin = 40;  // units, to the left of all and, without a colour bar, to the right
 inline constexpr Colour tension_colour{0.45, 0.02, 0.02};
 inline constexpr Colour compression_colour{0.02, 0.10, 0.33};
-inline constexpr Colour ink{0.13, 0.13, 0.13};
+inline constexpr Colour ink{0.13, 0.13, 0.13}, grey{0.42, 0.42, 0.42};
 
 }  // namespace equidem
