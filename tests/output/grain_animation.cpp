@@ -2,7 +2,6 @@
 #include "equidem/output/pictures/grain_animation.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,6 +9,8 @@
 #include <vector>
 
 #include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/output/files/json.hpp"
 
 #include "support/catch.hpp"
 #include "support/fields.hpp"
@@ -56,28 +57,24 @@ struct AnimatedScene {
   }
 };
 
-/// What follows `const NAME = ` up to the next of the stops.
-std::string value_of(const std::string& html, const std::string& name, const std::string& stops) {
-  const std::string start = name + " = ";
-  const auto from = html.find(start);
-  REQUIRE(from != std::string::npos);
-  const auto begin = from + start.size();
-  return html.substr(begin, html.find_first_of(stops, begin) - begin);
-}
+/// Numbers of the data of a page, by path: "frames.0.time".
+class Data {
+ public:
+  explicit Data(const std::string& html) {
+    const std::string start = "const data = ", end = ";\n\nconst fills";
+    const auto from = html.find(start) + start.size();
+    text_ = html.substr(from, html.find(end) - from);
+  }
+  double operator()(const std::string& path) const {
+    const auto value = number_in_json(text_, path);
+    INFO(path);
+    REQUIRE(value);
+    return *value;
+  }
 
-/// Of a list the first two.
-std::array<double, 2> pair_of(const std::string& html, const std::string& name) {
-  const std::string values = value_of(html, name, "]");
-  return {std::stod(values.substr(values.rfind('[') + 1)), std::stod(values.substr(values.find(',') + 1))};
-}
-
-double number(const std::string& text, std::size_t at) {
-  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
-  const auto high = digits.find(text[at]), low = digits.find(text[at + 1]);
-  REQUIRE(high != std::string::npos);
-  REQUIRE(low != std::string::npos);
-  return static_cast<double>(64 * high + low);
-}
+ private:
+  std::string text_;
+};
 
 std::size_t count_of(const std::string& text, const std::string& part) {
   std::size_t count = 0;
@@ -98,20 +95,16 @@ TEST_CASE("an_animation_shows_every_body_where_it_is") {
   AnimatedScene scene;
   const double thrown = GENERATE(0.0, 40.0, -40.0);
   scene.frames[3].places[0] += GENERATE(Vec2{0, 1}, Vec2{1, 0}) * thrown;
-  const std::string html = grain_animation_html(scene.animation("three bodies"));
-  const double span = std::stod(value_of(html, "span", ","));
-  const auto [left, bottom] = pair_of(html, "const low");
-  std::string frames = html.substr(html.find("const frames"));
-  for (const GrainFrame& frame : scene.frames) {
-    const auto from = frames.find('\'') + 1;
-    const std::string text = frames.substr(from, frames.find('\'', from) - from);
-    frames = frames.substr(from + text.size() + 1);
-    REQUIRE(text.size() == 6 * scene.grains.size());
+  const Data data(grain_animation_html(scene.animation("three bodies")));
+  const double unit = data("unit");
+  for (std::size_t f = 0; f < scene.frames.size(); ++f) {
+    const GrainFrame& frame = scene.frames[f];
     for (std::size_t g = 0; g < scene.grains.size(); ++g) {
-      CAPTURE(thrown, frame.time, g, span);
-      CHECK(left + number(text, 6 * g) / 4095 * span == Approx(frame.places[g].x).margin(0.6 * span / 4095));
-      CHECK(bottom + number(text, 6 * g + 2) / 4095 * span == Approx(frame.places[g].y).margin(0.6 * span / 4095));
-      const double turned = number(text, 6 * g + 4) / 4096 - frame.angles[g] / (2 * std::numbers::pi);
+      CAPTURE(thrown, frame.time, g, unit);
+      const auto body = [&](std::size_t k) { return data(fmt::format("frames.{}.bodies.{}", f, 3 * g + k)); };
+      CHECK(data("low.0") + body(0) * unit == Approx(frame.places[g].x).margin(0.6 * unit));
+      CHECK(data("low.1") + body(1) * unit == Approx(frame.places[g].y).margin(0.6 * unit));
+      const double turned = body(2) / 4096 - frame.angles[g] / (2 * std::numbers::pi);
       CHECK(std::abs(turned - std::round(turned)) < 1.01 / 4096);
     }
   }
@@ -125,12 +118,9 @@ TEST_CASE("the_view_of_an_animation_holds_its_walls") {
   arc.radius = GENERATE(1.0, 6.0);
   arc.to = 3;
   arc.move_y = {.kind = Schedule::Kind::sine, .value = 0.5, .frequency = 2.5};  // at 0.1 s farthest up
-  const std::string html = grain_animation_html(scene.animation("three bodies"));
-  const auto [left, bottom] = pair_of(html, "const low");
-  const auto [width, height] = pair_of(html, "size");
-  const auto [from, floor] = pair_of(html, "const walls");
-  const std::string rest = value_of(html, "const walls", "]");
-  const double to = std::stod(rest.substr(rest.find(',', rest.find(',') + 1) + 1));
+  const Data data(grain_animation_html(scene.animation("three bodies")));
+  const double left = data("low.0"), bottom = data("low.1"), width = data("size.0"), height = data("size.1");
+  const double from = data("walls.0.0"), floor = data("walls.0.1"), to = data("walls.0.2");
   CAPTURE(far, arc.radius, left, bottom, width, height, from, to, floor);
   CHECK(std::max(from, to) > left + width);
   CHECK(std::min(from, to) < left);

@@ -7,7 +7,6 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/output/plots/gnuplot.hpp"
-#include "equidem/output/plots/plot_layout.hpp"
 #include "equidem/output/plots/plot_script.hpp"
 
 #include "output/png.hpp"
@@ -162,32 +161,6 @@ TEST_CASE("a_script_that_gnuplot_refuses_is_told") {
   CAPTURE(slow.reason);
   CHECK_FALSE(slow.succeeded);
   CHECK(slow.reason.find("took more than 0.2 s") != std::string::npos);
-}
-
-TEST_CASE("the_legend_covers_no_data") {
-  // Points everywhere but in one corner, which must be found; points everywhere: the legend leaves the plot.
-  const std::string corner = GENERATE("top right", "top left", "bottom right", "bottom left", "below");
-  Series cloud{.label = "points", .style = SeriesStyle::points};
-  for (int i = 0; i <= 40; ++i) {
-    for (int j = 0; j <= 40; ++j) {
-      const bool right = i > 20, top = j > 20;
-      if (corner == std::string(top ? "top" : "bottom") + (right ? " right" : " left")) continue;
-      cloud.x.push_back(i / 40.0);
-      cloud.y.push_back(j / 40.0);
-    }
-  }
-  Plot plot{.series = {cloud}};
-  CHECK(lay_out(plot).legend == corner);
-}
-
-TEST_CASE("labels_of_close_vertical_lines_stand_apart") {
-  const Plot plot{.x = {.min = -1, .max = 1},
-                  .y = {.min = 0, .max = 1},
-                  .series = {{.x = {-1, 1}, .y = {0.5, 0}}},
-                  .vertical_lines = {{.x = -1.0 / 3, .label = "lattice"}, {.x = -0.27, .label = "block"}}};
-  const PlotLayout layout = lay_out(plot);
-  CHECK_FALSE(layout.line_labels[0].right);
-  CHECK(layout.line_labels[1].right);
 }
 
 TEST_CASE("a_plot_that_cannot_be_drawn_is_refused") {

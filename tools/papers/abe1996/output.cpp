@@ -44,7 +44,7 @@ Plot figure7(const Reproduction& result) {
                  computed("computed, stable", "nu_stable", PlotColour::blue, stable),
                  computed("computed, unstable", "nu_unstable", PlotColour::vermilion, unstable)};
   plot.vertical_lines = {
-      {result.lattice_limit, "infinite lattice: -1/3", PlotColour::black},
+      {result.lattice_limit, "infinite lattice: -1/3", PlotColour::black, true},
       {result.block_limit, fmt::format("this block: {:.4f}", result.block_limit), PlotColour::vermilion}};
   return plot;
 }

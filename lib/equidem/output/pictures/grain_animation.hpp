@@ -32,8 +32,8 @@ struct GrainAnimation {
   double speed = 1;  ///< of the picture, in seconds of motion per second
 };
 
-/// The file. The view holds all bodies, segments and arcs at all times; of a line what crosses it. Places are rounded
-/// to 1/4095 of the view, angles to 1/4096 of a turn: 6 bytes for a body in a frame.
+/// The page. The view holds all bodies, segments and arcs at all times; of a line what crosses it. Places are rounded
+/// to 1/4096 of the view, angles to 1/4096 of a turn.
 /// \throws Error (bad_input) without grains or frames, on frames of another number of bodies, on places that are not
 ///         finite
 std::string grain_animation_html(const GrainAnimation& animation);

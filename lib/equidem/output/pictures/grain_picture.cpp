@@ -11,6 +11,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/placed_discs.hpp"
 #include "equidem/output/pictures/canvas.hpp"
+#include "equidem/output/pictures/grain_view.hpp"
 #include "equidem/output/pictures/picture.hpp"
 #include "equidem/output/pictures/scene.hpp"
 
@@ -26,51 +27,21 @@ constexpr std::array fills = {Colour{0.68, 0.83, 0.93}, Colour{0.97, 0.83, 0.58}
 constexpr std::array inks = {Colour{0.00, 0.45, 0.70}, Colour{0.75, 0.50, 0.00}, Colour{0.00, 0.50, 0.37},
                              Colour{0.70, 0.30, 0.00}, Colour{0.65, 0.35, 0.52}, Colour{0.55, 0.52, 0.00}};
 
-/// Points along a segment or an arc.
-std::vector<Vec2> outline(const Wall& wall, double time) {
-  const Vec2 moved = wall.displacement(time);
-  if (wall.shape == Wall::Shape::segment) return {wall.point + moved, wall.end + moved};
-  std::vector<Vec2> points;
-  constexpr int per_turn = 180;
-  const int pieces = std::max(2, static_cast<int>(std::ceil(per_turn * (wall.to - wall.from) / 6.28)));
-  for (int k = 0; k <= pieces; ++k) {
-    const double angle = wall.from + (wall.to - wall.from) * k / pieces;
-    points.push_back(wall.point + moved + wall.radius * Vec2{std::cos(angle), std::sin(angle)});
-  }
-  return points;
-}
-
-Bounds bounds_of(const GrainPicture& picture) {
+GrainView view_of(const GrainPicture& picture) {
   if (picture.grains.empty()) bad_input("the picture would be empty", "there are no grains", "Draw some");
-  Bounds bounds;
+  GrainView view;
   for (std::size_t g = 0; g < picture.grains.size(); ++g) {
     const Grain& grain = picture.grains[g];
-    if (!std::isfinite(grain.position.x + grain.position.y))
-      bad_input(fmt::format("grain {} at ({}, {}) cannot be drawn", g, grain.position.x, grain.position.y),
-                "its place is not finite", "Check the run that it comes from");
-    bounds.include(grain.position, grain.radius);
-    for (const std::vector<Vec2>& places : picture.paths) bounds.include(places[g], grain.radius);
+    view.include_grain(g, grain.position, grain.angle, grain.radius);
+    for (const std::vector<Vec2>& places : picture.paths) view.include(places[g], grain.radius);
   }
-  for (const Wall& wall : picture.walls) {
-    if (wall.shape == Wall::Shape::line) continue;
-    for (const Vec2 point : outline(wall, picture.time)) bounds.include(point, 0);
-  }
-  // Room for the hatching of a line that touches the bodies.
-  const double edge = 0.04 * bounds.larger_side();
-  bounds.low -= Vec2{edge, edge};
-  bounds.high += Vec2{edge, edge};
-  return bounds;
+  view.include_walls(picture.walls, picture.time);
+  view.widen();
+  return view;
 }
 
-/// A path straight up or along x still gets a picture of usual proportions.
 PageFrame lay_out(const GrainPicture& picture) {
-  Bounds bounds = bounds_of(picture);
-  const double narrowest = 0.5 * (bounds.high.y - bounds.low.y), flattest = 0.25 * (bounds.high.x - bounds.low.x);
-  const Vec2 missing{std::max(0.0, narrowest - (bounds.high.x - bounds.low.x)),
-                     std::max(0.0, flattest - (bounds.high.y - bounds.low.y))};
-  bounds.low -= 0.5 * missing;
-  bounds.high += 0.5 * missing;
-  return lay_out_page(bounds, !picture.title.empty(), page_margin, 0, 1);
+  return lay_out_page(view_of(picture), !picture.title.empty(), page_margin, 0, 1);
 }
 
 /// The piece of the line through `point` along `along` that lies in the view.

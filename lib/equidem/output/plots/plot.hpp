@@ -29,11 +29,12 @@ struct Series {
   std::string column = {};  ///< name of y in the data file; empty: made of the label
 };
 
-/// A vertical line across the plot with its label written along it.
+/// A vertical line across the plot with its label written along its upper end.
 struct VerticalLine {
   double x = 0;
   std::string label = {};
   PlotColour colour = PlotColour::black;
+  bool label_left = false;  ///< label left of the line
 };
 
 /// A shaded range of x, behind all else.
@@ -75,8 +76,7 @@ struct PlotResult {
 
 /// Write NAME.csv (the data), NAME.gp (the script; `gnuplot NAME.gp` in that folder draws again) and, by gnuplot,
 /// NAME.svg and NAME.png (900 x 650 pixels). If gnuplot is absent or fails, data and script are still written and the
-/// result states the reason. The legend is in the corner with the fewest points, or below the plot if all corners are
-/// crowded.
+/// result states the reason. The legend stands below the plot.
 /// \throws Error (bad_input) on a plot that cannot be drawn (x and y of different length, no finite point, a value not
 ///         positive on a logarithmic axis, an empty range, a name that is no plain file name), and as write_file does
 PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const Plot& plot, bool overwrite);

@@ -5,16 +5,50 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <limits>
 
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/csv.hpp"
-#include "equidem/output/plots/plot_layout.hpp"
 
 namespace equidem {
 namespace {
 
 constexpr std::array<const char*, 8> palette = {"#000000", "#E69F00", "#56B4E9", "#009E73",
                                                 "#F0E442", "#0072B2", "#D55E00", "#CC79A7"};
+
+struct AxisRange {
+  double min = 0, max = 1;
+};
+
+/// Outwards to a multiple of a 1-2-5 step near a fiftieth of the span.
+AxisRange rounded(double low, double high) {
+  const double raw = (high - low) / 50;
+  const double power = std::pow(10.0, std::floor(std::log10(raw)));
+  const double step = raw / power < 2 ? 2 * power : raw / power < 5 ? 5 * power : 10 * power;
+  return {step * std::floor(low / step), step * std::ceil(high / step)};
+}
+
+/// The given bounds, else those of the data with a small margin, rounded outwards.
+AxisRange range_of(const Axis& axis, const std::vector<Series>& series, std::vector<double> Series::*values) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const Series& one : series) {
+    for (const double v : one.*values) {
+      if (!std::isfinite(v)) continue;
+      low = std::min(low, v);
+      high = std::max(high, v);
+    }
+  }
+  if (axis.logarithmic) {
+    const double margin = low < high ? std::pow(high / low, 0.05) : 2;
+    low /= margin, high *= margin;
+  } else {
+    const double margin = low < high ? 0.05 * (high - low) : std::max(0.1 * std::abs(low), 1e-12);
+    const AxisRange padded = rounded(low - margin, high + margin);
+    low = padded.min, high = padded.max;
+  }
+  return {axis.min.value_or(low), axis.max.value_or(high)};
+}
 
 const char* hex(PlotColour colour) {
   return palette[static_cast<std::size_t>(colour)];
@@ -111,14 +145,14 @@ std::vector<std::string> plot_clauses(const Plot& plot, const Series& series, co
   return clauses;
 }
 
-std::string vertical_line(const VerticalLine& line, const LineLabelPlace& place, const std::string& plain) {
+std::string vertical_line(const VerticalLine& line, const std::string& plain) {
   std::string text =
       fmt::format("set arrow from first {0}, graph 0 to first {0}, graph 1 nohead back lw 1.1 dt (5,4) lc rgb '{1}'\n",
                   line.x, hex(line.colour));
   if (!line.label.empty()) {
-    text += fmt::format("set label {} at first {}, graph {} {} rotate by 90 offset char {},0 tc rgb '{}' front{}\n",
-                        quoted(line.label), line.x, place.top ? 0.985 : 0.015, place.top ? "right" : "left",
-                        place.right ? 1 : -1, hex(line.colour), plain);
+    text +=
+        fmt::format("set label {} at first {}, graph 0.985 right rotate by 90 offset char {},0 tc rgb '{}' front{}\n",
+                    quoted(line.label), line.x, line.label_left ? -1 : 1, hex(line.colour), plain);
   }
   return text;
 }
@@ -185,7 +219,7 @@ PlotData plot_data(const Plot& plot) {
 }
 
 std::string plot_script(const std::string& name, const Plot& plot, const PlotData& data) {
-  const PlotLayout layout = lay_out(plot);
+  const AxisRange x = range_of(plot.x, plot.series, &Series::x), y = range_of(plot.y, plot.series, &Series::y);
   const std::string plain = plot.enhanced ? "" : " noenhanced";
   std::string text = fmt::format(
       "# Draws {0}.svg and {0}.png from {0}.csv. Edit it and run, in this folder:  gnuplot {0}.gp\n"
@@ -193,11 +227,9 @@ std::string plot_script(const std::string& name, const Plot& plot, const PlotDat
       "set border 3 lw 0.8 lc rgb '#333333'\nset tics out nomirror scale 0.7 tc rgb '#222222'\n"
       "set title {2} offset 0,-0.2{3}\nset xlabel {4}{3}\nset ylabel {5}{3}\n",
       name, quoted(name + ".csv"), quoted(plot.title), plain, quoted(plot.x.label), quoted(plot.y.label));
-  text +=
-      fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", layout.x.min, layout.x.max, layout.y.min, layout.y.max);
-  text += axis_scale('x', plot.x, layout.x) + axis_scale('y', plot.y, layout.y);
-  text += fmt::format("set key {} Left reverse samplen 2.2 spacing 1.25 width 1{}\n",
-                      layout.legend == "below" ? "below horizontal" : "inside " + layout.legend, plain);
+  text += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", x.min, x.max, y.min, y.max);
+  text += axis_scale('x', plot.x, x) + axis_scale('y', plot.y, y);
+  text += fmt::format("set key below horizontal Left reverse samplen 2.2 spacing 1.25 width 1{}\n", plain);
   for (const Band& band : plot.bands) {
     text += fmt::format(
         "set object rectangle from first {}, graph 0 to first {}, graph 1 fc rgb '#eef2f6' fs solid noborder "
@@ -208,13 +240,11 @@ std::string plot_script(const std::string& name, const Plot& plot, const PlotDat
                           plot.x.logarithmic ? std::sqrt(band.from * band.to) : 0.5 * (band.from + band.to), plain);
     }
   }
-  for (std::size_t k = 0; k < plot.vertical_lines.size(); ++k) {
-    text += vertical_line(plot.vertical_lines[k], layout.line_labels[k], plain);
-  }
+  for (const VerticalLine& line : plot.vertical_lines) text += vertical_line(line, plain);
 
   std::string command;
   for (std::size_t k = 0; k < plot.series.size(); ++k) {
-    for (const std::string& clause : plot_clauses(plot, plot.series[k], data.places[k], layout.y, plain)) {
+    for (const std::string& clause : plot_clauses(plot, plot.series[k], data.places[k], y, plain)) {
       command += (command.empty() ? "plot " : ", \\\n     ") + clause;
     }
   }

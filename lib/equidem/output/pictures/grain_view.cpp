@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/output/pictures/grain_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+
+void GrainView::include_grain(std::size_t grain, Vec2 centre, double angle, double radius) {
+  if (!std::isfinite(centre.x + centre.y + angle))
+    bad_input(fmt::format("grain {} at ({}, {}) cannot be drawn", grain, centre.x, centre.y), "its place is not finite",
+              "Check the run that it comes from");
+  include(centre, radius);
+}
+
+void GrainView::include_walls(std::span<const Wall> walls, double time) {
+  for (const Wall& wall : walls) {
+    if (wall.shape == Wall::Shape::line) continue;
+    for (const Vec2 point : outline(wall, time)) include(point, 0);
+  }
+}
+
+void GrainView::widen() {
+  const double edge = 0.04 * larger_side();
+  low -= Vec2{edge, edge};
+  high += Vec2{edge, edge};
+  const Vec2 missing{std::max(0.0, 0.5 * size().y - size().x), std::max(0.0, 0.25 * size().x - size().y)};
+  low -= 0.5 * missing;
+  high += 0.5 * missing;
+}
+
+std::vector<Vec2> outline(const Wall& wall, double time) {
+  const Vec2 moved = wall.displacement(time);
+  if (wall.shape == Wall::Shape::segment) return {wall.point + moved, wall.end + moved};
+  std::vector<Vec2> points;
+  constexpr int per_turn = 180;
+  const int pieces = std::max(2, static_cast<int>(std::ceil(per_turn * (wall.to - wall.from) / 6.28)));
+  for (int k = 0; k <= pieces; ++k) {
+    const double angle = wall.from + (wall.to - wall.from) * k / pieces;
+    points.push_back(wall.point + moved + wall.radius * Vec2{std::cos(angle), std::sin(angle)});
+  }
+  return points;
+}
+
+}  // namespace equidem

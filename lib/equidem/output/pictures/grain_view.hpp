@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The part of the plane that pictures of colliding bodies show.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "equidem/core/vector.hpp"
+#include "equidem/motion/wall.hpp"
+#include "equidem/output/pictures/scene.hpp"
+
+namespace equidem {
+
+struct GrainView : Bounds {
+  /// \throws Error (bad_input) where position or angle of the grain are not finite
+  void include_grain(std::size_t grain, Vec2 centre, double angle, double radius);
+  /// Segments and arcs; lines cross the view.
+  void include_walls(std::span<const Wall> walls, double time);
+  /// Adds a margin, and room where the view is very narrow or flat.
+  void widen();
+  [[nodiscard]] Vec2 size() const { return high - low; }
+};
+
+/// Points along a segment or an arc.
+std::vector<Vec2> outline(const Wall& wall, double time);
+
+}  // namespace equidem
