@@ -10,6 +10,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/random.hpp"
+#include "equidem/output/files/body_tables.hpp"
 
 #include "output/states.hpp"
 #include "support/catch.hpp"

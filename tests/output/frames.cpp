@@ -8,7 +8,7 @@
 
 #include "equidem/core/file.hpp"
 #include "equidem/core/random.hpp"
-#include "equidem/output/files/csv.hpp"
+#include "equidem/output/files/body_tables.hpp"
 
 #include "output/runs.hpp"
 #include "output/states.hpp"

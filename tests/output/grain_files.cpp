@@ -5,9 +5,9 @@
 
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/energies.hpp"
 #include "equidem/output/files/frames.hpp"
-#include "equidem/output/files/grain_tables.hpp"
 #include "equidem/output/files/growing_csv.hpp"
 #include "equidem/output/files/hdf5.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"

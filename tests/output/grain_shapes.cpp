@@ -12,8 +12,8 @@
 
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/grain_frames.hpp"
-#include "equidem/output/files/grain_tables.hpp"
 #include "equidem/output/files/hdf5.hpp"
 #include "equidem/output/files/placed_discs.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"

@@ -4,6 +4,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/csv.hpp"
 #include "equidem/output/files/vtk.hpp"
 #include "equidem/output/pictures/picture.hpp"

@@ -2,7 +2,7 @@
 #include "equidem/output/files/vtk.hpp"
 
 #include "equidem/core/file.hpp"
-#include "equidem/output/files/csv.hpp"
+#include "equidem/output/files/body_tables.hpp"
 
 #include "output/states.hpp"
 #include "support/catch.hpp"

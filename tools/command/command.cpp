@@ -90,17 +90,6 @@ void print(const std::string& text) {
 
 }  // namespace
 
-void deliver(const CommonOptions& options, const std::string& report, const Results& object) {
-  const bool to_stdout = options.json && *options.json == "-";
-  if (to_stdout) {
-    print(object.json());
-  } else if (!options.quiet) {
-    print(report);
-  }
-  if (options.json && !to_stdout) write_file(*options.json, object.json(), options.overwrite);
-  if (options.out) write_file(*options.out / "result.json", object.json(), options.overwrite);
-}
-
 void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times) {
   Results all = results;
   if (!options.dry_run) {
@@ -113,11 +102,18 @@ void deliver(const CommonOptions& options, const std::string& status, const Resu
   Results seconds, object;
   for (const auto& [stage, time] : times.stages()) seconds.set(stage, time);
   object.set("status", status).set("report", report).set("times", seconds).set("version", library_version());
-  CommonOptions written = options;
-  written.overwrite = true;  // the files were found writable before the computation
-  if (options.dry_run) written.out.reset();
-  deliver(written, report, object.append(results));
-  if (written.out) say(options, fmt::format("written to {}", written.out->string()));
+  const std::string json = object.append(results).json();
+  const bool to_stdout = options.json && *options.json == "-";
+  if (to_stdout) {
+    print(json);
+  } else if (!options.quiet) {
+    print(report);
+  }
+  // The files were found writable before the computation.
+  if (options.json && !to_stdout) write_file(*options.json, json, true);
+  if (!options.out || options.dry_run) return;
+  write_file(*options.out / "result.json", json, true);
+  say(options, fmt::format("written to {}", options.out->string()));
 }
 
 void throw_stopped(const CommonOptions& options, const std::string& done, const std::string& again) {

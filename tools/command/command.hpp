@@ -72,12 +72,8 @@ class OutputPlan {
   const CommonOptions& options_;
 };
 
-/// Report on stdout (unless quiet, or stdout is taken by the JSON), the object to --json and to OUT/result.json.
-/// \throws Error (bad_input) where they cannot be written
-void deliver(const CommonOptions& options, const std::string& report, const Results& object);
-
-/// Report and JSON of a list of results, with the times of the stages, to stdout, --json and OUT/result.json; then the
-/// folder on stderr. A dry run does not write to the folder.
+/// Report and JSON of a list of results, with the times of the stages: the report to stdout, unless quiet or --json is
+/// "-"; the JSON to --json and OUT/result.json; then the folder on stderr. A dry run does not write to the folder.
 /// \param status the first key of the JSON: "solved", "dry_run", ...
 /// \throws Error (bad_input) where they cannot be written
 void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times);

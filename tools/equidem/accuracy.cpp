@@ -63,12 +63,4 @@ Results accuracy_results(const ReachedAccuracy& reached) {
   return results.set("accuracy/ten_times_more", ten);
 }
 
-std::string describe_accuracy(const ReachedAccuracy& reached) {
-  return accuracy_results(reached).report();
-}
-
-void add_accuracy(Results& object, const ReachedAccuracy& reached) {
-  object.append(accuracy_results(reached));
-}
-
 }  // namespace equidem

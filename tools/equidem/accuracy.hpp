@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "equidem/output/files/json.hpp"
+#include "equidem/output/results.hpp"
 
 #include "command.hpp"
 
@@ -46,7 +46,5 @@ void refuse_dry_run_with_accuracy(const CommonOptions& options, bool accuracy);
 /// accuracy: {requested, estimated, of, knob, value, pilots, pilots_factor, ten_times_more: {time_factor, seconds,
 /// value, note}}.
 Results accuracy_results(const ReachedAccuracy& reached);
-std::string describe_accuracy(const ReachedAccuracy& reached);
-void add_accuracy(Results& object, const ReachedAccuracy& reached);
 
 }  // namespace equidem

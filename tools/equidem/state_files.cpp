@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "state_files.hpp"
 
-#include "equidem/output/files/csv.hpp"
+#include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/vtk.hpp"
 
 namespace equidem {

@@ -151,6 +151,14 @@ MissedEvent missed_event(const Schedule& schedule, double step, double end) {
   return most;
 }
 
+std::int64_t count_steps(double duration, double step) {
+  constexpr double most = 1e15;  // years of stepping, and every number below is exact in a double
+  const double steps = std::ceil(duration / step * (1 - 1e-12));
+  if (steps <= most) return std::llround(steps);
+  bad_input(fmt::format("{:.3g} s in steps of {:.3g} s are {:.3g} steps", duration, step, steps),
+            fmt::format("no run makes more than {:.0e}", most), "Shorten the duration, or take a longer step");
+}
+
 Schedule scaled(Schedule schedule, double factor) {
   schedule.value *= factor;
   for (double& value : schedule.values) value *= factor;

@@ -3,6 +3,7 @@
 /// Values that change with time: prescribed motions, factors of loads.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 namespace equidem {
@@ -47,6 +48,11 @@ struct MissedEvent {
 /// stands out and the peaks of a sine or of cycles (all of them below two steps a period); a jump is not missed. \param
 /// step, end s
 MissedEvent missed_event(const Schedule& schedule, double step, double end);
+
+/// Number of steps of the whole duration.
+/// \param duration, step s
+/// \throws Error (bad_input) if there are more than 1e15
+std::int64_t count_steps(double duration, double step);
 
 /// The schedule multiplied by a factor.
 Schedule scaled(Schedule schedule, double factor);

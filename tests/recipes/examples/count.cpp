@@ -2,7 +2,6 @@
 #include <memory>
 
 #include "equidem/casefile/assembly/build.hpp"
-#include "equidem/core/text.hpp"
 
 #include "command.hpp"
 #include "verbs.hpp"
@@ -13,10 +12,9 @@ namespace {
 int count_discs(const CommonOptions& common) {
   const Case resolved = read_case(common);
   const Assembly assembly = build_assembly(resolved);
-  const std::string report = counted(static_cast<long long>(assembly.size()), "disc") + "\n";
-  JsonObject object;
-  object.set("discs", assembly.size());
-  deliver(common, report, object);
+  Results results;
+  results.line("assembly").add("discs", "", assembly.size(), "disc", {Shown::count});
+  deliver(common, "counted", results, {});
   return 0;
 }
 

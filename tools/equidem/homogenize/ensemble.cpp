@@ -58,7 +58,7 @@ std::vector<EnsembleSample> samples_to_keep(const CommonOptions& options, bool r
     throw Error(ErrorKind::bad_input, "the samples there are of another case", "they would not fit together",
                 "Choose another --out, or leave out --resume and pass --overwrite", stored.case_file.string());
   }
-  return read_samples_csv(table);
+  return read_samples(table);
 }
 
 /// The samples done, and those of an earlier run beyond them, by size and seed: what was computed is not lost to a run
@@ -163,7 +163,7 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
   const auto& folder = options.out;
   write_case(options, resolved);
   const auto save = [&](const std::vector<EnsembleSample>& done) {
-    if (folder) write_file(*folder / samples_name, samples_csv(with_kept(done, kept)), true);
+    if (folder) write_csv(*folder / samples_name, samples_table(with_kept(done, kept)), true);
   };
   StageTimes times;
   Stopwatch watch;

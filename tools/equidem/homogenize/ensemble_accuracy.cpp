@@ -73,7 +73,7 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
   Results results = cell_results(resolved, wanted.smallest, wanted.first_seed);
   const auto& folder = options.out;
   const auto save = [&](const std::vector<EnsembleSample>& done) {
-    if (folder) write_file(*folder / "samples.csv", samples_csv(done), true);
+    if (folder) write_csv(*folder / "samples.csv", samples_table(done), true);
   };
   StageTimes times;
   Stopwatch watch;

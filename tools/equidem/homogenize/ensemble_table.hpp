@@ -14,11 +14,11 @@
 namespace equidem {
 
 /// One row per cell: discs, seed, discs_built, the moduli, refusal.
-std::string samples_csv(const std::vector<EnsembleSample>& samples);
+Table samples_table(const std::vector<EnsembleSample>& samples);
 
-/// Reads a table of samples_csv; numbers have the same bits.
+/// Reads a table of samples_table; numbers have the same bits.
 /// \throws Error (bad_input) where the file is another table or damaged
-std::vector<EnsembleSample> read_samples_csv(const std::filesystem::path& path);
+std::vector<EnsembleSample> read_samples(const std::filesystem::path& path);
 
 /// One row per size: discs, mean_discs, samples, refused, and of each quantity the mean, standard deviation, standard
 /// error and confidence limits.

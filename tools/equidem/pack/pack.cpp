@@ -7,7 +7,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/grain_tables.hpp"
+#include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"
 #include "equidem/packing/network.hpp"
 

@@ -10,7 +10,7 @@
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 
-#include "run/run_setup.hpp"
+#include "run/run_bonded.hpp"
 
 namespace equidem {
 namespace {
@@ -36,22 +36,15 @@ std::vector<double> displacements(const std::vector<DiscMotion>& motions) {
   return values;
 }
 
-int order_of(const RunCase& run) {
-  const Damping& damping = run.damping;
-  const bool late = damping.stiffness > 0 || damping.contact > 0 || damping.local > 0;
-  return late ? order_with_late_velocities : scheme_of(run.integrator).order;
-}
-
-RefinementOptions step_refinement(const RunSetup& setup, double accuracy) {
-  if (!setup.run().duration) {
+RefinementOptions step_refinement(const BondedRun& given, double accuracy) {
+  if (given.goes_to_rest()) {
     throw Error(ErrorKind::bad_input, "--accuracy does not act on a run to rest", "run.until_rest is its accuracy",
-                "Leave it out, or set run.until_rest to the unbalanced force wanted",
-                setup.problem.resolved.where("run.until_rest"));
+                "Leave it out, or set run.until_rest to the unbalanced force wanted", given.where("run.until_rest"));
   }
   return {.accuracy = accuracy,
-          .order = static_cast<double>(order_of(setup.run())),
-          .first = setup.steps(),
-          .most = finest * setup.steps(),
+          .order = static_cast<double>(given.order()),
+          .first = given.steps(),
+          .most = finest * given.steps(),
           .unit = "steps",
           .apart = std::numbers::sqrt2,
           .distance = relative_distance};
@@ -59,15 +52,12 @@ RefinementOptions step_refinement(const RunSetup& setup, double accuracy) {
 
 }  // namespace
 
-StepSearch::StepSearch(const CommonOptions& options, double accuracy)
-    : StepSearch(options, accuracy, RunSetup(read_case(options))) {}
-
-StepSearch::StepSearch(const CommonOptions& options, double accuracy, const RunSetup& setup)
+StepSearch::StepSearch(const CommonOptions& options, double accuracy, const BondedRun& given)
     : options_(options),
       accuracy_(accuracy),
-      duration_(setup.run().duration.value_or(0)),
-      case_step_(setup.step.step),
-      search_([this](std::int64_t steps) { return motions_at_end(steps); }, step_refinement(setup, accuracy)) {}
+      duration_(given.run().duration.value_or(0)),
+      case_step_(given.time_step().step),
+      search_([this](std::int64_t steps) { return motions_at_end(steps); }, step_refinement(given, accuracy)) {}
 
 Case StepSearch::propose() {
   runs_.push_back(search_.propose());
@@ -115,12 +105,12 @@ Case StepSearch::case_of(std::int64_t steps) const {
 }
 
 std::vector<double> StepSearch::motions_at_end(std::int64_t steps) const {
-  const RunSetup setup(case_of(steps));
-  Simulation simulation(setup.simulation());
+  BondedRun pilot(case_of(steps));
+  Simulation& simulation = pilot.simulation();
   Progress progress(fmt::format("a run of {} to choose the step:", counted(steps, "step")));
-  for (std::int64_t done = 0; done < setup.steps(); done += steps_at_once) {
-    progress.update(static_cast<double>(done) / static_cast<double>(setup.steps()));
-    simulation.advance(std::min(steps_at_once, setup.steps() - done));
+  for (std::int64_t done = 0; done < pilot.steps(); done += steps_at_once) {
+    progress.update(static_cast<double>(done) / static_cast<double>(pilot.steps()));
+    simulation.advance(std::min(steps_at_once, pilot.steps() - done));
   }
   return displacements(simulation.motions());
 }

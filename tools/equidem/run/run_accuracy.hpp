@@ -15,15 +15,16 @@
 
 namespace equidem {
 
-struct RunSetup;
+class BondedRun;
 
 /// The longest step for which the displacements at the end are within the accuracy, relative to the largest one. Pilots
 /// are runs with the step of the case, that over root 2, and its half (and finer ones, until the motions at the end
 /// converge by the order of the integrator); they write nothing.
 class StepSearch {
  public:
+  /// \param given the run with the step of the case
   /// \throws Error (bad_input) where the run goes to rest
-  StepSearch(const CommonOptions& options, double accuracy);
+  StepSearch(const CommonOptions& options, double accuracy, const BondedRun& given);
   StepSearch(const StepSearch&) = delete;  // pilots refer to it
   StepSearch& operator=(const StepSearch&) = delete;
 
@@ -35,7 +36,6 @@ class StepSearch {
   [[nodiscard]] ReachedAccuracy reached() const;
 
  private:
-  StepSearch(const CommonOptions& options, double accuracy, const RunSetup& setup);
   [[nodiscard]] Case case_of(std::int64_t steps) const;
   [[nodiscard]] std::vector<double> motions_at_end(std::int64_t steps) const;
   [[nodiscard]] AccuracySetting setting_of(std::int64_t steps) const;

@@ -2,53 +2,131 @@
 #include "run/run_bonded.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <charconv>
+#include <cstdint>
+#include <string_view>
+#include <utility>
 
+#include "equidem/casefile/assembly/build_run.hpp"
 #include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/checksum.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/csv.hpp"
+#include "equidem/dynamics/relaxation.hpp"
+#include "equidem/output/files/body_tables.hpp"
+#include "equidem/output/files/checkpoint.hpp"
 #include "equidem/output/files/vtk.hpp"
 #include "equidem/output/pictures/picture.hpp"
 
-#include "run/run_report.hpp"
-#include "solve/report.hpp"
+#include "run/run_case_text.hpp"
+#include "run/run_results.hpp"
 
 namespace equidem {
 namespace {
 
-constexpr double balance_to_mention = 1e-3;  // of the largest energy
+/// Line of the fingerprint: "# step 1e-06 s, rule lanczos".
+constexpr std::string_view step_line = "\n# step ", step_rule = " s, rule ";
 
-bool has_late_dampers(const Damping& damping) {
-  return damping.stiffness > 0 || damping.contact > 0 || damping.local > 0;
+Case with_run(Case resolved) {
+  if (!resolved.run) {
+    throw Error(ErrorKind::bad_input, "the case has no [run]",
+                "a run needs its duration, or to be told to come to rest", "Add [run] with duration or until_rest",
+                resolved.document.where());
+  }
+  return resolved;
 }
 
-/// Keys of the case that have no effect on a run to rest.
-std::string unused_at_rest(const RunSetup& setup) {
-  const RunCase& run = setup.run();
-  const OutputCase& output = setup.problem.resolved.output;
-  std::string out;
-  const auto name = [&](bool asked, const char* what) {
-    if (asked) out += (out.empty() ? "" : ", ") + std::string(what);
+TimeStep step_of(Problem& problem, const Scene& scene, const std::optional<KeptStep>& kept) {
+  const RunCase& run = *problem.resolved.run;
+  Stopwatch watch;
+  TimeStepOptions wanted = run.time_step;
+  wanted.duration = run.duration.value_or(0);
+  TimeStep step;
+  if (run.until_rest) {  // inertia and steps of its own
+    step.step = 1;
+    return step;
+  }
+  if (kept && !wanted.step) wanted.step = kept->step;
+  try {
+    step = choose_time_step(scene, simulation_options(problem.resolved, 1), wanted);
+  } catch (const Error& error) {
+    throw error.at(problem.resolved.where(run.time_step.step ? "run.time_step" : "run"));
+  }
+  problem.times.add("time step", watch.lap());
+  if (!wanted.step) step.step = std::min(step.step, wanted.duration);
+  if (kept && step.step == kept->step) {
+    step.rule = kept->rule;
+    step.notes.emplace_back("The step is that of the checkpoint.");
+  }
+  return step;
+}
+
+/// Schedules that change faster than the steps can resolve.
+void check_events(const Case& resolved, TimeStep& step) {
+  constexpr double share_to_mention = 0.05;
+  const double end = resolved.run->duration.value_or(0);
+  const auto check = [&](const Schedule& schedule, const char* table, std::size_t k) {
+    const MissedEvent missed =
+        check_event(schedule, step.step, end, resolved.where(fmt::format("{}.{}.schedule", table, k)));
+    if (missed.share > share_to_mention) {
+      step.notes.push_back(fmt::format("Of the schedule of {} {} steps miss up to {:.0f} % of its range, at {:.6g} s.",
+                                       table, k, 100 * missed.share, missed.time));
+    }
   };
-  name(run.time_step.step.has_value(), "time_step");
-  name(run.integrator != Integrator::leapfrog, "integrator");
-  name(run.damping.mass > 0 || has_late_dampers(run.damping), "[run.damping]");
-  name(!run.velocities.empty(), "[[velocity]]");
-  name(output.frame_interval.has_value(), "frame_interval");
-  name(!run.probes.empty() || output.probe_interval, "[[probe]]");
-  return out;
+  const RunCase& run = *resolved.run;
+  for (std::size_t k = 0; k < run.supports.size(); ++k) {
+    const TimedSupport& support = run.supports[k];
+    for (const auto* motion : {&support.ux, &support.uy, &support.rotation})
+      if (*motion) check(**motion, "support", k);
+  }
+  for (std::size_t k = 0; k < run.loads.size(); ++k) check(run.loads[k].factor, "load", k);
+  for (std::size_t k = 0; k < run.walls.size(); ++k)
+    for (const Schedule* motion : {&run.walls[k].move_x, &run.walls[k].move_y}) check(*motion, "wall", k);
 }
 
-/// Whether anything of the scene changes with time.
-bool any_schedule(const Scene& scene) {
-  const auto changes = [](const std::optional<Schedule>& motion) { return motion && motion->changes(); };
-  return std::ranges::any_of(
-             scene.supports,
-             [&](const TimedSupport& s) { return changes(s.ux) || changes(s.uy) || changes(s.rotation); }) ||
-         std::ranges::any_of(scene.loads, [](const TimedLoad& load) { return load.factor.changes(); }) ||
-         std::ranges::any_of(scene.walls, [](const Wall& wall) { return wall.moves(); });
+/// Tells whether files that a case names are still what they were.
+std::string checksum_of(const Assembly& assembly) {
+  Checksum sum;
+  for (const Vec2 centre : assembly.centres) sum.add(centre.x), sum.add(centre.y);
+  sum.add(assembly.radii);
+  for (const Contact& contact : assembly.contacts) {
+    for (const std::int32_t number : {contact.i, contact.j, contact.shift_x, contact.shift_y})
+      sum.add(static_cast<std::uint64_t>(number));
+    sum.add(contact.lever_i), sum.add(contact.lever_j);
+  }
+  return sum.text();
+}
+
+std::string checksum_of(const Assembly& assembly, const ContactSprings& springs) {
+  Checksum sum;
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) sum.add(springs[c].kN), sum.add(springs[c].kT);
+  return sum.text();
+}
+
+std::string checksum_of_schedules(const Scene& scene) {
+  Checksum sum;
+  for (const TimedSupport& support : scene.supports)
+    for (const auto* motion : {&support.ux, &support.uy, &support.rotation})
+      if (*motion) add(sum, **motion);
+  for (const TimedLoad& load : scene.loads) add(sum, load.factor);
+  for (const Wall& wall : scene.walls) add(sum, wall.move_x), add(sum, wall.move_y);
+  return sum.text();
+}
+
+/// In what order keys stand does not matter.
+void sort_keys(TomlValue& value) {
+  std::ranges::stable_sort(value.entries, {}, [](const auto& entry) -> const std::string& { return entry.first; });
+  for (auto& [name, entry] : value.entries) sort_keys(entry);
+  for (TomlValue& item : value.items) sort_keys(item);
+}
+
+Simulation simulation_of(const Problem& problem, const Scene& scene, const SimulationOptions& options) {
+  try {
+    return {scene, options};
+  } catch (const Error& error) {
+    throw error.at(problem.resolved.where("run"));
+  }
 }
 
 /// Contact forces of small motions, for pictures.
@@ -64,24 +142,55 @@ std::vector<ContactForce> forces_of(const Problem& problem, const std::vector<Di
 
 }  // namespace
 
-BondedRun::BondedRun(const RunSetup& setup)
-    : setup_(setup),
-      simulation_(setup.simulation()),
-      watch_(setup.scene, setup.options,
-             {.growth = 100, .critical_step = setup.step.critical, .growth_rate = setup.step.growth_rate}) {}
+KeptStep kept_step(const std::filesystem::path& checkpoint) {
+  const std::string text = case_of_checkpoint(checkpoint);
+  KeptStep kept;
+  const std::size_t at = text.rfind(step_line);
+  if (at != std::string::npos) {
+    const char* begin = text.data() + at + step_line.size();
+    const auto [end, failed] = std::from_chars(begin, text.data() + text.size(), kept.step);
+    const std::string_view rest(end, text.data() + text.size());
+    if (failed == std::errc() && rest.starts_with(step_rule)) {
+      kept.rule = rest.substr(step_rule.size(), rest.find('\n') - step_rule.size());
+      return kept;
+    }
+  }
+  bad_input(fmt::format("cannot go on from '{}'", checkpoint.string()), "its case does not name the time step",
+            "Start the run afresh");
+}
+
+BondedRun::BondedRun(Case resolved, const std::optional<KeptStep>& kept)
+    : problem_(problem_of(with_run(std::move(resolved)))),
+      scene_(build_scene(problem_.resolved, problem_.assembly, problem_.springs.springs)),
+      step_(step_of(problem_, scene_, kept)),
+      options_(simulation_options(problem_.resolved, step_.step)),
+      simulation_(simulation_of(problem_, scene_, options_)),
+      watch_(scene_, options_, {.growth = 100, .critical_step = step_.critical, .growth_rate = step_.growth_rate}) {
+  if (!goes_to_rest()) check_events(problem_.resolved, step_);
+}
+
+std::int64_t BondedRun::steps() const {
+  if (!run().duration) return 0;
+  try {
+    return count_steps(*run().duration, step_.step);
+  } catch (const Error& error) {
+    throw error.at(problem_.resolved.where("run.duration"));
+  }
+}
 
 RunPlan BondedRun::plan() {
-  RunPlan plan{.steps = setup_.steps(),
-               .time_step = setup_.step.step,
-               .case_text = setup_.fingerprint(),
-               .frame_interval = output().frame_interval,
-               .probe_interval = output().probe_interval,
-               .checkpoint_interval = output().checkpoint_interval,
-               .frame_discs = &setup_.problem.assembly,
+  const OutputCase& output = problem_.resolved.output;
+  RunPlan plan{.steps = steps(),
+               .time_step = step_.step,
+               .case_text = fingerprint(),
+               .frame_interval = output.frame_interval,
+               .probe_interval = output.probe_interval,
+               .checkpoint_interval = output.checkpoint_interval,
+               .frame_discs = &problem_.assembly,
                .watch = [this](const EnergyLedger& energy) { watch_.look(simulation_, energy); },
                .watch_between = true};
-  for (const ProbeCase& wanted : setup_.run().probes) {
-    Probe probe{wanted.name, group(setup_.problem.assembly, wanted.group).discs, {}};
+  for (const ProbeCase& wanted : run().probes) {
+    Probe probe{wanted.name, group(problem_.assembly, wanted.group).discs, {}};
     for (const std::string& word : wanted.quantities)
       if (word != "energy")  // energies have columns of their own
         probe.quantities.push_back(enum_from<ProbeQuantity>(word));
@@ -90,83 +199,41 @@ RunPlan BondedRun::plan() {
   return plan;
 }
 
-std::string BondedRun::describe() const {
-  std::string out = describe_problem(setup_.problem, simulation_.effects());
-  const RunCase& run = setup_.run();
-  out += report_line("motions", run.motion == LoopKind::Motion::small
-                                    ? "small: normals and contact points fixed, the forces are those of the matrix K"
-                                    : "finite: normals and contact points follow the bodies");
-  if (run.until_rest) {
-    const std::string unused = unused_at_rest(setup_);
-    if (!unused.empty()) out += report_line("not used", unused + ": a run to rest has steps of its own and no time");
-    if (any_schedule(setup_.scene)) {
-      out += report_line("schedules", "as they are at t = 0: a run to rest has no time, and starts from there");
-    }
-    return out;
-  }
-  const IntegrationScheme& facts = scheme_of(run.integrator);
-  const int order = has_late_dampers(run.damping) ? order_with_late_velocities : facts.order;
-  out += report_line("integrator", fmt::format("{}, order {}{}, {} a step", to_string(run.integrator), order,
-                                               order < facts.order ? " (dampers act half a step late)" : "",
-                                               counted(facts.force_evaluations, "force evaluation")));
-  const TimeStep& step = setup_.step;
-  if (std::isinf(step.critical)) {
-    return out + report_line("time step", fmt::format("{:.6g} s; nothing vibrates, any step is stable", step.step));
-  }
-  out += report_line("time step",
-                     fmt::format("{:.6g} s, {:.4g} of the {} step {:.6g} s (rule: {})", step.step, step.ratio(),
-                                 step.exact ? "critical" : "guaranteed", step.critical, step.rule));
-  for (const std::string& note : step.notes) out += report_line("", note);
-  return out;
+std::vector<std::string> BondedRun::files() const {
+  const OutputCase& output = problem_.resolved.output;
+  std::vector<std::string> names;
+  if (output.csv) names.emplace_back("discs.csv");
+  if (output.picture) names.emplace_back("picture.svg");
+  return names;
 }
 
-std::string BondedRun::describe_balance(const Balance& balance) const {
-  std::string out;
-  if (balance.most > balance_to_mention) {
-    const Scene& scene = setup_.scene;  // the work of what drives a run is counted to the second order
-    const bool driven = !scene.loads.empty() || !scene.supports.empty() || !scene.walls.empty();
-    const int order = std::min(scheme_of(setup_.run().integrator).order, driven ? 2 : 4);
-    out += report_line("", fmt::format("it falls as the step to the power {}: about {:g} with run.time_step={:.2g}",
-                                       order, balance_to_mention,
-                                       setup_.step.step * std::pow(balance_to_mention / balance.most, 1.0 / order)));
+std::string BondedRun::fingerprint() const {
+  Case known = problem_.resolved;
+  if (TomlValue* table = known.document.find("run")) {
+    erase_keys(*table, {"duration", "time_step", "allow_unstable_step"});  // the step is below
   }
-  if (balance.most > balance_to_doubt) {
-    out += report_line("", "that is much: compare with a shorter step before trusting the motion");
-  }
-  return out;
-}
-
-void BondedRun::add_step(JsonObject& object) const {
-  const TimeStep& step = setup_.step;
-  object.set("time_step", step.step)
-      .set("critical_time_step", step.critical)
-      .set("time_step_ratio", step.ratio())
-      .set("time_step_rule", step.rule)
-      .set("critical_time_step_exact", step.exact)
-      .set("omega_max", step.omega_max);
-}
-
-void BondedRun::add_results(JsonObject& object) const {
-  object.set("title", setup_.problem.resolved.title)
-      .set("discs", setup_.problem.assembly.size())
-      .set("contacts", setup_.problem.assembly.contacts.size())
-      .set("motion", setup_.run().motion == LoopKind::Motion::small ? "small" : "finite");
-  if (!setup_.run().until_rest) object.set("integrator", to_string(setup_.run().integrator));
+  erase_keys(known.document, {"title", "output", "homogenize", "ensemble", "solver"});
+  sort_keys(known.document);
+  return to_toml(known, {}) +
+         fmt::format("{}{}{}{}\n# checksums: discs and contacts {}\n# springs {}\n# schedules {}\n", step_line,
+                     toml_number(step_.step), step_rule, step_.rule, checksum_of(problem_.assembly),
+                     checksum_of(problem_.assembly, problem_.springs.springs), checksum_of_schedules(scene_));
 }
 
 void BondedRun::write_state(const std::filesystem::path& folder, const std::vector<DiscMotion>& motions,
                             bool overwrite) const {
+  const OutputCase& output = problem_.resolved.output;
   std::vector<ContactForce> forces;
-  if (setup_.run().motion == LoopKind::Motion::small) forces = forces_of(setup_.problem, motions);
+  if (run().motion == LoopKind::Motion::small) forces = forces_of(problem_, motions);
   const AssemblyState state{
-      .assembly = setup_.problem.assembly, .motions = motions, .contact_forces = forces, .stresses = {}};
-  if (output().csv) write_disc_csv(folder / "discs.csv", state, overwrite);
-  if (output().vtk) write_vtk(folder, "state", state, overwrite);
-  if (output().picture) {
-    const bool far = setup_.run().motion == LoopKind::Motion::finite;  // then where it began is worth seeing
-    write_picture(folder, "picture", state, {.title = setup_.problem.resolved.title, .undeformed = far}, overwrite);
+      .assembly = problem_.assembly, .motions = motions, .contact_forces = forces, .stresses = {}};
+  if (output.csv) write_disc_csv(folder / "discs.csv", state, overwrite);
+  if (output.vtk) write_vtk(folder, "state", state, overwrite);
+  if (output.picture) {
+    const bool far = run().motion == LoopKind::Motion::finite;  // then where it began is worth seeing
+    write_picture(folder, "picture", state, {.title = problem_.resolved.title, .undeformed = far}, overwrite);
   }
-  write_file(folder / "case.toml", to_toml(setup_.problem.resolved, folder), overwrite);
+  write_file(folder / "case.toml", to_toml(problem_.resolved, folder), overwrite);
 }
 
 void BondedRun::write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const {
@@ -178,28 +245,22 @@ void BondedRun::write_files(const std::filesystem::path& folder, const RunResult
       {"put in", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.work(); }},
   };
   write_state(folder, simulation_.motions(), overwrite);
-  write_energy_plot(folder, "energy", setup_.problem.resolved.title, Body::disc, result.record.energies, curves,
-                    overwrite);
+  write_energy_plot(folder, "energy", problem_.resolved.title, Body::disc, result.record.energies, curves, overwrite);
 }
 
-int BondedRun::relax_to_rest(const CommonOptions& common) const {
-  StageTimes times = this->times();
+Results BondedRun::relax(const std::filesystem::path& out, bool overwrite, StageTimes& times) {
   Stopwatch watch;
-  const Relaxation rest = relax(setup_.scene, {.motion = setup_.run().motion,
-                                               .rotation = setup_.problem.resolved.rotation,
-                                               .gravity = setup_.run().gravity,
-                                               .tolerance = *setup_.run().until_rest});
+  const Relaxation rest = equidem::relax(scene_, {.motion = run().motion,
+                                                  .rotation = problem_.resolved.rotation,
+                                                  .gravity = run().gravity,
+                                                  .tolerance = *run().until_rest});
   times.add("relaxation", watch.lap());
-  if (common.out) write_state(*common.out, rest.motions, common.overwrite);
-  const std::string report = describe() + report_line("rest", rest.report()) + describe_times(times);
-  JsonObject object;
-  add_common(object, "at_rest", report, times, simulation_.effects());
-  add_results(object);
-  object.set("steps", rest.steps)
+  if (!out.empty()) write_state(out, rest.motions, overwrite);
+  return scene()
+      .line("rest", rest.report())
+      .set("steps", rest.steps)
       .set("force_evaluations", rest.evaluations)
       .set("relative_unbalanced_force", rest.relative_unbalanced);
-  deliver(common, report, object);
-  return 0;
 }
 
 }  // namespace equidem

@@ -3,38 +3,70 @@
 /// `equidem run` of bonded discs.
 #pragma once
 
-#include "equidem/dynamics/relaxation.hpp"
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "equidem/dynamics/simulation.hpp"
+#include "equidem/dynamics/time_step.hpp"
 #include "equidem/dynamics/watch.hpp"
 
-#include "command.hpp"
+#include "problem.hpp"
 #include "run/run_job.hpp"
-#include "run/run_setup.hpp"
 
 namespace equidem {
 
+/// The step of a resumed run.
+struct KeptStep {
+  double step = 0;   ///< s
+  std::string rule;  ///< by which it was chosen
+};
+
+/// The step that a checkpoint was made with.
+/// \throws Error (bad_input) where there is no such file, or it is damaged
+KeptStep kept_step(const std::filesystem::path& checkpoint);
+
 class BondedRun final : public RunJob {
  public:
-  /// \param setup must outlive the job
-  explicit BondedRun(const RunSetup& setup);
+  /// \param kept takes the place of an automatic step
+  /// \throws Error (bad_input) without [run]; as Simulation, with its place in the case
+  explicit BondedRun(Case resolved, const std::optional<KeptStep>& kept = {});
+  BondedRun(const BondedRun&) = delete;  // the scene refers to the problem
+  BondedRun& operator=(const BondedRun&) = delete;
 
-  [[nodiscard]] AnySimulation& simulation() override { return simulation_; }
+  [[nodiscard]] const RunCase& run() const { return *problem_.resolved.run; }
+  [[nodiscard]] const TimeStep& time_step() const { return step_; }
+  /// Place of a key in the case.
+  [[nodiscard]] std::string where(const char* key) const { return problem_.resolved.where(key); }
+  /// The order in the time step of the error of the motions.
+  [[nodiscard]] int order() const;
+  /// Steps of the whole duration; 0 where the run goes to rest.
+  /// \throws Error (bad_input) where they are too many to be counted
+  [[nodiscard]] std::int64_t steps() const;
+
+  [[nodiscard]] Simulation& simulation() override { return simulation_; }
   [[nodiscard]] RunPlan plan() override;
-  [[nodiscard]] const OutputCase& output() const override { return setup_.problem.resolved.output; }
   [[nodiscard]] const char* body_name() const override { return "disc"; }
-  [[nodiscard]] StageTimes times() const override { return setup_.problem.times; }
-  [[nodiscard]] std::string describe() const override;
-  [[nodiscard]] std::string describe_balance(const Balance& balance) const override;
-  void add_step(JsonObject& object) const override;
-  void add_results(JsonObject& object) const override;
+  [[nodiscard]] std::vector<std::string> files() const override;
+  [[nodiscard]] StageTimes times() const override { return problem_.times; }
+  [[nodiscard]] Results scene() const override;
+  [[nodiscard]] Results step() const override;
+  [[nodiscard]] Results advice(const Balance& balance) const override;
   void write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const override;
-
-  /// In place of steps: to rest. \return the exit code
-  int relax_to_rest(const CommonOptions& common) const;
+  [[nodiscard]] bool goes_to_rest() const override { return run().until_rest.has_value(); }
+  Results relax(const std::filesystem::path& out, bool overwrite, StageTimes& times) override;
 
  private:
+  /// The case text in a checkpoint: all data that affect the motion, including files that it names, without how long it
+  /// lasts and what is written.
+  [[nodiscard]] std::string fingerprint() const;
   void write_state(const std::filesystem::path& folder, const std::vector<DiscMotion>& motions, bool overwrite) const;
 
-  const RunSetup& setup_;
+  Problem problem_;
+  Scene scene_;
+  TimeStep step_;
+  SimulationOptions options_;
   Simulation simulation_;
   RunawayWatch watch_;
 };

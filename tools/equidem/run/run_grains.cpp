@@ -3,40 +3,81 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "equidem/casefile/engine/echo.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/energies.hpp"
 #include "equidem/output/files/grain_frames.hpp"
-#include "equidem/output/files/grain_tables.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"
 
-#include "run/run_bonds_report.hpp"
-#include "run/run_grains_report.hpp"
-#include "run/run_report.hpp"
+#include "run/run_case_text.hpp"
+#include "run/run_results.hpp"
 
 namespace equidem {
 namespace {
 
 constexpr std::int64_t samples = 200, samples_of_few = 1000;  // of the energies, the latter where paths are drawn
 
+/// Tells whether files that a case names are still what they were.
+std::string checksum_of(const GrainCase& resolved) {
+  Checksum sum;
+  for (std::size_t g = 0; g < resolved.scene.grains.size(); ++g) {
+    const Grain& grain = resolved.scene.grains[g];
+    for (const double value : {grain.position.x, grain.position.y, grain.radius, grain.velocity.x, grain.velocity.y,
+                               grain.spin, grain.angle, resolved.densities[g], static_cast<double>(grain.kind),
+                               grain.short_half_axis, static_cast<double>(grain.clump)})
+      sum.add(value);
+  }
+  for (const GrainBond& bond : resolved.scene.bonds)
+    for (const double value :
+         {static_cast<double>(bond.i), static_cast<double>(bond.j), bond.normal_dashpot, bond.tangential_dashpot,
+          bond.rolling_dashpot, bond.normal_spring, bond.tangential_spring})
+      sum.add(value);
+  for (const Clump& clump : resolved.scene.clumps)
+    for (const Clump::Disc& disc : clump.discs)
+      for (const double value : {disc.offset.x, disc.offset.y, disc.radius}) sum.add(value);
+  for (const Wall& wall : resolved.scene.walls) add(sum, wall.move_x), add(sum, wall.move_y);
+  return sum.text();
+}
+
+void check_events(const GrainCase& resolved, double step) {
+  for (std::size_t k = 0; k < resolved.scene.walls.size(); ++k)
+    for (const Schedule* motion : {&resolved.scene.walls[k].move_x, &resolved.scene.walls[k].move_y})
+      check_event(*motion, step, resolved.duration, resolved.where(fmt::format("wall.{}.schedule", k)));
+}
+
+GrainSimulation simulation_of(const GrainCase& resolved, double step) {
+  const GrainScene scene = build_grain_scene(resolved, step);
+  const GrainOptions options = grain_options(resolved, step);
+  try {
+    check(scene, options, [&](std::size_t grain) { return resolved.where_grain(grain); });
+  } catch (const Error& error) {
+    throw error.at(resolved.where("collisions"));
+  }
+  return {scene, options};
+}
+
 /// Possible error of kinetic and potential energy by the rounding of positions.
-double rounding_of_energy(const GrainSetup& setup, const std::vector<Grain>& grains) {
+double rounding_of_energy(const GrainCase& resolved, double step, const std::vector<Grain>& grains) {
   constexpr double rounding = 1e-15;
   double sum = 0;
   for (const Grain& grain : grains) {
-    const double lost_way = rounding * norm(grain.position) / setup.step.step;
+    const double lost_way = rounding * norm(grain.position) / step;
     sum += grain.inertia.mass *
-           (lost_way * lost_way + 1e3 * rounding * norm(setup.resolved.scene.gravity) * norm(grain.position));
+           (lost_way * lost_way + 1e3 * rounding * norm(resolved.scene.gravity) * norm(grain.position));
   }
   return sum;
 }
 
-/// Losses may be counted badly where steps are long; motion out of nothing is no answer at all.
+/// Stops a run whose kinetic energy exceeds several times all energy supplied; smaller errors of the balance are
+/// reported at the end.
 /// \throws Error (computation_failed)
-void refuse_made_energy(const GrainSetup& setup, const GrainSimulation& simulation, const EnergyLedger& ledger) {
+void refuse_made_energy(const GrainCase& resolved, double step, const GrainSimulation& simulation,
+                        const EnergyLedger& ledger) {
   if (!std::isfinite(ledger.error())) {
     computation_failed(fmt::format("step {}: an energy is not a number any more", simulation.step()),
                        "squares of speeds, or stiffnesses, are beyond all numbers", "Use smaller ones");
@@ -44,7 +85,7 @@ void refuse_made_energy(const GrainSetup& setup, const GrainSimulation& simulati
   constexpr double most = 4;
   const double given = ledger.initial + std::abs(ledger.work_of_walls) + std::abs(ledger.potential);
   if (ledger.kinetic <= most * given) return;
-  if (ledger.kinetic <= most * (given + rounding_of_energy(setup, simulation.grains()))) return;
+  if (ledger.kinetic <= most * (given + rounding_of_energy(resolved, step, simulation.grains()))) return;
   computation_failed(
       fmt::format("step {}: the bodies move with {:.3g} times the energy that there was", simulation.step(),
                   ledger.kinetic / given),
@@ -54,29 +95,42 @@ void refuse_made_energy(const GrainSetup& setup, const GrainSimulation& simulati
 
 }  // namespace
 
-GrainRun::GrainRun(const GrainSetup& setup) : setup_(setup), simulation_(setup.simulation()) {
-  if (setup.resolved.measures) measures_.emplace(setup.resolved, simulation_);
-  frame_discs_ = discs_of_frames(setup.resolved.scene.grains, setup.resolved.scene.clumps, frames_);
+GrainRun::GrainRun(GrainCase resolved)
+    : case_(std::move(resolved)),
+      step_(choose_grain_step(case_)),
+      steps_(count_steps(case_, step_.step)),
+      simulation_(simulation_of(case_, step_.step)) {
+  check_events(case_, step_.step);
+  if (case_.measures) measures_.emplace(case_, simulation_);
+  frame_discs_ = discs_of_frames(case_.scene.grains, case_.scene.clumps, frames_);
+}
+
+std::vector<std::string> GrainRun::files() const {
+  std::vector<std::string> names{"energy.csv"};
+  if (case_.measures) names.emplace_back("measures.csv");
+  if (case_.output.csv) names.emplace_back("grains.csv");
+  if (case_.output.picture) names.emplace_back("picture.png");
+  return names;
 }
 
 RunPlan GrainRun::plan() {
-  const GrainCase& resolved = setup_.resolved;
-  const bool draws_paths = resolved.scene.grains.size() <= most_drawn_paths;
-  RunPlan plan{.steps = setup_.steps,
-               .time_step = setup_.step.step,
-               .case_text = setup_.fingerprint(),
-               .frame_interval = output().frame_interval,
-               .probe_interval = output().probe_interval,
-               .checkpoint_interval = output().checkpoint_interval,
-               .frame_discs = &frame_discs_,
-               .frames = frames_,
-               .body = resolved.body,
-               .samples = draws_paths ? samples_of_few : samples,
-               .paths = draws_paths,
-               .recorder = measures_ ? &*measures_ : nullptr,
-               .watch = [this](const EnergyLedger& energy) { refuse_made_energy(setup_, simulation_, energy); },
-               .step_place = resolved.where("run.time_step")};
-  for (const GrainProbe& wanted : resolved.probes) {
+  const bool draws_paths = case_.scene.grains.size() <= most_drawn_paths;
+  RunPlan plan{
+      .steps = steps_,
+      .time_step = step_.step,
+      .case_text = fingerprint(),
+      .frame_interval = case_.output.frame_interval,
+      .probe_interval = case_.output.probe_interval,
+      .checkpoint_interval = case_.output.checkpoint_interval,
+      .frame_discs = &frame_discs_,
+      .frames = frames_,
+      .body = case_.body,
+      .samples = draws_paths ? samples_of_few : samples,
+      .paths = draws_paths,
+      .recorder = measures_ ? &*measures_ : nullptr,
+      .watch = [this](const EnergyLedger& energy) { refuse_made_energy(case_, step_.step, simulation_, energy); },
+      .step_place = case_.where("run.time_step")};
+  for (const GrainProbe& wanted : case_.probes) {
     Probe probe{wanted.name, wanted.grains, {}};
     for (const std::string& word : wanted.quantities) probe.quantities.push_back(enum_from<ProbeQuantity>(word));
     plan.probes.push_back(std::move(probe));
@@ -84,31 +138,12 @@ RunPlan GrainRun::plan() {
   return plan;
 }
 
-std::string GrainRun::describe() const {
-  return describe_grains(setup_, simulation_);
-}
-
-std::string GrainRun::describe_events() const {
-  const GrainCounters& counters = simulation_.counters();
-  return (measures_ ? measures_->describe() : "") +
-         report_line("collisions", fmt::format("{} contacts begun, {} at the end; {} evaluations of the law",
-                                               grouped(counters.contacts), simulation_.contacts().size(),
-                                               grouped(counters.evaluations))) +
-         describe_drift_of_bonds(simulation_.bonds());
-}
-
-std::string GrainRun::describe_balance(const Balance& balance) const {
-  return describe_grain_balance(setup_, simulation_, balance);
-}
-
-void GrainRun::add_step(JsonObject& object) const {
-  add_grain_step(object, setup_.step);
-}
-
-void GrainRun::add_results(JsonObject& object) const {
-  add_grain_results(object, setup_, simulation_);
-  add_shaking(object, setup_.resolved);
-  if (measures_) measures_->add_to(object);
+std::string GrainRun::fingerprint() const {
+  TomlValue known = case_.document;
+  erase_keys(*known.find("run"), {"duration", "time_step", "steps_per_contact"});  // the step is below
+  erase_keys(known, {"title", "output", "probe", "measures"});
+  return to_toml(std::move(known), {}) + fmt::format("\n# step {} s\n# checksum of grains and schedules {}\n",
+                                                     toml_number(step_.step), checksum_of(case_));
 }
 
 void GrainRun::write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const {
@@ -123,7 +158,7 @@ void GrainRun::write_files(const std::filesystem::path& folder, const RunResult&
       {"lost in bonds", PlotColour::yellow, [](const EnergyLedger& l) { return l.lost_bond; }},
       {"put in by walls", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.work_of_walls; }},
   };
-  const GrainCase& resolved = setup_.resolved;
+  const GrainCase& resolved = case_;
   const std::vector<Grain> grains = simulation_.grains();
   std::vector<std::string> groups;
   std::vector<int> colours;

@@ -5,32 +5,40 @@
 
 #include <optional>
 
+#include "equidem/casefile/grains/grain_case.hpp"
+#include "equidem/casefile/grains/grain_step.hpp"
+#include "equidem/grains/grain_simulation.hpp"
+
 #include "run/run_grains_measures.hpp"
-#include "run/run_grains_setup.hpp"
 #include "run/run_job.hpp"
 
 namespace equidem {
 
 class GrainRun final : public RunJob {
  public:
-  /// \param setup must outlive the job
-  explicit GrainRun(const GrainSetup& setup);
-  GrainRun(const GrainRun&) = delete;  // measures refer to the simulation
+  /// \throws Error (bad_input) as GrainSimulation does, with its place in the case
+  explicit GrainRun(GrainCase resolved);
+  GrainRun(const GrainRun&) = delete;  // measures refer to case and simulation
   GrainRun& operator=(const GrainRun&) = delete;
 
   [[nodiscard]] AnySimulation& simulation() override { return simulation_; }
   [[nodiscard]] RunPlan plan() override;
-  [[nodiscard]] const OutputCase& output() const override { return setup_.resolved.output; }
   [[nodiscard]] const char* body_name() const override { return "grain"; }
-  [[nodiscard]] std::string describe() const override;
-  [[nodiscard]] std::string describe_events() const override;
-  [[nodiscard]] std::string describe_balance(const Balance& balance) const override;
-  void add_step(JsonObject& object) const override;
-  void add_results(JsonObject& object) const override;
+  [[nodiscard]] std::vector<std::string> files() const override;
+  [[nodiscard]] Results scene() const override;
+  [[nodiscard]] Results step() const override;
+  [[nodiscard]] Results events() const override;
+  [[nodiscard]] Results advice(const Balance& balance) const override;
   void write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const override;
 
  private:
-  const GrainSetup& setup_;
+  /// The case text in a checkpoint: all data that affect the motion, including files that it names, without how long it
+  /// lasts and what is written.
+  [[nodiscard]] std::string fingerprint() const;
+
+  GrainCase case_;
+  GrainTimeStep step_;
+  std::int64_t steps_;  ///< number of steps of the whole duration
   GrainSimulation simulation_;
   std::optional<GrainMeasures> measures_;
   FrameOptions frames_;

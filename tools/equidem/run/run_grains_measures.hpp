@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Tables, report and plots of the measures of a box (fields/box_measures.hpp) that `equidem run` writes.
+/// Tables, results and plots of the measures of a box (fields/box_measures.hpp) that `equidem run` writes.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 #include "equidem/fields/box_measures.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/output/files/growing_csv.hpp"
-#include "equidem/output/files/json.hpp"
+#include "equidem/output/results.hpp"
 #include "equidem/output/run/run_loop.hpp"
 
 namespace equidem {
@@ -34,9 +34,8 @@ class GrainMeasures final : public RunRecorder {
   void record(std::int64_t step, double time) override;
   void sync() override;
 
-  /// For the report, after the last step.
-  [[nodiscard]] std::string describe() const;
-  void add_to(JsonObject& object) const;
+  /// measures: before and after, after the last step.
+  [[nodiscard]] Results results() const;
   /// surface_plot: the surface before and at the end; void_ratio_plot; fields where asked for.
   void write_files(const std::filesystem::path& folder, bool overwrite) const;
 
@@ -50,11 +49,6 @@ class GrainMeasures final : public RunRecorder {
   std::filesystem::path folder_;
   std::optional<GrowingCsv> table_, profiles_;
 };
-
-/// The shaking of the box as a line of the report; empty without [shaking].
-std::string describe_shaking(const GrainCase& resolved);
-/// shaking: direction, peak_acceleration, ...; nothing without [shaking].
-void add_shaking(JsonObject& object, const GrainCase& resolved);
 
 /// paths_plot: where the probes of positions went, from history.csv of the folder; nothing where there are none.
 void write_probe_paths(const std::filesystem::path& folder, const GrainCase& resolved, bool overwrite);

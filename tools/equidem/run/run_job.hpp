@@ -5,20 +5,20 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/stopwatch.hpp"
-#include "equidem/output/files/json.hpp"
+#include "equidem/output/results.hpp"
 #include "equidem/output/run/run_loop.hpp"
 
 namespace equidem {
 
-/// Beyond this share of the largest energy the error of the balance puts the motion in doubt.
-inline constexpr double balance_to_doubt = 0.1;
-
-/// Error of the energy balance over the largest energy of the whole run.
+/// Error of the energy balance over the largest energy.
 struct Balance {
-  double now = 0, most = 0;
+  static constexpr double doubtful = 0.1;  ///< beyond it the motion is in doubt
+  double at_end = 0;
+  double most = 0;  ///< the largest during the run
 };
 
 class RunJob {
@@ -27,23 +27,28 @@ class RunJob {
 
   [[nodiscard]] virtual AnySimulation& simulation() = 0;
   [[nodiscard]] virtual RunPlan plan() = 0;
-  [[nodiscard]] virtual const OutputCase& output() const = 0;
   [[nodiscard]] virtual const char* body_name() const = 0;  ///< "disc", "grain"
+  /// Files of --out that are checked before the run, result.json and case.toml apart.
+  [[nodiscard]] virtual std::vector<std::string> files() const = 0;
   /// Seconds of the stages before the run.
   [[nodiscard]] virtual StageTimes times() const { return {}; }
 
-  /// Lines of the report: scene, effects, step.
-  [[nodiscard]] virtual std::string describe() const = 0;
-  /// Events of the run other than energies.
-  [[nodiscard]] virtual std::string describe_events() const { return {}; }
-  /// Advice on the energy balance.
-  [[nodiscard]] virtual std::string describe_balance(const Balance& balance) const = 0;
+  /// Title, bodies, effects, law or integrator.
+  [[nodiscard]] virtual Results scene() const = 0;
   /// The time step and the limits that it keeps.
-  virtual void add_step(JsonObject& object) const = 0;
-  /// The scene, and what happened besides energies.
-  virtual void add_results(JsonObject& object) const = 0;
+  [[nodiscard]] virtual Results step() const = 0;
+  /// Events of the run other than energies.
+  [[nodiscard]] virtual Results events() const { return {}; }
+  /// Advice on the energy balance.
+  [[nodiscard]] virtual Results advice(const Balance& balance) const = 0;
   /// The state at the end, plots, the case.
   virtual void write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const = 0;
+
+  /// Whether the case asks for relaxation in place of steps.
+  [[nodiscard]] virtual bool goes_to_rest() const { return false; }
+  /// Relax the scene to rest.
+  /// \param out folder of the state at rest; empty: nothing is written
+  virtual Results relax(const std::filesystem::path& /*out*/, bool /*overwrite*/, StageTimes& /*times*/) { return {}; }
 };
 
 }  // namespace equidem

@@ -120,7 +120,7 @@ int run_verb(const StudyVerb& verb) {
   Stopwatch since_saved;
   const auto save = [&](const StudySamples& done, bool now) {
     if (!folder || (!now && since_saved.seconds() < 1)) return;
-    write_file(*folder / samples_name, study_samples_csv(study, done, checksum), true);
+    write_csv(*folder / samples_name, study_samples_table(study, done, checksum), true);
     since_saved.lap();
   };
   const StudySamples samples =

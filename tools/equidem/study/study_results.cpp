@@ -174,36 +174,27 @@ Results study_results(const StudyReport& report) {
 
 Table study_table(const StudyReport& report) {
   const auto& rows = report.result.rows;
-  const auto strings = [&](auto take) {
-    std::vector<std::string> column;
-    for (const StudyRow& row : rows) column.push_back(take(row));
-    return column;
-  };
-  const auto numbers = [&](auto take) {
-    std::vector<double> column;
-    for (const StudyRow& row : rows) column.push_back(take(row));
-    return column;
-  };
   Table table;
-  table.add("problem", strings([](const StudyRow& r) { return r.setting.problem; }));
-  table.add("method", strings([](const StudyRow& r) { return r.setting.method; }));
-  table.add("setting", strings([](const StudyRow& r) { return r.setting.label(); }));
-  table.add("resolution", numbers([](const StudyRow& r) { return r.setting.resolution; }));
-  table.add("median_s", numbers([](const StudyRow& r) { return r.time.median; }));
-  table.add("lower_quartile_s", numbers([](const StudyRow& r) { return r.time.lower_quartile; }));
-  table.add("upper_quartile_s", numbers([](const StudyRow& r) { return r.time.upper_quartile; }));
-  table.add("processor_median_s", numbers([](const StudyRow& r) { return r.time.processor_median; }));
-  table.add("repetitions", numbers([](const StudyRow& r) { return r.time.repetitions; }));
+  table.add("problem", rows, [](const StudyRow& r) { return r.setting.problem; });
+  table.add("method", rows, [](const StudyRow& r) { return r.setting.method; });
+  table.add("setting", rows, [](const StudyRow& r) { return r.setting.label(); });
+  table.add("resolution", rows, [](const StudyRow& r) { return r.setting.resolution; });
+  table.add("median_s", rows, [](const StudyRow& r) { return r.time.median; });
+  table.add("lower_quartile_s", rows, [](const StudyRow& r) { return r.time.lower_quartile; });
+  table.add("upper_quartile_s", rows, [](const StudyRow& r) { return r.time.upper_quartile; });
+  table.add("processor_median_s", rows, [](const StudyRow& r) { return r.time.processor_median; });
+  table.add("repetitions", rows, [](const StudyRow& r) { return static_cast<double>(r.time.repetitions); });
   for (std::size_t q = 0; q < report.study.quantities.size(); ++q) {
     const Quantity& quantity = report.study.quantities[q];
-    const auto entry = [q](const std::vector<double>& of) { return of.empty() ? NAN : of[q]; };
-    table.add(quantity.name, numbers([&](const StudyRow& r) { return entry(r.values); }));
+    const auto add = [&](const std::string& name, std::vector<double> StudyRow::*values) {
+      table.add(name, rows, [&](const StudyRow& r) { return (r.*values).empty() ? NAN : (r.*values)[q]; });
+    };
+    add(quantity.name, &StudyRow::values);
     if (quantity.fact) continue;
-    table.add(quantity.name + "_error", numbers([&](const StudyRow& r) { return entry(r.errors); }));
-    table.add(quantity.name + "_assured_error", numbers([&](const StudyRow& r) { return entry(r.assured); }));
+    add(quantity.name + "_error", &StudyRow::errors);
+    add(quantity.name + "_assured_error", &StudyRow::assured);
   }
-  table.add("refusal", strings([](const StudyRow& r) { return r.refusal; }));
-  return table;
+  return table.add("refusal", rows, &StudyRow::refusal);
 }
 
 }  // namespace equidem

@@ -195,7 +195,7 @@ std::vector<SweepPoint> points_to_keep(const SweepOptions& options, const Case& 
                 "Choose another --out, or leave out --resume and pass --overwrite",
                 (*options.common.out / case_name).string());
   }
-  return read_sweep_csv(table, options.key);
+  return read_sweep_points(table, options.key);
 }
 
 void check_outputs(const SweepOptions& options) {
@@ -255,7 +255,7 @@ Progressed compute_points(const SweepOptions& options, const Case& base, const s
   Progressed run;
   const auto save = [&] {
     if (!options.common.out) return;
-    write_file(*options.common.out / table_name, sweep_csv(options.key, merged(run.points, kept)), true);
+    write_csv(*options.common.out / table_name, sweep_table(options.key, merged(run.points, kept)), true);
   };
   ProblemFactory build(options);
   Stopwatch since_saved;

@@ -4,11 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include "equidem/core/error.hpp"
-#include "equidem/core/file.hpp"
-#include "equidem/core/text.hpp"
-#include "equidem/output/files/csv.hpp"
+#include <optional>
 
 namespace equidem {
 namespace {
@@ -45,60 +41,29 @@ constexpr std::array number_columns{
     NumberColumn{.name = "unstable_modes", .member = &SweepPoint::unstable_modes, .label = "unstable"},
 };
 
-std::vector<std::string> column_names(const std::string& key) {
-  std::vector<std::string> names{key, "status"};
-  for (const NumberColumn& column : number_columns) names.emplace_back(column.name);
-  names.emplace_back("message");
-  return names;
-}
-
 }  // namespace
 
-std::string sweep_csv(const std::string& key, const std::vector<SweepPoint>& points) {
-  CsvText csv(column_names(key), points.size());
-  for (const SweepPoint& point : points) {
-    csv.cell(point.value);
-    csv.cell(std::string_view(point.status));
-    for (const NumberColumn& column : number_columns) {
-      if (std::isnan(point.*column.member))
-        csv.empty_cell();
-      else
-        csv.cell(point.*column.member);
-    }
-    csv.cell(std::string_view(point.message));
-    csv.end_row();
+Table sweep_table(const std::string& key, const std::vector<SweepPoint>& points) {
+  Table table;
+  table.add(key, points, &SweepPoint::value).add("status", points, &SweepPoint::status);
+  for (const NumberColumn& column : number_columns) {
+    table.add(column.name, points, [&](const SweepPoint& point) {
+      return std::isnan(point.*column.member) ? std::nullopt : std::optional(point.*column.member);
+    });
   }
-  return csv.text();
+  return table.add("message", points, &SweepPoint::message);
 }
 
-std::vector<SweepPoint> read_sweep_csv(const std::filesystem::path& path, const std::string& key) {
-  const auto rows = csv_cells(read_file(path));
-  const auto names = column_names(key);
-  if (rows.empty() || rows.front() != names) {
-    throw Error(ErrorKind::bad_input, "this is not the table of the sweep to continue",
-                fmt::format("its columns are not those of a sweep of {}", key),
-                "Choose another --out, or leave out --resume", path.string());
-  }
-  std::vector<SweepPoint> points;
-  for (std::size_t k = 1; k < rows.size(); ++k) {
-    const auto fail = [&]() {
-      throw Error(ErrorKind::bad_input, "this row is damaged",
-                  "a sweep writes a number or nothing in each of its columns",
-                  "Remove the row, and it is computed again", fmt::format("{}:{}", path.string(), k + 1));
-    };
-    if (rows[k].size() != names.size()) fail();
-    SweepPoint point;
-    const auto value = csv_number(rows[k][0]);
-    if (!value || std::isnan(*value)) fail();
-    point.value = *value;
-    point.status = rows[k][1];
-    for (std::size_t c = 0; c < number_columns.size(); ++c) {
-      const auto number = csv_number(rows[k][c + 2]);
-      if (!number) fail();
-      point.*number_columns[c].member = *number;
-    }
-    point.message = rows[k].back();
-    points.push_back(std::move(point));
+std::vector<SweepPoint> read_sweep_points(const std::filesystem::path& path, const std::string& key) {
+  const StoredTable table(path, sweep_table(key, {}), "sweep",
+                          "Remove the row, and it is computed again; or choose another --out, or leave out --resume");
+  std::vector<SweepPoint> points(table.rows());
+  for (std::size_t row = 0; row < points.size(); ++row) {
+    SweepPoint& point = points[row];
+    point.value = table.number(row, 0);
+    point.status = table.text(row, 1);
+    for (std::size_t c = 0; c < number_columns.size(); ++c) point.*number_columns[c].member = table.number(row, c + 2);
+    point.message = table.text(row, number_columns.size() + 2);
   }
   return points;
 }

@@ -32,11 +32,11 @@ struct SweepPoint {
 };
 
 /// \param key name of the first column
-std::string sweep_csv(const std::string& key, const std::vector<SweepPoint>& points);
+Table sweep_table(const std::string& key, const std::vector<SweepPoint>& points);
 
-/// Reads a table of sweep_csv.
+/// Reads a table of sweep_table.
 /// \throws Error (bad_input) where the file is another table or damaged
-std::vector<SweepPoint> read_sweep_csv(const std::filesystem::path& path, const std::string& key);
+std::vector<SweepPoint> read_sweep_points(const std::filesystem::path& path, const std::string& key);
 
 /// One row for each point: value (labelled by the key), status, the numbers, message.
 std::vector<Results> sweep_rows(const std::string& key, const std::vector<SweepPoint>& points);

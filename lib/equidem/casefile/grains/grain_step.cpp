@@ -31,7 +31,7 @@ std::int64_t count_steps(const GrainCase& resolved, double step) {
   try {
     return count_steps(resolved.duration, step);
   } catch (const Error& error) {
-    throw placed(error, resolved);
+    throw error.at(resolved.where("run.duration"));
   }
 }
 

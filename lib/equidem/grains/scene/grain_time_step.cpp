@@ -161,12 +161,4 @@ GrainTimeStep choose_time_step(const GrainScene& scene, const ContactTable& cont
   return result;
 }
 
-std::int64_t count_steps(double duration, double step) {
-  constexpr double most = 1e15;  // years of stepping, and every number below is exact in a double
-  const double steps = std::ceil(duration / step * (1 - 1e-12));
-  if (steps <= most) return std::llround(steps);
-  fail("duration", fmt::format("{:.3g} s in steps of {:.3g} s are {:.3g} steps", duration, step, steps),
-       fmt::format("no run makes more than {:.0e}", most), "Shorten the duration, or take a longer step");
-}
-
 }  // namespace equidem

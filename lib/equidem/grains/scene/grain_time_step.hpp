@@ -47,9 +47,4 @@ struct GrainTimeStep {
 GrainTimeStep choose_time_step(const GrainScene& scene, const ContactTable& contacts, const GrainOptions& options,
                                const GrainStepOptions& wanted = {});
 
-/// Number of steps of the whole duration.
-/// \param duration, step s
-/// \throws Error (bad_input) if there are more than 1e15
-std::int64_t count_steps(double duration, double step);
-
 }  // namespace equidem

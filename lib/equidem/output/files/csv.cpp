@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cassert>
 #include <charconv>
+#include <iterator>
+#include <limits>
 #include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -20,6 +23,16 @@ void append_number(std::string& text, Number value) {
   char digits[32];
   const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
   text.append(digits, end);
+}
+
+template <class Value>
+void add_cell(CsvText& text, const Value& value) {
+  text.cell(value);
+}
+
+template <class Value>
+void add_cell(CsvText& text, const std::optional<Value>& value) {
+  value ? text.cell(*value) : text.empty_cell();
 }
 
 }  // namespace
@@ -92,20 +105,17 @@ std::size_t Table::rows() const {
 const Table::Column& Table::column(const std::string& name) const {
   const auto found = std::find_if(columns_.begin(), columns_.end(), [&](const Column& c) { return c.name == name; });
   if (found == columns_.end()) {
-    const std::string names = joined(columns_, [](const Column& c) { return c.name; });
-    bad_input(fmt::format("the table has no column '{}'", name), fmt::format("its columns are: {}", names),
-              "Choose one of them");
+    bad_input(fmt::format("the table has no column '{}'", name),
+              fmt::format("its columns are: {}", joined(names_in(columns_))), "Choose one of them");
   }
   return *found;
 }
 
 std::string Table::csv() const {
-  std::vector<std::string> names;
-  for (const Column& column : columns_) names.push_back(column.name);
-  CsvText text(names, rows());
+  CsvText text(names_in(columns_), rows());
   for (std::size_t row = 0; row < rows(); ++row) {
     for (const Column& column : columns_) {
-      std::visit([&](const auto& values) { text.cell(values[row]); }, column.values);
+      std::visit([&](const auto& values) { add_cell(text, values[row]); }, column.values);
     }
     text.end_row();
   }
@@ -115,73 +125,6 @@ std::string Table::csv() const {
 void write_csv(const std::filesystem::path& path, const Table& table, bool overwrite) {
   check_writable(path, overwrite);
   write_file(path, table.csv(), overwrite);
-}
-
-void write_disc_csv(const std::filesystem::path& path, const AssemblyState& state, bool overwrite) {
-  assert_consistent(state);
-  check_writable(path, overwrite);
-  const Assembly& assembly = state.assembly;
-  const bool areas = !assembly.cell_areas.empty();
-  std::vector<std::string> columns{"disc", "x_m", "y_m", "radius_m"};
-  if (!state.motions.empty()) columns.insert(columns.end(), {"ux_m", "uy_m", "rotation_rad"});
-  if (!state.stresses.empty()) {
-    columns.insert(columns.end(), {"stress_xx_Pa", "stress_yy_Pa", "stress_xy_Pa", "stress_yx_Pa"});
-  }
-  if (areas) columns.emplace_back("cell_area_m2");
-
-  CsvText text(columns, assembly.size());
-  for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
-    text.cell(static_cast<std::int64_t>(disc));
-    for (const double v : {assembly.centres[disc].x, assembly.centres[disc].y, assembly.radii[disc]}) {
-      text.cell(v);
-    }
-    if (!state.motions.empty()) {
-      const DiscMotion& motion = state.motions[disc];
-      for (const double v : {motion.u.x, motion.u.y, motion.theta}) text.cell(v);
-    }
-    if (!state.stresses.empty()) {
-      const Tensor2& s = state.stresses[disc];
-      for (const double v : {s.xx, s.yy, s.xy, s.yx}) text.cell(v);
-    }
-    if (areas) text.cell(assembly.cell_areas[disc]);
-    text.end_row();
-  }
-  write_file(path, text.text(), overwrite);
-}
-
-void write_contact_csv(const std::filesystem::path& path, const AssemblyState& state, bool overwrite) {
-  assert_consistent(state);
-  check_writable(path, overwrite);
-  const Assembly& assembly = state.assembly;
-  std::vector<std::string> columns{"i",          "j",          "shift_x",   "shift_y",
-                                   "branch_x_m", "branch_y_m", "lever_i_m", "lever_j_m"};
-  const auto& arms = assembly.contact_arms;
-  if (!arms.empty()) columns.insert(columns.end(), {"normal_x", "normal_y", "offset_i_m", "offset_j_m"});
-  if (!state.contact_forces.empty()) {
-    columns.insert(columns.end(),
-                   {"normal_force_N_per_m", "tangential_force_N_per_m", "force_x_N_per_m", "force_y_N_per_m"});
-  }
-
-  CsvText text(columns, assembly.contacts.size());
-  for (std::size_t index = 0; index < assembly.contacts.size(); ++index) {
-    const Contact& contact = assembly.contacts[index];
-    for (const std::int32_t v : {contact.i, contact.j, contact.shift_x, contact.shift_y}) {
-      text.cell(static_cast<std::int64_t>(v));
-    }
-    const Vec2 branch = assembly.branch(contact);
-    for (const double v : {branch.x, branch.y, contact.lever_i, contact.lever_j}) text.cell(v);
-    if (!arms.empty()) {
-      const ContactArms& a = arms[index];
-      for (const double v : {a.normal.x, a.normal.y, a.offset_i, a.offset_j}) text.cell(v);
-    }
-    if (!state.contact_forces.empty()) {
-      const ContactForce& force = state.contact_forces[index];
-      const Vec2 on_i = force_on_i(frame_of(assembly, index), force);
-      for (const double v : {force.normal, force.tangential, on_i.x, on_i.y}) text.cell(v);
-    }
-    text.end_row();
-  }
-  write_file(path, text.text(), overwrite);
 }
 
 namespace {
@@ -232,6 +175,32 @@ std::optional<double> csv_number(const std::string& cell) {
 
 std::optional<std::int64_t> csv_integer(const std::string& cell) {
   return whole_cell<std::int64_t>(cell);
+}
+
+StoredTable::StoredTable(std::filesystem::path path, const Table& like, const std::string& of, std::string remedy)
+    : path_(std::move(path)), remedy_(std::move(remedy)), cells_(csv_cells(read_file(path_))) {
+  if (cells_.empty() || cells_.front() != names_in(like.columns()))
+    refuse(fmt::format("its columns are those of another {}, or of another table", of));
+  for (std::size_t row = 1; row < cells_.size(); ++row)
+    if (cells_[row].size() != like.columns().size())
+      refuse(fmt::format("line {} has {}", row + 1, counted(std::ssize(cells_[row]), "cell")));
+}
+
+double StoredTable::number(std::size_t row, std::size_t column) const {
+  const std::optional<double> value = csv_number(text(row, column));
+  if (!value) refuse(fmt::format("'{}' in line {} is not a number", text(row, column), row + 2));
+  return *value;
+}
+
+std::int64_t StoredTable::integer(std::size_t row, std::size_t column, std::int64_t least, std::int64_t most) const {
+  const std::optional<std::int64_t> value = csv_integer(text(row, column));
+  if (!value || *value < least || *value > most)
+    refuse(fmt::format("'{}' in line {} is not possible there", text(row, column), row + 2));
+  return *value;
+}
+
+void StoredTable::refuse(const std::string& why) const {
+  throw Error(ErrorKind::bad_input, "the samples to continue cannot be read", why, remedy_, path_.string());
 }
 
 }  // namespace equidem

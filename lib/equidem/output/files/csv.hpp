@@ -4,14 +4,18 @@
 /// numbers in the shortest form that reads back to the same bits.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <optional>
+#include <ranges>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
-
-#include "equidem/output/files/state.hpp"
 
 namespace equidem {
 
@@ -35,10 +39,12 @@ class CsvText {
   std::size_t cells_ = 0;  ///< in the current row
 };
 
-/// Named columns of equal length, for results of any kind: a sweep, a study, a curve.
+/// Named columns of equal length, for results of any kind: bodies, contacts, a study, a curve.
 class Table {
  public:
-  using Values = std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::string>>;
+  /// Cells of an empty optional are empty.
+  using Values = std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::string>,
+                              std::vector<std::optional<double>>, std::vector<std::optional<std::int64_t>>>;
   struct Column {
     std::string name;
     Values values;
@@ -47,6 +53,16 @@ class Table {
   /// Add a column to the right of the others.
   /// \throws Error (bad_input) where the name is empty or taken or the length differs
   Table& add(std::string name, Values values);
+  /// Add a column of the projection of each element of a range, a member or a function of the element.
+  template <std::ranges::input_range Range, class Projection>
+  Table& add(std::string name, const Range& range, const Projection& projection) {
+    using Cell =
+        std::remove_cvref_t<std::invoke_result_t<const Projection&, std::ranges::range_reference_t<const Range>>>;
+    using Stored = std::conditional_t<std::integral<Cell>, std::int64_t, Cell>;
+    std::vector<Stored> cells;
+    for (const auto& element : range) cells.push_back(static_cast<Stored>(std::invoke(projection, element)));
+    return add(std::move(name), Values(std::move(cells)));
+  }
 
   [[nodiscard]] std::size_t rows() const;
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
@@ -62,17 +78,6 @@ class Table {
 /// \throws Error (bad_input) as write_file does
 void write_csv(const std::filesystem::path& path, const Table& table, bool overwrite);
 
-/// One row per disc: disc, x_m, y_m, radius_m, [ux_m, uy_m, rotation_rad,] [stress_xx_Pa, stress_yy_Pa, stress_xy_Pa,
-/// stress_yx_Pa,] [cell_area_m2]; columns in brackets where known.
-/// \throws Error (bad_input) as write_file does
-void write_disc_csv(const std::filesystem::path& path, const AssemblyState& state, bool overwrite);
-
-/// One row per contact: i, j, shift_x, shift_y, branch_x_m, branch_y_m, lever_i_m, lever_j_m, [normal_x, normal_y,
-/// offset_i_m, offset_j_m,] [normal_force_N_per_m (tension positive), tangential_force_N_per_m, force_x_N_per_m,
-/// force_y_N_per_m (on disc i)].
-/// \throws Error (bad_input) as write_file does
-void write_contact_csv(const std::filesystem::path& path, const AssemblyState& state, bool overwrite);
-
 /// Cells of a CSV text (RFC 4180), row by row.
 std::vector<std::vector<std::string>> csv_cells(const std::string& text);
 
@@ -80,5 +85,31 @@ std::vector<std::vector<std::string>> csv_cells(const std::string& text);
 std::optional<double> csv_number(const std::string& cell);
 /// The integer of a whole cell; nothing where it is none.
 std::optional<std::int64_t> csv_integer(const std::string& cell);
+
+/// The rows of a table of samples that an earlier computation wrote and that this one continues.
+class StoredTable {
+ public:
+  /// \param like has the columns that are expected
+  /// \param of what the samples are of: "sweep", "study"
+  /// \param remedy of every error
+  /// \throws Error (bad_input) where the columns are others, or a row has another number of cells
+  StoredTable(std::filesystem::path path, const Table& like, const std::string& of, std::string remedy);
+
+  [[nodiscard]] std::size_t rows() const { return cells_.size() - 1; }
+  [[nodiscard]] const std::string& text(std::size_t row, std::size_t column) const { return cells_[row + 1][column]; }
+  /// NaN where the cell is empty.
+  /// \throws Error (bad_input) where it is no number
+  [[nodiscard]] double number(std::size_t row, std::size_t column) const;
+  /// \throws Error (bad_input) where the cell is no integer from `least` to `most`
+  [[nodiscard]] std::int64_t integer(std::size_t row, std::size_t column, std::int64_t least = INT64_MIN,
+                                     std::int64_t most = INT64_MAX) const;
+  /// \throws Error (bad_input) always
+  [[noreturn]] void refuse(const std::string& why) const;
+
+ private:
+  std::filesystem::path path_;
+  std::string remedy_;
+  std::vector<std::vector<std::string>> cells_;
+};
 
 }  // namespace equidem

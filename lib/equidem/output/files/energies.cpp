@@ -36,8 +36,8 @@ void write_energy_csv(const std::filesystem::path& path, std::span<const EnergyS
   write_file(path, text.text(), overwrite);
 }
 
-JsonObject energy_json(BodyFamily family, const EnergyLedger& ledger, double scale) {
-  JsonObject energy;
+Results energy_results(BodyFamily family, const EnergyLedger& ledger, double scale) {
+  Results energy;
   for (const EnergyTerm& term : energy_terms(family)) energy.set(term.key, ledger.*term.value);
   return energy.set("elastic", ledger.elastic())
       .set("dissipated", ledger.lost())

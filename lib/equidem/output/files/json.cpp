@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "equidem/core/text.hpp"
+#include "equidem/output/results.hpp"
 
 namespace equidem {
 namespace {
@@ -107,15 +108,6 @@ std::string Results::json() const {
 
 std::string library_version() {
   return EQUIDEM_VERSION;
-}
-
-void add_common(Results& results, const std::string& status, const std::string& report, const StageTimes& times,
-                const Effects& effects) {
-  Results seconds, lists;
-  for (const auto& [stage, time] : times.stages()) seconds.set(stage, time);
-  add_effects(lists, effects);
-  results.set("status", status).set("report", report).set("times", seconds).append(lists.hidden());
-  results.set("version", library_version());
 }
 
 std::optional<double> number_in_json(std::string_view text, const std::string& path) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Colliding bodies, their contacts and bonds as CSV.
+/// Bodies, their contacts and bonds as CSV.
 #pragma once
 
 #include <filesystem>
@@ -10,11 +10,22 @@
 
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/material/inertia.hpp"
-#include "equidem/output/files/energies.hpp"
+#include "equidem/output/files/state.hpp"
 
 namespace equidem {
 
-/// Bodies with the data of their rows.
+/// One row per disc: disc, x_m, y_m, radius_m, [ux_m, uy_m, rotation_rad,] [stress_xx_Pa, stress_yy_Pa, stress_xy_Pa,
+/// stress_yx_Pa,] [cell_area_m2]; columns in brackets where known.
+/// \throws Error (bad_input) as write_file does
+void write_disc_csv(const std::filesystem::path& path, const AssemblyState& state, bool overwrite);
+
+/// One row per contact: i, j, shift_x, shift_y, branch_x_m, branch_y_m, lever_i_m, lever_j_m, [normal_x, normal_y,
+/// offset_i_m, offset_j_m,] [normal_force_N_per_m (tension positive), tangential_force_N_per_m, force_x_N_per_m,
+/// force_y_N_per_m (on disc i)].
+/// \throws Error (bad_input) as write_file does
+void write_contact_csv(const std::filesystem::path& path, const AssemblyState& state, bool overwrite);
+
+/// Colliding bodies with the data of their rows.
 struct GrainRows {
   std::span<const Grain> grains;
   std::span<const Clump> clumps;

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "equidem/core/text.hpp"
+#include "equidem/grains/scene/kinds.hpp"
+
+#include "run/run_grains.hpp"
+#include "run/run_results.hpp"
+
+namespace equidem {
+namespace {
+
+/// "0.02", "0.01 to 0.02".
+std::string range(double smallest, double largest) {
+  return smallest == largest ? fmt::format("{:.6g}", smallest) : fmt::format("{:.6g} to {:.6g}", smallest, largest);
+}
+
+/// Number of bodies of each shape, in the order of GrainShape.
+std::array<std::int64_t, 3> counts_of_shapes(const GrainCase& resolved) {
+  std::array<std::int64_t, 3> counts{};
+  for (const Grain& grain : resolved.scene.grains) ++counts[static_cast<std::size_t>(grain.shape())];
+  return counts;
+}
+
+const char* describe_ellipse_contact(GrainOptions::EllipseLaw law) {
+  using enum GrainOptions::EllipseLaw;
+  return law == exact ? "ellipses meet at their closest points (exact)"
+         : law == enlarged_mended
+             ? "ellipses meet by the test of enlarged ellipses, mended: shallow contacts are missed"
+             : "ellipses meet by the test of enlarged ellipses as printed: many contacts are missed";
+}
+
+void add_bodies(Results& out, const GrainCase& resolved) {
+  double mass = 0, smallest = INFINITY, largest = 0;
+  std::map<std::string, std::int64_t> groups;
+  for (const Grain& grain : resolved.scene.grains) {
+    mass += grain.inertia.mass;
+    smallest = std::min(smallest, grain.radius);
+    largest = std::max(largest, grain.radius);
+    ++groups[resolved.contacts.kinds[static_cast<std::size_t>(grain.kind)]];
+  }
+  const auto [round, ellipses, clumps] = counts_of_shapes(resolved);
+  out.set("body", to_string(resolved.body)).set("grains", resolved.scene.grains.size()).line("bodies");
+  for (const auto& [count, name] :
+       {std::pair{round, to_string(resolved.body)}, std::pair{ellipses, std::string("ellipse")},
+        std::pair{clumps, std::string("clump")}}) {
+    const std::string key = fmt::format("shapes/{}s", name);
+    count > 0 ? out.add(key, "", count, name, {Shown::count}) : out.set(key, count);
+  }
+  out.add("", ellipses + clumps == 0 ? "radius" : "radius of the circle around each", range(smallest, largest), "m")
+      .add("", "", mass, resolved.body == Body::disc ? "kg per m of depth in all" : "kg in all");
+  if (clumps > 0) {
+    const auto [fewest, most] =
+        std::ranges::minmax(resolved.scene.clumps, {}, [](const Clump& clump) { return clump.discs.size(); });
+    out.line("",
+             fmt::format("clumps of {}", fewest.discs.size() == most.discs.size()
+                                             ? counted(std::ssize(most.discs), "disc")
+                                             : fmt::format("{} to {} discs", fewest.discs.size(), most.discs.size())));
+  }
+  if (ellipses > 0) out.line("", describe_ellipse_contact(resolved.options.ellipse_law));
+  if (groups.size() > 1)
+    out.line("groups",
+             joined(groups, [](const auto& group) { return fmt::format("{} {}", group.first, group.second); }));
+  out.set("walls", resolved.scene.walls.size());
+  if (resolved.scene.walls.empty()) return;
+  out.line("walls", joined(resolved.scene.walls, [](const Wall& wall) {
+             constexpr const char* shapes[] = {"line", "segment", "arc"};
+             return fmt::format("{} ({}{})", wall.name, shapes[static_cast<int>(wall.shape)],
+                                wall.moves() ? ", moves" : "");
+           }));
+}
+
+std::string describe_pair(const GrainCase& resolved, const PairContact& pair) {
+  const PairProperties& p = pair.properties;
+  std::string text = fmt::format("restitution {}", p.restitution);
+  if (describe(resolved.options.law).has_dashpot && p.restitution < 1)
+    text += p.end == ContactEnd::at_zero_force ? " (never pulls)" : " (may pull at the end)";
+  if (pair.duration > 0) {
+    text += fmt::format(", contacts of {:.6g} s", pair.duration);
+  } else if (p.dimensionless > 0) {
+    text += fmt::format(", k dt²/m = {:.6g}", p.dimensionless);
+  } else {
+    text += fmt::format(", k = {:.6g} {}", p.stiffness, describe(resolved.options.law).stiffness_unit);
+  }
+  if (p.friction == 0) return text + ", no friction";
+  text += fmt::format(", friction {}, kT/kN {:.6g}", p.friction, p.tangential_ratio);
+  if (p.tangential_ratio == 0) text += " (slides always)";
+  if (p.tangential_damping > 0) text += fmt::format(", tangential damping {}", p.tangential_damping);
+  return text;
+}
+
+/// Every two kinds that can meet; pairs with equal contacts on one line.
+void add_pairs(Results& out, const GrainCase& resolved) {
+  const ContactTable& contacts = resolved.contacts;
+  constexpr int most_kinds = 8;
+  if (contacts.kind_count() > most_kinds) {
+    out.line("contacts", fmt::format("{} kinds of bodies, each pair with its own stiffness", contacts.kind_count()));
+    return;
+  }
+  const auto masses = masses_of_kinds(resolved.scene.grains, resolved.scene.kinds);
+  std::vector<std::pair<std::string, std::vector<std::string>>> lines;  // contact, pairs
+  for (int a = 0; a < contacts.kind_count(); ++a) {
+    for (int b = a; b < contacts.kind_count(); ++b) {
+      if (!reduced_masses(masses, a, b)) continue;
+      const std::string contact = describe_pair(resolved, contacts.between(a, b));
+      auto at = std::ranges::find(lines, contact, [](const auto& line) { return line.first; });
+      if (at == lines.end()) at = lines.insert(at, {contact, {}});
+      at->second.push_back(fmt::format("{} and {}", contacts.kinds[static_cast<std::size_t>(a)],
+                                       contacts.kinds[static_cast<std::size_t>(b)]));
+    }
+  }
+  for (const auto& line : lines) {
+    out.line(&line == lines.data() ? "contacts" : "",
+             lines.size() == 1 ? line.first : fmt::format("{}: {}", joined(line.second), line.first));
+  }
+}
+
+void add_law(Results& out, const GrainCase& resolved) {
+  const LawDescription& law = describe(resolved.options.law);
+  out.line("law")
+      .add("law", "", to_string(resolved.options.law))
+      .note(fmt::format(" ({}): {}", law.letter, law.summary));
+  if (law.kind == LawKind::force) {
+    out.note(resolved.options.scheme == GrainOptions::Scheme::semi_implicit_euler ? ", semi-implicit Euler"
+             : resolved.options.scheme == GrainOptions::Scheme::velocity_verlet
+                 ? ", velocity Verlet"
+                 : ", velocity Verlet, contacts that begin or end within a step corrected");
+  }
+  // A map reverses the approach of two bodies as if nothing else acted on them: summed at one body, that is too much.
+  if (!is_map(resolved.options.law) || resolved.scene.grains.size() + resolved.scene.walls.size() <= 2) return;
+  out.line("",
+           "for bodies that meet two by two: each contact is taken as if nothing else acted on its bodies, and where "
+           "they press on one another energy comes and goes; for beds exact_flow or linear_dashpot");
+}
+
+/// Number of bonds, their integration over a step, the step limit.
+void add_bonds(Results& out, const GrainCase& resolved, const GrainTimeStep& step) {
+  if (resolved.scene.bonds.empty()) return;
+  const bool exact = resolved.options.bond_step == GrainOptions::BondStep::exact;
+  out.line("bonds")
+      .add("bonds/number", "", resolved.scene.bonds.size(), "", {Shown::count})
+      .add("", "", exact ? "each decays exactly over a step" : "dashpots by the velocities at the start of a step");
+  if (step.bond_limit == 0) {
+    out.line("", "they do not limit the step").set("bonds/critical_time_step", nullptr);
+    return;
+  }
+  out.line("")
+      .add("bonds/critical_time_step", "they limit the step to", step.bond_limit, "s")
+      .add("", "it is", step.step / step.bond_limit, "of that", {.digits = 3});
+}
+
+/// Deformation of the bonds since the start.
+void add_drifts(Results& out, const BondReport& bonds) {
+  if (bonds.number == 0) return;
+  const auto add = [&](const std::string& key, const char* label, const BondReport::Drift& drift) {
+    out.add("bonds/" + key + "/largest", label, drift.largest, "", {.digits = 3})
+        .note(" (")
+        .add("bonds/" + key + "/mean", "mean", drift.mean, "", {.digits = 3})
+        .note(")");
+  };
+  out.line("drift of bonds", "largest since the start: ");
+  add("distance_drift", "distance", bonds.distance);
+  add("slip_drift", "slip", bonds.slip);
+  out.note(" of the sum of the radii").line("");
+  add("roll_drift", "roll", bonds.roll);
+  out.note(" rad");
+}
+
+void add_shaking(Results& out, const Shaking& shaking) {
+  const GroundMotion& motion = shaking.motion;
+  Results lines;
+  lines.line("shaking")
+      .add("peak_acceleration", "", motion.peak_acceleration, "m/s²", {.digits = 4})
+      .note(fmt::format(" ({:.4g} gal) at most along ({:.4g}, {:.4g})", motion.peak_acceleration / gal,
+                        shaking.direction.x, shaking.direction.y));
+  if (shaking.recorded) {
+    lines.note(fmt::format(", a record of {} points from {:.4g} s to {:.4g} s", motion.displacement.times.size(),
+                           motion.displacement.times.front(), motion.displacement.times.back()));
+  } else {
+    lines.note(fmt::format(", {} Hz, {} from {:.4g} s to {:.4g} s", shaking.frequency,
+                           counted(static_cast<long long>(shaking.cycles), "cycle"), motion.displacement.start,
+                           motion.displacement.end));
+  }
+  lines.line("")
+      .add("peak_velocity", "at most", motion.peak_velocity, "m/s", {.digits = 4})
+      .add("peak_displacement", "", motion.peak_displacement, "m", {.digits = 4});
+  if (shaking.recorded && motion.correction > 0) {
+    lines.line("", fmt::format("baseline: up to {:.3g} of that acceleration taken away",
+                               motion.correction / motion.peak_acceleration));
+  }
+  if (motion.final_displacement != 0 && std::abs(motion.final_displacement) > 1e-9 * motion.peak_displacement)
+    lines.line("", fmt::format("the box ends {:.4g} m from where it began", motion.final_displacement));
+  lines.set("direction", shaking.direction)
+      .set("final_displacement", motion.final_displacement)
+      .set("baseline_correction", motion.correction);
+  out.append(lines.under("shaking"));
+}
+
+/// Likely cause of a large error of the balance, and the remedy.
+std::string advice_on_balance(const GrainCase& resolved, const GrainSimulation& simulation,
+                              const EnergyLedger& ledger) {
+  if (is_map(resolved.options.law)) {
+    return fmt::format(
+        "{:.3g} {} {}, as this law takes each contact as if nothing else acted on its bodies; take exact_flow or "
+        "linear_dashpot where they press on one another",
+        std::abs(ledger.error()), energy_unit(resolved.body),
+        ledger.error() > 0 ? "came from nothing" : "vanished uncounted");
+  }
+  const bool euler =
+      gives_force(resolved.options.law) && resolved.options.scheme == GrainOptions::Scheme::semi_implicit_euler;
+  if (euler && !simulation.effects().tangential_springs && ledger.lost_slip > std::abs(ledger.error())) {
+    return "contacts without tangential springs that nearly stick count too large a loss by slip in "
+           "semi_implicit_euler; take velocity_verlet, or a tangential_ratio above 0";
+  }
+  return "compare with a shorter step before trusting the motion";
+}
+
+}  // namespace
+
+Results GrainRun::scene() const {
+  Results out;
+  if (!case_.title.empty()) out.block(case_.title + "\n\n");
+  out.set("title", case_.title);
+  add_bodies(out, case_);
+  add_effects(out, simulation_.effects());
+  add_law(out, case_);
+  add_pairs(out, case_);
+  if (case_.shaking) add_shaking(out, *case_.shaking);
+  add_bonds(out, case_, step_);
+  return out;
+}
+
+Results GrainRun::step() const {
+  const LawDescription& law = describe(case_.options.law);
+  Results out;
+  out.line("time step").add("time_step", "", step_.step, "s").note(step_.automatic ? ", automatic" : "");
+  out.set("time_step_automatic", step_.automatic);
+  if (step_.contact > 0) {
+    out.line("")
+        .add("contact_duration", "the shortest contact lasts", step_.contact, "s", {.digits = 4})
+        .add("steps_in_contact", "", step_.steps_in_contact(), "steps", {.digits = 3})
+        .note(fmt::format(" ({})", step_.between));
+  } else {
+    out.line("", "how long contacts last is not known: ")
+        .note(law.spring_power != 1 ? "with this law it depends on the speed (give closing_speed)"
+                                    : "no two bodies can meet");
+    out.set("contact_duration", nullptr).set("steps_in_contact", nullptr);
+  }
+  const bool limited = step_.omega_step > 0 && step_.limit > 0;
+  if (step_.omega_step > 0) out.line("").add("omega_time_step", "omega dt =", step_.omega_step, "", {.digits = 4});
+  if (limited) {
+    out.add("", "", step_.omega_step / step_.limit, "of", {.digits = 3})
+        .note(fmt::format(" {:.4g}, {}", step_.limit,
+                          is_map(case_.options.law) ? "past which a contact is over in a step"
+                                                    : "the limit of stability of one contact; several at a body lower "
+                                                      "it"));
+  } else if (step_.omega_step > 0) {
+    out.note("; a single contact is exact at any step");
+  } else {
+    out.set("omega_time_step", nullptr);
+  }
+  return out.set("critical_time_step",
+                 limited ? ResultValue(step_.step * step_.limit / step_.omega_step) : ResultValue(nullptr));
+}
+
+Results GrainRun::events() const {
+  const GrainCounters& counters = simulation_.counters();
+  Results out = measures_ ? measures_->results() : Results();
+  out.line("collisions")
+      .add("contacts", "", counters.contacts, "contact", {Shown::count})
+      .note(" begun")
+      .add("touching", "", simulation_.contacts().size(), "at the end")
+      .add("evaluations", "", counters.evaluations, "evaluation", {Shown::count})
+      .note(" of the law");
+  out.set("sweeps", counters.sweeps).set("rebuilds", counters.rebuilds);
+  add_drifts(out, simulation_.bonds());
+  return out;
+}
+
+Results GrainRun::advice(const Balance& balance) const {
+  Results out;
+  if (std::abs(balance.at_end) > Balance::doubtful)
+    out.line("", "that is much: " + advice_on_balance(case_, simulation_, simulation_.energy()));
+  if (const std::int64_t doubtful = simulation_.counters().doubtful; doubtful > 0) {
+    out.line("", fmt::format("of all evaluations {} were of contacts pressed together in a step that may feed their "
+                             "vibration: the step is safe for one contact, not for any cluster; compare with one a "
+                             "third as long",
+                             grouped(doubtful)));
+  }
+  return out;
+}
+
+}  // namespace equidem

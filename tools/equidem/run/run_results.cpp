@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/run_results.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "equidem/core/text.hpp"
+#include "equidem/output/files/energies.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr double worth_telling = 1e-3;  // of the largest energy
+
+/// Scale of the error of the balance: for bonded discs the largest energy of the whole run, for colliding bodies, whose
+/// losses and works only grow, the largest at its end.
+double scale_of(BodyFamily family, const EnergyLedger& end, const RunRecord& record) {
+  double scale = end.largest();
+  if (family == BodyFamily::colliding) return scale;
+  for (const EnergySample& sample : record.energies) scale = std::max(scale, sample.ledger.largest());
+  return scale;
+}
+
+Balance balance_of(const EnergyLedger& end, const RunRecord& record, double scale) {
+  double most = std::abs(end.error());
+  for (const EnergySample& sample : record.energies) most = std::max(most, std::abs(sample.ledger.error()));
+  return scale > 0 ? Balance{end.error() / scale, most / scale} : Balance{};
+}
+
+/// The terms of a role that are not 0, after `lead`; false, and nothing added, where all are 0.
+bool add_terms(Results& out, const char* lead, BodyFamily family, const EnergyLedger& ledger, EnergyRole role) {
+  bool any = false;
+  for (const EnergyTerm& term : energy_terms(family)) {
+    if (term.role != role || ledger.*term.value == 0) continue;
+    if (!std::exchange(any, true)) out.note(lead);
+    out.add(fmt::format("energy/{}", term.key), term.label, ledger.*term.value);
+  }
+  return any;
+}
+
+void add_energies(Results& out, const RunJob& job, BodyFamily family, Body body, const EnergyLedger& l,
+                  const RunRecord& record) {
+  const double scale = scale_of(family, l, record);
+  out.append(energy_results(family, l, scale).under("energy"));
+  out.line("energy")
+      .add("energy/kinetic", "kinetic", l.kinetic)
+      .add("energy/elastic", "elastic", l.elastic())
+      .add("energy/potential", "potential", l.potential, energy_unit(body));
+  out.line("").add("energy/initial", "at the start", l.initial);
+  const double overlap = record.energies.front().ledger.elastic();
+  if (overlap > 1e-6 * l.largest()) out.add("", "", overlap, "of it elastic");
+  add_terms(out, "; put in by ", family, l, EnergyRole::work);
+  if (std::abs(l.sway) > worth_telling * l.largest()) {
+    out.line("", "leapfrog lets kinetic + elastic energy sway with the motion, now by ")
+        .add("energy/sway", "", l.sway, "", {.digits = 3});
+  }
+  out.line("").add("energy/dissipated", "lost", l.lost());
+  add_terms(out, ": ", family, l, EnergyRole::lost);
+  const Balance balance = balance_of(l, record, scale);
+  out.line("balance")
+      .add("", "lacks", std::abs(balance.at_end),
+           family == BodyFamily::bonded ? "of the largest term of the run at its end"
+                                        : "of the largest term at the end of the run",
+           {Shown::power, 1})
+      .add("", "at most", balance.most, "on the way", {Shown::power, 1});
+  out.append(job.advice(balance));
+}
+
+Results memory_results(RunJob& job) {
+  const std::string body = job.body_name();
+  return Results().line("memory").add("bytes_per_" + body, "", job.simulation().bytes_per_body(),
+                                      "bytes a " + body + " in the loop", {Shown::decimals, 0});
+}
+
+/// The time step, the intervals that it does not allow, probes without interval, memory.
+Results step_results(RunJob& job, const RunPlan& plan) {
+  Results out = job.step();
+  if (!plan.probes.empty() && !plan.probe_interval) out.line("probes", "not recorded: [output] has no probe_interval");
+  for (const auto& [name, interval] :
+       {std::pair{"frame", plan.frame_interval}, std::pair{"probe", plan.probe_interval}}) {
+    if (!interval || *interval >= plan.time_step) continue;
+    out.line(fmt::format("{}s", name))
+        .note(fmt::format("at every step, which is longer than {}_interval = {} s", name, *interval));
+  }
+  return out.append(memory_results(job));
+}
+
+}  // namespace
+
+Results dry_run_results(RunJob& job) {
+  const RunPlan plan = job.plan();
+  Results out = job.scene();
+  if (plan.steps == 0) return out.append(memory_results(job));
+  out.append(step_results(job, plan));
+  return out.line("steps")
+      .add("steps", "", plan.steps, "", {Shown::count})
+      .add("estimated_seconds", "about", estimate_seconds(job.simulation(), plan), "s with these threads, output aside",
+           {.digits = 2});
+}
+
+Results run_results(RunJob& job, const RunPlan& plan, const RunResult& result) {
+  const AnySimulation& simulation = job.simulation();
+  const double body_steps = static_cast<double>(result.steps_done) * static_cast<double>(simulation.motions().size());
+  Results out = job.scene().append(step_results(job, plan));
+  out.line("steps")
+      .add("steps", "", simulation.step(), "", {Shown::count})
+      .add("time", "to t =", simulation.time(), "s")
+      .note("; ")
+      .add("particle_steps_per_second", "", result.seconds > 0 ? body_steps / result.seconds : 0.0,
+           fmt::format("{}-steps per second", job.body_name()), {.digits = 3});
+  out.append(job.events());
+  add_energies(out, job, simulation.family(), plan.body, simulation.energy(), result.record);
+  return out;
+}
+
+const char* energy_unit(Body body) {
+  return body == Body::disc ? "J per m of depth" : "J";
+}
+
+void write_energy_plot(const std::filesystem::path& folder, const std::string& name, const std::string& title,
+                       Body body, std::span<const EnergySample> energies, std::span<const EnergyCurve> curves,
+                       bool overwrite) {
+  Plot plot{.title = title, .x = {.label = "time, s"}, .y = {.label = fmt::format("energy, {}", energy_unit(body))}};
+  const auto add = [&](const EnergyCurve& curve) {
+    Series series{.label = curve.label, .colour = curve.colour};
+    for (const EnergySample& sample : energies) {
+      series.x.push_back(sample.time);
+      series.y.push_back(curve.value(sample.ledger));
+    }
+    if (std::ranges::any_of(series.y, [](double y) { return y != 0; })) plot.series.push_back(std::move(series));
+  };
+  for (const EnergyCurve& curve : curves) add(curve);
+  add({"what the balance lacks", PlotColour::black, [](const EnergyLedger& l) { return l.error(); }});
+  if (!plot.series.empty()) write_plot(folder, name, plot, overwrite);
+}
+
+}  // namespace equidem
