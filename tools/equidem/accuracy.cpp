@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "accuracy.hpp"
 
+#include <cmath>
+#include <utility>
+
 #include <CLI/CLI.hpp>
 
 #include "equidem/core/error.hpp"
@@ -61,6 +64,59 @@ Results accuracy_results(const ReachedAccuracy& reached) {
   ten.set("time_factor", more.time_factor).set("seconds", more.seconds).set("value", json_of(more.value));
   if (!more.note.empty()) ten.set("note", more.note);
   return results.set("accuracy/ten_times_more", ten);
+}
+
+CaseSearch::CaseSearch(const CommonOptions& options, RefinementOptions refinement, SettingOf setting_of,
+                       std::function<std::vector<double>(Case)> values_of)
+    : options_(options),
+      accuracy_(refinement.accuracy),
+      unit_(refinement.unit),
+      setting_of_(std::move(setting_of)),
+      values_of_(std::move(values_of)),
+      admissible_(refinement.admissible),
+      search_(
+          [this](std::int64_t level) {
+            const Stopwatch watch;
+            std::vector<double> values = values_of_(case_of(level));
+            seconds_before_ += watch.seconds();
+            return values;
+          },
+          std::move(refinement)) {}
+
+Case CaseSearch::propose() {
+  proposed_.push_back(search_.propose());
+  return case_of(proposed_.back());
+}
+
+bool CaseSearch::accepts(std::vector<double> values, double seconds) {
+  seconds_before_ += seconds_;
+  seconds_ = seconds;
+  return search_.accepts(proposed_.back(), std::move(values));
+}
+
+Case CaseSearch::case_of(std::int64_t level) const {
+  CommonOptions set = options_;
+  for (const auto& [key, value] : setting_of_(level)) set.set.push_back(fmt::format("{}={:.17g}", key, value));
+  return read_case(set);
+}
+
+ReachedAccuracy CaseSearch::reached_accuracy(const std::string& of, const std::string& knob,
+                                             double work_exponent) const {
+  const std::int64_t level = proposed_.back();
+  const bool enough = search_.error(level) <= accuracy_ / 10;
+  std::int64_t finer = enough ? level : search_.level_for(accuracy_ / 10, level);
+  if (admissible_) finer = admissible_(finer);
+  const double factor = std::pow(static_cast<double>(finer) / static_cast<double>(level), work_exponent);
+  return {.requested = accuracy_,
+          .estimated = search_.error(level),
+          .of = fmt::format("{} (errors fall as {}^-{:.2f})", of, unit_, search_.order()),
+          .knob = knob,
+          .value = setting_of_(level),
+          .pilots = {},
+          .ten_times_more = {.time_factor = factor,
+                             .seconds = factor * seconds_,
+                             .value = setting_of_(finer),
+                             .note = enough ? has_it_already : ""}};
 }
 
 }  // namespace equidem

@@ -3,12 +3,15 @@
 /// The option --accuracy X of the verbs: the accuracy asked for, the one reached, the cost of ten times more.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "equidem/output/results.hpp"
+#include "equidem/study/refinement.hpp"
 
 #include "command.hpp"
 
@@ -46,5 +49,50 @@ void refuse_dry_run_with_accuracy(const CommonOptions& options, bool accuracy);
 /// accuracy: {requested, estimated, of, knob, value, pilots, pilots_factor, ten_times_more: {time_factor, seconds,
 /// value, note}}.
 Results accuracy_results(const ReachedAccuracy& reached);
+
+/// Search for the coarsest setting of a case that reaches an accuracy:
+///
+///     do run(search.propose()); while (!search.accepts(values, seconds));
+class CaseSearch {
+ public:
+  CaseSearch(const CaseSearch&) = delete;  // the refinement refers to it
+  CaseSearch& operator=(const CaseSearch&) = delete;
+
+  /// The case with the setting that should do.
+  /// \throws Error (computation_failed) as Refinement::propose
+  Case propose();
+  /// Whether the values computed with it are known to be within the accuracy.
+  bool accepts(std::vector<double> values, double seconds);
+
+ protected:
+  using SettingOf = std::function<AccuracySetting(std::int64_t level)>;
+  /// \param setting_of keys of the case and their values at a level of the refinement
+  /// \param values_of solves a case
+  CaseSearch(const CommonOptions& options, RefinementOptions refinement, SettingOf setting_of,
+             std::function<std::vector<double>(Case)> values_of);
+  ~CaseSearch() = default;
+
+  /// All but `pilots`. Work grows as the level to the power `work_exponent`.
+  /// \param of, knob as in ReachedAccuracy; the observed order of the errors is added to `of`
+  [[nodiscard]] ReachedAccuracy reached_accuracy(const std::string& of, const std::string& knob,
+                                                 double work_exponent) const;
+  [[nodiscard]] const std::vector<std::int64_t>& pilots() const { return search_.pilots(); }
+  [[nodiscard]] const std::vector<std::int64_t>& proposed() const { return proposed_; }
+  [[nodiscard]] double seconds() const { return seconds_; }                ///< of the last level
+  [[nodiscard]] double seconds_before() const { return seconds_before_; }  ///< of all levels before it
+
+ private:
+  [[nodiscard]] Case case_of(std::int64_t level) const;
+
+  CommonOptions options_;
+  double accuracy_;
+  std::string unit_;
+  SettingOf setting_of_;
+  std::function<std::vector<double>(Case)> values_of_;
+  std::function<std::int64_t(std::int64_t)> admissible_;
+  Refinement search_;
+  std::vector<std::int64_t> proposed_;
+  double seconds_ = 0, seconds_before_ = 0;
+};
 
 }  // namespace equidem

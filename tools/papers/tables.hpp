@@ -6,8 +6,6 @@
 #include <functional>
 #include <map>
 #include <string>
-#include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "equidem/output/files/csv.hpp"
@@ -17,14 +15,6 @@
 #include "text_table.hpp"
 
 namespace equidem {
-
-/// Add a CSV column with one value per row. \param take member or function of a row: a number or a text
-template <class Rows, class Take>
-void add_column(Table& table, const std::string& name, const Rows& rows, Take take) {
-  std::vector<std::decay_t<std::invoke_result_t<Take, decltype(*rows.begin())>>> values;
-  for (const auto& row : rows) values.push_back(std::invoke(take, row));
-  table.add(name, std::move(values));
-}
 
 /// The rows of a table as JSON objects. \param renamed columns whose keys differ: {column, key}
 std::vector<Results> rows_of(const Table& table, const std::map<std::string, std::string>& renamed = {});

@@ -157,6 +157,29 @@ std::string table_lines(const std::vector<Results>& rows) {
   return text;
 }
 
+/// A line of a report: the name in a column of its own, the value broken into lines beside it.
+std::string report_line(const std::string& name, const std::string& value) {
+  std::string text, line = fmt::format("{:<{}}", name, name_width);
+  std::size_t used = 0;
+  for (std::size_t begin = 0; begin < value.size();) {
+    std::size_t end = value.find(' ', begin + 1);
+    if (end == std::string::npos) end = value.size();
+    const std::string word = value.substr(begin, end - begin);
+    if (used > 0 && used + word.size() > value_width) {
+      text += line + "\n";
+      line.assign(name_width, ' ');
+      used = 0;
+      line += word.substr(1);
+    } else {
+      line += word;
+    }
+    used += word.size();
+    begin = end;
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  return text + line + "\n";
+}
+
 /// The last line of a report, as long as values follow on it.
 class OpenLine {
  public:
@@ -242,10 +265,6 @@ Results& Results::append(const Results& others) {
   return *this;
 }
 
-bool Results::contains(const std::string& key) const {
-  return std::ranges::any_of(parts_, [&](const Result& part) { return part.key == key; });
-}
-
 std::string Results::report() const {
   std::string report;
   OpenLine line;
@@ -298,28 +317,6 @@ void add_effects(Results& results, const Effects& effects) {
     results.line("", fmt::format("no {}: {}", entry.name, entry.why));
   }
   results.set("effects", Results().set("active", active).set("inactive", inactive));
-}
-
-std::string report_line(const std::string& name, const std::string& value) {
-  std::string text, line = fmt::format("{:<{}}", name, name_width);
-  std::size_t used = 0;
-  for (std::size_t begin = 0; begin < value.size();) {
-    std::size_t end = value.find(' ', begin + 1);
-    if (end == std::string::npos) end = value.size();
-    const std::string word = value.substr(begin, end - begin);
-    if (used > 0 && used + word.size() > value_width) {
-      text += line + "\n";
-      line.assign(name_width, ' ');
-      used = 0;
-      line += word.substr(1);
-    } else {
-      line += word;
-    }
-    used += word.size();
-    begin = end;
-  }
-  line.erase(line.find_last_not_of(' ') + 1);
-  return text + line + "\n";
 }
 
 }  // namespace equidem

@@ -127,8 +127,6 @@ class Results {
   [[nodiscard]] Results hidden() const;
 
   [[nodiscard]] const std::vector<Result>& parts() const { return parts_; }
-  /// Whether there is a value of that key.
-  [[nodiscard]] bool contains(const std::string& key) const;
   /// The report: a name in a column of its own, its line broken into lines of about 110 columns beside it.
   [[nodiscard]] std::string report() const;
   /// The JSON object, indented by two spaces, arrays of numbers on one line, with a final line break. Keys keep their
@@ -143,8 +141,5 @@ class Results {
 
 /// effects {active: [names], inactive: {name: why}}.
 void add_effects(Results& results, const Effects& effects);
-
-/// A line of a report: the name in a column of its own, the value broken into lines beside it.
-std::string report_line(const std::string& name, const std::string& value);
 
 }  // namespace equidem

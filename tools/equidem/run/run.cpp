@@ -40,7 +40,8 @@ bool step_through(const RunVerb& options, RunJob& job, StepSearch* search = null
   const RunPlan plan = job.plan();
   const RunResult result = run_through(job.simulation(), plan,
                                        {.folder = common.out, .overwrite = common.overwrite, .resume = options.resume});
-  if (search != nullptr && !search->accepts(job.simulation().motions(), result.seconds)) return false;
+  if (search != nullptr && !search->accepts(StepSearch::values_of(job.simulation().motions()), result.seconds))
+    return false;
   StageTimes times = job.times();
   times.add("steps", result.seconds);
   if (common.out) {

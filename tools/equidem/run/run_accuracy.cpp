@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
@@ -29,13 +30,6 @@ double relative_distance(const std::vector<double>& a, const std::vector<double>
   return apart > 0 ? apart / largest : 0;
 }
 
-/// x and y in turn.
-std::vector<double> displacements(const std::vector<DiscMotion>& motions) {
-  std::vector<double> values;
-  for (const DiscMotion& motion : motions) values.push_back(motion.u.x), values.push_back(motion.u.y);
-  return values;
-}
-
 RefinementOptions step_refinement(const BondedRun& given, double accuracy) {
   if (given.goes_to_rest()) {
     throw Error(ErrorKind::bad_input, "--accuracy does not act on a run to rest", "run.until_rest is its accuracy",
@@ -50,73 +44,50 @@ RefinementOptions step_refinement(const BondedRun& given, double accuracy) {
           .distance = relative_distance};
 }
 
+std::vector<double> run_pilot(Case resolved) {
+  BondedRun pilot(std::move(resolved));
+  Simulation& simulation = pilot.simulation();
+  const std::int64_t steps = pilot.steps();
+  Progress progress(fmt::format("a run of {} to choose the step:", counted(steps, "step")));
+  for (std::int64_t done = 0; done < steps; done += steps_at_once) {
+    progress.update(static_cast<double>(done) / static_cast<double>(steps));
+    simulation.advance(std::min(steps_at_once, steps - done));
+  }
+  return StepSearch::values_of(simulation.motions());
+}
+
 }  // namespace
 
 StepSearch::StepSearch(const CommonOptions& options, double accuracy, const BondedRun& given)
-    : options_(options),
-      accuracy_(accuracy),
-      duration_(given.run().duration.value_or(0)),
-      case_step_(given.time_step().step),
-      search_([this](std::int64_t steps) { return motions_at_end(steps); }, step_refinement(given, accuracy)) {}
+    : CaseSearch(
+          options, step_refinement(given, accuracy),
+          [duration = given.run().duration.value_or(0)](std::int64_t steps) {
+            return AccuracySetting{{"run.time_step", duration / static_cast<double>(steps)}};
+          },
+          run_pilot),
+      case_step_(given.time_step().step) {}
 
-Case StepSearch::propose() {
-  runs_.push_back(search_.propose());
-  return case_of(runs_.back());
-}
-
-bool StepSearch::accepts(const std::vector<DiscMotion>& motions, double seconds) {
-  seconds_ = seconds;
-  return search_.accepts(runs_.back(), displacements(motions));
+std::vector<double> StepSearch::values_of(const std::vector<DiscMotion>& motions) {
+  std::vector<double> values;
+  for (const DiscMotion& motion : motions) values.push_back(motion.u.x), values.push_back(motion.u.y);
+  return values;
 }
 
 ReachedAccuracy StepSearch::reached() const {
-  const std::int64_t steps = runs_.back();
-  const bool enough = search_.error(steps) <= accuracy_ / 10;
-  const std::int64_t finer = enough ? steps : search_.level_for(accuracy_ / 10, steps);
-  std::vector<std::int64_t> others = search_.pilots();
-  others.insert(others.end(), runs_.begin(), std::prev(runs_.end()));
-  double all = 0;
+  ReachedAccuracy reached = reached_accuracy(
+      "displacements at the end of the run, over the largest of them, against those of a step of 0, extrapolated",
+      fmt::format("the time step, {:.6g} s in the case", case_step_), 1);
+  std::vector<std::int64_t> before = pilots();
+  before.insert(before.end(), proposed().begin(), std::prev(proposed().end()));
   std::string list;
-  for (std::size_t k = 0; k < others.size(); ++k) {
-    all += static_cast<double>(others[k]);
-    list += fmt::format("{}{}", k == 0 ? "" : k + 1 < others.size() ? ", " : " and ", others[k]);
+  double steps = 0;
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    steps += static_cast<double>(before[k]);
+    list += fmt::format("{}{}", k == 0 ? "" : k + 1 < before.size() ? ", " : " and ", before[k]);
   }
-  const double factor = static_cast<double>(finer) / static_cast<double>(steps);
-  return {
-      .requested = accuracy_,
-      .estimated = search_.error(steps),
-      .of = fmt::format("displacements at the end of the run, over the largest of them, against those of a step of 0, "
-                        "extrapolated (errors fall as steps^-{:.2f})",
-                        search_.order()),
-      .knob = fmt::format("the time step, {:.6g} s in the case", case_step_),
-      .value = setting_of(steps),
-      .pilots = fmt::format("runs of {} steps", list),
-      .pilots_factor = all / static_cast<double>(steps),
-      .ten_times_more = {.time_factor = factor,
-                         .seconds = factor * seconds_,
-                         .value = setting_of(finer),
-                         .note = enough ? has_it_already : ""}};
-}
-
-Case StepSearch::case_of(std::int64_t steps) const {
-  CommonOptions stepped = options_;
-  stepped.set.push_back(fmt::format("run.time_step={:.17g}", duration_ / static_cast<double>(steps)));
-  return read_case(stepped);
-}
-
-std::vector<double> StepSearch::motions_at_end(std::int64_t steps) const {
-  BondedRun pilot(case_of(steps));
-  Simulation& simulation = pilot.simulation();
-  Progress progress(fmt::format("a run of {} to choose the step:", counted(steps, "step")));
-  for (std::int64_t done = 0; done < pilot.steps(); done += steps_at_once) {
-    progress.update(static_cast<double>(done) / static_cast<double>(pilot.steps()));
-    simulation.advance(std::min(steps_at_once, pilot.steps() - done));
-  }
-  return displacements(simulation.motions());
-}
-
-AccuracySetting StepSearch::setting_of(std::int64_t steps) const {
-  return {{"run.time_step", duration_ / static_cast<double>(steps)}};
+  reached.pilots_factor = steps / static_cast<double>(proposed().back());
+  reached.pilots = fmt::format("runs of {} steps", list);
+  return reached;
 }
 
 }  // namespace equidem

@@ -104,7 +104,7 @@ bool solve_once(const CommonOptions& options, const Problem& problem, const std:
   }
   std::optional<ReachedAccuracy> reached;
   if (search != nullptr) {
-    if (!search->accepts(*results.front().tension, times.total())) return false;
+    if (!search->accepts(BlockSearch::values_of(*results.front().tension), times.total())) return false;
     reached = search->reached();
   } else if (accuracy) {
     reached = bound_of(results, *accuracy, times.total());

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -31,8 +30,17 @@ RefinementOptions block_refinement(double aspect, double accuracy) {
           .admissible = [](std::int64_t n) { return one_beyond_a_multiple_of_four(static_cast<double>(n)); }};
 }
 
-std::vector<double> values_of(const TensionResult& result) {
-  return {result.poisson_ratio, std::log(std::abs(result.stiffness_ratio))};
+/// Rows, and columns in the proportion of the case.
+AccuracySetting setting_of(double aspect, std::int64_t rows) {
+  const double across = std::round(aspect * static_cast<double>(rows));
+  return {{"assembly.rows", static_cast<double>(rows)},
+          {"assembly.columns", static_cast<double>(one_beyond_a_multiple_of_four(across))}};
+}
+
+std::vector<double> solve_block(Case resolved) {
+  const Problem problem = build_problem(std::move(resolved));
+  const EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, problem.options());
+  return BlockSearch::values_of(*solve_case(problem, solver, problem.load_cases.front()).tension);
 }
 
 }  // namespace
@@ -42,78 +50,31 @@ bool BlockSearch::serves(const Case& resolved) {
 }
 
 BlockSearch::BlockSearch(const CommonOptions& options, const Case& resolved, double accuracy)
-    : options_(options),
-      accuracy_(accuracy),
-      aspect_(aspect_of(resolved)),
-      of_case_(fmt::format("{} x {}", resolved.assembly.lattice.columns, resolved.assembly.lattice.rows)),
-      search_([this](std::int64_t rows) { return solve_pilot(rows); }, block_refinement(aspect_, accuracy)) {}
+    : CaseSearch(
+          options, block_refinement(aspect_of(resolved), accuracy),
+          [aspect = aspect_of(resolved)](std::int64_t rows) { return setting_of(aspect, rows); }, solve_block),
+      of_case_(fmt::format("{} x {}", resolved.assembly.lattice.columns, resolved.assembly.lattice.rows)) {}
 
-Case BlockSearch::propose() {
-  proposed_.push_back(search_.propose());
-  return case_of(proposed_.back());
-}
-
-bool BlockSearch::accepts(const TensionResult& result, double seconds) {
-  other_seconds_ += seconds_;
-  seconds_ = seconds;
-  return search_.accepts(proposed_.back(), values_of(result));
+std::vector<double> BlockSearch::values_of(const TensionResult& result) {
+  return {result.poisson_ratio, std::log(std::abs(result.stiffness_ratio))};
 }
 
 ReachedAccuracy BlockSearch::reached() const {
-  const std::int64_t rows = proposed_.back();
-  const bool enough = search_.error(rows) <= accuracy_ / 10;
-  const Size finer = size_of(
-      enough ? rows : one_beyond_a_multiple_of_four(static_cast<double>(search_.level_for(accuracy_ / 10, rows))));
-  const double factor = std::pow(static_cast<double>(finer.rows) / static_cast<double>(rows), work_per_rows);
-  const auto& pilots = search_.pilots();
-  ReachedAccuracy reached{
-      .requested = accuracy_,
-      .estimated = search_.error(rows),
-      .of = fmt::format("nu, and 2G/((1-nu)kN) relative, of this block against the lattice without sides, extrapolated "
-                        "(errors fall as rows^-{:.2f})",
-                        search_.order()),
-      .knob = fmt::format("the size of the block, {} in the case", of_case_),
-      .value = setting_of(size_of(rows)),
-      .pilots =
-          fmt::format("{} of {} to {} rows", counted(std::ssize(pilots) + std::ssize(proposed_) - 1, "block"),
-                      *std::min_element(pilots.begin(), pilots.end()), *std::max_element(pilots.begin(), pilots.end())),
-      .pilots_factor = other_seconds_ / seconds_,
-      .ten_times_more = {.time_factor = factor,
-                         .seconds = factor * seconds_,
-                         .value = setting_of(finer),
-                         .note = enough ? has_it_already : ""}};
-  if (static_cast<double>(finer.rows) * static_cast<double>(finer.columns) > most_discs) {
-    reached.ten_times_more.note = fmt::format(
+  ReachedAccuracy reached =
+      reached_accuracy("nu, and 2G/((1-nu)kN) relative, of this block against the lattice without sides, extrapolated",
+                       fmt::format("the size of the block, {} in the case", of_case_), work_per_rows);
+  const auto [fewest, most] = std::ranges::minmax(pilots());
+  reached.pilots = fmt::format("{} of {} to {} rows",
+                               counted(std::ssize(pilots()) + std::ssize(proposed()) - 1, "block"), fewest, most);
+  reached.pilots_factor = seconds_before() / seconds();
+  auto& more = reached.ten_times_more;
+  if (const double rows = more.value[0].second, columns = more.value[1].second; rows * columns > most_discs) {
+    more.note = fmt::format(
         "{} x {} discs, more than are tried; a periodic cell has no sides: 'equidem homogenize' gives both to "
         "round-off",
-        finer.columns, finer.rows);
+        columns, rows);
   }
   return reached;
-}
-
-BlockSearch::Size BlockSearch::size_of(std::int64_t rows) const {
-  return {rows, one_beyond_a_multiple_of_four(std::round(aspect_ * static_cast<double>(rows)))};
-}
-
-Case BlockSearch::case_of(std::int64_t rows) const {
-  const Size size = size_of(rows);
-  CommonOptions sized = options_;
-  sized.set.push_back(fmt::format("assembly.rows={}", size.rows));
-  sized.set.push_back(fmt::format("assembly.columns={}", size.columns));
-  return read_case(sized);
-}
-
-AccuracySetting BlockSearch::setting_of(const Size& size) {
-  return {{"assembly.rows", static_cast<double>(size.rows)}, {"assembly.columns", static_cast<double>(size.columns)}};
-}
-
-std::vector<double> BlockSearch::solve_pilot(std::int64_t rows) {
-  const Stopwatch watch;
-  const Problem problem = build_problem(case_of(rows));
-  const EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, problem.options());
-  const SolvedCase solved = solve_case(problem, solver, problem.load_cases.front());
-  other_seconds_ += watch.seconds();
-  return values_of(*solved.tension);
 }
 
 ReachedAccuracy solver_accuracy(double accuracy, double error_bound, double condition, double seconds) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// equidem study: error against time.
+#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -11,12 +12,13 @@
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
+#include "equidem/output/files/csv.hpp"
 #include "equidem/study/built_in.hpp"
+#include "equidem/study/run_study.hpp"
 
 #include "command.hpp"
 #include "study/study_file.hpp"
 #include "study/study_results.hpp"
-#include "study/study_samples.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
@@ -52,12 +54,70 @@ std::string command_of(const StudyVerb& verb) {
   return command;
 }
 
+/// Round 0 gives the values, later ones the times.
+struct SampleRow {
+  std::int64_t setting = 0, round = 0;
+  const TaskSamples* task = nullptr;
+};
+
+/// One row per timing: setting (its number), round (0: the values, not timed), seconds, processor_seconds, one column
+/// per quantity (round 0 only), refusal, checksum.
+Table samples_table(const Study& study, const StudySamples& samples, const std::string& checksum) {
+  std::vector<SampleRow> rows;
+  for (std::size_t k = 0; k < samples.tasks.size(); ++k) {
+    const TaskSamples& task = samples.tasks[k];
+    for (std::int64_t round = 0; task.tried() && round <= std::ssize(task.times); ++round)
+      rows.push_back({static_cast<std::int64_t>(k), round, &task});
+  }
+  Table table;
+  table.add("setting", rows, &SampleRow::setting).add("round", rows, &SampleRow::round);
+  const auto add_time = [&](const char* name, double TimeSample::*time) {
+    table.add(name, rows, [&](const SampleRow& row) {
+      return row.round == 0 ? std::nullopt
+                            : std::optional(row.task->times[static_cast<std::size_t>(row.round - 1)].*time);
+    });
+  };
+  add_time("seconds", &TimeSample::seconds);
+  add_time("processor_seconds", &TimeSample::processor_seconds);
+  for (std::size_t q = 0; q < study.quantities.size(); ++q) {
+    table.add(study.quantities[q].name, rows, [q](const SampleRow& row) {
+      return row.round == 0 && !row.task->values.empty() ? std::optional(row.task->values[q]) : std::nullopt;
+    });
+  }
+  table.add("refusal", rows, [](const SampleRow& row) { return row.round == 0 ? row.task->refusal : std::string(); });
+  return table.add("checksum", rows, [&](const SampleRow&) { return checksum; });
+}
+
+/// Reads a table of samples_table; numbers have the same bits.
+/// \throws Error (bad_input) where the file is another table, damaged, or of another study, machine or build
+StudySamples read_samples(const std::filesystem::path& path, const Study& study, const std::string& checksum) {
+  const StoredTable table(path, samples_table(study, {}, checksum), "study",
+                          "Choose another --out, or pass --overwrite to begin anew");
+  StudySamples samples;
+  samples.tasks.resize(study.tasks.size());
+  const std::size_t first = 4, refusal = first + study.quantities.size();
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    if (table.text(row, refusal + 1) != checksum)
+      table.refuse("they are of another study: settings, quantities, seed, machine or build differ");
+    TaskSamples& task =
+        samples.tasks[static_cast<std::size_t>(table.integer(row, 0, 0, std::ssize(samples.tasks) - 1))];
+    if (table.integer(row, 1) > 0) {
+      task.times.push_back({table.number(row, 2), table.number(row, 3)});
+      continue;
+    }
+    task.refusal = table.text(row, refusal);
+    for (std::size_t column = first; task.refusal.empty() && column < refusal; ++column)
+      task.values.push_back(table.number(row, column));
+  }
+  return samples;
+}
+
 /// Measurements that an earlier run left; none where it begins anew.
 StudySamples samples_to_keep(const StudyVerb& verb, const Study& study, const std::string& checksum) {
   if (!verb.common.out || verb.common.overwrite) return {};
   const auto table = *verb.common.out / samples_name;
   if (!std::filesystem::exists(table)) return {};
-  return read_study_samples(table, study, checksum);
+  return read_samples(table, study, checksum);
 }
 
 /// Files of an earlier run of the same study are replaced; those of anything else are not.
@@ -120,7 +180,7 @@ int run_verb(const StudyVerb& verb) {
   Stopwatch since_saved;
   const auto save = [&](const StudySamples& done, bool now) {
     if (!folder || (!now && since_saved.seconds() < 1)) return;
-    write_csv(*folder / samples_name, study_samples_table(study, done, checksum), true);
+    write_csv(*folder / samples_name, samples_table(study, done, checksum), true);
     since_saved.lap();
   };
   const StudySamples samples =

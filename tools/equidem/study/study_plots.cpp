@@ -11,18 +11,23 @@
 namespace equidem {
 namespace {
 
-struct Look {
-  PlotColour colour;
-  Marker marker;
-  bool filled;
-};
-
-Look look_of(std::size_t k) {
-  constexpr Look looks[] = {{PlotColour::blue, Marker::circle, true},     {PlotColour::vermilion, Marker::square, true},
-                            {PlotColour::green, Marker::triangle, true},  {PlotColour::orange, Marker::diamond, true},
-                            {PlotColour::purple, Marker::circle, false},  {PlotColour::sky_blue, Marker::square, false},
-                            {PlotColour::black, Marker::triangle, false}, {PlotColour::black, Marker::diamond, true}};
-  return looks[k % std::size(looks)];
+/// An empty series of the k-th method: a line where it has several points.
+Series series_of(std::size_t k, std::size_t points) {
+  using enum PlotColour;
+  struct Look {
+    PlotColour colour;
+    Marker marker;
+    bool filled;
+  };
+  constexpr Look looks[] = {{blue, Marker::circle, true},     {vermilion, Marker::square, true},
+                            {green, Marker::triangle, true},  {orange, Marker::diamond, true},
+                            {purple, Marker::circle, false},  {sky_blue, Marker::square, false},
+                            {black, Marker::triangle, false}, {black, Marker::diamond, true}};
+  const Look& look = looks[k % std::size(looks)];
+  return {.style = points > 1 ? SeriesStyle::line_with_points : SeriesStyle::points,
+          .colour = look.colour,
+          .marker = look.marker,
+          .filled = look.filled};
 }
 
 /// A name for files.
@@ -96,13 +101,9 @@ Plot error_plot(const StudyReport& report, const StudyFront& front) {
   plot.series.push_back(std::move(line));
   std::size_t count = 0;
   for (const auto& [method, rows] : by_method(report, front.problem)) {
-    const Look look = look_of(count++);
-    Series series{.label = legend_of(method, order_text(report, front.problem, method, front.quantity)),
-                  .style = rows.size() > 1 ? SeriesStyle::line_with_points : SeriesStyle::points,
-                  .colour = look.colour,
-                  .marker = look.marker,
-                  .filled = look.filled,
-                  .column = method.empty() ? "error" : method};
+    Series series = series_of(count++, rows.size());
+    series.label = legend_of(method, order_text(report, front.problem, method, front.quantity));
+    series.column = method.empty() ? "error" : method;
     for (const std::size_t k : rows) {
       const StudyRow& row = report.result.rows[k];
       if (!std::isfinite(row.errors[front.quantity])) continue;
@@ -120,13 +121,9 @@ Plot time_plot(const StudyReport& report, const std::string& problem) {
   std::size_t count = 0;
   double place = 0;
   for (const auto& [method, rows] : by_method(report, problem)) {
-    const Look look = look_of(count++);
-    Series series{.label = method.empty() ? "median" : method,
-                  .style = rows.size() > 1 ? SeriesStyle::line_with_points : SeriesStyle::points,
-                  .colour = look.colour,
-                  .marker = look.marker,
-                  .filled = look.filled,
-                  .column = method.empty() ? "time" : method};
+    Series series = series_of(count++, rows.size());
+    series.label = method.empty() ? "median" : method;
+    series.column = method.empty() ? "time" : method;
     for (const std::size_t k : rows) {
       const StudyRow& row = report.result.rows[k];
       const bool varied = !row.setting.values.empty();

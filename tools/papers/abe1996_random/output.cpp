@@ -94,18 +94,18 @@ Named<Plot> plots(const Result& result) {
 Table table(const Result& result) {
   const auto& points = result.points;
   Table all;
-  add_column(all, "points", points, [&](const Point& p) { return std::string(to_string(result.family_of(p).points)); });
-  add_column(all, "disorder", points, [&](const Point& p) { return result.family_of(p).disorder; });
-  add_column(all, "stretch", points, [&](const Point& p) { return result.family_of(p).stretch; });
-  add_column(all, "weighting", points, [](const Point& p) { return std::string(to_string(p.weighting)); });
-  add_column(all, "branch_scatter", points, [&](const Point& p) { return result.disorder[p.family].branch_scatter; });
-  add_column(all, "kT_over_kN", points, &Point::ratio);
+  all.add("points", points, [&](const Point& p) { return std::string(to_string(result.family_of(p).points)); });
+  all.add("disorder", points, [&](const Point& p) { return result.family_of(p).disorder; });
+  all.add("stretch", points, [&](const Point& p) { return result.family_of(p).stretch; });
+  all.add("weighting", points, [](const Point& p) { return std::string(to_string(p.weighting)); });
+  all.add("branch_scatter", points, [&](const Point& p) { return result.disorder[p.family].branch_scatter; });
+  all.add("kT_over_kN", points, &Point::ratio);
   const auto mean = [&](const std::string& name, std::size_t number) {
-    add_column(all, name, points, [&](const Point& p) { return p.mean(number); });
+    all.add(name, points, [&](const Point& p) { return p.mean(number); });
   };
   const auto estimate = [&](const std::string& name, std::size_t number) {
     mean(name, number);
-    add_column(all, name + "_standard_error", points, [&](const Point& p) { return p.numbers[number].standard_error; });
+    all.add(name + "_standard_error", points, [&](const Point& p) { return p.numbers[number].standard_error; });
   };
   for (const auto& [modulus, name, unit] :
        {std::tuple{poisson, "nu", ""}, {shear, "G", "_over_kN"}, {bulk, "K", "_over_kN"}}) {

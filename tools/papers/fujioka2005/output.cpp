@@ -42,27 +42,26 @@ Reproduction compute(bool quick) {
 template <class Row>
 Table table_of(const std::vector<Row>& rows) {
   Table table;
-  add_column(table, "law", rows, [](const Row& r) { return std::string(to_string(r.variant.law)); });
-  add_column(table, "letter", rows, [](const Row& r) { return std::string(letter_of(r.variant.law)); });
-  add_column(table, "a", rows, [](const Row& r) { return r.variant.a; });
+  table.add("law", rows, [](const Row& r) { return std::string(to_string(r.variant.law)); });
+  table.add("letter", rows, [](const Row& r) { return std::string(letter_of(r.variant.law)); });
+  table.add("a", rows, [](const Row& r) { return r.variant.a; });
   return table;
 }
 
 Table csv_of(const std::vector<Table1Row>& rows) {
   Table table = table_of(rows);
-  add_column(table, "step_s", rows, &Table1Row::step);
-  add_column(table, "evaluations", rows, &Table1Row::evaluations);
-  add_column(table, "evaluations_gravity_first", rows, &Table1Row::gravity_first);
-  add_column(table, "run_s", rows, &Table1Row::run_seconds);
-  add_column(table, "law_alone_ns", rows, &Table1Row::evaluation_nanoseconds);
+  table.add("step_s", rows, &Table1Row::step);
+  table.add("evaluations", rows, &Table1Row::evaluations);
+  table.add("evaluations_gravity_first", rows, &Table1Row::gravity_first);
+  table.add("run_s", rows, &Table1Row::run_seconds);
+  table.add("law_alone_ns", rows, &Table1Row::evaluation_nanoseconds);
   return table;
 }
 
 Table csv_of(const std::vector<Table2Row>& rows) {
   Table table = table_of(rows);
   for (std::size_t k = 0; k < table2_steps.size(); ++k)
-    add_column(table, fmt::format("steps_at_{:.0e}_s", table2_steps[k]), rows,
-               [k](const Table2Row& r) { return r.steps[k]; });
+    table.add(fmt::format("steps_at_{:.0e}_s", table2_steps[k]), rows, [k](const Table2Row& r) { return r.steps[k]; });
   return table;
 }
 

@@ -14,15 +14,15 @@ namespace {
 Table table_of(const Reproduction& result) {
   const auto& runs = result.runs;
   Table table;
-  add_column(table, "run", runs, [](const Done& d) { return d.run.name(); });
-  add_column(table, "shape", runs, [](const Done& d) { return plural_of(d.run.fill.shape); });
-  add_column(table, "variant", runs, [](const Done& d) { return d.run.fill.variant; });
-  add_column(table, "seed", runs, [](const Done& d) { return static_cast<std::int64_t>(d.run.fill.seed); });
-  add_column(table, "acceleration_gal", runs, [](const Done& d) { return d.run.shaking->gal; });
-  add_column(table, "frequency_Hz", runs, [](const Done& d) { return d.run.shaking->frequency; });
-  add_column(table, "cycles", runs, [](const Done& d) { return d.run.shaking->cycles; });
+  table.add("run", runs, [](const Done& d) { return d.run.name(); });
+  table.add("shape", runs, [](const Done& d) { return plural_of(d.run.fill.shape); });
+  table.add("variant", runs, [](const Done& d) { return d.run.fill.variant; });
+  table.add("seed", runs, [](const Done& d) { return static_cast<std::int64_t>(d.run.fill.seed); });
+  table.add("acceleration_gal", runs, [](const Done& d) { return d.run.shaking->gal; });
+  table.add("frequency_Hz", runs, [](const Done& d) { return d.run.shaking->frequency; });
+  table.add("cycles", runs, [](const Done& d) { return d.run.shaking->cycles; });
   for (const OutcomeKey& key : outcome_keys)
-    add_column(table, key.name, runs, [&](const Done& d) { return d.outcome.*key.value; });
+    table.add(key.name, runs, [&](const Done& d) { return d.outcome.*key.value; });
   return table;
 }
 

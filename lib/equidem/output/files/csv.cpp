@@ -102,15 +102,6 @@ std::size_t Table::rows() const {
   return std::visit([](const auto& v) { return v.size(); }, columns_.front().values);
 }
 
-const Table::Column& Table::column(const std::string& name) const {
-  const auto found = std::find_if(columns_.begin(), columns_.end(), [&](const Column& c) { return c.name == name; });
-  if (found == columns_.end()) {
-    bad_input(fmt::format("the table has no column '{}'", name),
-              fmt::format("its columns are: {}", joined(names_in(columns_))), "Choose one of them");
-  }
-  return *found;
-}
-
 std::string Table::csv() const {
   CsvText text(names_in(columns_), rows());
   for (std::size_t row = 0; row < rows(); ++row) {

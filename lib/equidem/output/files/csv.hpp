@@ -66,9 +66,6 @@ class Table {
 
   [[nodiscard]] std::size_t rows() const;
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
-  /// The column of that name.
-  /// \throws Error (bad_input) where there is none
-  [[nodiscard]] const Column& column(const std::string& name) const;
   [[nodiscard]] std::string csv() const;
 
  private:
