@@ -91,14 +91,15 @@ TEST_CASE("a_file_of_bonds_ties_grains_by_number") {
   REQUIRE(own.scene.bonds.size() == 2);
   CHECK((own.scene.bonds[0].normal_dashpot == 3 && own.scene.bonds[0].normal_spring == 7));
   CHECK((own.scene.bonds[1].normal_dashpot == 1 && own.scene.bonds[1].normal_spring == 0));
-  for (const auto& [text, said] : {std::pair{"i,j,normal_dashpot\n0,1,-1\n", ":2: '-1' is no normal_dashpot"},
-                                   std::pair{"i,j,normal_dashpot\n0,1,inf\n", ":2: 'inf' is no normal_dashpot"},
-                                   std::pair{"i,j,normal_dashpot\n0,1,0\n", ":2: the bond has no dashpot"},
-                                   std::pair{"a,b\n0,1\n", ":1: the first two columns are not i and j"},
-                                   std::pair{"i,j\n0,one\n", ":2: 'one' is no number of a grain"},
-                                   std::pair{"i,j\n0,7\n", ":2: there is no grain 7"},
-                                   std::pair{"i,j\n0,1\n1,0\n", ":3: grains 1 and 0 are tied twice"},
-                                   std::pair{"i,j\n2,2\n", ":2: grain 2 is tied to itself"}}) {
+  for (const auto& [text, said] :
+       {std::pair{"i,j,normal_dashpot\n0,1,-1\n", ":2: '-1' is no normal_dashpot"},
+        std::pair{"i,j,normal_dashpot\n0,1,inf\n", ":2: 'inf' is no normal_dashpot"},
+        std::pair{"i,j,normal_dashpot\n0,1,0\n", ":2: the bond of grains 0 and 1 has neither dashpot"},
+        std::pair{"a,b\n0,1\n", ":1: the first two columns are not i and j"},
+        std::pair{"i,j\n0,one\n", ":2: 'one' is no number of a grain"},
+        std::pair{"i,j\n0,7\n", ":2: a bond ties grain 7 (there are 3 grains"},
+        std::pair{"i,j\n0,1\n1,0\n", ":3: grains 0 and 1 are bonded twice"},
+        std::pair{"i,j\n2,2\n", ":2: a bond ties grain 2 to itself"}}) {
     write(text);
     CAPTURE(text);
     CHECK_THROWS_WITH(parsed_bonds(table), Catch::Contains(said));
@@ -108,11 +109,11 @@ TEST_CASE("a_file_of_bonds_ties_grains_by_number") {
 
 TEST_CASE("bonds_that_a_case_cannot_mean_are_refused_with_their_line") {
   for (const auto& [text, said] :
-       {std::pair{"[[bond]]\ngrains = [0, 1]\n", "the bond has no dashpot"},
+       {std::pair{"[[bond]]\ngrains = [0, 1]\n", "the bond of grains 0 and 1 has neither dashpot"},
         std::pair{"[bonds]\nnormal_dashpot = 1.0\n", "no grains are tied"},
         std::pair{"[[bond]]\ngrains = [0, 1, 2]\nnormal_dashpot = 1.0\n", "a bond ties two"},
-        std::pair{"[[bond]]\ngrains = [0, 3]\nnormal_dashpot = 1.0\n", "there is no grain 3"},
-        std::pair{"[[bond]]\ngrains = [1, 1]\nnormal_dashpot = 1.0\n", "grain 1 is tied to itself"},
+        std::pair{"[[bond]]\ngrains = [0, 3]\nnormal_dashpot = 1.0\n", "a bond ties grain 3 (there are 3 grains"},
+        std::pair{"[[bond]]\ngrains = [1, 1]\nnormal_dashpot = 1.0\n", "a bond ties grain 1 to itself"},
         std::pair{"[[bond]]\ngrains = [0, 1]\nnormal_dashpot = -1.0\n", "-1.0 is out of range"}}) {
     CAPTURE(text);
     CHECK_THROWS_WITH(parsed_bonds(text), Catch::Contains("case.toml:") && Catch::Contains(said));

@@ -73,8 +73,8 @@ TEST_CASE("homogenization_and_ensembles_say_what_their_file_says") {
   CHECK(c.homogenize.boundary == Boundary::displacement);
   CHECK(c.homogenize.bounds == BoundsWanted::all);
   REQUIRE(c.ensemble);
-  CHECK(c.ensemble->discs == std::vector<std::int64_t>{30, 60, 120});
-  CHECK(c.ensemble->samples == 4);
+  CHECK(c.ensemble->plan.discs == std::vector<std::int64_t>{30, 60, 120});
+  CHECK(c.ensemble->plan.samples == 4);
   CHECK(c.ensemble->accuracy == 0.02);
   CHECK(c.ensemble->confidence == 0.9);
 }
@@ -90,8 +90,8 @@ TEST_CASE("homogenization_has_defaults_and_an_ensemble_only_where_it_is_asked_fo
 
   const Case asked = parsed(load_case + "[ensemble]\n");
   REQUIRE(asked.ensemble);
-  CHECK(asked.ensemble->discs == std::vector<std::int64_t>{100, 400, 1600});
-  CHECK(asked.ensemble->samples == 10);
+  CHECK(asked.ensemble->plan.discs == std::vector<std::int64_t>{100, 400, 1600});
+  CHECK(asked.ensemble->plan.samples == 10);
   CHECK_FALSE(asked.ensemble->accuracy);
 }
 
@@ -121,7 +121,7 @@ TEST_CASE("the_resolved_case_reads_back_as_the_same_case") {
   CHECK(second.assembly.density == first.assembly.density);
   CHECK(second.homogenize.boundary == first.homogenize.boundary);
   REQUIRE(second.ensemble.has_value() == first.ensemble.has_value());
-  if (first.ensemble) CHECK(second.ensemble->discs == first.ensemble->discs);
+  if (first.ensemble) CHECK(second.ensemble->plan.discs == first.ensemble->plan.discs);
 }
 
 TEST_CASE("paths_are_relative_to_the_case_file_and_follow_the_echo") {

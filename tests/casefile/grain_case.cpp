@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "equidem/casefile/engine/echo.hpp"
 #include "equidem/casefile/grains/grain_step.hpp"
 #include "equidem/core/text.hpp"
 

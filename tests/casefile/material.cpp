@@ -3,7 +3,6 @@
 
 #include "equidem/casefile/assembly/build.hpp"
 #include "equidem/casefile/assembly/case.hpp"
-#include "equidem/casefile/assembly/springs_file.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "equidem/casefile/engine/echo.hpp"
 #include "equidem/core/error.hpp"
 
 #include "support/catch.hpp"

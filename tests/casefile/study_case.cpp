@@ -56,6 +56,10 @@ TEST_CASE("study_files_that_cannot_be_carried_out_are_refused") {
     CHECK_THROWS_WITH(parsed_study(text), Catch::Contains(why) && Catch::Contains("study.toml"));
   };
   refused(head, "nothing is varied");
+  std::string misspelt = head + rows;
+  misspelt.replace(misspelt.find("solve"), 5, "solv");
+  refused(misspelt, "\"solv\" is no known verb");
+  refused(misspelt, "Did you mean \"solve\"?");
   refused(head + "truth = \"richardson\"\n" + rows, "the order is missing");
   refused(head + "truth = \"known\"\n" + rows, "value");
   refused(head + "truth = \"known\"\nvalue = 0\n" + rows, "errors are relative to 0");

@@ -285,3 +285,35 @@ TEST_CASE("uniform_stress_estimate_refuses_what_it_cannot_estimate") {
   chain.contacts.clear();
   CHECK(contains(message(chain, 1), "the assembly has no contacts"));
 }
+
+TEST_CASE("other_boundaries_and_affine_motion_enclose_the_stiffness") {
+  for (const Sample& sample : assemblies(true)) {
+    CAPTURE(sample.name);
+    const ContactSprings springs = uniform(1e9, 3e8);
+    const auto order = bounded_stiffness(sample.assembly, springs).ordered(springs);
+    REQUIRE(order.size() == 4);
+    for (std::size_t k = 1; k < order.size(); ++k) {
+      CAPTURE(order[k - 1].key, order[k].key);
+      CHECK(margin(*order[k - 1].stiffness, *order[k].stiffness) > -1e-9);
+    }
+    CHECK(bounded_stiffness(sample.assembly, springs, {.bounds = BoundsWanted::affine}).beside.size() == 2);
+  }
+}
+
+TEST_CASE("the_forces_of_a_strained_state_carry_its_stress") {
+  constexpr double strain = 1e-3;
+  for (const Sample& sample : assemblies(true)) {
+    const ContactSprings springs = uniform(1e9, 3e8);
+    const EffectiveStiffness found = effective_stiffness(sample.assembly, springs);
+    const auto states = strained_states(sample.assembly, springs, found, strain);
+    REQUIRE(states.size() == 3);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Tensor2 stress = macroscopic_stress(sample.assembly, states[k].forces);
+      CAPTURE(sample.name, k, stress.xx, stress.yy, stress.xy, stress.yx);
+      const double rounding = 1e-10 * largest_entry(found.stiffness) * strain;
+      CHECK(std::abs(stress.xx - found.stiffness[0][k] * strain) < rounding);
+      CHECK(std::abs(stress.yy - found.stiffness[1][k] * strain) < rounding);
+      CHECK(std::abs(0.5 * (stress.xy + stress.yx) - found.stiffness[2][k] * strain) < rounding);
+    }
+  }
+}

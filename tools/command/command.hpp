@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "equidem/casefile/assembly/case.hpp"
-#include "equidem/casefile/engine/echo.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/output/files/json.hpp"

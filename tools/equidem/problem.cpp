@@ -1,31 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "problem.hpp"
 
-#include <numeric>
-
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/material/spring_relations.hpp"
 
 namespace equidem {
-
-namespace {
-
-/// Sum of the moments, N, that act on discs other than through contacts.
-double outer_moment(const Problem& problem, const LoadCase& loads, const Equilibrium& equilibrium) {
-  const std::vector<double>& restraining = equilibrium.rotation_moments;
-  double sum = std::accumulate(restraining.begin(), restraining.end(), 0.0);
-  for (const Reaction& reaction : equilibrium.reactions) sum += reaction.moment;
-  for (const Load& load : loads) {
-    const double times =
-        load.kind == LoadKind::total ? 1.0 : static_cast<double>(group(problem.assembly, load.group).discs.size());
-    sum += times * load.moment;
-  }
-  return sum;
-}
-
-}  // namespace
 
 Problem problem_of(Case resolved, std::optional<Assembly> given) {
   StageTimes times;
@@ -72,7 +53,7 @@ SolvedCase solve_case(const Problem& problem, const EquilibriumSolver& solver, c
   if (!problem.assembly.cell_areas.empty()) {
     result.stresses = disc_stresses(problem.assembly, equilibrium.contact_forces);
     result.stress = macroscopic_stress(problem.assembly, equilibrium.contact_forces);
-    result.moment_per_area = outer_moment(problem, loads.loads, equilibrium) / problem.assembly.area();
+    result.moment_per_area = outer_moment(problem.assembly, loads.loads, equilibrium) / problem.assembly.area();
   }
   if (problem.tension)
     result.tension = evaluate_tension(problem.assembly, problem.springs.springs, *problem.resolved.test,

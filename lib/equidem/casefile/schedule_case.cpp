@@ -1,25 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/schedule_case.hpp"
 
-#include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
 #include "equidem/casefile/engine/read_value.hpp"
-#include "equidem/core/file.hpp"
 #include "equidem/core/names.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool read_number(std::string_view text, double& value) {
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return problem == std::errc() && end == text.data() + text.size() && std::isfinite(value);
-}
 
 /// \return the key at fault where the schedule is wrong
 const char* complete_schedule(const TomlValue& table, ScheduleTable& read) {
@@ -44,33 +37,22 @@ const char* complete_schedule(const TomlValue& table, ScheduleTable& read) {
 }  // namespace
 
 void read_points(const fs::path& path, Schedule& table, std::string_view column) {
-  const std::string content = read_file(path);
-  std::string_view rest = without_byte_order_mark(content);
-  bool first = true;
-  for (int line = 1; !rest.empty(); ++line) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    const std::string_view row = trimmed(rest.substr(0, end));
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-    if (row.empty() || row.front() == '#') continue;
-    const std::size_t comma = std::min(row.find(','), row.size());
-    const std::string_view left = trimmed(row.substr(0, comma));
-    const std::string_view right = trimmed(row.substr(std::min(comma + 1, row.size())));
-    const bool heading = first && left == "time" && right == column;
-    first = false;
-    if (heading) continue;
-    double time = 0, value = 0;
-    if (!read_number(left, time) || !read_number(right, value)) {
-      throw Error(ErrorKind::bad_input, "this row is not a time and a value", "two numbers with a comma are needed",
-                  fmt::format("Write it like 0.5,1.0; the first row may be time,{}", column),
-                  fmt::format("{}:{}", path.string(), line));
+  TableFile file(path);
+  while (file.next()) {
+    const auto& cells = file.cells();
+    const bool pair = cells.size() == 2;
+    if (file.is_first() && pair && cells[0] == "time" && cells[1] == column) continue;
+    const auto time = number_from<double>(cells.front()), value = number_from<double>(cells.back());
+    if (!pair || !time || !value || !std::isfinite(*time) || !std::isfinite(*value)) {
+      file.fail("this row is not a time and a value", "two numbers with a comma are needed",
+                fmt::format("Write it like 0.5,1.0; the first row may be time,{}", column));
     }
-    if (!table.times.empty() && time <= table.times.back()) {
-      throw Error(ErrorKind::bad_input, fmt::format("the time {} s comes after {} s", time, table.times.back()),
-                  "times ascend, and a value cannot jump", "Order the rows and leave out repeated times",
-                  fmt::format("{}:{}", path.string(), line));
+    if (!table.times.empty() && *time <= table.times.back()) {
+      file.fail(fmt::format("the time {} s comes after {} s", *time, table.times.back()),
+                "times ascend, and a value cannot jump", "Order the rows and leave out repeated times");
     }
-    table.times.push_back(time);
-    table.values.push_back(value);
+    table.times.push_back(*time);
+    table.values.push_back(*value);
   }
   if (table.times.empty())
     bad_input(fmt::format("'{}' has no points", path.string()), "a table needs at least one", "Add rows like 0.5,1.0");

@@ -7,12 +7,21 @@
 /// of the work is lost. Without spring and dashpot (kT = c = 0) the contact always slides: mu N against the velocity.
 #pragma once
 
+#include "equidem/core/names.hpp"
+
 namespace equidem {
 
 /// Force that is limited by friction.
 enum class FrictionCap {
   whole_force,   ///< |T| <= mu N of spring and dashpot together; the dashpot is inactive while sliding
   spring_alone,  ///< only the spring (Sukegawa (2.16)); the dashpot adds to it
+};
+
+template <>
+struct EnumNames<FrictionCap> {
+  using enum FrictionCap;
+  static constexpr const char* what = "limit of friction";
+  static constexpr NamedValue<FrictionCap> list[] = {{whole_force, "whole_force"}, {spring_alone, "spring_alone"}};
 };
 
 /// All >= 0.

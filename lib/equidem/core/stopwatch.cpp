@@ -14,6 +14,10 @@ void StageTimes::add(const std::string& stage, double seconds) {
   }
 }
 
+void StageTimes::add(const StageTimes& others) {
+  for (const auto& [stage, seconds] : others.stages_) add(stage, seconds);
+}
+
 double StageTimes::of(const std::string& stage) const {
   for (const auto& [name, seconds] : stages_) {
     if (name == stage) return seconds;

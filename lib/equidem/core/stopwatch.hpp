@@ -15,6 +15,7 @@ class StageTimes {
  public:
   /// Add seconds to a stage, which is created where it is new.
   void add(const std::string& stage, double seconds);
+  void add(const StageTimes& others);
   /// Seconds of a stage; 0 where it never ran.
   [[nodiscard]] double of(const std::string& stage) const;
   [[nodiscard]] double total() const;

@@ -13,6 +13,7 @@
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/frame.hpp"
+#include "equidem/core/names.hpp"
 #include "equidem/dynamics/integrator.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/motion/any_simulation.hpp"
@@ -21,6 +22,13 @@
 #include "equidem/statics/supports.hpp"
 
 namespace equidem {
+
+template <>
+struct EnumNames<LoopKind::Motion> {
+  using enum LoopKind::Motion;
+  static constexpr const char* what = "kind of motion";
+  static constexpr NamedValue<LoopKind::Motion> list[] = {{small, "small"}, {finite, "finite"}};
+};
 
 /// Prescribed displacement (m, rad) of the discs of a group over time; a component without a schedule is free.
 struct TimedSupport {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/homogenize/bounds.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <iterator>
 
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
@@ -138,6 +140,56 @@ Matrix3 uniform_stress_estimate(const Assembly& assembly, const ContactSprings& 
   Triangle stiffness{g.xx, -g.xx, g.xy, g.xx, -g.xy, g.yy};
   add_square(first, p, stiffness);
   return unit * symmetric(stiffness);
+}
+
+std::vector<StiffnessBeside> BoundedStiffness::ordered(const ContactSprings& springs) const {
+  std::vector<StiffnessBeside> order;
+  if (springs.any_negative()) return order;
+  for (const std::string key : {"traction", "periodic", "displacement", "voigt"}) {
+    if (key == to_string(result.boundary)) order.push_back({key, result.stiffness, {}});
+    std::ranges::copy_if(beside, std::back_inserter(order),
+                         [&](const StiffnessBeside& other) { return other.key == key && other.stiffness; });
+  }
+  return order;
+}
+
+std::vector<Boundary> boundaries_of(const Assembly& assembly, const ContactSprings& springs,
+                                    const BoundsOptions& options) {
+  const bool periodic = assembly.periodic();
+  std::vector<Boundary> chosen = {options.boundary.value_or(periodic ? Boundary::periodic : Boundary::displacement)};
+  const bool few = assembly.size() <= most_discs_of_bounds && !springs.any_negative();
+  const bool side_by_side = !periodic && !options.boundary;
+  if (side_by_side || options.bounds == BoundsWanted::all || (options.bounds == BoundsWanted::automatic && few)) {
+    for (const Boundary other : {Boundary::displacement, Boundary::traction})
+      if (other != chosen.front()) chosen.push_back(other);
+  }
+  return chosen;
+}
+
+BoundedStiffness bounded_stiffness(const Assembly& assembly, const ContactSprings& springs,
+                                   const BoundsOptions& options) {
+  const auto solve = [&](Boundary boundary) {
+    return effective_stiffness(assembly, springs,
+                               {.boundary = boundary, .rotation = options.rotation, .solver = options.solver});
+  };
+  const std::vector<Boundary> boundaries = boundaries_of(assembly, springs, options);
+  BoundedStiffness all{.result = solve(boundaries.front()), .beside = {}};
+  const auto add = [&](const std::string& key, const auto& stiffness_of) {
+    StiffnessBeside& one = all.beside.emplace_back(StiffnessBeside{key, {}, {}});
+    try {
+      one.stiffness = stiffness_of();
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::interrupted) throw;
+      one.missing = error.what();
+    }
+  };
+  Stopwatch watch;
+  for (std::size_t k = 1; k < boundaries.size(); ++k)
+    add(to_string(boundaries[k]), [&] { return solve(boundaries[k]).stiffness; });
+  add("voigt", [&] { return voigt_stiffness(assembly, springs); });
+  add("uniform_stress_estimate", [&] { return uniform_stress_estimate(assembly, springs); });
+  all.result.times.add("bounds", watch.lap());
+  return all;
 }
 
 }  // namespace equidem

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Estimates of the effective stiffness that need no solution.
+/// The effective stiffness beside its bounds and estimates.
 #pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/core/matrix.hpp"
+#include "equidem/core/names.hpp"
+#include "equidem/homogenize/effective_stiffness.hpp"
 
 namespace equidem {
 
@@ -26,5 +33,53 @@ Matrix3 voigt_stiffness(const Assembly& assembly, const ContactSprings& springs)
 /// \throws Error (bad_input) where some kT < 0, or kT = 0 off the lines of centres, there are no contacts, their
 ///         branches do not span the plane, or a free assembly has no cell areas
 Matrix3 uniform_stress_estimate(const Assembly& assembly, const ContactSprings& springs);
+
+/// Bounds that are found with the effective stiffness.
+enum class BoundsWanted {
+  automatic,  ///< all up to most_discs_of_bounds discs where no kT < 0, else affine
+  affine,     ///< those that need no solution
+  all,        ///< also those by uniform displacements and tractions at the boundary
+};
+
+template <>
+struct EnumNames<BoundsWanted> {
+  static constexpr const char* what = "choice of bounds";
+  static constexpr NamedValue<BoundsWanted> list[] = {
+      {BoundsWanted::automatic, "auto"}, {BoundsWanted::affine, "affine"}, {BoundsWanted::all, "all"}};
+};
+
+inline constexpr std::size_t most_discs_of_bounds = 20000;
+
+struct BoundsOptions {
+  /// Boundary of the result; none: periodic where the assembly is, else displacement with traction beside it.
+  std::optional<Boundary> boundary = {};
+  BoundsWanted bounds = BoundsWanted::automatic;
+  Rotation rotation = Rotation::from_scene;
+  SolverOptions solver = {};
+};
+
+/// An estimate or a bound beside the stiffness.
+struct StiffnessBeside {
+  std::string key;  ///< "voigt", "uniform_stress_estimate", or the name of a Boundary
+  std::optional<Matrix3> stiffness;
+  std::string missing;  ///< why there is none
+};
+
+struct BoundedStiffness {
+  EffectiveStiffness result;
+  std::vector<StiffnessBeside> beside;
+
+  /// Those known of traction <= periodic <= displacement <= Voigt, lowest first. Empty where some kT < 0: energies are
+  /// no minima then, and nothing is a bound.
+  [[nodiscard]] std::vector<StiffnessBeside> ordered(const ContactSprings& springs) const;
+};
+
+/// The boundaries that bounded_stiffness solves with, that of the result first.
+std::vector<Boundary> boundaries_of(const Assembly& assembly, const ContactSprings& springs,
+                                    const BoundsOptions& options);
+
+/// \throws Error as effective_stiffness of the first boundary; a bound that cannot be found says why
+BoundedStiffness bounded_stiffness(const Assembly& assembly, const ContactSprings& springs,
+                                   const BoundsOptions& options = {});
 
 }  // namespace equidem

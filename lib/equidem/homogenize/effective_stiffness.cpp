@@ -6,11 +6,15 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
+#include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/homogenize/affine.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/homogenize/sample_solver.hpp"
+#include "equidem/statics/load_bearing.hpp"
 
 namespace equidem {
 namespace {
@@ -127,6 +131,41 @@ EffectiveStiffness effective_stiffness(const Assembly& assembly, const ContactSp
   EffectiveStiffness result = solve(assembly, springs, options);
   if (const auto weak = judge(result)) refuse(*weak, assembly, springs, options);
   return result;
+}
+
+DisplacementOperator displacement_operator(const EffectiveStiffness& result) {
+  const Matrix4& c = result.gradient_stiffness;
+  const EffectiveModuli moduli = effective_moduli(result.stiffness);
+  const double kappa = 0.25 * (c[2][2] + c[3][3] - c[2][3] - c[3][2]);
+  return {.shear_modulus = moduli.shear_modulus + kappa, .bulk_modulus_2d = moduli.bulk_modulus_2d - kappa};
+}
+
+std::vector<StrainedState> strained_states(const Assembly& assembly, const ContactSprings& springs,
+                                           const EffectiveStiffness& result, double strain) {
+  const LoadBearingNetwork bearing =
+      result.discs_removed > 0 ? load_bearing_network(assembly, springs, result.effects) : LoadBearingNetwork{};
+  const std::array<Tensor2, 3> gradients{{{.xx = strain}, {.yy = strain}, {.xy = strain / 2, .yx = strain / 2}}};
+  std::vector<StrainedState> states;
+  for (std::size_t k = 0; k < result.fluctuations.size(); ++k) {
+    StrainedState state{.gradient = gradients[k],
+                        .fluctuations = result.fluctuations[k],
+                        .forces = affine_contact_forces(assembly, springs, gradients[k], 0)};
+    for (DiscMotion& motion : state.fluctuations) motion = {strain * motion.u, strain * motion.theta};
+    for (std::size_t c = 0; c < state.forces.size(); ++c) {
+      const Contact& contact = assembly.contacts[c];
+      const ContactForce f = linear_spring_force(
+          springs[c], deformation(frame_of(assembly, c), state.fluctuations[contact.i], state.fluctuations[contact.j]));
+      state.forces[c].normal += f.normal;
+      state.forces[c].tangential += f.tangential;
+    }
+    if (bearing.part) {
+      std::vector<ContactForce> carried(state.forces.size());
+      for (const std::int32_t c : bearing.part->contacts) carried[c] = state.forces[c];
+      state.forces = std::move(carried);
+    }
+    states.push_back(std::move(state));
+  }
+  return states;
 }
 
 }  // namespace equidem

@@ -86,4 +86,24 @@ struct EffectiveStiffness {
 EffectiveStiffness effective_stiffness(const Assembly& assembly, const ContactSprings& springs,
                                        const HomogenizeOptions& options = {});
 
+/// The stiffness of the operator of the displacements, where rotation is restrained: div (C4 : grad u) of an isotropic
+/// C4 is that of a body with G' = G + kappa and K' = K - kappa, kappa half of the stress s_xy - s_yx by a unit of
+/// (u_x,y - u_y,x). On the hexagonal lattice these are the G' and K' of Abe 1996, eq. (53).
+struct DisplacementOperator {
+  double shear_modulus = 0;
+  double bulk_modulus_2d = 0;
+};
+DisplacementOperator displacement_operator(const EffectiveStiffness& result);
+
+/// The assembly under one mean strain.
+struct StrainedState {
+  Tensor2 gradient;                      ///< of the mean displacement
+  std::vector<DiscMotion> fluctuations;  ///< per disc, beside it
+  std::vector<ContactForce> forces;      ///< per contact; 0 where no load is carried
+};
+/// The states of the mean strains xx, yy and xy, each of the size `strain` (xy: engineering shear strain).
+/// \param result of the same assembly and springs; one of tractions has no states
+std::vector<StrainedState> strained_states(const Assembly& assembly, const ContactSprings& springs,
+                                           const EffectiveStiffness& result, double strain);
+
 }  // namespace equidem

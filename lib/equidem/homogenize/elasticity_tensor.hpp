@@ -46,6 +46,15 @@ StiffnessEigen eigenstrains(const Matrix3& stiffness);
 /// C^-1, 1/Pa: strain with engineering shear by stress.
 /// \throws Error (computation_failed) where C is singular: an eigenvalue within round-off of zero
 Matrix3 inverse(const Matrix3& stiffness);
+/// Variation of C11 with the direction of its axis, C11 + |two| cos 2(t - t2) + |four| cos 4(t - t4) about its mean.
+struct StiffnessAxes {
+  double one_axis = 0;        ///< amplitude over the mean: one axis is stiffer than the one across it
+  double one_direction = 0;   ///< rad, of that axis, in [0, pi)
+  double two_axes = 0;        ///< amplitude over the mean: two axes at right angles are stiffer than those between
+  double two_directions = 0;  ///< rad, of the first of them, in [0, pi/2)
+};
+StiffnessAxes stiffness_axes(const Matrix3& stiffness);
+
 /// Smallest eigenvalue of b - a over the largest of b: not negative where a <= b as quadratic forms, but for round-off.
 /// \param b positive for some strain
 double margin(const Matrix3& a, const Matrix3& b);

@@ -86,6 +86,18 @@ Tensor2 macroscopic_stress(const Assembly& assembly, std::span<const ContactForc
   return (1 / area) * std::accumulate(partial.begin(), partial.end(), Tensor2{});
 }
 
+double outer_moment(const Assembly& assembly, const LoadCase& loads, const Equilibrium& equilibrium) {
+  const std::vector<double>& restraining = equilibrium.rotation_moments;
+  double sum = std::accumulate(restraining.begin(), restraining.end(), 0.0);
+  for (const Reaction& reaction : equilibrium.reactions) sum += reaction.moment;
+  for (const Load& load : loads) {
+    const double times =
+        load.kind == LoadKind::total ? 1.0 : static_cast<double>(group(assembly, load.group).discs.size());
+    sum += times * load.moment;
+  }
+  return sum;
+}
+
 StressAsymmetry stress_asymmetry(const Assembly& assembly, std::span<const ContactForce> forces,
                                  std::span<const double> moments) {
   assert(moments.empty() || moments.size() == assembly.size());

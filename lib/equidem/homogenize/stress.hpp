@@ -10,6 +10,7 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/vector.hpp"
+#include "equidem/statics/equilibrium.hpp"
 
 namespace equidem {
 
@@ -39,6 +40,10 @@ struct StressAsymmetry {
   double difference = 0;      ///< s_xy - s_yx of the macroscopic stress, Pa
   double moment_density = 0;  ///< sum of the outer moments over the area, N/m² = Pa; equal to it at rest
 };
+
+/// Sum of the moments, N, that act on discs other than through contacts: those of restrained rotations, of supports and
+/// of loads.
+double outer_moment(const Assembly& assembly, const LoadCase& loads, const Equilibrium& equilibrium);
 
 /// \param moments N, per disc, counter-clockwise: those that hold discs against rotation
 ///         (Equilibrium::rotation_moments) and those applied by loads; empty: none act

@@ -202,11 +202,12 @@ HeldNetwork held_network_of(const GrainPacking& packing, const SpringConstants& 
   return result;
 }
 
-RestConfirmation confirm_rest(const GrainPacking& packing, const SettlingOptions& options) {
+namespace {
+
+void confirm_by_statics(const GrainPacking& packing, const SettlingOptions& options, RestConfirmation& result) {
   const std::vector<Lack> lacks = lacks_of(packing, options.gravity);
   HeldNetwork network = held_network_of(packing, options.springs);
   Assembly& assembly = network.assembly;
-  RestConfirmation result;
   result.left_out = static_cast<std::int64_t>(packing.size() - network.bodies.size());
   for (const GrainContact& contact : packing.contacts)
     result.mean_overlap += contact.overlap / static_cast<double>(packing.contacts.size());
@@ -230,6 +231,22 @@ RestConfirmation confirm_rest(const GrainPacking& packing, const SettlingOptions
   for (const DiscMotion& motion : found.motions)
     result.largest_motion = std::max(result.largest_motion, norm(motion.u));
   result.residual = found.relative_residual;
+}
+
+}  // namespace
+
+RestConfirmation confirm_rest(const GrainPacking& packing, const SettlingOptions& options) {
+  RestConfirmation result;
+  if (packing.contacts.empty()) {
+    result.missing = "there are no contacts";
+    return result;
+  }
+  try {
+    confirm_by_statics(packing, options, result);
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    result.missing = error.problem();
+  }
   return result;
 }
 

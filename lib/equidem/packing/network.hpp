@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
@@ -37,11 +38,12 @@ struct RestConfirmation {
   double largest_motion = 0;  ///< m: how far a body moves under what its weight and contact forces lack
   double residual = 0;        ///< relative, of the solution
   std::int64_t left_out = 0;  ///< bodies with fewer than two contacts
+  std::string missing;        ///< why statics gives no answer, such as motions without stiffness; empty: it does
   [[nodiscard]] double share() const { return largest_motion / mean_overlap; }
 };
 
 /// Put the unbalanced forces and moments of a settled packing on its network and solve.
-/// \throws Error as EquilibriumSolver
+/// \throws Error (interrupted)
 RestConfirmation confirm_rest(const GrainPacking& packing, const SettlingOptions& options);
 
 }  // namespace equidem

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/stopwatch.hpp"
@@ -98,6 +99,18 @@ void make_grains(const PackingShape& shape, const Bodies& bodies, double density
     }
     packing.grains.push_back(grain);
   }
+}
+
+std::vector<Wall> walls_of(const PackingBox& box) {
+  if (box.periodic()) return {};
+  std::vector<Wall> walls = walls_of_box(box.size.x);
+  if (box.sides == PackingBox::Sides::open_top) return walls;
+  Wall lid = walls.front();
+  lid.name = "lid";
+  lid.point = {0, box.size.y};
+  lid.normal = {0, -1};
+  walls.push_back(std::move(lid));
+  return walls;
 }
 
 GrainPacking pack(const PackingOptions& options) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "equidem/core/names.hpp"
 #include "equidem/core/vector.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/packing/methods.hpp"
@@ -26,6 +27,17 @@ struct PackingBox {
   [[nodiscard]] bool periodic() const { return sides == Sides::periodic; }
   [[nodiscard]] double area() const { return size.x * size.y; }
 };
+
+template <>
+struct EnumNames<PackingBox::Sides> {
+  using enum PackingBox::Sides;
+  static constexpr const char* what = "kind of sides";
+  static constexpr NamedValue<PackingBox::Sides> list[] = {
+      {walls, "walls"}, {periodic, "periodic"}, {open_top, "open_top"}};
+};
+
+/// The walls of a box: floor, left, right and, where the top is not open, the lid; none of a periodic box.
+std::vector<Wall> walls_of(const PackingBox& box);
 
 struct PackingOptions {
   PackingMethod method = PackingMethod::growth;

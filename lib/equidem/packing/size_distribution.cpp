@@ -2,15 +2,14 @@
 #include "equidem/packing/size_distribution.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/file.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -128,30 +127,17 @@ void check(const SizeDistribution& sizes) {
 }
 
 std::vector<Sieve> read_sieve_curve(const std::filesystem::path& path) {
-  const std::string content = read_file(path);
+  TableFile file(path);
   std::vector<Sieve> sieves;
-  std::string_view rest = content;
-  bool named = false;
-  for (int line = 1; !rest.empty(); ++line) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    const std::string_view row = trimmed(rest.substr(0, end));
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-    if (row.empty() || row.front() == '#') continue;
-    const std::size_t comma = std::min(row.find(','), row.size());
-    double values[2] = {};
-    bool numbers = comma < row.size();
-    for (int c = 0; c < 2 && numbers; ++c) {
-      const std::string_view cell = trimmed(c == 0 ? row.substr(0, comma) : row.substr(comma + 1));
-      const auto [stop, problem] = std::from_chars(cell.data(), cell.data() + cell.size(), values[c]);
-      numbers = problem == std::errc() && stop == cell.data() + cell.size();
+  while (file.next()) {
+    const auto diameter = number_from<double>(file.cells()[0]);
+    const auto passing = file.cells().size() == 2 ? number_from<double>(file.cells()[1]) : std::nullopt;
+    if (diameter && passing) {
+      sieves.push_back({*diameter, *passing});
+    } else if (!file.is_first()) {  // which may name the columns
+      file.fail(fmt::format("'{}' is no point of a sieve curve", file.row()),
+                "a diameter in m and a share passing are needed", "Write two numbers with a comma between them");
     }
-    if (!numbers && sieves.empty() && !std::exchange(named, true)) continue;  // the row of names
-    if (!numbers) {
-      throw Error(ErrorKind::bad_input, fmt::format("'{}' is no point of a sieve curve", row),
-                  "a diameter in m and a share passing are needed", "Write two numbers with a comma between them",
-                  fmt::format("{}:{}", path.string(), line));
-    }
-    sieves.push_back({values[0], values[1]});
   }
   try {
     check(SizeDistribution{.kind = SizeDistribution::Kind::sieve_curve, .sieves = sieves});

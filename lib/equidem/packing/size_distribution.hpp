@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "equidem/core/names.hpp"
 #include "equidem/core/random.hpp"
 
 namespace equidem {
@@ -27,6 +28,14 @@ struct SizeDistribution {
   double smallest = 0, largest = 0;  ///< uniform: m; equal ones are allowed
   double median = 0, deviation = 0;  ///< log_normal: m, and a number
   std::vector<Sieve> sieves = {};    ///< sieve_curve
+};
+
+template <>
+struct EnumNames<SizeDistribution::Kind> {
+  using enum SizeDistribution::Kind;
+  static constexpr const char* what = "distribution of sizes";
+  static constexpr NamedValue<SizeDistribution::Kind> list[] = {
+      {uniform, "uniform"}, {log_normal, "log_normal"}, {sieve_curve, "sieve_curve"}};
 };
 
 /// \throws Error (bad_input) on numbers out of range, sieves that do not ascend or do not run from 0 to 1

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "equidem/core/names.hpp"
 #include "equidem/core/vector.hpp"
 
 namespace equidem {
@@ -24,6 +25,13 @@ enum class LoadKind {
   per_disc,  ///< N/m on each disc of the group
   total,     ///< N/m on the whole group, equal shares
   traction,  ///< Pa on the side that the group forms, by the tributary length of each disc
+};
+
+template <>
+struct EnumNames<LoadKind> {
+  using enum LoadKind;
+  static constexpr const char* what = "kind of load";
+  static constexpr NamedValue<LoadKind> list[] = {{per_disc, "per_disc"}, {total, "total"}, {traction, "traction"}};
 };
 
 /// Force and moment on the discs of a group.

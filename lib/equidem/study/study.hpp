@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "equidem/core/names.hpp"
+
 namespace equidem {
 
 /// One way to compute a result.
@@ -30,6 +32,13 @@ enum class Truth {
   known,   ///< from a closed form or an independent method: Quantity::truth; 0 where a setting measures an error itself
   finest,  ///< the value at the finest level of the same problem and method, whose own error is not known
   richardson,  ///< the limit of the two finest levels of the same problem and method, by the order of theory
+};
+
+template <>
+struct EnumNames<Truth> {
+  using enum Truth;
+  static constexpr const char* what = "kind of truth";
+  static constexpr NamedValue<Truth> list[] = {{finest, "finest"}, {richardson, "richardson"}, {known, "known"}};
 };
 
 /// Something that is measured.

@@ -9,12 +9,12 @@
 
 #include <CLI/CLI.hpp>
 
-#include "equidem/casefile/assembly/springs_file.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 
-#include "calibrate/calibrated.hpp"
+#include "calibrate/calibrate_results.hpp"
 #include "command.hpp"
 #include "verbs.hpp"
 
@@ -54,43 +54,12 @@ void check_outputs(const CalibrateVerb& options) {
 }
 
 CalibrateOptions calibrate_options(const Case& resolved) {
-  CalibrateOptions options;
-  options.homogenize = {.boundary = resolved.homogenize.boundary.value_or(Boundary::periodic),
-                        .rotation = resolved.rotation,
-                        .solver = resolved.solver};
-  options.weighting = resolved.weighting;
-  options.static_only = resolved.material->static_only;
-  const Lattice* lattice = resolved.assembly.arrangement;
-  // A relation for equal springs only: calibrate refuses other weightings.
-  if (lattice != nullptr &&
-      (resolved.weighting == SpringWeighting::uniform || lattice->relation.equal_springs != nullptr))
-    options.lattice = lattice;
-  return options;
-}
-
-/// Empty for lattices, whose relation is exact.
-std::optional<MeanFieldGuess> mean_field_guess(const Case& resolved, const Assembly& assembly,
-                                               const EffectiveStiffness& achieved) {
-  MeanFieldGuess guess;
-  try {
-    const ChosenRelation chosen = spring_relation(resolved, assembly);
-    if (!chosen.relation.needs_measures) return {};
-    guess.springs =
-        springs_for(resolved.material->moduli, chosen.relation, chosen.measures,
-                    resolved.material->static_only ? NegativeTangential::static_only : NegativeTangential::refuse);
-    const ContactSprings springs = contact_springs(assembly, guess.springs, resolved.weighting);
-    const EffectiveStiffness c = effective_stiffness(
-        assembly, springs, {.boundary = achieved.boundary, .rotation = resolved.rotation, .solver = resolved.solver});
-    if (c.unstable_modes == 0) {
-      guess.moduli = effective_moduli(c.stiffness);
-    } else {
-      guess.missing = "with them this assembly gives way";
-    }
-  } catch (const Error& error) {
-    if (error.kind() == ErrorKind::interrupted) throw;
-    guess.missing = error.what();
-  }
-  return guess;
+  return {.homogenize = {.boundary = resolved.homogenize.boundary.value_or(Boundary::periodic),
+                         .rotation = resolved.rotation,
+                         .solver = resolved.solver},
+          .weighting = resolved.weighting,
+          .lattice = resolved.assembly.arrangement,
+          .static_only = resolved.material->static_only};
 }
 
 /// The text of the springs file, with the moduli that it was made for and what shows them.
@@ -146,32 +115,30 @@ int calibrate(const CalibrateVerb& options) {
   const Case& resolved = problem.resolved;
   if (common.dry_run) return dry_run_calibration(common, problem);
 
-  Calibrated calibrated{.problem = problem,
-                        .found = calibrate(problem.assembly, resolved.material->moduli, calibrate_options(resolved)),
-                        .mean_field = {},
-                        .times = problem.times};
-  const Calibration& found = calibrated.found;
-  for (const auto& [stage, seconds] : found.times.stages()) calibrated.times.add(stage, seconds);
+  const ElasticModuli& wanted = resolved.material->moduli;
+  const CalibrateOptions how = calibrate_options(resolved);
+  const Calibration found = calibrate(problem.assembly, wanted, how);
+  StageTimes times = problem.times;
+  times.add(found.times);
   problem.springs = {contact_springs(problem.assembly, found.springs, resolved.weighting), found.springs,
                      fmt::format("kN = {:.9g} Pa, kT = {:.9g} Pa (kT/kN = {:.9g}), weighting {}", found.springs.kN,
                                  found.springs.kT, found.springs.ratio(), to_string(resolved.weighting))};
   Stopwatch watch;
-  calibrated.mean_field = mean_field_guess(resolved, problem.assembly, found.achieved);
-  calibrated.times.add("mean field", watch.lap());
+  const std::optional<MeanFieldGuess> guess = mean_field_guess(problem.assembly, wanted, how);
+  times.add("mean field", watch.lap());
 
   const std::string file = text_of_springs(resolved, problem.assembly, found);
   const auto path = options.springs_path();
   if (path) write_file(*path, file, common.overwrite);
   write_case(common, resolved);
 
-  const Effects effects = derive_effects(problem.assembly, problem.springs.springs, resolved.rotation);
-  Results results = calibrated_results(calibrated, effects);
+  Results results = calibrated_results(problem, found, guess);
   if (path) {
     results.line("springs file").add("springs_file", "", path->string());
   } else {
     results.block("\nsprings file (--springs FILE writes it):\n" + file + "\n").set("springs_file", nullptr);
   }
-  deliver(common, "calibrated", results, calibrated.times);
+  deliver(common, "calibrated", results, times);
   if (path) say(common, fmt::format("springs written to {}", path->string()));
   return 0;
 }

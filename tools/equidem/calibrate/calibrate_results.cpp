@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "calibrate/calibrate_results.hpp"
+
 #include <cmath>
 
 #include "equidem/core/text.hpp"
-
-#include "calibrate/calibrated.hpp"
 
 namespace equidem {
 namespace {
@@ -106,8 +106,7 @@ void add_range(Results& out, const Calibration& found, Plane wanted) {
                            "moduli");
 }
 
-void add_mean_field(Results& out, const Calibrated& c) {
-  const MeanFieldGuess& guess = *c.mean_field;
+void add_mean_field(Results& out, const MeanFieldGuess& guess, const ElasticModuli& wanted) {
   if (!guess.moduli) out.set("mean_field/missing", guess.missing);
   if (guess.springs.kN == 0) {
     out.line("mean field", "no springs for this: " + guess.missing);
@@ -120,7 +119,6 @@ void add_mean_field(Results& out, const Calibrated& c) {
     return;
   }
   const EffectiveModuli& m = *guess.moduli;
-  const ElasticModuli& wanted = c.wanted();
   out.set("mean_field/achieved", moduli_keys(m));
   out.line("",
            fmt::format("with them this assembly has G = {:.6g} Pa ({}), K = {:.6g} Pa ({}), nu = {:.6g} in plane {} "
@@ -132,8 +130,8 @@ void add_mean_field(Results& out, const Calibrated& c) {
 }
 
 /// The relation for restrained rotation beside the springs of a lattice whose discs do not turn.
-void add_operator(Results& out, const Calibrated& c, const SpringRelation& restrained) {
-  const SpringConstants k = springs_for(c.wanted(), restrained, {}, NegativeTangential::static_only);
+void add_operator(Results& out, const ElasticModuli& wanted, const SpringRelation& restrained) {
+  const SpringConstants k = springs_for(wanted, restrained, {}, NegativeTangential::static_only);
   out.line("displacements", fmt::format("eq. ({}) advises {}: it fits wave speeds and problems in which all of the "
                                         "boundary is displaced, not the stress, which is calibrated here",
                                         restrained.equation, shown_springs(k)));
@@ -141,19 +139,22 @@ void add_operator(Results& out, const Calibrated& c, const SpringRelation& restr
 
 }  // namespace
 
-Results calibrated_results(const Calibrated& c, const Effects& effects) {
-  const SpringConstants& k = c.found.springs;
-  const Case& resolved = c.problem.resolved;
-  Results out = problem_results(c.problem, effects, AssemblyKeys::size);
+Results calibrated_results(const Problem& problem, const Calibration& found,
+                           const std::optional<MeanFieldGuess>& guess) {
+  const SpringConstants& k = found.springs;
+  const Case& resolved = problem.resolved;
+  const ElasticModuli& wanted = resolved.material->moduli;
+  Results out = problem_results(problem, derive_effects(problem.assembly, problem.springs.springs, resolved.rotation),
+                                AssemblyKeys::size);
   out.set("kN", k.kN).set("kT", k.kT).set("ratio", k.ratio()).set("weighting", to_string(resolved.weighting));
-  add_wanted(out, c.wanted());
-  add_method(out, c.found);
-  add_reached(out, c.found);
-  add_range(out, c.found, c.wanted().plane);
-  if (c.mean_field) add_mean_field(out, c);
+  add_wanted(out, wanted);
+  add_method(out, found);
+  add_reached(out, found);
+  add_range(out, found, wanted.plane);
+  if (guess) add_mean_field(out, *guess, wanted);
   const Lattice* lattice = resolved.assembly.arrangement;
   if (lattice != nullptr && lattice->restrained != nullptr && resolved.rotation == Rotation::restrained)
-    add_operator(out, c, *lattice->restrained);
+    add_operator(out, wanted, *lattice->restrained);
   return out;
 }
 

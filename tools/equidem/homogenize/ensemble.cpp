@@ -9,8 +9,6 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/homogenize/effective_stiffness.hpp"
-#include "equidem/homogenize/elasticity_tensor.hpp"
 
 #include "homogenize/ensemble_report.hpp"
 #include "homogenize/ensemble_table.hpp"
@@ -97,17 +95,8 @@ int dry_run(const CommonOptions& options, const Case& resolved, const EnsemblePl
 }  // namespace
 
 HomogenizedCell homogenize_cell(const Case& resolved, std::int64_t discs, std::uint64_t seed) {
-  const Assembly assembly = build_cell(resolved, discs, seed);
-  const BuiltSprings springs = build_springs(resolved, assembly);
-  const EffectiveStiffness effective = effective_stiffness(assembly, springs.springs, options_of(resolved));
-  if (effective.unstable_modes != 0) {
-    computation_failed(effective.unstable_modes > 0 ? "the cell is unstable" : "the stability of the cell is not known",
-                       effective.unstable_modes > 0
-                           ? fmt::format("it would give way by {}", counted(effective.unstable_modes, "mode"))
-                           : "this solver does not count negative pivots",
-                       effective.unstable_modes > 0 ? "Use a larger kT" : "Set solver.method = \"auto\"");
-  }
-  return {static_cast<std::int64_t>(assembly.size()), effective_moduli(effective.stiffness)};
+  const Assembly cell = build_cell(resolved, discs, seed);
+  return homogenize_cell(cell, build_springs(resolved, cell).springs, options_of(resolved));
 }
 
 void check_ensemble_outputs(const CommonOptions& options) {
@@ -146,11 +135,8 @@ void deliver_ensemble(const CommonOptions& options, const EnsembleResult& result
 int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool resume) {
   const EnsembleCase& asked = *resolved.ensemble;
   EnsembleResult result{
-      .title = resolved.title,
-      .plan = {.discs = asked.discs, .samples = asked.samples, .first_seed = resolved.assembly.delaunay.seed},
-      .accuracy = asked.accuracy,
-      .samples = {},
-      .statistics = {}};
+      .title = resolved.title, .plan = asked.plan, .accuracy = asked.accuracy, .samples = {}, .statistics = {}};
+  result.plan.first_seed = resolved.assembly.delaunay.seed;
   const EnsemblePlan& plan = result.plan;
   Results results = cell_results(resolved, plan.discs.front(), plan.first_seed, describe_plan(plan, asked.confidence));
   OutputPlan(options).expect_json();

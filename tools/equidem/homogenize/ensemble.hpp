@@ -29,7 +29,7 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
 // Shared by both.
 
 /// Builds and homogenizes one cell.
-/// \throws Error (computation_failed) where the cell is unstable, or that is not known; as build_assembly
+/// \throws Error as build_assembly and homogenize_cell
 HomogenizedCell homogenize_cell(const Case& resolved, std::int64_t discs, std::uint64_t seed);
 
 /// Title, cells, springs and effects; those of the first cell stand for all.

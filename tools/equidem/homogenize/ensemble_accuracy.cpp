@@ -68,7 +68,7 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
   }
   check_ensemble_outputs(options);
   const EnsembleAccuracy wanted{.accuracy = accuracy,
-                                .confidence = resolved.ensemble ? resolved.ensemble->confidence : 0.95,
+                                .confidence = resolved.ensemble.value_or(EnsembleCase{}).confidence,
                                 .first_seed = resolved.assembly.delaunay.seed};
   Results results = cell_results(resolved, wanted.smallest, wanted.first_seed);
   const auto& folder = options.out;

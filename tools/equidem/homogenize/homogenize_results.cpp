@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "homogenize/homogenize_results.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "equidem/core/text.hpp"
-
-#include "homogenize/homogenized.hpp"
+#include "equidem/homogenize/elasticity_tensor.hpp"
+#include "equidem/homogenize/fabric.hpp"
 
 namespace equidem {
 namespace {
@@ -24,17 +26,17 @@ std::string boundary_condition(Boundary boundary) {
   return {};
 }
 
-void add_mean_strain(Results& out, const Homogenized& h) {
-  const std::string boundary = to_string(h.result.boundary);
-  out.line("mean strain").add("boundary", "", boundary).note(": " + boundary_condition(h.result.boundary));
-  if (!h.problem.assembly.periodic()) {
+void add_mean_strain(Results& out, const Problem& problem, Boundary used) {
+  const std::string boundary = to_string(used);
+  out.line("mean strain").add("boundary", "", boundary).note(": " + boundary_condition(used));
+  if (!problem.assembly.periodic()) {
     out.line("",
              "A free sample lacks the contacts across its boundary: it is softer than its bulk by about the share of "
              "the cells there.");
   }
   std::vector<std::string> unused;
   for (const char* table : {"test", "support", "load"}) {
-    const TomlValue* given = h.problem.resolved.document.find(table);
+    const TomlValue* given = problem.resolved.document.find(table);
     if (given != nullptr)
       unused.push_back(given->is_array() ? fmt::format("[[{}]]", table) : fmt::format("[{}]", table));
   }
@@ -103,9 +105,8 @@ void add_stiffness(Results& out, const EffectiveStiffness& r) {
   out.set("tangential_part", r.tangential_part).set("normal_part", r.normal_part);
 }
 
-void add_anisotropy(Results& out, const Homogenized& h) {
-  const double anisotropy = h.moduli.anisotropy;
-  const StiffnessAxes axes = stiffness_axes(h.result.stiffness);
+void add_anisotropy(Results& out, const Matrix3& stiffness, double anisotropy) {
+  const StiffnessAxes axes = stiffness_axes(stiffness);
   out.line("anisotropy")
       .add("anisotropy", "isotropic to", anisotropy, "", {anisotropy < 1e-4 ? Shown::power : Shown::percent, 3})
       .note(anisotropy <= visible_anisotropy ? ", round-off" : "; the moduli are the mean over all directions");
@@ -151,8 +152,8 @@ Results table_row(const std::string& name, double bulk, double shear) {
       .add("", "nu stress", (bulk - shear) / (bulk + shear), "", {Shown::decimals, 5});
 }
 
-void add_order(Results& out, const Homogenized& h) {
-  const std::vector<StiffnessBeside> order = h.ordered();
+void add_order(Results& out, const BoundedStiffness& h, const ContactSprings& springs) {
+  const std::vector<StiffnessBeside> order = h.ordered(springs);
   std::vector<Results> steps;
   std::vector<std::string> names, margins;
   bool holds = true;
@@ -169,27 +170,35 @@ void add_order(Results& out, const Homogenized& h) {
     out.line("order",
              fmt::format("{} as quadratic forms: {}; least eigenvalues of the differences over the larger: {}",
                          joined(names, " <= "), holds ? "holds" : "BROKEN, do not trust this result", joined(margins)));
-  } else if (h.problem.springs.springs.any_negative()) {
+  } else if (springs.any_negative()) {
     out.line("order", "kT < 0: energies are no minima, and nothing above is a bound");
   }
   out.set("order", steps);
 }
 
-void add_bounds(Results& out, const Homogenized& h) {
+/// Name of a bound or an estimate in the table.
+std::string name_of(const std::string& key) {
+  return key == "voigt"                     ? "Voigt: all discs follow the strain"
+         : key == "uniform_stress_estimate" ? "uniform stress: an estimate, no bound"
+                                            : key;
+}
+
+void add_bounds(Results& out, const BoundedStiffness& h, const std::optional<RelationBeside>& relation) {
   Results bounds, missing;
   const std::string own = to_string(h.result.boundary);
   const bool other_boundary = std::ranges::any_of(h.beside, [](const StiffnessBeside& one) {
     return one.key == to_string(Boundary::displacement) || one.key == to_string(Boundary::traction);
   });
   std::vector<StiffnessBeside> all = h.beside;
-  all.push_back({own, own + " <- this result", h.result.stiffness, {}});
+  all.push_back({own, h.result.stiffness, {}});
   std::vector<Results> rows;
   for (const std::string key : {"traction", "periodic", "displacement", "voigt", "uniform_stress_estimate"}) {
     for (const StiffnessBeside& one : all) {
       if (one.key != key) continue;
       if (one.stiffness) {
         const EffectiveModuli m = effective_moduli(*one.stiffness);
-        rows.push_back(table_row(one.name, m.bulk_modulus_2d, m.shear_modulus));
+        rows.push_back(
+            table_row(name_of(key) + (key == own ? " <- this result" : ""), m.bulk_modulus_2d, m.shear_modulus));
         if (key != own || other_boundary) bounds.set(key, *one.stiffness);
       } else {
         bounds.set(key, nullptr);
@@ -197,17 +206,17 @@ void add_bounds(Results& out, const Homogenized& h) {
       }
     }
   }
-  if (h.relation) rows.push_back(table_row(h.relation->name, h.relation->bulk_modulus_2d, h.relation->shear_modulus));
+  if (relation) rows.push_back(table_row(relation->name, relation->bulk_modulus_2d, relation->shear_modulus));
   out.block("\n").table("", rows);
   for (const StiffnessBeside& one : h.beside)
-    if (!one.stiffness) out.line(one.name.substr(0, one.name.find(':')), "none: " + one.missing);
+    if (!one.stiffness) out.line(name_of(one.key).substr(0, name_of(one.key).find(':')), "none: " + one.missing);
   out.set("bounds", bounds);
   if (!missing.parts().empty()) out.set("bounds_missing", missing);
-  add_order(out, h);
-  if (!h.relation) return;
-  const double K = h.relation->bulk_modulus_2d, G = h.relation->shear_modulus;
-  out.set("relation",
-          Results().set("name", h.relation->name).append(moduli_results(effective_moduli(isotropic_stiffness(K, G)))));
+}
+
+void add_relation(Results& out, const RelationBeside& relation) {
+  const Matrix3 stiffness = isotropic_stiffness(relation.bulk_modulus_2d, relation.shear_modulus);
+  out.set("relation", Results().set("name", relation.name).append(moduli_results(effective_moduli(stiffness))));
 }
 
 void add_restrained(Results& out, const EffectiveStiffness& r) {
@@ -232,16 +241,20 @@ void add_restrained(Results& out, const EffectiveStiffness& r) {
 
 }  // namespace
 
-Results homogenized_results(const Homogenized& h) {
+Results homogenized_results(const Problem& problem, const BoundedStiffness& h,
+                            const std::optional<RelationBeside>& relation) {
   const EffectiveStiffness& r = h.result;
-  Results out = problem_results(h.problem, r.effects);
-  add_mean_strain(out, h);
+  const EffectiveModuli moduli = effective_moduli(r.stiffness);
+  Results out = problem_results(problem, r.effects);
+  add_mean_strain(out, problem, r.boundary);
   add_rigidity(out, r);
   add_stiffness(out, r);
-  out.append(moduli_results(h.moduli));
-  add_anisotropy(out, h);
-  add_fabric(out, h.fabric);
-  add_bounds(out, h);
+  out.append(moduli_results(moduli));
+  add_anisotropy(out, r.stiffness, moduli.anisotropy);
+  add_fabric(out, fabric(problem.assembly));
+  add_bounds(out, h, relation);
+  add_order(out, h, problem.springs.springs);
+  if (relation) add_relation(out, *relation);
   if (r.effects.restrained && r.boundary != Boundary::traction) add_restrained(out, r);
   out.set("stress_asymmetry", r.stress_asymmetry);
   out.block("\n").line("unknowns").add("unknowns", "", r.unknowns, "", {Shown::count});

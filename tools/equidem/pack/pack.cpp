@@ -2,7 +2,6 @@
 #include <CLI/CLI.hpp>
 
 #include "equidem/assembly/files.hpp"
-#include "equidem/casefile/engine/echo.hpp"
 #include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
@@ -30,18 +29,6 @@ void check_outputs(const CommonOptions& common, const PackCase& resolved) {
   if (resolved.picture) plan.expect("picture.png");
 }
 
-std::vector<Wall> walls_of(const PackingBox& box) {
-  if (box.periodic()) return {};
-  std::vector<Wall> walls = walls_of_box(box.size.x);
-  if (box.sides == PackingBox::Sides::walls) {
-    walls.push_back(walls.front());
-    walls.back().name = "lid";
-    walls.back().point = {0, box.size.y};
-    walls.back().normal = {0, -1};
-  }
-  return walls;
-}
-
 void write_files(const CommonOptions& common, const PackCase& resolved, const GrainPacking& packing) {
   const auto& folder = *common.out;
   const SettlingOptions& settling = resolved.packing.settling;
@@ -67,20 +54,6 @@ void write_files(const CommonOptions& common, const PackCase& resolved, const Gr
                          .walls = walls},
                         common.overwrite);
   }
-}
-
-/// Bodies that settled stay what they are where statics cannot judge them: a network may have motions without
-/// stiffness.
-std::optional<ConfirmedRest> confirmed(const PackCase& resolved, const GrainPacking& packing) {
-  if (packing.contacts.empty()) return {};
-  ConfirmedRest rest;
-  try {
-    rest.confirmation = confirm_rest(packing, resolved.packing.settling);
-  } catch (const Error& error) {
-    if (error.kind() == ErrorKind::interrupted) throw;
-    rest.why_not = error.problem();
-  }
-  return rest;
 }
 
 /// Adds the line of the key to the errors of a task.
@@ -111,7 +84,7 @@ int run(const CommonOptions& common) {
   times.add("packing", watch.lap());
   const PackingMeasures measures = located(resolved, "region", [&] { return measure(packing, resolved.region); });
   times.add("measures", watch.lap());
-  const std::optional<ConfirmedRest> rest = confirmed(resolved, packing);
+  const RestConfirmation rest = confirm_rest(packing, resolved.packing.settling);
   times.add("statics", watch.lap());
   if (common.out) write_files(common, resolved, packing);
   write_case(common, resolved.document);

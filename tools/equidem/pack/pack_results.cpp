@@ -22,7 +22,7 @@ const char* name_of(PackingBox::Sides sides) {
   return "";
 }
 
-void add_rest(Results& out, const GrainPacking& packing, const ConfirmedRest& rest, const std::string& noun) {
+void add_rest(Results& out, const GrainPacking& packing, const RestConfirmation& rest, const std::string& noun) {
   const SettlingReport& settling = packing.settling;
   out.line("rest")
       .add("time", "after", settling.time, "s in", {.digits = 4})
@@ -34,11 +34,11 @@ void add_rest(Results& out, const GrainPacking& packing, const ConfirmedRest& re
       .add("unbalanced_force_ratio", "", settling.unbalanced, "of the mean contact force", {.digits = 2})
       .add("largest_unbalanced_force_ratio", "of one " + noun, settling.largest_unbalanced, "", {.digits = 2});
   out.set("energy_error", settling.ledger.error() / settling.ledger.lost());
-  if (rest.confirmation) {
+  if (rest.missing.empty()) {
     out.line("", "statics on the same contacts would move nothing further than ")
-        .add("static_motion_over_overlap", "", rest.confirmation->share(), "of the mean overlap", {.digits = 2});
+        .add("static_motion_over_overlap", "", rest.share(), "of the mean overlap", {.digits = 2});
   } else {
-    out.set("static_motion_over_overlap", nullptr).line("", "statics does not confirm it: " + rest.why_not);
+    out.set("static_motion_over_overlap", nullptr).line("", "statics does not confirm it: " + rest.missing);
   }
   const BondReport& bonds = settling.bonds;
   if (bonds.number == 0) return;
@@ -71,7 +71,7 @@ Results pack_case_results(const PackCase& resolved) {
 }
 
 Results packing_results(const PackCase& resolved, const GrainPacking& packing, const PackingMeasures& measures,
-                        const std::optional<ConfirmedRest>& rest) {
+                        const RestConfirmation& rest) {
   const PackingOptions& options = resolved.packing;
   const std::string noun = noun_of(options.shape.kind);
   Results out = pack_case_results(resolved);
@@ -100,7 +100,7 @@ Results packing_results(const PackCase& resolved, const GrainPacking& packing, c
       .add("rattlers", "", measures.rattlers, "rattler", {Shown::count});
   out.line("overlap").add("largest_overlap", "at most", measures.largest_overlap, "of the smaller radius",
                           {.digits = 3});
-  if (rest) add_rest(out, packing, *rest, noun);
+  if (!packing.contacts.empty()) add_rest(out, packing, rest, noun);
   return out.line("work").add("work", "", packing.work, entry_of(options.method).unit_of_work);
 }
 

@@ -3,9 +3,6 @@
 /// Report and JSON of `equidem pack`.
 #pragma once
 
-#include <optional>
-#include <string>
-
 #include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/output/results.hpp"
 #include "equidem/packing/measures.hpp"
@@ -13,17 +10,11 @@
 
 namespace equidem {
 
-/// Equilibrium of settled bodies by statics on the same contacts.
-struct ConfirmedRest {
-  std::optional<RestConfirmation> confirmation;
-  std::string why_not = {};  ///< reason if there is none
-};
-
 /// Bodies, box, method and springs of the case; the report alone.
 Results pack_case_results(const PackCase& resolved);
 
 /// Report and JSON of the verb.
 Results packing_results(const PackCase& resolved, const GrainPacking& packing, const PackingMeasures& measures,
-                        const std::optional<ConfirmedRest>& rest);
+                        const RestConfirmation& rest);
 
 }  // namespace equidem

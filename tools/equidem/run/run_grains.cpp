@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "equidem/casefile/engine/echo.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"

@@ -11,11 +11,19 @@
 #include "equidem/core/text.hpp"
 
 #include "command.hpp"
-#include "stability/stability_analysis.hpp"
+#include "stability/stability_results.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
 namespace {
+
+/// The density of the case, or 1.
+StabilityOptions options_of(const Case& resolved) {
+  return {.rotation = resolved.rotation,
+          .density = resolved.assembly.density.value_or(1),
+          .body = resolved.assembly.body,
+          .solver = resolved.solver};
+}
 
 int dry_run_survey(const CommonOptions& options, const Problem& problem) {
   const Assembly& assembly = problem.assembly;
@@ -37,7 +45,8 @@ int dry_run_survey(const CommonOptions& options, const Problem& problem) {
   } else {
     results.note("none: the assembly is not periodic");
   }
-  const auto inertia = inertia_of(assembly, density_of(problem.resolved), problem.resolved.assembly.body);
+  const StabilityOptions judged = options_of(problem.resolved);
+  const auto inertia = inertia_of(assembly, judged.density, judged.body);
   check_magnitudes(assembly, springs, inertia);
   results.line("time step")
       .add("element_bound_time_step", "", 2 / std::sqrt(element_bound(assembly, springs, inertia, effects.rotation)),
@@ -49,16 +58,20 @@ int dry_run_survey(const CommonOptions& options, const Problem& problem) {
 }
 
 int stability(const CommonOptions& options) {
-  const Case resolved = read_case(options);
+  Case resolved = read_case(options);
   const OutputPlan plan(options);
   plan.expect_results();
   expect_survey(plan);
-  const Problem problem = stability_problem(resolved);
+  // Nothing needs to act: an assembly without supports is judged as a free body or a periodic cell.
+  const Problem problem = acts(resolved) ? build_problem(std::move(resolved)) : problem_of(std::move(resolved));
   if (options.dry_run) return dry_run_survey(options, problem);
-  const Stability result = analyze_stability(problem);
-  if (options.out) write_survey(*options.out, result, options.overwrite);
+  const Stability result =
+      analyze_stability(problem.assembly, problem.springs.springs, problem.supports, options_of(problem.resolved));
+  if (options.out) write_survey(*options.out, problem.resolved.title, result, options.overwrite);
   write_case(options, problem.resolved);
-  deliver(options, result.status(), stability_results(result), result.times);
+  StageTimes times = problem.times;
+  times.add(result.times);
+  deliver(options, result.status(), stability_results(problem, result), times);
   return 0;
 }
 

@@ -8,7 +8,7 @@
 #include "equidem/output/files/csv.hpp"
 #include "equidem/output/plots/plot.hpp"
 
-#include "stability/stability_analysis.hpp"
+#include "stability/stability_results.hpp"
 
 namespace equidem {
 namespace {
@@ -72,9 +72,9 @@ std::vector<double> positions(const WaveSurvey& survey) {
   return x;
 }
 
-Plot plot_of_dispersion(const Stability& s) {
+Plot plot_of_dispersion(const Stability& s, const std::string& title) {
   const WaveSurvey& survey = *s.survey;
-  Plot plot = along_path(survey, s.problem.resolved.title.empty() ? "Dispersion" : s.problem.resolved.title,
+  Plot plot = along_path(survey, title.empty() ? "Dispersion" : title,
                          s.lowest ? "omega, rad/s; below 0: growth rate, 1/s" : "omega, rad/s");
   const std::size_t branches = survey.path.front().squared_frequencies.size();
   constexpr std::array colours{PlotColour::blue, PlotColour::vermilion, PlotColour::black};
@@ -116,11 +116,11 @@ void expect_survey(const OutputPlan& plan) {
   for (const char* name : {dispersion_plot, ratio_plot}) plan.expect_plot(name);
 }
 
-void write_survey(const std::filesystem::path& folder, const Stability& s, bool overwrite) {
+void write_survey(const std::filesystem::path& folder, const std::string& title, const Stability& s, bool overwrite) {
   if (!s.survey) return;
   write_csv(folder / dispersion_table, dispersion(*s.survey), overwrite);
   if (s.survey->ratio_sought) write_csv(folder / ratio_table, critical_over_zone(*s.survey), overwrite);
-  write_plot(folder, dispersion_plot, plot_of_dispersion(s), overwrite);
+  write_plot(folder, dispersion_plot, plot_of_dispersion(s, title), overwrite);
   const auto& path = s.survey->path;
   if (std::any_of(path.begin(), path.end(), [](const PathPoint& p) { return std::isfinite(p.critical_ratio); }))
     write_plot(folder, ratio_plot, plot_of_critical_ratio(s), overwrite);

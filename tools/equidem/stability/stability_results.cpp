@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Report and JSON of `equidem stability`.
+#include "stability/stability_results.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "equidem/core/text.hpp"
-
-#include "stability/stability_analysis.hpp"
 
 namespace equidem {
 namespace {
@@ -26,16 +26,15 @@ std::string name_of(const ZonePoint& wave, const std::vector<ZonePoint>& equival
                    : fmt::format("the point {}, {}", wave.name, place);
 }
 
-void add_mechanisms(Results& out, const Stability& s) {
+void add_mechanisms(Results& out, const Stability& s, bool periodic) {
   const std::vector<Vec2> waves = s.survey ? s.survey->free_waves : std::vector<Vec2>{};
   const bool none = s.mechanisms.count() == 0;
   std::string line;
   if (none) {
     const std::string of_the_whole = s.mechanisms.rigid_motions == 0 ? ""
-                                     : s.problem.assembly.periodic()
-                                         ? " (the two translations of a periodic cell do not count)"
-                                         : fmt::format(" (the {} of a body that nothing holds do not count)",
-                                                       counted(s.mechanisms.rigid_motions, "rigid motion"));
+                                     : periodic ? " (the two translations of a periodic cell do not count)"
+                                                : fmt::format(" (the {} of a body that nothing holds do not count)",
+                                                              counted(s.mechanisms.rigid_motions, "rigid motion"));
     line = fmt::format("none{}: every motion stretches or slips some contact{}",
                        waves.empty() ? "" : " that repeats with the cell", of_the_whole);
   } else {
@@ -108,7 +107,7 @@ void add_critical(Results& out, const Stability& s) {
                                  : ": UNSTABLE in statics, and a mechanism");
 }
 
-void add_growth(Results& out, const Stability& s) {
+void add_growth(Results& out, const Stability& s, bool periodic) {
   const double rate = s.growth_rate();
   if (rate > 0 && s.survey) {
     out.set("growth_wave_vector", s.survey->growing.at.q);
@@ -117,7 +116,7 @@ void add_growth(Results& out, const Stability& s) {
   if (!s.lowest || rate == 0) out.set("growth_rate", rate);
   if (!s.lowest) return;
   if (rate == 0) {
-    const bool all_waves = !s.problem.assembly.periodic() || s.survey;
+    const bool all_waves = !periodic || s.survey;
     out.line("growth", fmt::format("none: some kT are negative, but no motion{} has negative energy",
                                    all_waves ? "" : " that repeats with the cell"));
     return;
@@ -135,7 +134,7 @@ void add_growth(Results& out, const Stability& s) {
            "keep, at any time step and any damping. Use such springs in statics only");
 }
 
-void add_time_step(Results& out, const Stability& s) {
+void add_time_step(Results& out, const Stability& s, const AssemblyCase& given) {
   const bool vibrates = s.highest.value > 0, grows = s.growth_rate() > 0;
   double omega = std::sqrt(s.highest.value);
   if (vibrates) {
@@ -186,9 +185,9 @@ void add_time_step(Results& out, const Stability& s) {
   out.set("element_bound_time_step", 2 / std::sqrt(s.element_bound));
   out.set("critical_time_step", 2 / std::sqrt(s.highest.value));
   out.set("element_bound_omega_max", std::sqrt(s.element_bound));
-  out.set("density", s.density).set("density_assumed", s.density_assumed);
-  out.set("body", to_string(s.problem.resolved.assembly.body));
-  if (s.density_assumed) {
+  out.set("density", given.density.value_or(1)).set("density_assumed", !given.density.has_value());
+  out.set("body", to_string(given.body));
+  if (!given.density) {
     out.line("",
              "DENSITY ASSUMED: 1 kg/m³, since assembly.density is not given. Times scale with its square root, "
              "frequencies and speeds with the inverse");
@@ -232,7 +231,6 @@ void add_sound(Results& out, const Stability& s) {
 }
 
 void add_waves(Results& out, const Stability& s) {
-  if (!s.problem.assembly.periodic()) return;
   out.line("smallest cell").add("primitive_cell/discs", "", s.cell_discs, "disc", {Shown::count});
   out.set("mass_per_area", s.mass_per_area);
   if (!s.survey) {
@@ -263,16 +261,17 @@ double signed_root(double squared) {
   return squared >= 0 ? std::sqrt(squared) : -std::sqrt(-squared);
 }
 
-Results stability_results(const Stability& s) {
-  Results out = problem_results(s.problem, s.effects, AssemblyKeys::size);
-  if (s.problem.resolved.ensemble)
+Results stability_results(const Problem& problem, const Stability& s) {
+  const bool periodic = problem.assembly.periodic();
+  Results out = problem_results(problem, s.effects, AssemblyKeys::size);
+  if (problem.resolved.ensemble)
     out.line("not used", "[ensemble]: the one assembly of [assembly] is judged, with its seed");
-  add_waves(out, s);
-  add_mechanisms(out, s);
+  if (periodic) add_waves(out, s);
+  add_mechanisms(out, s, periodic);
   add_inertia(out, s);
   add_critical(out, s);
-  add_growth(out, s);
-  add_time_step(out, s);
+  add_growth(out, s, periodic);
+  add_time_step(out, s, problem.resolved.assembly);
   return out;
 }
 

@@ -32,10 +32,6 @@ std::vector<std::size_t> told_quantities(const StudyReport& report, const std::s
   return told;
 }
 
-const char* name_of(Truth truth) {
-  return truth == Truth::known ? "known" : truth == Truth::finest ? "finest" : "richardson";
-}
-
 std::vector<Results> table_of(const StudyReport& report, const std::string& problem) {
   const std::vector<std::size_t> told = told_quantities(report, problem);
   std::vector<Results> rows;
@@ -109,7 +105,7 @@ Results curve_results(const StudyReport& report, const StudyCurve& curve) {
 }
 
 Results quantity_results(const Study& study, const Quantity& quantity) {
-  const std::string truth = name_of(study.truth);
+  const std::string truth = to_string(study.truth);
   Results out;
   out.set("name", quantity.name).set("label", quantity.label).set("fact", quantity.fact);
   out.set("relative", quantity.relative).set("truth", truth).set("source", quantity.source);

@@ -34,15 +34,11 @@ struct SweepOptions {
   bool resume = false;
 };
 
-[[noreturn]] void refuse_sweep(const std::string& problem, const std::string& why, const std::string& remedy) {
-  bad_input(problem, why, remedy);
-}
-
 std::vector<double> values_of(const SweepOptions& options) {
   const bool range = options.from && options.to;
   if (range == !options.values.empty() || options.from.has_value() != options.to.has_value())
-    refuse_sweep("the values of the sweep are not clear", "either a list or a range is needed",
-                 "Give --values a,b,c or --from A --to B --steps N");
+    bad_input("the values of the sweep are not clear", "either a list or a range is needed",
+              "Give --values a,b,c or --from A --to B --steps N");
   std::vector<double> values = options.values;
   const int intervals = options.steps - 1;
   for (int k = 0; range && k < options.steps; ++k) {
@@ -55,7 +51,7 @@ std::vector<double> values_of(const SweepOptions& options) {
   }
   for (const double value : values)
     if (!std::isfinite(value))
-      refuse_sweep(fmt::format("{} is among the values", value), "a sweep needs finite numbers", "Leave it out");
+      bad_input(fmt::format("{} is among the values", value), "a sweep needs finite numbers", "Leave it out");
   return values;
 }
 
@@ -98,12 +94,12 @@ SweepPoint compute(const SweepOptions& options, const Case& base, double value, 
     common.set.push_back(override_of(options, base, value));
     const auto problem = build(read_case(common));
     if (problem->load_cases.size() > 1)
-      refuse_sweep("the case has several load cases", "a sweep shows one", "Leave one [[load]] case in the file");
+      bad_input("the case has several load cases", "a sweep shows one", "Leave one [[load]] case in the file");
     const EquilibriumSolver solver(problem->assembly, problem->springs.springs, problem->supports, problem->options());
     const SolvedCase result = solve_case(*problem, solver, problem->load_cases.front());
     effects = solver.effects();
-    for (const auto& [stage, seconds] : problem->times.stages()) times.add(stage, seconds);
-    for (const auto& [stage, seconds] : result.equilibrium.times.stages()) times.add(stage, seconds);
+    times.add(problem->times);
+    times.add(result.equilibrium.times);
     point.status = result.status();
     point.energy = result.equilibrium.energy;
     point.relative_residual = result.equilibrium.relative_residual;
@@ -187,7 +183,7 @@ std::string plot_curves(const SweepOptions& options, const Case& base, const std
 std::vector<SweepPoint> points_to_keep(const SweepOptions& options, const Case& base) {
   if (!options.resume) return {};
   if (!options.common.out)
-    refuse_sweep("--resume has nothing to continue", "the points done lie in the folder of --out", "Add --out DIR");
+    bad_input("--resume has nothing to continue", "the points done lie in the folder of --out", "Add --out DIR");
   const auto table = *options.common.out / table_name;
   if (!std::filesystem::exists(table)) return {};
   if (read_file(*options.common.out / case_name) != to_toml(base, *options.common.out)) {
@@ -221,8 +217,8 @@ std::vector<SweepPoint> merged(std::vector<SweepPoint> points, const std::vector
 void check_key(const SweepOptions& options, const Case& base, double first) {
   if (options.key == "ratio") {
     if (!base.springs)
-      refuse_sweep("--key ratio needs springs", "it changes kT at the kN of the case file",
-                   "Give [springs] in place of [material]");
+      bad_input("--key ratio needs springs", "it changes kT at the kN of the case file",
+                "Give [springs] in place of [material]");
     return;
   }
   if (is_case_key(options.key)) return;
@@ -281,7 +277,7 @@ Progressed compute_points(const SweepOptions& options, const Case& base, const s
 }
 
 int sweep(const SweepOptions& options) {
-  if (!options.verb.empty()) refuse_sweep("'equidem sweep' takes no --verb", "a sweep solves", "Leave it out");
+  if (!options.verb.empty()) bad_input("'equidem sweep' takes no --verb", "a sweep solves", "Leave it out");
   const std::vector<double> values = values_of(options);
   const Case base = read_case(options.common);
   check_key(options, base, values.front());

@@ -2,9 +2,9 @@
 #include "equidem/casefile/assembly/case.hpp"
 
 #include <algorithm>
+#include <sstream>
 
 #include "equidem/casefile/assembly/case_tables.hpp"
-#include "equidem/casefile/engine/echo.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/core/error.hpp"
@@ -178,6 +178,21 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
 
 std::string to_toml(const Case& resolved, const fs::path& folder) {
   return to_toml(resolved.document, folder);
+}
+
+std::string springs_file(const SpringConstants& springs, SpringWeighting weighting, const std::string& title,
+                         const std::string& comment) {
+  std::string out;
+  std::istringstream lines(comment);
+  for (std::string line; std::getline(lines, line);) {
+    // TOML allows no control characters in a comment.
+    for (char& c : line)
+      if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    out += line.empty() ? "#\n" : fmt::format("# {}\n", line);
+  }
+  return out + fmt::format("schema = \"{}\"\ntitle = {}\n\n[springs]\nkN = {}\nkT = {}\nweighting = {}\n",
+                           casefile::springs_file_format().spec().schema, toml_text(title), toml_number(springs.kN),
+                           toml_number(springs.kT), toml_text(to_string(weighting)));
 }
 
 bool is_case_key(std::string_view path) {

@@ -18,7 +18,8 @@
 #include "equidem/casefile/schedule_case.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
-#include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/homogenize/bounds.hpp"
+#include "equidem/homogenize/ensemble/ensemble_statistics.hpp"
 #include "equidem/homogenize/tension_test.hpp"
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/material/elastic_moduli.hpp"
@@ -67,33 +68,11 @@ struct OutputCase {
   double checkpoint_interval = 60;       ///< s, wall-clock time
 };
 
-/// Bounds printed with the effective stiffness.
-enum class BoundsWanted {
-  automatic,  ///< all bounds if they are cheap to compute
-  affine,     ///< bounds that need no solution
-  all,        ///< also those by uniform displacements and tractions at the boundary
-};
-
-template <>
-struct EnumNames<BoundsWanted> {
-  static constexpr const char* what = "choice of bounds";
-  static constexpr NamedValue<BoundsWanted> list[] = {
-      {BoundsWanted::automatic, "auto"}, {BoundsWanted::affine, "affine"}, {BoundsWanted::all, "all"}};
-};
-
-/// [homogenize].
-struct HomogenizeCase {
-  std::optional<Boundary>
-      boundary;  ///< none: periodic if the assembly is periodic, else both displacement and traction
-  BoundsWanted bounds = BoundsWanted::automatic;
-};
-
 /// [ensemble]: random samples of one kind, from the seeds s, s + 1, ..., s that of the assembly.
 struct EnsembleCase {
-  std::vector<std::int64_t> discs = {100, 400, 1600};  ///< in a sample, ascending; instead of that of the assembly
-  int samples = 10;                                    ///< of each size
-  std::optional<double> accuracy;                      ///< target relative accuracy of the moduli
-  double confidence = 0.95;                            ///< of intervals
+  EnsemblePlan plan;                                    ///< its sizes are instead of that of the assembly
+  std::optional<double> accuracy;                       ///< target relative accuracy of the moduli
+  double confidence = EnsembleStatistics{}.confidence;  ///< of intervals
 };
 
 /// [material].
@@ -116,7 +95,7 @@ struct Case {
   std::vector<Support> supports;       ///< with
   std::vector<NamedLoads> load_cases;  ///< at least one: without [[load]] one empty case
   std::vector<GroupCase> groups;
-  HomogenizeCase homogenize;
+  BoundsOptions homogenize;  ///< [homogenize]: boundary and bounds
   std::optional<EnsembleCase> ensemble;
   std::vector<NamedSchedule> schedules;  ///< for a run; statics takes the factor 1
   std::optional<RunCase> run;
@@ -154,5 +133,11 @@ bool is_case_key(std::string_view path);
 /// The resolved case as TOML: every default written out, overrides applied. Reading it back gives the same case.
 /// \param folder of the new file: paths are written relative to it
 std::string to_toml(const Case& resolved, const std::filesystem::path& folder);
+
+/// A springs file, schema "equidem-springs/1", to which `springs = "FILE"` of a case file refers; it reads back to the
+/// same bits.
+/// \param comment lines for people at the top of the file, may be empty
+std::string springs_file(const SpringConstants& springs, SpringWeighting weighting, const std::string& title,
+                         const std::string& comment);
 
 }  // namespace equidem

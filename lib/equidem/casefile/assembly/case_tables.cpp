@@ -20,9 +20,10 @@ std::vector<Key<SpringsTable>> springs_keys() {
 
 void bind_assembly(File<CaseTables>& file) {
   const Words lattices = names_in(all_lattices()), delaunay = {"delaunay"}, from_file = {"file"};
-  Words kinds = lattices;
-  kinds.insert(kinds.end(), {"delaunay", "file"});
-  const char* periodic = "joined to itself left-right and top-bottom";
+  Words made = lattices;
+  made.emplace_back("delaunay");
+  Words kinds = made;
+  kinds.emplace_back("file");
   using A = AssemblyCase;
   using L = LatticeOptions;
   using D = DelaunayOptions;
@@ -60,8 +61,9 @@ void bind_assembly(File<CaseTables>& file) {
            key("seed", &A::delaunay, &D::seed, not_negative, when("kind", delaunay), "same seed, same assembly"),
            key("aspect", &A::delaunay, &D::aspect, from(1e-3, 1e3), when("kind", delaunay),
                "width over height of the rectangle"),
-           key("periodic", &A::lattice, &L::periodic, when("kind", lattices), periodic),
-           key("periodic", &A::delaunay, &D::periodic, when("kind", delaunay), periodic),
+           key_with<A, bool>(
+               "periodic", [](A& a, const bool& joined) { a.lattice.periodic = a.delaunay.periodic = joined; },
+               by_default(L{}.periodic), when("kind", made), "joined to itself left-right and top-bottom"),
            key("density", &A::density, unit("kg/m³"), positive,
                "density of the discs themselves; for waves, time steps and motion"),
            key("body", &A::body, "what a disc stands for: a cylinder per metre of depth, or a sphere; for its inertia"),
@@ -142,18 +144,18 @@ void bind_supports_and_loads(File<CaseTables>& file) {
 void bind_tasks(File<CaseTables>& file) {
   file.table("homogenize", &CaseTables::homogenize, completed, "how the effective stiffness is found")
       .keys(
-          {key("boundary", &HomogenizeCase::boundary, or_auto,
+          {key("boundary", &BoundsOptions::boundary, or_auto,
                "how the mean strain enters; auto: periodic where the assembly is, else displacement and traction side "
                "by "
                "side"),
-           key("bounds", &HomogenizeCase::bounds,
+           key("bounds", &BoundsOptions::bounds,
                "affine: those that need no solution; all: also by uniform displacements and tractions at the boundary; "
                "auto: all up to 20000 discs")});
   file.table("ensemble", &CaseTables::ensemble, "many random samples (kind = delaunay): mean, scatter, the size needed")
       .keys(
-          {key("discs", &EnsembleCase::discs, from(3, 1e9),
+          {key("discs", &EnsembleCase::plan, &EnsemblePlan::discs, from(3, 1e9),
                "sizes of the samples, ascending; in place of assembly.discs"),
-           key("samples", &EnsembleCase::samples, from(2, 1e6),
+           key("samples", &EnsembleCase::plan, &EnsemblePlan::samples, from(2, 1e6),
                "samples of each size, made from assembly.seed, seed + 1, ..."),
            key("accuracy", &EnsembleCase::accuracy, between(0, 1),
                "wanted of the moduli, relative, such as 0.01: the report says which size reaches it"),

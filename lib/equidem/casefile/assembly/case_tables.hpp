@@ -14,20 +14,6 @@
 
 namespace equidem {
 
-template <>
-struct EnumNames<LoadKind> {
-  using enum LoadKind;
-  static constexpr const char* what = "kind of load";
-  static constexpr NamedValue<LoadKind> list[] = {{per_disc, "per_disc"}, {total, "total"}, {traction, "traction"}};
-};
-
-template <>
-struct EnumNames<LoopKind::Motion> {
-  using enum LoopKind::Motion;
-  static constexpr const char* what = "kind of motion";
-  static constexpr NamedValue<LoopKind::Motion> list[] = {{small, "small"}, {finite, "finite"}};
-};
-
 /// The kinds of assemblies in a file.
 template <>
 struct EnumNames<Schedule::Kind> {

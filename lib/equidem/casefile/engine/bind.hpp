@@ -58,6 +58,11 @@ struct Required {
 inline constexpr Required required;
 /// If the key is absent, the member keeps its value and the echo omits the key.
 inline constexpr auto optional = [](KeySpec& key) { key.fallback = KeySpec::none; };
+/// The default of a key that is bound to a function.
+template <class T>
+auto by_default(const T& value) {
+  return [text = default_text(value)](KeySpec& key) { key.fallback = text; };
+}
 /// The default is "auto", which leaves the member as it is.
 inline constexpr auto or_auto = [](KeySpec& key) {
   key.fallback = "\"auto\"";
@@ -124,9 +129,13 @@ template <class Attribute>
 std::tuple<> link_in(const Attribute&, long) {
   return {};
 }
+/// The function from an object to its member at the end of the chain among the arguments.
 template <class... Arguments>
-auto links_of(const Arguments&... arguments) {
-  return std::tuple_cat(link_in(arguments, 0)...);
+auto follower(const Arguments&... arguments) {
+  return [links = std::tuple_cat(link_in(arguments, 0)...)](auto& object) -> auto& {
+    return std::apply(
+        [&]([[maybe_unused]] auto... link) -> auto& { return member(object, link...); }, links);
+  };
 }
 
 /// One key of a table that is bound to an S.
@@ -161,11 +170,7 @@ Key<S> key_with(std::string name, void (*set)(S&, const T&), const Attributes&..
 /// A key bound to the member of an S at the end of a chain; then its attributes.
 template <class S, class... Arguments>
 Key<S> key_in(std::string name, const Arguments&... arguments) {
-  const auto links = links_of(arguments...);
-  const auto target = [links](S & object) -> auto& {
-    return std::apply(
-        [&]([[maybe_unused]] auto... link) -> auto& { return member(object, link...); }, links);
-  };
+  const auto target = follower(arguments...);
   S defaults{};
   using T = std::remove_cvref_t<decltype(target(defaults))>;
   Key<S> key = unbound_key<S>(std::move(name), type_of_key<T>());
@@ -225,11 +230,7 @@ class File {
   /// given to the result.
   template <class... Arguments>
   auto table(std::string name, const Arguments&... arguments) {
-    const auto links = links_of(arguments...);
-    const auto target = [links](F & object) -> auto& {
-      return std::apply(
-          [&]([[maybe_unused]] auto... link) -> auto& { return member(object, link...); }, links);
-    };
+    const auto target = follower(arguments...);
     TableSpec spec{.name = std::move(name)};
     (apply(spec, arguments), ...);
     return Binder<decltype(target)>(*this, std::move(spec), target);

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdint>
 
-#include "equidem/casefile/engine/check_value.hpp"
 #include "equidem/casefile/engine/keys.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/names.hpp"

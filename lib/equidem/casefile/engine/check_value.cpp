@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/engine/check_value.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +6,10 @@
 #include <cmath>
 #include <cstdint>
 
+#include "equidem/casefile/engine/keys.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/names.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem::casefile {
@@ -26,56 +27,35 @@ std::string quoted_list(const std::vector<std::string>& words) {
               fmt::format("{}: {}", value.where(), key.path()));
 }
 
-bool reads_as_number(const std::string& text) {
-  double number = 0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return problem == std::errc() && end == text.data() + text.size() && !text.empty();
+/// A kind of value. In the texts {unit}, {range}, {choices} and {words} stand for those of the key, {number} for a
+/// number in its range.
+struct ValueKind {
+  KeyType type;
+  const char* expected;  ///< values that a key accepts
+  const char* example;   ///< one of them, as TOML
+  void (*check)(const TomlValue&, const KeySpec&);
+};
+const ValueKind& kind_of(KeyType type);
+
+std::string filled(const char* text, const KeySpec& key) {
+  const std::string words = quoted_list(key.choices);
+  return fmt::format(fmt::runtime(text), fmt::arg("unit", key.unit.empty() ? "" : " in " + key.unit),
+                     fmt::arg("range", key.range.text().empty() ? "" : ", " + key.range.text()),
+                     fmt::arg("choices", (key.choices.size() == 1 ? "" : "one of ") + words), fmt::arg("words", words),
+                     fmt::arg("first", key.choices.empty() ? "" : key.choices.front()),
+                     fmt::arg("number", key.range.contains(1.0) ? "1.0" : "0.1"));
 }
 
-/// A value that the key accepts, as TOML.
-std::string example(const KeySpec& key) {
-  switch (key.type) {
-    case KeyType::text:
-      return "\"...\"";
-    case KeyType::choice:
-      return fmt::format("\"{}\"", key.choices.front());
-    case KeyType::path:
-      return "\"FILE\"";
-    case KeyType::flag:
-      return "true";
-    case KeyType::whole:
-      return "10";
-    case KeyType::number:
-      return key.range.contains(1.0) ? "1.0" : "0.1";
-    case KeyType::number_or_auto:
-      return "\"auto\"";
-    case KeyType::vector:
-      return "[1.0, 0.0]";
-    case KeyType::box:
-      return "[0.0, 0.0, 1.0, 1.0]";
-    case KeyType::discs:
-      return "[0, 1, 2]";
-    case KeyType::circles:
-      return "[[0.0, 0.0, 0.01], [0.015, 0.0, 0.01]]";
-    case KeyType::sizes:
-      return "[100, 400, 1600]";
-    case KeyType::numbers:
-      return "[0.0, 0.5, 1.0]";
-    case KeyType::words:
-      return fmt::format("[\"{}\"]", key.choices.front());
-    case KeyType::held:
-      return "0.001";
-    case KeyType::bytes:
-      return "\"4 GB\"";
-  }
-  return {};
+/// "Write it like key = example".
+std::string like_example(const KeySpec& key) {
+  return fmt::format("Write it like {} = {}", key.name, filled(kind_of(key.type).example, key));
 }
 
 [[noreturn]] void fail_type(const TomlValue& value, const KeySpec& key) {
-  std::string remedy = fmt::format("Write it like {} = {}", key.name, example(key));
+  std::string remedy = like_example(key);
   if (value.type == Type::text &&
       (key.type == KeyType::number || key.type == KeyType::number_or_auto || key.type == KeyType::whole) &&
-      reads_as_number(value.text))
+      number_from<double>(value.text))
     remedy = fmt::format("Leave out the quotes: {} = {}", key.name, value.text);
   if (value.type == Type::real && key.type == KeyType::whole && value.real == std::floor(value.real) &&
       std::abs(value.real) < 1e15)
@@ -83,16 +63,19 @@ std::string example(const KeySpec& key) {
   fail(value, key, fmt::format("{} is {}", value.shown(), value.type_name()), remedy);
 }
 
+[[noreturn]] void fail_range(const TomlValue& value, const KeySpec& key) {
+  fail(value, key, fmt::format("{} is out of range", value.shown()), fmt::format("Give a number {}", key.range.text()));
+}
+
 void check_number(const TomlValue& value, const KeySpec& key) {
   if (!value.is_number()) fail_type(value, key);
   if (!std::isfinite(value.real))
     fail(value, key, fmt::format("{} is not a finite number", value.shown()), "Give a finite one");
-  if (!key.range.contains(value.real))
-    fail(value, key, fmt::format("{} is out of range", value.shown()),
-         fmt::format("Give a number {}", key.range.text()));
+  if (!key.range.contains(value.real)) fail_range(value, key);
 }
 
-void check_numbers(const TomlValue& value, const KeySpec& key, std::size_t count) {
+template <std::size_t count>
+void check_numbers(const TomlValue& value, const KeySpec& key) {
   if (!value.is_array()) fail_type(value, key);
   if (value.items.size() != count) {
     fail(value, key,
@@ -115,15 +98,19 @@ void check_discs(const TomlValue& value, const KeySpec& key) {
 /// A list that is not empty.
 void check_list(const TomlValue& value, const KeySpec& key) {
   if (!value.is_array()) fail_type(value, key);
-  if (value.items.empty())
-    fail(value, key, "the list is empty", fmt::format("Write it like {} = {}", key.name, example(key)));
+  if (value.items.empty()) fail(value, key, "the list is empty", like_example(key));
+}
+
+void check_list_of_numbers(const TomlValue& value, const KeySpec& key) {
+  check_list(value, key);
+  for (const TomlValue& item : value.items) check_number(item, key);
 }
 
 void check_circles(const TomlValue& value, const KeySpec& key) {
   check_list(value, key);
   for (const TomlValue& item : value.items) {
     if (!item.is_array()) fail_type(value, key);
-    check_numbers(item, key, 3);
+    check_numbers<3>(item, key);
     if (!(item.items[2].real > 0))
       fail(item.items[2], key, fmt::format("the radius {} is out of range", item.items[2].shown()),
            "Give a number > 0");
@@ -162,46 +149,72 @@ void check_words(const TomlValue& value, const KeySpec& key) {
   }
 }
 
+void check_text(const TomlValue& value, const KeySpec& key) {
+  if (value.type != Type::text) fail_type(value, key);
+}
+
+void check_path(const TomlValue& value, const KeySpec& key) {
+  check_text(value, key);
+  if (value.text.empty()) fail(value, key, "the name is empty", "Name a file");
+}
+
+void check_flag(const TomlValue& value, const KeySpec& key) {
+  if (value.type != Type::boolean) fail_type(value, key);
+}
+
+void check_whole(const TomlValue& value, const KeySpec& key) {
+  const bool infinite = value.is_number() && !std::isfinite(value.real);
+  if (value.type != Type::integer && !infinite) fail_type(value, key);
+  check_number(value, key);
+}
+
+void check_number_or_auto(const TomlValue& value, const KeySpec& key) {
+  if (value.type != Type::text || value.text != "auto") check_number(value, key);
+}
+
+void check_held(const TomlValue& value, const KeySpec& key) {
+  if (value.type != Type::boolean) return check_number(value, key);
+  if (!value.boolean) fail(value, key, "false is not allowed", fmt::format("Leave {} out where it is free", key.name));
+}
+
+void check_bytes(const TomlValue& value, const KeySpec& key) {
+  const auto bytes = bytes_of(value);
+  if (!bytes) fail_type(value, key);
+  if (!key.range.contains(*bytes)) fail_range(value, key);
+}
+
+constexpr ValueKind kinds[] = {
+    {KeyType::text, "text in quotes", "\"...\"", check_text},
+    {KeyType::choice, "{choices}", "\"{first}\"", check_choice},
+    {KeyType::path, "the name of a file, in quotes", "\"FILE\"", check_path},
+    {KeyType::flag, "true or false", "true", check_flag},
+    {KeyType::whole, "a whole number{range}", "10", check_whole},
+    {KeyType::number, "a number{unit}{range}", "{number}", check_number},
+    {KeyType::vector, "two numbers [x, y]{unit}", "[1.0, 0.0]", check_numbers<2>},
+    {KeyType::number_or_auto, "\"auto\", or a number{unit}{range}", "\"auto\"", check_number_or_auto},
+    {KeyType::box, "four numbers [x_min, y_min, x_max, y_max]{unit}", "[0.0, 0.0, 1.0, 1.0]", check_numbers<4>},
+    {KeyType::discs, "a list of disc numbers, such as [0, 1, 2]", "[0, 1, 2]", check_discs},
+    {KeyType::circles, "a list of circles [x, y, radius]{unit}, radius > 0", "[[0.0, 0.0, 0.01], [0.015, 0.0, 0.01]]",
+     check_circles},
+    {KeyType::sizes, "a list of ascending whole numbers{range}", "[100, 400, 1600]", check_sizes},
+    {KeyType::numbers, "a list of numbers{unit}{range}", "[0.0, 0.5, 1.0]", check_list_of_numbers},
+    {KeyType::words, "a list of words out of {words}", "[\"{first}\"]", check_words},
+    {KeyType::held, "a number{unit}, or true for 0", "0.001", check_held},
+    {KeyType::bytes, "a number of bytes, or text such as \"4 GB\"", "\"4 GB\"", check_bytes},
+};
+
+const ValueKind& kind_of(KeyType type) {
+  return *std::ranges::find(kinds, type, &ValueKind::type);
+}
+
 }  // namespace
 
 std::string expected(const KeySpec& key) {
-  const std::string unit = key.unit.empty() ? "" : fmt::format(" in {}", key.unit);
-  const std::string range = key.range.text().empty() ? "" : fmt::format(", {}", key.range.text());
-  switch (key.type) {
-    case KeyType::text:
-      return "text in quotes";
-    case KeyType::choice:
-      return key.choices.size() == 1 ? quoted_list(key.choices) : fmt::format("one of {}", quoted_list(key.choices));
-    case KeyType::path:
-      return "the name of a file, in quotes";
-    case KeyType::flag:
-      return "true or false";
-    case KeyType::whole:
-      return "a whole number" + range;
-    case KeyType::number:
-      return "a number" + unit + range;
-    case KeyType::number_or_auto:
-      return "\"auto\", or a number" + unit + range;
-    case KeyType::vector:
-      return "two numbers [x, y]" + unit;
-    case KeyType::box:
-      return "four numbers [x_min, y_min, x_max, y_max]" + unit;
-    case KeyType::discs:
-      return "a list of disc numbers, such as [0, 1, 2]";
-    case KeyType::circles:
-      return "a list of circles [x, y, radius]" + unit + ", radius > 0";
-    case KeyType::sizes:
-      return "a list of ascending whole numbers" + range;
-    case KeyType::numbers:
-      return "a list of numbers" + unit + range;
-    case KeyType::words:
-      return "a list of words out of " + quoted_list(key.choices);
-    case KeyType::held:
-      return "a number" + unit + ", or true for 0";
-    case KeyType::bytes:
-      return "a number of bytes, or text such as \"4 GB\"";
-  }
-  return {};
+  return filled(kind_of(key.type).expected, key);
+}
+
+void check_value(const TomlValue& value, const KeySpec& key) {
+  kind_of(key.type).check(value, key);
 }
 
 std::optional<double> bytes_of(const TomlValue& value) {
@@ -223,61 +236,6 @@ std::optional<double> bytes_of(const TomlValue& value) {
   for (const Unit& known : units)
     if (unit == known.name) return number * known.bytes;
   return {};
-}
-
-void check_value(const TomlValue& value, const KeySpec& key) {
-  switch (key.type) {
-    case KeyType::text:
-      if (value.type != Type::text) fail_type(value, key);
-      return;
-    case KeyType::choice:
-      return check_choice(value, key);
-    case KeyType::path:
-      if (value.type != Type::text) fail_type(value, key);
-      if (value.text.empty()) fail(value, key, "the name is empty", "Name a file");
-      return;
-    case KeyType::flag:
-      if (value.type != Type::boolean) fail_type(value, key);
-      return;
-    case KeyType::whole:
-      if (value.is_number() && !std::isfinite(value.real)) return check_number(value, key);
-      if (value.type != Type::integer) fail_type(value, key);
-      return check_number(value, key);
-    case KeyType::number:
-      return check_number(value, key);
-    case KeyType::number_or_auto:
-      if (value.type == Type::text && value.text == "auto") return;
-      return check_number(value, key);
-    case KeyType::vector:
-      return check_numbers(value, key, 2);
-    case KeyType::box:
-      return check_numbers(value, key, 4);
-    case KeyType::discs:
-      return check_discs(value, key);
-    case KeyType::circles:
-      return check_circles(value, key);
-    case KeyType::sizes:
-      return check_sizes(value, key);
-    case KeyType::numbers:
-      check_list(value, key);
-      return check_numbers(value, key, value.items.size());
-    case KeyType::words:
-      return check_words(value, key);
-    case KeyType::held:
-      if (value.type == Type::boolean) {
-        if (value.boolean) return;
-        fail(value, key, "false is not allowed", fmt::format("Leave {} out where it is free", key.name));
-      }
-      return check_number(value, key);
-    case KeyType::bytes: {
-      const auto bytes = bytes_of(value);
-      if (!bytes) fail_type(value, key);
-      if (!key.range.contains(*bytes))
-        fail(value, key, fmt::format("{} is out of range", value.shown()),
-             fmt::format("Give a number {}", key.range.text()));
-      return;
-    }
-  }
 }
 
 }  // namespace equidem::casefile

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/engine/check_value.hpp"
 #include "equidem/casefile/engine/keys.hpp"
 #include "equidem/core/text.hpp"
 

@@ -6,7 +6,6 @@
 
 #include <limits>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -94,6 +93,12 @@ struct FileSpec {
 
   [[nodiscard]] const TableSpec* table(std::string_view name) const;
 };
+
+/// "a number in Pa, > 0", `one of "square", "hexagonal"`: the values that a key accepts.
+std::string expected(const KeySpec& key);
+
+/// \throws Error (bad_input), where = "file:line: table.key": wrong type, out of range, not finite, no choice
+void check_value(const TomlValue& value, const KeySpec& key);
 
 /// Check a document against its table of keys and fill in the defaults: afterwards every key that applies and has a
 /// default is present, with the right type and in range.

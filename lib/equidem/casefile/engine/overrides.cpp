@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <charconv>
 
 #include "equidem/casefile/engine/keys.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem::casefile {
@@ -18,13 +18,6 @@ std::vector<std::string> segments_of(std::string_view path) {
       segments.back() += c;
   }
   return segments;
-}
-
-std::optional<std::size_t> index_of(const std::string& segment) {
-  std::size_t index = 0;
-  const auto [end, problem] = std::from_chars(segment.data(), segment.data() + segment.size(), index);
-  if (problem != std::errc() || end != segment.data() + segment.size()) return {};
-  return index;
 }
 
 bool is_bare_word(const std::string& text) {
@@ -66,15 +59,15 @@ TomlValue value_from(const std::string& text, const std::string& source) {
 
 /// Take the key, or one of several tables, out of the case.
 void remove(TomlValue& parent, const std::string& segment, const std::string& source) {
-  const auto index = parent.is_array() ? index_of(segment) : std::nullopt;
-  if (index && *index < parent.items.size()) {
-    parent.items.erase(parent.items.begin() + static_cast<std::ptrdiff_t>(*index));
-    return;
+  TomlValue* const found = parent.find(segment);
+  if (found == nullptr)
+    throw Error(ErrorKind::bad_input, fmt::format("there is no '{}' to take out", segment),
+                "'none' takes out a key of the case file", "Check its name", source);
+  if (parent.is_array()) {
+    parent.items.erase(parent.items.begin() + (found - parent.items.data()));
+  } else {
+    std::erase_if(parent.entries, [&](const auto& entry) { return entry.first == segment; });
   }
-  const std::size_t removed = std::erase_if(parent.entries, [&](const auto& entry) { return entry.first == segment; });
-  if (removed > 0) return;
-  throw Error(ErrorKind::bad_input, fmt::format("there is no '{}' to take out", segment),
-              "'none' takes out a key of the case file", "Check its name", source);
 }
 
 }  // namespace
@@ -88,41 +81,29 @@ void apply_override(TomlValue& root, const std::string& assignment, const std::s
     throw Error(ErrorKind::bad_input, "this sets nothing", "a key, '=' and a value are needed",
                 "Write it as springs.kT=0.3e9", *source);
   }
-  const auto trimmed = [](std::string text) {
-    text.erase(0, std::min(text.find_first_not_of(" \t"), text.size()));
-    text.erase(text.find_last_not_of(" \t") + 1);
-    return text;
-  };
-  const std::string given = trimmed(assignment.substr(equals + 1));
+  const std::string given(trimmed(std::string_view(assignment).substr(equals + 1)));
   TomlValue value = value_from(given, *source);
   put_source(value, source);
 
-  const auto segments = segments_of(trimmed(assignment.substr(0, equals)));
+  const auto segments = segments_of(trimmed(std::string_view(assignment).substr(0, equals)));
   TomlValue* at = &root;
   for (std::size_t k = 0; k < segments.size(); ++k) {
     const std::string& segment = segments[k];
     if (given == "none" && k + 1 == segments.size()) return remove(*at, segment, *source);
-    TomlValue* next = nullptr;
-    if (at->is_array()) {
-      const auto index = index_of(segment);
-      if (!index || *index >= at->items.size()) {
-        throw Error(ErrorKind::bad_input, fmt::format("there is no entry '{}'", segment),
-                    fmt::format("the case file has {} of them, counted from 0", at->items.size()),
-                    "Name one that exists", *source);
-      }
-      next = &at->items[*index];
-    } else if (at->is_table()) {
-      next = at->find(segment);
-      if (next == nullptr) {
-        TomlValue made;
-        made.source = source;
-        at->entries.emplace_back(segment, std::move(made));
-        next = &at->entries.back().second;
-      }
-    } else {
+    if (!at->is_array() && !at->is_table()) {
       throw Error(ErrorKind::bad_input, fmt::format("there is nothing below '{}'", segments[k - 1]),
                   fmt::format("in the case file it is {}", at->shown()), "Set the key itself, or change the file",
                   *source);
+    }
+    TomlValue* next = at->find(segment);
+    if (next == nullptr && at->is_array()) {
+      throw Error(ErrorKind::bad_input, fmt::format("there is no entry '{}'", segment),
+                  fmt::format("the case file has {} of them, counted from 0", at->items.size()), "Name one that exists",
+                  *source);
+    }
+    if (next == nullptr) {
+      next = &at->entries.emplace_back(segment, TomlValue()).second;
+      next->source = source;
     }
     at = next;
   }
@@ -132,27 +113,8 @@ void apply_override(TomlValue& root, const std::string& assignment, const std::s
 bool is_known_key(const FileSpec& spec, std::string_view path) {
   std::string without_indices;
   for (const std::string& segment : segments_of(path))
-    if (!index_of(segment)) without_indices += (without_indices.empty() ? "" : ".") + segment;
+    if (!number_from<std::size_t>(segment)) without_indices += (without_indices.empty() ? "" : ".") + segment;
   return std::ranges::any_of(spec.keys, [&](const KeySpec& key) { return without_indices == key.path(); });
 }
 
 }  // namespace equidem::casefile
-
-namespace equidem {
-
-const TomlValue& value_at(const TomlValue& root, std::string_view path) {
-  const TomlValue* at = &root;
-  for (const std::string& segment : casefile::segments_of(path)) {
-    const TomlValue* next = nullptr;
-    if (at->is_table()) next = at->find(segment);
-    if (at->is_array()) {
-      const auto index = casefile::index_of(segment);
-      if (index && *index < at->items.size()) next = &at->items[*index];
-    }
-    if (next == nullptr) return *at;
-    at = next;
-  }
-  return *at;
-}
-
-}  // namespace equidem

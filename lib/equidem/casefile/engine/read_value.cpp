@@ -32,7 +32,7 @@ void check_names(const TomlValue& root, const char* list) {
     const TomlValue& name = *tables[k].find("name");
     if (name.text.empty()) fail_at(name, key, "the name is empty", fmt::format("a name means one {}", list), "Name it");
     for (std::size_t earlier = 0; earlier < k; ++earlier) {
-      if (text(tables[earlier], "name") != name.text) continue;
+      if (tables[earlier].find("name")->text != name.text) continue;
       fail_at(name, key, fmt::format("there are two {}s '{}'", list, name.text),
               fmt::format("the other is at {}", tables[earlier].where()), "Give each its own name");
     }

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,7 +12,6 @@
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/core/vector.hpp"
 
 namespace equidem::casefile {
 
@@ -43,29 +41,6 @@ void at_key(const TomlValue& table, const std::string& path, const Check& check)
                 key == nullptr ? fmt::format("{}: {}", table.where(), path)
                                : fmt::format("{}: {}.{}", key->where(), path, error.where()));
   }
-}
-
-/// Precondition: the entry exists and has the type, as check_and_complete ensures.
-inline double number(const TomlValue& table, const char* key) {
-  return table.find(key)->real;
-}
-inline const std::string& text(const TomlValue& table, const char* key) {
-  return table.find(key)->text;
-}
-inline int whole(const TomlValue& table, const char* key) {
-  return static_cast<int>(table.find(key)->integer);
-}
-inline bool flag(const TomlValue& table, const char* key) {
-  return table.find(key)->boolean;
-}
-inline Vec2 vector(const TomlValue& table, const char* key) {
-  const auto& items = table.find(key)->items;
-  return {items[0].real, items[1].real};
-}
-/// Value of a key that may be missing.
-inline std::optional<double> optional_number(const TomlValue& table, const char* key) {
-  const TomlValue* value = table.find(key);
-  return value == nullptr ? std::nullopt : std::optional(value->real);
 }
 
 /// The tables of a list such as [[load]]; empty if there are none.

@@ -3,15 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <ranges>
 
 #include <toml++/toml.h>
 
 #include "equidem/core/error.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
 namespace {
 
+namespace fs = std::filesystem;
 using Source = std::shared_ptr<const std::string>;
 
 TomlValue plain(const toml::node& node, const Source& source) {
@@ -67,19 +71,80 @@ std::string reason_of(const toml::parse_error& error) {
 }
 
 /// Cut between two characters, not inside the bytes of one.
-std::string shortened(const std::string& text) {
-  constexpr std::size_t longest = 40;
+std::string shortened(const std::string& text, std::size_t longest) {
   if (text.size() <= longest) return text;
   std::size_t end = longest - 3;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
   return text.substr(0, end) + "...";
 }
 
+/// A value as TOML, texts and lists cut to these lengths; tables and dates only named.
+std::string written(const TomlValue& value, std::size_t longest_text, std::size_t most_items) {
+  switch (value.type) {
+    case TomlValue::Type::table:
+      return "{ ... }";
+    case TomlValue::Type::integer:
+      return fmt::format("{}", value.integer);
+    case TomlValue::Type::real:
+      return toml_number(value.real);
+    case TomlValue::Type::boolean:
+      return value.boolean ? "true" : "false";
+    case TomlValue::Type::text:
+      return toml_text(shortened(value.text, longest_text));
+    case TomlValue::Type::date:
+      return value.type_name();
+    case TomlValue::Type::array:
+      break;
+  }
+  const std::string items = joined(std::views::take(value.items, static_cast<std::ptrdiff_t>(most_items)),
+                                   [&](const TomlValue& item) { return written(item, longest_text, most_items); });
+  return fmt::format("[{}{}]", items, value.items.size() > most_items ? ", ..." : "");
+}
+
+constexpr std::size_t unlimited = std::numeric_limits<std::ptrdiff_t>::max();
+
+bool is_list_of_tables(const TomlValue& value) {
+  return value.is_array() && !value.items.empty() && value.items[0].is_table();
+}
+
+void write_table(std::string& out, const std::string& path, const TomlValue& table) {
+  for (const auto& [name, value] : table.entries) {
+    if (value.is_table() || is_list_of_tables(value) || (value.is_array() && value.items.empty())) continue;
+    out += name + " = " + written(value, unlimited, unlimited) + "\n";
+  }
+  for (const auto& [name, value] : table.entries) {
+    const std::string full = path.empty() ? name : path + "." + name;
+    if (value.is_table() && !value.entries.empty()) {
+      out += "\n[" + full + "]\n";
+      write_table(out, full, value);
+    } else if (is_list_of_tables(value)) {
+      for (const TomlValue& item : value.items) {
+        out += "\n[[" + full + "]]\n";
+        write_table(out, full, item);
+      }
+    }
+  }
+}
+
+void make_relative(TomlValue& value, const fs::path& folder) {
+  for (TomlValue& item : value.items) make_relative(item, folder);
+  for (auto& [name, entry] : value.entries) make_relative(entry, folder);
+  if (!value.is_path) return;
+  std::error_code failed;
+  const fs::path from = fs::absolute(folder, failed).lexically_normal();
+  const fs::path to = fs::absolute(value.text, failed).lexically_normal();
+  const fs::path relative = to.lexically_relative(from);
+  value.text = relative.empty() ? to.string() : relative.string();
+}
+
 }  // namespace
 
 const TomlValue* TomlValue::find(std::string_view name) const {
-  const auto found =
-      std::find_if(entries.begin(), entries.end(), [&](const auto& entry) { return entry.first == name; });
+  if (is_array()) {
+    const auto index = number_from<std::size_t>(name);
+    return index && *index < items.size() ? &items[*index] : nullptr;
+  }
+  const auto found = std::ranges::find(entries, name, &std::pair<std::string, TomlValue>::first);
   return found == entries.end() ? nullptr : &found->second;
 }
 
@@ -113,26 +178,19 @@ std::string TomlValue::type_name() const {
 }
 
 std::string TomlValue::shown() const {
-  switch (type) {
-    case Type::table:
-      return "{ ... }";
-    case Type::integer:
-      return fmt::format("{}", integer);
-    case Type::real:
-      return toml_number(real);
-    case Type::boolean:
-      return boolean ? "true" : "false";
-    case Type::text:
-      return toml_text(shortened(text));
-    case Type::date:
-      return "a date";
-    case Type::array: {
-      std::string shown_items;
-      for (std::size_t k = 0; k < items.size() && k < 4; ++k) shown_items += (k > 0 ? ", " : "") + items[k].shown();
-      return fmt::format("[{}{}]", shown_items, items.size() > 4 ? ", ..." : "");
-    }
+  return written(*this, 40, 4);
+}
+
+const TomlValue& value_at(const TomlValue& root, std::string_view path) {
+  const TomlValue* at = &root;
+  while (!path.empty()) {
+    const std::size_t dot = std::min(path.find('.'), path.size());
+    const TomlValue* next = at->find(path.substr(0, dot));
+    if (next == nullptr) break;
+    at = next;
+    path.remove_prefix(std::min(dot + 1, path.size()));
   }
-  return {};
+  return *at;
 }
 
 TomlValue parse_toml(std::string_view text, const std::string& source) {
@@ -172,6 +230,16 @@ std::string toml_number(double value) {
   std::string text = fmt::format("{}", value);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
   return text;
+}
+
+std::string to_toml(TomlValue document, const fs::path& folder) {
+  make_relative(document, folder);
+  const auto place = [](const auto& entry) { return entry.first == "schema" ? 0 : entry.first == "title" ? 1 : 2; };
+  std::stable_sort(document.entries.begin(), document.entries.end(),
+                   [&](const auto& a, const auto& b) { return place(a) < place(b); });
+  std::string out;
+  write_table(out, "", document);
+  return out;
 }
 
 }  // namespace equidem

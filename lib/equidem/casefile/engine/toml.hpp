@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -32,7 +33,7 @@ struct TomlValue {
   [[nodiscard]] bool is_table() const { return type == Type::table; }
   [[nodiscard]] bool is_array() const { return type == Type::array; }
   [[nodiscard]] bool is_number() const { return type == Type::integer || type == Type::real; }
-  /// The entry of that name of a table; nullptr if there is none.
+  /// The entry of that name of a table, of that number ("0", "1", ...) of an array; nullptr if there is none.
   [[nodiscard]] const TomlValue* find(std::string_view name) const;
   [[nodiscard]] TomlValue* find(std::string_view name);
   /// "cases/a.toml:7", or the option of the command line.
@@ -49,6 +50,11 @@ const TomlValue& value_at(const TomlValue& root, std::string_view path);
 /// \param source name of the file, for messages
 /// \throws Error (bad_input) with file and line where the text is not TOML
 TomlValue parse_toml(std::string_view text, const std::string& source);
+
+/// A document as TOML text.
+/// \param document its paths as the program opens them
+/// \param folder of the new file: paths are written relative to it
+std::string to_toml(TomlValue document, const std::filesystem::path& folder);
 
 /// Name and version of the parser, "toml++ 3.3.0".
 std::string toml_parser();

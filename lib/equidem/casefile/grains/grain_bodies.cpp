@@ -10,8 +10,8 @@
 
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
-#include "equidem/core/file.hpp"
 #include "equidem/core/names.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 
@@ -29,16 +29,6 @@ struct GrainBodies {
   std::vector<std::string> groups;  ///< of each grain
   std::vector<int> lines;           ///< of the grains of the file
 };
-
-std::vector<std::string_view> cells_of(std::string_view row) {
-  std::vector<std::string_view> cells;
-  for (;;) {
-    const std::size_t comma = row.find(',');
-    cells.push_back(trimmed(row.substr(0, comma)));
-    if (comma == std::string_view::npos) return cells;
-    row.remove_prefix(comma + 1);
-  }
-}
 
 /// Columns of a file of grains. The last two are text.
 enum Column { x, y, radius, short_half_axis, vx, vy, spin, angle, density, discs, group, columns };
@@ -100,35 +90,21 @@ std::vector<Clump::Disc> clump_from(std::string_view text) {
   return discs;
 }
 
-/// Reads a file of grains line by line.
+/// Reads a file of grains row by row.
 class GrainFile {
  public:
-  explicit GrainFile(fs::path path) : path_(std::move(path)) {}
+  explicit GrainFile(const fs::path& path) : file_(path) {}
 
   void read(std::optional<double> common_density, GrainShapes& shapes, GrainBodies& bodies) {
-    const std::string content = read_file(path_);
-    std::string_view rest = without_byte_order_mark(content);
-    for (line_ = 1; !rest.empty(); ++line_) {
-      const std::size_t end = std::min(rest.find('\n'), rest.size());
-      const std::string_view row = trimmed(rest.substr(0, end));
-      rest.remove_prefix(std::min(end + 1, rest.size()));
-      if (row.empty() || row.front() == '#') continue;
-      if (width_ == 0) {
-        read_heading(row);
-      } else {
-        read_grain(row, common_density, shapes, bodies);
-      }
-    }
-    if (width_ == 0) fail("the file has no row of names", "x, y and radius are needed", "Begin it with x,y,radius");
+    if (!file_.next())
+      file_.fail("the file has no row of names", "x, y and radius are needed", "Begin it with x,y,radius");
+    read_heading();
+    while (file_.next()) read_grain(common_density, shapes, bodies);
   }
 
  private:
-  [[noreturn]] void fail(const std::string& problem, const std::string& why, const std::string& remedy) const {
-    throw Error(ErrorKind::bad_input, problem, why, remedy, fmt::format("{}:{}", path_.string(), line_));
-  }
-
-  void read_heading(std::string_view row) {
-    const auto cells = cells_of(row);
+  void read_heading() {
+    const auto& cells = file_.cells();
     width_ = cells.size();
     at_.fill(width_);
     for (std::size_t c = 0; c < width_; ++c) {
@@ -137,101 +113,100 @@ class GrainFile {
       if (column == columns) {
         const std::size_t bare = column_of(cells[c].substr(0, cells[c].find('_')));
         if (bare != columns)
-          fail(fmt::format("the column '{}' is in a unit of its own", cells[c]),
-               "lengths are in m, times in s, angles in rad", fmt::format("Convert it, and name it '{}'", names[bare]));
+          file_.fail(fmt::format("the column '{}' is in a unit of its own", cells[c]),
+                     "lengths are in m, times in s, angles in rad",
+                     fmt::format("Convert it, and name it '{}'", names[bare]));
         const auto meant = nearest(cells[c], std::vector<std::string>(names.begin(), names.end()));
-        fail(fmt::format("'{}' is no column of grains", cells[c]),
-             "they are x, y, radius, short_half_axis, vx, vy, spin, angle, density, discs, group",
-             meant ? fmt::format("Did you mean '{}'?", *meant) : "Name the columns in the first row");
+        file_.fail(fmt::format("'{}' is no column of grains", cells[c]),
+                   "they are x, y, radius, short_half_axis, vx, vy, spin, angle, density, discs, group",
+                   meant ? fmt::format("Did you mean '{}'?", *meant) : "Name the columns in the first row");
       }
       std::size_t& at = at_[column];
-      if (at != width_) fail(fmt::format("the column '{}' is there twice", names[column]), "", "Keep one");
+      if (at != width_) file_.fail(fmt::format("the column '{}' is there twice", names[column]), "", "Keep one");
       at = c;
     }
     for (const Column needed : {x, y, radius}) {
       if (at_[needed] != width_ || (needed == radius && at_[discs] != width_)) continue;
-      fail(fmt::format("the column '{}' is missing", names[needed]), "every grain has a place and a size", "Add it");
+      file_.fail(fmt::format("the column '{}' is missing", names[needed]), "every grain has a place and a size",
+                 "Add it");
     }
   }
 
-  [[nodiscard]] double number(const std::vector<std::string_view>& cells, Column column, double otherwise) const {
+  [[nodiscard]] double number(Column column, double otherwise) const {
     if (at_[column] == width_) return otherwise;
-    std::string_view cell = cells[at_[column]];
-    if (cell.size() > 1 && cell.front() == '+' && cell[1] != '-') cell.remove_prefix(1);
-    double value = 0;
-    const auto [end, problem] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (problem != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
-      fail(fmt::format("'{}' is no {}", cell, names[column]), "a finite number is needed", "Correct it");
-    return value;
+    std::string_view text = cell(column);
+    if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
+    const auto value = number_from<double>(text);
+    if (!value || !std::isfinite(*value))
+      file_.fail(fmt::format("'{}' is no {}", text, names[column]), "a finite number is needed", "Correct it");
+    return *value;
   }
 
   /// The text of a cell; empty where the column is not there.
-  [[nodiscard]] std::string_view cell(const std::vector<std::string_view>& cells, Column column) const {
-    return at_[column] == width_ ? std::string_view() : cells[at_[column]];
+  [[nodiscard]] std::string_view cell(Column column) const {
+    return at_[column] == width_ ? std::string_view() : file_.cells()[at_[column]];
   }
 
-  void read_grain(std::string_view row, std::optional<double> common_density, GrainShapes& shapes,
-                  GrainBodies& bodies) const {
-    const auto cells = cells_of(row);
-    if (cells.size() != width_)
-      fail(fmt::format("the row has {}", counted(static_cast<long long>(cells.size()), "cell")),
-           fmt::format("the first row names {}", counted(static_cast<long long>(width_), "column")), "Correct it");
+  void read_grain(std::optional<double> common_density, GrainShapes& shapes, GrainBodies& bodies) const {
+    if (const auto count = std::ssize(file_.cells()); static_cast<std::size_t>(count) != width_)
+      file_.fail(fmt::format("the row has {}", counted(count, "cell")),
+                 fmt::format("the first row names {}", counted(static_cast<long long>(width_), "column")),
+                 "Correct it");
     Grain grain;
-    grain.position = {number(cells, x, 0), number(cells, y, 0)};
-    grain.velocity = {number(cells, vx, 0), number(cells, vy, 0)};
-    grain.spin = number(cells, spin, 0);
-    grain.angle = number(cells, angle, 0);
-    const double own = number(cells, density, common_density.value_or(0));
+    grain.position = {number(x, 0), number(y, 0)};
+    grain.velocity = {number(vx, 0), number(vy, 0)};
+    grain.spin = number(spin, 0);
+    grain.angle = number(angle, 0);
+    const double own = number(density, common_density.value_or(0));
     if (!(own > 0)) {
-      if (at_[density] != width_) fail(fmt::format("the density {} is not positive", own), "", "Correct it");
-      fail("the density of the grains is missing", "motion needs their mass",
-           "Add density = ... in kg/m³ to [grains], or a column of that name");
+      if (at_[density] != width_) file_.fail(fmt::format("the density {} is not positive", own), "", "Correct it");
+      file_.fail("the density of the grains is missing", "motion needs their mass",
+                 "Add density = ... in kg/m³ to [grains], or a column of that name");
     }
     try {
-      read_shape(cells, own, shapes, grain);
+      read_shape(own, shapes, grain);
     } catch (const Error& error) {
-      throw error.at(fmt::format("{}:{}", path_.string(), line_));
+      throw error.at(file_.where());
     }
     bodies.grains.push_back(grain);
     bodies.densities.push_back(own);
-    bodies.groups.push_back(group_of(cells));
-    bodies.lines.push_back(line_);
+    bodies.groups.push_back(read_group());
+    bodies.lines.push_back(file_.line());
   }
 
-  void read_shape(const std::vector<std::string_view>& cells, double own_density, GrainShapes& shapes,
-                  Grain& grain) const {
-    const bool is_clump = !cell(cells, discs).empty();
-    const double half_axis = cell(cells, short_half_axis).empty() ? 0 : number(cells, short_half_axis, 0);
+  void read_shape(double own_density, GrainShapes& shapes, Grain& grain) const {
+    const bool is_clump = !cell(discs).empty();
+    const double half_axis = cell(short_half_axis).empty() ? 0 : number(short_half_axis, 0);
     if (is_clump && half_axis != 0)
-      fail("the grain has discs and a short half-axis", "it is a clump or an ellipse", "Leave one of the cells empty");
+      file_.fail("the grain has discs and a short half-axis", "it is a clump or an ellipse",
+                 "Leave one of the cells empty");
     if (!is_clump) {
-      const double size = number(cells, radius, 0);
+      const double size = number(radius, 0);
       if (half_axis == 0) return shapes.make_disc(grain, size, own_density);
       return shapes.make_ellipse(grain, size, half_axis, own_density);
     }
-    shapes.make_clump(grain, clump_from(cell(cells, discs)), own_density);
-    if (cell(cells, radius).empty()) return;
+    shapes.make_clump(grain, clump_from(cell(discs)), own_density);
+    if (cell(radius).empty()) return;
     constexpr double tolerance = 1e-9;
-    const double size = number(cells, radius, 0);
+    const double size = number(radius, 0);
     if (std::abs(size - grain.radius) > tolerance * grain.radius) {
-      fail(fmt::format("the radius is {} m, and the discs reach {} m from their mass centre", size, grain.radius),
-           "that is the radius of a clump", "Correct one of them, or leave the radius empty");
+      file_.fail(fmt::format("the radius is {} m, and the discs reach {} m from their mass centre", size, grain.radius),
+                 "that is the radius of a clump", "Correct one of them, or leave the radius empty");
     }
   }
 
-  [[nodiscard]] std::string group_of(const std::vector<std::string_view>& cells) const {
-    if (at_[group] == width_ || cells[at_[group]].empty()) return "grains";
-    const std::string_view name = cells[at_[group]];
+  [[nodiscard]] std::string read_group() const {
+    const std::string_view name = cell(group);
+    if (name.empty()) return "grains";
     if (!casefile::is_plain_name(name))
-      fail(fmt::format("'{}' cannot name a group", name), "it stands in tables",
-           "Use letters, digits, '_' and '-' only");
+      file_.fail(fmt::format("'{}' cannot name a group", name), "it stands in tables",
+                 "Use letters, digits, '_' and '-' only");
     if (name == "walls")
-      fail("a group of grains is called 'walls'", "the name stands for all walls", "Name it otherwise");
+      file_.fail("a group of grains is called 'walls'", "the name stands for all walls", "Name it otherwise");
     return std::string(name);
   }
 
-  fs::path path_;
-  int line_ = 0;
+  TableFile file_;
   std::size_t width_ = 0;
   std::array<std::size_t, columns> at_{};
 };

@@ -197,8 +197,7 @@ GrainCase parse_grain_case(std::string_view content, const std::string& name, co
   grain_file().assign(root, folder, tables);
   for (const char* list : {"wall", "schedule", "probe"}) check_names(root, list);
   const std::vector<std::string> groups = read_bodies(root, tables);
-  tables.scene.bonds = read_bonds(root, tables.bonds, tables.scene.grains.size());
-  tables.options.bond_step = tables.bonds.step;
+  read_bonds(root, tables);
   check_names_of_kinds(root, groups);
   const auto schedules = read_schedules(root, tables.schedule_tables);
   for (std::size_t k = 0; k < tables.wall_tables.size(); ++k)

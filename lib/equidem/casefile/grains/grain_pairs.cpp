@@ -119,7 +119,7 @@ std::vector<Key<PairOptions>> contact_keys(bool base) {
   for (Key<P>& key : keys) {
     if (base) break;
     key.spec.fallback = KeySpec::none;
-    key.spec.help.clear();  // as in [collisions]
+    key.spec.help = "as in [collisions]";
   }
   return keys;
 }

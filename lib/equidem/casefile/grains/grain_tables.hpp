@@ -31,35 +31,6 @@ struct EnumNames<GrainOptions::Scheme> {
                                                               {corrected_verlet, "corrected_verlet"}};
 };
 
-template <>
-struct EnumNames<GrainOptions::EllipseLaw> {
-  using enum GrainOptions::EllipseLaw;
-  static constexpr const char* what = "contact of ellipses";
-  static constexpr NamedValue<GrainOptions::EllipseLaw> list[] = {
-      {exact, "exact"}, {enlarged_mended, "enlarged"}, {enlarged_as_printed, "enlarged_as_printed"}};
-};
-
-template <>
-struct EnumNames<GrainOptions::BondStep> {
-  using enum GrainOptions::BondStep;
-  static constexpr const char* what = "step of bonds";
-  static constexpr NamedValue<GrainOptions::BondStep> list[] = {{exact, "exact"}, {explicit_euler, "explicit"}};
-};
-
-template <>
-struct EnumNames<FrictionCap> {
-  using enum FrictionCap;
-  static constexpr const char* what = "limit of friction";
-  static constexpr NamedValue<FrictionCap> list[] = {{whole_force, "whole_force"}, {spring_alone, "spring_alone"}};
-};
-
-template <>
-struct EnumNames<Baseline> {
-  using enum Baseline;
-  static constexpr const char* what = "baseline";
-  static constexpr NamedValue<Baseline> list[] = {{rest, "rest"}, {velocity, "velocity"}};
-};
-
 }  // namespace equidem
 
 namespace equidem::casefile {
@@ -108,7 +79,6 @@ struct GrainProbeTable {
 /// [bonds].
 struct BondsTable {
   GrainBond common;
-  GrainOptions::BondStep step = GrainOptions::BondStep::exact;
   std::optional<std::filesystem::path> path;
 };
 
@@ -169,9 +139,9 @@ std::vector<std::string> read_bodies(const TomlValue& root, GrainTables& tables)
 void read_collisions(const TomlValue& root, const std::vector<std::string>& groups, GrainTables& tables);
 
 /// The bonds of the file, then those of the case.
-/// \throws Error (bad_input) with line and key: grains that do not exist or are bonded to themselves or twice to one
-///         another, no dashpot, a file that is not a table of bonds
-std::vector<GrainBond> read_bonds(const TomlValue& root, const BondsTable& given, std::size_t grains);
+/// \param tables with bodies
+/// \throws Error (bad_input) with line and key: as check_bonds, a file that is not a table of bonds
+void read_bonds(const TomlValue& root, GrainTables& tables);
 
 }  // namespace equidem::casefile
 
@@ -182,14 +152,6 @@ struct EnumNames<casefile::ShakingTable::Unit> {
   using enum casefile::ShakingTable::Unit;
   static constexpr const char* what = "unit of acceleration";
   static constexpr NamedValue<casefile::ShakingTable::Unit> list[] = {{m_per_s2, "m/s2"}, {gal, "gal"}, {g, "g"}};
-};
-
-template <>
-struct EnumNames<RecordedShaking::Quantity> {
-  using enum RecordedShaking::Quantity;
-  static constexpr const char* what = "quantity of a record";
-  static constexpr NamedValue<RecordedShaking::Quantity> list[] = {{acceleration, "acceleration"},
-                                                                   {displacement, "displacement"}};
 };
 
 }  // namespace equidem

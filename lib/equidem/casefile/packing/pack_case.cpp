@@ -45,22 +45,6 @@ struct EnumNames<PackTables::Start> {
   static constexpr NamedValue<PackTables::Start> list[] = {{fall, "fall"}, {relax, "relax"}};
 };
 
-template <>
-struct EnumNames<PackingBox::Sides> {
-  using enum PackingBox::Sides;
-  static constexpr const char* what = "kind of sides";
-  static constexpr NamedValue<PackingBox::Sides> list[] = {
-      {walls, "walls"}, {periodic, "periodic"}, {open_top, "open_top"}};
-};
-
-template <>
-struct EnumNames<SizeDistribution::Kind> {
-  using enum SizeDistribution::Kind;
-  static constexpr const char* what = "distribution of sizes";
-  static constexpr NamedValue<SizeDistribution::Kind> list[] = {
-      {uniform, "uniform"}, {log_normal, "log_normal"}, {sieve_curve, "sieve_curve"}};
-};
-
 namespace {
 
 void bind_bodies(File<PackTables>& file) {

@@ -16,13 +16,6 @@
 
 namespace equidem {
 
-template <>
-struct EnumNames<Truth> {
-  using enum Truth;
-  static constexpr const char* what = "kind of truth";
-  static constexpr NamedValue<Truth> list[] = {{finest, "finest"}, {richardson, "richardson"}, {known, "known"}};
-};
-
 /// A key that a study varies.
 struct VariedKey {
   std::vector<std::string> keys;  ///< of the case, with the same value: "assembly.rows", "assembly.columns"

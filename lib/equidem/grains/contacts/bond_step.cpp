@@ -143,55 +143,6 @@ BondDrift drift_of(const GrainSystem& system, const TiedPair& bond) {
           first == system.bodies.grain_of[i] ? roll : -roll};
 }
 
-void check_bond(const GrainScene& scene, const GrainBond& bond) {
-  for (const std::size_t grain : {bond.i, bond.j}) {
-    if (grain >= scene.grains.size()) {
-      bad_input(
-          fmt::format("a bond ties grain {}", grain),
-          fmt::format("there are {}, counted from 0", counted(static_cast<long long>(scene.grains.size()), "grain")),
-          "Correct the number");
-    }
-    if (scene.grains[grain].shape() == GrainShape::disc) continue;
-    bad_input(fmt::format("a bond ties grain {}, which is no disc", grain),
-              "bonds lie on the line of the centres of discs",
-              "Tie discs only; clumps of discs are rigid without bonds");
-  }
-  if (bond.i == bond.j) {
-    bad_input(fmt::format("a bond ties grain {} to itself", bond.i), "it could not move against itself",
-              "Tie two grains");
-  }
-  double largest = 0;
-  for (const double number : {bond.normal_dashpot, bond.tangential_dashpot, bond.rolling_dashpot, bond.normal_spring,
-                              bond.tangential_spring}) {
-    largest = std::max(largest, number);
-    if (number >= 0 && std::isfinite(number)) continue;
-    bad_input(fmt::format("the bond of grains {} and {} has a dashpot or a spring of {}", bond.i, bond.j, number),
-              "negative ones would feed the motion", "Give 0 or more");
-  }
-  if (largest == 0) {
-    bad_input(fmt::format("the bond of grains {} and {} has neither dashpot nor spring", bond.i, bond.j),
-              "it ties nothing", "Give a normal_dashpot and a tangential_dashpot > 0");
-  }
-  const Grain &i = scene.grains[bond.i], &j = scene.grains[bond.j];
-  const double distance = norm(j.position - i.position);
-  if (!(distance > nearest_centres_of_bonds * (i.radius + j.radius))) {
-    bad_input(fmt::format("the centres of the bonded grains {} and {} are {:.3g} m apart", bond.i, bond.j, distance),
-              "a bond lies along the line between them", "Move them apart");
-  }
-}
-
-/// \throws Error where two grains are bonded twice
-void check_twice(const std::vector<GrainBond>& bonds) {
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  pairs.reserve(bonds.size());
-  for (const GrainBond& bond : bonds) pairs.emplace_back(std::minmax(bond.i, bond.j));
-  std::sort(pairs.begin(), pairs.end());
-  const auto twice = std::adjacent_find(pairs.begin(), pairs.end());
-  if (twice == pairs.end()) return;
-  bad_input(fmt::format("grains {} and {} are bonded twice", twice->first, twice->second), "one bond ties them",
-            "Give the sum of both");
-}
-
 /// The part of a bond in M^-1 C and M^-1 K of its discs.
 struct Rates {
   double rate = 0, square = 0;
@@ -303,8 +254,7 @@ void check_bonds(const GrainScene& scene, const GrainOptions& options) {
     bad_input(fmt::format("bonds are asked for with the law \"{}\"", to_string(options.law)),
               "it solves all contacts together and knows no bonds", "Use the law linear_dashpot");
   }
-  for (const GrainBond& bond : scene.bonds) check_bond(scene, bond);
-  check_twice(scene.bonds);
+  check_bonds(scene);
   const double limit = bond_step_limit(scene, options.bond_step);
   if (options.time_step < limit) return;
   bad_input(fmt::format("the step of {:.6g} s is {:.4g} times the limit of {:.6g} s that the bonds impose",

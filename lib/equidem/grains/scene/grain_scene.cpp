@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -160,6 +162,43 @@ void check_places(const GrainScene& scene, const PlaceOfGrain& where) {
   }
 }
 
+void check_bond(const GrainScene& scene, const GrainBond& bond) {
+  for (const std::size_t grain : {bond.i, bond.j}) {
+    if (grain >= scene.grains.size()) {
+      bad_input(
+          fmt::format("a bond ties grain {}", grain),
+          fmt::format("there are {}, counted from 0", counted(static_cast<long long>(scene.grains.size()), "grain")),
+          "Correct the number");
+    }
+    if (scene.grains[grain].shape() == GrainShape::disc) continue;
+    bad_input(fmt::format("a bond ties grain {}, which is no disc", grain),
+              "bonds lie on the line of the centres of discs",
+              "Tie discs only; clumps of discs are rigid without bonds");
+  }
+  if (bond.i == bond.j) {
+    bad_input(fmt::format("a bond ties grain {} to itself", bond.i), "it could not move against itself",
+              "Tie two grains");
+  }
+  double largest = 0;
+  for (const double number : {bond.normal_dashpot, bond.tangential_dashpot, bond.rolling_dashpot, bond.normal_spring,
+                              bond.tangential_spring}) {
+    largest = std::max(largest, number);
+    if (number >= 0 && std::isfinite(number)) continue;
+    bad_input(fmt::format("the bond of grains {} and {} has a dashpot or a spring of {}", bond.i, bond.j, number),
+              "negative ones would feed the motion", "Give 0 or more");
+  }
+  if (largest == 0) {
+    bad_input(fmt::format("the bond of grains {} and {} has neither dashpot nor spring", bond.i, bond.j),
+              "it ties nothing", "Give a normal_dashpot and a tangential_dashpot > 0");
+  }
+  const Grain &i = scene.grains[bond.i], &j = scene.grains[bond.j];
+  const double distance = norm(j.position - i.position);
+  if (!(distance > nearest_centres_of_bonds * (i.radius + j.radius))) {
+    bad_input(fmt::format("the centres of the bonded grains {} and {} are {:.3g} m apart", bond.i, bond.j, distance),
+              "a bond lies along the line between them", "Move them apart");
+  }
+}
+
 }  // namespace
 
 double reference_length(const GrainScene& scene, const GrainOptions& options) {
@@ -218,6 +257,28 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
   check_table(scene, options);
   check_places(scene, where);
   check_bonds(scene, options);
+}
+
+void check_bonds(const GrainScene& scene, const PlaceOfBond& where) {
+  const auto place = [&](std::size_t bond) { return where ? where(bond) : std::string(); };
+  std::vector<std::size_t> order(scene.bonds.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (const std::size_t b : order) {
+    try {
+      check_bond(scene, scene.bonds[b]);
+    } catch (const Error& error) {
+      throw error.at(place(b));
+    }
+  }
+  const auto tied = [&](std::size_t b) {
+    return std::pair<std::size_t, std::size_t>(std::minmax(scene.bonds[b].i, scene.bonds[b].j));
+  };
+  std::ranges::stable_sort(order, {}, tied);
+  const auto twice = std::ranges::adjacent_find(order, {}, tied);
+  if (twice == order.end()) return;
+  const auto [i, j] = tied(*twice);
+  throw Error(ErrorKind::bad_input, fmt::format("grains {} and {} are bonded twice", i, j), "one bond ties them",
+              "Give the sum of both", place(*std::next(twice)));
 }
 
 }  // namespace equidem

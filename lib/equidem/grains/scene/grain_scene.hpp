@@ -12,6 +12,7 @@
 #include "equidem/contact/laws/normal_law.hpp"
 #include "equidem/contact/restitution.hpp"
 #include "equidem/contact/sliding.hpp"
+#include "equidem/core/names.hpp"
 #include "equidem/grains/scene/wall_shape.hpp"
 #include "equidem/material/inertia.hpp"
 
@@ -120,10 +121,27 @@ struct GrainOptions {
   bool refuse_crossing = true;  ///< false: bodies may pass through one another (for studies of laws that allow it)
 };
 
+template <>
+struct EnumNames<GrainOptions::EllipseLaw> {
+  using enum GrainOptions::EllipseLaw;
+  static constexpr const char* what = "contact of ellipses";
+  static constexpr NamedValue<GrainOptions::EllipseLaw> list[] = {
+      {exact, "exact"}, {enlarged_mended, "enlarged"}, {enlarged_as_printed, "enlarged_as_printed"}};
+};
+
+template <>
+struct EnumNames<GrainOptions::BondStep> {
+  using enum GrainOptions::BondStep;
+  static constexpr const char* what = "step of bonds";
+  static constexpr NamedValue<GrainOptions::BondStep> list[] = {{exact, "exact"}, {explicit_euler, "explicit"}};
+};
+
 /// d_c, m: options.reference_length, or twice the largest radius if that is 0.
 double reference_length(const GrainScene& scene, const GrainOptions& options);
 
+/// Place of a grain or of a bond in the user's input, by its number.
 using PlaceOfGrain = std::function<std::string(std::size_t grain)>;
+using PlaceOfBond = std::function<std::string(std::size_t bond)>;
 
 /// \throws Error (bad_input): no grains, radius or mass not positive, numbers not finite or beyond 1e150, kinds and
 ///         pairs that do not match, a table that is not symmetric, neither or both of stiffness and dimensionless,
@@ -132,5 +150,10 @@ using PlaceOfGrain = std::function<std::string(std::size_t grain)>;
 ///         or with the centre behind a line
 /// \param where place of a grain in the user's input, for error messages; may be empty
 void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where = {});
+
+/// \throws Error (bad_input): bonds of bodies that do not exist or are not discs, of a body with itself, or of the same
+///         two a second time; centres that coincide; dashpots and springs that are negative, not finite or all 0
+/// \param where for error messages; may be empty
+void check_bonds(const GrainScene& scene, const PlaceOfBond& where = {});
 
 }  // namespace equidem

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "equidem/core/names.hpp"
 #include "equidem/grains/scene/wall_shape.hpp"
 
 namespace equidem {
@@ -28,6 +29,13 @@ Schedule harmonic_shaking(double acceleration, double frequency, double start, s
 enum class Baseline {
   velocity,  ///< subtract a constant: the box ends at rest, displaced
   rest,      ///< subtract a linear function of time: the box ends at rest in the initial position
+};
+
+template <>
+struct EnumNames<Baseline> {
+  using enum Baseline;
+  static constexpr const char* what = "baseline";
+  static constexpr NamedValue<Baseline> list[] = {{rest, "rest"}, {velocity, "velocity"}};
 };
 
 /// A recorded motion as a displacement, and its extremes after the correction.
@@ -69,6 +77,14 @@ struct RecordedShaking {
   double scale = 1;                    ///< factor of the values
   double start = 0;                    ///< s, of the first point
   Baseline baseline = Baseline::rest;  ///< accelerations only
+};
+
+template <>
+struct EnumNames<RecordedShaking::Quantity> {
+  using enum RecordedShaking::Quantity;
+  static constexpr const char* what = "quantity of a record";
+  static constexpr NamedValue<RecordedShaking::Quantity> list[] = {{acceleration, "acceleration"},
+                                                                   {displacement, "displacement"}};
 };
 
 struct ShakingOptions {

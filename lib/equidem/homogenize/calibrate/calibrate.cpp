@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "equidem/contact/material_springs.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
@@ -28,6 +29,13 @@ double poisson_ratio_of(double shear_to_bulk, Plane plane) {
   return std::isfinite(q) ? (1 - q) / (1 + q) : -1;
 }
 
+/// Boundary::periodic is taken as displacement where the assembly is not periodic.
+HomogenizeOptions homogenize_options(const Assembly& assembly, const CalibrateOptions& options) {
+  HomogenizeOptions result = options.homogenize;
+  if (result.boundary == Boundary::periodic && !assembly.periodic()) result.boundary = Boundary::displacement;
+  return result;
+}
+
 void check(const Assembly& assembly, const CalibrateOptions& options) {
   if (!(options.tolerance >= 1e-14 && options.tolerance <= 1e-2)) {
     bad_input(fmt::format("the tolerance of the calibration is {:.6g}", options.tolerance),
@@ -43,9 +51,7 @@ void check(const Assembly& assembly, const CalibrateOptions& options) {
 class Homogenizer {
  public:
   Homogenizer(const Assembly& assembly, const CalibrateOptions& options)
-      : assembly_(assembly), weighting_(options.weighting), options_(options.homogenize) {
-    if (options_.boundary == Boundary::periodic && !assembly.periodic()) options_.boundary = Boundary::displacement;
-  }
+      : assembly_(assembly), weighting_(options.weighting), options_(homogenize_options(assembly, options)) {}
 
   /// Not stable where the network cannot be homogenized at this ratio: a mechanism, or too near a loss of stability.
   RatioSample sample(double ratio) {
@@ -60,7 +66,7 @@ class Homogenizer {
       failure_ = error;
       return {.ratio = ratio, .stable = false};
     }
-    for (const auto& [stage, seconds] : last_.times.stages()) times_.add(stage, seconds);
+    times_.add(last_.times);
     const double K = bulk_part(last_.stiffness), G = shear_part(last_.stiffness);
     const double K_T = bulk_part(last_.tangential_part), G_T = shear_part(last_.tangential_part);
     return {.ratio = ratio,
@@ -254,7 +260,9 @@ double Calibration::highest_poisson_ratio(Plane plane) const {
 Calibration calibrate(const Assembly& assembly, const ElasticModuli& target, const CalibrateOptions& options) {
   check(target);
   check(assembly, options);
-  Calibration result = options.lattice ? solve_lattice(assembly, target, options) : search(assembly, target, options);
+  const bool closed_form = options.lattice != nullptr && (options.weighting == SpringWeighting::uniform ||
+                                                          options.lattice->relation.equal_springs != nullptr);
+  Calibration result = closed_form ? solve_lattice(assembly, target, options) : search(assembly, target, options);
   // Rounding of the homogenization itself, which the tolerance may lie below.
   const double accepted = std::max(options.tolerance, 1e-10);
   if (!(result.relative_error <= accepted)) {
@@ -263,6 +271,29 @@ Calibration calibrate(const Assembly& assembly, const ElasticModuli& target, con
                        "Check that the assembly is this lattice");
   }
   return result;
+}
+
+std::optional<MeanFieldGuess> mean_field_guess(const Assembly& assembly, const ElasticModuli& target,
+                                               const CalibrateOptions& options) {
+  const NegativeTangential negative =
+      options.static_only ? NegativeTangential::static_only : NegativeTangential::refuse;
+  MeanFieldGuess guess;
+  try {
+    const ChosenRelation chosen = spring_relation(assembly, options.weighting, options.lattice);
+    if (!chosen.relation.needs_measures) return {};
+    guess.springs = springs_for(target, chosen.relation, chosen.measures, negative);
+    const EffectiveStiffness c = effective_stiffness(
+        assembly, contact_springs(assembly, guess.springs, options.weighting), homogenize_options(assembly, options));
+    if (c.unstable_modes == 0) {
+      guess.moduli = effective_moduli(c.stiffness);
+    } else {
+      guess.missing = "with them this assembly gives way";
+    }
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    guess.missing = error.what();
+  }
+  return guess;
 }
 
 }  // namespace equidem

@@ -22,8 +22,8 @@ struct CalibrateOptions {
   /// Boundary::periodic is taken as displacement where the assembly is not periodic.
   HomogenizeOptions homogenize = {};
   SpringWeighting weighting = SpringWeighting::uniform;
-  /// The assembly is a block of this lattice, of touching equal discs: springs are those of the infinite lattice in
-  /// closed form. Null: they are searched for.
+  /// The assembly is a block of this lattice, of touching equal discs: equal springs are those of the infinite lattice
+  /// in closed form. Null, or other weightings: springs are searched for.
   const Lattice* lattice = nullptr;
   bool static_only = false;  ///< kT < 0 allowed, down to the loss of stability
   double tolerance = 1e-11;  ///< relative, of the moduli reached, in [1e-14, 1e-2]
@@ -67,5 +67,18 @@ struct Calibration {
 ///         value; springs in the assembly file; as effective_stiffness and springs_for;
 ///         (computation_failed) as effective_stiffness; where the tolerance is not reached
 Calibration calibrate(const Assembly& assembly, const ElasticModuli& target, const CalibrateOptions& options = {});
+
+/// The springs that the mean field of Abe (1996), eqs. (21) and (22), advises, and the moduli of the assembly with
+/// them.
+struct MeanFieldGuess {
+  SpringConstants springs;                ///< before weighting
+  std::optional<EffectiveModuli> moduli;  ///< by one factorization
+  std::string missing;                    ///< why there are no such springs or moduli
+};
+
+/// For comparison with calibrate(): the guess that needs no search. None for lattices, whose relation is exact.
+/// \throws Error (interrupted)
+std::optional<MeanFieldGuess> mean_field_guess(const Assembly& assembly, const ElasticModuli& target,
+                                               const CalibrateOptions& options = {});
 
 }  // namespace equidem

@@ -35,6 +35,18 @@ std::optional<EnsembleSample> sample_cell(const CellSampler& sampler, std::int64
 
 }  // namespace
 
+HomogenizedCell homogenize_cell(const Assembly& cell, const ContactSprings& springs, const HomogenizeOptions& options) {
+  const EffectiveStiffness effective = effective_stiffness(cell, springs, options);
+  if (effective.unstable_modes > 0)
+    computation_failed("the cell is unstable",
+                       fmt::format("it would give way by {}", counted(effective.unstable_modes, "mode")),
+                       "Use a larger kT");
+  if (effective.unstable_modes < 0)
+    computation_failed("the stability of the cell is not known", "this solver does not count negative pivots",
+                       "Set solver.method = \"auto\"");
+  return {static_cast<std::int64_t>(cell.size()), effective_moduli(effective.stiffness)};
+}
+
 EnsembleSamples sample_ensemble(const EnsemblePlan& plan, const CellSampler& sampler,
                                 const std::vector<EnsembleSample>& kept,
                                 const std::function<void(const std::vector<EnsembleSample>&)>& save) {

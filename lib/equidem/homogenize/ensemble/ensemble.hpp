@@ -8,14 +8,15 @@
 #include <string>
 #include <vector>
 
+#include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 
 namespace equidem {
 
 /// The cells to sample: `samples` of each size, with the seeds first_seed, first_seed + 1, ...
 struct EnsemblePlan {
-  std::vector<std::int64_t> discs;  ///< wanted in a cell, ascending
-  int samples = 10;                 ///< of each size
+  std::vector<std::int64_t> discs = {100, 400, 1600};  ///< wanted in a cell, ascending
+  int samples = 10;                                    ///< of each size
   std::uint64_t first_seed = 1;
 };
 
@@ -24,6 +25,9 @@ struct HomogenizedCell {
   std::int64_t discs = 0;  ///< that the cell has: some point processes only come near the number wanted
   EffectiveModuli moduli;
 };
+
+/// \throws Error as effective_stiffness; (computation_failed) where the cell is unstable, or that is not known
+HomogenizedCell homogenize_cell(const Assembly& cell, const ContactSprings& springs, const HomogenizeOptions& options);
 
 /// One cell of an ensemble.
 struct EnsembleSample {

@@ -132,7 +132,7 @@ class Sampling {
   Sampling(const CellSampler& sampler, const EnsembleAccuracy& options,
            const std::function<void(const std::vector<EnsembleSample>&)>& save)
       : sampler_(sampler), options_(options), save_(save) {
-    result_.plan.first_seed = options.first_seed;
+    result_.plan = {.discs = {}, .first_seed = options.first_seed};
   }
 
   /// The samples of one size; false: the user stopped them.

@@ -1,44 +1,47 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The analysis of `equidem stability`.
+/// Stability of an assembly: mechanisms, inertia, waves, the critical kT/kN, the highest frequency and time steps.
 #pragma once
 
-#include <filesystem>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/contact/effects.hpp"
 #include "equidem/core/stopwatch.hpp"
-#include "equidem/output/results.hpp"
+#include "equidem/linear/linear_solver.hpp"
+#include "equidem/material/inertia.hpp"
 #include "equidem/statics/critical_ratio.hpp"
 #include "equidem/statics/mechanisms.hpp"
 #include "equidem/waves/vibration.hpp"
 #include "equidem/waves/wave_survey.hpp"
 
-#include "command.hpp"
-#include "problem.hpp"
-
 namespace equidem {
 
-/// The critical ratio and which motion loses its stiffness there.
+struct StabilityOptions {
+  Rotation rotation = Rotation::from_scene;
+  double density = 1;  ///< kg/m³, of the discs; frequencies scale with the inverse of its square root
+  Body body = Body::disc;
+  SolverOptions solver = {};  ///< of the homogenized continuum
+};
+
+/// The critical ratio and the motion that loses its stiffness there.
 struct CriticalMotion {
   bool sought = true;                      ///< false: contacts lie off the lines of centres
   double ratio = 0;                        ///< negative infinity: none down to kT = -kN
   std::optional<ZonePoint> wave = {};      ///< of a periodic assembly
   std::vector<ZonePoint> equivalent = {};  ///< all points of symmetry that reach it
   std::string motion = {};                 ///< in words; empty where it is a wave
-  std::string searched = {};               ///< among which motions, for people
+  std::string searched = {};               ///< the motions that were searched, in words
 };
 
 struct Stability {
-  Stability(const Problem& given, Effects active) : problem(given), effects(std::move(active)) {}
-
-  const Problem& problem;
   Effects effects;
-  double density = 1;  ///< kg/m³
-  bool density_assumed = false;
-  std::optional<double> ratio;  ///< kT/kN of the case, where all contacts have the same
+  std::optional<double> ratio;  ///< kT/kN, where all contacts have the same (to round-off)
   MechanismReport mechanisms;
   InertiaReport inertia;
   CriticalMotion critical;
@@ -61,25 +64,10 @@ struct Stability {
   [[nodiscard]] double growth_rate() const;
 };
 
-/// The case with its supports, those of [test] among them; nothing needs to act.
-Problem stability_problem(Case resolved);
-
-/// \throws Error (bad_input) where no contact joins any disc, and as check_magnitudes
-Stability analyze_stability(const Problem& problem);
-
-/// kg/m³ of the case, or 1.
-double density_of(const Case& resolved);
-
-/// omega of omega², or the growth rate with a minus sign: spectra with unstable branches are drawn so.
-double signed_root(double squared);
-
-/// Report and JSON of the verb.
-Results stability_results(const Stability& stability);
-
-/// \name Tables and plots of the survey. \{
-void write_survey(const std::filesystem::path& folder, const Stability& stability, bool overwrite);
-/// \throws Error (bad_input) where a file of write_survey could not be written
-void expect_survey(const OutputPlan& plan);
-/// \}
+/// \param supports of a free assembly; without any it is judged as a free body
+/// \throws Error (bad_input) where no contact joins any disc or the supports hold every disc, and as check_magnitudes;
+///         (computation_failed) where the highest frequency is not found
+Stability analyze_stability(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
+                            const StabilityOptions& options = {});
 
 }  // namespace equidem

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/waves/stability.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/statics/motion_description.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr std::size_t most_discs_of_antiperiodic = 20000;
+constexpr double no_critical_ratio = -std::numeric_limits<double>::infinity();
+
+std::optional<double> common_ratio(const Assembly& assembly, const ContactSprings& springs) {
+  const double first = springs[0].ratio();
+  for (std::size_t c = 1; !springs.uniform() && c < assembly.contacts.size(); ++c)
+    if (std::abs(springs[c].ratio() - first) > 1e-12 * std::abs(first)) return {};
+  return first;
+}
+
+CriticalMotion critical_of_survey(const WaveSurvey& survey) {
+  CriticalMotion critical{
+      .ratio = survey.critical.value, .wave = survey.critical.at, .equivalent = survey.critical.points};
+  if (critical.ratio <= -1) critical = {.ratio = no_critical_ratio};
+  critical.searched = fmt::format(
+      "all waves of the infinite assembly: {} wave vectors, all points of symmetry, long waves (q -> 0) along all "
+      "directions, and a climb from the best",
+      survey.critical.on_grid.size());
+  return critical;
+}
+
+/// Motions that repeat with the cell, and those that change sign from one cell to the next.
+CriticalMotion critical_of_large_cell(const Assembly& assembly, const ContactSprings& springs, bool rotation) {
+  CriticalMotion critical{.ratio = no_critical_ratio};
+  const bool antiperiodic = assembly.size() <= most_discs_of_antiperiodic;
+  std::vector<std::string> searched;
+  for (const auto& [x, y] :
+       {std::pair{false, false}, std::pair{true, false}, std::pair{false, true}, std::pair{true, true}}) {
+    if ((x || y) && !antiperiodic) continue;
+    const Vec2 q{x ? std::numbers::pi / assembly.period->x : 0, y ? std::numbers::pi / assembly.period->y : 0};
+    const ZonePoint wave{x && y ? "S" : x ? "X" : y ? "Y" : "Gamma", q};
+    double ratio = 0;
+    try {
+      ratio =
+          find_critical_ratio(assembly, springs, {}, {.rotation = rotation, .antiperiodic_x = x, .antiperiodic_y = y})
+              .ratio;
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::computation_failed || !(x || y)) throw;
+      continue;  // gears that turn from cell to cell: this wave stays unsearched
+    }
+    searched.push_back(wave.name);
+    if (ratio <= critical.ratio) continue;
+    critical.ratio = ratio;
+    critical.wave = wave;
+    critical.equivalent = {wave};
+  }
+  critical.searched = fmt::format(
+      "by inertia, of the waves of the given cell: {} (Gamma: repeats with the cell; X, Y, S: changes "
+      "sign along x, y, both). Other waves were not searched",
+      joined(searched));
+  return critical;
+}
+
+CriticalMotion find_critical_motion(const Assembly& assembly, const ContactSprings& springs,
+                                    std::span<const Support> supports, const std::optional<WaveSurvey>& survey,
+                                    bool rotation) {
+  if (!on_lines_of_centres(assembly))
+    return {.sought = false,
+            .searched =
+                "contacts lie off the lines of centres, where normal springs resist rotations too, so that no "
+                "single kT/kN tells what gives way"};
+  if (survey) return critical_of_survey(*survey);
+  if (assembly.periodic()) return critical_of_large_cell(assembly, springs, rotation);
+  const CriticalRatio found = find_critical_ratio(assembly, springs, supports, {.rotation = rotation});
+  CriticalMotion critical{.ratio = found.ratio};
+  if (!found.motion.empty()) critical.motion = describe_motion(assembly, found.motion);
+  critical.searched =
+      supports.empty() ? "all motions of the free body, by inertia" : "all motions that the supports allow, by inertia";
+  return critical;
+}
+
+/// The frequencies of the assembly as it is given.
+void add_frequencies(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
+                     const std::vector<Inertia>& inertia, Stability& s) {
+  const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, s.effects, supports);
+  if (unknowns.unknowns == 0)
+    bad_input("the supports hold every disc", "nothing can move, so that nothing can be lost", "Hold fewer discs");
+  s.element_bound = element_bound(assembly, springs, inertia, s.effects.rotation);
+  s.highest = extreme_squared_frequency(assembly, springs, unknowns, inertia, SpectrumEnd::largest);
+  constexpr double round_off = 1e-14;  // of the bound, in motions without energy
+  if (s.highest.converged && s.highest.value <= round_off * s.element_bound) {
+    s.highest.value = s.highest.residual = 0;  // a cell of discs that touch only their own images
+  } else if (!(s.highest.value > 0)) {
+    computation_failed("the highest frequency was not found",
+                       fmt::format("{} products with the matrix did not separate it from the next", s.highest.products),
+                       "Take a smaller assembly; --dry-run tells the time step that is guaranteed");
+  }
+  if (springs.any_negative())
+    s.lowest = extreme_squared_frequency(assembly, springs, unknowns, inertia, SpectrumEnd::smallest);
+  s.rules = time_step_rules(assembly, springs, inertia, s.effects.rotation);
+}
+
+void add_waves(const Assembly& assembly, const ContactSprings& springs, const std::vector<Inertia>& inertia,
+               Rotation rotation, Stability& s) {
+  const PrimitiveCell cell = primitive_cell(assembly, springs);
+  s.cell_discs = static_cast<std::int64_t>(cell.size());
+  if (cell.size() <= most_discs_of_survey) s.survey = survey_waves(cell, inertia, rotation);
+  double mass = 0;
+  for (const Inertia& body : inertia) mass += body.mass;
+  s.mass_per_area = mass / assembly.area();
+}
+
+/// Sound of the homogenized continuum, or why there is none.
+void add_continuum(const Assembly& assembly, const ContactSprings& springs, const StabilityOptions& options,
+                   Stability& s) {
+  EffectiveStiffness homogenized;
+  try {
+    homogenized = effective_stiffness(
+        assembly, springs, {.boundary = Boundary::periodic, .rotation = options.rotation, .solver = options.solver});
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    s.no_continuum = error.problem();
+    return;
+  }
+  std::vector<double> angles{0, std::numbers::pi / 2};
+  if (s.survey) {
+    angles.clear();
+    for (const SoundAlong& along : s.survey->sound) angles.push_back(along.angle);
+  }
+  for (const double angle : angles)
+    s.sound.push_back(plane_waves(homogenized.gradient_stiffness, s.mass_per_area, {std::cos(angle), std::sin(angle)}));
+}
+
+}  // namespace
+
+std::string Stability::status() const {
+  if (mechanisms.count() > 0 || (survey && !survey->free_waves.empty())) return "mechanism";
+  const bool below = critical.sought && ratio && *ratio < 0 && *ratio <= critical.ratio;
+  return inertia.unstable_modes != 0 || below ? "unstable" : "stable";
+}
+
+double Stability::growth_rate() const {
+  double squared = lowest ? std::max(0.0, -lowest->value) : 0;
+  if (lowest && survey) squared = std::max(squared, survey->growing.value);
+  constexpr double round_off = 1e-12;  // of the bound on omega², in motions without energy
+  return squared > round_off * element_bound ? std::sqrt(squared) : 0;
+}
+
+Stability analyze_stability(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
+                            const StabilityOptions& options) {
+  if (assembly.contacts.empty())
+    bad_input("no contact joins any disc", "nothing resists any motion", "Give the assembly contacts");
+  Stability s;
+  s.effects = derive_effects(assembly, springs, options.rotation);
+  s.ratio = common_ratio(assembly, springs);
+  const std::vector<Inertia> inertia = inertia_of(assembly, options.density, options.body);
+  check_magnitudes(assembly, springs, inertia);
+  Stopwatch watch;
+  s.mechanisms = find_mechanisms(assembly, springs, options.rotation, supports);
+  s.inertia = find_inertia(assembly, springs, options.rotation, supports);
+  s.times.add("inertia", watch.lap());
+  add_frequencies(assembly, springs, supports, inertia, s);
+  s.times.add("highest frequency", watch.lap());
+  if (assembly.periodic()) {
+    add_waves(assembly, springs, inertia, options.rotation, s);
+    s.times.add("waves", watch.lap());
+    add_continuum(assembly, springs, options, s);
+    s.times.add("continuum", watch.lap());
+  }
+  s.critical = find_critical_motion(assembly, springs, supports, s.survey, options.rotation != Rotation::restrained);
+  s.times.add("critical ratio", watch.lap());
+  return s;
+}
+
+}  // namespace equidem
