@@ -144,6 +144,7 @@ struct GrainSystem {
   EnergyLedger lost;                         ///< losses and work since the start
   GrainCounters counters;
 
+  [[nodiscard]] ContactSums sums() { return {lost, touch_impulses}; }
   [[nodiscard]] const LawDescription& law() const { return describe(options.law); }
   [[nodiscard]] double dt() const { return options.time_step; }
   [[nodiscard]] double time() const { return static_cast<double>(step) * options.time_step; }
@@ -179,8 +180,8 @@ bool refresh_candidates(GrainSystem& system, double reach);
 /// Longest displacement of a body or wall in this step, m.
 double reach_of(const GrainSystem& system);
 
-/// Reset the state of a contact that has ended.
-void forget_contact(GrainSystem& system, Candidate& candidate);
+/// Reset the state of a contact that has ended; what its tangential spring stored is lost.
+void forget_contact(Candidate& candidate, EnergyLedger& lost);
 
 /// Set the displacement of walls at the start of the step and their mean velocity over it.
 void place_walls(GrainSystem& system);

@@ -20,10 +20,6 @@ std::vector<double>& SavedState::operator[](std::string_view name) {
   return const_cast<std::vector<double>&>(std::as_const(*this)[name]);
 }
 
-bool SavedState::contains(std::string_view name) const {
-  return std::ranges::find(arrays, name, &SavedArray::name) != arrays.end();
-}
-
 std::vector<double> numbers_of(std::span<const DiscMotion> motions) {
   std::vector<double> numbers;
   numbers.reserve(3 * motions.size());

@@ -28,7 +28,6 @@ struct SavedState {
   /// \throws Error (bad_input) if there is no such array
   [[nodiscard]] const std::vector<double>& operator[](std::string_view name) const;
   [[nodiscard]] std::vector<double>& operator[](std::string_view name);
-  [[nodiscard]] bool contains(std::string_view name) const;
   bool operator==(const SavedState&) const = default;
 };
 

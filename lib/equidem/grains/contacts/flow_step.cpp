@@ -279,7 +279,7 @@ void remember(GrainSystem& system, const std::vector<Trial>& trials) {
     system.lost.lost_dashpot += normal.loss;
     system.lost.lost_release += normal.released;
     if (!touched) {
-      if (candidate.touching) forget_contact(system, candidate);
+      if (candidate.touching) forget_contact(candidate, system.lost);
       continue;
     }
     candidate.overlap = trial.overlap;
@@ -299,7 +299,7 @@ void remember(GrainSystem& system, const std::vector<Trial>& trials) {
     }
     ++candidate.steps;
     candidate.touching = true;
-    if (!normal.touching_at_end) forget_contact(system, candidate);
+    if (!normal.touching_at_end) forget_contact(candidate, system.lost);
   }
 }
 

@@ -21,20 +21,17 @@ ContactStep normal_step(const Candidate& candidate, double depth, double closing
   }
 }
 
-/// Give an impulse to j, its opposite to i; walls take it and do not move.
+/// Give an impulse to j, its opposite to i.
 template <bool friction>
-void push(GrainSystem& system, const Candidate& candidate, const ContactGeometry& geometry, Vec2 impulse,
+void push(std::vector<BodyImpulse>& impulses, const Candidate& candidate, const ContactGeometry& geometry, Vec2 impulse,
           double tangential) {
-  BodyImpulse& on_i = system.bodies.impulses[static_cast<std::size_t>(candidate.i)];
+  BodyImpulse& on_i = impulses[static_cast<std::size_t>(candidate.i)];
   on_i.impulse -= impulse;
   if constexpr (friction) on_i.torque -= geometry.lever_i * tangential;
   if (candidate.j >= 0) {
-    BodyImpulse& on_j = system.bodies.impulses[static_cast<std::size_t>(candidate.j)];
+    BodyImpulse& on_j = impulses[static_cast<std::size_t>(candidate.j)];
     on_j.impulse += impulse;
     if constexpr (friction) on_j.torque -= geometry.lever_j * tangential;
-  } else if (!system.options.verlet()) {
-    system.lost.work_of_walls -=
-        dot(impulse, system.walls.places[static_cast<std::size_t>(~candidate.j)].acting_velocity);
   }
 }
 
@@ -66,8 +63,8 @@ double gain_of_slip(const GrainSystem& system, const Candidate& candidate, const
 ///
 /// By the midpoint rule, with what other forces do to the slip over the step taken from the step before: a contact that
 /// sticks under a steady load does not creep.
-double slide(GrainSystem& system, Candidate& candidate, const ContactGeometry& geometry, Vec2 relative,
-             double normal_force) {
+double slide(const GrainSystem& system, Candidate& candidate, const ContactGeometry& geometry, Vec2 relative,
+             double normal_force, EnergyLedger& lost) {
   const double velocity = slip_velocity(system, candidate, geometry, relative);
   const double dt = system.dt();
   const double mass = tangential_mass(system, candidate, geometry);
@@ -75,8 +72,8 @@ double slide(GrainSystem& system, Candidate& candidate, const ContactGeometry& g
   const SlidingStep step =
       sliding_step_midpoint(candidate.sliding, candidate.stretch, velocity + 0.5 * gain, mass, normal_force, dt);
   candidate.stretch = step.stretch;
-  system.lost.lost_slip += step.slip_loss;
-  system.lost.lost_tangential_dashpot += step.dashpot_loss;
+  lost.lost_slip += step.slip_loss;
+  lost.lost_tangential_dashpot += step.dashpot_loss;
   return step.force * dt;
 }
 
@@ -113,7 +110,8 @@ void collide_candidates_by_verlet(GrainSystem& system) {
     const ContactGeometry geometry = geometry_of(system, candidate);
     const TouchPlace place = place_of(geometry, candidate.j < 0);
     if (!(geometry.overlap > 0)) {
-      if (candidate.touching) end_contact<Law>(system, candidate, place, drift_of(system, candidate, geometry));
+      if (candidate.touching)
+        end_contact<Law>(system, candidate, place, drift_of(system, candidate, geometry), system.sums());
       continue;
     }
     system.free_flight = false;
@@ -125,10 +123,10 @@ void collide_candidates_by_verlet(GrainSystem& system) {
       const double mass = tangential_mass(system, candidate, geometry);
       return SlipByOthers{gain_of_slip(system, candidate, geometry, mass), mass};
     };
-    const Vec2 impulse = step_contact<Law, friction>(system, candidate, place, -dot(relative, geometry.normal),
-                                                     slip_velocity(system, candidate, geometry, relative),
-                                                     drift_of(system, candidate, geometry), candidate.sliding, others);
-    push<friction>(system, candidate, geometry, impulse, candidate.tangential_impulse);
+    const Vec2 impulse = step_contact<Law, friction>(
+        system, candidate, place, -dot(relative, geometry.normal), slip_velocity(system, candidate, geometry, relative),
+        drift_of(system, candidate, geometry), candidate.sliding, others, system.sums());
+    push<friction>(system.bodies.impulses, candidate, geometry, impulse, candidate.tangential_impulse);
   }
 }
 
@@ -153,14 +151,15 @@ void collide_by(GrainSystem& system) {
   const double dt = system.dt();
   const double length = system.length;
   const double per_length = 1 / length, per_speed = dt / length, unit_speed = length / dt;
+  EnergyLedger& lost = system.lost;
   for (Candidate& candidate : system.contacts.candidates) {
     const ContactGeometry geometry = geometry_of(system, candidate);
     if (!(geometry.overlap > 0)) {
-      if (candidate.touching) forget_contact(system, candidate);
+      if (candidate.touching) forget_contact(candidate, lost);
       continue;
     }
     if constexpr (map) {
-      if (candidate.parted) forget_contact(system, candidate);
+      if (candidate.parted) forget_contact(candidate, lost);
     }
     system.free_flight = false;
     if (!candidate.touching) ++system.counters.contacts;
@@ -171,8 +170,7 @@ void collide_by(GrainSystem& system) {
     const double sigma = closing * per_speed;
     const ContactStep step = normal_step<Law>(candidate, depth, sigma);
     const double unit = candidate.reduced_mass * unit_speed;
-    if constexpr (!map)
-      system.lost.lost_dashpot += dashpot_heat<Law>(candidate, step, depth, closing, unit, unit_speed);
+    if constexpr (!map) lost.lost_dashpot += dashpot_heat<Law>(candidate, step, depth, closing, unit, unit_speed);
     candidate.touching = true;
     ++candidate.steps;
     candidate.mode = step.mode;
@@ -184,17 +182,19 @@ void collide_by(GrainSystem& system) {
     Vec2 impulse = candidate.impulse * geometry.normal;
     if constexpr (map) {
       candidate.parted = depth + step.shift + sigma + step.change <= 0;
-      system.lost.lost_restitution += step.loss * unit * unit_speed;
+      lost.lost_restitution += step.loss * unit * unit_speed;
       if (step.shift != 0) shift(system, candidate, (step.shift * length * candidate.reduced_mass) * geometry.normal);
     }
     if constexpr (friction) {
       if (candidate.sliding.coefficient > 0) {
         candidate.tangential_impulse =
-            slide(system, candidate, geometry, relative, std::max(candidate.impulse, 0.0) / dt);
+            slide(system, candidate, geometry, relative, std::max(candidate.impulse, 0.0) / dt, lost);
         impulse += candidate.tangential_impulse * perpendicular(geometry.normal);
       }
     }
-    push<friction>(system, candidate, geometry, impulse, candidate.tangential_impulse);
+    push<friction>(system.bodies.impulses, candidate, geometry, impulse, candidate.tangential_impulse);
+    if (candidate.j < 0)
+      lost.work_of_walls -= dot(impulse, system.walls.places[static_cast<std::size_t>(~candidate.j)].acting_velocity);
   }
 }
 

@@ -92,16 +92,17 @@ struct Contact {
 }
 
 /// Tangential impulse on j over the step, as of discs (force_step.cpp).
-[[gnu::always_inline]] inline double slide(GrainSystem& system, Candidate& candidate, const PartPair& pair,
-                                           const Contact& contact, double velocity, double normal_force) {
+[[gnu::always_inline]] inline double slide(const GrainSystem& system, Candidate& candidate, const PartPair& pair,
+                                           const Contact& contact, double velocity, double normal_force,
+                                           EnergyLedger& lost) {
   const double dt = system.dt();
   const double mass = tangential_mass(contact, 0);
   const double gain = gain_of_slip(system, contact, mass);
   const SlidingStep step = sliding_step_midpoint(sliding_of(candidate, pair, contact), candidate.stretch,
                                                  velocity + 0.5 * gain, mass, normal_force, dt);
   candidate.stretch = step.stretch;
-  system.lost.lost_slip += step.slip_loss;
-  system.lost.lost_tangential_dashpot += step.dashpot_loss;
+  lost.lost_slip += step.slip_loss;
+  lost.lost_tangential_dashpot += step.dashpot_loss;
   return step.force * dt;
 }
 
@@ -125,18 +126,15 @@ ContactDrift drift_of(const GrainSystem& system, const Candidate& candidate, con
           0.5 * (dot(here, perpendicular(now.normal)) + dot(there, perpendicular(before.normal))), before.overlap};
 }
 
-/// Give an impulse to j, its opposite to i; walls take it and do not move.
-[[gnu::always_inline]] inline void push(GrainSystem& system, const Contact& contact, Vec2 impulse) {
-  BodyImpulse& on_i = system.bodies.impulses[contact.i()];
+/// Give an impulse to j, its opposite to i.
+[[gnu::always_inline]] inline void push(std::vector<BodyImpulse>& impulses, const Contact& contact, Vec2 impulse) {
+  BodyImpulse& on_i = impulses[contact.i()];
   on_i.impulse -= impulse;
   on_i.torque -= cross(contact.geometry.arm_i, impulse);
   if (contact.body_j) {
-    BodyImpulse& on_j = system.bodies.impulses[contact.j()];
+    BodyImpulse& on_j = impulses[contact.j()];
     on_j.impulse += impulse;
     on_j.torque += cross(contact.geometry.arm_j, impulse);
-  } else if (!system.options.verlet()) {
-    system.lost.work_of_walls -=
-        dot(impulse, system.walls.places[static_cast<std::size_t>(~contact.candidate.j)].acting_velocity);
   }
 }
 
@@ -167,9 +165,9 @@ void collide_parts(GrainSystem& system) {
       if (!candidate.touching) continue;
       if (verlet) {
         const TouchPlace place = place_before(candidate, pair);
-        end_contact<Law>(system, candidate, place, drift_of(system, candidate, place, place));
+        end_contact<Law>(system, candidate, place, drift_of(system, candidate, place, place), system.sums());
       } else {
-        forget_contact(system, candidate);
+        forget_contact(candidate, system.lost);
       }
       continue;
     }
@@ -189,10 +187,10 @@ void collide_parts(GrainSystem& system) {
         const double mass = tangential_mass(contact, 0);
         return SlipByOthers{gain_of_slip(system, contact, mass), mass};
       };
-      push(system, contact,
+      push(system.bodies.impulses, contact,
            step_contact<Law, friction>(system, candidate, place, -dot(relative, geometry.normal),
                                        dot(relative, contact.tangent()), drift, sliding_of(candidate, pair, contact),
-                                       others));
+                                       others, system.sums()));
       continue;
     }
     const double closing = -dot(relative, geometry.normal);
@@ -214,11 +212,14 @@ void collide_parts(GrainSystem& system) {
     if constexpr (friction) {
       if (candidate.sliding.coefficient > 0) {
         candidate.tangential_impulse = slide(system, candidate, pair, contact, dot(relative, contact.tangent()),
-                                             std::max(candidate.impulse, 0.0) / dt);
+                                             std::max(candidate.impulse, 0.0) / dt, system.lost);
         impulse += candidate.tangential_impulse * contact.tangent();
       }
     }
-    push(system, contact, impulse);
+    push(system.bodies.impulses, contact, impulse);
+    if (candidate.j < 0)
+      system.lost.work_of_walls -=
+          dot(impulse, system.walls.places[static_cast<std::size_t>(~candidate.j)].acting_velocity);
   }
 }
 

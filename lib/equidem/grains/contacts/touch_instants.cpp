@@ -52,8 +52,8 @@ double last_tangential(const GrainSystem& system, const TouchInstant& contact, d
 
 }  // namespace
 
-void begin_within_drift(GrainSystem& system, const TouchInstant& contact) {
-  EnergyLedger& lost = system.lost;
+void begin_within_drift(const GrainSystem& system, const TouchInstant& contact, ContactSums sums) {
+  EnergyLedger& lost = sums.lost;
   lost.lost_dashpot += 0.5 * contact.dashpot * contact.closing;
   if (contact.slides) {
     lost.lost_slip -= 0.5 * contact.tangential * contact.slip + contact.stored;
@@ -75,11 +75,11 @@ void begin_within_drift(GrainSystem& system, const TouchInstant& contact) {
     impulse.tangential = (contact.part - 0.5) * contact.tangential_dashpot;
     impulse.taken = &EnergyLedger::lost_tangential_dashpot;
   }
-  system.touch_impulses.push_back(impulse);
+  sums.corrections.push_back(impulse);
 }
 
-void end_within_drift(GrainSystem& system, const TouchInstant& contact) {
-  EnergyLedger& lost = system.lost;
+void end_within_drift(const GrainSystem& system, const TouchInstant& contact, ContactSums sums) {
+  EnergyLedger& lost = sums.lost;
   const DriftShares share = system.law().shares_of_drift(contact.part);
   const double given = contact.spring + contact.dashpot;
   double true_one = given != 0 ? share.spring * contact.spring + share.dashpot * contact.dashpot : 0;
@@ -94,7 +94,7 @@ void end_within_drift(GrainSystem& system, const TouchInstant& contact) {
   if (given == 0) {  // the spring has nothing more to give: the dashpot takes what it holds
     lost.lost_dashpot += impulse.dashpot * contact.closing;
   } else if (corrects(system)) {
-    system.touch_impulses.push_back(impulse);
+    sums.corrections.push_back(impulse);
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <vector>
 
 #include "equidem/core/vector.hpp"
 
@@ -47,9 +48,15 @@ struct TouchImpulse {
   double EnergyLedger::*taken = nullptr;  ///< ledger term of the energy that `tangential` removes
 };
 
-/// Count the energy lost by a contact in the drift in which it began or ended; corrected_verlet: store its correction.
-void begin_within_drift(GrainSystem& system, const TouchInstant& contact);
-void end_within_drift(GrainSystem& system, const TouchInstant& contact);
+/// The sums of a step to which every contact adds.
+struct ContactSums {
+  EnergyLedger& lost;                      ///< losses and work since the start
+  std::vector<TouchImpulse>& corrections;  ///< corrected_verlet: of the next kick
+};
+
+/// Count the energy lost by a contact in the drift in which it began or ended; corrected_verlet: add its correction.
+void begin_within_drift(const GrainSystem& system, const TouchInstant& contact, ContactSums sums);
+void end_within_drift(const GrainSystem& system, const TouchInstant& contact, ContactSums sums);
 
 /// Apply the stored corrections after the kick.
 void give_touch_impulses(GrainSystem& system);

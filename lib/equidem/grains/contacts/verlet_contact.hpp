@@ -49,7 +49,8 @@ inline Vec2 passed_velocity(const GrainSystem& system, const Candidate& candidat
 
 /// End a contact without further loss.
 template <class Law>
-void end_contact(GrainSystem& system, Candidate& candidate, const TouchPlace& place, const ContactDrift& drift) {
+void end_contact(const GrainSystem& system, Candidate& candidate, const TouchPlace& place, const ContactDrift& drift,
+                 ContactSums sums) {
   TouchInstant end;
   end.i = candidate.i;
   end.j = candidate.j;
@@ -64,10 +65,10 @@ void end_contact(GrainSystem& system, Candidate& candidate, const TouchPlace& pl
   end.tangential = candidate.tangential_impulse;
   end.stored = 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
   end.pulls = candidate.attraction;
-  system.lost.work_of_walls -= 0.5 * dot(impulse_of(candidate), passed_velocity(system, candidate));
-  end_within_drift(system, end);
+  sums.lost.work_of_walls -= 0.5 * dot(impulse_of(candidate), passed_velocity(system, candidate));
+  end_within_drift(system, end, sums);
   candidate.stretch = 0;
-  forget_contact(system, candidate);
+  forget_contact(candidate, sums.lost);
 }
 
 /// One step of a contact; its state is stored in `candidate`.
@@ -75,9 +76,9 @@ void end_contact(GrainSystem& system, Candidate& candidate, const TouchPlace& pl
 /// \param others returns SlipByOthers: friction without a spring stops a slip but does not reverse it
 /// \return impulse on j
 template <class Law, bool friction, class Others>
-[[gnu::always_inline]] inline Vec2 step_contact(GrainSystem& system, Candidate& candidate, const TouchPlace& now,
+[[gnu::always_inline]] inline Vec2 step_contact(const GrainSystem& system, Candidate& candidate, const TouchPlace& now,
                                                 double closing, double slip, const ContactDrift& drift,
-                                                const Sliding& sliding, const Others& others) {
+                                                const Sliding& sliding, const Others& others, ContactSums sums) {
   const double dt = system.dt();
   const bool begins = !candidate.touching;
   const double depth = now.overlap / system.length, sigma = closing * dt / system.length;
@@ -123,20 +124,20 @@ template <class Law, bool friction, class Others>
     begin.tangential_dashpot = slide.slides ? 0 : -sliding.dashpot * slip * dt;
     begin.stored = 0.5 * sliding.stiffness * candidate.stretch * candidate.stretch;
     begin.slides = slide.slides;
-    begin_within_drift(system, begin);
+    begin_within_drift(system, begin, sums);
   } else {
     const double spring_before = spring_impulse<Law>(system, candidate, drift.overlap);
-    system.lost.lost_dashpot += 0.5 * drift.closing * ((candidate.impulse - spring_before) + (impulse - spring));
+    sums.lost.lost_dashpot += 0.5 * drift.closing * ((candidate.impulse - spring_before) + (impulse - spring));
     if constexpr (friction) {
       const double released =
           0.5 * sliding.stiffness * (stretch_before - candidate.stretch) * (stretch_before + candidate.stretch);
       const double taken = released - 0.5 * (candidate.tangential_impulse + tangential) * drift.slip;
       if (slide.slides) {
         const double drag = sliding.cap == FrictionCap::spring_alone ? sliding.dashpot * slip * drift.slip * dt : 0;
-        system.lost.lost_slip += taken - drag;
-        system.lost.lost_tangential_dashpot += drag;
+        sums.lost.lost_slip += taken - drag;
+        sums.lost.lost_tangential_dashpot += drag;
       } else if (sliding.dashpot > 0) {
-        system.lost.lost_tangential_dashpot += taken;
+        sums.lost.lost_tangential_dashpot += taken;
       }
     }
   }
@@ -148,7 +149,7 @@ template <class Law, bool friction, class Others>
   candidate.impulse = impulse;
   candidate.tangential_impulse = tangential;
   const Vec2 on_j = impulse * now.normal + tangential * perpendicular(now.normal);
-  system.lost.work_of_walls -= 0.5 * dot(pushed_before + on_j, passed_velocity(system, candidate));
+  sums.lost.work_of_walls -= 0.5 * dot(pushed_before + on_j, passed_velocity(system, candidate));
   return on_j;
 }
 

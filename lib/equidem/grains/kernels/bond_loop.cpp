@@ -113,7 +113,11 @@ EQUIDEM_ALWAYS_INLINE BondLanes look_at(const BondGroup& group, const BodyImpuls
 
 /// In the half kick that opens a step of a Verlet scheme, at the mean rates of which a quarter of all impulses has
 /// acted.
-EQUIDEM_ALWAYS_INLINE void count_all_opening_kicks(GrainSystem& system) {
+struct CountOpeningKicks {
+  EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system);
+};
+
+void CountOpeningKicks::run(GrainSystem& system) {
   const GrainMotion* motions = system.bodies.motions.data();
   const GrainBody* bodies = system.bodies.constants.data();
   const BodyImpulse* impulses = system.bodies.impulses.data();
@@ -141,7 +145,12 @@ EQUIDEM_ALWAYS_INLINE void count_all_opening_kicks(GrainSystem& system) {
 }
 
 template <BondTask task>
-EQUIDEM_ALWAYS_INLINE void resist(GrainSystem& system) {
+struct Resist {
+  EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system);
+};
+
+template <BondTask task>
+void Resist<task>::run(GrainSystem& system) {
   const PairBody* seen = system.contacts.near.bodies.data();
   BodyImpulse* impulses = system.bodies.impulses.data();
   const bool verlet = system.options.verlet();
@@ -188,40 +197,6 @@ EQUIDEM_ALWAYS_INLINE void resist(GrainSystem& system) {
   }
   system.lost.lost_bond += verlet ? 0.5 * sum : sum;
   if (least <= nearest_centres_of_bonds) refuse_crept_bonds(system);
-}
-
-template <BondTask task>
-void resist_plain(GrainSystem& system) {
-  resist<task>(system);
-}
-void count_plain(GrainSystem& system) {
-  count_all_opening_kicks(system);
-}
-
-#if defined(__x86_64__)
-template <BondTask task>
-EQUIDEM_BY_FOURS void resist_by_fours(GrainSystem& system) {
-  resist<task>(system);
-}
-template <BondTask task>
-EQUIDEM_BY_EIGHTS void resist_by_eights(GrainSystem& system) {
-  resist<task>(system);
-}
-EQUIDEM_BY_FOURS void count_by_fours(GrainSystem& system) {
-  count_all_opening_kicks(system);
-}
-EQUIDEM_BY_EIGHTS void count_by_eights(GrainSystem& system) {
-  count_all_opening_kicks(system);
-}
-#endif
-
-template <BondTask task>
-void push_by(GrainSystem& system) {
-#if defined(__x86_64__)
-  if (vector_width() == VectorWidth::bits_512) return resist_by_eights<task>(system);
-  if (vector_width() == VectorWidth::bits_256) return resist_by_fours<task>(system);
-#endif
-  resist_plain<task>(system);
 }
 
 void put_row(const GrainBody& body, double sign, BondGroup::Row& row) {
@@ -283,19 +258,15 @@ void pack_bonds(GrainSystem& system) {
 void push_packed_bonds(GrainSystem& system) {
   if (system.bonds.packed.groups.empty()) return;
   if (system.options.bond_step == GrainOptions::BondStep::exact) {
-    push_by<BondTask::resist_exactly>(system);
+    by_vector_width<Resist<BondTask::resist_exactly>, GrainSystem&>()(system);
   } else {
-    push_by<BondTask::resist_explicitly>(system);
+    by_vector_width<Resist<BondTask::resist_explicitly>, GrainSystem&>()(system);
   }
 }
 
 void count_opening_kick_of_packed_bonds(GrainSystem& system) {
   if (system.bonds.packed.groups.empty()) return;
-#if defined(__x86_64__)
-  if (vector_width() == VectorWidth::bits_512) return count_by_eights(system);
-  if (vector_width() == VectorWidth::bits_256) return count_by_fours(system);
-#endif
-  count_plain(system);
+  by_vector_width<CountOpeningKicks, GrainSystem&>()(system);
 }
 
 BondModes last_impulse(const GrainSystem& system, const TiedPair& bond) {

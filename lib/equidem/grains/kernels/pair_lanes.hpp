@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "equidem/core/square_root.hpp"
+#include "equidem/grains/kernels/vector_width.hpp"
 
 namespace equidem::eight {
 
@@ -17,8 +18,6 @@ using Choice = long long __attribute__((vector_size(64)));
 using Half = double __attribute__((vector_size(32)));
 using HalfChoice = long long __attribute__((vector_size(32)));
 using Pair = double __attribute__((vector_size(16)));
-
-#define EQUIDEM_ALWAYS_INLINE inline __attribute__((always_inline))
 
 EQUIDEM_ALWAYS_INLINE Lanes load(const double* from) {
   Lanes lanes;

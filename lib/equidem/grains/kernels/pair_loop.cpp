@@ -278,7 +278,12 @@ EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome& outcome, 
 }
 
 template <class Law, PairLoopKind kind>
-EQUIDEM_ALWAYS_INLINE void collide_all(GrainSystem& system) {
+struct CollidePairs {
+  EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system);
+};
+
+template <class Law, PairLoopKind kind>
+void CollidePairs<Law, kind>::run(GrainSystem& system) {
   NearPairs& near = system.contacts.near;
   const bool verlet = system.options.verlet();
   const PairLaw& law = near.law;
@@ -314,28 +319,8 @@ EQUIDEM_ALWAYS_INLINE void collide_all(GrainSystem& system) {
 }
 
 template <class Law, PairLoopKind kind>
-void collide_plain(GrainSystem& system) {
-  collide_all<Law, kind>(system);
-}
-
-#if defined(__x86_64__)
-template <class Law, PairLoopKind kind>
-EQUIDEM_BY_FOURS void collide_by_fours(GrainSystem& system) {
-  collide_all<Law, kind>(system);
-}
-template <class Law, PairLoopKind kind>
-EQUIDEM_BY_EIGHTS void collide_by_eights(GrainSystem& system) {
-  collide_all<Law, kind>(system);
-}
-#endif
-
-template <class Law, PairLoopKind kind>
 NearPairs::Loop choose() {
-#if defined(__x86_64__)
-  if (vector_width() == VectorWidth::bits_512) return collide_by_eights<Law, kind>;
-  if (vector_width() == VectorWidth::bits_256) return collide_by_fours<Law, kind>;
-#endif
-  return collide_plain<Law, kind>;
+  return by_vector_width<CollidePairs<Law, kind>, GrainSystem&>();
 }
 
 template <class Law, bool equal>

@@ -30,7 +30,11 @@ EQUIDEM_ALWAYS_INLINE Lanes sines_of_turns(Lanes x) {
 }
 
 /// Two eights at a time: of one alone each product would wait for the last.
-EQUIDEM_ALWAYS_INLINE void turn_all(GrainSystem& system) {
+struct TurnAxes {
+  EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system);
+};
+
+void TurnAxes::run(GrainSystem& system) {
   constexpr std::size_t most = 16;
   const std::size_t count = system.shapes.shaped.size();
   for (std::size_t first = 0; first < count; first += most) {
@@ -54,27 +58,10 @@ EQUIDEM_ALWAYS_INLINE void turn_all(GrainSystem& system) {
   }
 }
 
-void turn_plain(GrainSystem& system) {
-  turn_all(system);
-}
-
-#if defined(__x86_64__)
-EQUIDEM_BY_FOURS void turn_by_fours(GrainSystem& system) {
-  turn_all(system);
-}
-EQUIDEM_BY_EIGHTS void turn_by_eights(GrainSystem& system) {
-  turn_all(system);
-}
-#endif
-
 }  // namespace
 
 void turn_axes(GrainSystem& system) {
-#if defined(__x86_64__)
-  if (vector_width() == VectorWidth::bits_512) return turn_by_eights(system);
-  if (vector_width() == VectorWidth::bits_256) return turn_by_fours(system);
-#endif
-  turn_plain(system);
+  by_vector_width<TurnAxes, GrainSystem&>()(system);
 }
 
 }  // namespace equidem

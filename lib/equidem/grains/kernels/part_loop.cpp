@@ -213,7 +213,12 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PartB
 }
 
 template <class Law, PartLoopKind kind>
-EQUIDEM_ALWAYS_INLINE void collide_all(GrainSystem& system, NearParts::List& list) {
+struct CollideParts {
+  EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system, NearParts::List& list);
+};
+
+template <class Law, PartLoopKind kind>
+void CollideParts<Law, kind>::run(GrainSystem& system, NearParts::List& list) {
   const LoopNumbers numbers{system.dt(), system.step - (kind.verlet ? 1 : 0),
                             system.options.scheme == GrainOptions::Scheme::corrected_verlet,
                             system.contacts.near.record, &system};
@@ -226,28 +231,8 @@ EQUIDEM_ALWAYS_INLINE void collide_all(GrainSystem& system, NearParts::List& lis
 }
 
 template <class Law, PartLoopKind kind>
-void collide_plain(GrainSystem& system, NearParts::List& list) {
-  collide_all<Law, kind>(system, list);
-}
-
-#if defined(__x86_64__)
-template <class Law, PartLoopKind kind>
-EQUIDEM_BY_FOURS void collide_by_fours(GrainSystem& system, NearParts::List& list) {
-  collide_all<Law, kind>(system, list);
-}
-template <class Law, PartLoopKind kind>
-EQUIDEM_BY_EIGHTS void collide_by_eights(GrainSystem& system, NearParts::List& list) {
-  collide_all<Law, kind>(system, list);
-}
-#endif
-
-template <class Law, PartLoopKind kind>
 NearParts::List::Loop choose_loop() {
-#if defined(__x86_64__)
-  if (vector_width() == VectorWidth::bits_512) return collide_by_eights<Law, kind>;
-  if (vector_width() == VectorWidth::bits_256) return collide_by_fours<Law, kind>;
-#endif
-  return collide_plain<Law, kind>;
+  return by_vector_width<CollideParts<Law, kind>, GrainSystem&, NearParts::List&>();
 }
 
 template <class Law, bool round>

@@ -27,9 +27,9 @@ void count_instants(GrainSystem& system, const TouchLanes& lanes) {
     contact.slides = lanes.slides[k] != 0;
     contact.pulls = lanes.least[k] < 0;
     if (lanes.begun[k] != 0) {
-      begin_within_drift(system, contact);
+      begin_within_drift(system, contact, system.sums());
     } else {
-      end_within_drift(system, contact);
+      end_within_drift(system, contact, system.sums());
     }
   }
 }

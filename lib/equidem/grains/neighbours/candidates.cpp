@@ -161,8 +161,8 @@ double reach_of(const GrainSystem& system) {
   return std::sqrt(longest) + longest_turn(system);
 }
 
-void forget_contact(GrainSystem& system, Candidate& candidate) {
-  system.lost.lost_release += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
+void forget_contact(Candidate& candidate, EnergyLedger& lost) {
+  lost.lost_release += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
   candidate.stretch = 0;
   candidate.touching = candidate.parted = false;
   candidate.steps = 0;

@@ -213,9 +213,10 @@ double clipped_area(const Grain& grain, std::span<const Clump> clumps, const Reg
       return clipped_area(placed(grain, clumps[static_cast<std::size_t>(grain.clump)]), region);
     case GrainShape::ellipse:
       return clipped_area(Ellipse::at_angle(grain.radius, grain.short_half_axis, grain.angle), grain.position, region);
-    default:
-      return clipped_area(grain.position, grain.radius, region);
+    case GrainShape::disc:
+      break;
   }
+  return clipped_area(grain.position, grain.radius, region);
 }
 
 DiscUnion union_of(std::span<const Clump::Disc> discs) {
@@ -240,9 +241,10 @@ double area_of(const Grain& grain, std::span<const Clump> clumps) {
       return union_of(clumps[static_cast<std::size_t>(grain.clump)].discs).area;
     case GrainShape::ellipse:
       return std::numbers::pi * grain.radius * grain.short_half_axis;
-    default:
-      return std::numbers::pi * grain.radius * grain.radius;
+    case GrainShape::disc:
+      break;
   }
+  return std::numbers::pi * grain.radius * grain.radius;
 }
 
 }  // namespace equidem

@@ -125,7 +125,7 @@ void cover_joints(GrainSystem& system) {
     if (!candidate->covered || !candidate->touching) continue;
     const Candidate left = *candidate;
     candidate->stretch = 0;  // not lost
-    forget_contact(system, *candidate);
+    forget_contact(*candidate, system.lost);
     const auto same_body = [&](const Candidate& other) { return other.i == candidate->i; };
     auto other = candidate;  // candidates of a body stand together
     while (other != system.contacts.candidates.begin() && same_body(*std::prev(other))) --other;
