@@ -38,12 +38,10 @@ struct Tension {
   equidem::Scene scene;
 
   Tension(const Assembly& assembly, const ContactSprings& springs)
-      : setup(tension_setup(assembly, {})),
-        scene{.assembly = assembly,
-              .springs = springs,
-              .inertia = inertia_of(assembly.radii, 2600, Body::disc),
-              .supports = held_still(assembly, setup.supports),
-              .loads = lasting(setup.loads)} {}
+      : setup(tension_setup(assembly, {})), scene(assembly, springs, inertia_of(assembly.radii, 2600, Body::disc)) {
+    scene.supports = held_still(assembly, setup.supports);
+    scene.loads = lasting(setup.loads);
+  }
 };
 
 }  // namespace
@@ -87,11 +85,9 @@ TEST_CASE("every_held_scene_relaxes_under_prescribed_motions_and_loads") {
     supports.front().ux = 1e-3;
     const LoadCase loads = {{"a", LoadKind::per_disc, {1e5, -2e5}, 0}};
     const Equilibrium exact = solve_equilibrium(assembly, held.springs, supports, loads, held.options);
-    const equidem::Scene scene{.assembly = assembly,
-                               .springs = held.springs,
-                               .inertia = {},
-                               .supports = held_still(assembly, supports),
-                               .loads = lasting(loads)};
+    equidem::Scene scene(assembly, held.springs, {});
+    scene.supports = held_still(assembly, supports);
+    scene.loads = lasting(loads);
     CAPTURE(held.name);
     RelaxationOptions options{.rotation = held.options.rotation, .tolerance = 1e-12};
     // Displacements of a slender strip are so large beside stretches that their rounding alone leaves more.
@@ -133,11 +129,9 @@ TEST_CASE("damped_motion_comes_to_the_same_rest_in_many_more_steps") {
 TEST_CASE("a_bent_strip_relaxes_to_where_damped_motion_ends") {
   const Assembly strip = hexagonal_lattice({.columns = 10, .rows = 3, .radius = 0.5});
   const ContactSprings springs(SpringConstants{1, 0.5});
-  const equidem::Scene scene{.assembly = strip,
-                             .springs = springs,
-                             .inertia = inertia_of(strip.radii, 1, Body::disc),
-                             .supports = held_still(strip, std::vector<Support>{{"left", 0.0, 0.0, 0.0}}),
-                             .loads = lasting({{"right", LoadKind::per_disc, {0, 0.003}, 0}})};
+  equidem::Scene scene(strip, springs, inertia_of(strip.radii, 1, Body::disc));
+  scene.supports = held_still(strip, std::vector<Support>{{"left", 0.0, 0.0, 0.0}});
+  scene.loads = lasting({{"right", LoadKind::per_disc, {0, 0.003}, 0}});
   const Relaxation rest = relax(scene, {.motion = LoopKind::Motion::finite, .tolerance = 1e-11});
   SimulationOptions options{.motion = LoopKind::Motion::finite, .damping = {.mass = 0.05}};
   options.time_step = choose_time_step(scene, options, {.fraction = 0.5}).step;

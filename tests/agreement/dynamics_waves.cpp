@@ -82,10 +82,8 @@ TEST_CASE("the_first_20_modes_have_the_natural_frequencies_of_the_matrix") {
   const Assembly assembly = hexagonal ? hexagonal_block(7) : delaunay_block(50, 5);
   const ContactSprings springs(SpringConstants{1, 0.4});
   const std::vector<Support> supports{{"bottom", 0.0, 0.0, {}}};
-  const Scene scene{.assembly = assembly,
-                    .springs = springs,
-                    .inertia = inertia_of(assembly.radii, 1, Body::disc),
-                    .supports = held_still(assembly, supports)};
+  Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
+  scene.supports = held_still(assembly, supports);
   // The modes of M^-1/2 K M^-1/2 over the free components.
   const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, derive_effects(springs, rotation), supports);
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
@@ -147,7 +145,7 @@ TEST_CASE("plane_waves_oscillate_at_the_bloch_frequency") {
   const Assembly assembly =
       hexagonal_lattice({.columns = columns, .rows = rows, .radius = hexagonal_radius, .periodic = true});
   const ContactSprings springs(SpringConstants{1, kT});
-  const Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  const Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
   const BlochWaves waves(primitive_cell(assembly, springs), scene.inertia, true);
   SimulationOptions options;
   options.time_step = choose_time_step(scene, options, {.fraction = 0.5}).step;
@@ -177,7 +175,7 @@ TEST_CASE("long_waves_tend_to_the_speeds_of_sound_with_the_square_of_the_wave_nu
     const Assembly assembly =
         hexagonal_lattice({.columns = discs, .rows = 2, .radius = hexagonal_radius, .periodic = true});
     const ContactSprings springs(SpringConstants{1, kT});
-    const Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+    const Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
     const BlochWaves waves(primitive_cell(assembly, springs), scene.inertia, true);
     const BlochWaves::SoundSpeeds sound = waves.sound_speeds({1, 0});
     const double q = 2 * std::numbers::pi / assembly.period->x;
@@ -206,7 +204,7 @@ TEST_CASE("negative_kT_grows_at_the_rate_that_the_waves_predict") {
   const double kT = GENERATE(-0.05, -0.2);
   const Assembly assembly = hexagonal_lattice({.columns = 6, .rows = 6, .radius = hexagonal_radius, .periodic = true});
   const ContactSprings springs(SpringConstants{1, kT});
-  const Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  const Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
   const double mass = scene.inertia[0].mass, rate = std::sqrt(24 * std::abs(kT) / mass);
   const BlochWaves waves(primitive_cell(assembly, springs), scene.inertia, true);
   SimulationOptions options;

@@ -51,7 +51,7 @@ TEST_CASE("a_scene_is_what_its_case_says") {
   CHECK(options.time_step == 1e-6);
   CHECK(options.motion == LoopKind::Motion::finite);
   CHECK(options.integrator == Integrator::velocity_verlet);
-  CHECK(options.gravity.y == -9.81);
+  CHECK(scene.gravity.y == -9.81);
   CHECK(options.damping.local == 0.2);
 }
 
@@ -107,6 +107,22 @@ TEST_CASE("velocities_and_probes_need_a_group_that_exists") {
     }
     CAPTURE(table, sentence);
     CHECK(sentence.find(table + ".0.group: the assembly has no group 'nowhere'") != std::string::npos);
+  }
+}
+
+TEST_CASE("a_probe_records_a_group_or_discs_by_their_numbers") {
+  const Case by_group = parsed(motion_case);
+  const Assembly assembly = build_assembly(by_group);
+  CHECK(build_probes(by_group, assembly)[0].bodies == group(assembly, "right").discs);
+  const Case by_number = parsed(motion_case, {"probe.0.group=none", "probe.0.bodies=[2, 0]"});
+  CHECK(build_probes(by_number, assembly)[0].bodies == std::vector<std::int32_t>{2, 0});
+  const Case beyond = parsed(motion_case, {"probe.0.group=none", "probe.0.bodies=[2, 99]"});
+  try {
+    static_cast<void>(build_probes(beyond, assembly));
+    FAIL("accepted");
+  } catch (const Error& error) {
+    CAPTURE(error.what());
+    CHECK(std::string(error.what()).find("probe.bodies: there is no body 99") != std::string::npos);
   }
 }
 

@@ -166,7 +166,7 @@ spin = -3.0
 [[probe]]
 name = "tip"
 group = "right"
-quantities = ["velocity", "energy"]
+quantities = ["velocity", "rotation"]
 [output]
 frame_interval = 0.05
 probe_interval = 1e-3

@@ -60,8 +60,8 @@ TEST_CASE("a_case_of_grains_says_what_its_file_says") {
   CHECK(c.scene.walls[2].shape == Wall::Shape::arc);
   CHECK(c.scene.walls[2].to == 5.5);
   REQUIRE(c.probes.size() == 1);
-  CHECK(c.probes[0].grains == std::vector<std::int32_t>{0, 2});
-  CHECK(c.probes[0].quantities == std::vector<std::string>{"velocity", "spin"});
+  CHECK(c.probes[0].bodies == std::vector<std::int32_t>{0, 2});
+  CHECK(c.probes[0].quantities == std::vector{ProbeQuantity::velocity, ProbeQuantity::spin});
   CHECK(c.output.probe_interval == 0.01);
 }
 
@@ -94,7 +94,7 @@ TEST_CASE("a_duration_and_an_overlap_are_those_of_the_contact") {
                                         "collisions.friction=0"};
   std::string text = grain_case;
   text.erase(text.find("stiffness = 1.0e5\n"), 18);
-  text.erase(text.find("scheme"), text.find("gravity") - text.find("scheme"));
+  text.erase(text.find("integrator"), text.find("gravity") - text.find("integrator"));
 
   SECTION("duration") {
     auto overrides = common;
@@ -130,7 +130,7 @@ TEST_CASE("an_automatic_step_gives_the_shortest_contact_the_steps_asked_for") {
   CAPTURE(law);
   std::string text = grain_case;
   text.erase(text.find("contact_duration"), 26);
-  text.erase(text.find("scheme"), text.find("gravity") - text.find("scheme"));
+  text.erase(text.find("integrator"), text.find("gravity") - text.find("integrator"));
   std::vector<std::string> overrides{"run.time_step=auto", "collisions.law=" + law, "collisions.closing_speed=1.5",
                                      "collisions.restitution=1", "collisions.walls.restitution=1"};
   const GrainTimeStep usual = choose_grain_step(grains(text, overrides));

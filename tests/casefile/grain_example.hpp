@@ -68,7 +68,7 @@ frequency = 5.0
 [run]
 duration = 0.5
 time_step = 1.0e-5
-scheme = "velocity_verlet"
+integrator = "velocity_verlet"
 gravity = [0.0, -9.81]
 [[probe]]
 name = "balls"

@@ -50,7 +50,7 @@ point = [0.0, 0.0]
 normal = [0.0, 1.0]
 [run]
 duration = 0.1
-scheme = "velocity_verlet"
+integrator = "velocity_verlet"
 )";
 
 std::string refused(const std::string& text) {

@@ -49,7 +49,7 @@ TEST_CASE("a_run_says_what_its_file_says") {
   CHECK(run.velocities[0].spin == -3);
   REQUIRE(run.probes.size() == 1);
   CHECK(run.probes[0].group == "right");
-  CHECK(run.probes[0].quantities == std::vector<std::string>{"velocity", "energy"});
+  CHECK(run.probes[0].quantities == std::vector{ProbeQuantity::velocity, ProbeQuantity::rotation});
   CHECK(c.output.frame_interval == 0.05);
   CHECK(c.output.probe_interval == 0.001);
   CHECK(c.output.checkpoint_interval == 30);
@@ -241,14 +241,31 @@ TEST_CASE("runs_that_cannot_be_meant_are_refused_with_line_and_key") {
       {"kN = 2.0e9", "kN = 0.0", "kN = 0.0", "wall.kN", {"out of range", "> 0"}},
       {"displacement = 2e-4\n", "", "schedule = \"shake\"", "wall.schedule", {"no displacement"}},
       {"name = \"right\"", "name = \"left\"", "name = \"left\"\npoint = [0.1", "wall.name", {"two walls 'left'"}},
-      {"\"energy\"]",
-       "\"energie\"]",
+      {"displacement = 2e-4\nschedule = \"shake\"\n",
+       "displacement = 2e-4\n",
+       "displacement = 2e-4",
+       "wall.displacement",
+       {"no schedule", "its point"}},
+      {"displacement = 2e-4\nschedule = \"shake\"\n",
+       "direction = [1.0, 0.0]\n",
+       "direction",
+       "wall.direction",
+       {"no displacement"}},
+      {"\"rotation\"]",
+       "\"rotations\"]",
        "quantities",
        "probe.quantities",
-       {"none of the quantities", "Did you mean \"energy\"?"}},
-      {"\"energy\"]", "\"velocity\"]", "quantities", "probe.quantities", {"\"velocity\" is there twice"}},
-      {"[\"velocity\", \"energy\"]", "[]", "quantities", "probe.quantities", {"empty"}},
-      {"[\"velocity\", \"energy\"]", "\"energy\"", "quantities", "probe.quantities", {"\"energy\" is text"}},
+       {"none of the quantities", "Did you mean \"rotation\"?"}},
+      {"\"rotation\"]", "\"energy\"]", "quantities", "probe.quantities", {"in every history", "Remove it"}},
+      {"group = \"right\"\nquantities", "quantities", "[[probe]]", "probe", {"whose history", "Give one"}},
+      {"group = \"right\"\nquantities",
+       "group = \"right\"\nbodies = [1]\nquantities",
+       "bodies",
+       "probe",
+       {"both given"}},
+      {"\"rotation\"]", "\"velocity\"]", "quantities", "probe.quantities", {"\"velocity\" is there twice"}},
+      {"[\"velocity\", \"rotation\"]", "[]", "quantities", "probe.quantities", {"empty"}},
+      {"[\"velocity\", \"rotation\"]", "\"spin\"", "quantities", "probe.quantities", {"\"spin\" is text"}},
       {"name = \"tip\"", "name = \"../tip\"", "name = \"../tip\"", "probe.name", {"cannot name a probe"}},
       {"frame_interval = 0.05", "frame_interval = 0.0", "frame_interval", "output.frame_interval", {"out of range"}},
       // contradictions

@@ -73,7 +73,7 @@ TEST_CASE("the_balance_of_leapfrog_closes_to_rounding") {
   const Rotation rotation = GENERATE(Rotation::from_scene, Rotation::restrained);
   const Assembly assembly = hexagonal ? hexagonal_block(7) : delaunay_block(60, 9);
   const ContactSprings springs(SpringConstants{1, 0.4});
-  Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
   scene.velocities = start_with(random_motions(assembly.size(), 5, 0.1, 0.1));
   TimedSupport bottom;
   bottom.group = "bottom";
@@ -81,7 +81,8 @@ TEST_CASE("the_balance_of_leapfrog_closes_to_rounding") {
   scene.supports = {bottom};
   scene.loads = {{{"top", LoadKind::per_disc, {0.03, -0.02}, 0}, ramp(1, 20)},
                  {{"right", LoadKind::traction, {0.05, 0}, 0}, sine(1, 0.02)}};
-  SimulationOptions options{.rotation = rotation, .damping = given.damping, .gravity = {0.001, -0.01}};
+  scene.gravity = {0.001, -0.01};
+  SimulationOptions options{.rotation = rotation, .damping = given.damping};
   options.time_step = choose_time_step(scene, options, {.fraction = 0.7}).step;
   const ThreadsFor one(1);
   Simulation run(scene, options);
@@ -109,12 +110,12 @@ TEST_CASE("energies_are_those_of_one_instant_and_exact_at_the_start") {
   const double alpha = GENERATE(0.0, 0.3);
   const Assembly assembly = delaunay_block(40, 2);
   const ContactSprings springs(SpringConstants{1, 0.4});
-  Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
   const std::vector<DiscMotion> given = random_motions(assembly.size(), 5, 0.05, 0.05);
   scene.velocities = start_with(given);
   scene.loads = lasting({{"top", LoadKind::per_disc, {0.3, -0.2}, 0}});
-  SimulationOptions options{
-      .motion = motion, .integrator = integrator, .damping = {.mass = alpha}, .gravity = {0.1, -1}};
+  scene.gravity = {0.1, -1};
+  SimulationOptions options{.motion = motion, .integrator = integrator, .damping = {.mass = alpha}};
   options.time_step = choose_time_step(scene, options, {.fraction = 0.7}).step;
   Simulation run(scene, options);
   CAPTURE(to_string(integrator), alpha);
@@ -128,7 +129,7 @@ TEST_CASE("energies_are_those_of_one_instant_and_exact_at_the_start") {
   CHECK(now.elastic() == Approx(elastic_energy(scene, run.motions(), motion)).epsilon(1e-12));
   double fallen = 0;
   for (std::size_t d = 0; d < assembly.size(); ++d) {
-    fallen -= scene.inertia[d].mass * dot(options.gravity, run.motions()[d].u);
+    fallen -= scene.inertia[d].mass * dot(scene.gravity, run.motions()[d].u);
   }
   CHECK(now.potential == Approx(fallen).epsilon(1e-12));
 }
@@ -144,7 +145,7 @@ TEST_CASE("the_balance_of_finite_motions_closes_to_the_order_of_the_integrator")
                Given{Integrator::leapfrog, 2, {.contact = 0.05}}, Given{Integrator::fourth_order, 4, {}});
   const Assembly assembly = delaunay_block(12, 4);
   const ContactSprings springs(SpringConstants{1, 0.4});
-  Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
   scene.velocities = start_with(random_motions(assembly.size(), 7, 0.15, 0.15));
   if (given.order == 2) {  // to which order the work of what drives a run is counted
     scene.loads = {{{"top", LoadKind::per_disc, {0.02, 0.01}, 0}, ramp(1, 20)}};
@@ -174,11 +175,9 @@ TEST_CASE("the_balance_of_finite_motions_closes_to_the_order_of_the_integrator")
 TEST_CASE("a_million_steps_of_leapfrog_at_half_the_critical_step_do_not_drift") {
   const Assembly assembly = hexagonal_block(4);
   const ContactSprings springs(SpringConstants{1, 0.4});
-  const Scene scene{.assembly = assembly,
-                    .springs = springs,
-                    .inertia = inertia_of(assembly.radii, 1, Body::disc),
-                    .supports = held_still(assembly, std::vector<Support>{{"bottom", 0.0, 0.0, {}}}),
-                    .velocities = start_with(random_motions(assembly.size(), 8, 0.1, 0.1))};
+  Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
+  scene.supports = held_still(assembly, std::vector<Support>{{"bottom", 0.0, 0.0, {}}});
+  scene.velocities = start_with(random_motions(assembly.size(), 8, 0.1, 0.1));
   const ThreadsFor one(1);
   SimulationOptions options;
   options.time_step = choose_time_step(scene, options, {.fraction = 0.5}).step;

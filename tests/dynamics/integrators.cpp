@@ -34,16 +34,13 @@ TEST_CASE("every_integrator_converges_with_its_order") {
   if (late && integrator == Integrator::fourth_order) return;  // refused
   const Assembly assembly = delaunay_block(25, 6);
   const ContactSprings springs(SpringConstants{1, 0.4});
-  Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
   scene.velocities = start_with(random_motions(assembly.size(), 2, 0.05, 0.05));
+  scene.gravity = {0, -0.01};
   constexpr double duration = 4;  // some periods of the highest frequency
   const ThreadsFor one(1);
   const auto end_of = [&](Integrator how, int steps) {
-    Simulation run(scene, {.motion = motion,
-                           .integrator = how,
-                           .damping = damping,
-                           .gravity = {0, -0.01},
-                           .time_step = duration / steps});
+    Simulation run(scene, {.motion = motion, .integrator = how, .damping = damping, .time_step = duration / steps});
     run.advance(steps);
     return run.motions();
   };
@@ -74,7 +71,8 @@ TEST_CASE("leapfrog_oscillates_at_its_known_frequency") {
   TimedSupport wall;
   wall.group = "0";
   wall.ux = wall.uy = always(0);
-  const Scene scene{.assembly = pair, .springs = springs, .inertia = {{1, 1}, {1, 1}}, .supports = {wall}};
+  Scene scene(pair, springs, {{1, 1}, {1, 1}});
+  scene.supports = {wall};
   const double h = GENERATE(0.1, 1.0, 1.9);
   Simulation run(scene, {.time_step = h});
   displace(run, scene, h, {{}, {{1, 0}, 0}});

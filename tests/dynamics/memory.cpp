@@ -15,7 +15,7 @@ TEST_CASE("small_motions_keep_300_bytes_a_disc_in_the_loop") {
   const Assembly assembly =
       hexagonal ? hexagonal_lattice({.columns = 100, .rows = 100, .radius = 0.5}) : delaunay_assembly(random);
   const ContactSprings springs(SpringConstants{1, 0.4});
-  const Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  const Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
   const Simulation run(scene, {.time_step = 0.1});
   CAPTURE(hexagonal, assembly.size(), run.bytes_per_body());
   CHECK(run.bytes_per_body() <= 300);

@@ -13,11 +13,9 @@ using namespace equidem;
 TEST_CASE("contradictions_of_a_scene_are_refused_with_their_place") {
   const Assembly assembly = hexagonal_lattice({.columns = 5, .rows = 5, .radius = 0.5});
   const ContactSprings springs(SpringConstants{1, 0.5});
-  const Scene good{.assembly = assembly,
-                   .springs = springs,
-                   .inertia = std::vector<Inertia>(assembly.size(), {1, 0.5}),
-                   .supports = {{.group = "left", .ux = Schedule{.value = 0}, .uy = {}, .rotation = {}}},
-                   .velocities = {{.group = "right", .velocity = {1, 0}, .spin = 1}}};
+  Scene good(assembly, springs, std::vector<Inertia>(assembly.size(), {1, 0.5}));
+  good.supports = {{.group = "left", .ux = Schedule{.value = 0}, .uy = {}, .rotation = {}}};
+  good.velocities = {{.group = "right", .velocity = {1, 0}, .spin = 1}};
   const auto refusal = [](const Scene& scene, Rotation rotation = Rotation::from_scene) -> std::string {
     try {
       check(scene, rotation, [](const std::string& path) { return "scene: " + path; });

@@ -20,6 +20,7 @@ struct Given {
   std::string name;
   Assembly assembly;
   SimulationOptions options;
+  Vec2 gravity = {};
 };
 
 /// Springs, gravity, loads, a moving support and a wall; enough strips for threads to meet.
@@ -28,9 +29,10 @@ class Moving {
   explicit Moving(const Given& given)
       : assembly_(given.assembly),
         springs_(SpringConstants{1, 0.4}),
-        scene_{.assembly = assembly_, .springs = springs_, .inertia = inertia_of(assembly_.radii, 1, Body::disc)},
+        scene_(assembly_, springs_, inertia_of(assembly_.radii, 1, Body::disc)),
         options_(given.options) {
     scene_.velocities = start_with(random_motions(assembly_.size(), 5, 0.01, 0.01));
+    scene_.gravity = given.gravity;
     options_.time_step = 0.2;
     options_.discs_per_thread = 1;
     if (assembly_.periodic()) return;
@@ -60,7 +62,7 @@ std::vector<Given> all_kinds() {
   for (const auto& [name, assembly] : assemblies) {
     kinds.push_back({name + ", small", assembly, {}});
     kinds.push_back({name + ", finite", assembly, {.motion = LoopKind::Motion::finite, .damping = {.mass = 0.1}}});
-    kinds.push_back({name + ", dashpots", assembly, {.damping = {.contact = 0.1}, .gravity = {0, -0.001}}});
+    kinds.push_back({name + ", dashpots", assembly, {.damping = {.contact = 0.1}}, {0, -0.001}});
     kinds.push_back({name + ", local", assembly, {.damping = {.local = 0.5}}});
     kinds.push_back({name + ", fourth order", assembly, {.integrator = Integrator::fourth_order}});
     kinds.push_back({name + ", thesis", assembly, {.integrator = Integrator::thesis, .damping = {.stiffness = 0.2}}});

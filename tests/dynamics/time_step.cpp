@@ -66,7 +66,7 @@ TEST_CASE("instability_begins_at_the_predicted_critical_step") {
   const bool hexagonal = GENERATE(true, false);
   const Assembly assembly = hexagonal ? hexagonal_block(5) : delaunay_block(30, 2);
   const ContactSprings springs(SpringConstants{1, 0.4});
-  const Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  const Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
   const SimulationOptions options{.integrator = given.integrator, .damping = given.damping};
   const TimeStep chosen = choose_time_step(scene, options, {.fraction = 1});
   const double measured = measured_limit(scene, options, chosen.critical);
@@ -81,7 +81,7 @@ TEST_CASE("instability_begins_at_the_predicted_critical_step") {
 TEST_CASE("stiffness_damping_has_the_closed_limit_of_the_highest_mode") {
   const Assembly assembly = delaunay_block(60, 4);
   const ContactSprings springs(SpringConstants{3, 1});
-  const Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 2, Body::disc)};
+  const Scene scene(assembly, springs, inertia_of(assembly.radii, 2, Body::disc));
   const double beta = GENERATE(0.01, 0.3, 5.0);
   const TimeStep chosen = choose_time_step(scene, {.damping = {.stiffness = beta}});
   const double zeta = 0.5 * beta * chosen.omega_max;
@@ -94,7 +94,7 @@ TEST_CASE("stiffness_damping_has_the_closed_limit_of_the_highest_mode") {
 TEST_CASE("held_discs_and_walls_change_the_critical_step") {
   const Assembly assembly = hexagonal_lattice({.columns = 2, .rows = 2, .radius = 0.5});
   const ContactSprings springs(SpringConstants{1, 0});
-  Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
   const double free = choose_time_step(scene, {}).critical;
   scene.supports = held_still(assembly, std::vector<Support>{{"bottom", 0.0, 0.0, {}}});
   const double held = choose_time_step(scene, {}).critical;
@@ -112,7 +112,7 @@ TEST_CASE("held_discs_and_walls_change_the_critical_step") {
 TEST_CASE("the_rules_of_the_time_step") {
   const Assembly assembly = hexagonal_block(6);
   const ContactSprings springs(SpringConstants{1, 0.05});
-  const Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  const Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
   const TimeStep exact = choose_time_step(scene, {}),
                  bound = choose_time_step(scene, {}, {.rule = TimeStepRule::bound}),
                  thesis = choose_time_step(scene, {}, {.rule = TimeStepRule::thesis, .allow_unstable = true});
@@ -134,7 +134,7 @@ TEST_CASE("the_rules_of_the_time_step") {
 TEST_CASE("steps_that_cannot_work_are_refused_with_the_limit") {
   const Assembly assembly = hexagonal_block(4);
   const ContactSprings springs(SpringConstants{1, 1}), pushing(SpringConstants{1, -0.1});
-  const Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  const Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
   const double critical = choose_time_step(scene, {}).critical;
   const auto refused = [&](const TimeStepOptions& wanted, const SimulationOptions& options = {}) {
     return refusal_of([&] { (void)choose_time_step(scene, options, wanted); });
@@ -149,7 +149,7 @@ TEST_CASE("steps_that_cannot_work_are_refused_with_the_limit") {
   CHECK(refused({.step = -1.0}).says("-1"));
   CHECK(refused({}, {.integrator = Integrator::thesis}).says("no time step is stable"));
   CHECK(refusal_of([] { (void)enum_from<TimeStepRule>("guess"); }).says("\"lanczos\", \"bound\" or \"thesis\""));
-  const Scene growing{.assembly = assembly, .springs = pushing, .inertia = scene.inertia};
+  const Scene growing(assembly, pushing, scene.inertia);
   CHECK(refusal_of([&] { (void)choose_time_step(growing, {}); }).says("whatever the step"));
   const TimeStep allowed = choose_time_step(growing, {}, {.allow_unstable = true});
   CAPTURE(allowed.report());
@@ -157,7 +157,7 @@ TEST_CASE("steps_that_cannot_work_are_refused_with_the_limit") {
   CHECK(allowed.growth_rate < std::sqrt(2.4 / scene.inertia[0].mass));
   Assembly dust = assembly;
   dust.contacts.clear();
-  const Scene loose{.assembly = dust, .springs = springs, .inertia = scene.inertia};
+  const Scene loose(dust, springs, scene.inertia);
   CHECK(refusal_of([&] { (void)choose_time_step(loose, {}); }).says("nothing vibrates"));
   CHECK(choose_time_step(loose, {}, {.step = 1.0}).ratio() == 0);
 }
@@ -168,7 +168,7 @@ TEST_CASE("negative_kT_is_found_however_small_it_is") {
   const Assembly assembly = hexagonal_block(12);
   const double ratio = GENERATE(1e-1, 1e-3, 1e-5, 1e-8, 1e-13);
   const ContactSprings springs(SpringConstants{1, -ratio});
-  Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
   const double alone = std::sqrt(12 * ratio / scene.inertia[0].mass);
   const Stopwatch watch;
   const TimeStep allowed = choose_time_step(scene, {}, {.allow_unstable = true});
@@ -181,14 +181,15 @@ TEST_CASE("negative_kT_is_found_however_small_it_is") {
   scene.supports[0].rotation = always(0);
   Assembly held = assembly;
   for (std::int32_t d = 0; d < static_cast<std::int32_t>(held.size()); ++d) held.groups["all"].discs.push_back(d);
-  const Scene still{.assembly = held, .springs = springs, .inertia = scene.inertia, .supports = scene.supports};
+  Scene still(held, springs, scene.inertia);
+  still.supports = scene.supports;
   CHECK(choose_time_step(still, {}, {.allow_unstable = true}).growth_rate < alone);
 }
 
 TEST_CASE("mass_damping_never_turns_velocities_around") {
   const Assembly assembly = hexagonal_block(4);
   const ContactSprings springs(SpringConstants{1, 0.4});
-  Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
   scene.velocities = start_with(std::vector<DiscMotion>(assembly.size(), {{1, 0}, 0}));
   const Integrator integrator = GENERATE(Integrator::leapfrog, Integrator::fourth_order);
   const double alpha = GENERATE(0.1, 10.0, 1e4, 1e8);
@@ -219,7 +220,6 @@ TEST_CASE("mass_damping_never_turns_velocities_around") {
 TEST_CASE("magnitudes_whose_squares_are_no_numbers_are_refused_before_a_step") {
   const Assembly assembly = hexagonal_block(4);
   const ContactSprings springs(SpringConstants{1e9, 1e9});
-  const Scene scene{
-      .assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1e-318, Body::disc)};
+  const Scene scene(assembly, springs, inertia_of(assembly.radii, 1e-318, Body::disc));
   CHECK(refusal_of([&] { (void)choose_time_step(scene, {}); }).says("1e-150"));
 }

@@ -150,11 +150,9 @@ TEST_CASE("a_disc_rebounds_from_a_wall_however_far_it_was") {
   assembly.radii = {1};
   assembly.groups["all"] = {{0}, {}};
   const ContactSprings springs(SpringConstants{1, 0});
-  const Scene scene{.assembly = assembly,
-                    .springs = springs,
-                    .inertia = {{1, 1}},
-                    .walls = {{.name = "far", .point = {1 + radii, 0}, .normal = {-1, 0}, .kN = 1e4}},
-                    .velocities = {{"all", {1, 0}, 0}}};
+  Scene scene(assembly, springs, {{1, 1}});
+  scene.velocities = {{"all", {1, 0}, 0}};
+  scene.walls = {{.name = "far", .point = {1 + radii, 0}, .normal = {-1, 0}, .kN = 1e4}};
   const double step = 1e-3;
   Simulation run(scene, {.motion = motion, .time_step = step});
   run.advance(std::llround(1.5 * radii / step));

@@ -17,10 +17,8 @@ TEST_CASE("a_runaway_stops_with_step_disc_and_cause") {
   const bool negative = GENERATE(false, true);
   const auto motion = GENERATE(LoopKind::Motion::small, LoopKind::Motion::finite);
   const ContactSprings springs(SpringConstants{1, negative ? -0.2 : 0.5});
-  const Scene scene{.assembly = assembly,
-                    .springs = springs,
-                    .inertia = inertia_of(assembly.radii, 1, Body::disc),
-                    .velocities = start_with(random_motions(assembly.size(), 1, 1e-6, 1e-6))};
+  Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
+  scene.velocities = start_with(random_motions(assembly.size(), 1, 1e-6, 1e-6));
   SimulationOptions options{.motion = motion};
   const TimeStep chosen = choose_time_step(scene, options, {.allow_unstable = true});
   options.time_step = negative ? chosen.step : 1.1 * chosen.critical;
@@ -42,7 +40,7 @@ TEST_CASE("a_runaway_stops_with_step_disc_and_cause") {
 TEST_CASE("a_sound_run_is_let_be") {
   const Assembly assembly = delaunay_block(60, 1);
   const ContactSprings springs(SpringConstants{1, 0.5});
-  Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+  Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
   scene.supports = held_still(assembly, std::vector<Support>{{"bottom", 0.0, 0.0, {}}});
   scene.loads = lasting({{"top", LoadKind::per_disc, {0.01, 0}, 0}});
   SimulationOptions options;
@@ -60,8 +58,7 @@ TEST_CASE("bonded_discs_that_pass_through_each_other_stop_a_finite_motion") {
   const Assembly assembly = hexagonal_block(3);
   const ContactSprings springs(SpringConstants{1, 0.5});
   const auto watched = [&](double speed, LoopKind::Motion motion) {
-    equidem::Scene scene{
-        .assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, 1, Body::disc)};
+    equidem::Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
     scene.velocities = {{"0", {speed, 0}, 0}};
     SimulationOptions options{.motion = motion};
     options.time_step = choose_time_step(scene, options, {.fraction = 0.1}).step;

@@ -44,10 +44,8 @@ TEST_CASE("momentum_is_conserved_in_free_flight") {
   const bool hexagonal = GENERATE(true, false);
   const Assembly assembly = hexagonal ? hexagonal_block(6) : delaunay_block(50, 3);
   const ContactSprings springs(SpringConstants{1, 0.4});
-  const equidem::Scene scene{.assembly = assembly,
-                             .springs = springs,
-                             .inertia = inertia_of(assembly.radii, 1, Body::disc),
-                             .velocities = start_with(random_motions(assembly.size(), 4, 0.05, 0.05))};
+  equidem::Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
+  scene.velocities = start_with(random_motions(assembly.size(), 4, 0.05, 0.05));
   Simulation run(scene,
                  {.motion = motion, .integrator = integrator, .damping = {.contact = contact}, .time_step = 0.1});
   const bool finite = motion == LoopKind::Motion::finite;
@@ -67,8 +65,7 @@ TEST_CASE("what_is_at_rest_stays_at_rest") {
   const auto motion = GENERATE(LoopKind::Motion::small, LoopKind::Motion::finite);
   for (const AssemblyKind& kind : assembly_kinds()) {
     const ContactSprings springs(SpringConstants{1e9, 0.4e9});
-    const equidem::Scene scene{
-        .assembly = kind.assembly, .springs = springs, .inertia = inertia_of(kind.assembly.radii, 2000, Body::disc)};
+    const equidem::Scene scene(kind.assembly, springs, inertia_of(kind.assembly.radii, 2000, Body::disc));
     Simulation run(scene, {.motion = motion, .time_step = 1e-6});
     run.advance(10);
     CAPTURE(kind.name);
@@ -80,8 +77,7 @@ TEST_CASE("what_is_at_rest_stays_at_rest") {
 TEST_CASE("forces_of_small_motions_are_those_of_the_stiffness_matrix") {
   for (const HeldScene& held : held_scenes()) {
     const Assembly& assembly = held.assembly();
-    const equidem::Scene scene{
-        .assembly = assembly, .springs = held.springs, .inertia = inertia_of(assembly.radii, 2000, Body::disc)};
+    const equidem::Scene scene(assembly, held.springs, inertia_of(assembly.radii, 2000, Body::disc));
     const Effects effects = derive_effects(held.springs, held.options.rotation);
     Simulation run(scene, {.rotation = held.options.rotation, .time_step = 1e-6});
     const DegreesOfFreedom unknowns = all_free(assembly, effects.unknowns_per_disc());

@@ -28,7 +28,7 @@ largest_overlap = 0.005
 closing_speed = 2.0
 [run]
 duration = 0.1
-scheme = "velocity_verlet"
+integrator = "velocity_verlet"
 """
 
 

@@ -259,7 +259,7 @@ class Refusals(GrainTest):
             three += f'[[wall]]\nname = "{name}"\npoint = {point}\nnormal = {normal}\n'
         case = self.write(three + "[run]\nduration = 0.3\ngravity = [0.0, -9.8]\n")
         self.assertIn("take velocity_verlet", " ".join(equidem("run", case).stdout.split()))
-        self.assertNotIn("that is much", equidem("run", case, "--set", "run.scheme=velocity_verlet").stdout)
+        self.assertNotIn("that is much", equidem("run", case, "--set", "run.integrator=velocity_verlet").stdout)
 
     def test_bytes_of_a_file_do_not_reach_the_terminal_raw(self):
         self.write("x,y,radius\n0,0.02,\x1b[31m\x07\n", "grains.csv")

@@ -86,7 +86,7 @@ normal = [-1.0, 0.0]
 [run]
 duration = 0.02
 time_step = 4.0e-6
-scheme = "velocity_verlet"
+integrator = "velocity_verlet"
 gravity = [0.0, -9.8]
 """)
         self.check_done(equidem("run", run, "--out", self.folder / "ran", "--set", "output.picture=false"))

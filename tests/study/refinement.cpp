@@ -116,7 +116,7 @@ class Waves {
         motions(sum, [&](double w) { return std::exp(-0.5 * sum.alpha * sum.time) * std::sin(w * sum.time); }));
   }
   [[nodiscard]] Values run(const Sum& sum, Integrator integrator, std::int64_t steps) const {
-    Scene scene{.assembly = lattice_, .springs = springs_, .inertia = inertia_};
+    Scene scene(lattice_, springs_, inertia_);
     const std::vector<DiscMotion> begin = motions(sum, [](double w) { return w; });
     for (std::size_t d = 0; d < begin.size(); ++d)
       scene.velocities.push_back({std::to_string(d), begin[d].u, begin[d].theta});

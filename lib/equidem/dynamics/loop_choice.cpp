@@ -89,7 +89,7 @@ Effects effects_of(const Scene& scene, const SimulationOptions& options) {
   add("dashpots at contacts", contacts && (damping.stiffness > 0 || damping.contact > 0),
       contacts ? "no damping at contacts is asked for" : no_contacts);
   add("local damping", damping.local > 0, "none is asked for");
-  add("gravity", options.gravity.x != 0 || options.gravity.y != 0, "it is zero");
+  add("gravity", scene.weighs(), "it is zero");
   add("loads", !scene.loads.empty(), "no load acts");
   add("supports", !scene.supports.empty(), "no disc is held");
   add("walls", !scene.walls.empty(), "there are none");
@@ -113,8 +113,8 @@ LoopKind loop_for(const Scene& scene, const SimulationOptions& options, const Ef
   const Damping& damping = options.damping;
   kind.resistance = damping.stiffness > 0 || damping.contact > 0 ? LoopKind::Resistance::dashpot
                     : damping.local > 0                          ? LoopKind::Resistance::local
-                    : damping.mass > 0 || options.gravity.x != 0 || options.gravity.y != 0 ? LoopKind::Resistance::body
-                                                                                           : LoopKind::Resistance::none;
+                    : damping.mass > 0 || scene.weighs()         ? LoopKind::Resistance::body
+                                                                 : LoopKind::Resistance::none;
   const auto same = [&](const Inertia& a) {
     return a.mass == scene.inertia[0].mass && a.moment == scene.inertia[0].moment;
   };

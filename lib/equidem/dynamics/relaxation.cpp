@@ -48,10 +48,7 @@ class StillScene {
         time_(options.time),
         effects_(derive_effects(scene.assembly, scene.springs, options.rotation)),
         unknowns_(unknowns_at(scene, effects_, options.time)),
-        contacts_(Scene{.assembly = scene.assembly,
-                        .springs = scene.springs,
-                        .inertia = unit_inertia(scene),
-                        .walls = walls_at(scene, options.time)},
+        contacts_(unloaded(scene, options.time),
                   {.motion = options.motion, .rotation = options.rotation, .time_step = 1}) {
     find_loads(options);
     find_masses();
@@ -95,11 +92,13 @@ class StillScene {
     return std::vector<Inertia>(scene.assembly.size(), {1, 1});
   }
 
-  static std::vector<Wall> walls_at(const Scene& scene, double time) {
-    std::vector<Wall> walls = scene.walls;
-    for (Wall& wall : walls)
+  /// Contacts, and walls where they stand at a time.
+  static Scene unloaded(const Scene& scene, double time) {
+    Scene still(scene.assembly, scene.springs, unit_inertia(scene));
+    still.walls = scene.walls;
+    for (Wall& wall : still.walls)
       wall.move_x = {.value = wall.move_x.at(time)}, wall.move_y = {.value = wall.move_y.at(time)};
-    return walls;
+    return still;
   }
 
   [[nodiscard]] Vector components(const std::vector<DiscForce>& forces) const {
@@ -114,15 +113,13 @@ class StillScene {
   }
 
   void find_loads(const RelaxationOptions& options) {
-    std::vector<TimedLoad> loads = scene_.loads;
-    for (TimedLoad& load : loads) load.factor = {.value = load.factor.at(options.time)};
-    const Simulation loaded(
-        Scene{.assembly = scene_.assembly, .springs = scene_.springs, .inertia = unit_inertia(scene_), .loads = loads},
-        {.rotation = options.rotation, .time_step = 1});
+    Scene alone(scene_.assembly, scene_.springs, unit_inertia(scene_));
+    alone.loads = scene_.loads;
+    for (TimedLoad& load : alone.loads) load.factor = {.value = load.factor.at(options.time)};
+    const Simulation loaded(alone, {.rotation = options.rotation, .time_step = 1});
     std::vector<DiscForce> forces = loaded.unbalanced_forces(std::vector<DiscMotion>(scene_.assembly.size()));
-    const bool weighs = options.gravity.x != 0 || options.gravity.y != 0;
-    for (std::size_t d = 0; weighs && d < forces.size(); ++d)
-      forces[d].force += scene_.inertia[d].mass * options.gravity;
+    for (std::size_t d = 0; scene_.weighs() && d < forces.size(); ++d)
+      forces[d].force += scene_.inertia[d].mass * scene_.gravity;
     loads_ = components(forces);
   }
 
@@ -321,7 +318,7 @@ Relaxation relax(const Scene& scene, const RelaxationOptions& options) {
     bad_input(fmt::format("the start has {}", counted(static_cast<long long>(options.start.size()), "disc")),
               fmt::format("the assembly has {}", scene.assembly.size()), "Start from a state of the same assembly");
   }
-  if ((options.gravity.x != 0 || options.gravity.y != 0) && scene.inertia.size() != scene.assembly.size()) {
+  if (scene.weighs() && scene.inertia.size() != scene.assembly.size()) {
     bad_input(fmt::format("{} have a mass", counted(static_cast<long long>(scene.inertia.size()), "disc")),
               fmt::format("gravity acts on all {}", scene.assembly.size()), "Give the inertia of every disc");
   }

@@ -14,8 +14,7 @@ namespace equidem {
 struct RelaxationOptions {
   LoopKind::Motion motion = LoopKind::Motion::small;
   Rotation rotation = Rotation::from_scene;
-  Vec2 gravity = {};  ///< m/s²
-  double time = 0;    ///< s, at which supports, loads and walls are evaluated
+  double time = 0;  ///< s, at which supports, loads and walls are evaluated
   /// Tolerance of the relative unbalanced force, > 0. Rounding limits it to about 1e-13 for a block, 1e-11 for a
   /// slender strip.
   double tolerance = 1e-10;

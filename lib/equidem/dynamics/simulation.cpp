@@ -91,8 +91,8 @@ void Simulation::Implementation::keep_inertia() {
     }
     data.inverse_inertia = inverse_inertia.data();
   }
-  data.gravity_x = options.gravity.x;
-  data.gravity_y = options.gravity.y;
+  data.gravity_x = scene.gravity.x;
+  data.gravity_y = scene.gravity.y;
   data.local_damping = options.damping.local;
   data.mass_damping = options.damping.mass;
 }
@@ -162,22 +162,15 @@ void Simulation::Implementation::advance(std::int64_t count) {
   parity = static_cast<int>((parity + count * per_step) % 2);
 }
 
-Simulation::Simulation(const Scene& scene, const SimulationOptions& options) {
-  check(scene, options);
-  implementation_ = std::make_unique<Implementation>(scene, options);
-}
-Simulation::~Simulation() = default;
-Simulation::Simulation(Simulation&&) noexcept = default;
-Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::Simulation(const Scene& scene, const SimulationOptions& options)
+    : AnySimulation(BodyFamily::bonded, options.time_step),
+      implementation_((check(scene, options), hidden<Implementation>(scene, options))) {}
 
 void Simulation::advance(std::int64_t steps) {
   implementation_->advance(steps);
 }
 std::int64_t Simulation::step() const {
   return implementation_->steps;
-}
-double Simulation::time() const {
-  return implementation_->time_at(implementation_->steps);
 }
 const LoopKind& Simulation::loop() const {
   return implementation_->kind;

@@ -4,9 +4,9 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
@@ -16,9 +16,9 @@
 #include "equidem/core/names.hpp"
 #include "equidem/dynamics/integrator.hpp"
 #include "equidem/material/inertia.hpp"
+#include "equidem/motion/any_scene.hpp"
 #include "equidem/motion/any_simulation.hpp"
 #include "equidem/motion/schedule.hpp"
-#include "equidem/motion/wall.hpp"
 #include "equidem/statics/supports.hpp"
 
 namespace equidem {
@@ -63,19 +63,20 @@ struct SimulationOptions {
   Integrator integrator = Integrator::leapfrog;
   Rotation rotation = Rotation::from_scene;
   Damping damping = {};
-  Vec2 gravity = {};                    ///< m/s²
   double time_step = 0;                 ///< s, > 0
   std::size_t discs_per_thread = 4000;  ///< with fewer discs per thread, synchronization takes longer than the work
 };
 
 /// The scene of a simulation; the assembly and the springs must outlive the simulation.
-struct Scene {
+struct Scene : AnyScene {
+  Scene(const Assembly& assembly_in, const ContactSprings& springs_in, std::vector<Inertia> inertia_in)
+      : assembly(assembly_in), springs(springs_in), inertia(std::move(inertia_in)) {}
+
   const Assembly& assembly;
   const ContactSprings& springs;
   std::vector<Inertia> inertia;  ///< per disc
   std::vector<TimedSupport> supports = {};
   std::vector<TimedLoad> loads = {};
-  std::vector<Wall> walls = {};
   std::vector<InitialVelocity> velocities = {};
 };
 
@@ -91,18 +92,11 @@ class Simulation final : public AnySimulation {
   /// \throws Error (bad_input) on a group that does not exist, motions prescribed twice, a mass that is not positive, a
   ///         damping out of range or not supported by the integrator
   Simulation(const Scene& scene, const SimulationOptions& options);
-  ~Simulation() override;
-  Simulation(Simulation&&) noexcept;
-  Simulation& operator=(Simulation&&) noexcept;
-  Simulation(const Simulation&) = delete;
-  Simulation& operator=(const Simulation&) = delete;
 
-  [[nodiscard]] BodyFamily family() const override { return BodyFamily::bonded; }
   [[nodiscard]] const Effects& effects() const override;
   /// Results are also bit-identical for every number of threads.
   void advance(std::int64_t steps) override;
   [[nodiscard]] std::int64_t step() const override;
-  [[nodiscard]] double time() const override;
   [[nodiscard]] std::vector<DiscMotion> motions() const override;
   /// Velocities at the time of motions() (leapfrog: the mean of half a step before and after).
   [[nodiscard]] std::vector<DiscMotion> velocities() const override;
@@ -124,7 +118,7 @@ class Simulation final : public AnySimulation {
 
  private:
   struct Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  Hidden<Implementation> implementation_;
 };
 
 }  // namespace equidem

@@ -136,7 +136,7 @@ EnergyLedger Simulation::Implementation::raw_ledger() const {
   }
   result.elastic_bonded = elastic_energy(now);
   for (std::size_t d = 0; d < now.size(); ++d) {
-    result.potential -= scene.inertia[d].mass * dot(options.gravity, now[d].u);
+    result.potential -= scene.inertia[d].mass * dot(scene.gravity, now[d].u);
   }
   if (staggered()) {
     add_half_kick(now, result);

@@ -30,7 +30,6 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
   const bool friction = any_pair([](const PairProperties& pair) { return pair.friction > 0; });
   const bool springs = any_pair([](const PairProperties& p) { return p.friction > 0 && p.tangential_ratio > 0; });
   const bool losses = any_pair([](const PairProperties& pair) { return pair.restitution < 1; });
-  const bool gravity = scene.gravity != Vec2{};
   const bool moving = std::any_of(scene.walls.begin(), scene.walls.end(), [](const Wall& w) { return w.moves(); });
   const auto any_shape = [&](GrainShape shape) {
     return std::any_of(scene.grains.begin(), scene.grains.end(), [&](const Grain& g) { return g.shape() == shape; });
@@ -57,7 +56,7 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
             "no friction: nothing can turn a grain"),
       entry("bonds", !scene.bonds.empty(),
             sprung ? "grains are tied by dashpots and springs" : "grains are tied by dashpots", "no grains are tied"),
-      entry("gravity", gravity, "it is not 0", "it is 0"),
+      entry("gravity", scene.weighs(), "it is not 0", "it is 0"),
       entry("walls", !scene.walls.empty(), "the scene has some", "the scene has none"),
       entry("motion of walls", moving, "a wall has a schedule", "no wall moves"),
   };

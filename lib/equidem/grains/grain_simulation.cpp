@@ -41,7 +41,7 @@ std::pair<Vec2, Vec2> arms_of(const GrainSystem& system, std::size_t c) {
 }  // namespace
 
 GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& options)
-    : implementation_(std::make_unique<Implementation>()) {
+    : AnySimulation(BodyFamily::colliding, options.time_step), implementation_(hidden<Implementation>()) {
   check(scene, options);
   Implementation& self = *implementation_;
   GrainSystem& system = self.system;
@@ -99,10 +99,6 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   const auto [normal, tangential] = self.elastic();
   self.energy_at_start = self.kinetic() + normal + tangential + elastic_of_bonds(system);
 }
-
-GrainSimulation::~GrainSimulation() = default;
-GrainSimulation::GrainSimulation(GrainSimulation&&) noexcept = default;
-GrainSimulation& GrainSimulation::operator=(GrainSimulation&&) noexcept = default;
 
 void GrainSimulation::Implementation::make_step() {
   if (flow) return step_together();
@@ -179,10 +175,6 @@ void GrainSimulation::advance(std::int64_t steps) {
 
 std::int64_t GrainSimulation::step() const {
   return implementation_->system.step;
-}
-
-double GrainSimulation::time() const {
-  return implementation_->system.time();
 }
 
 std::vector<Grain> GrainSimulation::grains() const {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -63,20 +62,13 @@ class GrainSimulation final : public AnySimulation {
   /// depend on the caller's order.
   /// \throws Error as check(scene, options)
   GrainSimulation(const GrainScene& scene, const GrainOptions& options);
-  ~GrainSimulation() override;
-  GrainSimulation(GrainSimulation&&) noexcept;
-  GrainSimulation& operator=(GrainSimulation&&) noexcept;
-  GrainSimulation(const GrainSimulation&) = delete;
-  GrainSimulation& operator=(const GrainSimulation&) = delete;
 
-  [[nodiscard]] BodyFamily family() const override { return BodyFamily::colliding; }
   [[nodiscard]] const Effects& effects() const override;
   /// \throws Error (computation_failed) if a body would pass through a wall or another body undetected, or centres
   ///         would pass each other (the message names step, bodies, speed and a sufficient time step); if motions are
   ///         not finite; if exact_flow does not converge. The state remains that before the step.
   void advance(std::int64_t steps) override;
   [[nodiscard]] std::int64_t step() const override;
-  [[nodiscard]] double time() const override;
   [[nodiscard]] std::vector<DiscMotion> motions() const override;
   [[nodiscard]] std::vector<DiscMotion> velocities() const override;
   [[nodiscard]] EnergyLedger energy() const override;
@@ -102,7 +94,7 @@ class GrainSimulation final : public AnySimulation {
   void go_back_to(const SavedState& state);
 
   struct Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  Hidden<Implementation> implementation_;
 };
 
 }  // namespace equidem

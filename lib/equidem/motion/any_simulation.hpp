@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "equidem/contact/effects.hpp"
@@ -18,13 +20,13 @@ class AnySimulation {
  public:
   virtual ~AnySimulation() = default;
 
-  [[nodiscard]] virtual BodyFamily family() const = 0;
+  [[nodiscard]] BodyFamily family() const { return family_; }
   /// Active effects, and the reason for each inactive one.
   [[nodiscard]] virtual const Effects& effects() const = 0;
   /// Advance by a number of steps. Results are bit-identical for any division of the steps into calls.
   virtual void advance(std::int64_t steps) = 0;
   [[nodiscard]] virtual std::int64_t step() const = 0;
-  [[nodiscard]] virtual double time() const = 0;  ///< s
+  [[nodiscard]] double time() const { return static_cast<double>(step()) * time_step_; }  ///< s
   /// Displacements and rotations of bonded discs, positions and angles of colliding bodies; m, rad.
   [[nodiscard]] virtual std::vector<DiscMotion> motions() const = 0;
   [[nodiscard]] virtual std::vector<DiscMotion> velocities() const = 0;  ///< m/s, rad/s
@@ -37,9 +39,20 @@ class AnySimulation {
   virtual void restore(const SavedState& state) = 0;
 
  protected:
-  AnySimulation() = default;
+  AnySimulation(BodyFamily family, double time_step) : family_(family), time_step_(time_step) {}
   AnySimulation(const AnySimulation&) = default;
   AnySimulation& operator=(const AnySimulation&) = default;
+  /// The data of a simulation, of a type that its source files know.
+  template <class Data>
+  using Hidden = std::unique_ptr<Data, void (*)(Data*)>;
+  template <class Data, class... Arguments>
+  static Hidden<Data> hidden(Arguments&&... arguments) {
+    return {new Data{std::forward<Arguments>(arguments)...}, [](Data* data) { delete data; }};
+  }
+
+ private:
+  BodyFamily family_;
+  double time_step_;
 };
 
 }  // namespace equidem

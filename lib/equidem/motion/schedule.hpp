@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "equidem/core/names.hpp"
+
 namespace equidem {
 
 /// A value as a function of time.
@@ -31,6 +33,14 @@ struct Schedule {
   [[nodiscard]] double at(double time) const;
   [[nodiscard]] bool changes() const { return kind != Kind::constant; }
   bool operator==(const Schedule&) const = default;
+};
+
+/// The kinds that a user chooses from.
+template <>
+struct EnumNames<Schedule::Kind> {
+  using enum Schedule::Kind;
+  static constexpr const char* what = "kind of schedule";
+  static constexpr NamedValue<Schedule::Kind> list[] = {{ramp, "ramp"}, {sine, "sine"}, {table, "table"}};
 };
 
 /// \throws Error (bad_input) on numbers that are not finite, an end before the start, a frequency that is not positive,

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "equidem/core/names.hpp"
 #include "equidem/core/vector.hpp"
 #include "equidem/motion/schedule.hpp"
 
@@ -32,6 +33,13 @@ struct Wall {
   [[nodiscard]] Vec2 displacement(double time) const { return {move_x.at(time), move_y.at(time)}; }
   /// Displacement of a line along its normal, m.
   [[nodiscard]] double displacement_along_normal(double time) const { return dot(normal, displacement(time)); }
+};
+
+template <>
+struct EnumNames<Wall::Shape> {
+  using enum Wall::Shape;
+  static constexpr const char* what = "shape of a wall";
+  static constexpr NamedValue<Wall::Shape> list[] = {{line, "line"}, {segment, "segment"}, {arc, "arc"}};
 };
 
 /// Prescribe the displacement of a wall along a direction.

@@ -33,9 +33,8 @@ StudyTask task_of(const std::string& problem, const std::string& method, std::si
 /// A scene is the one before with something more.
 struct Bonded {
   const char* name;
-  std::function<void(SimulationOptions&)> add;
+  std::function<void(SimulationOptions&, AnyScene&)> add;
   double kT = 0.5;
-  bool wall = false;
 };
 
 struct Bodies {
@@ -119,35 +118,37 @@ void add_bonds(GrainScene& scene) {
 
 void add_bonded(Study& study, int side) {
   const Bonded scenes[] = {
-      {"normal springs", [](SimulationOptions&) {}, 0},
-      {"+ tangential springs, no rotation", [](SimulationOptions& o) { o.rotation = Rotation::restrained; }},
-      {"+ rotation", [](SimulationOptions& o) { o.rotation = Rotation::from_scene; }},
+      {"normal springs", [](SimulationOptions&, AnyScene&) {}, 0},
+      {"+ tangential springs, no rotation", [](SimulationOptions& o, AnyScene&) { o.rotation = Rotation::restrained; }},
+      {"+ rotation", [](SimulationOptions& o, AnyScene&) { o.rotation = Rotation::from_scene; }},
       {"+ gravity",
-       [](SimulationOptions& o) {
-         o.gravity = {0, -1e-3};
+       [](SimulationOptions&, AnyScene& s) {
+         s.gravity = {0, -1e-3};
        }},
-      {"+ a wall", [](SimulationOptions&) {}, 0.5, true},
-      {"+ damping by mass", [](SimulationOptions& o) { o.damping.mass = 0.01; }, 0.5, true},
-      {"+ dashpots at contacts", [](SimulationOptions& o) { o.damping.contact = 0.1; }, 0.5, true},
+      {"+ a wall",
+       [](SimulationOptions&, AnyScene& s) {
+         s.walls = {{.name = "floor", .point = {0, 0}, .normal = {0, 1}, .kN = 1}};
+       }},
+      {"+ damping by mass", [](SimulationOptions& o, AnyScene&) { o.damping.mass = 0.01; }},
+      {"+ dashpots at contacts", [](SimulationOptions& o, AnyScene&) { o.damping.contact = 0.1; }},
       {"+ local damping in place of dashpots",
-       [](SimulationOptions& o) {
+       [](SimulationOptions& o, AnyScene&) {
          o.damping.contact = 0;
          o.damping.local = 0.1;
-       },
-       0.5, true},
-      {"+ finite motion", [](SimulationOptions& o) { o.motion = LoopKind::Motion::finite; }, 0.5, true},
+       }},
+      {"+ finite motion", [](SimulationOptions& o, AnyScene&) { o.motion = LoopKind::Motion::finite; }},
   };
   const auto lattice =
       std::make_shared<const Assembly>(hexagonal_lattice({.columns = side, .rows = side, .radius = 0.5}));
-  SimulationOptions options;
-  options.time_step = 0.05;
+  SimulationOptions options{.time_step = 0.05};
+  AnyScene around;
   for (const Bonded& one : scenes) {
-    one.add(options);
+    one.add(options, around);
     const auto springs = std::make_shared<const ContactSprings>(SpringConstants{1, one.kT});
     study.tasks.push_back(
-        task_of<Simulation>("bonded discs", one.name, lattice->size(), [lattice, springs, options, wall = one.wall] {
-          Scene scene{.assembly = *lattice, .springs = *springs, .inertia = inertia_of(lattice->radii, 1, Body::disc)};
-          if (wall) scene.walls = {{.name = "floor", .point = {0, 0}, .normal = {0, 1}, .kN = 1}};
+        task_of<Simulation>("bonded discs", one.name, lattice->size(), [lattice, springs, options, around] {
+          Scene scene(*lattice, *springs, inertia_of(lattice->radii, 1, Body::disc));
+          static_cast<AnyScene&>(scene) = around;
           return Simulation(scene, options);
         }));
   }

@@ -42,7 +42,7 @@ struct Wave {
 
   /// Started with the velocities of the wave from the undeformed lattice.
   [[nodiscard]] Simulation start(Integrator integrator, double step) const {
-    Scene scene{.assembly = assembly, .springs = springs, .inertia = inertia};
+    Scene scene(assembly, springs, inertia);
     for (std::size_t d = 0; d < shape.size(); ++d)
       scene.velocities.push_back({std::to_string(d), damped * shape[d].u, damped * shape[d].theta});
     SimulationOptions options{.integrator = integrator};

@@ -27,7 +27,7 @@ struct Block {
       : assembly(hexagonal_lattice({.columns = rows, .rows = rows, .radius = 0.005})),
         setup(tension_setup(assembly, {})),
         truth(solve(SolverMethod::cholmod, 10)),
-        scene{.assembly = assembly, .springs = springs, .inertia = inertia_of(assembly.radii, density, Body::disc)} {
+        scene(assembly, springs, inertia_of(assembly.radii, density, Body::disc)) {
     const auto always = [](double value) {
       Schedule schedule;
       schedule.value = value;

@@ -13,8 +13,8 @@ ContactSprings springs_for(const Assembly& assembly, const Variant& variant) {
 }
 
 Simulation simulation_of(const Assembly& assembly, const ContactSprings& springs, const Variant& variant) {
-  Scene scene{
-      .assembly = assembly, .springs = springs, .inertia = std::vector<Inertia>(assembly.size(), scene_inertia)};
+  Scene scene(assembly, springs, std::vector<Inertia>(assembly.size(), scene_inertia));
+  scene.gravity = variant.gravity;
   if (variant.own_masses) {
     for (std::size_t d = 0; d < assembly.size(); ++d) scene.inertia[d].mass += 0.1 * static_cast<double>(d % 7);
   }
@@ -57,7 +57,7 @@ const std::vector<Variant>& variants() {
       with("rotation restrained", [](Variant& v) { v.options.rotation = Rotation::restrained; }),
       {.name = "springs of every contact", .own_springs = true},
       {.name = "masses of every disc", .own_masses = true},
-      with("gravity", [](Variant& v) { v.options.gravity.y = -1e-6; }),
+      with("gravity", [](Variant& v) { v.gravity.y = -1e-6; }),
       with("mass damping", [](Variant& v) { v.options.damping.mass = 1e-3; }),
       with("local damping", [](Variant& v) { v.options.damping.local = 0.1; }),
       with("dashpots", [](Variant& v) { v.options.damping.stiffness = 1e-3; }),

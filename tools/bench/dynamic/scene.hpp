@@ -24,6 +24,7 @@ struct Variant {
   std::string name;
   SimulationOptions options = {.time_step = time_step};
   SpringConstants springs = scene_springs;
+  Vec2 gravity = {};          ///< m/s²
   bool own_springs = false;   ///< a pair for every contact
   bool own_masses = false;    ///< for every disc
   bool driven_sides = false;  ///< left side held, right side pulled

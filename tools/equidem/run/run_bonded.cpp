@@ -180,23 +180,16 @@ std::int64_t BondedRun::steps() const {
 
 RunPlan BondedRun::plan() {
   const OutputCase& output = problem_.resolved.output;
-  RunPlan plan{.steps = steps(),
-               .time_step = step_.step,
-               .case_text = fingerprint(),
-               .frame_interval = output.frame_interval,
-               .probe_interval = output.probe_interval,
-               .checkpoint_interval = output.checkpoint_interval,
-               .frame_discs = &problem_.assembly,
-               .watch = [this](const EnergyLedger& energy) { watch_.look(simulation_, energy); },
-               .watch_between = true};
-  for (const ProbeCase& wanted : run().probes) {
-    Probe probe{wanted.name, group(problem_.assembly, wanted.group).discs, {}};
-    for (const std::string& word : wanted.quantities)
-      if (word != "energy")  // energies have columns of their own
-        probe.quantities.push_back(enum_from<ProbeQuantity>(word));
-    if (!probe.quantities.empty()) plan.probes.push_back(std::move(probe));
-  }
-  return plan;
+  return {.steps = steps(),
+          .time_step = step_.step,
+          .case_text = fingerprint(),
+          .frame_interval = output.frame_interval,
+          .probe_interval = output.probe_interval,
+          .checkpoint_interval = output.checkpoint_interval,
+          .frame_discs = &problem_.assembly,
+          .probes = build_probes(problem_.resolved, problem_.assembly),
+          .watch = [this](const EnergyLedger& energy) { watch_.look(simulation_, energy); },
+          .watch_between = true};
 }
 
 std::vector<std::string> BondedRun::files() const {
@@ -250,10 +243,8 @@ void BondedRun::write_files(const std::filesystem::path& folder, const RunResult
 
 Results BondedRun::relax(const std::filesystem::path& out, bool overwrite, StageTimes& times) {
   Stopwatch watch;
-  const Relaxation rest = equidem::relax(scene_, {.motion = run().motion,
-                                                  .rotation = problem_.resolved.rotation,
-                                                  .gravity = run().gravity,
-                                                  .tolerance = *run().until_rest});
+  const Relaxation rest = equidem::relax(
+      scene_, {.motion = run().motion, .rotation = problem_.resolved.rotation, .tolerance = *run().until_rest});
   times.add("relaxation", watch.lap());
   if (!out.empty()) write_state(out, rest.motions, overwrite);
   return scene()

@@ -114,27 +114,21 @@ std::vector<std::string> GrainRun::files() const {
 
 RunPlan GrainRun::plan() {
   const bool draws_paths = case_.scene.grains.size() <= most_drawn_paths;
-  RunPlan plan{
-      .steps = steps_,
-      .time_step = step_.step,
-      .case_text = fingerprint(),
-      .frame_interval = case_.output.frame_interval,
-      .probe_interval = case_.output.probe_interval,
-      .checkpoint_interval = case_.output.checkpoint_interval,
-      .frame_discs = &frame_discs_,
-      .frames = frames_,
-      .body = case_.body,
-      .samples = draws_paths ? samples_of_few : samples,
-      .paths = draws_paths,
-      .recorder = measures_ ? &*measures_ : nullptr,
-      .watch = [this](const EnergyLedger& energy) { refuse_made_energy(case_, step_.step, simulation_, energy); },
-      .step_place = case_.where("run.time_step")};
-  for (const GrainProbe& wanted : case_.probes) {
-    Probe probe{wanted.name, wanted.grains, {}};
-    for (const std::string& word : wanted.quantities) probe.quantities.push_back(enum_from<ProbeQuantity>(word));
-    plan.probes.push_back(std::move(probe));
-  }
-  return plan;
+  return {.steps = steps_,
+          .time_step = step_.step,
+          .case_text = fingerprint(),
+          .frame_interval = case_.output.frame_interval,
+          .probe_interval = case_.output.probe_interval,
+          .checkpoint_interval = case_.output.checkpoint_interval,
+          .frame_discs = &frame_discs_,
+          .frames = frames_,
+          .probes = case_.probes,
+          .body = case_.body,
+          .samples = draws_paths ? samples_of_few : samples,
+          .paths = draws_paths,
+          .recorder = measures_ ? &*measures_ : nullptr,
+          .watch = [this](const EnergyLedger& energy) { refuse_made_energy(case_, step_.step, simulation_, energy); },
+          .step_place = case_.where("run.time_step")};
 }
 
 std::string GrainRun::fingerprint() const {

@@ -126,7 +126,7 @@ void write_probe_paths(const std::filesystem::path& folder, const GrainCase& res
   plot.x.label = "x, m";
   plot.y.label = "y, m";
   const auto& names = cells.front();
-  for (const GrainProbe& probe : resolved.probes) {
+  for (const Probe& probe : resolved.probes) {
     const auto at = std::find(names.begin(), names.end(), probe.name + "_x_m");
     if (at == names.end() || plot.series.size() == std::size(colours)) continue;
     const auto column = static_cast<std::size_t>(at - names.begin());

@@ -77,6 +77,7 @@ void check_group_names(const Assembly& assembly, const Case& resolved) {
   for (const char* table : {"support", "load", "velocity", "probe"}) {
     const TomlValue* list = resolved.document.find(table);
     for (std::size_t k = 0; list != nullptr && k < list->items.size(); ++k) {
+      if (list->items[k].find("group") == nullptr) continue;
       const std::string where = resolved.where(fmt::format("{}.{}.group", table, k));
       const std::string& name = list->items[k].find("group")->text;
       try {

@@ -46,16 +46,24 @@ Scene build_scene(const Case& resolved, const Assembly& assembly, const ContactS
          "Add density = ... in kg/m³ to [assembly], or that of the continuum to [material]");
   }
   const RunCase& run = *resolved.run;
-  Scene scene{.assembly = assembly,
-              .springs = springs,
-              .inertia = inertia_of(assembly, *density, resolved.assembly.body),
-              .supports = run.supports,
-              .loads = run.loads,
-              .walls = run.walls,
-              .velocities = run.velocities};
+  Scene scene(assembly, springs, inertia_of(assembly, *density, resolved.assembly.body));
+  scene.supports = run.supports;
+  scene.loads = run.loads;
+  scene.velocities = run.velocities;
+  scene.walls = run.walls;
+  scene.gravity = run.gravity;
   if (resolved.test) add_test(resolved, assembly, scene);
   check(scene, resolved.rotation, [&](const std::string& path) { return resolved.where(path); });
   return scene;
+}
+
+std::vector<Probe> build_probes(const Case& resolved, const Assembly& assembly) {
+  std::vector<Probe> probes = resolved.run->probes;
+  for (std::size_t k = 0; k < probes.size(); ++k) {
+    check_bodies(resolved.document.find("probe")->items[k], probes[k], assembly.size());
+    if (probes[k].bodies.empty()) probes[k].bodies = group(assembly, probes[k].group).discs;
+  }
+  return probes;
 }
 
 SimulationOptions simulation_options(const Case& resolved, double time_step) {
@@ -65,7 +73,6 @@ SimulationOptions simulation_options(const Case& resolved, double time_step) {
           .integrator = run.integrator,
           .rotation = resolved.rotation,
           .damping = run.damping,
-          .gravity = run.gravity,
           .time_step = time_step};
 }
 

@@ -18,6 +18,11 @@ namespace equidem {
 ///         that the check of walls rejects
 Scene build_scene(const Case& resolved, const Assembly& assembly, const ContactSprings& springs);
 
+/// The probes of a run with the discs of their groups.
+/// \param resolved with [run]
+/// \throws Error (bad_input), with the line of the case file: a disc that is not there
+std::vector<Probe> build_probes(const Case& resolved, const Assembly& assembly);
+
 /// The settings of a run.
 /// \param resolved with [run]
 /// \param time_step s, > 0: that of [run], or that of its rule

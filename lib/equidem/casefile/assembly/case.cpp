@@ -149,6 +149,7 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
                 root.where());
   }
   check_one_source_of_springs(root);
+  refuse_energy_of_probes(root);
   casefile::case_file().check(root);
   resolve_springs_file(root, folder);
   casefile::CaseTables tables;
@@ -157,7 +158,7 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
   check_radii(*root.find("assembly"), tables.assembly.delaunay);
   check_contradictions(root, tables.assembly);
   complete_springs(root, tables);
-  for (const char* list : {"group", "schedule", "wall", "probe"}) casefile::check_names(root, list);
+  casefile::check_names(root, "group");
   for (std::size_t k = 0; k < tables.groups.size(); ++k) check_group(repeated(root, "group")[k], tables.groups[k]);
   for (std::size_t k = 0; k < tables.support_tables.size(); ++k) {
     check_support(repeated(root, "support")[k], tables.support_tables[k].support);

@@ -15,7 +15,7 @@
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/casefile/assembly/run_case.hpp"
 #include "equidem/casefile/engine/toml.hpp"
-#include "equidem/casefile/schedule_case.hpp"
+#include "equidem/casefile/motion_case.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/homogenize/bounds.hpp"

@@ -10,19 +10,8 @@
 
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/casefile/engine/bind.hpp"
+#include "equidem/casefile/motion_tables.hpp"
 #include "equidem/material/elastic_moduli.hpp"
-
-namespace equidem {
-
-/// The kinds of assemblies in a file.
-template <>
-struct EnumNames<Schedule::Kind> {
-  using enum Schedule::Kind;
-  static constexpr const char* what = "kind of schedule";
-  static constexpr NamedValue<Schedule::Kind> list[] = {{ramp, "ramp"}, {sine, "sine"}, {table, "table"}};
-};
-
-}  // namespace equidem
 
 namespace equidem::casefile {
 
@@ -52,22 +41,12 @@ struct LoadTable {
   std::optional<std::string> schedule;
 };
 
-/// [[wall]].
-struct WallTable {
-  Wall wall;
-  std::optional<double> displacement;  ///< m, along the normal
-  std::optional<std::string> schedule;
-};
-
-struct CaseTables : Case {
+struct CaseTables : Case, MotionTables {
   std::optional<SpringsTable> springs_table;
   std::optional<MaterialTable> material_table;
   std::vector<SupportTable> support_tables;
   std::vector<LoadTable> load_tables;
-  std::vector<ScheduleTable> schedule_tables;
-  std::vector<WallTable> wall_tables;
   std::vector<InitialVelocity> velocities;
-  std::vector<ProbeCase> probes;
 };
 
 /// The case file, schema "equidem/1".
@@ -75,8 +54,7 @@ const File<CaseTables>& case_file();
 /// The springs file, schema "equidem-springs/1".
 const File<SpringsTable>& springs_file_format();
 
-/// Keys common to all case files.
-std::vector<Key<ScheduleTable>> schedule_keys();
+/// [output] of all case files.
 std::vector<Key<OutputCase>> output_keys();
 
 void bind_run_tables(File<CaseTables>& file);

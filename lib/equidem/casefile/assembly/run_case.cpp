@@ -14,28 +14,7 @@ void check_time(const TomlValue& table, const RunCase& run) {
   casefile::check_one_of(table, "run", {"duration", "until_rest"}, "it has neither duration nor until_rest",
                          "a run ends after a time, or at rest", "Give one of the two",
                          "Give one of the two; --set run.duration=none takes it out, or until_rest=none");
-  const std::optional<double>& step = run.time_step.step;
-  if (!step || !run.duration || *step <= *run.duration) return;
-  fail_at(*table.find("time_step"), "run.time_step",
-          fmt::format("time_step = {} s is longer than the run of {} s", *step, *run.duration),
-          "a run makes at least one step", "Shorten the step");
-}
-
-Wall wall_of(const TomlValue& table, const casefile::WallTable& read, std::span<const NamedSchedule> schedules) {
-  Wall wall = read.wall;
-  const double length = norm(wall.normal);
-  if (length == 0) {
-    fail_at(*table.find("normal"), "wall.normal", fmt::format("the normal of wall '{}' is zero", wall.name),
-            "it says on which side the discs are", "Give a direction, such as [0.0, 1.0]");
-  }
-  if (read.schedule && !read.displacement) {
-    fail_at(*table.find("schedule"), "wall.schedule",
-            fmt::format("wall '{}' has a schedule and no displacement", wall.name), "it would not move",
-            "Add displacement = ... in m");
-  }
-  wall.normal = wall.normal / length;
-  move_along(wall, wall.normal, scheduled(table, "wall", read.displacement.value_or(0), schedules));
-  return wall;
+  check_step(table, run);
 }
 
 TimedSupport timed(const Support& support, const TomlValue& table, std::span<const NamedSchedule> schedules) {
@@ -83,14 +62,13 @@ void casefile::complete_run(const TomlValue& root, CaseTables& tables) {
   check_one_load_case(repeated(root, "load"));
   for (std::size_t k = 0; k < factors.size(); ++k)
     run.loads.push_back({tables.load_cases.front().loads[k], factors[k]});
-  for (std::size_t k = 0; k < tables.wall_tables.size(); ++k)
-    run.walls.push_back(wall_of(repeated(root, "wall")[k], tables.wall_tables[k], tables.schedules));
+  run.walls = read_walls(root, tables.wall_tables, tables.schedules);
   run.velocities = tables.velocities;
-  for (const TomlValue& table : repeated(root, "probe"))
-    check_plain_name(*table.find("name"), "probe.name", "a probe", "it begins the names of columns");
-  run.probes = tables.probes;
+  check_probes(root);
+  run.probes = tables.probe_tables;
   const TomlValue& table = *root.find("run");
   check_time(table, run);
+  run.time_step.step = run.given_step;
   run.time_step.duration = run.duration.value_or(0);
   const Damping& damping = run.damping;
   if (damping.stiffness > 0 && damping.contact > 0) {

@@ -9,33 +9,24 @@
 #include <vector>
 
 #include "equidem/casefile/engine/toml.hpp"
-#include "equidem/casefile/schedule_case.hpp"
+#include "equidem/casefile/motion_case.hpp"
 #include "equidem/dynamics/simulation.hpp"
 #include "equidem/dynamics/time_step.hpp"
 
 namespace equidem {
 
-/// [[probe]]: a history of a group of discs.
-struct ProbeCase {
-  std::string name;
-  std::string group;
-  std::vector<std::string> quantities = {"displacement"};  ///< words of the key probe.quantities
-};
-
 /// [run]; exactly one of duration and until_rest is given.
-struct RunCase {
-  std::optional<double> duration;    ///< s
+struct RunCase : RunTable {
   std::optional<double> until_rest;  ///< unbalanced force, relative
   TimeStepOptions time_step;
   Integrator integrator = SimulationOptions{}.integrator;
   LoopKind::Motion motion = SimulationOptions{}.motion;
-  Vec2 gravity;  ///< m/s²
   Damping damping;
   std::vector<TimedSupport> supports;  ///< supports of the case with their schedules; empty with [test], like loads
   std::vector<TimedLoad> loads;
   std::vector<Wall> walls;
   std::vector<InitialVelocity> velocities;
-  std::vector<ProbeCase> probes;
+  std::vector<Probe> probes;
 };
 
 }  // namespace equidem

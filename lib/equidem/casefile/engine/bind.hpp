@@ -96,6 +96,10 @@ inline auto between(double low, double high) {
 inline auto unit(std::string text) {
   return [text](KeySpec& key) { key.unit = text; };
 }
+/// An earlier name of the key, refused with the present one.
+inline auto formerly(std::string name) {
+  return [name](KeySpec& key) { key.former = name; };
+}
 /// Words of a text or of a list, or the names of an enum that are allowed here.
 inline auto choices(std::vector<std::string> words) {
   return [words](KeySpec& key) {

@@ -62,6 +62,7 @@ struct KeySpec {
   std::string when_key = {};           ///< the key applies only where this key of the same table ...
   std::vector<std::string> when = {};  ///< ... is one of these
   std::string help = {};
+  std::string former = {};  ///< an earlier name, which is an error that says the present one
 
   static constexpr const char* required = "required";
   static constexpr const char* none = "none";

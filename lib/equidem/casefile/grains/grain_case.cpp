@@ -32,62 +32,6 @@ void check_letters(const TomlValue& root) {
               "laws go by their names here", fmt::format("Write law = \"{}\"", meant.name));
 }
 
-Vec2 unit_vector(const Vec2& given, const TomlValue& table, const char* key, const std::string& use) {
-  const double length = norm(given);
-  if (length == 0)
-    fail_at(*table.find(key), fmt::format("wall.{}", key),
-            fmt::format("the {} of wall '{}' is zero", key, table.find("name")->text), use,
-            "Give a direction, such as [0.0, 1.0]");
-  return given / length;
-}
-
-void set_motion(const TomlValue& table, const GrainWallTable& read, std::span<const NamedSchedule> schedules,
-                Wall& wall) {
-  if (!read.displacement || !read.schedule) {
-    const TomlValue* lonely = table.find(read.displacement ? "displacement" : read.schedule ? "schedule" : "direction");
-    if (lonely == nullptr) return;
-    fail_at(
-        *lonely, "wall", fmt::format("wall '{}' has no {}", wall.name, read.displacement ? "schedule" : "displacement"),
-        "a wall moves by its displacement times a schedule",
-        read.displacement ? "Add schedule = \"NAME\" and a [[schedule]] of that name" : "Add displacement = ... in m");
-  }
-  if (!read.direction && wall.shape != Wall::Shape::line)
-    fail_at(*table.find("displacement"), "wall.displacement", fmt::format("wall '{}' has no direction", wall.name),
-            "only a line moves along its normal by itself", "Add direction = [..., ...]");
-  const Vec2 unit =
-      read.direction ? unit_vector(*read.direction, table, "direction", "it says where the wall moves") : wall.normal;
-  wall.move_x = scheduled(table, "wall", *read.displacement * unit.x, schedules);
-  wall.move_y = scheduled(table, "wall", *read.displacement * unit.y, schedules);
-}
-
-/// The key at fault where a wall is refused.
-const char* culprit_of(Wall::Shape shape) {
-  switch (shape) {
-    case Wall::Shape::line:
-      return "normal";
-    case Wall::Shape::segment:
-      return "end";
-    case Wall::Shape::arc:
-      break;
-  }
-  return "to";
-}
-
-Wall wall_of(const TomlValue& table, const GrainWallTable& read, std::span<const NamedSchedule> schedules) {
-  Wall wall = read.wall;
-  if (wall.shape == Wall::Shape::line)
-    wall.normal = unit_vector(wall.normal, table, "normal", "it says on which side the grains are");
-  if (wall.shape != Wall::Shape::arc) wall.to = 0;
-  const char* culprit = culprit_of(wall.shape);
-  try {
-    check(wall);
-  } catch (const Error& error) {
-    throw error.at(fmt::format("{}: wall.{}", table.find(culprit)->where(), culprit));
-  }
-  set_motion(table, read, schedules, wall);
-  return wall;
-}
-
 /// Names by which pairs are chosen mean one thing each.
 void check_names_of_kinds(const TomlValue& root, const std::vector<std::string>& groups) {
   constexpr const char* reserved = "walls";
@@ -105,23 +49,16 @@ void check_names_of_kinds(const TomlValue& root, const std::vector<std::string>&
               "the name stands for all walls", "Name it otherwise");
 }
 
-GrainProbe probe_of(const TomlValue& table, const GrainProbeTable& read, const std::vector<std::string>& groups) {
-  check_plain_name(*table.find("name"), "probe.name", "a probe", "it begins the names of columns");
-  check_one_of(table, "probe", {"group", "grains"}, "it is not said whose history it is",
-               "a probe watches a group, or grains by their numbers", "Give one of the two");
-  GrainProbe probe{.name = read.name, .grains = read.grains, .quantities = read.quantities};
-  for (std::size_t k = 0; k < probe.grains.size(); ++k) {
-    if (static_cast<std::size_t>(probe.grains[k]) < groups.size()) continue;
-    fail_at(table.find("grains")->items[k], "probe.grains", fmt::format("there is no grain {}", probe.grains[k]),
-            fmt::format("they are counted 0 to {}", groups.size() - 1), "Correct the number");
-  }
-  if (!read.group) return probe;
+/// A probe of a group has its bodies.
+Probe probe_of(const TomlValue& table, Probe probe, const std::vector<std::string>& groups) {
+  check_bodies(table, probe, groups.size());
+  const TomlValue* group = table.find("group");
+  if (group == nullptr) return probe;
   for (std::size_t g = 0; g < groups.size(); ++g)
-    if (groups[g] == *read.group) probe.grains.push_back(static_cast<std::int32_t>(g));
-  if (probe.grains.empty()) {
-    const TomlValue& group = *table.find("group");
-    const auto meant = nearest(*read.group, groups);
-    fail_at(group, "probe.group", fmt::format("there are no grains of the group {}", group.shown()), "",
+    if (groups[g] == probe.group) probe.bodies.push_back(static_cast<std::int32_t>(g));
+  if (probe.bodies.empty()) {
+    const auto meant = nearest(probe.group, groups);
+    fail_at(*group, "probe.group", fmt::format("there are no grains of the group {}", group->shown()), "",
             meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Name a group of [[grain]]");
   }
   return probe;
@@ -135,20 +72,22 @@ void check_ellipse_contact(const TomlValue& collisions, const GrainScene& scene)
             "discs have no need of it", "Remove it, or give grains half_axes");
 }
 
-void check_run(const TomlValue& run, const GrainCase& given) {
-  const GrainStepOptions& step = given.step;
-  if (step.time_step && step.steps_per_contact)
+void complete_run(const TomlValue& run, GrainTables& tables) {
+  const GrainRunTable& given = tables.run;
+  if (given.given_step && given.steps_per_contact)
     fail_at(*run.find("steps_per_contact"), "run.steps_per_contact", "time_step and steps_per_contact are both given",
             "each says how long a step is", "Remove one of them");
-  if (step.time_step && *step.time_step > given.duration)
-    fail_at(*run.find("time_step"), "run.time_step",
-            fmt::format("time_step = {} s is longer than the run of {} s", *step.time_step, given.duration),
-            "a run makes at least one step", "Shorten the step");
-  const TomlValue* scheme = run.find("scheme");
-  if (scheme != nullptr && !gives_force(given.options.law))
-    fail_at(*scheme, "run.scheme", fmt::format("{} has a step of its own", to_string(given.options.law)),
-            "scheme is for the laws that give a force: " + names_of_laws(LawKind::force),
+  check_step(run, given);
+  const TomlValue* integrator = run.find("integrator");
+  if (integrator != nullptr && !gives_force(tables.options.law))
+    fail_at(*integrator, "run.integrator", fmt::format("{} has a step of its own", to_string(tables.options.law)),
+            "integrators are for the laws that give a force: " + names_of_laws(LawKind::force),
             "Remove it, or change collisions.law");
+  tables.duration = *given.duration;
+  tables.scene.gravity = given.gravity;
+  tables.options.scheme = given.integrator;
+  tables.step = {
+      .time_step = given.given_step, .steps_per_contact = given.steps_per_contact, .longest = tables.duration};
 }
 
 void check_measures(const TomlValue& table, const MeasureOptions& measures, Body body) {
@@ -192,22 +131,21 @@ GrainCase parse_grain_case(std::string_view content, const std::string& name, co
                            std::span<const std::string> overrides) {
   TomlValue root = document_of(content, name, overrides);
   check_letters(root);
+  refuse_energy_of_probes(root);
   grain_file().check(root);
   GrainTables tables;
   grain_file().assign(root, folder, tables);
-  for (const char* list : {"wall", "schedule", "probe"}) check_names(root, list);
   const std::vector<std::string> groups = read_bodies(root, tables);
   read_bonds(root, tables);
   check_names_of_kinds(root, groups);
   const auto schedules = read_schedules(root, tables.schedule_tables);
-  for (std::size_t k = 0; k < tables.wall_tables.size(); ++k)
-    tables.scene.walls.push_back(wall_of(repeated(root, "wall")[k], tables.wall_tables[k], schedules));
+  tables.scene.walls = read_walls(root, tables.wall_tables, schedules);
   check_ellipse_contact(*root.find("collisions"), tables.scene);
   read_collisions(root, groups, tables);
-  check_run(*root.find("run"), tables);
-  tables.step.longest = tables.duration;
+  complete_run(*root.find("run"), tables);
   if (tables.shaking_table) tables.shaking = read_shaking(root, tables);
   if (tables.measures) check_measures(*root.find("measures"), *tables.measures, tables.body);
+  check_probes(root);
   for (std::size_t k = 0; k < tables.probe_tables.size(); ++k)
     tables.probes.push_back(probe_of(repeated(root, "probe")[k], tables.probe_tables[k], groups));
   tables.document = std::move(root);

@@ -16,15 +16,9 @@
 #include "equidem/fields/box_measures.hpp"
 #include "equidem/grains/scene/grain_time_step.hpp"
 #include "equidem/grains/scene/shaking.hpp"
+#include "equidem/motion/probe.hpp"
 
 namespace equidem {
-
-/// [[probe]]: a history of grains.
-struct GrainProbe {
-  std::string name;
-  std::vector<std::int32_t> grains;     ///< at least one
-  std::vector<std::string> quantities;  ///< words of the key probe.quantities
-};
 
 /// A checked case: complete, in range and without contradiction; conditions on all bodies together are checked at the
 /// start of the simulation.
@@ -41,7 +35,7 @@ struct GrainCase {
   double duration = 0;             ///< s
   std::optional<Shaking> shaking;  ///< shaking; its motion is also set in the walls
   std::optional<MeasureOptions> measures;
-  std::vector<GrainProbe> probes;
+  std::vector<Probe> probes;  ///< with the bodies of their groups
   OutputCase output;
 
   /// The document of the case, defaults filled in.

@@ -31,48 +31,24 @@ void bind_bodies(File<GrainTables>& file) {
              key("group", &G::group, "for [[collisions.pair]] and [[probe]]")});
 }
 
-void bind_walls(File<GrainTables>& file) {
-  const auto line = when("shape", {"line"}), segment = when("shape", {"segment"}), arc = when("shape", {"arc"});
-  using T = GrainWallTable;
-  using W = Wall;
-  file.table("wall", &GrainTables::wall_tables, "a wall of infinite mass")
-      .keys({key("name", &T::wall, &W::name, required, "for reports, and for [[collisions.pair]]"),
-             key("shape", &T::wall, &W::shape,
-                 "line: endless, grains on one side; segment, arc: thin, with two sides and two ends"),
-             key("point", &T::wall, &W::point, required, unit("m"), when("shape", {"line", "segment"}),
-                 "on the line; the first end of the segment"),
-             key("normal", &T::wall, &W::normal, required, line, "towards the grains, of any length"),
-             key("end", &T::wall, &W::end, required, unit("m"), segment),
-             key("centre", &T::wall, &W::point, required, unit("m"), arc),
-             key("radius", &T::wall, &W::radius, required, unit("m"), positive, arc),
-             key("from", &T::wall, &W::from, unit("rad"), arc, "counter-clockwise from here ..."),
-             key("to", &T::wall, &W::to, unit("rad"), arc, "... to here"),
-             key("displacement", &T::displacement, unit("m"), "along direction, times the schedule"),
-             key("direction", &T::direction, "of any length; left out: the normal of a line"),
-             key("schedule", &T::schedule, "schedule of the displacement"),
-             key("shaken", &T::shaken, optional, "false: [shaking] does not move it")});
-}
-
-void bind_motion(File<GrainTables>& file) {
-  using T = GrainTables;
-  file.table("run", required, "how long and in which steps")
-      .keys({key_in<T>("duration", &GrainCase::duration, required, unit("s"), positive),
-             key_in<T>("time_step", &GrainCase::step, &GrainStepOptions::time_step, or_auto, unit("s"), positive,
-                       "auto: the shortest contact over steps_per_contact"),
-             key_in<T>("steps_per_contact", &GrainCase::step, &GrainStepOptions::steps_per_contact, range({.low = 2}),
-                       "of an automatic step; left out: 50 for laws that give a force, 10 for the maps, pi (that is "
-                       "omega dt = 1) for exact_flow"),
-             key_in<T>("scheme", &GrainCase::options, &GrainOptions::scheme, optional,
-                       "of laws that give a force; semi_implicit_euler (default): first order, contacts that stick do "
-                       "not creep; velocity_verlet: second order, as LAMMPS steps; corrected_verlet: the same motion, "
-                       "but contacts that begin or end within a step push for their part of it only: for impacts, and "
-                       "where the balance of energy counts"),
-             key_in<T>("gravity", &GrainCase::scene, &GrainScene::gravity, unit("m/s²"), "such as [0.0, -9.81]")});
-  using P = GrainProbeTable;
-  file.table("schedule", &T::schedule_tables, "how a wall moves").keys(schedule_keys());
+void bind_run(File<GrainTables>& file) {
+  using R = GrainRunTable;
+  std::vector<Key<R>> keys = run_keys<R>("", "the shortest contact over steps_per_contact");
+  required(keys.front().spec);
+  keys.insert(keys.end(),
+              {key("steps_per_contact", &R::steps_per_contact, range({.low = 2}),
+                   "of an automatic step; left out: 50 for laws that give a force, 10 for the maps, pi (that is omega "
+                   "dt = 1) for exact_flow"),
+               key("integrator", &R::integrator, optional, formerly("scheme"),
+                   "of laws that give a force; semi_implicit_euler (default): first order, contacts that stick do not "
+                   "creep; velocity_verlet: second order, as LAMMPS steps; corrected_verlet: the same motion, but "
+                   "contacts that begin or end within a step push for their part of it only: for impacts, and where "
+                   "the balance of energy counts")});
+  file.table("run", &GrainTables::run, required, "how long and in which steps").keys(std::move(keys));
+  bind_motion(file, BodyFamily::colliding);
   bind_shaking(file);
   using M = MeasureOptions;
-  file.table("measures", &T::measures, "quantities measured on the bodies in a box")
+  file.table("measures", &GrainTables::measures, "quantities measured on the bodies in a box")
       .keys({key("region", &M::region, unit("m"),
                  "[x_min, y_min, x_max, y_max] in which the void ratio is measured; it goes with the shaking box. Left "
                  "out: the box without two mean diameters at its walls and without three below the lowest place of the "
@@ -84,12 +60,6 @@ void bind_motion(File<GrainTables>& file) {
              key("cell", &M::cell, unit("m"), positive,
                  "width of the cells of the fields of stress, velocity, solid fraction and coordination at the end, "
                  "some bodies wide; left out: no fields")});
-  file.table("probe", &T::probe_tables, "a history of grains")
-      .keys({key("name", &P::name, required, "begins the names of its columns"),
-             key("group", &P::group, "group of grains; or give grains"),
-             key("grains", &P::grains, optional, "counted from 0; those of the file first"),
-             key("quantities", &P::quantities, choices({"position", "velocity", "angle", "spin"}),
-                 "the means over these grains")});
 }
 
 }  // namespace
@@ -101,8 +71,7 @@ const File<GrainTables>& grain_file() {
     bind_bodies(made);
     bind_bonds(made);
     bind_collisions(made);
-    bind_walls(made);
-    bind_motion(made);
+    bind_run(made);
     std::vector<Key<OutputCase>> output = output_keys();
     std::erase_if(output, [](const auto& key) { return key.spec.name == "vtk"; });
     made.table("output", &GrainTables::output, completed, "what is written with --out").keys(std::move(output));

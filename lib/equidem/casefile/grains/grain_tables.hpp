@@ -4,28 +4,21 @@
 #pragma once
 
 #include <filesystem>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"
+#include "equidem/casefile/motion_tables.hpp"
 #include "equidem/grains/scene/shaking.hpp"
 
 namespace equidem {
 
 template <>
-struct EnumNames<Wall::Shape> {
-  using enum Wall::Shape;
-  static constexpr const char* what = "shape of a wall";
-  static constexpr NamedValue<Wall::Shape> list[] = {{line, "line"}, {segment, "segment"}, {arc, "arc"}};
-};
-
-template <>
 struct EnumNames<GrainOptions::Scheme> {
   using enum GrainOptions::Scheme;
-  static constexpr const char* what = "scheme";
+  static constexpr const char* what = "integrator";
   static constexpr NamedValue<GrainOptions::Scheme> list[] = {{semi_implicit_euler, "semi_implicit_euler"},
                                                               {velocity_verlet, "velocity_verlet"},
                                                               {corrected_verlet, "corrected_verlet"}};
@@ -52,28 +45,10 @@ struct GrainTable {
   std::string group = "grains";
 };
 
-/// By default an arc is a full circle.
-inline Wall full_circle() {
-  Wall wall;
-  wall.to = 2 * std::numbers::pi;
-  return wall;
-}
-
-/// [[wall]].
-struct GrainWallTable {
-  Wall wall = full_circle();
-  std::optional<double> displacement;  ///< m, along `direction`
-  std::optional<Vec2> direction;
-  std::optional<std::string> schedule;
-  bool shaken = true;
-};
-
-/// [[probe]].
-struct GrainProbeTable {
-  std::string name;
-  std::optional<std::string> group;
-  std::vector<std::int32_t> grains;
-  std::vector<std::string> quantities = {"position"};
+/// [run].
+struct GrainRunTable : RunTable {
+  std::optional<double> steps_per_contact;
+  GrainOptions::Scheme integrator = GrainOptions{}.scheme;
 };
 
 /// [bonds].
@@ -93,15 +68,13 @@ struct ShakingTable {
   RecordedShaking recorded;  ///< without its points; accelerations in `unit`
 };
 
-struct GrainTables : GrainCase {
+struct GrainTables : GrainCase, MotionTables {
   CommonBodyTable common;
   std::vector<GrainTable> grain_tables;
   PairOptions collisions;
   std::optional<double> young_modulus, poisson_ratio, shear_wave_speed;  ///< Pa, -, m/s
   BondsTable bonds;
-  std::vector<GrainWallTable> wall_tables;
-  std::vector<GrainProbeTable> probe_tables;
-  std::vector<ScheduleTable> schedule_tables;
+  GrainRunTable run;
   std::optional<ShakingTable> shaking_table;
 };
 

@@ -15,6 +15,7 @@
 #include "equidem/core/names.hpp"
 #include "equidem/grains/scene/wall_shape.hpp"
 #include "equidem/material/inertia.hpp"
+#include "equidem/motion/any_scene.hpp"
 
 namespace equidem {
 
@@ -78,13 +79,11 @@ struct PairProperties {
   bool operator==(const PairProperties&) const = default;
 };
 
-/// Bodies, walls and bonds with the properties of their contacts.
-struct GrainScene {
+/// Bodies, bonds and the properties of contacts, besides walls and gravity.
+struct GrainScene : AnyScene {
   std::vector<Grain> grains;
   std::vector<Clump> clumps;  ///< shapes, each used by any number of grains
   std::vector<GrainBond> bonds;
-  std::vector<Wall> walls;
-  Vec2 gravity = {};  ///< m/s²
   int kinds = 1;
   std::vector<PairProperties> pairs;  ///< kinds x kinds, symmetric, row by row
 
