@@ -106,7 +106,7 @@ class Checker {
     for (const KeySpec& key : spec_.keys) {
       if (path == key.table && name == key.former)
         fail(value, key_path(path, name), fmt::format("{} is called {} now", name, key.name),
-             "a key has one name for all kinds of bodies", fmt::format("Write {} = ...", key.name));
+             "a key has one name for all kinds of bodies", fmt::format("Write {} instead", key.name));
       if (path == key.table && applies(path, table, key.when_key, key.when) && !contains(here, key.name))
         here.emplace_back(key.name);
     }
