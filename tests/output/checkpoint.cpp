@@ -80,7 +80,7 @@ TEST_CASE("killed_at_any_moment_the_last_checkpoint_is_good") {
   Random random(3);
   std::int64_t last = 0;
   int left_behind = 0;
-  std::uint64_t longest = 15000;  // microseconds; more where nothing gets done in that time
+  std::uint64_t longest = 15000;  // microseconds; longer where no work is finished in that time
   for (int round = 0; round < 80; ++round) {
     kill_during(
         [&] {
@@ -97,7 +97,7 @@ TEST_CASE("killed_at_any_moment_the_last_checkpoint_is_good") {
   }
   INFO(last << " checkpoints, " << left_behind << " killed while they were written");
   CHECK(last > 0);
-  CHECK(left_behind > 0);  // else no kill came at a bad moment
+  CHECK(left_behind > 0);  // otherwise no kill interrupted a write
 }
 
 TEST_CASE("an_altered_checkpoint_is_refused_whatever_byte_it_is") {

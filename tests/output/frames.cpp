@@ -30,13 +30,13 @@ void append(FrameWriter& writer, const Assembly& assembly, std::int64_t step) {
   writer.append(step, time_at(step), motions_at(step, assembly.size()), velocities_at(step, assembly.size()));
 }
 
-/// Frames as they lie in a file.
+/// Frames read from a file.
 struct FoundFrames {
   std::int64_t finished = 0;
   std::uint64_t room = 0;
-  std::vector<double> times;        ///< of all that there is room for
+  std::vector<double> times;        ///< of all allocated frames
   std::vector<std::int64_t> steps;  ///< likewise
-  std::int64_t wrong = 0;           ///< numbers of finished frames that are not those of their step
+  std::int64_t wrong = 0;           ///< numbers of finished frames that differ from those of their step
 };
 
 template <typename Number>
@@ -152,11 +152,11 @@ TEST_CASE("the_same_frames_make_the_same_bytes") {
 }
 
 TEST_CASE("a_killed_run_leaves_all_finished_frames_readable") {
-  // Room for two frames: the file is also killed while it makes room for more.
+  // Room for two frames: the process is also killed while the file grows.
   const Assembly assembly = block();
   Random random(11);
   std::int64_t most = 0, least = 1 << 30;
-  std::uint64_t longest = 40000;  // microseconds; more where nothing gets done in that time
+  std::uint64_t longest = 40000;  // microseconds; longer where no work is finished in that time
   for (int round = 0; round < 50; ++round) {
     const TemporaryFolder folder;
     FrameWriter writer(folder.path(), "run", assembly, {.expected = 2});
@@ -176,7 +176,7 @@ TEST_CASE("a_killed_run_leaves_all_finished_frames_readable") {
     CAPTURE(listed);
     CHECK(index.ends_with("</Xdmf>\n"));
     CHECK(listed <= found.finished);
-    // Of many frames the index is written after every few: it may lack the last percent of them.
+    // With many frames the index is written after every few frames: the last percent may be missing.
     CHECK(listed >= found.finished - 1 - found.finished / 100);
     most = std::max(most, found.finished);
     least = std::min(least, found.finished);
@@ -192,7 +192,7 @@ TEST_CASE("a_killed_run_leaves_all_finished_frames_readable") {
     CHECK(whole.wrong == 0);
   }
   INFO("between " << least << " and " << most << " frames were finished");
-  CHECK(most > least + 3);  // the kills did come at different moments
+  CHECK(most > least + 3);  // the kills came at different moments
 }
 
 TEST_CASE("a_run_that_goes_on_drops_later_frames") {

@@ -112,12 +112,12 @@ TEST_CASE("an_animation_shows_every_body_where_it_is") {
 
 TEST_CASE("the_view_of_an_animation_holds_its_walls") {
   AnimatedScene scene;
-  const double far = GENERATE(0.0, -1e4);  // where on its line a wall is given
+  const double far = GENERATE(0.0, -1e4);  // position along its line of the point that defines a wall
   scene.walls[0].point.x = far;
   Wall& arc = scene.walls[1];
   arc.radius = GENERATE(1.0, 6.0);
   arc.to = 3;
-  arc.move_y = {.kind = Schedule::Kind::sine, .value = 0.5, .frequency = 2.5};  // at 0.1 s farthest up
+  arc.move_y = {.kind = Schedule::Kind::sine, .value = 0.5, .frequency = 2.5};  // highest at 0.1 s
   const Data data(grain_animation_html(scene.animation("three bodies")));
   const double left = data("low.0"), bottom = data("low.1"), width = data("size.0"), height = data("size.1");
   const double from = data("walls.0.0"), floor = data("walls.0.1"), to = data("walls.0.2");
@@ -144,7 +144,7 @@ TEST_CASE("an_animation_is_one_well_formed_page") {
     const std::string name = tag;
     CHECK(count_of(html, "<" + name + ">") + count_of(html, "<" + name + " ") == count_of(html, "</" + name + ">"));
   }
-  CHECK(html.find("http") == std::string::npos);  // nothing from elsewhere
+  CHECK(html.find("http") == std::string::npos);  // no resource outside the file
   const std::string script = html.substr(html.find("<script>"), html.find("</script>") - html.find("<script>"));
   for (const auto& [open, close] : {std::pair{"{", "}"}, {"(", ")"}, {"[", "]"}})
     CHECK(count_of(script, open) == count_of(script, close));

@@ -67,8 +67,8 @@ TEST_CASE("frames_of_travelling_bodies_hold_their_places") {
   CHECK(index.find("GeometryType=\"XYZ\"") != std::string::npos);
   CHECK(index.find("Name=\"angle\"") != std::string::npos);
   CHECK(index.find("displacement") == std::string::npos);
-  // ParaView 5.11 takes frames whose points begin alike for the same points, and reports an error where they begin with
-  // an element.
+  // ParaView 5.11 treats frames as having the same points where their XML begins alike, and reports an error where it
+  // begins with an element.
   const auto beginning = [&](int frame) {
     const std::string start = "<Geometry GeometryType=\"XYZ\"><DataItem ItemType=\"HyperSlab\" Dimensions=\"3 3\">";
     return index.find(fmt::format("{}<!--frame {}-->", start, frame));

@@ -127,7 +127,7 @@ TEST_CASE("frames_show_clumps_as_their_discs_and_ellipses_with_both_half_axes") 
   const auto position = numbers_of(file, layout["position"]), velocity = numbers_of(file, layout["velocity"]),
              angle = numbers_of(file, layout["angle"]);
   const std::size_t n = radius.size();
-  // The second disc of the third body, in the second frame: by the rotation matrix, and its velocity by a difference.
+  // The second disc of the third body in the second frame: place by the rotation matrix, velocity by differences.
   const Grain& grain = bodies.grains[2];
   const Vec2 offset = clumps[0].discs[1].offset;
   const auto place = [&](double turn) {
@@ -145,7 +145,7 @@ TEST_CASE("frames_show_clumps_as_their_discs_and_ellipses_with_both_half_axes") 
   const std::string index = read_file(folder / "frames.xdmf2");
   CHECK(index.find("Name=\"short_half_axis\"") != std::string::npos);
   CHECK(index.find("Name=\"body\"") != std::string::npos);
-  // Frames of other shapes are none to go on with.
+  // Frames of other shapes cannot be continued.
   Bodies other;
   other.grains[1].short_half_axis = 0.11;
   CHECK(equidem::test::refusal_of([&] {
@@ -161,8 +161,8 @@ TEST_CASE("pictures_of_clumps_and_ellipses_are_written") {
   CHECK(write_grain_picture(folder.path(), "shapes", {.grains = bodies.grains, .clumps = bodies.shapes.clumps()}, false)
             .size() == 2);
   const std::string picture = read_file(folder / "shapes.svg");
-  CHECK(picture.find("matrix") == std::string::npos);  // lines as wide as elsewhere
-  // one tie to each disc of a clump, of the width of no other line here
+  CHECK(picture.find("matrix") == std::string::npos);  // no transformation that changes the width of lines
+  // one tie to each disc of a clump; no other line has its width
   const std::regex tie("stroke-width[:=]\"?2[;\"]");
   CHECK(std::distance(std::sregex_iterator(picture.begin(), picture.end(), tie), {}) == 2 + 2 + 3);
 }

@@ -17,7 +17,7 @@ using namespace equidem;
 
 namespace {
 
-/// The text that stands behind "key": up to the end of its line, without a comma.
+/// The text after "key": up to the end of its line, without the comma.
 std::string value_of(const std::string& json, const std::string& key) {
   const std::string name = fmt::format("\"{}\": ", key);
   const std::size_t start = json.find(name);

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Every feature at once.
+/// A plot with every feature.
 Plot rich_plot() {
   return {.title = "Poisson's ratio",
           .x = {.label = "kT / kN", .min = -1, .max = 1},

@@ -133,7 +133,7 @@ TEST_CASE("histories_of_a_resumed_run_are_those_of_an_uninterrupted_one") {
         if (step == checkpoint) writer.sync();
       }
     }
-    if (round > 0) {  // killed while it wrote: cut anywhere behind the checkpoint
+    if (round > 0) {  // killed while it wrote: cut at any place after the checkpoint
       const std::string text = read_file(path);
       const std::size_t safe = text.find(fmt::format("\n{},", checkpoint + 1)) + 1;
       std::filesystem::resize_file(path, safe + random.below(text.size() - safe));

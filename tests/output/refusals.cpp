@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every writer promises: nothing is overwritten unasked, nothing half-written is left.
+// Every writer: no file is overwritten unless asked, no partial file stays.
 #include <functional>
 
 #include "equidem/core/error.hpp"
@@ -45,7 +45,7 @@ TEST_CASE("nothing_is_overwritten_unasked") {
     writer.write(folder.path(), false);
     std::vector<fs::path> written;
     for (const auto& entry : fs::directory_iterator(folder.path())) written.push_back(entry.path());
-    // Each single file that is there is enough to stop all of them.
+    // One existing file is enough to refuse all.
     for (const fs::path& kept : written) {
       CAPTURE(kept);
       for (const fs::path& path : written) fs::remove(path);

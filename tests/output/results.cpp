@@ -16,7 +16,7 @@ std::string report_of(double value, const Shown& shown, const std::string& unit 
   return Results().line("x").add("x", "", value, unit, shown).report();
 }
 
-/// What the report shows after the name of the line.
+/// Text of the report after the name of the line.
 std::string shown(const std::string& report) {
   return report.substr(16, report.size() - 17);
 }

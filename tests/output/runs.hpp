@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A made-up run whose every state follows from its step, and processes that die in the middle of their work.
+/// A synthetic run whose state is a function of the step, and processes that are killed while they write.
 #pragma once
 
 #include <cmath>
@@ -61,7 +61,7 @@ inline SavedState state_at(std::int64_t step, std::size_t discs) {
                      {"sums", 1, {s, s / 3, -s}}}};
 }
 
-/// Run `work` in a process of its own and kill it `microseconds` later.
+/// Run `work` in another process and kill it after `microseconds`.
 inline void kill_during(const std::function<void()>& work, unsigned microseconds) {
   const pid_t child = fork();
   if (child == 0) {
@@ -77,8 +77,7 @@ inline void kill_during(const std::function<void()>& work, unsigned microseconds
   waitpid(child, nullptr, 0);
 }
 
-/// The message of the Error that `work` ends with in a process of its own whose files may not grow past `bytes`; empty:
-/// none.
+/// Message of the Error of `work` in another process whose files may not grow beyond `bytes`; empty: no error.
 inline std::string error_on_full_disk(const std::function<void()>& work, std::uint64_t bytes) {
   int ends[2];
   if (pipe(ends) != 0) return "no pipe";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Assemblies with made-up states, a folder that vanishes, and Python as a second pair of eyes.
+/// Assemblies with synthetic states, a temporary folder, and checks by Python scripts.
 #pragma once
 
 #include <cmath>
@@ -19,7 +19,7 @@
 
 namespace equidem {
 
-/// An assembly under a displacement field, contact forces by the linear law, and stresses that are just numbers.
+/// An assembly under a displacement field, with contact forces by the linear law and arbitrary stresses.
 struct MadeUpState {
   Assembly assembly;
   std::vector<DiscMotion> motions;
@@ -75,7 +75,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// Run a script of this folder with Python; its complaints appear in the log of the test.
+/// Run a script of this folder with Python; its error output appears in the log of the test.
 /// \return its exit code
 inline int run_python(const std::string& script, const std::vector<std::string>& arguments) {
   std::string command = fmt::format("'{}' '{}/tests/output/{}'", EQUIDEM_PYTHON, EQUIDEM_SOURCE_DIR, script);

@@ -158,8 +158,7 @@ TEST_CASE("asymmetry_of_equation_55_is_minus_sqrt3_kT_spin_and_the_moments_that_
 }
 
 TEST_CASE("restrained_rotation_still_gives_nu_of_free_rotation_in_uniaxial_stress") {
-  // Eq. (53) is about the displacement operator; where nothing spins, its nu' = (1 - 5r)/(4(1 - r)) is not
-  // seen.
+  // Eq. (53) describes the displacement operator; without spin its nu' = (1 - 5r)/(4(1 - r)) does not appear.
   const Assembly assembly = periodic_hexagonal();
   for (const double ratio : ratios) {
     const ContactSprings springs(SpringConstants{1, ratio});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Abe (1996), eqs. (11), (21), (22), on random assemblies: where the mean field is exact, how it goes wrong, and what
-/// its correction does.
+/// Abe (1996), eqs. (11), (21), (22), on random assemblies: where the mean field is exact, how its error grows, and the
+/// effect of its correction.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -99,8 +99,8 @@ TEST_CASE("errors_of_the_mean_field_grow_as_the_square_of_the_disorder") {
 }
 
 TEST_CASE("the_bulk_modulus_of_springs_h_over_l_is_half_kN_on_every_assembly") {
-  // An even strain pulls a disc with forces kN e h n along its facets; around a closed cell sum h n = 0, so no disc
-  // leaves the smooth field and none turns.
+  // An isotropic strain e loads a disc with forces kN e h n on its facets; around a closed cell sum h n = 0, so every
+  // disc follows the uniform strain without rotation.
   const PointProcess points =
       GENERATE(PointProcess::perturbed_hexagonal, PointProcess::poisson_disc, PointProcess::uniform);
   const Rotation rotation = GENERATE(Rotation::from_scene, Rotation::restrained);
@@ -130,7 +130,7 @@ TEST_CASE("nu_of_at_most_one_quarter_is_a_limit_of_the_mean_field_and_not_of_ass
 }
 
 TEST_CASE("the_correction_by_contact_density_lowers_the_anisotropy_of_stretched_assemblies_without_removing_it") {
-  // Branches are longer along the stretch, too, which (11) does not see.
+  // Branches are also longer along the stretch, which (11) does not take into account.
   for (const double ratio : {0.0, 0.5}) {
     const MeanEstimate gain = mean_over_seeds(12, [&](std::uint64_t seed) {
       const Assembly cell = stretched_cell(seed);

@@ -3,8 +3,8 @@
 /// Abe (1996), section 3: the tension test of Fig. 6, nu of eq. (35) against (1 - kT/kN)/4 (Fig. 7) and the stiffness
 /// of eq. (36) against eq. (37) (Fig. 8).
 ///
-/// A strip with free top and bottom is in uniform strain away from its ends, but the contacts that its top and bottom
-/// rows lack carry nothing: of R rows, R - 2r/(3(1 + r)) bear the stress of the bulk, r = kT/kN. The error of eq.
+/// A strip with free top and bottom is in uniform strain away from its ends, but its top and bottom rows lack the
+/// contacts to a next row: of R rows, R - 2r/(3(1 + r)) bear the stress of the bulk, r = kT/kN. The error of eq.
 /// (36) on a block of n rows is therefore of order 1/n, and none where kT = 0.
 #include <cmath>
 #include <numbers>
@@ -64,7 +64,7 @@ double convergence_order(const std::vector<double>& sizes, const std::vector<dou
   return xy / xx;
 }
 
-/// Rows of the bulk that a strip of `rows` stands for.
+/// Rows of the bulk that are as stiff as a strip of `rows`.
 double bearing_rows(int rows, double ratio) {
   return rows - 2 * ratio / (3 * (1 + ratio));
 }
@@ -184,7 +184,7 @@ TEST_CASE("stress_of_a_solved_block_is_symmetric_where_discs_turn_freely_and_els
 }
 
 TEST_CASE("restrained_rotation_does_not_change_nu_of_the_tension_test_of_a_long_strip") {
-  // Not nu' = (1 - 5r)/(4(1 - r)) of eq. (53), which is about the displacement operator.
+  // Not nu' = (1 - 5r)/(4(1 - r)) of eq. (53), which describes the displacement operator.
   const double ratio = 0.15;
   const Run run = run_tension(120, 6, ratio, GaugePlacement::centre, Rotation::restrained);
   CAPTURE(run.result.poisson_ratio, (1 - 5 * ratio) / (4 * (1 - ratio)));

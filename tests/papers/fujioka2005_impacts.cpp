@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Fujioka & Ushijima (2005), sections 5.2, 5.3, 5.5 in the simulation of grains: energy ratios of impacts on a floor,
-/// steps in contact, and what exact_flow makes of the same ball.
+/// steps in contact, and the same ball with exact_flow.
 #include <array>
 #include <cmath>
 #include <limits>
@@ -31,7 +31,7 @@ struct Impact {
   double ratio = 0;  ///< of energies after and before
 };
 
-/// Until so many impacts are over. Flights of more than 100 steps are made in one leap.
+/// Computes a number of impacts. Flights of more than 100 steps are computed in one move.
 std::vector<Impact> impacts_of(NormalLaw law, GrainScene scene, double step, std::size_t wanted) {
   std::vector<Impact> impacts;
   Grain ball = scene.grains[0];

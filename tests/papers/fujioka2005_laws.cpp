@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Fujioka & Ushijima (2005), section 5, by a plain loop over the laws of contact: Table 2, the impact of Figs. 6 and
-/// 7, and the loss that the printed mode 2 has.
+/// 7, and the loss of the printed mode 2.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,7 +28,7 @@ struct Law {
   }
 };
 
-constexpr double of_springs = 0.10, of_hertz = 4.62;  // dimensionless stiffness, not printed: Table 2 gives it away
+constexpr double of_springs = 0.10, of_hertz = 4.62;  // dimensionless stiffness, not printed, deduced from Table 2
 
 Law paper_law(NormalLaw law) {
   return {law, law == NormalLaw::hertz_dashpot ? of_hertz : of_springs};
@@ -39,7 +39,7 @@ struct Ball {
   double depth = 0, closing = 0, largest_depth = 0;
   int steps = 0, last_mode = 0;
 
-  /// Until the first contact is over; gravity acts after the contact force.
+  /// Computes the first contact; gravity acts after the contact force.
   void fall_and_rebound(const Law& law, double gravity) {
     while (steps == 0 || depth > 0) {
       if (depth > 0) {
@@ -99,7 +99,7 @@ TEST_CASE(
         CAPTURE(letter_of(law), phase, hit, after / before);
         CHECK(std::abs(after / before - 0.49) < 1e-14);
         before = after;
-        ball.closing = -ball.closing;  // thrown back from where it is
+        ball.closing = -ball.closing;  // reversed in place
       }
     }
   }

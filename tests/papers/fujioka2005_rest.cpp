@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Where the laws of Fujioka & Ushijima (2005) end: rest and clusters, beside exact_flow.
+/// Limits of the laws of Fujioka & Ushijima (2005): rest and clusters, beside exact_flow.
 #include <cmath>
 
 #include "equidem/study/fujioka2005_scenes.hpp"

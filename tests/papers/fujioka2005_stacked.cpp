@@ -41,7 +41,7 @@ struct Errors {
 Errors slide(const PairProperties& pair, NormalLaw law, double step) {
   static const Exact exact = exact_slide();
   GrainSimulation run = start(stacked(pair), law, step);
-  const std::int64_t late = law == NormalLaw::exact_flow ? 1 : 0;  // it lists what touches at the end of a step
+  const std::int64_t late = law == NormalLaw::exact_flow ? 1 : 0;  // it lists the contacts at the end of a step
   double parting = 0;
   while (run.time() < 1.3 * exact.parting) {
     run.advance(1);
@@ -67,7 +67,7 @@ TEST_CASE("fujioka_2005_exact_solution_of_the_stacked_spheres") {
   CHECK(exact.speed == Approx(0.271462651012440).epsilon(1e-14));
   CHECK(exact.parting == Approx(0.106736872469562).epsilon(1e-13));
 
-  // the sum (31) leaves out what lies at the singular end: zeta(1/2) sqrt7 sqrt(Delta)
+  // The sum (31) omits the singular end, zeta(1/2) sqrt7 sqrt(Delta).
   const int pieces = 1000000;
   const double top = 0.5 * std::sqrt(3.0), width = (top - exact.k) / pieces;
   double sum = 0;
@@ -86,7 +86,7 @@ TEST_CASE("fujioka_2005_stacked_spheres_errors_fall_with_the_step_for_all_laws_b
     double speed, parting;  ///< least orders of d' and T0
     double speed_error;     ///< largest at 1e-5 s
   };
-  // T0 is known to a step; T's springs soften as depths fall with the step
+  // T0 is resolved to one step; the springs of T soften as depths decrease with the step
   const Row row = GENERATE(Row{NormalLaw::hertz_dashpot, 1.0, 0.5, 1e-4}, Row{NormalLaw::five_case_map, 1.5, 0.6, 1e-5},
                            Row{NormalLaw::energy_map, 1.5, 0.6, 1e-5}, Row{NormalLaw::exact_flow, 1.8, 0.9, 2e-6});
   const Errors coarse = slide(pair_of(row.law), row.law, 1e-4), fine = slide(pair_of(row.law), row.law, 1e-5);
@@ -104,7 +104,7 @@ TEST_CASE("fujioka_2005_stacked_spheres_C_stops_improving_by_the_lag_of_its_damp
   CAPTURE(coarse.speed, fine.speed, coarse.parting, fine.parting);
   CHECK(order(coarse.speed, fine.speed) < 0.2);
   CHECK(std::abs(order(coarse.parting, fine.parting)) < 0.2);
-  // adhesion in proportion to the damping: half of it, half the error of T0
+  // the adhesion is proportional to the damping: half the damping gives half the error of T0
   const double zeta = damping_ratio_of(0.7, ContactEnd::at_zero_overlap);
   const Errors half = slide_of_C(restitution_of(0.5 * zeta, ContactEnd::at_zero_overlap), 1e-5);
   CAPTURE(half.parting);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Sukegawa (2010), chapter 8: what `equidem-papers sukegawa2010` stands on.
+/// Sukegawa (2010), chapter 8: scene, shaking and measures of `equidem-papers sukegawa2010`.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -61,7 +61,7 @@ TEST_CASE("a_box_filled_once_is_shaken_as_if_it_had_been_one_run") {
   CAPTURE(to_string(shape));
   constexpr std::int64_t filling = 30'000, shaking = 15'000;
   GrainScene shaken = start_of(shape);
-  // Forces at the end of a step already see the walls of the next.
+  // Forces at the end of a step are computed with the walls at the next step.
   shake(shaken.walls, {1, 0}, harmonic_shaking(8, 10, (filling + 1) * options.time_step, 1));
   GrainSimulation whole(shaken, options);
   whole.advance(filling);

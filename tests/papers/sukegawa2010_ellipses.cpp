@@ -39,7 +39,7 @@ TwoEllipses random_pair(Random& random, double aspect) {
   return {i, j, {std::cos(angle), std::sin(angle)}};
 }
 
-/// The branch along its direction for which the gap is as wanted: the gap is a convex function of its length.
+/// The branch along a direction with the wanted gap, which is a convex function of its length.
 void place(TwoEllipses& pair, double gap) {
   const Vec2 direction = pair.branch / norm(pair.branch);
   double length = pair.i.a + pair.j.a + gap;
@@ -183,7 +183,7 @@ TEST_CASE("sukegawa_2010_normals_at_first_touch") {
     INFO(table);
     CHECK(printed.mean > mended.mean + 10);
     if (aspect == 1) CHECK(mended.largest < 1e-5);
-    if (aspect == 2) {  // found independently: 7.4, 23, 33
+    if (aspect == 2) {  // independent values: 7.4, 23, 33
       CHECK(mended.mean == Approx(7.4).margin(0.3));
       CHECK(mended.most_of_all == Approx(23).margin(1));
       CHECK(mended.largest == Approx(33).margin(2));

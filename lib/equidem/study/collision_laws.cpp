@@ -137,10 +137,9 @@ Study collision_laws_study(bool quick) {
                             .why = "a rigid ball would be on its way while an impact takes its steps"});
   }
   study.notes = {
-      "Theory is silent on T at one impact, whose fixed share is small and met by fine steps only, on d' of C, which "
-      "ends likewise, and on F, P and X at the stacked spheres: T0 is known to a step, so that errors scatter, and "
-      "contacts that keep their "
-      "energy chatter as they open."};
+      "T at one impact (its fixed share is small and is reached only at fine steps), d' of C (likewise), and F, P and "
+      "X at the stacked spheres have no theoretical order: T0 is resolved to one step, so that errors scatter, and "
+      "contacts that keep their energy chatter as they open."};
   return study;
 }
 

@@ -20,10 +20,6 @@ double to_srgb(double linear) {
   return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
 }
 
-double to_linear(double srgb) {
-  return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
-}
-
 Colour to_colour(const Oklab& c) {
   const double l = std::pow(c.L + 0.3963377774 * c.a + 0.2158037573 * c.b, 3);
   const double m = std::pow(c.L - 0.1055613458 * c.a - 0.0638541728 * c.b, 3);
@@ -70,13 +66,6 @@ Colour colour_at(ColourMap map, double t) {
                                                   at_hue(0.645, 0.105, 225), at_hue(0.49, 0.130, 272)};
   t = std::clamp(t, 0.0, 1.0);
   return to_colour(map == ColourMap::diverging ? along(diverging, t) : along(sequential, t));
-}
-
-double lightness(const Colour& colour) {
-  const double r = to_linear(colour.red), g = to_linear(colour.green), b = to_linear(colour.blue);
-  return 0.2104542553 * std::cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b) +
-         0.7936177850 * std::cbrt(0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b) -
-         0.0040720468 * std::cbrt(0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b);
 }
 
 ColourScale colour_scale(std::span<const double> values) {

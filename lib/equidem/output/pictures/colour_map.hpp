@@ -25,9 +25,6 @@ enum class ColourMap {
 /// 2020) with linear lightness, so that equal steps of the number look equal.
 Colour colour_at(ColourMap map, double t);
 
-/// Perceived lightness of a colour, the L of Oklab, in [0, 1].
-double lightness(const Colour& colour);
-
 /// Range of the numbers shown by colours.
 struct ColourScale {
   ColourMap map = ColourMap::sequential;

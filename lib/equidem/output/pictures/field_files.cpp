@@ -16,33 +16,30 @@
 namespace equidem {
 namespace {
 
-struct Column {
-  std::string name;
-  std::vector<double> values;
-};
+using Values = std::vector<double>;
 
 template <typename Value>
-Column column_of(const CoarseFields& fields, std::string name, const Value& value) {
-  Column column{std::move(name), {}};
-  for (std::size_t k = 0; k < fields.grid.size(); ++k) column.values.push_back(value(k));
-  return column;
+Values values_of(const CoarseFields& fields, const Value& value) {
+  Values values;
+  for (std::size_t k = 0; k < fields.grid.size(); ++k) values.push_back(value(k));
+  return values;
 }
 
-Column pressure_of(const CoarseFields& fields) {
-  return column_of(fields, "pressure_Pa",
-                   [&](std::size_t k) { return -0.5 * (fields.stress[k].xx + fields.stress[k].yy); });
+Values pressure_of(const CoarseFields& fields) {
+  return values_of(fields, [&](std::size_t k) { return -0.5 * (fields.stress[k].xx + fields.stress[k].yy); });
 }
 
-std::vector<Column> columns_of(const CoarseFields& f) {
-  return {column_of(f, "stress_xx_Pa", [&](std::size_t k) { return f.stress[k].xx; }),
-          column_of(f, "stress_yy_Pa", [&](std::size_t k) { return f.stress[k].yy; }),
-          column_of(f, "stress_xy_Pa", [&](std::size_t k) { return f.stress[k].xy; }),
-          column_of(f, "stress_yx_Pa", [&](std::size_t k) { return f.stress[k].yx; }),
-          pressure_of(f),
-          {"solid_fraction", f.solid_fraction},
-          {"coordination", f.coordination},
-          column_of(f, "vx_m_per_s", [&](std::size_t k) { return f.velocity[k].x; }),
-          column_of(f, "vy_m_per_s", [&](std::size_t k) { return f.velocity[k].y; })};
+/// The fields, one row for each cell. \param table gets the columns
+void add_fields(Table& table, const CoarseFields& f) {
+  table.add("stress_xx_Pa", values_of(f, [&](std::size_t k) { return f.stress[k].xx; }))
+      .add("stress_yy_Pa", values_of(f, [&](std::size_t k) { return f.stress[k].yy; }))
+      .add("stress_xy_Pa", values_of(f, [&](std::size_t k) { return f.stress[k].xy; }))
+      .add("stress_yx_Pa", values_of(f, [&](std::size_t k) { return f.stress[k].yx; }))
+      .add("pressure_Pa", pressure_of(f))
+      .add("solid_fraction", f.solid_fraction)
+      .add("coordination", f.coordination)
+      .add("vx_m_per_s", values_of(f, [&](std::size_t k) { return f.velocity[k].x; }))
+      .add("vy_m_per_s", values_of(f, [&](std::size_t k) { return f.velocity[k].y; }));
 }
 
 Table table_of(const CoarseFields& fields) {
@@ -51,9 +48,9 @@ Table table_of(const CoarseFields& fields) {
     return 0.5 * (cell.low + cell.high);
   };
   Table table;
-  table.add("x_m", column_of(fields, "", [&](std::size_t k) { return middle(k).x; }).values);
-  table.add("y_m", column_of(fields, "", [&](std::size_t k) { return middle(k).y; }).values);
-  for (const Column& column : columns_of(fields)) table.add(column.name, column.values);
+  table.add("x_m", values_of(fields, [&](std::size_t k) { return middle(k).x; }))
+      .add("y_m", values_of(fields, [&](std::size_t k) { return middle(k).y; }));
+  add_fields(table, fields);
   return table;
 }
 
@@ -74,11 +71,14 @@ std::string image_text(const CoarseFields& fields) {
     std::memcpy(bytes, &number, sizeof number);
     numbers.append(bytes, sizeof number);
   };
-  for (const Column& column : columns_of(fields)) {
+  Table cells;
+  add_fields(cells, fields);
+  for (const Table::Column& column : cells.columns()) {
+    const auto& values = std::get<Values>(column.values);
     text += fmt::format("        <DataArray type=\"Float64\" Name=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
                         column.name, numbers.size());
-    append(std::uint64_t{8 * column.values.size()});
-    for (const double value : column.values) append(value);
+    append(std::uint64_t{8 * values.size()});
+    for (const double value : values) append(value);
   }
   return text + "      </CellData>\n    </Piece>\n  </ImageData>\n  <AppendedData encoding=\"raw\">\n_" + numbers +
          "\n  </AppendedData>\n</VTKFile>\n";
@@ -88,16 +88,16 @@ constexpr double page = 1000, margin = 40, gap = 50, bar = 14, bar_room = 78, ti
 constexpr Colour black{0.13, 0.13, 0.13};
 
 /// A map in the width given, its colour bar to the right.
-void draw_map(Canvas& canvas, const CoarseGrid& grid, const Column& column, const std::string& title, Vec2 corner,
+void draw_map(Canvas& canvas, const CoarseGrid& grid, const Values& values, const std::string& title, Vec2 corner,
               double width, double height) {
-  const ColourScale scale = colour_scale(column.values);
+  const ColourScale scale = colour_scale(values);
   const Vec2 size = grid.region.high - grid.region.low;
   const double shown = std::min(width / size.x, height / size.y);
   const double w = shown * size.x, h = shown * size.y;
   Raster raster(static_cast<int>(grid.columns), static_cast<int>(grid.rows));
   for (std::size_t k = 0; k < grid.size(); ++k)
     raster.set(static_cast<int>(k % grid.columns), static_cast<int>(grid.rows - 1 - k / grid.columns),
-               scale.colour_of(column.values[k]));
+               scale.colour_of(values[k]));
   canvas.text(title, {corner.x, corner.y - 12}, 14, TextAnchor::left, black, true);
   // Few cells are drawn as polygons: viewers smooth an image, which blurs its cells.
   const double cw = w / static_cast<double>(grid.columns), ch = h / static_cast<double>(grid.rows);
@@ -108,7 +108,7 @@ void draw_map(Canvas& canvas, const CoarseGrid& grid, const Column& column, cons
       const double x = corner.x + cw * static_cast<double>(k % grid.columns);
       const double y = corner.y + h - ch * static_cast<double>(k / grid.columns + 1);
       canvas.fill_polygon({{x, y}, {x + cw + 0.3, y}, {x + cw + 0.3, y + ch + 0.3}, {x, y + ch + 0.3}},
-                          scale.colour_of(column.values[k]));
+                          scale.colour_of(values[k]));
     }
   }
   canvas.stroke_polygon({corner, {corner.x + w, corner.y}, {corner.x + w, corner.y + h}, {corner.x, corner.y + h}}, 0.8,
@@ -122,7 +122,7 @@ void draw_map(Canvas& canvas, const CoarseGrid& grid, const Column& column, cons
   }
   const double low = std::min(scale.low, scale.high), high = std::max(scale.low, scale.high);
   const UnitPrefix prefix =
-      column.name.ends_with("_Pa") ? unit_prefix(std::max(std::abs(low), std::abs(high))) : UnitPrefix{};
+      title.ends_with(", Pa") ? unit_prefix(std::max(std::abs(low), std::abs(high))) : UnitPrefix{};
   for (const double tick : nice_ticks(low * prefix.factor, high * prefix.factor, 4)) {
     const double y = corner.y + h * (1 - (tick / prefix.factor - scale.low) / (scale.high - scale.low));
     canvas.line({left + bar, y}, {left + bar + 4, y}, 0.8, black);
@@ -132,10 +132,10 @@ void draw_map(Canvas& canvas, const CoarseGrid& grid, const Column& column, cons
 }
 
 std::string draw(const CoarseFields& fields) {
-  const Column speed = column_of(fields, "speed", [&](std::size_t k) { return norm(fields.velocity[k]); });
-  const std::pair<std::string, Column> maps[] = {{"pressure, Pa", pressure_of(fields)},
-                                                 {"solid fraction", {"", fields.solid_fraction}},
-                                                 {"coordination", {"", fields.coordination}},
+  const Values speed = values_of(fields, [&](std::size_t k) { return norm(fields.velocity[k]); });
+  const std::pair<std::string, Values> maps[] = {{"pressure, Pa", pressure_of(fields)},
+                                                 {"solid fraction", fields.solid_fraction},
+                                                 {"coordination", fields.coordination},
                                                  {"speed, m/s", speed}};
   const Vec2 size = fields.grid.region.high - fields.grid.region.low;
   const double width = 0.5 * (page - 2 * margin - gap) - bar_room;
