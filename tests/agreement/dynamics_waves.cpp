@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "equidem/dynamics/time_step.hpp"
-#include "equidem/statics/assemble_stiffness.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/waves/bloch.hpp"
 
 #include "dynamics/moving_scenes.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The laws of normal contact, one body on a wall without gravity: against traces of an independent implementation,
-/// against their own formulas in quadruple precision, and against what they promise of the energy.
+/// against their own formulas in quadruple precision, and against their statements about the energy.
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Springs from what a user knows: the impact they give is the one asked for.
+/// Springs from duration, overlap or material constants: the impact is the one asked for.
 #include "equidem/contact/collision_stiffness.hpp"
 
 #include <array>

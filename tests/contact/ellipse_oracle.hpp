@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The contact of two ellipses by looking in all directions, slowly and in long double; and whether they overlap, by
+/// The contact of two ellipses by a search over all directions, slowly and in long double; and whether they overlap, by
 /// algebra.
 #pragma once
 
@@ -20,7 +20,7 @@ struct Point {
   Real x = 0, y = 0;
 };
 
-/// Of one direction: branch . n - h_i - h_j, its derivative by the angle, and the points that reach farthest.
+/// In one direction: branch . n - h_i - h_j, its derivative by the angle, and the points that reach farthest.
 struct Look {
   Point n;
   Real gap = 0, slope = 0;

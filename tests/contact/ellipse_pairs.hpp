@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Ellipses thrown together at random.
+/// Random pairs of ellipses.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A contact solved exactly over a step, whatever happens within it.
+/// A contact solved exactly over a step, with any number of beginnings and ends within it.
 #include "equidem/contact/exact_contact.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// A pair that is stepped, with its energy and what went out of it.
+/// A pair that is stepped, with its energy and its losses.
 struct Pair {
   ExactPair law;
   double u = 0, v = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The bond for finite motions: an energy, its derivatives, and what leaves it alone.
+/// The bond for finite motions: an energy, its derivatives, and the motions that do not change it.
 #include "equidem/contact/finite_bond.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Numbers that tests of contacts measure by.
+/// Numbers shared by the tests of contacts.
 #pragma once
 
 #include <cmath>
@@ -19,7 +19,7 @@ __extension__ using Quad = __float128;
 using Quad = long double;
 #endif
 
-/// 1, give or take so many decades.
+/// A random number within so many decades of 1.
 inline double magnitude(double decades, Random& random) {
   return std::pow(10.0, random.uniform(-decades, decades));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Dashpots between two discs: what they do in a step, and how long a step may be.
+/// Dashpots between two discs: their change of the rates in a step, and the limit of the step.
 #include "equidem/contact/viscous_bond.hpp"
 
 #include <array>

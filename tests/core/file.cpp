@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Files are written whole or not at all, and never over the user's without leave.
+/// Files are written whole or not at all, and never over existing ones unless that is asked for.
 #include "equidem/core/file.hpp"
 
 #include <csignal>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Confidence intervals keep what they promise.
+/// Confidence intervals hold the true value as often as they state.
 #include "equidem/core/statistics.hpp"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Parallel loops: every task once, errors travel, and the number of threads changes no bit.
+/// Parallel loops: every task runs once, errors reach the caller, and the number of threads changes no bit.
 #include "equidem/core/threads.hpp"
 
 #include <algorithm>

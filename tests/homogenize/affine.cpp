@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Forces of an affine motion: balance on lattices, virtual work everywhere.
-#include "equidem/homogenize/affine.hpp"
 
 #include <cmath>
 

@@ -65,7 +65,7 @@ TEST_CASE("a_mean_strain_that_releases_energy_counts_as_an_unstable_mode") {
     if (c.unstable_modes == 0)
       CHECK(stiffness_of(random_cell(seed), {1, -0.3}, Boundary::displacement).unstable_modes == 0);
   }
-  CHECK(by_strain_alone > 0);  // else the cell itself would have told
+  CHECK(by_strain_alone > 0);  // else no cell would be unstable by mean strain alone
 }
 
 TEST_CASE("springs_of_any_size_have_the_stiffness_of_others_times_that_size") {

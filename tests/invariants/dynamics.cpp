@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "equidem/statics/assemble_stiffness.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/statics/internal_force.hpp"
 
 #include "dynamics/moving_scenes.hpp"

@@ -12,7 +12,7 @@
 
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/core/random.hpp"
-#include "equidem/statics/assemble_stiffness.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/motion_description.hpp"
 

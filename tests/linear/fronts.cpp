@@ -139,7 +139,7 @@ TEST_CASE("factors_of_an_indefinite_front_multiply_to_the_front") {
       CHECK(outcome.pivots.count <= candidates);
       CHECK(outcome.pivots.growth <= (1 + 1e-12) / u);
       CHECK(outcome.difference < 1e-13 * static_cast<double>(n) / u);
-      // Where no row lies outside the candidates, nothing but zero may be left.
+      // Where no row lies outside the candidates, only zeros may be left.
       if (candidates == n && n > 1) CHECK(outcome.pivots.count == n);
       two_by_two += outcome.two_by_two;
       left += candidates - outcome.pivots.count;

@@ -201,7 +201,7 @@ TEST_CASE("cholesky_back_ends_agree_on_the_smallest_pivot_with_one_order") {
   FactorReport multifrontal, supernodal;
   REQUIRE(back_ends[0].factorize(system, &multifrontal) != nullptr);
   REQUIRE(back_ends[1].factorize(system, &supernodal) != nullptr);
-  // Orders within a front may differ, and with them which pivot is smallest; not its size by much.
+  // Orders within a front may differ, and with them which pivot is smallest; its size differs little.
   CAPTURE(multifrontal.smallest_component, supernodal.smallest_component);
   CHECK(supernodal.smallest_pivot == Approx(multifrontal.smallest_pivot).epsilon(0.5));
   CHECK(supernodal.nonzeros <= multifrontal.nonzeros);  // ours keeps held components

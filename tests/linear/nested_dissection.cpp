@@ -24,7 +24,7 @@ using namespace equidem::test;
 
 namespace {
 
-/// Every kind, and graphs that no plane has.
+/// Assemblies of every kind, and graphs that are not planar.
 void for_all_graphs(const std::function<void(const Assembly&)>& body) {
   for (const AssemblyKind& kind : assembly_kinds()) {
     CAPTURE(kind.name);

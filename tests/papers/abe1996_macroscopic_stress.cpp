@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "equidem/assembly/lattices.hpp"
-#include "equidem/homogenize/affine.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/material/spring_relations.hpp"
 

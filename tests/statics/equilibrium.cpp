@@ -14,7 +14,7 @@
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/homogenize/affine.hpp"
+#include "equidem/homogenize/stress.hpp"
 
 #include "support/assemblies.hpp"
 #include "support/catch.hpp"

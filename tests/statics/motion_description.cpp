@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Motions in words, and the quotient of energies that tells a mechanism from a soft mode.
+/// Motions in words, and the quotient of energies that distinguishes a mechanism from a soft mode.
 #include "equidem/statics/motion_description.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/statics/assemble_stiffness.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
 
 #include "support/catch.hpp"
 

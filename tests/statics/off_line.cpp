@@ -116,8 +116,8 @@ TEST_CASE("moving_and_turning_all_bodies_together_costs_nothing_off_the_line_of_
   CHECK(report.gear_modes == 0);
 }
 
-// Motions without energy: rigid ones, gears, rotations that nothing resists and all others are told apart, and none is
-// missed.
+// Motions without energy: rigid ones, gears, rotations that nothing resists and all others are distinguished, and none
+// is missed.
 TEST_CASE("mechanisms_off_the_line_of_centres_are_as_many_as_the_energy_leaves") {
   int with_gears = 0, with_others = 0;
   for (std::uint64_t seed = 1; seed <= 160; ++seed) {

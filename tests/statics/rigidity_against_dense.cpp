@@ -11,7 +11,7 @@
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
-#include "equidem/statics/assemble_stiffness.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/statics/rigidity.hpp"
 
 #include "statics/rigidity_report.hpp"

@@ -307,7 +307,7 @@ TEST_CASE("accuracy_that_no_level_reaches_is_refused_with_what_can_be_reached") 
           return Values{1 + 1.0 / static_cast<double>(n)};
         },
         "about 0.001");
-    CHECK(finest <= 32);  // the third level tells it
+    CHECK(finest <= 32);  // the third level suffices to see it
   }
   SECTION("errors that do not fall") {
     refused([](std::int64_t n) { return Values{n % 3 == 0 ? 1.0 : 2.0 + static_cast<double>(n % 7)}; },

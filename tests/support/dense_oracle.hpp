@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
-#include "equidem/statics/assemble_stiffness.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
 
 namespace equidem::test {
 

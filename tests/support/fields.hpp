@@ -22,7 +22,7 @@
 
 namespace equidem::test {
 
-/// Errors near round-off are the evidence of these tests: Catch2 shows ten digits unless told.
+/// Errors near round-off are the evidence of these tests: by default Catch2 shows ten digits.
 inline const int digits_shown = Catch::StringMaker<double>::precision = 20;
 
 inline std::vector<double> random_vector(std::size_t size, std::uint64_t seed) {

@@ -16,7 +16,7 @@
 #include "equidem/linear/multifrontal/front.hpp"
 #include "equidem/linear/ordering/nested_dissection.hpp"
 #include "equidem/linear/ordering/symbolic_factor.hpp"
-#include "equidem/statics/assemble_stiffness.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
 
 #include "support/dense_oracle.hpp"
 
@@ -45,7 +45,7 @@ inline Assembly random_graph(int discs, int near, int far, Random& random) {
   return assembly;
 }
 
-/// A matrix with all that a factorization wants.
+/// A matrix with everything that a factorization needs.
 struct RandomSystem {
   Assembly assembly;
   ContactGraph graph;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "equidem/statics/assemble_stiffness.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
 
 #include "support/catch.hpp"
 #include "support/dense_oracle.hpp"

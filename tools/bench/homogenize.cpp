@@ -8,8 +8,8 @@
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
-#include "equidem/homogenize/affine.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/homogenize/stress.hpp"
 #include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
 

@@ -155,7 +155,7 @@ void triangulate(Assembly& assembly) {
   assembly.cell_areas.clear();
   check(assembly);
   if (!assembly.periodic() && assembly.size() < 3) {
-    bad_input(fmt::format("{} cannot be triangulated", counted(static_cast<long long>(assembly.size()), "disc")),
+    bad_input(fmt::format("{} cannot be triangulated", counted(assembly.size(), "disc")),
               "a triangulation needs three or more", "Add discs, or list the contacts");
   }
   PowerCells cells = power_cells(assembly);

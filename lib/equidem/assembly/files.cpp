@@ -91,7 +91,7 @@ void check_list(const Json& value, const std::string& entry) {
 void check_row(const Json& value, std::size_t count, const char* names, const std::string& entry) {
   check_list(value, entry);
   if (value.size() == count) return;
-  refuse(fmt::format("{} {} where {} are expected", counted(static_cast<long long>(value.size()), "number"),
+  refuse(fmt::format("{} {} where {} are expected", counted(value.size(), "number"),
                      value.size() == 1 ? "stands" : "stand", count),
          fmt::format("an entry is [{}]", names), "Correct the entry", entry);
 }
@@ -100,8 +100,7 @@ void check_row(const Json& value, std::size_t count, const char* names, const st
 void check_list_per(const char* what, const Json& value, std::size_t count, const std::string& entry) {
   check_list(value, entry);
   if (value.size() == count) return;
-  refuse(fmt::format("{} for {}", counted(static_cast<long long>(value.size()), "entry", "entries"),
-                     counted(static_cast<long long>(count), what)),
+  refuse(fmt::format("{} for {}", counted(value.size(), "entry", "entries"), counted(count, what)),
          "there must be one for each", "Correct the list or remove it", entry);
 }
 
@@ -288,8 +287,7 @@ DiscGroup read_group(const Json& value, const std::string& entry) {
   check_list(*discs, entry);
   if (lengths != nullptr) check_list(*lengths, entry);
   if (lengths != nullptr && lengths->size() != discs->size()) {
-    refuse(fmt::format("{} for {}", counted(static_cast<long long>(lengths->size()), "tributary length"),
-                       counted(static_cast<long long>(discs->size()), "disc")),
+    refuse(fmt::format("{} for {}", counted(lengths->size(), "tributary length"), counted(discs->size(), "disc")),
            "there must be one for each", "Correct the list or remove it", entry);
   }
   std::vector<std::pair<std::int32_t, double>> members;

@@ -26,7 +26,7 @@ struct Square {
   std::uint32_t y;
 };
 
-/// A throw into a square.
+/// A trial point in a square.
 struct Dart {
   Vec2 point;
   std::int32_t column;  ///< of the base square
@@ -55,7 +55,7 @@ class Adsorption {
         squares.push_back({static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)});
       }
     }
-    // After twenty halvings what is left is too small to matter.
+    // After twenty halvings the squares that are left are negligible.
     for (int level = 0; level <= 20 && !squares.empty(); ++level) {
       throw_darts(squares, level, random);
       squares = halved(squares, level);

@@ -167,7 +167,7 @@ double contact_end(const ExactPair& p, const Motion& start, double within) {
   return never;
 }
 
-/// A step with beginnings and ends in it.
+/// A step in which contacts begin or end.
 class EventfulStep {
  public:
   EventfulStep(const ExactPair& pair, const Motion& start, bool touching)

@@ -15,7 +15,7 @@
 #include "equidem/dynamics/still_unknowns.hpp"
 #include "equidem/dynamics/walls.hpp"
 #include "equidem/linear/contact_graph.hpp"
-#include "equidem/statics/assemble_stiffness.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
 
 namespace equidem {
 namespace {

@@ -65,7 +65,7 @@ class BoxMeasures {
 
   /// \param grains in the order of the scene
   const MeasuredMoment& record(std::int64_t step, double time, const std::vector<Grain>& grains);
-  /// Goes on with the history of an earlier run.
+  /// Continue the history of an earlier run.
   /// \param before surface at the last moment before the shaking
   void restore(std::vector<MeasuredMoment> moments, SurfaceProfile before,
                std::vector<std::optional<FirstThrow>> throws);

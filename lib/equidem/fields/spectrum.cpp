@@ -75,7 +75,7 @@ SpectralPeak spectral_peak(std::span<const double> times, std::span<const double
                            double highest) {
   constexpr std::size_t fewest = 8;
   if (times.size() < fewest)
-    bad_input(fmt::format("the history has {}", counted(static_cast<long long>(times.size()), "moment")),
+    bad_input(fmt::format("the history has {}", counted(times.size(), "moment")),
               fmt::format("a period needs {} or more", fewest), "Measure more often, or longer");
   const HarmonicFit fit(times, values);
   const double low = std::max(lowest, 1.5 / fit.duration());

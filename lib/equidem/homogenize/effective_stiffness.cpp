@@ -11,9 +11,9 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/homogenize/affine.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/homogenize/sample_solver.hpp"
+#include "equidem/homogenize/stress.hpp"
 #include "equidem/statics/load_bearing.hpp"
 
 namespace equidem {

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "equidem/contact/linear_spring.hpp"
-#include "equidem/homogenize/affine.hpp"
 #include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/homogenize/sample_solver.hpp"
 #include "equidem/homogenize/stress.hpp"

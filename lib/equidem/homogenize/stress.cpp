@@ -5,6 +5,7 @@
 #include <cassert>
 #include <numeric>
 
+#include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
@@ -103,6 +104,26 @@ StressAsymmetry stress_asymmetry(const Assembly& assembly, std::span<const Conta
   assert(moments.empty() || moments.size() == assembly.size());
   return {.difference = asymmetry(macroscopic_stress(assembly, forces)),
           .moment_density = std::accumulate(moments.begin(), moments.end(), 0.0) / assembly.area()};
+}
+
+std::vector<ContactDeformation> affine_deformations(const Assembly& assembly, const Tensor2& gradient,
+                                                    double rotation) {
+  std::vector<ContactDeformation> result(assembly.contacts.size());
+  for (std::size_t c = 0; c < result.size(); ++c) {
+    const Contact& contact = assembly.contacts[c];
+    const DiscMotion i{.u = {}, .theta = rotation};
+    const DiscMotion j{.u = gradient * assembly.branch(contact), .theta = rotation};
+    result[c] = deformation(frame_of(assembly, c), i, j);
+  }
+  return result;
+}
+
+std::vector<ContactForce> affine_contact_forces(const Assembly& assembly, const ContactSprings& springs,
+                                                const Tensor2& gradient, double rotation) {
+  const std::vector<ContactDeformation> deformations = affine_deformations(assembly, gradient, rotation);
+  std::vector<ContactForce> forces(deformations.size());
+  for (std::size_t c = 0; c < forces.size(); ++c) forces[c] = linear_spring_force(springs[c], deformations[c]);
+  return forces;
 }
 
 }  // namespace equidem

@@ -67,7 +67,7 @@ std::pair<int, int> symmetric_pair(GaugePlacement placement, int count) {
   return {first, count - 1 - first};
 }
 
-/// Gauges on a lattice, found by counting rows and discs: no tie between equally near discs can turn them.
+/// Gauges on a lattice, found by counting rows and discs, so that no ties between equally near discs occur.
 class LatticeGauges {
  public:
   LatticeGauges(const Assembly& assembly, RowAlignment alignment, GaugePlacement placement)
@@ -295,8 +295,7 @@ Tensor2 fitted_displacement_gradient(const Assembly& assembly, std::span<const D
   // The ratio of the principal second moments, about determinant/trace²: rounding makes 1e-16 of it for discs
   // on a line, while two rows of 4e6 discs still have 1e-13.
   if (!(determinant > 1e-13 * trace * trace)) {
-    bad_input(fmt::format("a displacement gradient cannot be fitted to {}",
-                          counted(static_cast<long long>(chosen.size()), "disc")),
+    bad_input(fmt::format("a displacement gradient cannot be fitted to {}", counted(chosen.size(), "disc")),
               "it takes three discs or more that are not on one line", "Choose a larger region");
   }
   const Tensor2 inverse = (1 / determinant) * Tensor2{s.yy, -s.xy, -s.yx, s.xx};

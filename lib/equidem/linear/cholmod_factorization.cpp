@@ -159,7 +159,7 @@ class CholmodCholesky final : public Factorization {
   [[nodiscard]] const FactorReport& report() const override { return report_; }
 
  private:
-  /// False where the indices do not reach.
+  /// False where the index type is too short.
   bool analyze(cholmod_sparse& matrix, CholmodOrdering ordering, StageTimes& times) {
     // Ordering and analysis are called apart, so that each is timed; cholmod_analyze calls them likewise.
     Stopwatch watch;

@@ -27,7 +27,7 @@ struct CholmodTrial {
   StageTimes times;                   ///< compression, ordering, analysis, factorization
 };
 
-/// K = L L^T over the components that are not held, with 32-bit indices as long as they reach. Returns a null pointer
+/// K = L L^T over the components that are not held, with 32-bit indices as long as they suffice. Returns a null pointer
 /// where K is not positive definite to working precision; `report`, where given, contains the place. Held components
 /// are solved as rows of a unit matrix times the largest spring. One factorization must not be used by two threads at
 /// once.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A symmetric matrix of small blocks on the graph of discs.
+/// The stiffness matrix of an assembly: a symmetric matrix of small blocks on the graph of discs.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/degrees_of_freedom.hpp"
 #include "equidem/linear/large_buffer.hpp"
@@ -53,5 +54,10 @@ struct CompressedColumns {
 /// \param order discs in the order in which columns are numbered; empty: as they are
 CompressedColumns compress(const StiffnessMatrix& matrix, const Assembly& assembly, const ContactGraph& graph,
                            const DegreesOfFreedom& unknowns, std::span<const std::int32_t> order = {});
+
+/// Tangent of the linear contact law, summed over contacts: K = sum kN g g^T + kT h h^T with the derivatives g, h of
+/// stretch and slip. Rows and columns of held components are those of a unit matrix times the largest spring.
+StiffnessMatrix assemble_stiffness(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
+                                   const DegreesOfFreedom& unknowns);
 
 }  // namespace equidem

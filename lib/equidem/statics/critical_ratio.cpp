@@ -12,7 +12,7 @@
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
-#include "equidem/statics/assemble_stiffness.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/solver_choice.hpp"
 

@@ -38,7 +38,7 @@ class Holder {
     held_.components.push_back(component);
   }
 
-  /// One component after another, always the one that what is still free moves most (Gram-Schmidt with pivoting).
+  /// One component after another, always the one that the remaining motions move most (Gram-Schmidt with pivoting).
   void hold_piece(const PieceMotions& piece, const std::vector<std::int32_t>& discs, const std::vector<Vec2>& centres) {
     std::vector<Row> done;
     for (std::size_t m = 0; m < piece.free.size(); ++m) {

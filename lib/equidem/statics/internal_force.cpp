@@ -11,8 +11,9 @@ constexpr std::size_t grain = 1 << 13;
 
 using Extended = long double;  // 64 bits of mantissa on x86, more elsewhere
 
+/// Stretch and slip of a contact by the motion, and those imposed.
 DeformationOf<Extended> evaluate(const Contact& contact, const ContactFrame& frame, const DegreesOfFreedom& unknowns,
-                                 const PreciseMotion& motion) {
+                                 const PreciseMotion& motion, const ContactDeformation& imposed = {}) {
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
   const std::size_t i = contact.i * b, j = contact.j * b;
   const auto difference = [&](std::size_t c) {
@@ -27,7 +28,8 @@ DeformationOf<Extended> evaluate(const Contact& contact, const ContactFrame& fra
     if (frame.offset_i != 0 || frame.offset_j != 0)
       opening = (frame.offset_i * turn_i + frame.offset_j * turn_j) / unknowns.rotation_scale;
   }
-  return deformation(frame, difference(0), difference(1), turn, opening);
+  const auto d = deformation(frame, difference(0), difference(1), turn, opening);
+  return {d.normal + imposed.normal, d.tangential + imposed.tangential};
 }
 
 }  // namespace
@@ -57,9 +59,8 @@ void deformations_of(const SpringNetwork& network, const PreciseMotion& motion,
                      std::span<const ContactDeformation> imposed, std::span<ContactDeformation> deformations) {
   parallel_ranges(network.assembly.contacts.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
-      const Contact& contact = network.assembly.contacts[c];
-      auto d = evaluate(contact, frame_of(network.assembly, c), network.unknowns, motion);
-      if (!imposed.empty()) d.normal += imposed[c].normal, d.tangential += imposed[c].tangential;
+      const auto d = evaluate(network.assembly.contacts[c], frame_of(network.assembly, c), network.unknowns, motion,
+                              imposed.empty() ? ContactDeformation{} : imposed[c]);
       deformations[c] = {static_cast<double>(d.normal), static_cast<double>(d.tangential)};
     }
   });
@@ -79,12 +80,9 @@ void residual_force(const SpringNetwork& network, const PreciseMotion& motion,
       for (const auto& edge : graph.of(d)) {
         const Contact& contact = assembly.contacts[edge.contact];
         const ContactFrame frame = frame_of(assembly, static_cast<std::size_t>(edge.contact));
-        auto stretch_and_slip = evaluate(contact, frame, unknowns, motion);
-        if (!imposed.empty()) {
-          stretch_and_slip.normal += imposed[edge.contact].normal;
-          stretch_and_slip.tangential += imposed[edge.contact].tangential;
-        }
-        const auto force = linear_spring_force(springs[edge.contact], stretch_and_slip);
+        const auto force = linear_spring_force(
+            springs[edge.contact],
+            evaluate(contact, frame, unknowns, motion, imposed.empty() ? ContactDeformation{} : imposed[edge.contact]));
         const Vec2 n = frame.normal;
         const Extended fx = force.normal * n.x - force.tangential * n.y;
         const Extended fy = force.normal * n.y + force.tangential * n.x;

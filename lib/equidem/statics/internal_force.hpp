@@ -22,7 +22,7 @@ struct PreciseMotion {
   std::vector<double> low;
 
   explicit PreciseMotion(std::size_t components) : high(components, 0.0), low(components, 0.0) {}
-  /// Add a correction without losing what it is too small for.
+  /// Add a correction, keeping the digits that a sum in one double would lose.
   void add(std::span<const double> correction);
 };
 

@@ -341,7 +341,7 @@ class Pruning {
   const ContactSprings& springs_;
   bool rotation_;
   const std::vector<std::uint8_t>& held_;
-  bool anchored_;      ///< something can pull: the period, or held discs
+  bool anchored_;      ///< the period or held discs can load the network
   bool cut_at_discs_;  ///< what a single disc joins to the rest can follow it
   ContactGraph graph_;
   std::vector<Fate> fate_;

@@ -7,7 +7,7 @@
 
 #include "equidem/core/text.hpp"
 #include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
-#include "equidem/statics/assemble_stiffness.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/load_bearing.hpp"
 #include "equidem/statics/motion_description.hpp"

@@ -19,7 +19,7 @@ namespace {
 constexpr double negligible = 1e-6;    ///< what is left of a motion that is called rigid, or pure rotation
 constexpr double roughly = 0.05;       ///< what uniform strain leaves of what a rigid motion leaves
 constexpr double moving_least = 1e-6;  ///< of the largest motion: less counts as rest
-constexpr double mechanical = 1e-18;   ///< what rounding leaves of a deformation that a mechanism does without
+constexpr double mechanical = 1e-18;   ///< round-off of the deformation by a mechanism
 
 double squared(double x) {
   return x * x;
@@ -54,14 +54,11 @@ class Description {
     const auto count = static_cast<double>(assembly_.size());
     if (participants_ <= std::max(2.0, 0.1 * count) && participants_ < 0.5 * count) return describe_local();
     return (strain.empty() ? "a motion " : strain) +
-           fmt::format("spread over {} of {}, largest at {}{}", moving_.size(),
-                       counted(as_count(assembly_.size()), "disc"), describe_disc(assembly_, largest_first_.front()),
-                       describe_contacts());
+           fmt::format("spread over {} of {}, largest at {}{}", moving_.size(), counted(assembly_.size(), "disc"),
+                       describe_disc(assembly_, largest_first_.front()), describe_contacts());
   }
 
  private:
-  static long long as_count(std::size_t n) { return static_cast<long long>(n); }
-
   /// Motions are divided by the largest, so that their squares neither vanish nor overflow.
   void measure() {
     double largest = 0;
@@ -94,10 +91,10 @@ class Description {
 
   /// "all 25 discs", "12 of 25 discs, such as disc 3 at (0.1, 0.2)" or "disc 3 at (0.1, 0.2) alone".
   [[nodiscard]] std::string describe_moving(std::size_t moving) const {
-    if (moving == assembly_.size()) return "all " + counted(as_count(moving), "disc");
+    if (moving == assembly_.size()) return "all " + counted(moving, "disc");
     const std::string disc = describe_disc(assembly_, largest_first_.front());
     if (moving == 1) return disc + " alone";
-    return fmt::format("{} of {}, such as {}", moving, counted(as_count(assembly_.size()), "disc"), disc);
+    return fmt::format("{} of {}, such as {}", moving, counted(assembly_.size(), "disc"), disc);
   }
 
   [[nodiscard]] std::string describe_single() const {
@@ -241,9 +238,9 @@ class Description {
     for (const std::size_t d : moving_) across += squared(cross(u, u_[d]));
     const bool along = across <= negligible * total_ * dot(u, u);
     return fmt::format("a sliding of {} of discs{}, each of which moves as one: {} of {}, such as {}",
-                       counted(as_count(assembly_.size()) - std::count(sizes.begin(), sizes.end(), 0), "group"),
+                       counted(std::ssize(sizes) - std::count(sizes.begin(), sizes.end(), 0), "group"),
                        along ? " along " + describe_direction(u) : "", moving_.size(),
-                       counted(as_count(assembly_.size()), "disc"), describe_disc(assembly_, largest_first_.front()));
+                       counted(assembly_.size(), "disc"), describe_disc(assembly_, largest_first_.front()));
   }
 
   /// Discs that turn, but not as the rigid motion does.
@@ -275,7 +272,7 @@ class Description {
     std::vector<std::string> names;
     for (std::size_t k = 0; k < std::min<std::size_t>({5, static_cast<std::size_t>(about), moving_.size()}); ++k)
       names.push_back(describe_disc(assembly_, largest_first_[k]));
-    return fmt::format("a local motion of about {} of {}: {}{}{}", about, counted(as_count(assembly_.size()), "disc"),
+    return fmt::format("a local motion of about {} of {}: {}{}{}", about, counted(assembly_.size(), "disc"),
                        joined(names), about > 5 ? ", ..." : "", describe_contacts());
   }
 

@@ -39,7 +39,7 @@ struct RigidMotion {
   double rotation = 0;
 };
 
-/// A connected piece and what it can do.
+/// A connected piece and its free motions.
 struct PieceMotions {
   std::int32_t first_disc = 0;
   std::int64_t discs = 0;

@@ -107,7 +107,7 @@ struct StiffnessSolver::Refinement {
     solution.motion.add(x);
     const double before = solution.residual;
     const double now = evaluate(x);
-    if (pass > 0 && !scaled && !(now < before)) {  // no better: keep what was
+    if (pass > 0 && !scaled && !(now < before)) {  // no better: keep the previous motion
       solution.motion = std::move(previous);
       done = true;
       return;

@@ -15,7 +15,7 @@
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/factorization.hpp"
 #include "equidem/linear/linear_solver.hpp"
-#include "equidem/statics/assemble_stiffness.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 #include "equidem/statics/solver_choice.hpp"
@@ -34,7 +34,7 @@ struct Solution {
   PreciseMotion motion{0};
   double residual = 0;  ///< |f - f_int|, 2-norm over the unknowns, N/m
   double scale =
-      0;  ///< N/m, what relative residuals refer to: |f| with prescribed motions and imposed deformations included
+      0;  ///< N/m, reference of relative residuals: |f| with prescribed motions and imposed deformations included
   int refinements = 0;
 
   [[nodiscard]] double relative_residual() const { return scale > 0 ? residual / scale : 0.0; }

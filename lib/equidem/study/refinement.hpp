@@ -23,7 +23,7 @@ struct RefinementOptions {
   double apart = 2;
   /// The smallest level >= n that can be computed; empty: every n.
   std::function<std::int64_t(std::int64_t n)> admissible = {};
-  /// How far b is from a, in the measure of `accuracy`; empty: the largest difference of an entry.
+  /// Distance of b from a, in the measure of `accuracy`; empty: the largest difference of an entry.
   std::function<double(const std::vector<double>& a, const std::vector<double>& b)> distance = {};
 };
 

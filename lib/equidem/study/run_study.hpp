@@ -17,7 +17,7 @@ struct TimeSample {
   double processor_seconds = 0;  ///< of the thread that did it
 };
 
-/// Many timings of the same work. The median, since what disturbs a machine only ever makes it slower, now and then by
+/// Many timings of the same work. The median, because disturbances of a machine only slow it down, occasionally by
 /// much.
 struct Timing {
   double median = 0;                              ///< s
@@ -38,8 +38,8 @@ double quantile(std::span<const double> sorted, double share);
 /// Processor time of the calling thread, s.
 double thread_seconds();
 
-/// Time work once; what is too short for the clock is done again, each time on fresh ground, until `least` seconds of
-/// it are seen, and the mean is taken. \param prepare makes the work ready to be done once; not timed
+/// Time work once; work too short for the clock is repeated, each time newly prepared, until it has taken `least`
+/// seconds, and the mean is taken. \param prepare makes the work ready to be done once; not timed
 TimeSample time_work(const std::function<std::function<void()>()>& prepare, double least = 1e-3);
 
 struct StudyOptions {

@@ -41,7 +41,7 @@ RealMatrix imaginary_part(const ComplexMatrix& m) {
   return view(m).imag();
 }
 
-// The compiler takes seconds for a product of matrices of yet another kind: all pass here.
+// All products pass through here: every further pair of matrix types costs seconds of compile time.
 template <class AnyMatrix>
 AnyMatrix product(const AnyMatrix& a, const AnyMatrix& b) {
   return a * b;

@@ -15,7 +15,7 @@
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/cholmod_factorization.hpp"
 #include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
-#include "equidem/statics/assemble_stiffness.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 #include "equidem/statics/supports.hpp"
 

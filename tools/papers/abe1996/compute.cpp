@@ -7,7 +7,6 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/homogenize/affine.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/material/spring_relations.hpp"
 #include "equidem/statics/critical_ratio.hpp"

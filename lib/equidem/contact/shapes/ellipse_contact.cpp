@@ -11,7 +11,7 @@ namespace equidem {
 
 namespace {
 
-/// f and what belongs to it in one direction.
+/// f with its derivative and the support functions in one direction.
 struct Sample {
   Vec2 n;
   EllipseSupport i, j;
@@ -48,7 +48,7 @@ struct Pair {
     return s;
   }
   [[nodiscard]] bool arrived(const Sample& s) const { return std::abs(s.slope) < near * s.bend(); }
-  /// The maximum, where it has been arrived at.
+  /// The maximum of f where the sample has arrived at one, else f.
   [[nodiscard]] double top(const Sample& s) const {
     return arrived(s) ? s.gap + s.slope * s.slope / (2 * s.bend()) : s.gap;
   }
@@ -194,7 +194,7 @@ EllipseContact contact_of_ellipses(const Ellipse& i, const Ellipse& j, Vec2 bran
   assert(i.a >= i.b && i.b >= 0 && j.a >= j.b && j.b >= 0 && i.a + j.a > 0);
   constexpr int most_steps = 8;
   const Pair pair(i, j, branch);
-  // Newton's way where it is short and certain to lead to the highest maximum, else the search for it.
+  // Newton's method where it is certain to converge to the highest maximum in few steps, else a search.
   if (!(dot(last_normal, branch) > 0)) last_normal = first_guess(i, j, branch);
   Sample sample =
       pair.at((1.5 - dot(last_normal, last_normal) / 2) * last_normal);  // or its round-off adds up over the steps

@@ -86,7 +86,7 @@ class Homogenizer {
   }
 
   [[nodiscard]] const EffectiveStiffness& last() const { return last_; }
-  /// Why the last sample that could not be homogenized could not.
+  /// Throws the error of the last sample that could not be homogenized.
   [[noreturn]] void fail() const {
     if (failure_) throw *failure_;
     computation_failed("the stiffness of the assembly is not positive at any spring ratio tried", "",

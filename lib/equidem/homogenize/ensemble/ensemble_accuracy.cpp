@@ -101,7 +101,7 @@ std::int64_t next_size(std::int64_t discs, std::int64_t smallest) {
   return discs < doubled + doubled / 2 ? doubled + doubled / 2 : 2 * doubled;
 }
 
-/// The cheapest: sizes are the smallest one times 1, 3/2, 2, 3, 4, ...
+/// The cheapest setting: sizes are the smallest one times 1, 3/2, 2, 3, 4, ...
 EnsembleSetting cheapest(const Misses& misses, const EnsembleAccuracy& options, double accuracy) {
   EnsembleSetting best;
   double least_discs = 0;

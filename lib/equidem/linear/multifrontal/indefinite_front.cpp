@@ -168,7 +168,7 @@ class Elimination {
     block_ = done_;
   }
 
-  /// The rows that are no candidates see all pivots at once.
+  /// Rows that are no candidates are updated by all pivots at once.
   void update_rest() {
     const std::size_t c = front_.candidates, m = n_ - c;
     if (m == 0 || done_ == 0) return;

@@ -29,7 +29,7 @@ struct FrontPivots {
 /// Eliminate candidates one or two at a time (Duff & Reid 1983; Ashcraft, Grimes & Lewis 1998): a 1 x 1 pivot d is
 /// taken where |d| >= u max |column|, a 2 x 2 pivot D where |D^-1| |columns| <= 1/u, so that |L_ij| <= 1/u.
 /// Candidates that pass neither test stay behind, after the pivots, for a later front. Entries at or below `zero`
-/// count as nothing. The rows that are left are updated: the Schur complement stands in rows and columns count ..
+/// count as zero. The rows that are left are updated: the Schur complement stands in rows and columns count ..
 /// size.
 /// \param u threshold, in (0, 1/2]
 FrontPivots factorize_indefinite(IndefiniteFront& front, double u, double zero);

@@ -305,7 +305,7 @@ class Ldlt final : public Factorization {
     return static_cast<double>(fronts_[t].pivots.count * fronts_[t].ids.size() + 100);
   }
 
-  /// A pivot below this is what round-off leaves of nothing; the scaled entries are about 1.
+  /// A pivot below this is round-off of zero; the scaled entries are about 1.
   static constexpr double zero_pivot = 1e-12;
 
   std::shared_ptr<const SymbolicFactor> symbolic_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Sweeps over the fronts of a factor, with the memory of what children hand to their parents.
+/// Sweeps over the fronts of a factor, with the memory of the updates that children pass to their parents.
 #pragma once
 
 #include <cstdint>

@@ -51,7 +51,7 @@ class Growth {
         "it would meet itself across the sides", "Take more of them, or a squarer box");
   }
 
-  /// Discs find their way apart from anywhere.
+  /// Discs separate from any start.
   void scatter() {
     Random random(options_.seed);
     for (std::size_t k = 0; k < bodies_.radii.size(); ++k) {
@@ -61,8 +61,7 @@ class Growth {
     first_ = 0.4;
   }
 
-  /// Clumps that start through one another may stay entangled: circles round the bodies, thrown at random where they
-  /// have room.
+  /// Clumps that start interlocked may stay so: circles around the bodies are placed at random where they have room.
   void place_apart() {
     PackingOptions circles = options_;
     circles.shape = {};
@@ -95,8 +94,8 @@ class Growth {
   std::int64_t work_ = 0;
 };
 
-/// Steps of the solid fraction, ever smaller: the bodies are few enough to find their way while there is room; at most
-/// 7 % of their size, so that none passes through another.
+/// Steps of the solid fraction, smaller as the box fills; at most 7 % of the size of the bodies, so that none passes
+/// through another.
 double next_fraction(double fraction, double end) {
   const double step = std::min(0.15 * fraction, fraction < 0.7 ? 0.1 : fraction < 0.8 ? 0.02 : 0.005);
   return std::min(fraction + step, end);

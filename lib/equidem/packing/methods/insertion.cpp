@@ -74,8 +74,8 @@ class Inserter {
     return false;
   }
 
-  /// Whether places beside every body were tried without success: of shapes other than discs, whose places are not to
-  /// be had for little.
+  /// Whether places beside every body were tried without success; for shapes other than discs, whose places are
+  /// expensive to find.
   [[nodiscard]] bool hopeless() const { return !options_.shape.is_disc() && passes_ > 1; }
 
  private:

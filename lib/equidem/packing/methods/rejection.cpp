@@ -14,8 +14,7 @@ namespace equidem {
 void fill_by_rejection(const PackingOptions& options, GrainPacking& packing) {
   Random random(options.seed);
   std::vector<double> radii = options.radii;
-  // Large ones first find room that small ones leave; where not all need to fit, in the order given: it decides who
-  // stays.
+  // Large bodies first, since they find less room later; where not all need to fit, the order given decides which stay.
   if (!options.as_dense_as_possible) std::sort(radii.begin(), radii.end(), std::greater<>());
   PlacedBodies placed(options.box, unit_body_of(options.shape), radii);
   Progress progress("placing");
