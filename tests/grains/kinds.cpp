@@ -21,7 +21,7 @@ namespace {
 
 constexpr double density = 2500;
 
-Grain ball(Vec2 position, double radius, Vec2 velocity = {}) {
+Grain dense_sphere(Vec2 position, double radius, Vec2 velocity = {}) {
   return {.position = position,
           .radius = radius,
           .inertia = inertia_of(radius, density, Body::sphere),
@@ -31,7 +31,8 @@ Grain ball(Vec2 position, double radius, Vec2 velocity = {}) {
 /// Two balls that fly at each other, and one above a floor.
 GrainScene three_balls() {
   GrainScene scene;
-  scene.grains = {ball({0, 1}, 0.01, {1, 0}), ball({0.0301, 1}, 0.02, {-1, 0}), ball({1, 0.5}, 0.03)};
+  scene.grains = {dense_sphere({0, 1}, 0.01, {1, 0}), dense_sphere({0.0301, 1}, 0.02, {-1, 0}),
+                  dense_sphere({1, 0.5}, 0.03)};
   Wall floor;
   floor.name = "floor";
   floor.normal = {0, 1};

@@ -10,7 +10,7 @@
 namespace equidem {
 namespace {
 
-constexpr const char* example =
+constexpr const char* case_help =
     R"(The case file is TOML and says what is computed. It is strict: an unknown key is an error that names
 its line. SI units, per metre of depth; tension positive; angles in radians, counter-clockwise.
 Paths are relative to the folder of the case file.
@@ -103,7 +103,7 @@ struct Part {
 };
 
 std::vector<Part> parts() {
-  return {{"Assemblies of discs", example, casefile::case_file().spec(), true},
+  return {{"Assemblies of discs", case_help, casefile::case_file().spec(), true},
           {"Bodies that collide", grain_example, casefile::grain_file().spec(), false, {"schedule", "output"}},
           {"Packings", pack_example, pack_file_spec()},
           {"Studies", study_example, study_file_spec()}};

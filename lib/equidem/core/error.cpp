@@ -2,6 +2,7 @@
 #include "equidem/core/error.hpp"
 
 #include <utility>
+
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -40,6 +41,10 @@ double check_positive(double value, const std::string& name, const std::string& 
   const std::string with_unit = unit.empty() ? "" : " " + unit;
   bad_input(fmt::format("the {} is {:.6g}{}", name, value, with_unit), "it must be positive and finite",
             fmt::format("Give a {} above 0{}", name, with_unit));
+}
+
+void bad_input_at(std::string where, std::string problem, std::string why, std::string remedy) {
+  throw Error(ErrorKind::bad_input, std::move(problem), std::move(why), std::move(remedy), std::move(where));
 }
 
 void computation_failed(std::string problem, std::string why, std::string remedy) {

@@ -43,6 +43,8 @@ class Error : public std::runtime_error {
 
 /// Throw an Error of kind bad_input.
 [[noreturn]] void bad_input(std::string problem, std::string why, std::string remedy);
+/// The same with the place in the user's file, or the option at fault.
+[[noreturn]] void bad_input_at(std::string where, std::string problem, std::string why, std::string remedy);
 /// Whether a number is positive and finite.
 inline bool is_positive(double value) {
   return value > 0 && std::isfinite(value);

@@ -39,8 +39,11 @@ constexpr double cross(Vec2 a, Vec2 b) {
 constexpr Vec2 perpendicular(Vec2 a) {
   return {-a.y, a.x};
 }
+constexpr double squared(Vec2 a) {
+  return dot(a, a);
+}
 inline double norm(Vec2 a) {
-  return std::sqrt(dot(a, a));
+  return std::sqrt(squared(a));
 }
 
 /// A second-order tensor, not assumed symmetric: stress s_ij = sum F_i l_j is symmetric only where no moment acts on

@@ -11,29 +11,27 @@
 namespace equidem {
 namespace {
 
-constexpr double radius = 0.005, kN = 1e9, ratio = 0.5;
-
 struct Tension {
   double poisson_ratio = 0, shear_modulus = 0;
 };
 
 /// (35), and G from (36): 2G/((1 - nu) kN).
 Tension tension_of(int rows, GaugePlacement gauge) {
-  const Assembly block = hexagonal_lattice({.columns = rows, .rows = rows, .radius = radius});
-  const ContactSprings springs(SpringConstants{kN, ratio * kN});
+  const Assembly block = hexagonal_lattice({.columns = rows, .rows = rows, .radius = 0.005});
+  const ContactSprings springs(study_springs);
   const TensionTest test{.gauge = gauge};
   const TensionSetup setup = tension_setup(block, test);
   const Equilibrium rest = solve_equilibrium(block, springs, setup.supports, setup.loads);
   const TensionResult result = evaluate_tension(block, springs, test, setup, rest);
-  return {result.poisson_ratio, 0.5 * result.stiffness_ratio * (1 - result.poisson_ratio) * kN};
+  return {result.poisson_ratio, 0.5 * result.stiffness_ratio * (1 - result.poisson_ratio) * study_springs.kN};
 }
 
 }  // namespace
 
 Study abe_lattice_study(bool quick) {
-  const ElasticModuli exact = moduli_of({kN, ratio * kN}, lattices::hexagonal.relation);
+  const ElasticModuli exact = moduli_of(study_springs, lattices::hexagonal.relation);
   Study study{.name = "abe_lattice",
-              .title = fmt::format("Abe's tension test, hexagonal lattice, kT/kN = {:g}", ratio),
+              .title = fmt::format("Abe's tension test, hexagonal lattice, kT/kN = {:g}", study_springs.ratio()),
               .quantities = {{.name = "poisson_ratio",
                               .label = "error of Poisson's ratio",
                               .truth = exact.poisson_ratio,

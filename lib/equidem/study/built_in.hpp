@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "equidem/material/spring_constants.hpp"
 #include "equidem/study/study.hpp"
 
 namespace equidem {
@@ -19,6 +20,9 @@ std::span<const BuiltInStudy> built_in_studies();
 
 /// \throws Error (bad_input) naming the choices
 Study built_in_study(const std::string& name, bool quick);
+
+/// Springs of every contact in the studies of lattices and random cells, Pa.
+inline constexpr SpringConstants study_springs{1e9, 0.5e9};
 
 // The studies.
 Study abe_lattice_study(bool quick);

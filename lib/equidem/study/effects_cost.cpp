@@ -16,13 +16,13 @@
 namespace equidem {
 namespace {
 
-constexpr double work = 1e5;  // disc-steps
+constexpr double disc_steps = 1e5;
 
 /// Runs 100,000 disc-steps; a millisecond is 10 ns per disc-step.
 template <class Run>
 StudyTask task_of(const std::string& problem, const std::string& method, std::size_t discs,
                   std::function<Run()> start) {
-  const auto steps = static_cast<std::int64_t>(work / static_cast<double>(discs));
+  const auto steps = static_cast<std::int64_t>(disc_steps / static_cast<double>(discs));
   return task_on(
       {.problem = problem, .method = method}, std::move(start), [steps](Run& run) { run.advance(steps); },
       [](const Run& run) {
@@ -31,18 +31,18 @@ StudyTask task_of(const std::string& problem, const std::string& method, std::si
 }
 
 /// A scene is the one before with something more.
-struct Bonded {
+struct BondedCase {
   const char* name;
   std::function<void(SimulationOptions&, AnyScene&)> add;
   double kT = 0.5;
 };
 
-struct Bodies {
+struct CollidingCase {
   const char* name;
   std::function<void(GrainScene&)> add;
 };
 
-constexpr double radius = 0.01, density = 2480;
+constexpr double disc_radius = 0.01, disc_density = 2480;
 
 /// Discs in touch on a floor.
 GrainScene bed(int side) {
@@ -52,16 +52,17 @@ GrainScene bed(int side) {
   scene.gravity = {0, -9.8};
   for (int k = 0; k < side * side; ++k) {
     const int row = k / side;
-    scene.grains.push_back({.position = {radius * (2 * (k % side) + row % 2), radius * (0.999 + 1.7315 * row)},
-                            .radius = radius,
-                            .inertia = inertia_of(radius, density, Body::disc)});
+    scene.grains.push_back(
+        {.position = {disc_radius * (2 * (k % side) + row % 2), disc_radius * (0.999 + 1.7315 * row)},
+         .radius = disc_radius,
+         .inertia = inertia_of(disc_radius, disc_density, Body::disc)});
   }
   return scene;
 }
 
 /// Discs that fly in a box and collide in pairs, as the maps require: in a dense bed the maps give wrong energies.
-GrainScene gas(int side) {
-  const double spacing = 2.5 * radius, width = spacing * side;
+GrainScene colliding_discs(int side) {
+  const double spacing = 2.5 * disc_radius, width = spacing * side;
   GrainScene scene;
   scene.walls.resize(4);
   scene.walls[1].point = {width, width}, scene.walls[1].normal = {0, -1};
@@ -72,8 +73,8 @@ GrainScene gas(int side) {
   Random random(1);
   for (int k = 0; k < side * side; ++k) {
     Grain grain{.position = {spacing * (0.5 + k % side), spacing * (0.5 + k / side)},
-                .radius = radius,
-                .inertia = inertia_of(radius, density, Body::disc)};
+                .radius = disc_radius,
+                .inertia = inertia_of(disc_radius, disc_density, Body::disc)};
     grain.velocity.x = random.uniform(-0.5, 0.5), grain.velocity.y = random.uniform(-0.5, 0.5);
     scene.grains.push_back(grain);
   }
@@ -92,17 +93,18 @@ void add_moving_floor(GrainScene& scene) {
 
 void add_ellipses(GrainScene& scene) {
   change_every_tenth(scene, 0, [](Grain& grain) {
-    grain.short_half_axis = 0.8 * radius;
-    grain.inertia = inertia_of_ellipse(radius, 0.8 * radius, density);
+    grain.short_half_axis = 0.8 * disc_radius;
+    grain.inertia = inertia_of_ellipse(disc_radius, 0.8 * disc_radius, disc_density);
   });
 }
 
 void add_clumps(GrainScene& scene) {
-  scene.clumps = {centred_clump({{{-0.3 * radius, 0}, 0.7 * radius}, {{0.3 * radius, 0}, 0.7 * radius}})};
+  scene.clumps = {
+      centred_clump({{{-0.3 * disc_radius, 0}, 0.7 * disc_radius}, {{0.3 * disc_radius, 0}, 0.7 * disc_radius}})};
   change_every_tenth(scene, 5, [&](Grain& grain) {
     grain.clump = 0;
     grain.radius = radius_of(scene.clumps[0]);
-    grain.inertia = inertia_of_clump(scene.clumps[0], density);
+    grain.inertia = inertia_of_clump(scene.clumps[0], disc_density);
   });
 }
 
@@ -117,7 +119,7 @@ void add_bonds(GrainScene& scene) {
 }
 
 void add_bonded(Study& study, int side) {
-  const Bonded scenes[] = {
+  const BondedCase scenes[] = {
       {"normal springs", [](SimulationOptions&, AnyScene&) {}, 0},
       {"+ tangential springs, no rotation", [](SimulationOptions& o, AnyScene&) { o.rotation = Rotation::restrained; }},
       {"+ rotation", [](SimulationOptions& o, AnyScene&) { o.rotation = Rotation::from_scene; }},
@@ -142,7 +144,7 @@ void add_bonded(Study& study, int side) {
       std::make_shared<const Assembly>(hexagonal_lattice({.columns = side, .rows = side, .radius = 0.5}));
   SimulationOptions options{.time_step = 0.05};
   AnyScene around;
-  for (const Bonded& one : scenes) {
+  for (const BondedCase& one : scenes) {
     one.add(options, around);
     const auto springs = std::make_shared<const ContactSprings>(SpringConstants{1, one.kT});
     study.tasks.push_back(
@@ -155,7 +157,7 @@ void add_bonded(Study& study, int side) {
 }
 
 void add_colliding(Study& study, int side) {
-  const Bodies scenes[] = {
+  const CollidingCase scenes[] = {
       {"normal contacts, a floor, gravity", [](GrainScene&) {}},
       {"+ friction, sliding", [](GrainScene& s) { s.pairs[0].friction = 0.3; }},
       {"+ tangential springs", [](GrainScene& s) { s.pairs[0].tangential_ratio = 0.5; }},
@@ -167,11 +169,11 @@ void add_colliding(Study& study, int side) {
   };
   for (const NormalLaw law : {NormalLaw::linear_dashpot, NormalLaw::energy_map}) {
     const bool map = law == NormalLaw::energy_map;
-    GrainScene scene = map ? gas(side) : bed(side);
+    GrainScene scene = map ? colliding_discs(side) : bed(side);
     const std::string problem =
         fmt::format("colliding discs, law {}{}", letter_of(law), map ? ", flying in a box" : "");
     const GrainOptions options{.law = law, .time_step = 1e-5};
-    for (const Bodies& one : scenes) {
+    for (const CollidingCase& one : scenes) {
       one.add(scene);
       const bool discs_alone = scene.grains[0].shape() == GrainShape::disc;  // what maps can do
       if (map && !discs_alone) break;

@@ -15,10 +15,6 @@
 namespace equidem {
 namespace {
 
-double squared(Vec2 v) {
-  return dot(v, v);
-}
-
 struct Wave {
   Wave()
       : assembly(hexagonal_lattice({.columns = columns, .rows = rows, .radius = 0.5, .periodic = true})),

@@ -13,15 +13,13 @@
 namespace equidem {
 namespace {
 
-constexpr double kN = 1e9, kT = 0.5e9;
-
 EffectiveModuli moduli_of_cell(std::int64_t discs, std::uint64_t seed) {
   DelaunayOptions options;
   options.discs = discs;
   options.seed = seed;
   options.periodic = true;
   const Assembly cell = delaunay_assembly(options);
-  return effective_moduli(effective_stiffness(cell, ContactSprings(SpringConstants{kN, kT})).stiffness);
+  return effective_moduli(effective_stiffness(cell, ContactSprings(study_springs)).stiffness);
 }
 
 struct Sampled {

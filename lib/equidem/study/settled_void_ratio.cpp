@@ -12,7 +12,8 @@
 namespace equidem {
 namespace {
 
-constexpr double smallest = 0.009, largest = 0.011, kN = 1e6, density = 2480;  // m, Pa, kg/m³
+constexpr double smallest_radius = 0.009, largest_radius = 0.011, normal_stiffness = 1e6,
+                 solid_density = 2480;  // m, Pa, kg/m³
 
 PackingOptions options_of(int discs, double step, std::uint64_t seed) {
   PackingOptions options;
@@ -20,9 +21,9 @@ PackingOptions options_of(int discs, double step, std::uint64_t seed) {
   options.box = {.size = {0.2, 1}, .sides = PackingBox::Sides::open_top};
   options.seed = seed;
   Random random(~seed);
-  for (int k = 0; k < discs; ++k) options.radii.push_back(random.uniform(smallest, largest));
-  options.settling.springs = {kN, 0.5 * kN};
-  options.settling.density = density;
+  for (int k = 0; k < discs; ++k) options.radii.push_back(random.uniform(smallest_radius, largest_radius));
+  options.settling.springs = {normal_stiffness, 0.5 * normal_stiffness};
+  options.settling.density = solid_density;
   options.settling.time_step = step;
   options.settling.rest = 1e-4;
   return options;
@@ -41,7 +42,8 @@ Study settled_void_ratio_study(bool quick) {
               .tasks = {},
               .truth = Truth::finest};
   // Half a period of two of the smallest discs on one spring: how long a contact of two lasts.
-  const double contact = std::numbers::pi * std::sqrt(0.5 * std::numbers::pi * smallest * smallest * density / kN);
+  const double contact = std::numbers::pi * std::sqrt(0.5 * std::numbers::pi * smallest_radius * smallest_radius *
+                                                      solid_density / normal_stiffness);
   for (int n = 8; n <= (quick ? 32 : 64); n *= 2) {
     const double step = contact / n;
     Setting setting{.values = {{"steps_in_a_contact", static_cast<double>(n)}, {"time_step", step}},

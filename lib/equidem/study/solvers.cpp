@@ -15,19 +15,13 @@
 namespace equidem {
 namespace {
 
-constexpr double kN = 1e9, kT = 0.5e9, density = 2000;
-
-double squared(Vec2 v) {
-  return dot(v, v);
-}
-
 /// The block of Abe (1996), Fig. 6, in tension, and its true motions.
 struct Block {
   explicit Block(int rows)
       : assembly(hexagonal_lattice({.columns = rows, .rows = rows, .radius = 0.005})),
         setup(tension_setup(assembly, {})),
         truth(solve(SolverMethod::cholmod, 10)),
-        scene(assembly, springs, inertia_of(assembly.radii, density, Body::disc)) {
+        scene(assembly, springs, inertia_of(assembly.radii, 2000, Body::disc)) {
     const auto always = [](double value) {
       Schedule schedule;
       schedule.value = value;
@@ -64,7 +58,7 @@ struct Block {
   }
 
   Assembly assembly;
-  ContactSprings springs{SpringConstants{kN, kT}};
+  ContactSprings springs{study_springs};
   TensionSetup setup;
   std::vector<DiscMotion> truth;
   Scene scene;

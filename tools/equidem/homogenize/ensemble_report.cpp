@@ -10,7 +10,7 @@ namespace equidem {
 namespace {
 
 /// K, G and nu: the others follow from them.
-constexpr std::size_t told_quantities = 3;
+constexpr std::size_t reported_quantities = 3;
 constexpr std::size_t anisotropy_index = ensemble_quantities.size() - 1;
 
 /// Keys of ensemble_quantities in the JSON, those of `equidem homogenize`.
@@ -182,7 +182,7 @@ Results ensemble_results(const EnsembleResult& result) {
   add_refusals(out, result);
   for (std::size_t q = 0; q < ensemble_quantities.size(); ++q) {
     add_table(out, statistics, q);
-    if (q < told_quantities) {
+    if (q < reported_quantities) {
       out.block(describe_scatter(statistics.dependence[q], statistics.confidence) + describe_drift(statistics, q) +
                 describe_need(result, q));
     }

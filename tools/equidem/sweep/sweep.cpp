@@ -122,7 +122,6 @@ SweepPoint compute(const SweepOptions& options, const Case& base, double value, 
 }
 
 constexpr const char* table_name = "sweep.csv";
-constexpr const char* case_name = "case.toml";
 constexpr std::array curve_names{"poisson_ratio", "stiffness_ratio"};
 
 std::string axis_label(const std::string& key) {
@@ -186,10 +185,10 @@ std::vector<SweepPoint> points_to_keep(const SweepOptions& options, const Case& 
     bad_input("--resume has nothing to continue", "the points done lie in the folder of --out", "Add --out DIR");
   const auto table = *options.common.out / table_name;
   if (!std::filesystem::exists(table)) return {};
-  if (read_file(*options.common.out / case_name) != to_toml(base, *options.common.out)) {
+  if (read_file(*options.common.out / "case.toml") != to_toml(base, *options.common.out)) {
     throw Error(ErrorKind::bad_input, "the sweep there is of another case", "its points would not fit together",
                 "Choose another --out, or leave out --resume and pass --overwrite",
-                (*options.common.out / case_name).string());
+                (*options.common.out / "case.toml").string());
   }
   return read_sweep_points(table, options.key);
 }
@@ -198,7 +197,7 @@ void check_outputs(const SweepOptions& options) {
   CommonOptions common = options.common;
   common.overwrite = common.overwrite || options.resume;
   const OutputPlan plan(common);
-  for (const char* name : {table_name, case_name, "result.json"}) plan.expect(name);
+  for (const char* name : {table_name, "case.toml", "result.json"}) plan.expect(name);
   for (const char* name : curve_names) plan.expect_plot(name);
   OutputPlan(options.common).expect_json();
 }
@@ -286,7 +285,7 @@ int sweep(const SweepOptions& options) {
   const std::vector<SweepPoint> kept = points_to_keep(options, base);
 
   const auto& folder = options.common.out;
-  if (folder) write_file(*folder / case_name, to_toml(base, *folder), true);
+  if (folder) write_file(*folder / "case.toml", to_toml(base, *folder), true);
   Progressed run = compute_points(options, base, values, kept);
   const std::size_t done = run.points.size();
   const std::vector<SweepPoint> points = merged(std::move(run.points), kept);

@@ -12,11 +12,6 @@
 namespace equidem {
 namespace {
 
-[[noreturn]] void fail(const std::string& where, const std::string& problem, const std::string& why,
-                       const std::string& remedy) {
-  throw Error(ErrorKind::bad_input, problem, why, remedy, where);
-}
-
 Assembly generate(const AssemblyCase& wanted) {
   switch (wanted.kind) {
     case AssemblyKind::lattice:
@@ -34,8 +29,8 @@ DiscGroup discs_of(const GroupCase& wanted, const Assembly& assembly, const std:
   DiscGroup result;
   for (const std::int32_t disc : wanted.discs) {
     if (disc >= count) {
-      fail(where, fmt::format("group '{}' names disc {}", wanted.name, disc),
-           fmt::format("the assembly has {}, numbered from 0", counted(count, "disc")), "Correct the list");
+      bad_input_at(where, fmt::format("group '{}' names disc {}", wanted.name, disc),
+                   fmt::format("the assembly has {}, numbered from 0", counted(count, "disc")), "Correct the list");
     }
     result.discs.push_back(disc);
   }
@@ -52,9 +47,9 @@ DiscGroup discs_of(const GroupCase& wanted, const Assembly& assembly, const std:
     if (x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y) result.discs.push_back(disc);
   }
   if (result.discs.empty()) {
-    fail(where, fmt::format("no disc has its centre in the box of group '{}'", wanted.name),
-         fmt::format("the centres lie in [{:.6g}, {:.6g}, {:.6g}, {:.6g}]", least.x, least.y, most.x, most.y),
-         "Move or widen the box");
+    bad_input_at(where, fmt::format("no disc has its centre in the box of group '{}'", wanted.name),
+                 fmt::format("the centres lie in [{:.6g}, {:.6g}, {:.6g}, {:.6g}]", least.x, least.y, most.x, most.y),
+                 "Move or widen the box");
   }
   return result;
 }
@@ -64,9 +59,9 @@ void add_groups(Assembly& assembly, const Case& resolved) {
     const GroupCase& wanted = resolved.groups[k];
     const std::string where = resolved.where(fmt::format("group.{}.{}", k, wanted.box ? "box" : "discs"));
     if (assembly.groups.contains(wanted.name)) {
-      fail(resolved.where(fmt::format("group.{}.name", k)),
-           fmt::format("the assembly has a group '{}' of its own", wanted.name), "a name means one group",
-           "Choose another name");
+      bad_input_at(resolved.where(fmt::format("group.{}.name", k)),
+                   fmt::format("the assembly has a group '{}' of its own", wanted.name), "a name means one group",
+                   "Choose another name");
     }
     assembly.groups[wanted.name] = discs_of(wanted, assembly, where);
   }
@@ -139,14 +134,14 @@ BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
   const bool own = !assembly.contact_kN.empty();
   if (!resolved.springs && !resolved.material && !own) {
     if (assembly.contacts.empty()) {
-      fail(resolved.where("assembly.path"), "the assembly has no contacts", "nothing resists its deformation",
-           "Give it contacts");
+      bad_input_at(resolved.where("assembly.path"), "the assembly has no contacts", "nothing resists its deformation",
+                   "Give it contacts");
     }
-    fail(resolved.where("assembly.path"), "the springs are missing",
-         resolved.assembly.own_springs
-             ? "neither the case file nor the assembly file gives any"
-             : "the case file gives none, and says that those of the assembly file do not count",
-         "Add [springs] with kN and kT to the case file");
+    bad_input_at(resolved.where("assembly.path"), "the springs are missing",
+                 resolved.assembly.own_springs
+                     ? "neither the case file nor the assembly file gives any"
+                     : "the case file gives none, and says that those of the assembly file do not count",
+                 "Add [springs] with kN and kT to the case file");
   }
   const std::string where = resolved.where(resolved.material ? "material" : "springs");
   try {

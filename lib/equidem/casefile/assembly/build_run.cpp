@@ -13,11 +13,6 @@
 namespace equidem {
 namespace {
 
-[[noreturn]] void fail(const std::string& where, const std::string& problem, const std::string& why,
-                       const std::string& remedy) {
-  throw Error(ErrorKind::bad_input, problem, why, remedy, where);
-}
-
 void add_test(const Case& resolved, const Assembly& assembly, Scene& scene) {
   const auto constant = [](const std::optional<double>& value) -> std::optional<Schedule> {
     if (!value) return {};
@@ -37,12 +32,12 @@ void add_test(const Case& resolved, const Assembly& assembly, Scene& scene) {
 
 Scene build_scene(const Case& resolved, const Assembly& assembly, const ContactSprings& springs) {
   if (!resolved.run) {
-    fail(fmt::format("{}: run", resolved.document.where()), "missing table", "it says how long the run is",
+    bad_input_at(fmt::format("{}: run", resolved.document.where()), "missing table", "it says how long the run is",
          "Add [run] with duration = ... in s, or until_rest = 1e-10");
   }
   const std::optional<double> density = disc_density(resolved, assembly);
   if (!density) {
-    fail(resolved.where("assembly"), "the density is missing", "motion needs the mass of the discs",
+    bad_input_at(resolved.where("assembly"), "the density is missing", "motion needs the mass of the discs",
          "Add density = ... in kg/m³ to [assembly], or that of the continuum to [material]");
   }
   const RunCase& run = *resolved.run;

@@ -18,7 +18,7 @@ constexpr int most_sweeps = 400;
 /// Tolerance of the sweeps: change of the impulse of a contact, relative.
 constexpr double settled = 1e-14;
 /// Below it, changes that do not shrink any more are rounding.
-constexpr double rounding = 1e-12;
+constexpr double sweep_rounding = 1e-12;
 
 /// A candidate while its step is being solved.
 struct Trial {
@@ -232,7 +232,7 @@ void sweep_until_settled(GrainSystem& system, std::vector<Trial>& trials) {
     }
     ++system.counters.sweeps;
     if (change <= settled) return;
-    if (change <= rounding && sweep > 8 && change > 0.5 * before) return;
+    if (change <= sweep_rounding && sweep > 8 && change > 0.5 * before) return;
   }
   // what oscillates in the last digits is settled as far as numbers go
   if (change <= 1e-9) return;

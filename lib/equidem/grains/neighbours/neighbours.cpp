@@ -16,7 +16,7 @@ namespace equidem {
 namespace {
 
 /// A circle at its place in a row.
-struct Body {
+struct SortedBody {
   double x, y, radius;
   std::int32_t index;
 };
@@ -112,18 +112,18 @@ void sort_by_place(std::vector<Key>& keys, std::vector<Key>& other, int bits) {
 }
 
 /// The first body from `begin` on that is not left of x; by doubling steps, as it is mostly near.
-const Body* first_from(const Body* begin, const Body* end, double x) {
+const SortedBody* first_from(const SortedBody* begin, const SortedBody* end, double x) {
   std::ptrdiff_t step = 1;
   while (step < end - begin && begin[step].x < x) {
     begin += step;
     step *= 2;
   }
   return std::lower_bound(begin, std::min(begin + std::min(step, end - begin), end), x,
-                          [](const Body& body, double bound) { return body.x < bound; });
+                          [](const SortedBody& body, double bound) { return body.x < bound; });
 }
 
 /// The pairs of body a with those from b to `end` that are not right of x = `right`.
-void meet(const Body& a, const Body* b, const Body* end, double right, double margin, Found& result) {
+void meet(const SortedBody& a, const SortedBody* b, const SortedBody* end, double right, double margin, Found& result) {
   for (; b != end && b->x <= right; ++b) {
     if (result.count == result.pairs.size()) result.pairs.resize(std::max<std::size_t>(2 * result.count, 4096));
     // Written in any case, then kept or not: a branch would be mispredicted every other time.
@@ -137,7 +137,7 @@ void meet(const Body& a, const Body* b, const Body* end, double right, double ma
 struct NeighbourFinder::Memory {
   std::vector<std::int32_t> by_class;
   std::vector<Key> keys, other_keys;
-  std::vector<Body> bodies;
+  std::vector<SortedBody> bodies;
   std::vector<Row> rows;
   std::vector<SizeClass> classes;
   std::vector<Task> tasks;
@@ -207,7 +207,7 @@ void NeighbourFinder::Memory::divide_into_rows(std::span<const Circle> circles, 
   sort_by_place(keys, other_keys, bits);
 
   const std::size_t first_row = rows.size();
-  const auto left_of = [](const Body& a, const Body& b) { return a.x < b.x; };
+  const auto left_of = [](const SortedBody& a, const SortedBody& b) { return a.x < b.x; };
   for (std::size_t k = 0; k < keys.size();) {
     const std::uint64_t row_number = keys[k].place >> column_bits;
     Row row{.begin = bodies.size(), .low = high.y, .high = low.y};
@@ -255,8 +255,8 @@ void NeighbourFinder::Memory::search(const Task& task, double margin, Found& res
       const Row& row = rows[r];
       std::size_t other = r + 1;
       if (c == task.size_class) {
-        const Body* end = bodies.data() + row.end;
-        for (const Body* body = bodies.data() + row.begin; body != end; ++body) {
+        const SortedBody* end = bodies.data() + row.end;
+        for (const SortedBody* body = bodies.data() + row.begin; body != end; ++body) {
           const double right = body->x + far_reach(body->radius, row.largest_radius, margin);
           meet(*body, body + 1, end, right, margin, result);
         }
@@ -277,10 +277,10 @@ void NeighbourFinder::Memory::search(const Task& task, double margin, Found& res
 /// The pairs of a body of the short row a and one of b.
 void NeighbourFinder::Memory::sweep(const Row& a, const Row& b, double margin, Found& result) const {
   const double reach = far_reach(a.largest_radius, b.largest_radius, margin);
-  const Body* first = bodies.data() + b.begin;
-  const Body* end = bodies.data() + b.end;
+  const SortedBody* first = bodies.data() + b.begin;
+  const SortedBody* end = bodies.data() + b.end;
   for (std::size_t k = a.begin; k < a.end && first != end; ++k) {
-    const Body& body = bodies[k];
+    const SortedBody& body = bodies[k];
     const double own_reach = far_reach(body.radius, b.largest_radius, margin);
     if (body.y + own_reach < b.low || body.y - own_reach > b.high) continue;
     first = first_from(first, end, body.x - reach);

@@ -18,21 +18,17 @@
 namespace equidem {
 namespace {
 
-bool positive(double value) {
-  return value > 0 && std::isfinite(value);
-}
-
 bool not_negative(double value) {
   return value >= 0 && std::isfinite(value);
 }
 
 void check_grain(const GrainScene& scene, std::size_t i) {
   const Grain& grain = scene.grains[i];
-  if (!positive(grain.radius)) {
+  if (!is_positive(grain.radius)) {
     bad_input(fmt::format("grain {} has the radius {} m", i, grain.radius), "it would touch nothing",
               "Give a radius > 0");
   }
-  if (!positive(grain.inertia.mass) || !positive(grain.inertia.moment)) {
+  if (!is_positive(grain.inertia.mass) || !is_positive(grain.inertia.moment)) {
     bad_input(fmt::format("grain {} has the mass {} and the moment of inertia {}", i, grain.inertia.mass,
                           grain.inertia.moment),
               "a force could not move it by a number", "Give a radius and a density whose mass is a number > 0");
@@ -57,7 +53,7 @@ void check_pair(const PairProperties& pair, const GrainOptions& options) {
         "one number says how hard a contact is", "Give one of the two");
   }
   const double hardness = pair.stiffness != 0 ? pair.stiffness : pair.dimensionless;
-  if (!positive(hardness)) {
+  if (!is_positive(hardness)) {
     bad_input(fmt::format("a contact has the stiffness {}", hardness), "bodies would not rebound",
               "Give a stiffness > 0");
   }
@@ -210,7 +206,7 @@ double reference_length(const GrainScene& scene, const GrainOptions& options) {
 
 void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where) {
   if (scene.grains.empty()) bad_input("the scene has no grains", "there is nothing to move", "Add a grain");
-  if (!positive(options.time_step)) {
+  if (!is_positive(options.time_step)) {
     bad_input(fmt::format("the time step is {} s", options.time_step), "time could not go on", "Give a step > 0");
   }
   if (!not_negative(options.reference_length) || !not_negative(options.margin)) {

@@ -18,10 +18,6 @@ using std::numbers::pi;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-[[noreturn]] void fail(const char* option, std::string problem, std::string why, std::string remedy) {
-  throw Error(ErrorKind::bad_input, std::move(problem), std::move(why), std::move(remedy), option);
-}
-
 /// The contact of the lightest bodies of two kinds.
 struct Shortest {
   double duration = infinity;  ///< s
@@ -68,8 +64,8 @@ Shortest shortest_contact(const GrainScene& scene, const ContactTable& contacts,
       const PairContact& pair = contacts.between(a, b);
       const PairProperties& properties = pair.properties;
       if (properties.dimensionless > 0 && step == 0)
-        fail("time_step", "time_step = \"auto\" with dimensionless_stiffness", "the step is what makes the stiffness",
-             "Give time_step = ... in s, or another stiffness");
+        bad_input_at("time_step", "time_step = \"auto\" with dimensionless_stiffness",
+                     "the step is what makes the stiffness", "Give time_step = ... in s, or another stiffness");
       // Spring and dashpot of a contact are those of bodies that do not turn.
       const double faster =
           std::sqrt(std::max(agility[static_cast<std::size_t>(a)], agility[static_cast<std::size_t>(b)]));
@@ -78,9 +74,9 @@ Shortest shortest_contact(const GrainScene& scene, const ContactTable& contacts,
       if (law.spring_power != 1) {
         if (pair.closing_speed == 0) {
           if (step > 0) return Shortest{.duration = 0, .any = true};
-          fail("time_step", fmt::format("time_step = \"auto\" of {} without closing_speed", law.name),
-               "a contact of this law lasts the shorter the faster it is",
-               "Add closing_speed = ... in m/s to [collisions], or give time_step = ... in s");
+          bad_input_at("time_step", fmt::format("time_step = \"auto\" of {} without closing_speed", law.name),
+                       "a contact of this law lasts the shorter the faster it is",
+                       "Add closing_speed = ... in m/s to [collisions], or give time_step = ... in s");
         }
         const double k = properties.stiffness > 0
                              ? properties.stiffness
@@ -140,8 +136,8 @@ GrainTimeStep choose_time_step(const GrainScene& scene, const ContactTable& cont
   const Shortest shortest = shortest_contact(scene, contacts, options, result.step);
   if (!shortest.any) {
     if (!result.automatic) return result;
-    fail("time_step", "time_step = \"auto\" where no two bodies can meet", "there is one grain and no wall",
-         "Give time_step = ... in s, or add a [[wall]]");
+    bad_input_at("time_step", "time_step = \"auto\" where no two bodies can meet", "there is one grain and no wall",
+                 "Give time_step = ... in s, or add a [[wall]]");
   }
   if (result.automatic)
     result.step = std::min(shortest.detail / wanted.steps_per_contact.value_or(describe(options.law).steps_per_contact),
@@ -152,12 +148,12 @@ GrainTimeStep choose_time_step(const GrainScene& scene, const ContactTable& cont
   result.omega_step = shortest.omega * result.step;
   result.limit = describe(options.law).stable_step(shortest.zeta);
   if (gives_force(options.law) && result.omega_step > result.limit)
-    fail("time_step",
-         fmt::format("the step of {:.6g} s is {:.4g} times the limit of stability of a contact of {}", result.step,
-                     result.omega_step / result.limit, result.between),
-         "contacts would gain energy without end",
-         fmt::format("Stay below {:.6g} s, or take softer contacts or the law exact_flow",
-                     result.step * result.limit / result.omega_step));
+    bad_input_at("time_step",
+                 fmt::format("the step of {:.6g} s is {:.4g} times the limit of stability of a contact of {}",
+                             result.step, result.omega_step / result.limit, result.between),
+                 "contacts would gain energy without end",
+                 fmt::format("Stay below {:.6g} s, or take softer contacts or the law exact_flow",
+                             result.step * result.limit / result.omega_step));
   return result;
 }
 

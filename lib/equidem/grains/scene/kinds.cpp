@@ -15,10 +15,6 @@ namespace {
 /// With more kinds the table of all pairs is no longer small.
 constexpr std::size_t most_kinds = 256;
 
-[[noreturn]] void fail(std::string option, std::string problem, std::string why, std::string remedy) {
-  throw Error(ErrorKind::bad_input, std::move(problem), std::move(why), std::move(remedy), std::move(option));
-}
-
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -32,8 +28,9 @@ void check_name(const std::string& name, const std::string& option, std::vector<
   const auto meant = nearest(name, groups);
   std::string list;
   for (const std::string& choice : groups) list += fmt::format("{}'{}'", list.empty() ? "" : ", ", choice);
-  fail(option, fmt::format("\"{}\" is no group of grains{}", name, walls_too ? " and no wall" : ""),
-       fmt::format("there are {}", list), meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Name one of them");
+  bad_input_at(option, fmt::format("\"{}\" is no group of grains{}", name, walls_too ? " and no wall" : ""),
+               fmt::format("there are {}", list),
+               meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Name one of them");
 }
 
 bool is_pair(const CollisionOptions::Pair& pair, const std::string& first, const std::string& second) {
@@ -51,8 +48,8 @@ std::vector<std::string> check_pairs(const CollisionOptions& options, const std:
     if (!contains(groups, pair.with) && !contains(apart, pair.with)) apart.push_back(pair.with);
     for (std::size_t earlier = 0; earlier < k; ++earlier)
       if (is_pair(options.pairs[earlier], pair.group, pair.with))
-        fail(fmt::format("pairs.{}", k), fmt::format("'{}' and '{}' are a pair twice", pair.group, pair.with),
-             "two bodies meet in one way", "Keep one of them");
+        bad_input_at(fmt::format("pairs.{}", k), fmt::format("'{}' and '{}' are a pair twice", pair.group, pair.with),
+                     "two bodies meet in one way", "Keep one of them");
   }
   return apart;
 }
@@ -63,10 +60,10 @@ PairContact contact_in(const std::string& table, const PairOptions& options, Nor
   try {
     return contact_of(options, law, bodies);
   } catch (const Error& error) {
-    fail(error.where().empty() ? table
-         : table.empty()       ? error.where()
-                               : table + "." + error.where(),
-         error.problem(), error.why(), error.remedy());
+    bad_input_at(error.where().empty() ? table
+                 : table.empty()       ? error.where()
+                                       : table + "." + error.where(),
+                 error.problem(), error.why(), error.remedy());
   }
 }
 
@@ -88,10 +85,11 @@ ContactTable set_kinds(GrainScene& scene, std::span<const std::string> groups, c
       table.kinds.push_back(group);
       radii.push_back(radius);
       if (table.kinds.size() > most_kinds)
-        fail(by_radius ? "young_modulus" : "group",
-             fmt::format("there are more than {} {}", most_kinds, by_radius ? "different radii" : "groups"),
-             "a table of all pairs of them would grow large",
-             by_radius ? "Give stiffness instead, or fewer radii" : "Put grains that meet alike into one group");
+        bad_input_at(
+            by_radius ? "young_modulus" : "group",
+            fmt::format("there are more than {} {}", most_kinds, by_radius ? "different radii" : "groups"),
+            "a table of all pairs of them would grow large",
+            by_radius ? "Give stiffness instead, or fewer radii" : "Put grains that meet alike into one group");
     }
     scene.grains[g].kind = at->second;
   }

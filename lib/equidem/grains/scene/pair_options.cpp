@@ -14,15 +14,10 @@
 namespace equidem {
 namespace {
 
-/// \param option name of the member of PairOptions at fault
-[[noreturn]] void fail(const char* option, std::string problem, std::string why, std::string remedy) {
-  throw Error(ErrorKind::bad_input, std::move(problem), std::move(why), std::move(remedy), option);
-}
-
 SpringConstants springs_of(const WaveSpeedStiffness& given) {
   if (!(given.poisson_ratio < 0.5))
-    fail("poisson_ratio", fmt::format("poisson_ratio = {} with wave speeds", given.poisson_ratio),
-         "a body that keeps its volume has an infinite speed of pressure waves", "Give less than 0.5");
+    bad_input_at("poisson_ratio", fmt::format("poisson_ratio = {} with wave speeds", given.poisson_ratio),
+                 "a body that keeps its volume has an infinite speed of pressure waves", "Give less than 0.5");
   return springs_of_wave_speeds(given.density, wave_speeds_from_shear(given.shear_wave_speed, given.poisson_ratio));
 }
 
@@ -41,43 +36,44 @@ class StiffnessCheck {
       : options_(options), law_(law), body_(body), linear_(law.spring_power == 1) {}
 
   void operator()(std::monostate) const {
-    fail("stiffness", "stiffness is missing", "no default says how stiff contacts are",
-         linear_ ? "Add contact_duration = ... in s, or stiffness, or largest_overlap with closing_speed, "
-                   "or shear_wave_speed with poisson_ratio"
-         : law_.hertz_spring
-             ? "Add stiffness, or young_modulus with poisson_ratio, or largest_overlap with closing_speed"
-             : "Add stiffness, or largest_overlap with closing_speed");
+    bad_input_at("stiffness", "stiffness is missing", "no default says how stiff contacts are",
+                 linear_ ? "Add contact_duration = ... in s, or stiffness, or largest_overlap with closing_speed, "
+                           "or shear_wave_speed with poisson_ratio"
+                 : law_.hertz_spring
+                     ? "Add stiffness, or young_modulus with poisson_ratio, or largest_overlap with closing_speed"
+                     : "Add stiffness, or largest_overlap with closing_speed");
   }
   void operator()(SpringStiffness) const {}
   void operator()(DimensionlessStiffness) const {}
   void operator()(ContactDuration) const {
     if (!linear_)
-      fail("contact_duration", fmt::format("contact_duration with {}", law_.name),
-           "its contacts last the shorter the faster they are, so that a duration does not give their stiffness",
-           fmt::format("Give stiffness, {}or largest_overlap with closing_speed",
-                       law_.hertz_spring ? "young_modulus, " : ""));
+      bad_input_at(
+          "contact_duration", fmt::format("contact_duration with {}", law_.name),
+          "its contacts last the shorter the faster they are, so that a duration does not give their stiffness",
+          fmt::format("Give stiffness, {}or largest_overlap with closing_speed",
+                      law_.hertz_spring ? "young_modulus, " : ""));
   }
   void operator()(LargestOverlap) const {
     if (options_.closing_speed == 0)
-      fail("largest_overlap", "largest_overlap is given without closing_speed", "the overlap depends on the speed",
-           "Add closing_speed = ... in m/s");
+      bad_input_at("largest_overlap", "largest_overlap is given without closing_speed",
+                   "the overlap depends on the speed", "Add closing_speed = ... in m/s");
   }
   void operator()(const HertzModuli&) const {
     if (!law_.hertz_spring)
-      fail("young_modulus", fmt::format("young_modulus with {}", law_.name), "its spring is not that of Hertz",
-           "Give stiffness, or the law hertz_dashpot");
+      bad_input_at("young_modulus", fmt::format("young_modulus with {}", law_.name), "its spring is not that of Hertz",
+                   "Give stiffness, or the law hertz_dashpot");
     if (body_ == Body::disc)
-      fail("young_modulus", "the bodies are discs", "the stiffness by Hertz is that of spheres",
-           "Write body = \"sphere\" in [grains], or give stiffness");
+      bad_input_at("young_modulus", "the bodies are discs", "the stiffness by Hertz is that of spheres",
+                   "Write body = \"sphere\" in [grains], or give stiffness");
   }
   void operator()(const WaveSpeedStiffness&) const {
     if (!linear_)
-      fail("shear_wave_speed", fmt::format("shear_wave_speed with {}", law_.name),
-           "the springs of wave speeds are linear", "Give stiffness, or a law with linear springs");
+      bad_input_at("shear_wave_speed", fmt::format("shear_wave_speed with {}", law_.name),
+                   "the springs of wave speeds are linear", "Give stiffness, or a law with linear springs");
     if (body_ == Body::sphere)
-      fail("shear_wave_speed", "the bodies are spheres",
-           "springs of wave speeds are those of cylinders, per metre of depth",
-           "Write body = \"disc\" in [grains], or give stiffness");
+      bad_input_at("shear_wave_speed", "the bodies are spheres",
+                   "springs of wave speeds are those of cylinders, per metre of depth",
+                   "Write body = \"disc\" in [grains], or give stiffness");
   }
 
  private:
@@ -90,19 +86,20 @@ class StiffnessCheck {
 /// The law and the body have what the options ask for.
 void check_use(const PairOptions& options, const LawDescription& law, Body body) {
   if (std::holds_alternative<std::monostate>(options.rebound))
-    fail("restitution", "restitution is missing", "no default says how contacts rebound",
-         "Add restitution = ... from 0 to 1, or damping = ... of the dashpots");
+    bad_input_at("restitution", "restitution is missing", "no default says how contacts rebound",
+                 "Add restitution = ... from 0 to 1, or damping = ... of the dashpots");
   std::visit(StiffnessCheck(options, law, body), options.stiffness);
   if (options.contact_end && !law.has_dashpot)
-    fail("contact_end", fmt::format("{} has no use for contact_end", law.name), "it has no dashpot", "Remove it");
+    bad_input_at("contact_end", fmt::format("{} has no use for contact_end", law.name), "it has no dashpot",
+                 "Remove it");
   if (!std::holds_alternative<DashpotDamping>(options.rebound)) return;
   if (!law.has_dashpot || law.spring_power != 1)
-    fail("damping", fmt::format("{} has no use for damping", law.name),
-         "it is h of the dashpots 2 h sqrt(m k) of linear springs",
-         "Give restitution, or the law " + linear_laws_with_dashpot());
+    bad_input_at("damping", fmt::format("{} has no use for damping", law.name),
+                 "it is h of the dashpots 2 h sqrt(m k) of linear springs",
+                 "Give restitution, or the law " + linear_laws_with_dashpot());
   if (options.contact_end == ContactEnd::at_zero_overlap)
-    fail("contact_end", "contact_end = \"zero_overlap\" with damping",
-         "with a strong dashpot the overlap never comes back to zero", "Remove it, or give restitution");
+    bad_input_at("contact_end", "contact_end = \"zero_overlap\" with damping",
+                 "with a strong dashpot the overlap never comes back to zero", "Remove it, or give restitution");
 }
 
 /// The restitution, and zeta of the tangential dashpot where no other is given.
@@ -121,9 +118,9 @@ double set_rebound(const ReboundOptions& rebound, const MeetingBodies& bodies, P
 void check_restitution(NormalLaw law, const PairProperties& pair) {
   constexpr double least = 1e-12;  // a dashpot a million times the critical one
   if (!describe(law).has_dashpot || pair.end == ContactEnd::at_zero_overlap || pair.restitution >= least) return;
-  fail("restitution", fmt::format("restitution = {} for contacts that end at zero force", pair.restitution),
-       "it would need an infinite dashpot, or one too strong for numbers to resolve",
-       fmt::format("Give {} or more, or contact_end = \"zero_overlap\", or the law energy_map", least));
+  bad_input_at("restitution", fmt::format("restitution = {} for contacts that end at zero force", pair.restitution),
+               "it would need an infinite dashpot, or one too strong for numbers to resolve",
+               fmt::format("Give {} or more, or contact_end = \"zero_overlap\", or the law energy_map", least));
 }
 
 void set_friction(const PairOptions& options, NormalLaw law, double tangential_zeta, PairProperties& properties) {
@@ -139,8 +136,8 @@ void set_friction(const PairOptions& options, NormalLaw law, double tangential_z
     properties.tangential_damping = tangential_zeta;
   }
   if (properties.tangential_damping > 0 && properties.tangential_ratio == 0)
-    fail("tangential_damping", "tangential damping is given without a tangential spring",
-         "it is measured by that spring", "Give tangential_ratio > 0");
+    bad_input_at("tangential_damping", "tangential damping is given without a tangential spring",
+                 "it is measured by that spring", "Give tangential_ratio > 0");
 }
 
 /// Sets stiffness, dimensionless or duration of a contact whose other properties are known.
@@ -156,10 +153,10 @@ class StiffnessOf {
     contact_.duration = given.value;
     const double zeta = damping_ratio(law_, contact_.properties);
     if (zeta >= 1)
-      fail("contact_duration",
-           fmt::format("with restitution {} the contact never comes back to zero overlap",
-                       contact_.properties.restitution),
-           fmt::format("its damping ratio is {:.4g}, 1 or more", zeta), "Give stiffness instead");
+      bad_input_at("contact_duration",
+                   fmt::format("with restitution {} the contact never comes back to zero overlap",
+                               contact_.properties.restitution),
+                   fmt::format("its damping ratio is {:.4g}, 1 or more", zeta), "Give stiffness instead");
   }
   void operator()(LargestOverlap given) const {
     k_ = describe(law_).stiffness_from_overlap(given.value, contact_.closing_speed, bodies_.largest_reduced_mass,

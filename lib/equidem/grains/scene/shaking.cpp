@@ -74,34 +74,31 @@ void find_slopes(Schedule& table) {
   for (std::size_t k = n - 1; k-- > 1;) table.rates[k] = right[k] - upper[k] * table.rates[k + 1];
 }
 
-[[noreturn]] void fail(const char* option, std::string problem, std::string why, std::string remedy) {
-  throw Error(ErrorKind::bad_input, std::move(problem), std::move(why), std::move(remedy), option);
-}
-
 std::int64_t count_cycles(const HarmonicShaking& options, double run_duration) {
   if (options.cycles) {
     if (options.duration)
-      fail("duration", "duration does not apply", "cycles says how long the box shakes", "Remove it");
+      bad_input_at("duration", "duration does not apply", "cycles says how long the box shakes", "Remove it");
     return *options.cycles;
   }
   const double periods = options.frequency * options.duration.value_or(run_duration - options.start);
   const double whole = std::round(periods);
   if (options.duration && (whole < 1 || std::abs(periods - whole) > 1e-6 * whole))
-    fail("duration", fmt::format("{} s are {:.6g} cycles of {} Hz", *options.duration, periods, options.frequency),
-         "only whole cycles end at rest",
-         fmt::format("Make it {:.6g} s, or give cycles", std::max(1.0, whole) / options.frequency));
+    bad_input_at("duration",
+                 fmt::format("{} s are {:.6g} cycles of {} Hz", *options.duration, periods, options.frequency),
+                 "only whole cycles end at rest",
+                 fmt::format("Make it {:.6g} s, or give cycles", std::max(1.0, whole) / options.frequency));
   constexpr double most = 1e12;
   if (!(periods < most))
-    fail("frequency", fmt::format("the box would shake {:.3g} times", periods), "the run has fewer steps than that",
-         "Lower it, or give cycles");
+    bad_input_at("frequency", fmt::format("the box would shake {:.3g} times", periods),
+                 "the run has fewer steps than that", "Lower it, or give cycles");
   // Without a duration the last cycle may reach beyond the end of the run.
   return static_cast<std::int64_t>(options.duration ? whole : std::max(1.0, std::ceil(periods - 1e-9 * whole)));
 }
 
 void set_motion(const HarmonicShaking& options, double run_duration, Shaking& shaking) {
   if (!(options.start < run_duration))
-    fail("start", fmt::format("the box begins to shake at {} s", options.start),
-         fmt::format("the run ends at {} s", run_duration), "Start earlier, or run longer");
+    bad_input_at("start", fmt::format("the box begins to shake at {} s", options.start),
+                 fmt::format("the run ends at {} s", run_duration), "Start earlier, or run longer");
   const double a = options.acceleration, omega = 2 * std::numbers::pi * options.frequency;
   shaking.frequency = options.frequency;
   shaking.cycles = count_cycles(options, run_duration);
@@ -190,8 +187,8 @@ double Shaking::end() const {
 Shaking shaking_of(const ShakingOptions& options, double run_duration) {
   const double length = norm(options.direction);
   if (!(length > 0))
-    fail("direction", "the direction of the shaking is zero", "it says where the box moves",
-         "Give a direction, such as [1.0, 0.0]");
+    bad_input_at("direction", "the direction of the shaking is zero", "it says where the box moves",
+                 "Give a direction, such as [1.0, 0.0]");
   Shaking shaking{.direction = options.direction / length, .motion = {}};
   std::visit([&](const auto& motion) { set_motion(motion, run_duration, shaking); }, options.motion);
   constexpr double fastest = 3e8;  // light

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double whole_turn = 2 * std::numbers::pi;
 /// Relative tolerance of angles that differ by a whole turn, rad per rad.
-constexpr double rounding = 1e-15;
+constexpr double angle_rounding = 1e-15;
 /// A vector shorter than this has no direction: its square is no number.
 constexpr double shortest = 1e-150;
 
@@ -51,7 +51,7 @@ class Span {
   explicit Span(const Wall& arc) : angle_(arc.to - arc.from), first_(direction(arc.from)), last_(direction(arc.to)) {}
 
   [[nodiscard]] bool has(const Vec2& p) const {
-    if (angle_ >= whole_turn * (1 - rounding)) return true;
+    if (angle_ >= whole_turn * (1 - angle_rounding)) return true;
     const double after_first = cross(first_, p);
     const double before_last = cross(p, last_);
     return angle_ <= std::numbers::pi ? after_first >= 0 && before_last >= 0 : after_first >= 0 || before_last >= 0;
@@ -72,7 +72,7 @@ WallContact nearest_of_arc(const Wall& wall, const Vec2& centre) {
   if (span.has(p)) {
     const Vec2 outwards = p / distance;
     const double height = distance - wall.radius;
-    const bool whole = wall.to - wall.from >= whole_turn * (1 - rounding);
+    const bool whole = wall.to - wall.from >= whole_turn * (1 - angle_rounding);
     const auto beside = [&](const Vec2& ray) { return !whole && norm(outwards - ray) <= next_to; };
     const int end = beside(span.first()) ? 1 : beside(span.last()) ? 2 : 0;
     return height < 0 ? WallContact{-height, -outwards, end} : WallContact{height, outwards, end};

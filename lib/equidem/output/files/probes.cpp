@@ -33,7 +33,7 @@ void check(const std::vector<Probe>& probes, std::size_t bodies) {
   }
 }
 
-std::vector<std::string> columns_of(const std::vector<Probe>& probes, const ProbeOptions& options) {
+std::vector<std::string> probe_columns(const std::vector<Probe>& probes, const ProbeOptions& options) {
   std::vector<std::string> columns{"step", "time_s"};
   for (const Probe& probe : probes)
     for (const ProbeQuantity quantity : probe.quantities)
@@ -64,7 +64,7 @@ ProbeWriter::ProbeWriter(std::filesystem::path path, std::vector<Probe> probes, 
                          const ProbeOptions& options)
     : probes_(checked(std::move(probes), bodies)),
       family_(options.family),
-      table_(std::move(path), columns_of(probes_, options),
+      table_(std::move(path), probe_columns(probes_, options),
              {.interval = options.interval, .overwrite = options.overwrite, .continue_after = options.continue_after}) {
 }
 

@@ -11,7 +11,7 @@ namespace equidem {
 namespace {
 
 constexpr Colour uncoloured{0.84, 0.86, 0.88};
-constexpr Colour outline{0.45, 0.45, 0.45};
+constexpr Colour disc_outline{0.45, 0.45, 0.45};
 constexpr Colour rest_outline{0.72, 0.72, 0.72};
 constexpr double smallest_outlined = 5;  // pixels, radius
 constexpr double finest_image = 2500;    // image pixels across; below, two per pixel of the page
@@ -118,7 +118,7 @@ void draw_discs(Canvas& canvas, const PictureScene& scene) {
     const double radius = assembly.radii[disc] * frame.scale;
     const Vec2 centre = frame.to_page(scene.centres[disc]);
     canvas.fill_circle(centre, radius, colour_of(scene, disc));
-    if (radius * frame.pixels >= smallest_outlined) canvas.stroke_circle(centre, radius - 0.3, 0.6, outline);
+    if (radius * frame.pixels >= smallest_outlined) canvas.stroke_circle(centre, radius - 0.3, 0.6, disc_outline);
   }
 }
 

@@ -11,7 +11,7 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/csv.hpp"
-#include "equidem/output/pictures/canvas.hpp"
+#include "equidem/output/pictures/scene.hpp"
 
 namespace equidem {
 namespace {
@@ -84,8 +84,7 @@ std::string image_text(const CoarseFields& fields) {
          "\n  </AppendedData>\n</VTKFile>\n";
 }
 
-constexpr double page = 1000, margin = 40, gap = 50, bar = 14, bar_room = 78, title_room = 34;  // units
-constexpr Colour black{0.13, 0.13, 0.13};
+constexpr double map_gap = 50, map_bar = 14, map_bar_room = 78, map_title_room = 34;  // units
 
 /// A map in the width given, its colour bar to the right.
 void draw_map(Canvas& canvas, const CoarseGrid& grid, const Values& values, const std::string& title, Vec2 corner,
@@ -98,7 +97,7 @@ void draw_map(Canvas& canvas, const CoarseGrid& grid, const Values& values, cons
   for (std::size_t k = 0; k < grid.size(); ++k)
     raster.set(static_cast<int>(k % grid.columns), static_cast<int>(grid.rows - 1 - k / grid.columns),
                scale.colour_of(values[k]));
-  canvas.text(title, {corner.x, corner.y - 12}, 14, TextAnchor::left, black, true);
+  canvas.text(title, {corner.x, corner.y - 12}, 14, TextAnchor::left, ink, true);
   // Few cells are drawn as polygons: viewers smooth an image, which blurs its cells.
   const double cw = w / static_cast<double>(grid.columns), ch = h / static_cast<double>(grid.rows);
   if (grid.size() > 20'000) {
@@ -112,22 +111,23 @@ void draw_map(Canvas& canvas, const CoarseGrid& grid, const Values& values, cons
     }
   }
   canvas.stroke_polygon({corner, {corner.x + w, corner.y}, {corner.x + w, corner.y + h}, {corner.x, corner.y + h}}, 0.8,
-                        black);
+                        ink);
   constexpr int steps = 64;
   const double left = corner.x + w + 12;
   for (int k = 0; k < steps; ++k) {
     const double y = corner.y + h * (1 - (k + 1.0) / steps);
-    canvas.fill_polygon({{left, y}, {left + bar, y}, {left + bar, y + h / steps + 0.3}, {left, y + h / steps + 0.3}},
-                        colour_at(scale.map, (k + 0.5) / steps));
+    canvas.fill_polygon(
+        {{left, y}, {left + map_bar, y}, {left + map_bar, y + h / steps + 0.3}, {left, y + h / steps + 0.3}},
+        colour_at(scale.map, (k + 0.5) / steps));
   }
   const double low = std::min(scale.low, scale.high), high = std::max(scale.low, scale.high);
   const UnitPrefix prefix =
       title.ends_with(", Pa") ? unit_prefix(std::max(std::abs(low), std::abs(high))) : UnitPrefix{};
   for (const double tick : nice_ticks(low * prefix.factor, high * prefix.factor, 4)) {
     const double y = corner.y + h * (1 - (tick / prefix.factor - scale.low) / (scale.high - scale.low));
-    canvas.line({left + bar, y}, {left + bar + 4, y}, 0.8, black);
+    canvas.line({left + map_bar, y}, {left + map_bar + 4, y}, 0.8, ink);
     canvas.text(fmt::format("{:.4g}{}", tick, prefix.prefix.empty() ? "" : " " + prefix.prefix),
-                {left + bar + 7, y + 4}, 11, TextAnchor::left, black);
+                {left + map_bar + 7, y + 4}, 11, TextAnchor::left, ink);
   }
 }
 
@@ -138,14 +138,14 @@ std::string draw(const CoarseFields& fields) {
                                                  {"coordination", fields.coordination},
                                                  {"speed, m/s", speed}};
   const Vec2 size = fields.grid.region.high - fields.grid.region.low;
-  const double width = 0.5 * (page - 2 * margin - gap) - bar_room;
+  const double width = 0.5 * (PageFrame::width - 2 * page_margin - map_gap) - map_bar_room;
   const double height = std::clamp(width * size.y / size.x, 60.0, 1.5 * width);
-  const double pitch = height + title_room + 26;
-  Canvas canvas(PageFormat::png, static_cast<int>(page), static_cast<int>(std::ceil(2 * pitch + 16)), 1);
+  const double pitch = height + map_title_room + 26;
+  Canvas canvas(PageFormat::png, static_cast<int>(PageFrame::width), static_cast<int>(std::ceil(2 * pitch + 16)), 1);
   for (std::size_t k = 0; k < 4; ++k)
     draw_map(canvas, fields.grid, maps[k].second, maps[k].first,
-             {margin + static_cast<double>(k % 2) * (width + bar_room + gap),
-              title_room + static_cast<double>(k / 2) * pitch},
+             {page_margin + static_cast<double>(k % 2) * (width + map_bar_room + map_gap),
+              map_title_room + static_cast<double>(k / 2) * pitch},
              width, height);
   return canvas.finish();
 }
