@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The exact contact of ellipses, eight pairs at once.
-// Vectors are passed between inlined functions only: no call depends on how.
-#pragma GCC diagnostic ignored "-Wpsabi"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/kernels/part_lanes.hpp"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Root, angles and the short series of the loop against the standard library.
-#pragma GCC diagnostic ignored "-Wpsabi"  // nothing here crosses from one object file to another
 
 #include "equidem/dynamics/kernels/lanes_math.hpp"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vectors are passed between inlined functions only: no call depends on how.
-#pragma GCC diagnostic ignored "-Wpsabi"
 #include "equidem/contact/laws/visit.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/grains/kernels/pair_lanes.hpp"

@@ -95,11 +95,10 @@ def users_of(source, pattern):
     return found
 
 
-def flags_of(build, source):
-    """How the program is compiled, without optimization, precompiled header and output."""
-    main = os.path.join(source, "tools/equidem/main.cpp")
+def flags_of(build):
+    """How the program is compiled, without optimization and output."""
     entry = next(e for e in json.load(open(os.path.join(build, "compile_commands.json"), encoding="utf-8"))
-                 if os.path.realpath(e["file"]) == os.path.realpath(main))
+                 if "equidem_program.dir" in e["command"])
     words = shlex.split(entry["command"])
     compiler = next(k for k, w in enumerate(words) if not re.search(r"ccache|launcher", w))
     kept, skip = [], False
@@ -123,7 +122,7 @@ def shared_libraries(program):
 
 
 def build_program(source, build, program, objects, folder, sources):
-    compiler, flags = flags_of(build, source)
+    compiler, flags = flags_of(build)
     first = ["-I" + os.path.join(folder, p) for p in ("lib", "tools/equidem")]
     made = [os.path.join(folder, f"object{k}.o") for k in range(len(sources))]
 
@@ -135,8 +134,8 @@ def build_program(source, build, program, objects, folder, sources):
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(compile_one, range(len(sources))))
     old = [o for o in open(objects, encoding="utf-8").read().split() if o.endswith(".o") and not o.endswith("main.cpp.o")]
-    archives = [os.path.join(f, n) for f, _, names in os.walk(build) for n in names
-                if n.startswith("libequidem") and n.endswith(".a")]
+    archives = [os.path.join(f, n) for top in ("lib", "tools") for f, _, names in os.walk(os.path.join(build, top))
+                for n in names if n.startswith("libequidem") and n.endswith(".a")]
     result = os.path.join(folder, "equidem")
     # The linker keeps the first of several definitions: the new objects, in front of those that they replace.
     subprocess.run([compiler, *(f for f in flags if f.startswith("-fsanitize")), "-Wl,--allow-multiple-definition", *made,

@@ -18,6 +18,8 @@ template <typename... Cases>
 struct Visitor : Cases... {
   using Cases::operator()...;
 };
+template <typename... Cases>
+Visitor(Cases...) -> Visitor<Cases...>;  // Clang before 17 makes none of an aggregate
 
 double without_round_off(double value, double largest) {
   return std::abs(value) <= round_off * largest ? 0 : value;
@@ -82,7 +84,7 @@ std::string shown_value(const ResultValue& value, const Shown& shown) {
                     {{"xx", rows[0][0]}, {"yy", rows[1][1]}, {"xy", rows[0][1]}, {"yx", rows[1][0]}}, shown);
               },
               [](const std::shared_ptr<const Results>&) { return std::string(); },
-              [](const std::vector<Results>&) { return std::string(); }},
+              [](const std::shared_ptr<const std::vector<Results>>&) { return std::string(); }},
       value.value);
 }
 
@@ -205,6 +207,8 @@ class OpenLine {
 }  // namespace
 
 ResultValue::ResultValue(const Results& results) : value(std::make_shared<const Results>(results)) {}
+ResultValue::ResultValue(std::vector<Results> list)
+    : value(std::make_shared<const std::vector<Results>>(std::move(list))) {}
 
 Results& Results::add(std::string key, std::string label, ResultValue value, std::string unit, Shown shown) {
   parts_.push_back({.key = std::move(key),
@@ -284,11 +288,12 @@ std::string Results::report() const {
         break;
       case Result::Part::table:
         line.close(report);
-        report += table_lines(std::get<std::vector<Results>>(part.value.value));
+        report += table_lines(*std::get<std::shared_ptr<const std::vector<Results>>>(part.value.value));
         break;
       case Result::Part::list:
         line.close(report);
-        for (const Results& item : std::get<std::vector<Results>>(part.value.value)) report += item.report();
+        for (const Results& item : *std::get<std::shared_ptr<const std::vector<Results>>>(part.value.value))
+          report += item.report();
         break;
       case Result::Part::value: {
         const auto* matrix = std::get_if<std::vector<std::vector<double>>>(&part.value.value);

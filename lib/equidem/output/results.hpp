@@ -22,10 +22,15 @@ namespace equidem {
 class Results;
 struct Effects;
 
+template <typename Type, typename Variant>
+inline constexpr bool is_alternative = false;
+template <typename Type, typename... Types>
+inline constexpr bool is_alternative<Type, std::variant<Types...>> = (std::same_as<Type, Types> || ...);
+
 /// An alternative of a variant that is no integer.
 template <typename Given, typename Variant>
-concept AlternativeOf = std::constructible_from<Variant, std::in_place_type_t<std::remove_cvref_t<Given>>, Given> &&
-    !std::integral<std::remove_cvref_t<Given>>;
+concept AlternativeOf =
+    is_alternative<std::remove_cvref_t<Given>, Variant> && !std::integral<std::remove_cvref_t<Given>>;
 
 /// The value of a result: number, integer, text, flag, vector, matrix, sub-results, a list of them, or null with the
 /// reason why it is not known.
@@ -36,7 +41,7 @@ class ResultValue {
   };
   using Variant = std::variant<Null, bool, std::int64_t, double, std::string, std::vector<double>,
                                std::vector<std::int64_t>, std::vector<std::string>, std::vector<std::vector<double>>,
-                               std::shared_ptr<const Results>, std::vector<Results>>;
+                               std::shared_ptr<const Results>, std::shared_ptr<const std::vector<Results>>>;
 
   template <AlternativeOf<Variant> Given>
   ResultValue(Given&& given) : value(std::in_place_type<std::remove_cvref_t<Given>>, std::forward<Given>(given)) {}
@@ -61,13 +66,14 @@ class ResultValue {
     if (given) *this = ResultValue(*given);
   }
   ResultValue(const Results& results);
+  ResultValue(std::vector<Results> list);
 
   Variant value;
 };
 
 /// Format of a number in the report.
 struct Shown {
-  enum As {
+  enum class As {
     number,      ///< that many significant digits
     decimals,    ///< that many digits after the point
     power,       ///< as a power of ten, that many digits after the point: 1.2e-15
@@ -77,7 +83,8 @@ struct Shown {
     count,       ///< digits in groups of three; the unit is a noun, in the plural where the count is not 1
     components,  ///< of a tensor, "xx 1, yy 2, xy 0", to that many digits; round-off beside the largest is 0
   };
-  As as = number;
+  using enum As;
+  As as = As::number;
   int digits = 6;
 };
 

@@ -29,11 +29,11 @@ constexpr Law compared[] = {{NormalLaw::linear_dashpot, stiffness_of(NormalLaw::
 
 // One impact: balls of 1 m side by side fall from heights about 0.1 m, each meeting the floor at another instant of its
 // step.
-constexpr int balls = 32;
-constexpr double height = 0.1, watched = 0.25;  // m, s: near the top of the rebound of most
+constexpr int released_balls = 32;
+constexpr double release_height = 0.1, watched = 0.25;  // m, s: near the top of the rebound of most
 
 double height_of(int ball) {
-  return height * (1 + 0.2 * ball / balls);
+  return release_height * (1 + 0.2 * ball / released_balls);
 }
 
 StudyTask one_impact(const Law& law, double step) {
@@ -41,7 +41,7 @@ StudyTask one_impact(const Law& law, double step) {
   const auto begin = [=] {
     const PairProperties pair = pair_of(law.law, restitution, law.a);
     GrainScene scene = column(pair, 1, 0.5 * height_of(0), 2);
-    for (int k = 1; k < balls; ++k) {
+    for (int k = 1; k < released_balls; ++k) {
       scene.grains.push_back(column(pair, 1, 0.5 * height_of(k), 2).grains[0]);
       scene.grains.back().position.x = 3.0 * k;
     }
@@ -50,12 +50,12 @@ StudyTask one_impact(const Law& law, double step) {
   const auto values = [=](const GrainSimulation& run) {
     const std::vector<Grain> grains = run.grains();
     double sum = 0;
-    for (int k = 0; k < balls; ++k) {
+    for (int k = 0; k < released_balls; ++k) {
       const double truth = rigid_height(height_of(k), restitution, static_cast<double>(steps) * step);
       const double off = grains[static_cast<std::size_t>(k)].position.y - 1 - truth;
       sum += off * off;
     }
-    return std::vector{std::sqrt(sum / balls) / height, unknown, unknown};
+    return std::vector{std::sqrt(sum / released_balls) / release_height, unknown, unknown};
   };
   return task_on(
       {.problem = "one impact", .method = law.name, .values = {{"time_step", step}}, .resolution = step}, begin,

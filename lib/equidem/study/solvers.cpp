@@ -66,6 +66,7 @@ struct Block {
 
 /// Built when it is first needed.
 struct LazyBlock {
+  explicit LazyBlock(int rows_of_block) : rows(rows_of_block) {}
   int rows;
   std::optional<Block> block = {};
   const Block& get() {

@@ -16,9 +16,7 @@
 namespace equidem {
 namespace {
 
-constexpr const char* samples_name = "samples.csv";
 constexpr const char* statistics_name = "ensemble.csv";
-constexpr const char* case_name = "case.toml";
 
 HomogenizeOptions options_of(const Case& resolved) {
   const auto& boundary = resolved.homogenize.boundary;
@@ -47,10 +45,10 @@ std::vector<EnsembleSample> samples_to_keep(const CommonOptions& options, bool r
   if (!resume) return {};
   if (!options.out)
     bad_input("--resume has nothing to continue", "the samples done lie in the folder of --out", "Add --out DIR");
-  const auto table = *options.out / samples_name;
+  const auto table = *options.out / "samples.csv";
   if (!std::filesystem::exists(table)) return {};
   CommonOptions stored;
-  stored.case_file = *options.out / case_name;
+  stored.case_file = *options.out / "case.toml";
   stored.quiet = options.quiet;
   if (continued_part(stored, *options.out) != continued_part(options, *options.out)) {
     throw Error(ErrorKind::bad_input, "the samples there are of another case", "they would not fit together",
@@ -102,7 +100,7 @@ HomogenizedCell homogenize_cell(const Case& resolved, std::int64_t discs, std::u
 void check_ensemble_outputs(const CommonOptions& options) {
   const OutputPlan plan(options);
   plan.expect_results();
-  for (const char* name : {samples_name, statistics_name}) plan.expect(name);
+  for (const char* name : {"samples.csv", statistics_name}) plan.expect(name);
   for (const char* name : ensemble_plot_names) plan.expect_plot(name);
 }
 
@@ -149,7 +147,7 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
   const auto& folder = options.out;
   write_case(options, resolved);
   const auto save = [&](const std::vector<EnsembleSample>& done) {
-    if (folder) write_csv(*folder / samples_name, samples_table(with_kept(done, kept)), true);
+    if (folder) write_csv(*folder / "samples.csv", samples_table(with_kept(done, kept)), true);
   };
   StageTimes times;
   Stopwatch watch;

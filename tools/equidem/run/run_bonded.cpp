@@ -116,7 +116,7 @@ std::string checksum_of_schedules(const Scene& scene) {
 
 /// In what order keys stand does not matter.
 void sort_keys(TomlValue& value) {
-  std::ranges::stable_sort(value.entries, {}, [](const auto& entry) -> const std::string& { return entry.first; });
+  std::ranges::stable_sort(value.entries, {}, [](const auto& entry) -> const std::string& { return entry.name; });
   for (auto& [name, entry] : value.entries) sort_keys(entry);
   for (TomlValue& item : value.items) sort_keys(item);
 }

@@ -10,7 +10,7 @@ namespace equidem {
 
 void erase_keys(TomlValue& table, std::initializer_list<std::string_view> names) {
   std::erase_if(table.entries,
-                [&](const auto& entry) { return std::find(names.begin(), names.end(), entry.first) != names.end(); });
+                [&](const auto& entry) { return std::find(names.begin(), names.end(), entry.name) != names.end(); });
 }
 
 void add(Checksum& sum, const Schedule& schedule) {

@@ -19,7 +19,8 @@
 namespace equidem {
 namespace {
 
-constexpr std::int64_t samples = 200, samples_of_few = 1000;  // of the energies, the latter where paths are drawn
+constexpr std::int64_t energy_samples = 200,
+                       samples_of_few = 1000;  // of the energies, the latter where paths are drawn
 
 /// Tells whether files that a case names are still what they were.
 std::string checksum_of(const GrainCase& resolved) {
@@ -124,7 +125,7 @@ RunPlan GrainRun::plan() {
           .frames = frames_,
           .probes = case_.probes,
           .body = case_.body,
-          .samples = draws_paths ? samples_of_few : samples,
+          .samples = draws_paths ? samples_of_few : energy_samples,
           .paths = draws_paths,
           .recorder = measures_ ? &*measures_ : nullptr,
           .watch = [this](const EnergyLedger& energy) { refuse_made_energy(case_, step_.step, simulation_, energy); },

@@ -24,8 +24,6 @@
 namespace equidem {
 namespace {
 
-constexpr const char* samples_name = "samples.csv";
-
 struct StudyVerb {
   CommonOptions common;
   std::string what;
@@ -115,7 +113,7 @@ StudySamples read_samples(const std::filesystem::path& path, const Study& study,
 /// Measurements that an earlier run left; none where it begins anew.
 StudySamples samples_to_keep(const StudyVerb& verb, const Study& study, const std::string& checksum) {
   if (!verb.common.out || verb.common.overwrite) return {};
-  const auto table = *verb.common.out / samples_name;
+  const auto table = *verb.common.out / "samples.csv";
   if (!std::filesystem::exists(table)) return {};
   return read_samples(table, study, checksum);
 }
@@ -126,7 +124,7 @@ void check_outputs(const StudyVerb& verb, const Study& study, bool continues) {
   CommonOptions common = verb.common;
   common.overwrite = common.overwrite || continues;
   const OutputPlan plan(common);
-  for (const char* name : {samples_name, "study.csv", "result.json"}) plan.expect(name);
+  for (const char* name : {"samples.csv", "study.csv", "result.json"}) plan.expect(name);
   for (const std::string& name : study_plot_names(study)) plan.expect_plot(name);
 }
 
@@ -180,7 +178,7 @@ int run_verb(const StudyVerb& verb) {
   Stopwatch since_saved;
   const auto save = [&](const StudySamples& done, bool now) {
     if (!folder || (!now && since_saved.seconds() < 1)) return;
-    write_csv(*folder / samples_name, samples_table(study, done, checksum), true);
+    write_csv(*folder / "samples.csv", samples_table(study, done, checksum), true);
     since_saved.lap();
   };
   const StudySamples samples =

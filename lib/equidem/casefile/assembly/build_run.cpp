@@ -33,12 +33,12 @@ void add_test(const Case& resolved, const Assembly& assembly, Scene& scene) {
 Scene build_scene(const Case& resolved, const Assembly& assembly, const ContactSprings& springs) {
   if (!resolved.run) {
     bad_input_at(fmt::format("{}: run", resolved.document.where()), "missing table", "it says how long the run is",
-         "Add [run] with duration = ... in s, or until_rest = 1e-10");
+                 "Add [run] with duration = ... in s, or until_rest = 1e-10");
   }
   const std::optional<double> density = disc_density(resolved, assembly);
   if (!density) {
     bad_input_at(resolved.where("assembly"), "the density is missing", "motion needs the mass of the discs",
-         "Add density = ... in kg/m³ to [assembly], or that of the continuum to [material]");
+                 "Add density = ... in kg/m³ to [assembly], or that of the continuum to [material]");
   }
   const RunCase& run = *resolved.run;
   Scene scene(assembly, springs, inertia_of(assembly, *density, resolved.assembly.body));

@@ -41,7 +41,7 @@ class Checker {
         TomlValue added;
         added.source = root_.source;
         check_table(table.name, added);
-        parent->entries.emplace_back(leaf, std::move(added));
+        parent->entries.push_back({leaf, std::move(added)});
       }
     }
   }
@@ -200,7 +200,7 @@ class Checker {
       TomlValue value = *parse_toml(fmt::format("value = {}", key.fallback), "").find("value");
       value.source = table.source;
       value.line = table.line;
-      table.entries.emplace_back(key.name, std::move(value));
+      table.entries.push_back({key.name, std::move(value)});
     }
   }
 

@@ -178,9 +178,9 @@ void check_held(const TomlValue& value, const KeySpec& key) {
 }
 
 void check_bytes(const TomlValue& value, const KeySpec& key) {
-  const auto bytes = bytes_of(value);
-  if (!bytes) fail_type(value, key);
-  if (!key.range.contains(*bytes)) fail_range(value, key);
+  const auto size = bytes_of(value);
+  if (!size) fail_type(value, key);
+  if (!key.range.contains(*size)) fail_range(value, key);
 }
 
 constexpr ValueKind kinds[] = {

@@ -54,7 +54,7 @@ TomlValue value_from(const std::string& text, const std::string& source) {
     throw Error(ErrorKind::bad_input, "this is more than one value", "one key is set at a time",
                 "Use one option for each key", source);
   }
-  return parsed.entries.front().second;
+  return parsed.entries.front().value;
 }
 
 /// Take the key, or one of several tables, out of the case.
@@ -66,7 +66,7 @@ void remove(TomlValue& parent, const std::string& segment, const std::string& so
   if (parent.is_array()) {
     parent.items.erase(parent.items.begin() + (found - parent.items.data()));
   } else {
-    std::erase_if(parent.entries, [&](const auto& entry) { return entry.first == segment; });
+    std::erase_if(parent.entries, [&](const auto& entry) { return entry.name == segment; });
   }
 }
 
@@ -102,7 +102,8 @@ void apply_override(TomlValue& root, const std::string& assignment, const std::s
                   *source);
     }
     if (next == nullptr) {
-      next = &at->entries.emplace_back(segment, TomlValue()).second;
+      at->entries.push_back({segment, {}});
+      next = &at->entries.back().value;
       next->source = source;
     }
     at = next;

@@ -29,10 +29,10 @@ TomlValue plain(const toml::node& node, const Source& source) {
       TomlValue entry = plain(child, source);
       // The name stands where the reader looks; the value of a table may begin on a later line.
       entry.line = static_cast<int>(key.source().begin.line);
-      value.entries.emplace_back(std::string(key.str()), std::move(entry));
+      value.entries.push_back({std::string(key.str()), std::move(entry)});
     }
     std::stable_sort(value.entries.begin(), value.entries.end(),
-                     [](const auto& a, const auto& b) { return a.second.line < b.second.line; });
+                     [](const auto& a, const auto& b) { return a.value.line < b.value.line; });
   } else if (const toml::array* array = node.as_array()) {
     value.type = Type::array;
     for (const toml::node& item : *array) value.items.push_back(plain(item, source));
@@ -144,8 +144,8 @@ const TomlValue* TomlValue::find(std::string_view name) const {
     const auto index = number_from<std::size_t>(name);
     return index && *index < items.size() ? &items[*index] : nullptr;
   }
-  const auto found = std::ranges::find(entries, name, &std::pair<std::string, TomlValue>::first);
-  return found == entries.end() ? nullptr : &found->second;
+  const auto found = std::ranges::find(entries, name, &TomlEntry::name);
+  return found == entries.end() ? nullptr : &found->value;
 }
 
 TomlValue* TomlValue::find(std::string_view name) {
@@ -234,7 +234,7 @@ std::string toml_number(double value) {
 
 std::string to_toml(TomlValue document, const fs::path& folder) {
   make_relative(document, folder);
-  const auto place = [](const auto& entry) { return entry.first == "schema" ? 0 : entry.first == "title" ? 1 : 2; };
+  const auto place = [](const auto& entry) { return entry.name == "schema" ? 0 : entry.name == "title" ? 1 : 2; };
   std::stable_sort(document.entries.begin(), document.entries.end(),
                    [&](const auto& a, const auto& b) { return place(a) < place(b); });
   std::string out;

@@ -13,6 +13,8 @@
 
 namespace equidem {
 
+struct TomlEntry;
+
 /// One value of a TOML document; tables keep the order of the file.
 struct TomlValue {
   enum class Type { table, array, integer, real, boolean, text, date };
@@ -24,8 +26,8 @@ struct TomlValue {
   bool is_path =
       false;  ///< text is a path resolved against the folder of the file; the echo makes it relative to its folder
   std::string text;
-  std::vector<TomlValue> items;                            ///< of an array
-  std::vector<std::pair<std::string, TomlValue>> entries;  ///< of a table
+  std::vector<TomlValue> items;    ///< of an array
+  std::vector<TomlEntry> entries;  ///< of a table
 
   std::shared_ptr<const std::string> source;  ///< file name, or the option of the command line
   int line = 0;                               ///< in the file, from 1; 0: none
@@ -42,6 +44,12 @@ struct TomlValue {
   [[nodiscard]] std::string type_name() const;
   /// The value in short, as TOML: `21`, `"hexagonal"`, `nan`.
   [[nodiscard]] std::string shown() const;
+};
+
+/// An entry of a table.
+struct TomlEntry {
+  std::string name;
+  TomlValue value;
 };
 
 /// The value at a path such as "load.0.group"; if the path ends early, the last value on it.

@@ -12,22 +12,6 @@
 #include "equidem/core/text.hpp"
 
 namespace equidem {
-namespace {
-
-std::vector<NamedValue<NormalLaw>> named_laws() {
-  std::vector<NamedValue<NormalLaw>> list;
-  for (const LawDescription& law : normal_laws()) list.push_back({law.law, law.name});
-  return list;
-}
-
-}  // namespace
-
-template <>
-struct EnumNames<NormalLaw> {
-  static constexpr const char* what = "law of collision";
-  static inline const std::vector<NamedValue<NormalLaw>> list = named_laws();
-};
-
 namespace casefile {
 namespace {
 

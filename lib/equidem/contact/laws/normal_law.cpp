@@ -49,6 +49,12 @@ constexpr std::array descriptions{EQUIDEM_LAWS(EQUIDEM_ENTRY)};
 
 }  // namespace
 
+#define EQUIDEM_NAMED(listed, Law) {NormalLaw::listed, #listed},
+std::vector<NamedValue<NormalLaw>> named_laws() {
+  return {EQUIDEM_LAWS(EQUIDEM_NAMED)};
+}
+#undef EQUIDEM_NAMED
+
 std::span<const LawDescription> normal_laws() {
   return descriptions;
 }

@@ -5,8 +5,10 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "equidem/contact/laws/list.hpp"
+#include "equidem/core/names.hpp"
 
 namespace equidem {
 
@@ -14,6 +16,14 @@ namespace equidem {
 /// One for each line of laws/list.hpp.
 enum class NormalLaw { EQUIDEM_LAWS(EQUIDEM_ENUMERATOR) };
 #undef EQUIDEM_ENUMERATOR
+
+/// Names of the laws, in the order of the list; made in one file, so that a program can link a longer list.
+std::vector<NamedValue<NormalLaw>> named_laws();
+template <>
+struct EnumNames<NormalLaw> {
+  static constexpr const char* what = "law of collision";
+  static inline const std::vector<NamedValue<NormalLaw>> list = named_laws();
+};
 
 /// The members of a law's struct (laws/law.hpp). Functions that only some kinds have are null for the others.
 struct LawDescription {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vectors are passed between inlined functions only: no call depends on how.
-#pragma GCC diagnostic ignored "-Wpsabi"
 #include "equidem/grains/kernels/bond_loop.hpp"
 
 #include <algorithm>

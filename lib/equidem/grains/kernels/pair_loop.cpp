@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vectors are passed between inlined functions only: no call depends on how.
-#pragma GCC diagnostic ignored "-Wpsabi"
 #include <algorithm>
 #include <cmath>
 
@@ -319,22 +317,22 @@ void CollidePairs<Law, kind>::run(GrainSystem& system) {
 }
 
 template <class Law, PairLoopKind kind>
-NearPairs::Loop choose() {
+NearPairs::Loop choose_pair_loop() {
   return by_vector_width<CollidePairs<Law, kind>, GrainSystem&>();
 }
 
 template <class Law, bool equal>
-NearPairs::Loop choose(const GrainSystem& system) {
+NearPairs::Loop choose_pair_loop(const GrainSystem& system) {
   if (system.contacts.near.rigid) {
-    return system.options.verlet() ? choose<Law, PairLoopKind{true, equal, true, true}>()
-                                   : choose<Law, PairLoopKind{true, equal, false, true}>();
+    return system.options.verlet() ? choose_pair_loop<Law, PairLoopKind{true, equal, true, true}>()
+                                   : choose_pair_loop<Law, PairLoopKind{true, equal, false, true}>();
   }
   if (system.options.verlet()) {
-    return system.friction ? choose<Law, PairLoopKind{true, equal, true}>()
-                           : choose<Law, PairLoopKind{false, equal, true}>();
+    return system.friction ? choose_pair_loop<Law, PairLoopKind{true, equal, true}>()
+                           : choose_pair_loop<Law, PairLoopKind{false, equal, true}>();
   }
-  return system.friction ? choose<Law, PairLoopKind{true, equal, false}>()
-                         : choose<Law, PairLoopKind{false, equal, false}>();
+  return system.friction ? choose_pair_loop<Law, PairLoopKind{true, equal, false}>()
+                         : choose_pair_loop<Law, PairLoopKind{false, equal, false}>();
 }
 
 }  // namespace
@@ -342,7 +340,7 @@ NearPairs::Loop choose(const GrainSystem& system) {
 NearPairs::Loop near_pair_loop(const GrainSystem& system) {
   return visit_law(system.options.law, [&]<class Law>(std::type_identity<Law>) -> NearPairs::Loop {
     if constexpr (Law::kind == LawKind::force) {
-      return system.contacts.near.equal ? choose<Law, true>(system) : choose<Law, false>(system);
+      return system.contacts.near.equal ? choose_pair_loop<Law, true>(system) : choose_pair_loop<Law, false>(system);
     } else {
       return nullptr;
     }

@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vectors are passed between inlined functions only: no call depends on how.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/kernels/pair_lanes.hpp"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vectors are passed between inlined functions only: no call depends on how.
-#pragma GCC diagnostic ignored "-Wpsabi"
 #include <algorithm>
 #include <cmath>
 
@@ -21,7 +19,7 @@ struct PartLoopKind {
   bool round = false, friction = false, verlet = false;
 };
 
-struct LoopNumbers {
+struct PartLoopNumbers {
   double dt = 0;
   std::int64_t now = 0;  ///< step before the one being made
   bool corrected = false, record = false;
@@ -44,7 +42,7 @@ EQUIDEM_ALWAYS_INLINE LawLanes law_of(const PartGroup& group) {
 }
 
 template <class Law, PartLoopKind kind>
-EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers& numbers, const PartBody* bodies,
+EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers& numbers, const PartBody* bodies,
                                          const std::int32_t* body_of_part, BodyImpulse* impulses, PartGroup& group,
                                          LaneSums& sums) {
   const double dt = numbers.dt;
@@ -219,9 +217,9 @@ struct CollideParts {
 
 template <class Law, PartLoopKind kind>
 void CollideParts<Law, kind>::run(GrainSystem& system, NearParts::List& list) {
-  const LoopNumbers numbers{system.dt(), system.step - (kind.verlet ? 1 : 0),
-                            system.options.scheme == GrainOptions::Scheme::corrected_verlet,
-                            system.contacts.near.record, &system};
+  const PartLoopNumbers numbers{system.dt(), system.step - (kind.verlet ? 1 : 0),
+                                system.options.scheme == GrainOptions::Scheme::corrected_verlet,
+                                system.contacts.near.record, &system};
   LaneSums sums;
   for (PartGroup& group : list.groups) {
     collide_group<Law, kind>(numbers, system.contacts.near_parts.bodies.data(), system.shapes.body_of_part.data(),
@@ -231,18 +229,18 @@ void CollideParts<Law, kind>::run(GrainSystem& system, NearParts::List& list) {
 }
 
 template <class Law, PartLoopKind kind>
-NearParts::List::Loop choose_loop() {
+NearParts::List::Loop choose_part_loop() {
   return by_vector_width<CollideParts<Law, kind>, GrainSystem&, NearParts::List&>();
 }
 
 template <class Law, bool round>
-NearParts::List::Loop choose_loop(const GrainSystem& system) {
+NearParts::List::Loop choose_part_loop(const GrainSystem& system) {
   if (system.options.verlet()) {
-    return system.friction ? choose_loop<Law, PartLoopKind{round, true, true}>()
-                           : choose_loop<Law, PartLoopKind{round, false, true}>();
+    return system.friction ? choose_part_loop<Law, PartLoopKind{round, true, true}>()
+                           : choose_part_loop<Law, PartLoopKind{round, false, true}>();
   }
-  return system.friction ? choose_loop<Law, PartLoopKind{round, true, false}>()
-                         : choose_loop<Law, PartLoopKind{round, false, false}>();
+  return system.friction ? choose_part_loop<Law, PartLoopKind{round, true, false}>()
+                         : choose_part_loop<Law, PartLoopKind{round, false, false}>();
 }
 
 }  // namespace
@@ -250,7 +248,7 @@ NearParts::List::Loop choose_loop(const GrainSystem& system) {
 NearParts::List::Loop near_part_loop(const GrainSystem& system, bool round) {
   return visit_law(system.options.law, [&]<class Law>(std::type_identity<Law>) -> NearParts::List::Loop {
     if constexpr (Law::kind == LawKind::force) {
-      return round ? choose_loop<Law, true>(system) : choose_loop<Law, false>(system);
+      return round ? choose_part_loop<Law, true>(system) : choose_part_loop<Law, false>(system);
     } else {
       return nullptr;
     }

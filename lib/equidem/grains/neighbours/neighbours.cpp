@@ -15,45 +15,6 @@
 namespace equidem {
 namespace {
 
-/// A circle at its place in a row.
-struct SortedBody {
-  double x, y, radius;
-  std::int32_t index;
-};
-
-/// Bodies begin .. end by ascending x: all of their size class with y in [low, high].
-struct Row {
-  std::size_t begin = 0, end = 0;
-  double low = 0, high = 0, largest_radius = 0;
-};
-
-/// Rows begin .. end by ascending y.
-struct SizeClass {
-  std::size_t begin, end;
-  double largest_radius;
-};
-
-struct Pair {
-  std::int32_t i, j;
-};
-
-/// Pairs found by one thread: the first `count`.
-struct Found {
-  std::vector<Pair> pairs;
-  std::size_t count = 0;
-};
-
-/// Rows begin .. end of one size class, for one thread.
-struct Task {
-  std::size_t size_class, begin, end;
-};
-
-/// Place of a body: row, and within the row a column that is coarser than x.
-struct Key {
-  std::uint64_t place;
-  std::int32_t index;
-};
-
 constexpr int digit_bits = 11;  ///< the counters of one digit stay in the first-level cache
 constexpr int most_row_bits = 44;
 constexpr std::size_t size_classes = 513;  ///< one for each power of four
@@ -94,47 +55,48 @@ std::uint64_t whole_part(double value, std::uint64_t most) {
   return value < static_cast<double>(most) ? static_cast<std::uint64_t>(value) : most;
 }
 
-/// Stable radix sort by the lowest bits of the place.
-void sort_by_place(std::vector<Key>& keys, std::vector<Key>& other, int bits) {
-  constexpr std::uint64_t last_digit = (1U << digit_bits) - 1;
-  if (keys.size() <= last_digit / 8) {
-    std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) { return a.place < b.place; });
-    return;
-  }
-  other.resize(keys.size());
-  for (int shift = 0; shift < bits; shift += digit_bits) {
-    std::array<std::uint32_t, last_digit + 2> begin{};
-    for (const Key& key : keys) ++begin[((key.place >> shift) & last_digit) + 1];
-    for (std::size_t k = 1; k < begin.size(); ++k) begin[k] += begin[k - 1];
-    for (const Key& key : keys) other[begin[(key.place >> shift) & last_digit]++] = key;
-    keys.swap(other);
-  }
-}
-
-/// The first body from `begin` on that is not left of x; by doubling steps, as it is mostly near.
-const SortedBody* first_from(const SortedBody* begin, const SortedBody* end, double x) {
-  std::ptrdiff_t step = 1;
-  while (step < end - begin && begin[step].x < x) {
-    begin += step;
-    step *= 2;
-  }
-  return std::lower_bound(begin, std::min(begin + std::min(step, end - begin), end), x,
-                          [](const SortedBody& body, double bound) { return body.x < bound; });
-}
-
-/// The pairs of body a with those from b to `end` that are not right of x = `right`.
-void meet(const SortedBody& a, const SortedBody* b, const SortedBody* end, double right, double margin, Found& result) {
-  for (; b != end && b->x <= right; ++b) {
-    if (result.count == result.pairs.size()) result.pairs.resize(std::max<std::size_t>(2 * result.count, 4096));
-    // Written in any case, then kept or not: a branch would be mispredicted every other time.
-    result.pairs[result.count] = {std::min(a.index, b->index), std::max(a.index, b->index)};
-    result.count += come_near({a.x - b->x, a.y - b->y}, a.radius, b->radius, margin) ? 1 : 0;
-  }
-}
-
 }  // namespace
 
 struct NeighbourFinder::Memory {
+  /// A circle at its place in a row.
+  struct SortedBody {
+    double x, y, radius;
+    std::int32_t index;
+  };
+
+  /// Bodies begin .. end by ascending x: all of their size class with y in [low, high].
+  struct Row {
+    std::size_t begin = 0, end = 0;
+    double low = 0, high = 0, largest_radius = 0;
+  };
+
+  /// Rows begin .. end by ascending y.
+  struct SizeClass {
+    std::size_t begin, end;
+    double largest_radius;
+  };
+
+  struct Pair {
+    std::int32_t i, j;
+  };
+
+  /// Pairs found by one thread: the first `count`.
+  struct Found {
+    std::vector<Pair> pairs;
+    std::size_t count = 0;
+  };
+
+  /// Rows begin .. end of one size class, for one thread.
+  struct Task {
+    std::size_t size_class, begin, end;
+  };
+
+  /// Place of a body: row, and within the row a column that is coarser than x.
+  struct Key {
+    std::uint64_t place;
+    std::int32_t index;
+  };
+
   std::vector<std::int32_t> by_class;
   std::vector<Key> keys, other_keys;
   std::vector<SortedBody> bodies;
@@ -143,6 +105,45 @@ struct NeighbourFinder::Memory {
   std::vector<Task> tasks;
   std::vector<Found> found;
   NeighbourList list;
+
+  /// Stable radix sort by the lowest bits of the place.
+  static void sort_by_place(std::vector<Key>& keys, std::vector<Key>& other, int bits) {
+    constexpr std::uint64_t last_digit = (1U << digit_bits) - 1;
+    if (keys.size() <= last_digit / 8) {
+      std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) { return a.place < b.place; });
+      return;
+    }
+    other.resize(keys.size());
+    for (int shift = 0; shift < bits; shift += digit_bits) {
+      std::array<std::uint32_t, last_digit + 2> begin{};
+      for (const Key& key : keys) ++begin[((key.place >> shift) & last_digit) + 1];
+      for (std::size_t k = 1; k < begin.size(); ++k) begin[k] += begin[k - 1];
+      for (const Key& key : keys) other[begin[(key.place >> shift) & last_digit]++] = key;
+      keys.swap(other);
+    }
+  }
+
+  /// The first body from `begin` on that is not left of x; by doubling steps, as it is mostly near.
+  static const SortedBody* first_from(const SortedBody* begin, const SortedBody* end, double x) {
+    std::ptrdiff_t step = 1;
+    while (step < end - begin && begin[step].x < x) {
+      begin += step;
+      step *= 2;
+    }
+    return std::lower_bound(begin, std::min(begin + std::min(step, end - begin), end), x,
+                            [](const SortedBody& body, double bound) { return body.x < bound; });
+  }
+
+  /// The pairs of body a with those from b to `end` that are not right of x = `right`.
+  static void meet(const SortedBody& a, const SortedBody* b, const SortedBody* end, double right, double margin,
+                   Found& result) {
+    for (; b != end && b->x <= right; ++b) {
+      if (result.count == result.pairs.size()) result.pairs.resize(std::max<std::size_t>(2 * result.count, 4096));
+      // Written in any case, then kept or not: a branch would be mispredicted every other time.
+      result.pairs[result.count] = {std::min(a.index, b->index), std::max(a.index, b->index)};
+      result.count += come_near({a.x - b->x, a.y - b->y}, a.radius, b->radius, margin) ? 1 : 0;
+    }
+  }
 
   void divide_into_classes(std::span<const Circle> circles, double margin);
   void divide_into_rows(std::span<const Circle> circles, std::span<const std::int32_t> members, double margin);

@@ -14,7 +14,7 @@ namespace equidem {
 namespace {
 
 /// Tolerance over the radius, for rounding in the placement of clumps.
-constexpr double tolerance = 1e-6;
+constexpr double clump_tolerance = 1e-6;
 
 void check_clump(const Clump& clump, const Grain& grain, std::size_t i) {
   if (clump.discs.empty()) {
@@ -27,13 +27,13 @@ void check_clump(const Clump& clump, const Grain& grain, std::size_t i) {
               "it would touch nothing", "Give a radius > 0 and finite numbers");
   }
   const double reach = radius_of(clump);
-  if (reach > grain.radius * (1 + tolerance)) {
+  if (reach > grain.radius * (1 + clump_tolerance)) {
     bad_input(fmt::format("grain {} has the radius {:.6g} m, its clump {} reaches {:.6g} m from the centre of mass", i,
                           grain.radius, grain.clump, reach),
               "the circle of that radius must hold the body", "Give radius_of(clump)");
   }
   const Vec2 centre = union_of(clump.discs).centre;
-  if (norm(centre) > tolerance * reach) {
+  if (norm(centre) > clump_tolerance * reach) {
     bad_input(fmt::format("clump {} has its centre of mass at ({:.4g}, {:.4g}) m", grain.clump, centre.x, centre.y),
               "the origin of its frame is the centre of mass", "Use centred_clump(discs), which shifts the discs");
   }

@@ -248,9 +248,8 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string&
   std::vector<SavedArray> arrays;
   for (const Hdf5Array& found : layout.arrays) {
     if (found.name == "case" || found.name == "step") continue;
-    SavedArray& array = arrays.emplace_back(found.name, found.shape.size() > 1 ? found.shape[1] : 1);
-    array.values.resize(found.size());
-    get(file, found, std::span(array.values));
+    arrays.push_back({found.name, found.shape.size() > 1 ? found.shape[1] : 1, std::vector<double>(found.size())});
+    get(file, found, std::span(arrays.back().values));
   }
   result.record = record_of(arrays[arrays.size() - 2], arrays.back());
   arrays.resize(arrays.size() - 2);

@@ -71,9 +71,9 @@ Json json_of(const ResultValue& value) {
           return nullptr;
         } else if constexpr (std::is_same_v<Given, std::shared_ptr<const Results>>) {
           return object_of(*given);
-        } else if constexpr (std::is_same_v<Given, std::vector<Results>>) {
+        } else if constexpr (std::is_same_v<Given, std::shared_ptr<const std::vector<Results>>>) {
           Json array = Json::array();
-          for (const Results& one : given) array.push_back(object_of(one));
+          for (const Results& one : *given) array.push_back(object_of(one));
           return array;
         } else {
           return given;

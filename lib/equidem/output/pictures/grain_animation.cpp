@@ -70,7 +70,7 @@ Results frame_results(const GrainFrame& frame, const GrainAnimation& animation, 
   return Results().set("time", frame.time).set("bodies", bodies).set("moves", moves);
 }
 
-constexpr const char* page = R"(<!DOCTYPE html>
+constexpr const char* player_page = R"(<!DOCTYPE html>
 <html lang="en">
 <head><meta charset="utf-8"><title>{0}</title></head>
 <body style="font-family: sans-serif">
@@ -82,7 +82,7 @@ constexpr const char* page = R"(<!DOCTYPE html>
 const data = {4};
 )";
 
-constexpr const char* script = R"(
+constexpr const char* player_script = R"(
 const fills = ['#add4ed', '#f7d494', '#a8dec7', '#f0b899', '#e6c2d9', '#f7f0a6'];
 const inks = ['#0073b3', '#bf8000', '#00805e', '#b34d00', '#a65985', '#8c8500'];
 const [canvas, button, slider, clock] = ['canvas', 'button', 'input', 'span'].map(tag => document.querySelector(tag));
@@ -194,9 +194,9 @@ std::string grain_animation_html(const GrainAnimation& animation) {
   data.set("speed", animation.speed).set("groups", groups).set("bodies", bodies).set("walls", walls);
   data.set("frames", frames);
   const double scale = std::min(page_width / size.x, page_height / size.y);
-  return fmt::format(page, escape_xml(animation.title), escape_xml(animation.caption), scale * size.x, scale * size.y,
-                     data.json()) +
-         script;
+  return fmt::format(player_page, escape_xml(animation.title), escape_xml(animation.caption), scale * size.x,
+                     scale * size.y, data.json()) +
+         player_script;
 }
 
 void write_grain_animation(const std::filesystem::path& path, const GrainAnimation& animation, bool overwrite) {

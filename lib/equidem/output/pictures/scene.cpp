@@ -13,7 +13,7 @@ namespace {
 constexpr double margin_bottom = 92, title_room = 66, no_title_room = 26, colour_bar_room = 124;  // units
 constexpr int narrowest = 400, widest = 5000;                                                     // pixels
 constexpr double tallest = 1.4;              // drawing area, in its own widths
-constexpr double shortest = 250;             // units, so that the colour bar has room
+constexpr double shortest_drawing = 250;     // units, so that the colour bar has room
 constexpr double shown_displacement = 0.05;  // of the larger side, at most
 constexpr double finest_chained = 5;         // pixels, mean radius
 constexpr double arrow_length = 0.075;       // of the larger side
@@ -180,7 +180,7 @@ PictureScene plan_scene(const AssemblyState& state, const PictureOptions& option
     shown.include(scene.centres[support.disc] - (support.y ? Vec2{0, reach} : Vec2{reach, 0}), 0);
   }
   scene.frame = lay_out_page(shown, !options.title.empty(), scene.values.empty() ? page_margin : colour_bar_room,
-                             shortest, options.width / PageFrame::width);
+                             shortest_drawing, options.width / PageFrame::width);
   plan_force_chains(scene, mean_radius);
   scene.caption = caption_of(scene);
   return scene;

@@ -55,7 +55,7 @@ const char* hex(PlotColour colour) {
 }
 
 /// A single-quoted string of gnuplot: nothing in it is expanded (no backslash, no backtick), a quote is doubled.
-std::string quoted(const std::string& text) {
+std::string gnuplot_string(const std::string& text) {
   std::string result = "'";
   for (const char c : text) {
     if (c == '\'') result += '\'';
@@ -101,7 +101,7 @@ bool has_markers(const Series& series) {
 std::vector<std::string> plot_clauses(const Plot& plot, const Series& series, const PlotData::Place& place,
                                       const AxisRange& y_range, const std::string& plain) {
   const std::string columns = fmt::format("data using \"{}\":\"{}\"", place.x, place.y);
-  const std::string title = series.label.empty() ? "notitle" : "title " + quoted(series.label) + plain;
+  const std::string title = series.label.empty() ? "notitle" : "title " + gnuplot_string(series.label) + plain;
   const std::string face = fmt::format("with points pt {} ps marker", point_type(series.marker, true));
   const std::string outline = fmt::format("with points pt {} ps marker lw 1.6 lc rgb '{}'",
                                           point_type(series.marker, false), hex(series.colour));
@@ -152,7 +152,7 @@ std::string vertical_line(const VerticalLine& line, const std::string& plain) {
   if (!line.label.empty()) {
     text +=
         fmt::format("set label {} at first {}, graph 0.985 right rotate by 90 offset char {},0 tc rgb '{}' front{}\n",
-                    quoted(line.label), line.x, line.label_left ? -1 : 1, hex(line.colour), plain);
+                    gnuplot_string(line.label), line.x, line.label_left ? -1 : 1, hex(line.colour), plain);
   }
   return text;
 }
@@ -226,7 +226,8 @@ std::string plot_script(const std::string& name, const Plot& plot, const PlotDat
       "data = {1}\nset datafile separator comma\nset encoding utf8\n\n"
       "set border 3 lw 0.8 lc rgb '#333333'\nset tics out nomirror scale 0.7 tc rgb '#222222'\n"
       "set title {2} offset 0,-0.2{3}\nset xlabel {4}{3}\nset ylabel {5}{3}\n",
-      name, quoted(name + ".csv"), quoted(plot.title), plain, quoted(plot.x.label), quoted(plot.y.label));
+      name, gnuplot_string(name + ".csv"), gnuplot_string(plot.title), plain, gnuplot_string(plot.x.label),
+      gnuplot_string(plot.y.label));
   text += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", x.min, x.max, y.min, y.max);
   text += axis_scale('x', plot.x, x) + axis_scale('y', plot.y, y);
   text += fmt::format("set key below horizontal Left reverse samplen 2.2 spacing 1.25 width 1{}\n", plain);
@@ -236,8 +237,9 @@ std::string plot_script(const std::string& name, const Plot& plot, const PlotDat
         "behind\n",
         band.from, band.to);
     if (!band.label.empty()) {
-      text += fmt::format("set label {} at first {}, graph 0.965 center tc rgb '#666666'{}\n", quoted(band.label),
-                          plot.x.logarithmic ? std::sqrt(band.from * band.to) : 0.5 * (band.from + band.to), plain);
+      text +=
+          fmt::format("set label {} at first {}, graph 0.965 center tc rgb '#666666'{}\n", gnuplot_string(band.label),
+                      plot.x.logarithmic ? std::sqrt(band.from * band.to) : 0.5 * (band.from + band.to), plain);
     }
   }
   for (const VerticalLine& line : plot.vertical_lines) text += vertical_line(line, plain);
@@ -252,11 +254,11 @@ std::string plot_script(const std::string& name, const Plot& plot, const PlotDat
   text += fmt::format(
       "\nset terminal svg size 900,650 enhanced font 'sans-serif,16' background rgb 'white'\n"
       "set output {}\nmarker = 0.72\n{}\n",
-      quoted(name + ".svg"), command);
+      gnuplot_string(name + ".svg"), command);
   text += fmt::format(
       "\nset terminal pngcairo size 900,650 enhanced font 'sans-serif,13' background rgb 'white'\n"
       "set output {}\nmarker = 1.25\nreplot\nset output\n",
-      quoted(name + ".png"));
+      gnuplot_string(name + ".png"));
   return text;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "loops.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "equidem/grains/neighbours/neighbours.hpp"
+
+#include "loops.hpp"
 
 namespace equidem::bench {
 
