@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ranges>
+#include <span>
 
 #include <toml++/toml.h>
 
@@ -96,7 +96,7 @@ std::string written(const TomlValue& value, std::size_t longest_text, std::size_
     case TomlValue::Type::array:
       break;
   }
-  const std::string items = joined(std::views::take(value.items, static_cast<std::ptrdiff_t>(most_items)),
+  const std::string items = joined(std::span(value.items).first(std::min(value.items.size(), most_items)),
                                    [&](const TomlValue& item) { return written(item, longest_text, most_items); });
   return fmt::format("[{}{}]", items, value.items.size() > most_items ? ", ..." : "");
 }

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <ranges>
 #include <vector>
 
 #include "equidem/core/text.hpp"
@@ -27,7 +26,7 @@ void write_disc_csv(const std::filesystem::path& path, const AssemblyState& stat
   assert_consistent(state);
   const Assembly& a = state.assembly;
   Table table;
-  table.add("disc", std::views::iota(std::size_t{0}, a.size()), std::identity());
+  table.add("disc", a.centres, [&](const Vec2& centre) { return &centre - a.centres.data(); });
   table.add("x_m", a.centres, &Vec2::x).add("y_m", a.centres, &Vec2::y).add("radius_m", a.radii);
   if (!state.motions.empty()) {
     table.add("ux_m", state.motions, [](const DiscMotion& m) { return m.u.x; });
@@ -72,7 +71,7 @@ void write_grain_csv(const std::filesystem::path& path, const GrainRows& rows, b
   assert(rows.groups.size() == grains.size() && rows.densities.size() == grains.size());
   const auto any = [&](GrainShape shape) { return std::ranges::find(grains, shape, &Grain::shape) != grains.end(); };
   Table table;
-  table.add("grain", std::views::iota(std::size_t{0}, grains.size()), std::identity());
+  table.add("grain", grains, [&](const Grain& grain) { return &grain - grains.data(); });
   table.add("group", rows.groups, std::identity());
   table.add("x_m", grains, [](const Grain& g) { return g.position.x; });
   table.add("y_m", grains, [](const Grain& g) { return g.position.y; });
