@@ -62,6 +62,7 @@ TEST_CASE("every_lattice_has_the_moduli_of_its_relation_and_the_tension_test_tha
     for (const double ratio : {0.25, 1.0}) {
       if (lattice.relation.equal_springs != nullptr && ratio != 1) continue;
       CAPTURE(lattice.name, ratio);
+      REQUIRE((lattice.make != nullptr && lattice.relation.moduli != nullptr && lattice.relation.springs != nullptr));
       const SpringConstants k{1e9, ratio * 1e9};
       const SheetModuli moduli = lattice.relation.moduli(k, {});
       const Assembly cell = lattice.make({.columns = 4, .rows = 4, .radius = 0.005, .periodic = true});

@@ -13,14 +13,6 @@ constexpr Lattice known_lattices[] = {
     lattices::hexagonal,
 };
 
-static_assert(std::ranges::all_of(known_lattices,
-                                  [](const Lattice& lattice) {
-                                    return lattice.make != nullptr && lattice.relation.moduli != nullptr &&
-                                           lattice.relation.springs != nullptr;
-                                  }),
-              "a lattice needs `make`, `relation.moduli` and `relation.springs`; where no theory is known, the latter "
-              "two throw Error (lattices/lattice.hpp)");
-
 }  // namespace
 
 std::span<const Lattice> all_lattices() {
