@@ -11,8 +11,8 @@
 
 namespace equidem::test {
 
-/// That scene with a kind that no body is of, whose contacts slide always with each other and have springs with the
-/// rest: with both in a scene contacts are computed one by one.
+/// The scene with an added kind that no body has. Its contacts always slide among themselves and have springs with the
+/// rest: a scene with both computes contacts one by one.
 inline GrainScene one_by_one(GrainScene scene) {
   PairProperties sprung = scene.pairs[0], sliding = scene.pairs[0];
   sprung.friction = sliding.friction = 0.1;

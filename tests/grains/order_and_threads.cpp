@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What must not change a bit: the order in which bodies are listed, the number of threads, the margin of the neighbour
-/// lists.
+/// Results are bit-identical for every order of the bodies, number of threads and margin of the neighbour lists.
 #include <numeric>
 
 #include "equidem/core/threads.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What must not change a bit with ellipses and clumps: order, margin, saving.
+/// Results with ellipses and clumps are bit-identical for every order of the bodies and margin, and after a restore.
 #include "grains/resuming.hpp"
 #include "grains/shapes.hpp"
 #include "support/catch.hpp"

@@ -20,7 +20,7 @@
 
 namespace equidem::test {
 
-/// What the library said and how far it is from the truth: errors and bounds are relative, of motions (2-norm,
+/// An answer of the library and its distance from the truth. Errors and bounds are relative, of motions (2-norm,
 /// rotations times the mean radius) or of the largest entry of the stiffness.
 struct Answer {
   double error = 0;

@@ -43,7 +43,7 @@ class Error : public std::runtime_error {
 
 /// Throw an Error of kind bad_input.
 [[noreturn]] void bad_input(std::string problem, std::string why, std::string remedy);
-/// The same with the place in the user's file, or the option at fault.
+/// Throw an Error of kind bad_input with a place: file, line and key, or the option at fault.
 [[noreturn]] void bad_input_at(std::string where, std::string problem, std::string why, std::string remedy);
 /// Whether a number is positive and finite.
 inline bool is_positive(double value) {

@@ -29,7 +29,7 @@ class SceneCheck {
  public:
   SceneCheck(const Scene& scene, const PlaceInScene& where) : scene_(scene), where_(where) {}
 
-  /// The same motion twice is allowed.
+  /// Two supports may prescribe the same motion of a disc.
   void supports() const {
     for (const Component& component : components) {
       std::map<std::int32_t, const TimedSupport*> prescribed;  // disc -> support

@@ -175,8 +175,8 @@ void check(const TimeStepOptions& wanted) {
   }
 }
 
-/// What mass-proportional damping leaves of a velocity after a step is exp(-alpha h), and (1 - alpha h/2)/(1 + alpha
-/// h/2) in leapfrog: stable for every h, but past 2/alpha velocities turn around from step to step. The fourth-order
+/// Mass-proportional damping scales a velocity by exp(-alpha h) in a step, in leapfrog by (1 - alpha h/2)/(1 + alpha
+/// h/2): stable for every h, but past 2/alpha velocities change sign from step to step. The fourth-order
 /// scheme goes back in time within a step, where velocities grow by exp(0.21 alpha h).
 void respect_mass_damping(TimeStep& step, const SimulationOptions& options, const TimeStepOptions& wanted) {
   const double alpha = options.damping.mass, longest = 2 / alpha;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What acts on bodies of either family.
+/// Walls and gravity: the part of a scene that bonded and colliding bodies share.
 #pragma once
 
 #include <vector>

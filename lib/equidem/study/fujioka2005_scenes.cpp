@@ -15,7 +15,7 @@ GrainScene on_floor(const PairProperties& pair) {
   return scene;
 }
 
-/// Of density 1 kg/m³.
+/// A sphere of density 1 kg/m³.
 Grain ball_at(Vec2 position, double radius) {
   return {.position = position, .radius = radius, .inertia = inertia_of(radius, 1, Body::sphere)};
 }
