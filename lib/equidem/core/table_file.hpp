@@ -29,6 +29,7 @@ class TableFile {
  public:
   /// \throws Error (bad_input) as read_file
   explicit TableFile(std::filesystem::path path);
+  ~TableFile() = default;
   TableFile(const TableFile&) = delete;  // cells refer to the content
   TableFile& operator=(const TableFile&) = delete;
 

@@ -25,6 +25,7 @@ std::string joined(const std::vector<std::string>& words, std::string_view separ
 template <std::ranges::input_range Range, std::invocable<std::ranges::range_reference_t<Range>> WordOf>
 std::string joined(Range&& range, const WordOf& word_of, std::string_view separator = ", ") {
   std::vector<std::string> words;
+  if constexpr (std::ranges::sized_range<Range>) words.reserve(std::ranges::size(range));
   for (const auto& element : range) words.emplace_back(word_of(element));
   return joined(words, separator);
 }
