@@ -62,10 +62,6 @@ std::string one_line(std::string text) {
   return text;
 }
 
-[[noreturn]] void usage_error(const std::string& problem, const std::string& why, const std::string& remedy) {
-  throw Error(ErrorKind::bad_input, problem, why, remedy);
-}
-
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& names, const std::string& otherwise) {
   const auto meant = nearest(word, names);
   return meant ? fmt::format("Did you mean '{}'?", *meant) : otherwise;
@@ -73,7 +69,7 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
 
 void check_refusals(const Program& program, const std::string& word) {
   for (const Refusal& refusal : program.refusals)
-    if (word == refusal.word) usage_error(refusal.problem, refusal.why, refusal.remedy);
+    if (word == refusal.word) bad_input(refusal.problem, refusal.why, refusal.remedy);
 }
 
 /// Report an error of CLI11 as one of the program.
@@ -85,14 +81,14 @@ void check_refusals(const Program& program, const std::string& word) {
     for (const std::string& extra : verb.remaining()) {
       check_refusals(program, extra.substr(0, extra.find('=')));
       if (extra.starts_with("-"))
-        usage_error(fmt::format("unknown option '{}'", extra), "", did_you_mean(extra, options, help));
-      usage_error(fmt::format("'{}' is one argument too many", extra), "", help);
+        bad_input(fmt::format("unknown option '{}'", extra), "", did_you_mean(extra, options, help));
+      bad_input(fmt::format("'{}' is one argument too many", extra), "", help);
     }
   }
   std::string problem = one_line(error.what());
   if (problem.starts_with("CASE ")) problem = "the case file is missing";
   while (!problem.empty() && problem.back() == '.') problem.pop_back();
-  usage_error(problem, "", help);
+  bad_input(problem, "", help);
 }
 
 void show_help(const Program& program, const CLI::App& app, const std::vector<std::string>& arguments) {
@@ -116,8 +112,8 @@ void show_help(const Program& program, const CLI::App& app, const std::vector<st
     }
     topics.push_back(command->get_name());
   }
-  usage_error(fmt::format("there is no help on '{}'", arguments[1]), "",
-              did_you_mean(arguments[1], topics, fmt::format("There is help on {}", joined(topics))));
+  bad_input(fmt::format("there is no help on '{}'", arguments[1]), "",
+            did_you_mean(arguments[1], topics, fmt::format("There is help on {}", joined(topics))));
 }
 
 int run(const Program& program, const std::vector<std::string>& arguments) {
@@ -142,13 +138,13 @@ int run(const Program& program, const std::vector<std::string>& arguments) {
     return 0;
   }
   const std::string known = fmt::format("the {}s are {}", program.noun, joined(names));
-  if (arguments.empty()) usage_error(fmt::format("a {} is missing", program.noun), known, examples);
+  if (arguments.empty()) bad_input(fmt::format("a {} is missing", program.noun), known, examples);
   const auto verb = std::find_if(commands.begin(), commands.end(),
                                  [&](auto* command) { return arguments[0] == command->get_name(); });
   if (!arguments[0].starts_with("-") && verb == commands.end()) {
     check_refusals(program, arguments[0]);
-    usage_error(fmt::format("unknown {} '{}'", program.noun, arguments[0]), known,
-                did_you_mean(arguments[0], names, examples));
+    bad_input(fmt::format("unknown {} '{}'", program.noun, arguments[0]), known,
+              did_you_mean(arguments[0], names, examples));
   }
 
   try {
@@ -162,7 +158,7 @@ int run(const Program& program, const std::vector<std::string>& arguments) {
     return 0;
   } catch (const CLI::ParseError& error) {
     if (verb != commands.end()) parse_failure(program, **verb, error);
-    usage_error(fmt::format("unknown option '{}'", arguments[0]), "", examples);
+    bad_input(fmt::format("unknown option '{}'", arguments[0]), "", examples);
   }
   return verb == commands.end() ? 2 : runs[static_cast<std::size_t>(verb - commands.begin())]();
 }

@@ -24,8 +24,8 @@ bool acts(const Case& resolved) {
 
 Problem build_problem(Case resolved, std::optional<Assembly> given) {
   if (!acts(resolved)) {
-    throw Error(ErrorKind::bad_input, "nothing pulls or holds the assembly", "it would stay as it is",
-                "Add [test], or [[support]] and [[load]]", resolved.document.where());
+    bad_input_at(resolved.document.where(), "nothing pulls or holds the assembly", "it would stay as it is",
+                 "Add [test], or [[support]] and [[load]]");
   }
   Problem problem = problem_of(std::move(resolved), std::move(given));
   problem.supports = problem.resolved.supports;

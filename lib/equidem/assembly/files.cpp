@@ -49,36 +49,32 @@ const char* kind_of(const Json& value) {
   }
 }
 
-[[noreturn]] void refuse(const std::string& problem, const std::string& why, const std::string& remedy,
-                         const std::string& entry) {
-  throw Error(ErrorKind::bad_input, problem, why, remedy, entry);
-}
-
 [[noreturn]] void wrong_kind(const Json& value, const std::string& expected, const std::string& entry) {
-  refuse(fmt::format("{} stands where {} is expected", kind_of(value), expected), "", "Correct the entry", entry);
+  bad_input_at(entry, fmt::format("{} stands where {} is expected", kind_of(value), expected), "", "Correct the entry");
 }
 
 double number(const Json& value, const std::string& entry) {
   if (!value.is_number()) wrong_kind(value, "a number", entry);
   const auto result = value.get<double>();
-  if (!std::isfinite(result)) refuse("the number is not finite", "", "Correct the entry", entry);
+  if (!std::isfinite(result)) bad_input_at(entry, "the number is not finite", "", "Correct the entry");
   return result;
 }
 
 std::int32_t integer(const Json& value, const std::string& entry) {
   if (!value.is_number_integer()) {
     if (value.is_number()) {
-      refuse(fmt::format("{} stands where a whole number is expected", value.dump()), "", "Correct the entry", entry);
+      bad_input_at(entry, fmt::format("{} stands where a whole number is expected", value.dump()), "",
+                   "Correct the entry");
     }
     wrong_kind(value, "a whole number", entry);
   }
   const bool fits = value.is_number_unsigned() ? value.get<std::uint64_t>() <= std::numeric_limits<std::int32_t>::max()
                                                : value.get<std::int64_t>() >= std::numeric_limits<std::int32_t>::min();
   if (!fits) {
-    refuse(fmt::format("{} is out of range", value.dump()),
-           fmt::format("discs and shifts are whole numbers of a magnitude up to {}",
-                       std::numeric_limits<std::int32_t>::max()),
-           "Correct the entry", entry);
+    bad_input_at(entry, fmt::format("{} is out of range", value.dump()),
+                 fmt::format("discs and shifts are whole numbers of a magnitude up to {}",
+                             std::numeric_limits<std::int32_t>::max()),
+                 "Correct the entry");
   }
   return value.get<std::int32_t>();
 }
@@ -91,17 +87,18 @@ void check_list(const Json& value, const std::string& entry) {
 void check_row(const Json& value, std::size_t count, const char* names, const std::string& entry) {
   check_list(value, entry);
   if (value.size() == count) return;
-  refuse(fmt::format("{} {} where {} are expected", counted(value.size(), "number"),
-                     value.size() == 1 ? "stands" : "stand", count),
-         fmt::format("an entry is [{}]", names), "Correct the entry", entry);
+  bad_input_at(entry,
+               fmt::format("{} {} where {} are expected", counted(value.size(), "number"),
+                           value.size() == 1 ? "stands" : "stand", count),
+               fmt::format("an entry is [{}]", names), "Correct the entry");
 }
 
 /// A list of `count` entries, one for each `what`.
 void check_list_per(const char* what, const Json& value, std::size_t count, const std::string& entry) {
   check_list(value, entry);
   if (value.size() == count) return;
-  refuse(fmt::format("{} for {}", counted(value.size(), "entry", "entries"), counted(count, what)),
-         "there must be one for each", "Correct the list or remove it", entry);
+  bad_input_at(entry, fmt::format("{} for {}", counted(value.size(), "entry", "entries"), counted(count, what)),
+               "there must be one for each", "Correct the list or remove it");
 }
 
 /// "key": one pair of numbers for each of `count`; take(k, first, second). Nothing where the file has no such key.
@@ -123,20 +120,21 @@ void check_keys(const Json& file) {
   if (!file.is_object()) wrong_kind(file, "an object with the keys schema, discs, ...", "");
   const auto found = file.find("schema");
   if (found == file.end() || *found != assembly_schema) {
-    refuse(found == file.end() ? std::string("the key 'schema' is missing")
-                               : fmt::format("the schema is {}", found->dump()),
-           fmt::format("an assembly file has \"schema\": \"{}\"", assembly_schema),
-           "Add or correct it, if this is an assembly file", "schema");
+    bad_input_at("schema",
+                 found == file.end() ? std::string("the key 'schema' is missing")
+                                     : fmt::format("the schema is {}", found->dump()),
+                 fmt::format("an assembly file has \"schema\": \"{}\"", assembly_schema),
+                 "Add or correct it, if this is an assembly file");
   }
   for (const auto& [key, value] : file.items()) {
     if (std::find(known_keys.begin(), known_keys.end(), key) != known_keys.end()) continue;
     const auto meant = nearest(key, known_keys);
-    refuse(fmt::format("there is no key '{}'", key), "an assembly file is read strictly",
-           meant ? fmt::format("Did you mean '{}'?", *meant) : "Remove it", key);
+    bad_input_at(key, fmt::format("there is no key '{}'", key), "an assembly file is read strictly",
+                 meant ? fmt::format("Did you mean '{}'?", *meant) : "Remove it");
   }
   if (!file.contains("discs")) {
-    refuse("the key 'discs' is missing", "an assembly is made of discs", "Add \"discs\": [[x, y, radius], ...]",
-           "discs");
+    bad_input_at("discs", "the key 'discs' is missing", "an assembly is made of discs",
+                 "Add \"discs\": [[x, y, radius], ...]");
   }
   if (file.contains("title") && !file["title"].is_string()) wrong_kind(file["title"], "a text", "title");
 }
@@ -201,21 +199,22 @@ void refuse_repeated(const Assembly& assembly) {
   if (!twice) return;
   const auto& [first, second] = *twice;
   const Contact& c = assembly.contacts[first];
-  refuse(fmt::format("contacts {} and {} are the same, of discs {} and {}", first, second, std::min(c.i, c.j),
-                     std::max(c.i, c.j)),
-         "its springs would count twice", "Remove one of them", fmt::format("contacts[{}]", second));
+  bad_input_at(fmt::format("contacts[{}]", second),
+               fmt::format("contacts {} and {} are the same, of discs {} and {}", first, second, std::min(c.i, c.j),
+                           std::max(c.i, c.j)),
+               "its springs would count twice", "Remove one of them");
 }
 
 void read_contacts(const Json& file, Assembly& assembly) {
   if (!file.contains("contacts")) {
     for (const char* key : {"levers", "normals", "offsets", "springs"}) {
       if (!file.contains(key)) continue;
-      refuse(fmt::format("there are {} but no contacts", key), "they are given in the order of the contacts",
-             "Add \"contacts\"", key);
+      bad_input_at(key, fmt::format("there are {} but no contacts", key), "they are given in the order of the contacts",
+                   "Add \"contacts\"");
     }
     if (file.contains("sections")) {
-      refuse("there are sections but no contacts", "only of discs it is known where they touch", "Add \"contacts\"",
-             "sections");
+      bad_input_at("sections", "there are sections but no contacts", "only of discs it is known where they touch",
+                   "Add \"contacts\"");
     }
     check(assembly);
     assembly.contacts = touching_discs(assembly);
@@ -248,9 +247,9 @@ void read_levers_and_springs(const Json& file, Assembly& assembly) {
   if (file.contains("normals") || file.contains("offsets")) {
     for (const char* key : {"levers", "normals", "offsets"}) {
       if (file.contains(key)) continue;
-      refuse(fmt::format("the key '{}' is missing", key),
-             "off the line of centres a contact has a normal, levers along it and offsets across it",
-             fmt::format("Add \"{}\"", key), key);
+      bad_input_at(key, fmt::format("the key '{}' is missing", key),
+                   "off the line of centres a contact has a normal, levers along it and offsets across it",
+                   fmt::format("Add \"{}\"", key));
     }
     assembly.contact_arms.resize(contacts);
   }
@@ -278,17 +277,18 @@ DiscGroup read_group(const Json& value, const std::string& entry) {
         lengths = &part;
         continue;
       }
-      refuse(fmt::format("there is no key '{}' in a group", key), "its keys are 'discs' and 'tributary_lengths'",
-             "Correct or remove it", entry);
+      bad_input_at(entry, fmt::format("there is no key '{}' in a group", key),
+                   "its keys are 'discs' and 'tributary_lengths'", "Correct or remove it");
     }
-    if (!value.contains("discs")) refuse("the key 'discs' is missing", "", "Add the list of discs", entry);
+    if (!value.contains("discs")) bad_input_at(entry, "the key 'discs' is missing", "", "Add the list of discs");
     discs = &value["discs"];
   }
   check_list(*discs, entry);
   if (lengths != nullptr) check_list(*lengths, entry);
   if (lengths != nullptr && lengths->size() != discs->size()) {
-    refuse(fmt::format("{} for {}", counted(lengths->size(), "tributary length"), counted(discs->size(), "disc")),
-           "there must be one for each", "Correct the list or remove it", entry);
+    bad_input_at(entry,
+                 fmt::format("{} for {}", counted(lengths->size(), "tributary length"), counted(discs->size(), "disc")),
+                 "there must be one for each", "Correct the list or remove it");
   }
   std::vector<std::pair<std::int32_t, double>> members;
   for (std::size_t k = 0; k < discs->size(); ++k) {
@@ -306,7 +306,7 @@ DiscGroup read_group(const Json& value, const std::string& entry) {
 
 Json parse(const std::string& text) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
-    refuse("the file is empty", "an assembly is made of discs", "Write it again", "line 1, column 1");
+    bad_input_at("line 1, column 1", "the file is empty", "an assembly is made of discs", "Write it again");
   }
   std::vector<std::set<std::string>> keys;  // of the objects that are open
   const auto refuse_repeated = [&](int, Json::parse_event_t event, Json& parsed) {
@@ -314,7 +314,8 @@ Json parse(const std::string& text) {
     if (event == Json::parse_event_t::object_end) keys.pop_back();
     if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second) {
       const auto key = parsed.get<std::string>();
-      refuse(fmt::format("the key '{}' is there twice", key), "one of the two would be dropped", "Remove one", key);
+      bad_input_at(key, fmt::format("the key '{}' is there twice", key), "one of the two would be dropped",
+                   "Remove one");
     }
     return true;
   };
@@ -326,12 +327,12 @@ Json parse(const std::string& text) {
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
     const std::size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
     const bool truncated = error.byte > text.size() || text.empty();
-    refuse(truncated ? "the file ends in the middle of an entry" : "this is not JSON",
-           fmt::format("reading stopped at byte {} of {}", byte, text.size()),
-           truncated ? "Get the whole file: it was cut off" : "Correct the text there",
-           fmt::format("line {}, column {}", line, std::max<std::size_t>(byte, line_start + 1) - line_start));
+    bad_input_at(fmt::format("line {}, column {}", line, std::max<std::size_t>(byte, line_start + 1) - line_start),
+                 truncated ? "the file ends in the middle of an entry" : "this is not JSON",
+                 fmt::format("reading stopped at byte {} of {}", byte, text.size()),
+                 truncated ? "Get the whole file: it was cut off" : "Correct the text there");
   } catch (const Json::exception&) {
-    refuse("a number is too large for a double", "the largest is 1.8e308", "Correct it", "");
+    bad_input("a number is too large for a double", "the largest is 1.8e308", "Correct it");
   }
 }
 

@@ -42,7 +42,7 @@ std::string TableFile::where() const {
 }
 
 void TableFile::fail(std::string problem, std::string why, std::string remedy) const {
-  throw Error(ErrorKind::bad_input, std::move(problem), std::move(why), std::move(remedy), where());
+  bad_input_at(where(), std::move(problem), std::move(why), std::move(remedy));
 }
 
 }  // namespace equidem

@@ -5,6 +5,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <functional>
 #include <ranges>
 #include <string>
 #include <string_view>
@@ -21,12 +22,12 @@ inline std::string counted(long long count, const std::string& singular, const s
 
 /// The words with a separator between them.
 std::string joined(const std::vector<std::string>& words, std::string_view separator = ", ");
-/// The words word_of(element) of the elements of a range, with a separator between them.
+/// The words word_of(element) of the elements of a range, with a separator between them; a member gives them, too.
 template <std::ranges::input_range Range, std::invocable<std::ranges::range_reference_t<Range>> WordOf>
 std::string joined(Range&& range, const WordOf& word_of, std::string_view separator = ", ") {
   std::vector<std::string> words;
   if constexpr (std::ranges::sized_range<Range>) words.reserve(std::ranges::size(range));
-  for (const auto& element : range) words.emplace_back(word_of(element));
+  for (const auto& element : range) words.emplace_back(std::invoke(word_of, element));
   return joined(words, separator);
 }
 

@@ -39,6 +39,9 @@ constexpr double cross(Vec2 a, Vec2 b) {
 constexpr Vec2 perpendicular(Vec2 a) {
   return {-a.y, a.x};
 }
+constexpr double squared(double x) {
+  return x * x;
+}
 constexpr double squared(Vec2 a) {
   return dot(a, a);
 }

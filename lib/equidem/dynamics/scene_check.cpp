@@ -92,7 +92,7 @@ class SceneCheck {
   [[nodiscard]] std::string place_of(const std::string& path) const { return where_ ? where_(path) : path; }
   [[noreturn]] void fail(const std::string& path, const std::string& problem, const std::string& why,
                          const std::string& remedy) const {
-    throw Error(ErrorKind::bad_input, problem, why, remedy, place_of(path));
+    bad_input_at(place_of(path), problem, why, remedy);
   }
 
   /// No support prescribes a component of the discs with the velocity k.

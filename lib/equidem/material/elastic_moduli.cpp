@@ -62,22 +62,22 @@ Words given_in(const ElasticMaterial& m) {
   const auto distance = [&](const Words& set) { return without(set, given).size() + without(given, set).size(); };
   const Words& meant = *std::ranges::min_element(sets, {}, distance);
   const Words missing = without(meant, given), surplus = without(given, meant);
-  std::string why =
-      missing.empty() ? "" : fmt::format("{} {} missing", listed(missing), missing.size() == 1 ? "is" : "are");
-  if (!surplus.empty())
-    why +=
-        fmt::format("{}{} {} too much", why.empty() ? "" : ", ", listed(surplus), surplus.size() == 1 ? "is" : "are");
-  throw Error(
-      ErrorKind::bad_input,
+  Words why;
+  const auto add = [&](const Words& names, const char* fault) {
+    if (!names.empty()) why.push_back(fmt::format("{} {} {}", listed(names), names.size() == 1 ? "is" : "are", fault));
+  };
+  add(missing, "missing");
+  add(surplus, "too much");
+  bad_input_at(
+      surplus.empty() ? "" : surplus.front(),
       fmt::format("{} {} not describe an isotropic continuum", listed(given), given.size() == 1 ? "alone does" : "do"),
-      why, remedy, surplus.empty() ? "" : surplus.front());
+      joined(why), remedy);
 }
 
 ElasticModuli moduli_from_waves(double p, double s, double density, Plane plane) {
   if (s >= p)
-    throw Error(ErrorKind::bad_input, fmt::format("s_wave_speed = {} is not below p_wave_speed = {}", s, p),
-                "K = density (Vp² - Vs²) must be positive for the body to be stable", "Correct the speeds",
-                "s_wave_speed");
+    bad_input_at("s_wave_speed", fmt::format("s_wave_speed = {} is not below p_wave_speed = {}", s, p),
+                 "K = density (Vp² - Vs²) must be positive for the body to be stable", "Correct the speeds");
   return moduli_from_bulk(density * (p - s) * (p + s), density * s * s, plane);
 }
 

@@ -117,6 +117,10 @@ std::string matrix_lines(const std::string& name, const std::vector<std::vector<
   return text;
 }
 
+std::string title_of(const Result& part) {
+  return part.unit.empty() ? part.label : part.label + ", " + part.unit;
+}
+
 /// One row for each list, one column for each label; text to the left, numbers to the right.
 std::string table_lines(const std::vector<Results>& rows) {
   std::vector<std::vector<std::string>> cells(1);
@@ -124,7 +128,7 @@ std::string table_lines(const std::vector<Results>& rows) {
   for (const Results& row : rows) {
     for (const Result& part : row.parts()) {
       if (part.hidden || part.part != Result::Part::value) continue;
-      const std::string title = part.unit.empty() ? part.label : part.label + ", " + part.unit;
+      const std::string title = title_of(part);
       if (std::ranges::find(cells.front(), title) != cells.front().end()) continue;
       cells.front().push_back(title);
       left.push_back(std::holds_alternative<std::string>(part.value.value));
@@ -137,8 +141,7 @@ std::string table_lines(const std::vector<Results>& rows) {
     for (const Result& part : row.parts()) {
       if (part.part == Result::Part::note) ends.back() += part.label;
       if (part.hidden || part.part != Result::Part::value) continue;
-      const std::string title = part.unit.empty() ? part.label : part.label + ", " + part.unit;
-      const auto column = std::ranges::find(cells.front(), title) - cells.front().begin();
+      const auto column = std::ranges::find(cells.front(), title_of(part)) - cells.front().begin();
       line[static_cast<std::size_t>(column)] = shown_value(part.value, part.shown);
     }
     cells.push_back(std::move(line));
@@ -148,12 +151,10 @@ std::string table_lines(const std::vector<Results>& rows) {
     for (std::size_t k = 0; k < line.size(); ++k) widths[k] = std::max(widths[k], columns_of(line[k]));
   std::string text;
   for (std::size_t r = 0; r < cells.size(); ++r) {
-    std::string line;
-    for (std::size_t k = 0; k < left.size(); ++k) {
-      const std::string padding(widths[k] - columns_of(cells[r][k]), ' ');
-      line += (k == 0 ? "" : "  ") + (left[k] ? cells[r][k] + padding : padding + cells[r][k]);
-    }
-    line += (ends[r].empty() ? "" : "  ") + ends[r];
+    for (std::size_t k = 0; k < left.size(); ++k)
+      cells[r][k].insert(left[k] ? cells[r][k].size() : 0, widths[k] - columns_of(cells[r][k]), ' ');
+    if (!ends[r].empty()) cells[r].push_back(ends[r]);
+    std::string line = joined(cells[r], "  ");
     text += line.erase(line.find_last_not_of(' ') + 1) + "\n";
   }
   return text;

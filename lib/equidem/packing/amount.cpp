@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
@@ -13,31 +12,28 @@
 namespace equidem {
 namespace {
 
-[[noreturn]] void fail(const char* option, std::string problem, std::string why, std::string remedy) {
-  throw Error(ErrorKind::bad_input, std::move(problem), std::move(why), std::move(remedy), option);
-}
-
 void check(const PackingAmount& amount, const PackingOptions& options) {
   const bool falls = entry_of(options.method).open_top, dense = options.as_dense_as_possible;
   if (falls && options.box.periodic())
-    fail("sides", "bodies fall into a periodic box", "they would never come to rest", "Take walls, or another method");
+    bad_input_at("sides", "bodies fall into a periodic box", "they would never come to rest",
+                 "Take walls, or another method");
   if (falls && (amount.solid_fraction || dense))
-    fail("solid_fraction", "a solid fraction is asked for falling bodies",
-         "it results from the fall, lower with more friction", "Remove it");
+    bad_input_at("solid_fraction", "a solid fraction is asked for falling bodies",
+                 "it results from the fall, lower with more friction", "Remove it");
   if (dense && !entry_of(options.method).as_dense_as_possible)
-    fail("solid_fraction", fmt::format("solid_fraction = \"auto\" with {}", to_string(options.method)),
-         "the method has no rule to stop", "Give a number, or take growth");
+    bad_input_at("solid_fraction", fmt::format("solid_fraction = \"auto\" with {}", to_string(options.method)),
+                 "the method has no rule to stop", "Give a number, or take growth");
   const int given =
       int{amount.grains.has_value()} + int{amount.box.has_value()} + int{amount.solid_fraction.has_value()};
   if (given > 2)
-    fail("", "grains, box and solid_fraction are all given",
-         falls || dense ? "grains and box give the amount" : "two of them give the third", "Remove one of them");
+    bad_input("grains, box and solid_fraction are all given",
+              falls || dense ? "grains and box give the amount" : "two of them give the third", "Remove one of them");
   if (given < 2)
-    fail("", "the amount to pack is missing",
-         falls || dense ? "grains and box give it" : "two of grains, box and solid_fraction give it",
-         "Give two of them");
+    bad_input("the amount to pack is missing",
+              falls || dense ? "grains and box give it" : "two of grains, box and solid_fraction give it",
+              "Give two of them");
   if (amount.box && !(amount.box->x > 0 && amount.box->y > 0))
-    fail("box", "the box has no area", "width and height are positive", "Correct it");
+    bad_input_at("box", "the box has no area", "width and height are positive", "Correct it");
 }
 
 }  // namespace
@@ -51,8 +47,8 @@ void set_amount(const PackingAmount& amount, const SizeDistribution& sizes, Pack
     const double mean_area = unit_body_of(options.shape).area * moments_of(sizes).mean_square;
     const double wanted = std::round(*amount.solid_fraction * options.box.area() / mean_area);
     if (!(wanted >= 1 && wanted <= 1e7))
-      fail("box", fmt::format("{:.3g} bodies would fill the box", wanted), "they are 1 to 1e7",
-           "Change the box or the radii");
+      bad_input_at("box", fmt::format("{:.3g} bodies would fill the box", wanted), "they are 1 to 1e7",
+                   "Change the box or the radii");
     count = static_cast<std::int64_t>(wanted);
   }
   options.radii = draw_radii(sizes, count, random);

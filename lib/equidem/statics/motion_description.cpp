@@ -21,10 +21,6 @@ constexpr double roughly = 0.05;       ///< what uniform strain leaves of what a
 constexpr double moving_least = 1e-6;  ///< of the largest motion: less counts as rest
 constexpr double mechanical = 1e-18;   ///< round-off of the deformation by a mechanism
 
-double squared(double x) {
-  return x * x;
-}
-
 /// u = t + H (x - c) fitted to some discs by least squares.
 struct Field {
   Vec2 c, t;

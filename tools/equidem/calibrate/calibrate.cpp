@@ -97,8 +97,9 @@ int dry_run_calibration(const CommonOptions& options, const Problem& problem) {
 /// The case with springs that are not known yet.
 Problem problem_with_material(Case resolved) {
   if (!resolved.material) {
-    throw Error(ErrorKind::bad_input, "there is no [material]", "calibration looks for the springs that stand for it",
-                "Replace the springs by [material] with the moduli wanted", resolved.document.where());
+    bad_input_at(resolved.document.where(), "there is no [material]",
+                 "calibration looks for the springs that stand for it",
+                 "Replace the springs by [material] with the moduli wanted");
   }
   StageTimes times;
   Stopwatch watch;

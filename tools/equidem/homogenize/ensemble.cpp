@@ -21,9 +21,9 @@ constexpr const char* statistics_name = "ensemble.csv";
 HomogenizeOptions options_of(const Case& resolved) {
   const auto& boundary = resolved.homogenize.boundary;
   if (!boundary && !resolved.assembly.delaunay.periodic) {
-    throw Error(ErrorKind::bad_input, "the cells of the ensemble have free boundaries",
-                "their moduli lie between two answers, by displacements and by tractions at the boundary",
-                "Set assembly.periodic = true, or choose homogenize.boundary", resolved.where("ensemble"));
+    bad_input_at(resolved.where("ensemble"), "the cells of the ensemble have free boundaries",
+                 "their moduli lie between two answers, by displacements and by tractions at the boundary",
+                 "Set assembly.periodic = true, or choose homogenize.boundary");
   }
   return {.boundary = boundary.value_or(Boundary::periodic), .rotation = resolved.rotation, .solver = resolved.solver};
 }
@@ -51,8 +51,8 @@ std::vector<EnsembleSample> samples_to_keep(const CommonOptions& options, bool r
   stored.case_file = *options.out / "case.toml";
   stored.quiet = options.quiet;
   if (continued_part(stored, *options.out) != continued_part(options, *options.out)) {
-    throw Error(ErrorKind::bad_input, "the samples there are of another case", "they would not fit together",
-                "Choose another --out, or leave out --resume and pass --overwrite", stored.case_file.string());
+    bad_input_at(stored.case_file.string(), "the samples there are of another case", "they would not fit together",
+                 "Choose another --out, or leave out --resume and pass --overwrite");
   }
   return read_samples(table);
 }

@@ -62,9 +62,9 @@ ReachedAccuracy reached_by(const AccurateEnsemble& sampled, const EnsembleAccura
 
 int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, double accuracy) {
   if (!resolved.assembly.delaunay.periodic) {
-    throw Error(ErrorKind::bad_input, "--accuracy cannot be kept by samples with free boundaries",
-                "their moduli depend on the boundary far more than on the number of samples",
-                "Set assembly.periodic = true", resolved.where("assembly"));
+    bad_input_at(resolved.where("assembly"), "--accuracy cannot be kept by samples with free boundaries",
+                 "their moduli depend on the boundary far more than on the number of samples",
+                 "Set assembly.periodic = true");
   }
   check_ensemble_outputs(options);
   const EnsembleAccuracy wanted{.accuracy = accuracy,

@@ -120,10 +120,8 @@ int homogenize(const HomogenizeVerb& options) {
     return homogenize_to_accuracy(common, resolved, *options.accuracy);
   }
   if (resolved.ensemble) return homogenize_ensemble(common, resolved, options.resume);
-  if (options.resume) {
-    throw Error(ErrorKind::bad_input, "--resume has nothing to continue", "the case has no [ensemble]",
-                "Leave it out, or add [ensemble]");
-  }
+  if (options.resume)
+    bad_input("--resume has nothing to continue", "the case has no [ensemble]", "Leave it out, or add [ensemble]");
   check_outputs(common, resolved.output);
   const Problem problem = problem_of(std::move(resolved));
   if (common.dry_run) return dry_run_homogenization(common, problem);

@@ -32,8 +32,9 @@ double relative_distance(const std::vector<double>& a, const std::vector<double>
 
 RefinementOptions step_refinement(const BondedRun& given, double accuracy) {
   if (given.goes_to_rest()) {
-    throw Error(ErrorKind::bad_input, "--accuracy does not act on a run to rest", "run.until_rest is its accuracy",
-                "Leave it out, or set run.until_rest to the unbalanced force wanted", given.where("run.until_rest"));
+    bad_input_at(given.where("run.until_rest"), "--accuracy does not act on a run to rest",
+                 "run.until_rest is its accuracy",
+                 "Leave it out, or set run.until_rest to the unbalanced force wanted");
   }
   return {.accuracy = accuracy,
           .order = static_cast<double>(given.order()),
@@ -79,14 +80,14 @@ ReachedAccuracy StepSearch::reached() const {
       fmt::format("the time step, {:.6g} s in the case", case_step_), 1);
   std::vector<std::int64_t> before = pilots();
   before.insert(before.end(), proposed().begin(), std::prev(proposed().end()));
-  std::string list;
+  std::vector<std::string> numbers;
   double steps = 0;
-  for (std::size_t k = 0; k < before.size(); ++k) {
-    steps += static_cast<double>(before[k]);
-    list += fmt::format("{}{}", k == 0 ? "" : k + 1 < before.size() ? ", " : " and ", before[k]);
+  for (const std::int64_t count : before) {
+    steps += static_cast<double>(count);
+    numbers.push_back(fmt::format("{}", count));
   }
   reached.pilots_factor = steps / static_cast<double>(proposed().back());
-  reached.pilots = fmt::format("runs of {} steps", list);
+  reached.pilots = fmt::format("runs of {} steps", listed(std::move(numbers)));
   return reached;
 }
 

@@ -30,9 +30,8 @@ constexpr std::string_view step_line = "\n# step ", step_rule = " s, rule ";
 
 Case with_run(Case resolved) {
   if (!resolved.run) {
-    throw Error(ErrorKind::bad_input, "the case has no [run]",
-                "a run needs its duration, or to be told to come to rest", "Add [run] with duration or until_rest",
-                resolved.document.where());
+    bad_input_at(resolved.document.where(), "the case has no [run]",
+                 "a run needs its duration, or to be told to come to rest", "Add [run] with duration or until_rest");
   }
   return resolved;
 }

@@ -21,10 +21,10 @@ MissedEvent check_event(const Schedule& schedule, double step, double duration, 
   constexpr double most = 0.5;
   const MissedEvent missed = missed_event(schedule, step, duration);
   if (missed.share <= most) return missed;
-  throw Error(ErrorKind::bad_input,
-              fmt::format("its schedule has an event at {:.6g} s that steps of {:.6g} s miss", missed.time, step),
-              fmt::format("between two steps lie {:.0f} % of the range of its values", 100 * missed.share),
-              "Give a time_step well below its length, or let it last longer", where);
+  bad_input_at(where,
+               fmt::format("its schedule has an event at {:.6g} s that steps of {:.6g} s miss", missed.time, step),
+               fmt::format("between two steps lie {:.0f} % of the range of its values", 100 * missed.share),
+               "Give a time_step well below its length, or let it last longer");
 }
 
 }  // namespace equidem

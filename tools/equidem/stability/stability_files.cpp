@@ -55,8 +55,7 @@ Table critical_over_zone(const WaveSurvey& survey) {
 
 /// A plot along the path, with the points of symmetry marked.
 Plot along_path(const WaveSurvey& survey, const std::string& title, const std::string& y) {
-  const std::string names = joined(
-      survey.zone.path, [](const ZonePoint& corner) { return corner.name; }, " - ");
+  const std::string names = joined(survey.zone.path, &ZonePoint::name, " - ");
   Plot plot{.title = title, .x = {.label = "wave vector along " + names + ", rad/m"}, .y = {.label = y}};
   plot.x.min = 0;
   plot.x.max = survey.path.back().along;

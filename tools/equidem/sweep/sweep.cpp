@@ -186,9 +186,9 @@ std::vector<SweepPoint> points_to_keep(const SweepOptions& options, const Case& 
   const auto table = *options.common.out / table_name;
   if (!std::filesystem::exists(table)) return {};
   if (read_file(*options.common.out / "case.toml") != to_toml(base, *options.common.out)) {
-    throw Error(ErrorKind::bad_input, "the sweep there is of another case", "its points would not fit together",
-                "Choose another --out, or leave out --resume and pass --overwrite",
-                (*options.common.out / "case.toml").string());
+    bad_input_at((*options.common.out / "case.toml").string(), "the sweep there is of another case",
+                 "its points would not fit together",
+                 "Choose another --out, or leave out --resume and pass --overwrite");
   }
   return read_sweep_points(table, options.key);
 }

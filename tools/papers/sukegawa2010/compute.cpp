@@ -46,9 +46,8 @@ class Store {
     if (!folder_ || overwrite_ || !std::filesystem::exists(path)) return {};
     const std::string text = read_file(path);
     if (text.find("\"" + settings + "\"") == std::string::npos) {
-      throw Error(ErrorKind::bad_input, "the run there has other settings",
-                  "results of different settings must not be mixed",
-                  "Choose another --out, or give --overwrite to start again", path.string());
+      bad_input_at(path.string(), "the run there has other settings", "results of different settings must not be mixed",
+                   "Choose another --out, or give --overwrite to start again");
     }
     Outcome outcome;
     for (const OutcomeKey& key : outcome_keys)

@@ -128,8 +128,7 @@ void check_table(const GrainScene& scene, const GrainOptions& options) {
 
 [[noreturn]] void refuse_grain(std::size_t grain, const PlaceOfGrain& where, std::string problem, std::string why,
                                std::string remedy) {
-  throw Error(ErrorKind::bad_input, std::move(problem), std::move(why), std::move(remedy),
-              where ? where(grain) : std::string());
+  bad_input_at(where ? where(grain) : "", std::move(problem), std::move(why), std::move(remedy));
 }
 
 /// Nothing may start inside something else.
@@ -273,8 +272,8 @@ void check_bonds(const GrainScene& scene, const PlaceOfBond& where) {
   const auto twice = std::ranges::adjacent_find(order, {}, tied);
   if (twice == order.end()) return;
   const auto [i, j] = tied(*twice);
-  throw Error(ErrorKind::bad_input, fmt::format("grains {} and {} are bonded twice", i, j), "one bond ties them",
-              "Give the sum of both", place(*std::next(twice)));
+  bad_input_at(place(*std::next(twice)), fmt::format("grains {} and {} are bonded twice", i, j), "one bond ties them",
+               "Give the sum of both");
 }
 
 }  // namespace equidem

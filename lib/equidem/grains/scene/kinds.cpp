@@ -26,10 +26,8 @@ void check_name(const std::string& name, const std::string& option, std::vector<
     for (const Wall& wall : walls) groups.push_back(wall.name);
   if (contains(groups, name)) return;
   const auto meant = nearest(name, groups);
-  std::string list;
-  for (const std::string& choice : groups) list += fmt::format("{}'{}'", list.empty() ? "" : ", ", choice);
   bad_input_at(option, fmt::format("\"{}\" is no group of grains{}", name, walls_too ? " and no wall" : ""),
-               fmt::format("there are {}", list),
+               "there are " + joined(groups, [](const std::string& choice) { return "'" + choice + "'"; }),
                meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Name one of them");
 }
 

@@ -23,10 +23,10 @@ SpringConstants springs_of(const WaveSpeedStiffness& given) {
 
 /// "exact_flow or linear_dashpot": laws with linear spring and dashpot.
 std::string linear_laws_with_dashpot() {
-  std::string names;
+  std::vector<std::string> names;
   for (const LawDescription& law : normal_laws())
-    if (law.has_dashpot && law.spring_power == 1) names += (names.empty() ? "" : " or ") + std::string(law.name);
-  return names;
+    if (law.has_dashpot && law.spring_power == 1) names.emplace_back(law.name);
+  return listed(std::move(names), " or ");
 }
 
 /// Requirements of each way to give the stiffness of a contact.

@@ -121,14 +121,13 @@ std::string first_differences(std::string_view there, std::string_view here) {
   const auto show = [](const std::vector<std::string_view>& lines, std::size_t k) {
     return k < lines.size() ? fmt::format("'{}'", lines[k]) : std::string("nothing");
   };
-  std::string text;
-  const int most = a.size() == b.size() ? 3 : 1;
-  int shown = 0;
-  for (std::size_t k = 0; k < std::max(a.size(), b.size()) && shown < most; ++k) {
+  std::vector<std::string> shown;
+  const std::size_t most = a.size() == b.size() ? 3 : 1;
+  for (std::size_t k = 0; k < std::max(a.size(), b.size()) && shown.size() < most; ++k) {
     if (k < a.size() && k < b.size() && a[k] == b[k]) continue;
-    text += fmt::format("{}line {}: {} there, {} here", shown++ > 0 ? "; " : "", k + 1, show(a, k), show(b, k));
+    shown.push_back(fmt::format("line {}: {} there, {} here", k + 1, show(a, k), show(b, k)));
   }
-  return shown > 0 ? text : "the ends of their lines";
+  return shown.empty() ? "the ends of their lines" : joined(shown, "; ");
 }
 
 /// Energies and paths as arrays beside those of the state; names that no simulation uses.
@@ -170,9 +169,8 @@ Hdf5Layout layout_of(const std::vector<SavedArray>& arrays, const std::string& c
     std::vector<std::uint64_t> shape{array.values.size() / array.columns};
     if (array.columns > 1) shape.push_back(array.columns);
     layout.arrays.push_back({array.name, Hdf5Number::float64, std::move(shape)});
-    std::string& names = layout.attributes["arrays"];
-    names += (names.empty() ? "" : " ") + array.name;
   }
+  layout.attributes["arrays"] = joined(arrays, &SavedArray::name, " ");
   return layout;
 }
 

@@ -191,7 +191,7 @@ std::int64_t StoredTable::integer(std::size_t row, std::size_t column, std::int6
 }
 
 void StoredTable::refuse(const std::string& why) const {
-  throw Error(ErrorKind::bad_input, "the samples to continue cannot be read", why, remedy_, path_.string());
+  bad_input_at(path_.string(), "the samples to continue cannot be read", why, remedy_);
 }
 
 }  // namespace equidem

@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "equidem/core/text.hpp"
@@ -165,13 +166,10 @@ std::string axis_scale(char letter, const Axis& axis, const AxisRange& range) {
   if (std::log10(range.max / range.min) > 2 || range.min < 1e-4 || range.max > 1e5) {
     return text + fmt::format("set format {} '10^{{%T}}'\n", letter);
   }
-  std::string tics;
-  for (int decade = -5; decade <= 5; ++decade) {
-    for (const int digit : {1, 2, 5}) {
-      tics += fmt::format("{}{}e{}", tics.empty() ? "" : ", ", digit, decade);
-    }
-  }
-  return text + fmt::format("set format {0} '%g'\nset {0}tics ({1})\n", letter, tics);
+  std::vector<std::string> tics;
+  for (int decade = -5; decade <= 5; ++decade)
+    for (const int digit : {1, 2, 5}) tics.push_back(fmt::format("{}e{}", digit, decade));
+  return text + fmt::format("set format {0} '%g'\nset {0}tics ({1})\n", letter, joined(tics));
 }
 
 }  // namespace
@@ -244,17 +242,14 @@ std::string plot_script(const std::string& name, const Plot& plot, const PlotDat
   }
   for (const VerticalLine& line : plot.vertical_lines) text += vertical_line(line, plain);
 
-  std::string command;
-  for (std::size_t k = 0; k < plot.series.size(); ++k) {
-    for (const std::string& clause : plot_clauses(plot, plot.series[k], data.places[k], y, plain)) {
-      command += (command.empty() ? "plot " : ", \\\n     ") + clause;
-    }
-  }
+  std::vector<std::string> clauses;
+  for (std::size_t k = 0; k < plot.series.size(); ++k)
+    std::ranges::move(plot_clauses(plot, plot.series[k], data.places[k], y, plain), std::back_inserter(clauses));
   // Each terminal of gnuplot has its own unit for the size of markers and fonts.
   text += fmt::format(
       "\nset terminal svg size 900,650 enhanced font 'sans-serif,16' background rgb 'white'\n"
-      "set output {}\nmarker = 0.72\n{}\n",
-      gnuplot_string(name + ".svg"), command);
+      "set output {}\nmarker = 0.72\nplot {}\n",
+      gnuplot_string(name + ".svg"), joined(clauses, ", \\\n     "));
   text += fmt::format(
       "\nset terminal pngcairo size 900,650 enhanced font 'sans-serif,13' background rgb 'white'\n"
       "set output {}\nmarker = 1.25\nreplot\nset output\n",
