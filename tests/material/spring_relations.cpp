@@ -22,6 +22,25 @@ namespace {
 
 const IsotropicMeasures loose{0.8, 4.2 / (2 * pi)};
 
+/// Each disc of a honeycomb has three contacts: its two sublattices move against one another under shear, so that
+/// normal and tangential springs act in series. q = G/K = 2 kT/(kN + kT) lies between 0 and 2.
+constexpr SpringRelation honeycomb{
+    .name = "honeycomb",
+    .place = "honeycomb lattice",
+    .source = "three contacts in series",
+    .validity = "",
+    .static_limit = "the honeycomb lattice is unstable for every kT < 0",
+    .moduli =
+        [](const SpringConstants& k, const IsotropicMeasures&) {
+          return SheetModuli{.bulk = k.kN / (2 * sqrt3), .shear = k.kN * k.kT / (sqrt3 * (k.kN + k.kT))};
+        },
+    .springs =
+        [](const ElasticModuli& moduli, double, const IsotropicMeasures&) {
+          const double K = moduli.bulk_modulus_2d(), q = moduli.shear_modulus / K;
+          return SpringConstants{2 * sqrt3 * K, 2 * sqrt3 * K * q / (2 - q)};
+        },
+};
+
 /// Elasticity of a set of bonds that follow a uniform strain, rotations in equilibrium (the mean rotation of the
 /// field): sum over bonds of kN nnnn + kT ssss over twice the area. Independent of Abe's derivation by Taylor series.
 struct Tensor {
@@ -72,7 +91,7 @@ TEST_CASE("springs_to_moduli_to_springs_is_the_identity") {
   for (const double kN : {1.0, 3e9}) {
     for (const double ratio : {-0.3, -0.1, 0.0, 0.1, 0.5, 1.0}) {
       if (relation.equal_springs != nullptr && ratio != 1.0) continue;
-      if (std::string_view(relation.equation) == "53" && ratio >= 5.0 / 9) continue;
+      if (std::string_view(relation.source) == "Abe 1996, eq. 53" && ratio >= 5.0 / 9) continue;
       const SpringConstants springs{kN, ratio * kN};
       const ElasticModuli moduli = moduli_of(springs, relation, loose, plane);
       CAPTURE(relation.name, to_string(plane), ratio, moduli.shear_modulus, moduli.poisson_ratio);
@@ -208,17 +227,41 @@ TEST_CASE("a_poisson_ratio_that_needs_negative_kT_is_refused_unless_static_only"
       GENERATE(isotropic_relation, lattices::hexagonal.relation, lattices::hexagonal_restrained);
   const std::string in_strain = refusal([&] { return springs_for({1, 0.3, Plane::strain}, relation, loose); });
   CAPTURE(in_strain);
-  CHECK(contains(in_strain, "Poisson's ratio is 0.3 in plane strain (above 1/4 it needs kT < 0"));
+  CHECK(contains(in_strain, "Poisson's ratio 0.3 in plane strain is out of the range of the "));
+  CHECK(contains(in_strain, ", -1 to 0.25 (above 0.25 it needs kT < 0, here kT/kN = -0."));
+  CHECK(contains(in_strain, relation.source));
   CHECK(contains(in_strain, "-1/3"));
-  CHECK(contains(in_strain, "at most 1/4, or allow kT < 0 with static_only = true."));
+  CHECK(contains(in_strain, "at most 0.25, or allow kT < 0 with static_only = true."));
   const std::string in_stress = refusal([&] { return springs_for({1, 0.34, Plane::stress}, relation, loose); });
   CAPTURE(in_stress);
-  CHECK(contains(in_stress, "Poisson's ratio is 0.34 in plane stress (above 1/3"));
+  CHECK(contains(in_stress, ", -1 to 0.333333 (above 0.333333"));
   CHECK_NOTHROW(springs_for({1, 0.3, Plane::stress}, relation, loose));
   const SpringConstants continued =
       springs_for({1, 0.3, Plane::strain}, relation, loose, NegativeTangential::static_only);
   CHECK(continued.kN > 0);
   CHECK(continued.kT < 0);
+}
+
+TEST_CASE("each_end_of_the_range_of_a_relation_is_refused_for_its_own_reason") {
+  for (const double nu : {-0.49, 0.0, 0.25, 0.3, 0.49}) {
+    CAPTURE(nu);
+    const SpringConstants k = springs_for({1, nu}, honeycomb);
+    CHECK(k.kT > 0);
+    CHECK(moduli_of(k, honeycomb).poisson_ratio == Approx(nu).margin(1e-14));
+  }
+  for (const auto negative : {NegativeTangential::refuse, NegativeTangential::static_only}) {
+    const std::string in_strain = refusal([&] { return springs_for({1, -0.6}, honeycomb, {}, negative); });
+    CAPTURE(in_strain);
+    CHECK(contains(in_strain,
+                   "Poisson's ratio -0.6 in plane strain is out of the range of the honeycomb lattice, -0.5 "
+                   "to 0.5 (by three contacts in series it falls with kT/kN, to -0.5 where kT/kN is "
+                   "infinite). Choose a Poisson's ratio above -0.5."));
+    const std::string in_stress = refusal([&] {
+      return springs_for({1, -0.4, Plane::stress}, honeycomb, {}, negative);
+    });
+    CAPTURE(in_stress);
+    CHECK(contains(in_stress, "honeycomb lattice, -0.333333 to 1 (by three contacts in series it falls"));
+  }
 }
 
 TEST_CASE("the_continuation_ends_where_the_body_is_incompressible") {

@@ -27,7 +27,7 @@ SpringConstants springs_of_moduli(const ElasticModuli& moduli, const Assembly& a
                                   const Lattice* lattice, NegativeTangential negative) {
   if (weighting != SpringWeighting::uniform && lattice != nullptr && lattice->relation.equal_springs != nullptr) {
     bad_input(fmt::format("the weighting is \"{}\" on the {}", to_string(weighting), lattice->relation.place),
-              fmt::format("its relation to moduli (Abe 1996, eq. {}) is for equal springs", lattice->relation.equation),
+              fmt::format("its relation to moduli ({}) is for equal springs", lattice->relation.source),
               "Use weighting = \"uniform\"");
   }
   const ChosenRelation chosen = spring_relation(assembly, weighting, lattice);

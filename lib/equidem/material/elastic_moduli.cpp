@@ -89,6 +89,12 @@ ElasticModuli ElasticModuli::read_as(Plane other) const {
   return {shear_modulus, other == Plane::strain ? nu / (1 + nu) : nu / (1 - nu), other};
 }
 
+double poisson_ratio_of(double shear_to_bulk, Plane plane) {
+  const double q = shear_to_bulk;
+  if (plane == Plane::strain) return std::max(-1.0, (1 - q) / 2);
+  return std::isfinite(q) ? (1 - q) / (1 + q) : -1;
+}
+
 double ElasticModuli::young_modulus() const {
   return 2 * shear_modulus * (1 + poisson_ratio);
 }

@@ -40,6 +40,8 @@ ElasticModuli moduli_from_young(double young_modulus, double poisson_ratio, Plan
 /// From the two-dimensional bulk modulus and G: nu2 = (K - G)/(K + G).
 /// \throws Error (bad_input) out of range
 ElasticModuli moduli_from_bulk(double bulk_modulus_2d, double shear_modulus, Plane plane);
+/// nu of the ratio G/K, at least -1: (1 - G/K)/2 in plane strain, (1 - G/K)/(1 + G/K) in plane stress.
+double poisson_ratio_of(double shear_to_bulk, Plane plane);
 /// \throws Error (bad_input) where a modulus is not positive and finite or nu is outside its range
 void check(const ElasticModuli& moduli);
 

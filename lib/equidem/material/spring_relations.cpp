@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
@@ -28,12 +29,24 @@ void check(const IsotropicMeasures& measures) {
   }
 }
 
-void refuse_negative_tangential(const ElasticModuli& moduli, const SpringRelation& relation) {
-  const char* largest = moduli.plane == Plane::strain ? "1/4" : "1/3";
-  bad_input(fmt::format("Poisson's ratio is {:.6g} in plane {}", moduli.poisson_ratio, to_string(moduli.plane)),
-            fmt::format("above {} it needs kT < 0, and no motion of the discs is stable then; {}", largest,
-                        relation.static_limit),
-            fmt::format("Choose a Poisson's ratio of at most {}, or allow kT < 0 with static_only = true", largest));
+/// \param springs of the moduli; none where nu lies at the lower end or below
+[[noreturn]] void refuse_outside(const ElasticModuli& moduli, const SpringRelation& relation,
+                                 const ShearToBulkRange& range, const std::optional<SpringConstants>& springs) {
+  const double lowest = poisson_ratio_of(range.greatest, moduli.plane);
+  const double highest = poisson_ratio_of(range.least, moduli.plane);
+  const std::string problem =
+      fmt::format("Poisson's ratio {:.12g} in plane {} is out of the range of the {}, {:.6g} to {:.6g}",
+                  moduli.poisson_ratio, to_string(moduli.plane), relation.place, lowest, highest);
+  if (!springs)
+    bad_input(problem,
+              fmt::format("by {} it falls with kT/kN, to {:.6g} where kT/kN is infinite", relation.source, lowest),
+              fmt::format("Choose a Poisson's ratio above {:.6g}", lowest));
+  bad_input(
+      problem,
+      fmt::format("above {:.6g} it needs kT < 0, here kT/kN = {:.4g} by {}, and no motion of the discs is stable "
+                  "then; {}",
+                  highest, springs->ratio(), relation.source, relation.static_limit),
+      fmt::format("Choose a Poisson's ratio of at most {:.6g}, or allow kT < 0 with static_only = true", highest));
 }
 
 /// 1 - 4 nu, nu in plane strain; exactly 0 where nu is 1/4 (1/3 in plane stress) to rounding, so that kT = 0 is met
@@ -62,7 +75,7 @@ void check(const SpringConstants& springs, const std::string& of) {
 constinit const SpringRelation isotropic_relation{
     .name = "mean field, eqs. (21), (22)",
     .place = "isotropic assembly",
-    .equation = "21",
+    .source = "Abe 1996, eqs. 21 and 22",
     .validity =
         "holds for nu <= 1/4 (plane strain; 1/3 in plane stress): above, kT < 0, and only a static answer "
         "exists. A mean-field estimate: every disc is taken to follow the smooth field (Abe 1996, eqs. 20 to "
@@ -82,6 +95,17 @@ constinit const SpringRelation isotropic_relation{
         },
 };
 
+double shear_to_bulk(const SpringRelation& relation, double ratio, const IsotropicMeasures& measures) {
+  const SheetModuli sheet = relation.moduli({1, ratio}, measures);
+  return sheet.bulk > 0 ? sheet.shear / sheet.bulk : std::numeric_limits<double>::infinity();
+}
+
+ShearToBulkRange shear_to_bulk_range(const SpringRelation& relation, const IsotropicMeasures& measures) {
+  constexpr double large = 1e12, finite = 1e6;  // where q grows with kT/kN, it is about as large
+  const double greatest = shear_to_bulk(relation, large, measures);
+  return {shear_to_bulk(relation, 0, measures), greatest < finite ? greatest : std::numeric_limits<double>::infinity()};
+}
+
 SpringConstants springs_for(const ElasticModuli& moduli, const SpringRelation& relation,
                             const IsotropicMeasures& measures, NegativeTangential negative) {
   check(moduli);
@@ -92,10 +116,13 @@ SpringConstants springs_for(const ElasticModuli& moduli, const SpringRelation& r
       bad_input(fmt::format("Poisson's ratio is {:.6g} on the {}", moduli.poisson_ratio, relation.place),
                 relation.equal_springs, "Set Poisson's ratio to 0, or use the hexagonal lattice");
     }
-  } else if (one_minus_4nu < 0 && negative == NegativeTangential::refuse) {
-    refuse_negative_tangential(moduli, relation);
+    return relation.springs(moduli, one_minus_4nu, measures);
   }
-  return relation.springs(moduli, one_minus_4nu, measures);
+  const ShearToBulkRange range = shear_to_bulk_range(relation, measures);
+  if (moduli.shear_modulus >= range.greatest * moduli.bulk_modulus_2d()) refuse_outside(moduli, relation, range, {});
+  const SpringConstants springs = relation.springs(moduli, one_minus_4nu, measures);
+  if (springs.kT < 0 && negative == NegativeTangential::refuse) refuse_outside(moduli, relation, range, springs);
+  return springs;
 }
 
 ElasticModuli moduli_of(const SpringConstants& springs, const SpringRelation& relation,
@@ -115,8 +142,7 @@ ElasticModuli moduli_of(const SpringConstants& springs, const SpringRelation& re
   }
   if (!(sheet.bulk > 0)) {
     bad_input(fmt::format("kT/kN is {:.6g} on the {}", springs.ratio(), relation.place),
-              fmt::format("K = G/(1 - 2 nu) of Abe 1996, eq. ({}) must be positive", relation.equation),
-              "Choose kT below kN");
+              fmt::format("K = G/(1 - 2 nu) by {} must be positive", relation.source), "Choose kT below kN");
   }
   return moduli_from_bulk(sheet.bulk, sheet.shear, plane);
 }

@@ -25,7 +25,7 @@ struct SheetModuli {
 struct SpringRelation {
   const char* name;                     ///< "hexagonal lattice, eq. (34)": reports
   const char* place;                    ///< "square lattice": messages
-  const char* equation;                 ///< its number in Abe (1996)
+  const char* source;                   ///< "Abe 1996, eq. 34": where it is derived, for reports and messages
   const char* validity;                 ///< "holds for nu <= 1/4 (plane strain): ...", a sentence or two for reports
   const char* static_limit;             ///< where kT < 0 is statically stable, a clause for messages
   bool needs_measures = false;          ///< IsotropicMeasures are used
@@ -39,14 +39,27 @@ struct SpringRelation {
 /// Mean field, eqs. (20) to (22): K = phi psi kN, G = phi psi (kN + kT)/2.
 extern const SpringRelation isotropic_relation;
 
+/// q = G/K of springs with this kT/kN; infinite where K is not positive.
+/// \throws Error (bad_input) as the relation
+double shear_to_bulk(const SpringRelation& relation, double ratio, const IsotropicMeasures& measures = {});
+
+/// The values of q that a relation gives without negative springs.
+struct ShearToBulkRange {
+  double least;     ///< at kT = 0
+  double greatest;  ///< as kT/kN grows; infinite where q grows without bound
+};
+/// \throws Error (bad_input) as the relation
+ShearToBulkRange shear_to_bulk_range(const SpringRelation& relation, const IsotropicMeasures& measures = {});
+
 /// Treatment of moduli whose relation yields kT < 0.
 enum class NegativeTangential {
   refuse,
   static_only,  ///< continue the relation: a static answer exists down to the critical ratio, a dynamic one does not
 };
 
-/// \throws Error (bad_input) with the range that can be represented: nu > 1/4 in plane strain (1/3 in plane stress)
-///         unless the static-only continuation is asked for, nu other than 0 on the square lattice, missing measures
+/// \throws Error (bad_input) with the range that can be represented: nu that needs kT < 0 (hexagonal lattice: above 1/4
+///         in plane strain, 1/3 in plane stress) unless the static-only continuation is asked for, nu below that of
+///         kT/kN -> infinity, nu other than 0 on the square lattice, missing measures
 SpringConstants springs_for(const ElasticModuli& moduli, const SpringRelation& relation,
                             const IsotropicMeasures& measures = {},
                             NegativeTangential negative = NegativeTangential::refuse);

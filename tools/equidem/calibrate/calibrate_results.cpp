@@ -132,9 +132,9 @@ void add_mean_field(Results& out, const MeanFieldGuess& guess, const ElasticModu
 /// The relation for restrained rotation beside the springs of a lattice whose discs do not turn.
 void add_operator(Results& out, const ElasticModuli& wanted, const SpringRelation& restrained) {
   const SpringConstants k = springs_for(wanted, restrained, {}, NegativeTangential::static_only);
-  out.line("displacements", fmt::format("eq. ({}) advises {}: it fits wave speeds and problems in which all of the "
+  out.line("displacements", fmt::format("{} advises {}: it fits wave speeds and problems in which all of the "
                                         "boundary is displaced, not the stress, which is calibrated here",
-                                        restrained.equation, shown_springs(k)));
+                                        restrained.source, shown_springs(k)));
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ namespace lattices {
 inline constexpr SpringRelation hexagonal_restrained{
     .name = "hexagonal lattice, rotation restrained, eq. (53)",
     .place = "hexagonal lattice with rotation restrained",
-    .equation = "53",
+    .source = "Abe 1996, eq. 53",
     .validity =
         "holds for nu <= 1/4 (plane strain; 1/3 in plane stress): above, kT < 0, and only a static answer exists. It "
         "matches the equation of the displacements, so wave speeds and problems with prescribed displacements, but not "
@@ -68,7 +68,7 @@ inline constexpr Lattice hexagonal{
     .relation = {
         .name = "hexagonal lattice, eq. (34)",
         .place = "hexagonal lattice",
-        .equation = "34",
+        .source = "Abe 1996, eq. 34",
         .validity = "holds for nu <= 1/4 (plane strain; 1/3 in plane stress): above, kT < 0, and a static answer "
                     "exists down to kT/kN = -1/3 on the periodic lattice, -0.26 with free edges, a dynamic one "
                     "never. Exact for uniform strain (Abe 1996, eq. 34).",

@@ -47,8 +47,7 @@ struct Lattice {
 
   /// Between equal springs and moduli as the stress shows them; calibrate uses it with rotation restrained, too.
   /// Neither function may be null. `moduli` throws Error (bad_input) where nothing is known: homogenize then leaves the
-  /// theory out. `springs` throws there, and for a Poisson's ratio that no springs give; above nu = 1/4 (plane strain)
-  /// springs_for() asks for kT < 0 before it is called. Reports print `equation` after "Abe 1996, eq.".
+  /// theory out; springs_for() and calibrate take the range of Poisson's ratios from it. `springs` throws there.
   SpringRelation relation;
   /// With rotation restrained: the relation that fits the equation of the displacements; null where none is known.
   const SpringRelation* restrained = nullptr;

@@ -27,7 +27,7 @@ inline constexpr Lattice square{
     .relation = {
         .name = "square lattice, eq. (31)",
         .place = "square lattice",
-        .equation = "31",
+        .source = "Abe 1996, eq. 31",
         .validity = "holds for nu = 0 and kT = kN = E only: the square lattice has C11 = kN, C12 = 0 and C66 = "
                     "kT/2, which is isotropic for kT = kN only, and nu = 0 then (Abe 1996, eq. 31).",
         .static_limit = "the square lattice is unstable for every kT < 0",

@@ -22,13 +22,6 @@ double shear_part(const Matrix3& c) {
   return (c[0][0] + c[1][1] - 2 * c[0][1] + 4 * c[2][2]) / 8;
 }
 
-/// q = G/K -> nu, at least -1.
-double poisson_ratio_of(double shear_to_bulk, Plane plane) {
-  const double q = shear_to_bulk;
-  if (plane == Plane::strain) return std::max(-1.0, (1 - q) / 2);
-  return std::isfinite(q) ? (1 - q) / (1 + q) : -1;
-}
-
 /// Boundary::periodic is taken as displacement where the assembly is not periodic.
 HomogenizeOptions homogenize_options(const Assembly& assembly, const CalibrateOptions& options) {
   HomogenizeOptions result = options.homogenize;
@@ -191,22 +184,18 @@ Calibration search(const Assembly& assembly, const ElasticModuli& target, const 
   return result;
 }
 
-[[noreturn]] void refuse_negative_lattice(const ElasticModuli& target, const Lattice& lattice, double ratio) {
-  bad_input(fmt::format("Poisson's ratio {:.12g} in plane {} needs kT < 0 on the {} lattice", target.poisson_ratio,
-                        to_string(target.plane), lattice.name),
-            fmt::format("kT/kN = {:.4g} by Abe 1996, eq. {}, and no motion of the discs is stable then", ratio,
-                        lattice.relation.equation),
-            fmt::format("Ask for a Poisson's ratio of at most {}, or allow kT < 0 with static_only = true",
-                        target.plane == Plane::strain ? "1/4" : "1/3"));
-}
-
-[[noreturn]] void refuse_unstable_lattice(const ElasticModuli& target, const Lattice& lattice, double ratio) {
-  const double highest = moduli_of({1, lattice.critical_ratio}, lattice.relation, {}, target.plane).poisson_ratio;
+[[noreturn]] void refuse_unstable_lattice(const ElasticModuli& target, const Lattice& lattice, double ratio,
+                                          bool static_only) {
+  const double highest = poisson_ratio_of(shear_to_bulk(lattice.relation, lattice.critical_ratio), target.plane);
+  const double positive = poisson_ratio_of(shear_to_bulk_range(lattice.relation).least, target.plane);
   bad_input(fmt::format("Poisson's ratio {:.9g} in plane {} is beyond the static limit of the {} lattice",
                         target.poisson_ratio, to_string(target.plane), lattice.name),
             fmt::format("it needs kT/kN = {:.6g}, and the infinite lattice is unstable at {:.6g} and below", ratio,
                         lattice.critical_ratio),
-            fmt::format("Ask for a Poisson's ratio below {:.6g}", highest));
+            static_only
+                ? fmt::format("Ask for a Poisson's ratio below {:.6g}", highest)
+                : fmt::format("Ask for a Poisson's ratio of at most {:.6g}, or below {:.6g} with static_only = true",
+                              positive, highest));
 }
 
 Calibration solve_lattice(const Assembly& assembly, const ElasticModuli& target, const CalibrateOptions& options) {
@@ -214,28 +203,25 @@ Calibration solve_lattice(const Assembly& assembly, const ElasticModuli& target,
   const SpringRelation& relation = lattice.relation;
   if (options.weighting != SpringWeighting::uniform) {
     bad_input(fmt::format("the weighting is \"{}\" on a lattice", to_string(options.weighting)),
-              fmt::format("its relation to moduli (Abe 1996, eq. {}) is for equal springs", relation.equation),
+              fmt::format("its relation to moduli ({}) is for equal springs", relation.source),
               "Use weighting = \"uniform\"");
   }
   const SpringConstants springs = springs_for(target, relation, {}, NegativeTangential::static_only);
   const double ratio = springs.ratio();
-  if (ratio < 0 && !options.static_only) refuse_negative_lattice(target, lattice, ratio);
-  if (ratio <= lattice.critical_ratio) refuse_unstable_lattice(target, lattice, ratio);
+  if (ratio <= lattice.critical_ratio) refuse_unstable_lattice(target, lattice, ratio, options.static_only);
+  if (!options.static_only) static_cast<void>(springs_for(target, relation));  // refuses kT < 0
   Calibration result;
-  // Without negative springs G/K rises with kT/kN from its value at kT = 0, where other than equal springs are
-  // possible.
-  const bool equal = relation.equal_springs != nullptr;
-  const SheetModuli least = relation.moduli({1, equal ? 1.0 : 0.0}, {});
-  result.smallest_shear_to_bulk = least.shear / least.bulk;
-  if (equal) result.largest_shear_to_bulk = result.smallest_shear_to_bulk;
+  const ShearToBulkRange range = shear_to_bulk_range(relation);
+  result.smallest_shear_to_bulk = range.least;
+  result.largest_shear_to_bulk = range.greatest;
   result.scanned = true;
-  result.method = fmt::format("closed form, Abe 1996, eq. ({})", relation.equation);
+  result.method = fmt::format("closed form, {}", relation.source);
   result.verified = assembly.periodic();
   if (result.verified) {
     Homogenizer homogenizer(assembly, options);
     if (!homogenizer.sample(ratio).stable) {
       if (homogenizer.failed()) homogenizer.fail();
-      refuse_unstable_lattice(target, lattice, ratio);
+      refuse_unstable_lattice(target, lattice, ratio, options.static_only);
     }
     // Not scaled to the wanted moduli: the closed form is tried as it is.
     homogenizer.deliver(springs.kN, result);

@@ -44,7 +44,7 @@ struct Calibration {
   double largest_shear_to_bulk = std::numeric_limits<double>::infinity();
   bool scanned = false;  ///< all ratios were searched for the extremes of G/K, as find_by_scan
   bool rising = true;    ///< G/K rose with kT/kN at every ratio tried, as FoundRatio
-  std::string method;    ///< "closed form, Abe 1996, eq. (34)", "Newton on kT/kN"
+  std::string method;    ///< "closed form, Abe 1996, eq. 34", "Newton on kT/kN"
   StageTimes times;      ///< of all factorizations
 
   /// Poisson's ratios without negative springs: (K - G)/(2K) or (K - G)/(K + G) at the ends, and at least -1, which
@@ -59,10 +59,10 @@ struct Calibration {
 /// ends, and before nu is refused, the whole range is scanned, some twenty factorizations. G and K are those of the
 /// nearest isotropic tensor.
 ///
-/// On a lattice the springs are (34) or (31) of Abe 1996. (34) also holds with rotation restrained: moduli are read
-/// from the symmetric part of stress by strain, which is independent of the mean rotation; (53), the relation by wave
-/// speeds and prescribed displacements, is springs_for(..., *Lattice::restrained). The square lattice can
-/// show nu = 0 only.
+/// On a lattice the springs are those of its relation. (34) of Abe 1996 also holds with rotation restrained: moduli are
+/// read from the symmetric part of stress by strain, which is independent of the mean rotation; (53), the relation by
+/// wave speeds and prescribed displacements, is springs_for(..., *Lattice::restrained). The square lattice can show nu
+/// = 0 only.
 /// \throws Error (bad_input) where nu is out of the range of this assembly, with the range and the nearest feasible
 ///         value; springs in the assembly file; as effective_stiffness and springs_for;
 ///         (computation_failed) as effective_stiffness; where the tolerance is not reached
