@@ -30,6 +30,46 @@ TEST_CASE("an_error_gains_the_place_that_caused_it_once") {
   CHECK(placed.problem() == "kN is -1 Pa");
 }
 
+TEST_CASE("a_long_word_of_the_user_is_shortened_in_the_sentence_and_kept_beside_it") {
+  const std::string key(100000, 'k');
+  const Error error(ErrorKind::bad_input, "unknown key '" + key + "'", "", "", key);
+  const std::string sentence = error.what();
+  CAPTURE(sentence);
+  CHECK(sentence == std::string(40, 'k') + "..." + std::string(16, 'k') + ": unknown key '" + std::string(39, 'k') +
+                        "..." + std::string(15, 'k') + "'.");
+  CHECK(error.where() == key);
+  const std::string path = "/" + std::string(198, 'd') + ":";
+  CHECK(with_short_words(path + " a  b ") == path + " a  b ");
+  CHECK(with_short_words(std::string(300, '\x80')) == "...");
+  std::string letters;
+  for (int k = 0; k < 200; ++k) letters += "é";
+  for (const std::string before : {"", "x"}) {
+    const std::string shorter = with_short_words(before + letters);
+    CAPTURE(shorter);
+    CHECK(columns_of(shorter) >= 30);
+    CHECK(columns_of(shorter) - before.size() - 3 == (shorter.size() - before.size() - 3) / 2);
+  }
+}
+
+TEST_CASE("parts_of_a_text_are_one_more_than_its_separators") {
+  using Parts = std::vector<std::string_view>;
+  CHECK(parts_of("1, ,2", ',') == Parts{"1", "", "2"});
+  CHECK(parts_of("", ',') == Parts{""});
+  CHECK(parts_of(",", ',') == Parts{"", ""});
+}
+
+TEST_CASE("words_are_joined_by_a_separator_and_listed_by_a_last_one") {
+  CHECK(joined({}) == "");
+  CHECK(joined({"a", "b", "c"}, "; ") == "a; b; c");
+  CHECK(joined(std::vector<int>{1, 2}, [](int k) { return fmt::format("{}", k); }) == "1, 2");
+  struct Named {
+    std::string name;
+  };
+  CHECK(joined(std::vector<Named>{{"x"}, {"y"}}, &Named::name, "-") == "x-y");
+  CHECK(listed({"a", "b", "c"}) == "a, b and c");
+  CHECK(listed({"a"}, " or ") == "a");
+}
+
 TEST_CASE("the_kind_of_an_error_is_the_exit_code") {
   const auto code_of = [](auto&& thrower) {
     try {

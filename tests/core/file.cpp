@@ -107,6 +107,17 @@ TEST_CASE("a_folder_is_no_file") {
   CHECK_THROWS_WITH(write_file(folder / "file/inside", "x", false), Catch::Contains("is not a folder"));
 }
 
+TEST_CASE("a_link_is_written_through_and_stays_a_link") {
+  const TemporaryFolder folder;
+  write_file(folder / "file", "old", false);
+  fs::create_symlink("file", folder / "link");
+  CHECK_THROWS_WITH(write_file(folder / "link", "new", false), Catch::Contains("exists already"));
+  write_file(folder / "link", "new", true);
+  CHECK(fs::is_symlink(folder / "link"));
+  CHECK(read_file(folder / "file") == "new");
+  CHECK_THROWS_WITH(check_writable("", true), Catch::Contains("is empty"));
+}
+
 TEST_CASE("a_missing_file_is_named") {
   const TemporaryFolder folder;
   CHECK_THROWS_WITH(read_file(folder / "absent.toml"),

@@ -10,12 +10,11 @@ namespace {
 
 std::string sentence(const std::string& problem, const std::string& why, const std::string& remedy,
                      const std::string& where) {
-  std::string text = where.empty() ? "" : where + ": ";
-  text += problem;
+  std::string text = (where.empty() ? "" : where + ": ") + problem;
   if (!why.empty()) text += " (" + why + ")";
   text += ".";
   if (!remedy.empty()) text += " " + remedy + (remedy.ends_with('?') ? "" : ".");
-  return text;
+  return with_short_words(text);
 }
 
 }  // namespace
@@ -33,7 +32,7 @@ Error Error::at(const std::string& where) const {
 }
 
 void bad_input(std::string problem, std::string why, std::string remedy) {
-  throw Error(ErrorKind::bad_input, std::move(problem), std::move(why), std::move(remedy));
+  bad_input_at({}, std::move(problem), std::move(why), std::move(remedy));
 }
 
 double check_positive(double value, const std::string& name, const std::string& unit) {

@@ -22,6 +22,12 @@ fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
+/// A device, a pipe or a link: written into. A file of its name would replace it, even /dev/null.
+bool is_kept(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored) && !fs::is_regular_file(fs::symlink_status(path, ignored));
+}
+
 [[noreturn]] void cannot_write(const fs::path& path, const std::string& reason) {
   bad_input(fmt::format("cannot write '{}'", path.string()), reason, "Choose a place that can be written to");
 }
@@ -50,10 +56,15 @@ std::string read_file(const fs::path& path) {
 
 void check_writable(const fs::path& path, bool overwrite) {
   std::error_code ignored;
+  if (path.empty()) bad_input("the name of a file to write is empty", "nothing can be found by it", "Name the file");
   if (fs::is_directory(path, ignored)) cannot_write(path, "it is a folder");
   if (fs::exists(path, ignored) && !overwrite) {
     bad_input(fmt::format("'{}' exists already", path.string()), "nothing of yours is overwritten unasked",
               "Choose another name, or pass --overwrite");
+  }
+  if (is_kept(path)) {
+    if (access(path.c_str(), W_OK) != 0) cannot_write(path, std::strerror(errno));
+    return;
   }
   fs::path folder = folder_of(path);
   while (!fs::exists(folder, ignored) && folder.has_parent_path() && folder != folder.parent_path()) {
@@ -74,17 +85,20 @@ void write_file(const fs::path& path, std::string_view content, bool overwrite) 
   std::error_code failed;
   fs::create_directories(folder_of(path), failed);
   if (failed) cannot_write(path, failed.message());
-  const fs::path temporary = path.string() + fmt::format(".{}.part", getpid());
-  {
-    std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
+  const auto write_to = [&](const fs::path& place) {
+    std::ofstream file(place, std::ios::binary | std::ios::trunc);
     file.write(content.data(), static_cast<std::streamsize>(content.size()));
     file.flush();
-    if (!file) {
-      const std::string reason = std::strerror(errno);
-      file.close();
-      fs::remove(temporary, failed);
-      cannot_write(path, reason);
-    }
+    return file ? std::string() : std::string(std::strerror(errno));
+  };
+  if (is_kept(path)) {
+    if (const std::string reason = write_to(path); !reason.empty()) cannot_write(path, reason);
+    return;
+  }
+  const fs::path temporary = path.string() + fmt::format(".{}.part", getpid());
+  if (const std::string reason = write_to(temporary); !reason.empty()) {
+    fs::remove(temporary, failed);
+    cannot_write(path, reason);
   }
   fs::rename(temporary, path, failed);
   if (failed) {

@@ -12,7 +12,8 @@ namespace equidem {
 /// \throws Error (bad_input) where the file does not exist, is a folder, or cannot be read
 std::string read_file(const std::filesystem::path& path);
 
-/// Write a file whole or not at all: into a temporary file beside it, then renamed. Missing folders are made.
+/// Write a file whole or not at all: into a temporary file beside it, then renamed. Missing folders are made. Devices,
+/// pipes and links are written into.
 /// \throws Error (bad_input) where it exists and `overwrite` is false, or where it cannot be written (with the
 ///         reason)
 void write_file(const std::filesystem::path& path, std::string_view content, bool overwrite);

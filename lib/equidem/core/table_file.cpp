@@ -11,12 +11,12 @@
 namespace equidem {
 namespace {
 
-/// The text before the separator, trimmed; it and the separator are taken off `rest`.
-std::string_view next_part(std::string_view& rest, char separator) {
-  const std::size_t end = std::min(rest.find(separator), rest.size());
-  const std::string_view part = trimmed(rest.substr(0, end));
+/// The line at the begin of the text, trimmed; it is taken off.
+std::string_view next_line(std::string_view& rest) {
+  const std::size_t end = std::min(rest.find('\n'), rest.size());
+  const std::string_view line = trimmed(rest.substr(0, end));
   rest.remove_prefix(std::min(end + 1, rest.size()));
-  return part;
+  return line;
 }
 
 }  // namespace
@@ -27,13 +27,11 @@ TableFile::TableFile(std::filesystem::path path)
 bool TableFile::next() {
   do {
     if (rest_.empty()) return false;
-    row_ = next_part(rest_, '\n');
+    row_ = next_line(rest_);
     ++line_;
   } while (row_.empty() || row_.front() == '#');
   ++count_;
-  cells_.clear();
-  std::string_view cells = row_;
-  for (auto commas = std::ranges::count(row_, ','); commas >= 0; --commas) cells_.push_back(next_part(cells, ','));
+  cells_ = parts_of(row_, ',');
   return true;
 }
 

@@ -18,6 +18,35 @@ std::string listed(std::vector<std::string> words, std::string_view last) {
   return joined(words).append(last).append(end);
 }
 
+std::vector<std::string_view> parts_of(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (std::size_t end = text.find(separator); end != std::string_view::npos; end = text.find(separator)) {
+    parts.push_back(trimmed(text.substr(0, end)));
+    text.remove_prefix(end + 1);
+  }
+  parts.push_back(trimmed(text));
+  return parts;
+}
+
+std::string with_short_words(std::string_view text) {
+  constexpr std::size_t longest = 200, first = 40, last = 17;
+  const auto inside_character = [&](std::size_t at) { return (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80; };
+  std::string result;
+  for (std::size_t begin = 0, end = 0; begin <= text.size(); begin = end + 1) {
+    end = std::min(text.find(' ', begin), text.size());
+    std::size_t head = end, tail = end;
+    if (end - begin > longest) {
+      for (head = begin + first; head > begin && inside_character(head);) --head;
+      for (tail = end - last; tail < end && inside_character(tail);) ++tail;
+    }
+    result.append(text.substr(begin, head - begin))
+        .append(head < tail ? "..." : "")
+        .append(text.substr(tail, end - tail));
+    if (end < text.size()) result += ' ';
+  }
+  return result;
+}
+
 std::string grouped(std::int64_t value) {
   std::string digits = fmt::format("{}", value);
   for (auto k = static_cast<std::ptrdiff_t>(digits.size()) - 3; k > (value < 0 ? 1 : 0); k -= 3)

@@ -34,6 +34,13 @@ std::string joined(Range&& range, const WordOf& word_of, std::string_view separa
 /// "a, b and c".
 std::string listed(std::vector<std::string> words, std::string_view last = " and ");
 
+/// The parts of a text between separators, trimmed; one more than there are separators.
+std::vector<std::string_view> parts_of(std::string_view text, char separator);
+
+/// The text with "..." in place of the middle of each word of more than 200 bytes, of which 60 stay: messages repeat
+/// words of the user's files. UTF-8 characters stay whole.
+std::string with_short_words(std::string_view text);
+
 /// The digits in groups of three: "1 293 000".
 std::string grouped(std::int64_t value);
 

@@ -18,14 +18,20 @@ namespace {
 namespace fs = std::filesystem;
 using Source = std::shared_ptr<const std::string>;
 
+constexpr const char* no_such_key = "no key of a file is that long";
+
 TomlValue plain(const toml::node& node, const Source& source) {
   using Type = TomlValue::Type;
+  constexpr std::size_t longest_key = 200;
   TomlValue value;
   value.source = source;
   value.line = static_cast<int>(node.source().begin.line);
   if (const toml::table* table = node.as_table()) {
     value.type = Type::table;
     for (const auto& [key, child] : *table) {
+      if (key.str().size() > longest_key)
+        bad_input_at(fmt::format("{}:{}", *source, key.source().begin.line),
+                     fmt::format("a key has {} bytes", key.str().size()), no_such_key, "Correct the key");
       TomlValue entry = plain(child, source);
       // The name stands where the reader looks; the value of a table may begin on a later line.
       entry.line = static_cast<int>(key.source().begin.line);
@@ -62,12 +68,25 @@ std::string in_one_line(std::string text) {
   return text;
 }
 
-/// Messages of toml++ are "Error while parsing X: what"; only `what` is reported.
-std::string reason_of(const toml::parse_error& error) {
-  std::string reason(error.description());
-  if (reason.starts_with("Error while parsing ")) reason = "in the " + reason.substr(20);
-  while (!reason.empty() && reason.back() == '.') reason.pop_back();
-  return in_one_line(reason);
+/// Each part of a dotted key is a table in a table, and each of these a call on the stack. Points of texts and numbers
+/// count, too, up to the next comma or line.
+void check_depth(std::string_view text, const std::string& source) {
+  constexpr int deepest = 100;
+  int points = 0, line = 1;
+  std::vector<int> outside;  // of each inline table that is open
+  for (const char c : text) {
+    if (c == '.') ++points;
+    if ((c == '=' || c == ']') && points > deepest)
+      bad_input_at(fmt::format("{}:{}", source, line), fmt::format("a key has {} parts", points + 1), no_such_key,
+                   "Correct the key");
+    if (c == '{') outside.push_back(points);
+    if (c == ',' || c == '}') points = outside.empty() ? 0 : outside.back();
+    if (c == '}' && !outside.empty()) outside.pop_back();
+    if (c != '\n') continue;
+    ++line;
+    points = 0;
+    outside.clear();
+  }
 }
 
 /// Cut between two characters, not inside the bytes of one.
@@ -76,6 +95,14 @@ std::string shortened(const std::string& text, std::size_t longest) {
   std::size_t end = longest - 3;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
   return text.substr(0, end) + "...";
+}
+
+/// Messages of toml++ are "Error while parsing X: what"; only `what` is reported.
+std::string reason_of(const toml::parse_error& error) {
+  std::string reason(error.description());
+  if (reason.starts_with("Error while parsing ")) reason = "in the " + reason.substr(20);
+  while (!reason.empty() && reason.back() == '.') reason.pop_back();
+  return shortened(in_one_line(reason), 200);
 }
 
 /// A value as TOML, texts and lists cut to these lengths; tables and dates only named.
@@ -194,6 +221,7 @@ const TomlValue& value_at(const TomlValue& root, std::string_view path) {
 }
 
 TomlValue parse_toml(std::string_view text, const std::string& source) {
+  check_depth(text, source);
   const auto name = std::make_shared<const std::string>(source);
   try {
     return plain(toml::parse(text, std::string_view(source)), name);
