@@ -161,6 +161,8 @@ class OtherCases(StabilityTest):
         with open(folder / "dispersion.csv", newline="") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual([row["point"] for row in rows if row["point"]], ["Gamma", "M", "K", "Gamma"])
+        translations = [row[f"omega_{branch}_rad_per_s"] for row in rows if row["point"] == "Gamma" for branch in (1, 2)]
+        self.assertEqual(translations, ["0"] * 4)
         with open(folder / "critical_ratio.csv", newline="") as file:
             grid = list(csv.DictReader(file))
         self.assertEqual(len(grid), 48 * 48)

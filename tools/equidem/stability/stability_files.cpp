@@ -18,19 +18,32 @@ constexpr const char* ratio_table = "critical_ratio.csv";
 constexpr const char* dispersion_plot = "dispersion_plot";
 constexpr const char* ratio_plot = "critical_ratio_plot";
 
+/// Frequencies of a branch along the path; 0 below the round-off of the largest.
+std::vector<double> frequencies(const WaveSurvey& survey, std::size_t branch) {
+  constexpr double round_off = 1e-12;  // of squares
+  double largest = 0;
+  for (const PathPoint& point : survey.path)
+    largest = std::max({largest, std::abs(point.squared_frequencies.front()), point.squared_frequencies.back()});
+  std::vector<double> values;
+  for (const PathPoint& point : survey.path) {
+    const double squared = point.squared_frequencies[branch];
+    values.push_back(std::abs(squared) <= round_off * largest ? 0 : signed_root(squared));
+  }
+  return values;
+}
+
 Table dispersion(const WaveSurvey& survey) {
   std::vector<std::string> names;
   std::vector<double> along, qx, qy, ratio;
-  std::vector<std::vector<double>> branches(survey.path.front().squared_frequencies.size());
   for (const PathPoint& point : survey.path) {
     names.push_back(point.at.name);
     along.push_back(point.along), qx.push_back(point.at.q.x), qy.push_back(point.at.q.y);
     ratio.push_back(point.critical_ratio);
-    for (std::size_t b = 0; b < branches.size(); ++b) branches[b].push_back(signed_root(point.squared_frequencies[b]));
   }
   Table table;
   table.add("point", names).add("path_rad_per_m", along).add("qx_rad_per_m", qx).add("qy_rad_per_m", qy);
-  for (std::size_t b = 0; b < branches.size(); ++b) table.add(fmt::format("omega_{}_rad_per_s", b + 1), branches[b]);
+  for (std::size_t b = 0; b < survey.path.front().squared_frequencies.size(); ++b)
+    table.add(fmt::format("omega_{}_rad_per_s", b + 1), frequencies(survey, b));
   if (survey.ratio_sought) table.add("critical_ratio", ratio);
   return table;
 }
@@ -79,9 +92,9 @@ Plot plot_of_dispersion(const Stability& s, const std::string& title) {
   constexpr std::array colours{PlotColour::blue, PlotColour::vermilion, PlotColour::black};
   for (std::size_t b = 0; b < branches; ++b) {
     Series series{.x = positions(survey),
+                  .y = frequencies(survey, b),
                   .colour = branches <= colours.size() ? colours[b] : PlotColour::blue,
                   .column = fmt::format("omega_{}", b + 1)};
-    for (const PathPoint& point : survey.path) series.y.push_back(signed_root(point.squared_frequencies[b]));
     plot.series.push_back(std::move(series));
   }
   if (!s.lowest) plot.y.min = 0;
