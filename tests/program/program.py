@@ -2,6 +2,7 @@
 """The built program, for the tests that drive it: run_VERB.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import json
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -21,6 +22,12 @@ def equidem(*arguments, cwd=None):
 
 def refuse_constant(name):
     raise ValueError(f"{name} is not JSON")
+
+
+def catches_interrupts(pid):
+    """Whether a process has a handler of SIGINT and does not hold the signal back, by what Linux says."""
+    status = dict(re.findall(r"^(\w+):\s*(.*)", pathlib.Path(f"/proc/{pid}/status").read_text(), re.MULTILINE))
+    return (int(status["SigCgt"], 16) & ~int(status["SigBlk"], 16)) >> (signal.SIGINT - 1) & 1 == 1
 
 
 def parse_json(text):
@@ -44,14 +51,15 @@ class ProgramTest(unittest.TestCase):
         for word in words:
             self.assertIn(word, done.stderr)
 
-    def interrupt(self, *arguments, when=lambda seconds: True):
-        """Started, sent SIGINT once when(seconds since its start) holds, ended with 130; (stdout, stderr)."""
+    def interrupt(self, *arguments, when=lambda: True, after=0):
+        """Started, sent SIGINT `after` seconds from when it catches it and when() holds, ended with 130; (stdout, stderr)."""
         running = subprocess.Popen([PROGRAM, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         try:
             start = time.monotonic()
-            while not when(time.monotonic() - start) and time.monotonic() - start < 60:
+            while not (catches_interrupts(running.pid) and when()) and time.monotonic() - start < 60:
                 self.assertIsNone(running.poll())
-                time.sleep(0.05)
+                time.sleep(0.002)
+            time.sleep(after)
             self.assertIsNone(running.poll())
             running.send_signal(signal.SIGINT)
             stdout, stderr = running.communicate(timeout=60)

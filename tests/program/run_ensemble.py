@@ -75,7 +75,7 @@ class Ensemble(ProgramTest):
         # What the user may ask more of on --resume: samples.
         command = ["homogenize", ENSEMBLE, "--set", "ensemble.discs=[30]"]
         stdout, stderr = self.interrupt(*command, "--set", "ensemble.samples=1000000", "--out", out,
-                                        when=lambda _: (out / "samples.csv").exists())
+                                        when=lambda: (out / "samples.csv").exists())
         self.assertIn("INCOMPLETE", stdout)
         self.assertIn("--resume", stderr)
         done = rows(out / "samples.csv")

@@ -3,6 +3,7 @@
 """Results that must not pass for sound ones, and outputs that must not get lost: run_limits.py PROGRAM SOURCE_FOLDER."""
 import csv
 import json
+import os
 import pathlib
 import subprocess
 import unittest
@@ -78,20 +79,68 @@ class Inputs(ProgramTest):
         case = self.lattice_file(contacts=[[0, 0, 3000000000, 0]])
         self.check_error(equidem("homogenize", case), 2, "3000000000 is out of range", "shifts")
 
+    def test_a_seed_beyond_the_largest_number_is_no_other_seed(self):
+        for seed in ("99999999999999999999", "-1", "1.5", "one"):
+            self.check_error(equidem("homogenize", CELL, "--seed", seed), 2, "--seed",
+                             f"'{seed}' is not a whole number from 0 to 9223372036854775807")
+        self.check_done(equidem("homogenize", CELL, "--seed", "9223372036854775807", "--dry-run"))
+
+    def test_names_of_files_are_names(self):
+        for option in ("--out", "--json"):
+            self.check_error(equidem("solve", TENSION, option, ""), 2, option, "the name is empty")
+            self.check_error(equidem("solve", TENSION, option, "--quiet"), 2, option, "'--quiet' is an option")
+        self.check_error(equidem("calibrate", CASES / "calibrate_lattice.toml", "--springs", ""), 2, "--springs", "empty")
+
+    def case_with(self, line):
+        case = self.folder / "case.toml"
+        case.write_text(pathlib.Path(TENSION).read_text() + "\n" + line + "\n", encoding="utf-8")
+        return case
+
+    def test_keys_of_any_length_and_depth_end_in_a_short_sentence(self):
+        for line, *words in (("k" * 100000 + " = 1", "100000 bytes"), ('"' + "k é" * 30000 + '" = 1', "120000 bytes"),
+                             (("k" * 100000 + " = 1\n") * 2, "not TOML"),
+                             ("[" + "a." * 39999 + "a]", "40000 parts"), ("a." * 39999 + "a = 1", "40000 parts"),
+                             (("a." * 99 + "a = {") * 250 + "}" * 250, "parts")):
+            with self.subTest(words=words):
+                done = equidem("solve", self.case_with(line))
+                self.check_error(done, 2, "case.toml:", *words)
+                self.assertLess(len(done.stderr), 800)
+        self.check_error(equidem("solve", TENSION, "--set", "a." * 39999 + "a=1"), 2, "unknown table")
+        done = equidem("solve", CASES / "truss.toml", "--set", 'support.0.group="' + "g" * 100000 + '"')
+        self.check_error(done, 2, "ggg...ggg", "group")
+        self.assertLess(len(done.stderr), 800)
+
     def test_springs_and_material_together_are_named_before_their_keys(self):
         self.check_error(equidem("solve", CASES / "calibrate_random.toml", "--set", "springs.kN=1e9"), 2, "both given")
 
 
 class Outputs(ProgramTest):
     @unittest.skipUnless(pathlib.Path("/dev/full").exists(), "no device that is always full")
-    def test_json_that_stdout_cannot_take_is_told(self):
-        for verb, case in (("homogenize", CELL), ("solve", TENSION)):
-            for options in (("--json", "-"), ()):
-                with open("/dev/full", "w", encoding="utf-8") as full:
-                    done = subprocess.run([PROGRAM, verb, str(case), *options], stdout=full, stderr=subprocess.PIPE,
-                                          text=True, timeout=120, check=False)
+    def test_what_stdout_cannot_take_is_told(self):
+        for command in (("homogenize", CELL), ("homogenize", CELL, "--json", "-"), ("solve", TENSION),
+                        ("solve", TENSION, "--json", "-"), ("solve", TENSION, "--dry-run"), ("--version",), ("--help",),
+                        ("help", "case"), ("help", "solve"), ("study", "--list")):
+            with self.subTest(command=command), open("/dev/full", "w", encoding="utf-8") as full:
+                done = subprocess.run([PROGRAM, *map(str, command)], stdout=full, stderr=subprocess.PIPE, text=True,
+                                      timeout=120, check=False)
                 self.assertEqual(done.returncode, 2, done.stderr)
-                self.assertIn("cannot write to stdout", done.stderr)
+                self.assertIn("cannot write to stdout (No space left on device)", done.stderr)
+
+    def test_a_pipe_gets_the_json_and_stays_a_pipe(self):
+        pipe = self.folder / "pipe"
+        os.mkfifo(pipe)
+        with subprocess.Popen(["cat", pipe], stdout=subprocess.PIPE, text=True) as reader:
+            self.check_done(equidem("solve", TENSION, "--json", pipe, "--overwrite"))
+            text = reader.communicate(timeout=60)[0]
+        self.assertEqual(parse_json(text)["status"], "solved")
+        self.assertTrue(pipe.is_fifo())
+        self.assertEqual(list(self.folder.iterdir()), [pipe])
+
+    @unittest.skipUnless(pathlib.Path("/dev/null").is_char_device(), "no device that takes everything")
+    def test_a_device_stays_a_device(self):
+        self.check_done(equidem("solve", TENSION, "--json", "/dev/null", "--overwrite"))
+        self.assertTrue(pathlib.Path("/dev/null").is_char_device())
+        self.check_error(equidem("solve", TENSION, "--json", "/dev/null"), 2, "exists already")
 
     def test_a_file_in_a_folder_that_is_not_there_is_told_before_the_computation(self):
         there = self.folder / "nowhere" / "x.json"

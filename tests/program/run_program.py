@@ -54,6 +54,13 @@ class Usage(ProgramTest):
         self.check_error(equidem("sweep", TENSION, "--key", "springs.kT", "--from", "1"), 2, "--to")
         self.check_error(equidem("sweep", TENSION, "--key", "springs.kTT", "--values", "1"), 2, "'kT'")
         self.check_error(equidem("sweep", TENSION, "--key", "springs.kT", "--values", "nan"), 2, "nan")
+        for values in ("1,,2", ",", "1,", "", "1 2"):
+            self.check_error(equidem("sweep", TENSION, "--key", "ratio", "--values", values), 2, "--values", "finite",
+                             "Leave it out")
+        for option in ("--from", "--to"):
+            self.check_error(equidem("sweep", TENSION, "--key", "ratio", "--from", "0", "--to", "1", option, "nan"), 2,
+                             option)
+        self.check_error(equidem("sweep", TENSION, "--key", "ratio", "--from=-1e308", "--to", "1e308"), 2, "overflow")
         self.check_error(equidem("sweep", TENSION, "--key", "ratio", "--values", "0", "--resume"), 2, "--out")
 
     def test_bad_input_is_exit_code_2_with_its_place(self):
@@ -266,10 +273,16 @@ class Sweep(ProgramTest):
         self.assertGreater(unstable["unstable_modes"], 0)
         self.assertEqual(unstable["status"], "unstable")
 
+    def test_the_first_interrupt_that_is_caught_ends_it_as_an_interrupted_one(self):
+        for milliseconds in range(0, 60, 3):
+            with self.subTest(milliseconds=milliseconds):
+                self.interrupt("sweep", TENSION, "--key", "springs.kT", "--from", 0, "--to", "1e9", "--steps", 1000000,
+                               after=1e-3 * milliseconds)
+
     def test_interrupted_it_keeps_what_is_done_and_resume_completes_it(self):
         out = self.folder / "out"
         stdout, stderr = self.interrupt("sweep", TENSION, "--key", "springs.kT", "--from", 0, "--to", "1e9", "--steps", 1000000,
-                                        "--out", out, when=lambda _: (out / "sweep.csv").exists())
+                                        "--out", out, when=lambda: (out / "sweep.csv").exists())
         self.assertIn("INCOMPLETE", stdout)
         self.assertIn("--resume", stderr)
         done = self.rows(out)

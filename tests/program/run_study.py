@@ -49,6 +49,14 @@ class Study(ProgramTest):
         self.check_error(done, 1, "no setting reaches 1e-09", "the best one reaches")
         self.check_error(equidem("study", "effects", "--quick", *SHORT, "--accuracy", 0.1, "--quiet"), 1, "no errors")
         self.check_error(equidem("study", STUDY, "--accuracy", -1), 2, "not positive")
+        self.check_error(equidem("study", STUDY, "--accuracy", "inf"), 2, "--accuracy", "'inf' is not a finite number")
+
+    def test_options_out_of_range_are_refused(self):
+        for budget in ("nan", "inf", "-1", "1s", ""):
+            self.check_error(equidem("study", STUDY, "--budget", budget), 2, "--budget",
+                             f"'{budget}' is not a number from 0 to 1e+07", "'equidem study --help'")
+        self.check_error(equidem("study", STUDY, "--seed", "99999999999999999999"), 2, "--seed",
+                         "is not a whole number from 0 to 9223372036854775807")
 
     def test_a_second_run_goes_on_and_another_study_is_refused(self):
         out = self.folder / "out"

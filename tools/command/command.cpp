@@ -13,15 +13,19 @@
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 
+#include "option_checks.hpp"
+
 namespace equidem {
 
 void add_result_options(CLI::App& command, CommonOptions& options) {
   command.add_option("--out", options.out, "write tables, pictures and files for ParaView into this folder")
+      ->check(file_name())
       ->type_name("DIR");
   command.add_option("--json", options.json, "write the result as JSON; '-': to stdout, in place of the report")
+      ->check(file_name())
       ->type_name("FILE|-");
   command.add_option("--threads", options.threads, "threads; left out: one per processor")
-      ->check(CLI::Range(1, 4096))
+      ->check(whole_number(1, 4096))
       ->type_name("N");
   command.add_flag("--quiet", options.quiet, "no report and no progress");
   command.add_flag("--overwrite", options.overwrite, "replace files that exist");
@@ -34,7 +38,7 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_option("--set", options.set, "set a key of the case, as springs.kT=0.3e9; KEY=none: take it out")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
-  command.add_option("--seed", options.seed, "short for --set assembly.seed=S")->type_name("S");
+  command.add_option("--seed", options.seed, "short for --set assembly.seed=S")->check(whole_number(0))->type_name("S");
   command.add_flag("--dry-run", options.dry_run, "say how large the computation is, without doing it");
   add_result_options(command, options);
 }
@@ -81,14 +85,10 @@ void OutputPlan::expect_plot(const std::string& name) const {
   for (const char* end : {".csv", ".gp", ".svg", ".png"}) expect(name + end);
 }
 
-namespace {
-
 void print(const std::string& text) {
   if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0)
     bad_input("cannot write to stdout", std::strerror(errno), "Send the output somewhere that has room for it");
 }
-
-}  // namespace
 
 void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times) {
   Results all = results;

@@ -95,6 +95,9 @@ std::string build_description();
 /// The sentence without its full stop, as a part of another one.
 std::string without_full_stop(std::string sentence);
 
+/// Write to stdout, at once.
+/// \throws Error (bad_input) where that fails
+void print(const std::string& text);
 /// One line on stderr, unless quiet.
 void say(const CommonOptions& options, const std::string& line);
 

@@ -2,6 +2,7 @@
 #include "program.hpp"
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -93,21 +94,21 @@ void check_refusals(const Program& program, const std::string& word) {
 
 void show_help(const Program& program, const CLI::App& app, const std::vector<std::string>& arguments) {
   if (arguments.size() < 2) {
-    std::fputs(app.help().c_str(), stdout);
+    print(app.help());
     return;
   }
   std::vector<std::string> topics;
   for (const HelpTopic& topic : program.topics) {
     if (arguments[1] == topic.name) {
       const bool markdown = topic.markdown && arguments.size() > 2 && arguments[2] == "--markdown";
-      std::fputs((markdown ? topic.markdown : topic.text)().c_str(), stdout);
+      print((markdown ? topic.markdown : topic.text)());
       return;
     }
     topics.emplace_back(topic.name);
   }
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
     if (arguments[1] == command->get_name()) {
-      std::fputs(command->help(program.name).c_str(), stdout);
+      print(command->help(program.name));
       return;
     }
     topics.push_back(command->get_name());
@@ -151,10 +152,10 @@ int run(const Program& program, const std::vector<std::string>& arguments) {
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::CallForHelp&) {
     const bool of_verb = verb != commands.end() && (*verb)->parsed();
-    std::fputs((of_verb ? (*verb)->help(program.name) : app.help()).c_str(), stdout);
+    print(of_verb ? (*verb)->help(program.name) : app.help());
     return 0;
   } catch (const CLI::CallForVersion&) {
-    std::fputs(version_text().c_str(), stdout);
+    print(version_text());
     return 0;
   } catch (const CLI::ParseError& error) {
     if (verb != commands.end()) parse_failure(program, **verb, error);
@@ -163,11 +164,31 @@ int run(const Program& program, const std::vector<std::string>& arguments) {
   return verb == commands.end() ? 2 : runs[static_cast<std::size_t>(verb - commands.begin())]();
 }
 
+constexpr int interrupts[] = {SIGINT, SIGTERM};
+
+void hold_back_interrupts(bool held) {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : interrupts) sigaddset(&set, signal);
+  pthread_sigmask(held ? SIG_BLOCK : SIG_UNBLOCK, &set, nullptr);
+}
+
+/// Nothing has begun: the process ends with the exit code of an interruption.
+void end_interrupted(int) {
+  constexpr std::string_view sentence = "equidem: stopped as asked.\n";
+  static_cast<void>(!write(STDERR_FILENO, sentence.data(), sentence.size()));
+  _exit(static_cast<int>(ErrorKind::interrupted));
+}
+
 /// OpenBLAS starts threads when it is loaded, before main, and they spin beside ours, although every call here runs on
-/// one thread. Only its environment can prevent that: where the user leaves it unset, set it and start again.
+/// one thread. Only its environment can prevent that: where the user leaves it unset, set it and start again. Handlers
+/// of signals end with the old program, held signals do not: in between they wait for catch_interrupts.
 void start_without_blas_threads(char** argv) {
   constexpr const char* variable = "OPENBLAS_NUM_THREADS";
-  if (std::getenv(variable) != nullptr || setenv(variable, "1", 0) != 0) return;
+  if (std::getenv(variable) != nullptr) return;
+  hold_back_interrupts(true);
+  for (const int signal : interrupts) std::signal(signal, end_interrupted);  // in the threads of OpenBLAS
+  if (setenv(variable, "1", 0) != 0) return;
   execv("/proc/self/exe", argv);  // returns only where that is not possible: then the program is merely slower
 }
 
@@ -180,12 +201,10 @@ int run_program(const Program& program, int argc, char** argv) {
   };
   start_without_blas_threads(argv);
   catch_interrupts();
+  hold_back_interrupts(false);
   try {
-    const int code = run(program, std::vector<std::string>(argv + 1, argv + argc));
-    if (std::fflush(stdout) != 0) return fail("cannot write to stdout.", 2);
-    return code;
+    return run(program, std::vector<std::string>(argv + 1, argv + argc));
   } catch (const Error& error) {
-    std::fflush(stdout);
     return fail(error.what(), error.exit_code());
   } catch (const std::bad_alloc&) {
     return fail("there is too little memory. Make the assembly smaller; --dry-run says what it needs.", 1);

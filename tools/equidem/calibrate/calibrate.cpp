@@ -16,6 +16,7 @@
 
 #include "calibrate/calibrate_results.hpp"
 #include "command.hpp"
+#include "option_checks.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
@@ -150,6 +151,7 @@ Run declare_calibrate(CLI::App& command) {
   const auto options = std::make_shared<CalibrateVerb>();
   add_common_options(command, options->common);
   command.add_option("--springs", options->springs, "write the springs to this file, for springs = \"FILE\"")
+      ->check(file_name())
       ->type_name("FILE");
   command.footer(
       "Examples:\n"

@@ -17,6 +17,7 @@
 #include "equidem/study/run_study.hpp"
 
 #include "command.hpp"
+#include "option_checks.hpp"
 #include "study/study_file.hpp"
 #include "study/study_results.hpp"
 #include "verbs.hpp"
@@ -159,7 +160,7 @@ void refuse_unreached(const StudyReport& report) {
 
 int run_verb(const StudyVerb& verb) {
   if (verb.list) {
-    std::fputs(list_of_studies().c_str(), stdout);
+    print(list_of_studies());
     return 0;
   }
   check(verb);
@@ -224,19 +225,21 @@ Run declare_study(CLI::App& command) {
   command.add_flag("--list", verb->list, "list the built-in studies");
   command.add_flag("--quick", verb->quick, "built-in studies: fewer and smaller settings");
   command.add_option("--accuracy", verb->accuracy, "name the cheapest setting whose errors are at most X")
+      ->check(finite_number())
       ->type_name("X");
   command
       .add_option("--budget", verb->options.budget,
                   "seconds after which no round begins, once there are --rounds of them")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e7))
+      ->check(number(0, 1e7))
       ->type_name("S");
   command.add_option("--rounds", verb->options.least_rounds, "rounds at least")
       ->capture_default_str()
-      ->check(CLI::Range(3, 100))
+      ->check(whole_number(3, 100))
       ->type_name("N");
   command.add_option("--seed", verb->options.seed, "of the order in which settings are timed")
       ->capture_default_str()
+      ->check(whole_number(0))
       ->type_name("S");
   command.footer(list_of_studies() +
                  "\nExamples:\n"

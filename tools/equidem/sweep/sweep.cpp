@@ -13,10 +13,12 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/progress.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/plots/plot.hpp"
 
 #include "command.hpp"
+#include "option_checks.hpp"
 #include "problem.hpp"
 #include "sweep/sweep_table.hpp"
 #include "verbs.hpp"
@@ -29,8 +31,8 @@ struct SweepOptions {
   std::string key;
   std::optional<double> from, to;
   int steps = 11;
-  std::vector<double> values;
-  std::string verb;  ///< no longer taken
+  std::vector<std::string> values;  ///< "a,b,c"
+  std::string verb;                 ///< no longer taken
   bool resume = false;
 };
 
@@ -39,7 +41,18 @@ std::vector<double> values_of(const SweepOptions& options) {
   if (range == !options.values.empty() || options.from.has_value() != options.to.has_value())
     bad_input("the values of the sweep are not clear", "either a list or a range is needed",
               "Give --values a,b,c or --from A --to B --steps N");
-  std::vector<double> values = options.values;
+  std::vector<double> values;
+  for (const std::string& list : options.values) {
+    for (const std::string_view part : parts_of(list, ',')) {
+      const std::optional<double> value = number_from<double>(part);
+      if (!value || !std::isfinite(*value))
+        bad_input_at("--values",
+                     part.empty() ? fmt::format("a value is missing in '{}'", list)
+                                  : fmt::format("'{}' is among the values", part),
+                     "a sweep needs finite numbers", "Leave it out, or correct it");
+      values.push_back(*value);
+    }
+  }
   const int intervals = options.steps - 1;
   for (int k = 0; range && k < options.steps; ++k) {
     const double value =
@@ -48,10 +61,9 @@ std::vector<double> values_of(const SweepOptions& options) {
     // that is almost absent.
     const double rounding = 1e-13 * std::max(std::abs(*options.from), std::abs(*options.to));
     values.push_back(std::abs(value) <= rounding ? 0 : std::stod(fmt::format("{:.12g}", value)));
+    if (!std::isfinite(values.back()))
+      bad_input("the values from --from to --to overflow", "a sweep needs finite numbers", "Give smaller ones");
   }
-  for (const double value : values)
-    if (!std::isfinite(value))
-      bad_input(fmt::format("{} is among the values", value), "a sweep needs finite numbers", "Leave it out");
   return values;
 }
 
@@ -324,15 +336,12 @@ Run declare_sweep(CLI::App& command) {
   command.add_option("--key", options->key, "the key to vary, such as springs.kT or assembly.rows; ratio: kT/kN")
       ->required()
       ->type_name("KEY");
-  command.add_option("--from", options->from, "first value")->type_name("A");
-  command.add_option("--to", options->to, "last value")->type_name("B");
+  command.add_option("--from", options->from, "first value")->check(finite_number())->type_name("A");
+  command.add_option("--to", options->to, "last value")->check(finite_number())->type_name("B");
   command.add_option("--steps", options->steps, "number of values from A to B; 11 where left out")
-      ->check(CLI::Range(1, 1000000))
+      ->check(whole_number(1, 1000000))
       ->type_name("N");
-  command.add_option("--values", options->values, "the values themselves")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("A,B,C");
+  command.add_option("--values", options->values, "the values themselves")->allow_extra_args(false)->type_name("A,B,C");
   command.add_option("--verb", options->verb)->group("");
   command.add_flag("--resume", options->resume, "keep the points that lie in --out, compute the others");
   command.footer(

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "option_checks.hpp"
+
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "equidem/core/table_file.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+template <class Number>
+std::optional<Number> number_given(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  return number_from<Number>(text);
+}
+
+}  // namespace
+
+OptionCheck whole_number(std::int64_t least, std::int64_t most) {
+  return [=](const std::string& given) {
+    const auto value = number_given<std::int64_t>(given);
+    return value && *value >= least && *value <= most
+               ? ""
+               : fmt::format("'{}' is not a whole number from {} to {}", given, least, most);
+  };
+}
+
+OptionCheck finite_number() {
+  return [](const std::string& given) {
+    const auto value = number_given<double>(given);
+    return value && std::isfinite(*value) ? "" : fmt::format("'{}' is not a finite number", given);
+  };
+}
+
+OptionCheck number(double least, double most) {
+  return [=](const std::string& given) {
+    const auto value = number_given<double>(given);
+    return value && *value >= least && *value <= most
+               ? ""
+               : fmt::format("'{}' is not a number from {:g} to {:g}", given, least, most);
+  };
+}
+
+OptionCheck file_name() {
+  return [](const std::string& given) {
+    if (given.empty()) return std::string("the name is empty");
+    return given.starts_with("--") ? fmt::format("'{0}' is an option; a file of that name is ./{0}", given) : "";
+  };
+}
+
+}  // namespace equidem
