@@ -74,7 +74,6 @@ TEST_CASE("the_balance_of_leapfrog_closes_to_rounding") {
   const Assembly assembly = hexagonal ? hexagonal_block(7) : delaunay_block(60, 9);
   const ContactSprings springs(SpringConstants{1, 0.4});
   Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
-  scene.velocities = start_with(random_motions(assembly.size(), 5, 0.1, 0.1));
   TimedSupport bottom;
   bottom.group = "bottom";
   bottom.uy = sine(0.05, 0.1);
@@ -82,6 +81,7 @@ TEST_CASE("the_balance_of_leapfrog_closes_to_rounding") {
   scene.loads = {{{"top", LoadKind::per_disc, {0.03, -0.02}, 0}, ramp(1, 20)},
                  {{"right", LoadKind::traction, {0.05, 0}, 0}, sine(1, 0.02)}};
   scene.gravity = {0.001, -0.01};
+  start_with(scene, random_motions(assembly.size(), 5, 0.1, 0.1), rotation);
   SimulationOptions options{.rotation = rotation, .damping = given.damping};
   options.time_step = choose_time_step(scene, options, {.fraction = 0.7}).step;
   const ThreadsFor one(1);
@@ -112,7 +112,7 @@ TEST_CASE("energies_are_those_of_one_instant_and_exact_at_the_start") {
   const ContactSprings springs(SpringConstants{1, 0.4});
   Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
   const std::vector<DiscMotion> given = random_motions(assembly.size(), 5, 0.05, 0.05);
-  scene.velocities = start_with(given);
+  start_with(scene, given);
   scene.loads = lasting({{"top", LoadKind::per_disc, {0.3, -0.2}, 0}});
   scene.gravity = {0.1, -1};
   SimulationOptions options{.motion = motion, .integrator = integrator, .damping = {.mass = alpha}};
@@ -146,7 +146,6 @@ TEST_CASE("the_balance_of_finite_motions_closes_to_the_order_of_the_integrator")
   const Assembly assembly = delaunay_block(12, 4);
   const ContactSprings springs(SpringConstants{1, 0.4});
   Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
-  scene.velocities = start_with(random_motions(assembly.size(), 7, 0.15, 0.15));
   if (given.order == 2) {  // to which order the work of what drives a run is counted
     scene.loads = {{{"top", LoadKind::per_disc, {0.02, 0.01}, 0}, ramp(1, 20)}};
     TimedSupport bottom;
@@ -154,6 +153,7 @@ TEST_CASE("the_balance_of_finite_motions_closes_to_the_order_of_the_integrator")
     bottom.ux = ramp(0.4, 20);
     scene.supports = {bottom};
   }
+  start_with(scene, random_motions(assembly.size(), 7, 0.15, 0.15));
   SimulationOptions options{
       .motion = LoopKind::Motion::finite, .integrator = given.integrator, .damping = given.damping};
   const double end = 16, first = 0.5 * choose_time_step(scene, options).critical;
@@ -177,7 +177,7 @@ TEST_CASE("a_million_steps_of_leapfrog_at_half_the_critical_step_do_not_drift") 
   const ContactSprings springs(SpringConstants{1, 0.4});
   Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
   scene.supports = held_still(assembly, std::vector<Support>{{"bottom", 0.0, 0.0, {}}});
-  scene.velocities = start_with(random_motions(assembly.size(), 8, 0.1, 0.1));
+  start_with(scene, random_motions(assembly.size(), 8, 0.1, 0.1));
   const ThreadsFor one(1);
   SimulationOptions options;
   options.time_step = choose_time_step(scene, options, {.fraction = 0.5}).step;

@@ -35,7 +35,7 @@ TEST_CASE("every_integrator_converges_with_its_order") {
   const Assembly assembly = delaunay_block(25, 6);
   const ContactSprings springs(SpringConstants{1, 0.4});
   Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
-  scene.velocities = start_with(random_motions(assembly.size(), 2, 0.05, 0.05));
+  start_with(scene, random_motions(assembly.size(), 2, 0.05, 0.05));
   scene.gravity = {0, -0.01};
   constexpr double duration = 4;  // some periods of the highest frequency
   const ThreadsFor one(1);

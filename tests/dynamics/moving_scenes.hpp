@@ -71,13 +71,20 @@ inline Assembly with_each_disc_named(Assembly assembly) {
   return assembly;
 }
 
-/// Velocities at the start, disc by disc, of an assembly whose discs are named.
-inline std::vector<InitialVelocity> start_with(const std::vector<DiscMotion>& velocities) {
-  std::vector<InitialVelocity> start;
-  for (std::size_t d = 0; d < velocities.size(); ++d) {
-    start.push_back({std::to_string(d), velocities[d].u, velocities[d].theta});
+/// Gives each disc of an assembly whose discs are named its initial velocity; components that are prescribed, and spins
+/// that are no unknowns, are left out.
+inline void start_with(Scene& scene, std::vector<DiscMotion> velocities, Rotation rotation = Rotation::from_scene) {
+  for (const TimedSupport& support : scene.supports) {
+    for (const std::int32_t disc : group(scene.assembly, support.group).discs) {
+      if (support.ux) velocities[disc].u.x = 0;
+      if (support.uy) velocities[disc].u.y = 0;
+      if (support.rotation) velocities[disc].theta = 0;
+    }
   }
-  return start;
+  const bool spins = derive_effects(scene.assembly, scene.springs, rotation).rotation;
+  scene.velocities.clear();
+  for (std::size_t d = 0; d < velocities.size(); ++d)
+    scene.velocities.push_back({std::to_string(d), velocities[d].u, spins ? velocities[d].theta : 0});
 }
 
 inline Assembly hexagonal_block(int n) {

@@ -34,6 +34,9 @@ TEST_CASE("contradictions_of_a_scene_are_refused_with_their_place") {
     s.supports.push_back({.group = "bottom_left", .ux = Schedule{.value = 1}, .uy = {}, .rotation = {}});
   };
   CHECK_THAT(changed(twice), Catch::Contains("scene: support.1.ux") && Catch::Contains("a second time"));
+  Scene contradictory = good;
+  twice(contradictory);
+  CHECK_THROWS_WITH(Simulation(contradictory, {.time_step = 0.1}), Catch::Contains("support.1.ux"));
   const auto same_twice = [](Scene& s) {
     s.supports.push_back({.group = "bottom_left", .ux = Schedule{.value = 0}, .uy = {}, .rotation = {}});
   };

@@ -31,19 +31,20 @@ class Moving {
         springs_(SpringConstants{1, 0.4}),
         scene_(assembly_, springs_, inertia_of(assembly_.radii, 1, Body::disc)),
         options_(given.options) {
-    scene_.velocities = start_with(random_motions(assembly_.size(), 5, 0.01, 0.01));
     scene_.gravity = given.gravity;
     options_.time_step = 0.2;
     options_.discs_per_thread = 1;
-    if (assembly_.periodic()) return;
-    TimedSupport bottom;
-    bottom.group = "bottom";
-    bottom.uy = always(0);
-    bottom.uy->kind = Schedule::Kind::sine;
-    bottom.uy->value = 0.01;
-    bottom.uy->frequency = 0.05;
-    scene_.supports = {bottom};
-    scene_.loads = lasting({{"top", LoadKind::per_disc, {0.001, -0.002}, 0}});
+    if (!assembly_.periodic()) {
+      TimedSupport bottom;
+      bottom.group = "bottom";
+      bottom.uy = always(0);
+      bottom.uy->kind = Schedule::Kind::sine;
+      bottom.uy->value = 0.01;
+      bottom.uy->frequency = 0.05;
+      scene_.supports = {bottom};
+      scene_.loads = lasting({{"top", LoadKind::per_disc, {0.001, -0.002}, 0}});
+    }
+    start_with(scene_, random_motions(assembly_.size(), 5, 0.01, 0.01));
   }
   [[nodiscard]] Simulation start() const { return {scene_, options_}; }
 

@@ -22,7 +22,7 @@ bool grows(const Scene& scene, SimulationOptions options, double step) {
   const ThreadsFor one(1);
   options.time_step = step;
   Scene moving = scene;
-  moving.velocities = start_with(random_motions(scene.assembly.size(), 3, 1e-3, 1e-3));
+  start_with(moving, random_motions(scene.assembly.size(), 3, 1e-3, 1e-3));
   Simulation run(moving, options);
   const auto size = [&] {
     double sum = 0;
@@ -190,7 +190,7 @@ TEST_CASE("mass_damping_never_turns_velocities_around") {
   const Assembly assembly = hexagonal_block(4);
   const ContactSprings springs(SpringConstants{1, 0.4});
   Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
-  scene.velocities = start_with(std::vector<DiscMotion>(assembly.size(), {{1, 0}, 0}));
+  start_with(scene, std::vector<DiscMotion>(assembly.size(), {{1, 0}, 0}));
   const Integrator integrator = GENERATE(Integrator::leapfrog, Integrator::fourth_order);
   const double alpha = GENERATE(0.1, 10.0, 1e4, 1e8);
   SimulationOptions options{.integrator = integrator, .damping = {.mass = alpha}};

@@ -18,7 +18,7 @@ TEST_CASE("a_runaway_stops_with_step_disc_and_cause") {
   const auto motion = GENERATE(LoopKind::Motion::small, LoopKind::Motion::finite);
   const ContactSprings springs(SpringConstants{1, negative ? -0.2 : 0.5});
   Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
-  scene.velocities = start_with(random_motions(assembly.size(), 1, 1e-6, 1e-6));
+  start_with(scene, random_motions(assembly.size(), 1, 1e-6, 1e-6));
   SimulationOptions options{.motion = motion};
   const TimeStep chosen = choose_time_step(scene, options, {.allow_unstable = true});
   options.time_step = negative ? chosen.step : 1.1 * chosen.critical;

@@ -45,7 +45,7 @@ TEST_CASE("momentum_is_conserved_in_free_flight") {
   const Assembly assembly = hexagonal ? hexagonal_block(6) : delaunay_block(50, 3);
   const ContactSprings springs(SpringConstants{1, 0.4});
   equidem::Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
-  scene.velocities = start_with(random_motions(assembly.size(), 4, 0.05, 0.05));
+  start_with(scene, random_motions(assembly.size(), 4, 0.05, 0.05));
   Simulation run(scene,
                  {.motion = motion, .integrator = integrator, .damping = {.contact = contact}, .time_step = 0.1});
   const bool finite = motion == LoopKind::Motion::finite;

@@ -7,6 +7,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/dynamics/scene_check.hpp"
 
 namespace equidem {
 namespace {
@@ -71,6 +72,7 @@ void check(const Scene& scene, const SimulationOptions& options) {
   check_contacts(scene.assembly);
   check_inertia(scene);
   check_damping(options);
+  check(scene, options.rotation);
 }
 
 Effects effects_of(const Scene& scene, const SimulationOptions& options) {

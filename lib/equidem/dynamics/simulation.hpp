@@ -42,8 +42,7 @@ struct TimedLoad {
   Schedule factor;
 };
 
-/// Initial velocity of the discs of a group. A prescribed motion overrides it; the spin is ignored if rotations are not
-/// unknowns.
+/// Initial velocity of the discs of a group, whose components are not prescribed; a spin needs rotations as unknowns.
 struct InitialVelocity {
   std::string group;
   Vec2 velocity;    ///< m/s
@@ -89,8 +88,9 @@ struct DiscForce {
 class Simulation final : public AnySimulation {
  public:
   /// Determines the effects, chooses the loop, lays out memory.
-  /// \throws Error (bad_input) on a group that does not exist, motions prescribed twice, a mass that is not positive, a
-  ///         damping out of range or not supported by the integrator
+  /// \throws Error (bad_input) on a group that does not exist, motions prescribed twice, an initial velocity where the
+  ///         motion is prescribed, a wall as check_wall, a mass that is not positive, a damping out of range or not
+  ///         supported by the integrator
   Simulation(const Scene& scene, const SimulationOptions& options);
 
   [[nodiscard]] const Effects& effects() const override;
