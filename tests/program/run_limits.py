@@ -5,6 +5,7 @@ import csv
 import json
 import os
 import pathlib
+import resource
 import subprocess
 import unittest
 
@@ -112,6 +113,37 @@ class Inputs(ProgramTest):
 
     def test_springs_and_material_together_are_named_before_their_keys(self):
         self.check_error(equidem("solve", CASES / "calibrate_random.toml", "--set", "springs.kN=1e9"), 2, "both given")
+
+
+class Memory(ProgramTest):
+    def within(self, address_space, *arguments):
+        """Run with that many bytes of address space."""
+        done = [subprocess.run([PROGRAM, *map(str, given)], capture_output=True, text=True, timeout=120,
+                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (address_space, address_space)))
+                for given in (("--version",), arguments)]
+        if done[0].returncode != 0:
+            self.skipTest("this build needs more address space to start")
+        return done[1]
+
+    def test_what_cannot_fit_is_refused_before_it_is_built(self):
+        for verb, case, keys in (("solve", TENSION, ("columns=40000", "rows=40000")),
+                                 ("homogenize", CELL, ("discs=1000000000",)),
+                                 ("run", CASES / "run_tension.toml", ("columns=40000", "rows=40000"))):
+            for option in ((), ("--dry-run",)):
+                done = self.within(4 << 30, verb, case, *option, *(f"--set=assembly.{key}" for key in keys))
+                self.check_error(done, 1, "needs at least", "of memory are available")
+
+    def test_buffers_of_the_linear_algebra_count(self):
+        done = self.within(1 << 30, "solve", TENSION, "--set", "assembly.columns=440", "--set", "assembly.rows=440")
+        self.check_error(done, 1, "of address space", "ulimit -v")
+
+    def test_a_file_that_memory_cannot_hold_is_refused(self):
+        file = self.folder / "many.json"
+        file.write_text('{"schema": "equidem-assembly/1", "discs": [' + "[0, 0, 0.5]," * 4000000 + "[0, 0, 0.5]]}")
+        case = self.folder / "many.toml"
+        case.write_text('schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "many.json"\n'
+                        '[springs]\nkN = 1.0\nkT = 0.5\n')
+        self.check_error(self.within(300 << 20, "homogenize", case), 1, "many.json", "of JSON need about")
 
 
 class Outputs(ProgramTest):

@@ -283,7 +283,7 @@ TEST_CASE("too_little_memory_is_told_before_it_is_used") {
   CHECK(refusal.says(readable_bytes(estimate.peak_bytes)));
   CHECK(refusal.says(readable_bytes(12345)));
   CHECK(refusal.says("memory_limit"));
-  CHECK(refusal.says(fmt::format("{} unknowns", estimate.unknowns)));
+  CHECK(refusal.says(fmt::format("{} unknowns", grouped(estimate.unknowns))));
   options.solver.memory_limit = 0.99 * estimate.peak_bytes;
   CHECK(!refusal_of([&] { EquilibriumSolver(block, springs, supports, options); }).message.empty());
   options.solver.memory_limit = 1.01 * estimate.peak_bytes;

@@ -207,7 +207,7 @@ int run_program(const Program& program, int argc, char** argv) {
   } catch (const Error& error) {
     return fail(error.what(), error.exit_code());
   } catch (const std::bad_alloc&) {
-    return fail("there is too little memory. Make the assembly smaller; --dry-run says what it needs.", 1);
+    return fail("there is too little memory. Use fewer discs or threads, or a machine with more memory.", 1);
   } catch (const std::exception& error) {
     return fail(fmt::format("this is a defect of equidem: {}. Please report it with the case file.", error.what()), 1);
   }

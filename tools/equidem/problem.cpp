@@ -1,14 +1,56 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "problem.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "equidem/core/error.hpp"
+#include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/material/spring_relations.hpp"
 
 namespace equidem {
+namespace {
 
-Problem problem_of(Case resolved, std::optional<Assembly> given) {
+/// Size of a generated assembly, about; no discs for one from a file.
+struct ExpectedSize {
+  double discs = 0, narrow_side = 0;  ///< the latter in discs
+};
+ExpectedSize expected_size(const AssemblyCase& assembly) {
+  switch (assembly.kind) {
+    case AssemblyKind::lattice: {
+      const double columns = assembly.lattice.columns, rows = assembly.lattice.rows;
+      return {columns * rows, std::min(columns, rows)};
+    }
+    case AssemblyKind::delaunay: {
+      const auto discs = static_cast<double>(assembly.delaunay.discs);
+      return {discs, std::sqrt(discs * std::min(assembly.delaunay.aspect, 1 / assembly.delaunay.aspect))};
+    }
+    case AssemblyKind::file:
+      return {};
+  }
+  return {};
+}
+
+/// Refuses before anything is built what surely does not fit. The factor of N discs, w across the narrow side, has
+/// about c N log2(w) bytes, with c = 520 on a hexagonal lattice and 660 on Delaunay networks of 10⁵ to 10⁶ discs; half
+/// of what two unknowns a disc need is taken.
+void require_memory_for(const Case& resolved, Purpose purpose) {
+  const ExpectedSize size = expected_size(resolved.assembly);
+  if (size.discs < 1) return;
+  constexpr double factor = 100, loop = 450;  // bytes a disc
+  const double beside = purpose == Purpose::factorize ? factor * std::log2(std::max(size.narrow_side, 1.0)) : loop;
+  require_memory(
+      bytes_of_network(size.discs) + size.discs * beside,
+      fmt::format("{} of {} discs needs at least", purpose == Purpose::factorize ? "the factor of a network" : "a run",
+                  grouped(static_cast<std::int64_t>(size.discs))));
+}
+
+}  // namespace
+
+Problem problem_of(Case resolved, std::optional<Assembly> given, Purpose purpose) {
+  if (!given) require_memory_for(resolved, purpose);
   StageTimes times;
   Stopwatch watch;
   Assembly assembly = given ? std::move(*given) : build_assembly(resolved);

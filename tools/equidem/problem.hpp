@@ -33,10 +33,13 @@ struct Problem {
   }
 };
 
+/// What is done with an assembly, by which the memory is estimated before it is built.
+enum class Purpose { factorize, step };
+
 /// Assembly and springs of the case, without supports and loads.
 /// \param assembly to use instead of building it; empty: build
-/// \throws Error (bad_input) as build_assembly and build_springs
-Problem problem_of(Case resolved, std::optional<Assembly> assembly = {});
+/// \throws Error (bad_input) as build_assembly and build_springs; (computation_failed) where memory would not suffice
+Problem problem_of(Case resolved, std::optional<Assembly> assembly = {}, Purpose purpose = Purpose::factorize);
 
 /// Whether the case has supports or loads, those of a tension test among them.
 bool acts(const Case& resolved);

@@ -284,6 +284,11 @@ void check(const Assembly& assembly) {
   for (const auto& [name, discs] : assembly.groups) check_group(assembly, name, discs);
 }
 
+double bytes_of_network(double discs) {
+  constexpr double disc = sizeof(Vec2) + 2 * sizeof(double), contact = sizeof(Contact) + sizeof(double);
+  return discs * (disc + 3 * contact);
+}
+
 const DiscGroup& group(const Assembly& assembly, const std::string& name) {
   const auto found = assembly.groups.find(name);
   if (found != assembly.groups.end()) return found->second;

@@ -111,6 +111,9 @@ std::string length_limits();
 /// \throws Error (bad_input) naming the first disc or contact that breaks this
 void check(const Assembly& assembly);
 
+/// Bytes of an assembly of that many discs with three contacts a disc, the most that a planar network has.
+double bytes_of_network(double discs);
+
 /// The disc group of that name.
 /// \throws Error (bad_input) where there is none, naming those that exist
 const DiscGroup& group(const Assembly& assembly, const std::string& name);

@@ -21,6 +21,7 @@
 #include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/memory.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 
@@ -308,6 +309,11 @@ Json parse(const std::string& text) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     bad_input_at("line 1, column 1", "the file is empty", "an assembly is made of discs", "Write it again");
   }
+  // Numbers of a line such as "[0.5, 1, 0.25]" take the most: 16 bytes each and a vector that grows. Refused
+  // beforehand, because the parser cannot free its values where memory has run out.
+  constexpr double bytes_per_byte = 6;
+  require_memory(bytes_per_byte * static_cast<double>(text.size()),
+                 fmt::format("{} of JSON need about", readable_bytes(static_cast<double>(text.size()))));
   std::vector<std::set<std::string>> keys;  // of the objects that are open
   const auto refuse_repeated = [&](int, Json::parse_event_t event, Json& parsed) {
     if (event == Json::parse_event_t::object_start) keys.emplace_back();

@@ -22,8 +22,11 @@ void ask_to_stop(int signal_number) {
   std::signal(signal_number, SIG_DFL);
 }
 
-constexpr double first_line_after = 1.0;  // s
-constexpr double line_every = 0.2;        // s
+/// s
+struct Rhythm {
+  double first_line_after, line_every;
+};
+constexpr Rhythm on_terminal{1, 0.2}, elsewhere{3, 60};
 
 }  // namespace
 
@@ -31,20 +34,21 @@ void set_progress_shown(bool shown) {
   progress_shown = shown;
 }
 
-Progress::Progress(std::string task) : task_(std::move(task)) {}
+Progress::Progress(std::string task) : task_(std::move(task)), terminal_(isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
-  if (shown_) std::fputs("\r\033[K", stderr);
+  if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
 }
 
 void Progress::update(double fraction) {
   stop_if_interrupted();
+  if (!progress_shown) return;
   const double elapsed = watch_.seconds();
-  if (elapsed < first_line_after || elapsed - last_shown_ < line_every) return;
-  if (!progress_shown || isatty(STDERR_FILENO) == 0) return;
-  const double left = fraction > 0 ? elapsed * (1 - fraction) / fraction : 0;
-  const std::string line = fmt::format("\r\033[K{} {:.0f} %, {:.0f} s left", task_, 100 * fraction, left);
-  std::fputs(line.c_str(), stderr);
+  const Rhythm& rhythm = terminal_ ? on_terminal : elsewhere;
+  if (elapsed < rhythm.first_line_after || (shown_ && elapsed - last_shown_ < rhythm.line_every)) return;
+  std::string line = fmt::format("{} {:.0f} %", task_, 100 * fraction);
+  if (fraction > 0) line += fmt::format(", {:.0f} s left", elapsed * (1 - fraction) / fraction);
+  std::fputs((terminal_ ? "\r\033[K" + line : line + "\n").c_str(), stderr);
   last_shown_ = elapsed;
   shown_ = true;
 }

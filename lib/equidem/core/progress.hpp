@@ -9,11 +9,11 @@
 
 namespace equidem {
 
-/// Whether progress may be shown at all; on by default, and even then only where stderr is a terminal.
+/// Whether progress may be shown; on by default.
 void set_progress_shown(bool shown);
 
-/// A line on stderr with the progress of a long computation: "factorizing 42 %, 7 s left". Shown from the second
-/// second on, so that short computations stay silent.
+/// Progress of a long computation on stderr: "factorizing 42 %, 7 s left". On a terminal one line, from the second
+/// second on; elsewhere a line after three seconds, then one a minute.
 class Progress {
  public:
   explicit Progress(std::string task);
@@ -29,6 +29,7 @@ class Progress {
   std::string task_;
   Stopwatch watch_;
   double last_shown_ = 0;
+  bool terminal_;
   bool shown_ = false;
 };
 

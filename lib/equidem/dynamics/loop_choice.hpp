@@ -11,8 +11,8 @@ namespace equidem {
 /// \throws Error (bad_input) if contacts lie off the lines of centres, which no loop supports
 void check_contacts(const Assembly& assembly);
 
-/// \throws Error (bad_input) as check_contacts and check(scene, rotation) (scene_check.hpp); if a mass is not positive, a
-///         damping is out of range, or dampings exclude one another
+/// \throws Error (bad_input) as check_contacts and check(scene, rotation) of scene_check.hpp; on a mass that is not
+///         positive, a damping out of range, dampings that exclude one another
 void check(const Scene& scene, const SimulationOptions& options);
 
 /// The effects of a run, with the reason for each inactive one: those of statics, then damping, gravity, loads,

@@ -3,17 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <sys/resource.h>
-
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
 #include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
 #include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
 #include "equidem/statics/motion_description.hpp"
@@ -133,46 +132,6 @@ std::unique_ptr<Factorization> by_back_end(SolverMethod method, const System& sy
   return judged(back_end.factorize(system.k, system.unknowns, *system.symbolic), system, mechanisms);
 }
 
-/// A number of bytes in a file of the control group; infinity where there is no limit.
-double bytes_in(const std::string& path) {
-  std::ifstream file(path);
-  double bytes = 0;
-  return file >> bytes ? bytes : std::numeric_limits<double>::infinity();
-}
-
-/// Memory of this process, bytes: "VmRSS:" resident, "VmSize:" address space, "VmData:" data segment.
-double bytes_of_process(const std::string& what) {
-  std::ifstream status("/proc/self/status");
-  std::string word;
-  while (status >> word) {
-    double kilobytes = 0;
-    if (word == what && status >> kilobytes) return 1024 * kilobytes;
-  }
-  return 0;
-}
-
-/// Bytes that this process can still take without swapping: the smaller of the available memory that the system states
-/// and of what its limits leave; 0 where neither is known.
-double available_memory() {
-  double available = std::numeric_limits<double>::infinity();
-  std::ifstream meminfo("/proc/meminfo");
-  std::string word;
-  while (meminfo >> word) {
-    double kilobytes = 0;
-    if (word == "MemAvailable:" && meminfo >> kilobytes) available = 1024 * kilobytes;
-  }
-  // Caches of the control group are released on demand, so only resident memory counts against its limit.
-  available = std::min(available, bytes_in("/sys/fs/cgroup/memory.max") - bytes_of_process("VmRSS:"));
-  const auto limited = [&](auto resource, const std::string& used) {
-    rlimit limit{};
-    if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
-    available = std::min(available, static_cast<double>(limit.rlim_cur) - bytes_of_process(used));
-  };
-  limited(RLIMIT_AS, "VmSize:");
-  limited(RLIMIT_DATA, "VmData:");
-  return available == std::numeric_limits<double>::infinity() ? 0 : std::max(available, 1.0);
-}
-
 }  // namespace
 
 void check(const SolverOptions& options) {
@@ -200,13 +159,14 @@ SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& u
 }
 
 void check_memory(const SolveEstimate& estimate, double memory_limit) {
-  const double available = memory_limit > 0 ? memory_limit : available_memory();
-  if (available == 0 || estimate.peak_bytes <= available) return;
-  computation_failed(fmt::format("the factorization of {} unknowns needs about {}", estimate.unknowns,
-                                 readable_bytes(estimate.peak_bytes)),
-                     fmt::format("{} {}", readable_bytes(available),
-                                 memory_limit > 0 ? "are allowed by memory_limit" : "of memory are available"),
-                     "Use fewer discs, restrain rotation, raise the limit, or take a machine with more memory");
+  // OpenBLAS maps one for each thread that calls it, and tries for ever where the limit of the process forbids it.
+  constexpr double blas_buffer = 128.0 * (1 << 20);
+  require_address_space(estimate.peak_bytes + blas_buffer * thread_count(),
+                        fmt::format("the factorization of {} unknowns on {} needs about", grouped(estimate.unknowns),
+                                    counted(thread_count(), "thread")));
+  require_memory(
+      estimate.peak_bytes, fmt::format("the factorization of {} unknowns needs about", grouped(estimate.unknowns)),
+      "Use fewer discs, restrain rotation, raise the limit, or take a machine with more memory", memory_limit);
 }
 
 std::unique_ptr<Factorization> factorize(const System& system, const SolverOptions& options, Mechanisms mechanisms,

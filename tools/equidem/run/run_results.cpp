@@ -69,8 +69,11 @@ void add_energies(Results& out, const RunJob& job, BodyFamily family, Body body,
 
 Results memory_results(RunJob& job) {
   const std::string body = job.body_name();
-  return Results().line("memory").add("bytes_per_" + body, "", job.simulation().bytes_per_body(),
-                                      "bytes a " + body + " in the loop", {Shown::decimals, 0});
+  const double each = job.simulation().bytes_per_body();
+  return Results()
+      .line("memory")
+      .add("bytes_per_" + body, "", each, "bytes a " + body + " in the loop", {Shown::decimals, 0})
+      .add("loop_bytes", "", each * static_cast<double>(job.simulation().motions().size()), "in all", {Shown::bytes});
 }
 
 /// The time step, the intervals that it does not allow, probes without interval, memory.

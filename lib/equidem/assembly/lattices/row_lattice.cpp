@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "equidem/core/error.hpp"
+#include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -37,6 +38,8 @@ void check_counts(const LatticeOptions& o, const RowPattern& pattern) {
     bad_input(fmt::format("{} columns and {} rows make {} discs", o.columns, o.rows, discs),
               fmt::format("at most {} can be numbered", std::numeric_limits<std::int32_t>::max()), "Ask for fewer");
   }
+  require_memory(bytes_of_network(static_cast<double>(discs)),
+                 fmt::format("an assembly of {} discs needs about", grouped(discs)));
 }
 
 /// A lattice under construction: the place of every row in the numbering of discs.

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The memory that a computation may take.
+#pragma once
+
+#include <string>
+
+namespace equidem {
+
+/// Bytes that this process can still take without swapping: the smaller of the available memory that the system states
+/// and of what the limits of the process and of its control group leave; infinity where none is known.
+double available_memory();
+/// Bytes left within the limit of the process (ulimit -v); infinity where there is none.
+double available_address_space();
+
+/// \param what beginning of the sentence, up to the amount: "a run of 1 000 000 discs needs about"
+/// \param remedy what the user can do
+/// \param limit bytes; 0: what is available
+/// \throws Error (computation_failed) where `bytes` exceed the limit
+void require_memory(double bytes, const std::string& what,
+                    const std::string& remedy = "Use fewer discs, or a machine with more memory", double limit = 0);
+/// \throws Error (computation_failed) where `bytes` exceed available_address_space()
+void require_address_space(double bytes, const std::string& what);
+
+}  // namespace equidem
