@@ -132,6 +132,10 @@ TEST_CASE("what_does_not_fit_is_refused_with_what_was_reached") {
   CHECK(problem(options).find("jam") != std::string::npos);
   options = square_box(PackingMethod::growth, PackingBox::Sides::walls, 100, 1.2);
   CHECK(problem(options).find("1.2 times the area") != std::string::npos);
+  options = square_box(PackingMethod::growth, PackingBox::Sides::periodic, 100, 0.93);
+  std::fill(options.radii.begin(), options.radii.end(), 0.0075);
+  options.box.size *= std::sqrt(area_of_discs(options.radii) / 0.91 / options.box.area());
+  CHECK(problem(options).find("solid fraction of 0.91") != std::string::npos);
   options.box.sides = PackingBox::Sides::open_top;
   CHECK(problem(options).find("open top") != std::string::npos);
   options = square_box(PackingMethod::growth, PackingBox::Sides::walls, 3, 0.5);

@@ -2,6 +2,7 @@
 #include "equidem/packing/packing.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <utility>
 
@@ -50,6 +51,14 @@ void check(const PackingOptions& options) {
   if (!falls && !options.as_dense_as_possible && share >= 1) {
     bad_input(fmt::format("the {}s have {:.3g} times the area of the box", noun, share), "they leave gaps between them",
               "Make the box larger, or take fewer of them");
+  }
+  // Discs of one size cover at most pi/sqrt(12) of a convex region (Thue; Fejes Tóth).
+  const double densest = std::numbers::pi / std::sqrt(12.0);
+  const bool equal = std::ranges::all_of(options.radii, [&](double radius) { return radius == largest; });
+  if (!falls && !options.as_dense_as_possible && options.shape.is_disc() && equal && share > densest) {
+    bad_input(fmt::format("discs of one size would have a solid fraction of {:.4g}", share),
+              fmt::format("that of the hexagonal lattice, {:.4f}, is the largest", densest),
+              "Make the box larger, take fewer of them, or radii of several sizes");
   }
   if (!(options.overlap > 0 && options.overlap <= 0.1)) {
     bad_input(fmt::format("the overlap allowed is {} of the smaller radius", options.overlap),

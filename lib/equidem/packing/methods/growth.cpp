@@ -101,9 +101,20 @@ double next_fraction(double fraction, double end) {
   return std::min(fraction + step, end);
 }
 
+[[noreturn]] void refuse_jammed(const PackingOptions& options, double fraction, const PushingReport& report) {
+  computation_failed(
+      fmt::format("the {}s jam before they reach a solid fraction of {:.4g}: there they overlap by {:.2g} of the mean "
+                  "radius and no longer move apart",
+                  noun_of(options.shape.kind), fraction, std::max(report.mean_overlap, report.largest_overlap)),
+      "discs at random jam at 0.82 to 0.86, those of equal size at what is nearly a lattice",
+      "Ask for a smaller solid fraction, or for the densest one");
+}
+
 /// Radii larger by `spare` are pushed apart to overlaps of less than `spare`, so that the bodies themselves do not
-/// touch.
+/// touch. Where bodies overlap by `hopeless` of their radius on the mean, they have jammed some percent of the solid
+/// fraction earlier.
 void grow_to_size(const PackingOptions& options, Growth& growth) {
+  constexpr double hopeless = 0.03;
   const double spare = std::min(options.overlap, 1e-4);
   const double end = growth.full() * (1 + spare) * (1 + spare);
   Progress progress("growing");
@@ -112,15 +123,7 @@ void grow_to_size(const PackingOptions& options, Growth& growth) {
     const bool last = fraction >= end;
     const auto report = growth.grow_to(fraction, {.overlap = last ? spare : 0.01, .most = last ? 100000 : 3000});
     progress.update(std::min(fraction / end, 1.0));
-    if (last && !report.apart) {
-      computation_failed(
-          fmt::format(
-              "the {}s jam at a solid fraction of {:.4g}, where they overlap by {:.2g} of the mean radius and no "
-              "longer move apart",
-              noun_of(options.shape.kind), growth.full(), report.largest_overlap),
-          "discs at random jam at 0.82 to 0.86, those of equal size at what is nearly a lattice",
-          "Ask for a smaller solid fraction, or for the densest one");
-    }
+    if (!report.apart && (last || report.mean_overlap > hopeless)) refuse_jammed(options, fraction, report);
     if (last) break;
     fraction = next_fraction(fraction, end);
   }
