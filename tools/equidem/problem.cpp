@@ -93,7 +93,8 @@ SolvedCase solve_case(const Problem& problem, const EquilibriumSolver& solver, c
                     .tension = {}};
   const Equilibrium& equilibrium = result.equilibrium;
   if (!problem.assembly.cell_areas.empty()) {
-    result.stresses = disc_stresses(problem.assembly, equilibrium.contact_forces);
+    if (cells_hold_area(problem.assembly))
+      result.stresses = disc_stresses(problem.assembly, equilibrium.contact_forces);
     result.stress = macroscopic_stress(problem.assembly, equilibrium.contact_forces);
     result.moment_per_area = outer_moment(problem.assembly, loads.loads, equilibrium) / problem.assembly.area();
   }

@@ -29,6 +29,11 @@ void check_cells(const Assembly& assembly) {
 
 }  // namespace
 
+bool cells_hold_area(const Assembly& assembly) {
+  return assembly.size() > 0 && assembly.cell_areas.size() == assembly.size() &&
+         std::ranges::all_of(assembly.cell_areas, [](double area) { return area > 0; });
+}
+
 std::vector<Tensor2> disc_stresses(const Assembly& assembly, std::span<const ContactForce> forces) {
   assert(forces.size() == assembly.contacts.size());
   check_cells(assembly);

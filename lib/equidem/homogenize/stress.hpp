@@ -15,6 +15,9 @@
 
 namespace equidem {
 
+/// Whether disc_stresses is defined: every disc has a cell of some area.
+bool cells_hold_area(const Assembly& assembly);
+
 /// Stress of every disc, Pa: s_ij = (1/V) sum F_i l_j with l = r n from its centre to each contact point and V its
 /// cell area (Abe 1996, eq. 50, in general form). Not symmetric where a moment holds the disc (eq. 55); never made so
 /// here.

@@ -75,8 +75,7 @@ BoundedStiffness homogenize(const Problem& problem) {
 void write_states(const CommonOptions& options, const Problem& problem, const EffectiveStiffness& result) {
   const Assembly& assembly = problem.assembly;
   const OutputCase& wanted = problem.resolved.output;
-  const bool cells_known =
-      !assembly.cell_areas.empty() && std::ranges::all_of(assembly.cell_areas, [](double v) { return v > 0; });
+  const bool cells_known = cells_hold_area(assembly);
   const std::vector<StrainedState> states = strained_states(assembly, problem.springs.springs, result, written_strain);
   for (std::size_t k = 0; k < states.size(); ++k) {
     const auto& [gradient, fluctuations, forces] = states[k];

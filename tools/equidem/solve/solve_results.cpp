@@ -31,6 +31,10 @@ void add_stress(Results& out, const SolvedCase& result) {
     out.note("not known: the assembly has no cell areas");
     return;
   }
+  if (result.stresses.empty()) {
+    out.note("discs: not known, because the power cell of at least one disc has no area");
+    out.line("");
+  }
   const Tensor2& s = *result.stress;
   const double largest = std::max({std::abs(s.xx), std::abs(s.yy), std::abs(s.xy), std::abs(s.yx)});
   const bool symmetric = std::abs(asymmetry(s)) <= 1e-9 * largest;
