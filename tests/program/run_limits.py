@@ -111,6 +111,22 @@ class Inputs(ProgramTest):
         self.check_error(done, 2, "ggg...ggg", "group")
         self.assertLess(len(done.stderr), 800)
 
+    def test_a_disc_without_a_power_cell_costs_the_stresses_of_discs_alone(self):
+        (self.folder / "swallowed.json").write_text(json.dumps({
+            "schema": "equidem-assembly/1",
+            "discs": [[0, 0, 1], [2, 0, 1], [1, 3**0.5, 1], [0.5, 0, 0.05], [3, 3**0.5, 1]],
+            "contacts": [[i, j, 0, 0] for i, j in ((0, 1), (0, 2), (1, 2), (0, 3), (1, 3), (1, 4), (2, 4))],
+            "groups": {"low": [0, 1], "up": [4]}}))
+        case = self.folder / "swallowed.toml"
+        case.write_text('schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "swallowed.json"\n'
+                        '[springs]\nkN = 1.0\nkT = 0.5\n[[support]]\ngroup = "low"\nux = 0\nuy = 0\n'
+                        '[[load]]\ngroup = "up"\nkind = "total"\nforce = [0, -1]\n')
+        out = self.folder / "out"
+        self.assertIn("has no area", self.check_done(equidem("solve", case, "--out", out)).stdout)
+        header = (out / "discs.csv").read_text().splitlines()[0]
+        self.assertIn("ux", header)
+        self.assertNotIn("stress", header)
+
     def test_springs_and_material_together_are_named_before_their_keys(self):
         self.check_error(equidem("solve", CASES / "calibrate_random.toml", "--set", "springs.kN=1e9"), 2, "both given")
 
