@@ -5,7 +5,6 @@
 #include <string>
 
 #include "equidem/casefile/grains/grain_case.hpp"
-#include "equidem/casefile/grains/grain_step.hpp"
 #include "equidem/core/error.hpp"
 
 #include "support/catch.hpp"

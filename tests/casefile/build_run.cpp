@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/assembly/build_run.hpp"
-
 #include <filesystem>
 #include <numbers>
 #include <string>

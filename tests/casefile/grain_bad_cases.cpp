@@ -100,7 +100,7 @@ TEST_CASE("a_wrong_case_of_grains_is_refused_with_line_key_and_remedy") {
       {"group = \"grains\"\nq", "bodies = [3]\nq", "bodies = [3]", "probe.bodies", {"0 to 2"}},
       {"integrator = ", "scheme = ", "scheme", "run.scheme", {"is called integrator", "Write integrator"}},
       {"group = \"grains\"\nq", "grains = [0]\nq", "grains = [0]", "probe.grains", {"is called bodies"}},
-      {"schedule = \"shake\"\n", "", "displacement", "wall.displacement", {"no schedule", "its point"}},
+      {"schedule = \"shake\"\n", "", "displacement", "wall.displacement", {"without schedule", "its point"}},
       {"name = \"floor\"", "name = \"steel\"", "name = \"steel\"", "wall.name", {"both called"}},
       {"[collisions.walls]", "[collisions.wall]", "[collisions.wall]", "collisions.wall", {"collisions"}},
       {"probe_interval = 0.01", "vtk = true", "vtk = true", "output.vtk", {"Known here"}},

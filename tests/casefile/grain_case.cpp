@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "equidem/casefile/grains/grain_step.hpp"
 #include "equidem/core/text.hpp"
 
 #include "example.hpp"
@@ -165,7 +164,7 @@ TEST_CASE("examples_of_grains_are_read_and_written_back") {
   REQUIRE(files.size() >= 5);
   for (const fs::path& file : files) {
     CAPTURE(file);
-    REQUIRE(describes_grains(file));
+    REQUIRE(describes_grains(casefile::read_document(file, {})));
     const GrainCase c = read_grain_case(file);
     const GrainTimeStep step = choose_grain_step(c);
     CHECK_NOTHROW(check(build_grain_scene(c, step.step), grain_options(c, step.step)));

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "equidem/casefile/grains/grain_case.hpp"
-#include "equidem/casefile/grains/grain_step.hpp"
 #include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/core/text.hpp"
 

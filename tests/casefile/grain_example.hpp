@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "equidem/casefile/grains/grain_case.hpp"
-#include "equidem/casefile/grains/grain_step.hpp"
 #include "equidem/core/error.hpp"
 
 namespace equidem::test {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "equidem/casefile/grains/grain_case.hpp"
-#include "equidem/casefile/grains/grain_step.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/material/wave_speed_springs.hpp"
 

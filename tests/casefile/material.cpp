@@ -54,7 +54,7 @@ TEST_CASE("the_four_ways_to_give_a_material_mean_the_same") {
     CHECK(c.material->moduli.plane == m.plane);
     CHECK(c.material->moduli.shear_modulus == Approx(G).epsilon(1e-14));
     CHECK(c.material->moduli.poisson_ratio == Approx(nu).epsilon(1e-14).margin(1e-14));
-    CHECK(c.material->density == density);
+    CHECK(c.material->given.density == density);
   }
 }
 

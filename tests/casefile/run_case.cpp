@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/assembly/run_case.hpp"
-
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 
@@ -179,7 +178,7 @@ TEST_CASE("runs_that_cannot_be_meant_are_refused_with_line_and_key") {
       {"duration = 0.25", "duration = -1", "duration = -1", "run.duration", {"-1 is out of range"}},
       {"duration = 0.25", "duration = inf", "duration = inf", "run.duration", {"not a finite number"}},
       {"duration = 0.25\n", "", "[run]", "run", {"neither duration nor until_rest"}},
-      {"duration = 0.25", "duration = 0.25\nuntil_rest = 1e-10", "until_rest", "run", {"both given"}},
+      {"duration = 0.25", "duration = 0.25\nuntil_rest = 1e-10", "until_rest", "run.until_rest", {"both given"}},
       {"duration = 0.25", "until_rest = 1.0", "until_rest", "run.until_rest", {"between 0 and 1"}},
       {"time_step = 2e-6", "time_step = 0", "time_step", "run.time_step", {"0 is out of range", "\"auto\""}},
       {"time_step = 2e-6", "time_step = -2e-6", "time_step", "run.time_step", {"out of range"}},
@@ -213,12 +212,12 @@ TEST_CASE("runs_that_cannot_be_meant_are_refused_with_line_and_key") {
       {"times = [0.0, 0.2]", "times = [0.0]", "times", "schedule.times", {"1 time and 2 values"}},
       {"times = [0.0, 0.2]", "times = []", "times", "schedule.times", {"empty"}},
       {"times = [0.0, 0.2]", "times = [0.0, inf]", "times", "schedule.times", {"not a finite number"}},
-      {"times = [0.0, 0.2]\n", "", "[[schedule]]\nname = \"pull\"", "schedule", {"not given once", "path"}},
+      {"times = [0.0, 0.2]\n", "", "[[schedule]]\nname = \"pull\"", "schedule", {"neither times nor path", "a file"}},
       {"times = [0.0, 0.2]\n",
        "times = [0.0, 0.2]\npath = \"a.csv\"\n",
-       "[[schedule]]\nname = \"pull\"",
-       "schedule",
-       {"not given once"}},
+       "path = \"a.csv\"",
+       "schedule.path",
+       {"times and path are both given"}},
       {"name = \"shake\"",
        "name = \"open\"",
        "name = \"open\"\nkind = \"sine\"",
@@ -239,18 +238,18 @@ TEST_CASE("runs_that_cannot_be_meant_are_refused_with_line_and_key") {
       // walls, velocities, probes
       {"normal = [2.0, 0.0]", "normal = [0.0, 0.0]", "normal", "wall.normal", {"is zero"}},
       {"kN = 2.0e9", "kN = 0.0", "kN = 0.0", "wall.kN", {"out of range", "> 0"}},
-      {"displacement = 2e-4\n", "", "schedule = \"shake\"", "wall.schedule", {"no displacement"}},
+      {"displacement = 2e-4\n", "", "schedule = \"shake\"", "wall.schedule", {"without displacement"}},
       {"name = \"right\"", "name = \"left\"", "name = \"left\"\npoint = [0.1", "wall.name", {"two walls 'left'"}},
       {"displacement = 2e-4\nschedule = \"shake\"\n",
        "displacement = 2e-4\n",
        "displacement = 2e-4",
        "wall.displacement",
-       {"no schedule", "its point"}},
+       {"without schedule", "its point"}},
       {"displacement = 2e-4\nschedule = \"shake\"\n",
        "direction = [1.0, 0.0]\n",
        "direction",
        "wall.direction",
-       {"no displacement"}},
+       {"without displacement"}},
       {"\"rotation\"]",
        "\"rotations\"]",
        "quantities",
@@ -261,7 +260,7 @@ TEST_CASE("runs_that_cannot_be_meant_are_refused_with_line_and_key") {
       {"group = \"right\"\nquantities",
        "group = \"right\"\nbodies = [1]\nquantities",
        "bodies",
-       "probe",
+       "probe.bodies",
        {"both given"}},
       {"\"rotation\"]", "\"velocity\"]", "quantities", "probe.quantities", {"\"velocity\" is there twice"}},
       {"[\"velocity\", \"rotation\"]", "[]", "quantities", "probe.quantities", {"empty"}},

@@ -113,18 +113,18 @@ TEST_CASE("shakings_without_a_meaning_are_refused_with_their_line_and_a_way_out"
     const char* word;
   };
   for (const Bad& bad : {
-           Bad{"", "acceleration is missing"},
-           Bad{"acceleration = 4.0", "frequency is missing"},
+           Bad{"", "neither acceleration nor record is given"},
+           Bad{"acceleration = 4.0", "acceleration is given without frequency"},
            Bad{"acceleration = -4.0\nfrequency = 1.0", "acceleration"},
            Bad{"acceleration = 4.0\nfrequency = 0.0", "frequency"},
            Bad{"acceleration = 4.0\nfrequency = 3.0\nduration = 0.5", "1.5 cycles"},
            Bad{"acceleration = 4.0\nfrequency = 3.0\nduration = 1.0\ncycles = 3", "duration does not apply"},
            Bad{"acceleration = 4.0\nfrequency = 3.0\nstart = 2.5", "the run ends at 2 s"},
-           Bad{"acceleration = 4.0\nfrequency = 3.0\nbaseline = \"rest\"", "baseline does not apply"},
+           Bad{"acceleration = 4.0\nfrequency = 3.0\nbaseline = \"rest\"", "baseline is given without record"},
            Bad{"acceleration = 4.0\nfrequency = 3.0\ndirection = [0.0, 0.0]", "direction of the shaking is zero"},
            Bad{"acceleration = 4.0\nfrequency = 3.0\nunit = \"gall\"", "Did you mean \"gal\""},
            Bad{"record = \"nowhere.csv\"", "nowhere.csv"},
-           Bad{"record = \"nowhere.csv\"\nfrequency = 3.0", "frequency does not apply"},
+           Bad{"record = \"nowhere.csv\"\nfrequency = 3.0", "frequency is given without acceleration"},
        }) {
     const std::string sentence = sentence_of(shaking(bad.keys));
     CAPTURE(bad.keys, sentence);

@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/grain_simulation.hpp"

@@ -298,6 +298,24 @@ const DiscGroup& group(const Assembly& assembly, const std::string& name) {
             assembly.periodic() ? "Name one of them; a periodic cell has no sides of its own" : "Name one of them");
 }
 
+DiscGroup discs_in(const Assembly& assembly, const Rectangle& box) {
+  const auto& [low, high] = box;
+  DiscGroup found;
+  Vec2 least = assembly.centres.front(), most = least;
+  for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
+    const Vec2 x = assembly.centres[disc];
+    least = {std::min(least.x, x.x), std::min(least.y, x.y)};
+    most = {std::max(most.x, x.x), std::max(most.y, x.y)};
+    if (x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y)
+      found.discs.push_back(static_cast<std::int32_t>(disc));
+  }
+  if (found.discs.empty())
+    bad_input("no disc has its centre in the box",
+              fmt::format("the centres lie in [{:.6g}, {:.6g}, {:.6g}, {:.6g}]", least.x, least.y, most.x, most.y),
+              "Move or widen the box");
+  return found;
+}
+
 std::vector<Inertia> inertia_of(const Assembly& assembly, double density, Body body) {
   std::vector<Inertia> all = inertia_of(assembly.radii, density, body);
   if (!assembly.sections.empty() && body != Body::disc) {

@@ -118,6 +118,10 @@ double bytes_of_network(double discs);
 /// \throws Error (bad_input) where there is none, naming those that exist
 const DiscGroup& group(const Assembly& assembly, const std::string& name);
 
+/// The discs with their centre in a box or on its sides.
+/// \throws Error (bad_input) if there is none, with the extent of the centres
+DiscGroup discs_in(const Assembly& assembly, const Rectangle& box);
+
 /// Inertia of every body: from its section where the assembly has sections, else that of the disc or sphere of its
 /// radius. \throws Error (bad_input) as inertia_of a disc; on spheres where there are sections
 std::vector<Inertia> inertia_of(const Assembly& assembly, double density, Body body);

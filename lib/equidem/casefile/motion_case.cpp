@@ -1,39 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/motion_case.hpp"
 
-#include <cmath>
-#include <string_view>
-
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/core/names.hpp"
-#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 
-namespace equidem {
+namespace equidem::casefile {
 namespace {
-
-namespace fs = std::filesystem;
-using casefile::fail_at;
-using casefile::repeated;
-
-/// \return the key at fault where the schedule is wrong
-const char* complete_schedule(const TomlValue& table, ScheduleTable& read) {
-  Schedule& schedule = read.schedule;
-  if (schedule.kind != Schedule::Kind::table) return schedule.kind == Schedule::Kind::ramp ? "end" : "frequency";
-  schedule.value = 0;
-  const bool times = table.find("times") != nullptr, values = table.find("values") != nullptr;
-  if ((times && values) == read.path.has_value() || times != values) {
-    fail_at(table, "schedule", fmt::format("the points of '{}' are not given once", read.name),
-            "a table is times and values, or a file", "Give times = [...] and values = [...], or path = \"FILE\"");
-  }
-  if (!read.path) return "times";
-  try {
-    read_points(*read.path, schedule, "value");
-  } catch (const Error& error) {
-    throw error.at(fmt::format("{}: schedule.path", table.find("path")->where()));
-  }
-  return "path";
-}
 
 Vec2 unit_vector(const Vec2& given, const TomlValue& table, const char* key, const std::string& use) {
   const double length = norm(given);
@@ -45,16 +18,7 @@ Vec2 unit_vector(const Vec2& given, const TomlValue& table, const char* key, con
 }
 
 void set_motion(const TomlValue& table, const WallTable& read, std::span<const NamedSchedule> schedules, Wall& wall) {
-  if (!read.displacement || !read.schedule) {
-    const char* lonely = read.displacement ? "displacement" : read.schedule ? "schedule" : "direction";
-    if (table.find(lonely) == nullptr) return;
-    fail_at(*table.find(lonely), fmt::format("wall.{}", lonely),
-            fmt::format("wall '{}' has no {}", wall.name, read.displacement ? "schedule" : "displacement"),
-            "a wall moves by its displacement times a schedule",
-            read.displacement
-                ? "Add schedule = \"NAME\" and a [[schedule]] of that name; or place the wall by its point"
-                : "Add displacement = ... in m");
-  }
+  if (!read.displacement) return;
   if (!read.direction && wall.shape != Wall::Shape::line)
     fail_at(*table.find("displacement"), "wall.displacement", fmt::format("wall '{}' has no direction", wall.name),
             "only a line has a normal to move along", "Add direction = [..., ...]");
@@ -81,53 +45,114 @@ Wall wall_of(const TomlValue& table, const WallTable& read, std::span<const Name
   if (wall.shape == Wall::Shape::line)
     wall.normal = unit_vector(wall.normal, table, "normal", "it says on which side the bodies are");
   if (wall.shape != Wall::Shape::arc) wall.to = 0;
-  const char* culprit = culprit_of(wall.shape);
-  try {
-    check(wall);
-  } catch (const Error& error) {
-    throw error.at(fmt::format("{}: wall.{}", table.find(culprit)->where(), culprit));
-  }
+  with_key(table, "wall", culprit_of(wall.shape), [&] { check(wall); });
   set_motion(table, read, schedules, wall);
   return wall;
 }
 
 }  // namespace
 
-void read_points(const fs::path& path, Schedule& table, std::string_view column) {
-  TableFile file(path);
-  while (file.next()) {
-    const auto& cells = file.cells();
-    const bool pair = cells.size() == 2;
-    if (file.is_first() && pair && cells[0] == "time" && cells[1] == column) continue;
-    const auto time = number_from<double>(cells.front()), value = number_from<double>(cells.back());
-    if (!pair || !time || !value || !std::isfinite(*time) || !std::isfinite(*value)) {
-      file.fail("this row is not a time and a value", "two numbers with a comma are needed",
-                fmt::format("Write it like 0.5,1.0; the first row may be time,{}", column));
-    }
-    if (!table.times.empty() && *time <= table.times.back()) {
-      file.fail(fmt::format("the time {} s comes after {} s", *time, table.times.back()),
-                "times ascend, and a value cannot jump", "Order the rows and leave out repeated times");
-    }
-    table.times.push_back(*time);
-    table.values.push_back(*value);
+void run_duration(KeySpec& key) {
+  unit("s")(key), positive(key);
+  key.help = "length of the run";
+}
+
+void run_time_step(KeySpec& key) {
+  or_auto(key), unit("s")(key), positive(key);
+}
+
+void run_gravity(KeySpec& key) {
+  unit("m/s²")(key);
+  key.help = "such as [0.0, -9.81]";
+}
+
+std::vector<Key<ScheduleTable>> schedule_keys() {
+  const std::vector<std::string> ramp = {"ramp"}, sine = {"sine"}, waves = {"ramp", "sine"}, table = {"table"};
+  using T = ScheduleTable;
+  return {
+      key("name", &T::name, required, "for schedule = of [[support]], [[load]], [[wall]]"),
+      key("kind", &T::schedule, &Schedule::kind, required,
+          "ramp: smooth, from 0 at start to value at end; sine: value sin(2 pi frequency (t - start)), 0 before start; "
+          "table: straight between points, constant outside"),
+      key("value", &T::schedule, &Schedule::value, when("kind", waves)),
+      key("start", &T::schedule, &Schedule::start, unit("s"), when("kind", waves)),
+      key("end", &T::schedule, &Schedule::end, required, unit("s"), when("kind", ramp), "after start"),
+      key("frequency", &T::schedule, &Schedule::frequency, required, unit("Hz"), positive, when("kind", sine)),
+      key("times", &T::schedule, &Schedule::times, unit("s"), when("kind", table),
+          or_instead({"path"}, "the points of a table are times and values, or a file"),
+          only_with({"values"}, "a point is a time and a value"), "ascending"),
+      key("values", &T::schedule, &Schedule::values, optional, when("kind", table),
+          only_with({"times"}, "a point is a time and a value"), "one for each time"),
+      key("path", &T::path, when("kind", table), "a CSV file with two columns, time and value")};
+}
+
+std::vector<Key<WallTable>> wall_keys(BodyFamily family) {
+  using T = WallTable;
+  using W = Wall;
+  const bool colliding = family == BodyFamily::colliding;
+  const auto of = [&](std::vector<std::string> shapes) {
+    return colliding ? when("shape", std::move(shapes)) : when({}, {});
+  };
+  std::vector<Key<T>> keys = {
+      key("name", &T::wall, &W::name, required, colliding ? "for reports, and for [[collisions.pair]]" : "for reports"),
+      key("point", &T::wall, &W::point, required, unit("m"), of({"line", "segment"}),
+          colliding ? "on the line; the first end of the segment" : "on the wall, a straight line"),
+      key("normal", &T::wall, &W::normal, required, of({"line"}),
+          "towards the bodies, of any length; all bodies are on that side")};
+  if (colliding) {
+    const auto segment = of({"segment"}), arc = of({"arc"});
+    keys.insert(keys.begin() + 1,
+                key("shape", &T::wall, &W::shape,
+                    "line: endless, bodies on one side; segment, arc: thin, with two sides and two ends"));
+    keys.insert(keys.end(), {key("end", &T::wall, &W::end, required, unit("m"), segment),
+                             key("centre", &T::wall, &W::point, required, unit("m"), arc),
+                             key("radius", &T::wall, &W::radius, required, unit("m"), positive, arc),
+                             key("from", &T::wall, &W::from, unit("rad"), arc, "counter-clockwise from here ..."),
+                             key("to", &T::wall, &W::to, unit("rad"), arc, "... to here"),
+                             key("shaken", &T::shaken, optional, "false: [shaking] does not move it")});
+  } else {
+    keys.push_back(key("kN", &T::wall, &W::kN, required, unit("Pa"), positive,
+                       "spring that pushes discs out; there is no friction"));
   }
-  if (table.times.empty())
-    bad_input(fmt::format("'{}' has no points", path.string()), "a table needs at least one", "Add rows like 0.5,1.0");
+  const std::string why = "a wall moves by its displacement times a schedule; a wall at rest is placed by its point";
+  keys.insert(keys.end(), {key("displacement", &T::displacement, unit("m"), only_with({"schedule"}, why),
+                               "along direction, times the schedule"),
+                           key("direction", &T::direction, only_with({"displacement"}, why),
+                               "of any length; left out: the normal of a line"),
+                           unbound_key<T>("schedule", KeyType::text, only_with({"displacement"}, why),
+                                          "schedule of the displacement")});
+  return keys;
+}
+
+std::vector<Key<Probe>> probe_keys(BodyFamily family) {
+  using enum ProbeQuantity;
+  const std::vector<ProbeQuantity> own = family == BodyFamily::bonded
+                                             ? std::vector{displacement, velocity, rotation, spin}
+                                             : std::vector{position, velocity, angle, spin};
+  std::vector<std::string> words;
+  for (const ProbeQuantity quantity : own) words.push_back(to_string(quantity));
+  const auto first = [&](KeySpec& key) { key.fallback = default_text(std::vector{own.front()}); };
+  return {key("name", &Probe::name, required, "begins the names of its columns"),
+          key("group", &Probe::group, or_instead({"bodies"}, "they say whose history it is"), "a group"),
+          key("bodies", &Probe::bodies, optional, formerly("grains"), "counted from 0; those of a file first"),
+          key("quantities", &Probe::quantities, choices(std::move(words)), first,
+              refused({{"energy", "the energies of the whole scene are in every history", "Remove it"}}),
+              "the means over these bodies; the energies of the whole scene are in every history")};
 }
 
 std::vector<NamedSchedule> read_schedules(const TomlValue& root, const std::vector<ScheduleTable>& tables) {
-  casefile::check_names(root, "schedule");
+  using Kind = Schedule::Kind;
+  check_names(root, "schedule");
   std::vector<NamedSchedule> schedules;
   for (std::size_t k = 0; k < tables.size(); ++k) {
     const TomlValue& table = repeated(root, "schedule")[k];
-    ScheduleTable read = tables[k];
-    const char* culprit = complete_schedule(table, read);
-    try {
-      check(read.schedule);
-    } catch (const Error& error) {
-      throw error.at(fmt::format("{}: schedule.{}", table.find(culprit)->where(), culprit));
-    }
-    schedules.push_back({read.name, std::move(read.schedule)});
+    const ScheduleTable& read = tables[k];
+    Schedule& schedule = schedules.emplace_back(NamedSchedule{read.name, read.schedule}).schedule;
+    const bool points = schedule.kind == Kind::table;
+    if (points) schedule.value = 0;
+    if (read.path) with_key(table, "schedule", "path", [&] { read_points(*read.path, schedule, "value"); });
+    const char* culprit = schedule.kind == Kind::ramp ? "end" : !points ? "frequency" : read.path ? "path" : "times";
+    with_key(table, "schedule", culprit, [&] { check(schedule); });
   }
   return schedules;
 }
@@ -150,29 +175,17 @@ Schedule scheduled(const TomlValue& table, const std::string& key, double value,
 
 std::vector<Wall> read_walls(const TomlValue& root, const std::vector<WallTable>& tables,
                              std::span<const NamedSchedule> schedules) {
-  casefile::check_names(root, "wall");
+  check_names(root, "wall");
   std::vector<Wall> walls;
   for (std::size_t k = 0; k < tables.size(); ++k)
     walls.push_back(wall_of(repeated(root, "wall")[k], tables[k], schedules));
   return walls;
 }
 
-void refuse_energy_of_probes(const TomlValue& root) {
-  for (const TomlValue& table : repeated(root, "probe")) {
-    const TomlValue* quantities = table.find("quantities");
-    for (std::size_t k = 0; quantities != nullptr && k < quantities->items.size(); ++k)
-      if (quantities->items[k].text == "energy")
-        fail_at(quantities->items[k], "probe.quantities", "energy is no quantity of a probe",
-                "the energies of the whole scene are in every history", "Remove it");
-  }
-}
-
 void check_probes(const TomlValue& root) {
-  casefile::check_names(root, "probe");
+  check_names(root, "probe");
   for (const TomlValue& table : repeated(root, "probe")) {
-    casefile::check_plain_name(*table.find("name"), "probe.name", "a probe", "it begins the names of columns");
-    casefile::check_one_of(table, "probe", {"group", "bodies"}, "it is not said whose history it is",
-                           "a probe records a group, or bodies by their numbers", "Give one of the two");
+    check_plain_name(*table.find("name"), "probe.name", "a probe", "it begins the names of columns");
   }
 }
 
@@ -184,11 +197,11 @@ void check_bodies(const TomlValue& table, const Probe& probe, std::size_t bodies
   }
 }
 
-void check_step(const TomlValue& run, const RunTable& read) {
-  if (!read.given_step || !read.duration || *read.given_step <= *read.duration) return;
+void check_step(const TomlValue& run, const std::optional<double>& step, const std::optional<double>& duration) {
+  if (!step || !duration || *step <= *duration) return;
   fail_at(*run.find("time_step"), "run.time_step",
-          fmt::format("time_step = {} s is longer than the run of {} s", *read.given_step, *read.duration),
+          fmt::format("time_step = {} s is longer than the run of {} s", *step, *duration),
           "a run makes at least one step", "Shorten the step");
 }
 
-}  // namespace equidem
+}  // namespace equidem::casefile

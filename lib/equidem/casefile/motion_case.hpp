@@ -8,20 +8,15 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "equidem/casefile/engine/toml.hpp"
+#include "equidem/casefile/engine/bind.hpp"
+#include "equidem/motion/ledger.hpp"
 #include "equidem/motion/probe.hpp"
 #include "equidem/motion/schedule.hpp"
 #include "equidem/motion/wall.hpp"
 
-namespace equidem {
-
-struct NamedSchedule {
-  std::string name;
-  Schedule schedule;
-};
+namespace equidem::casefile {
 
 /// [[schedule]]: a name for a schedule, whose points may be in a file.
 struct ScheduleTable {
@@ -42,34 +37,42 @@ struct WallTable {
   Wall wall = full_circle();
   std::optional<double> displacement;  ///< m, along `direction`
   std::optional<Vec2> direction;       ///< none: the normal of a line
-  std::optional<std::string> schedule;
-  bool shaken = true;  ///< colliding bodies
-};
-
-/// The keys of [run] that both families have.
-struct RunTable {
-  std::optional<double> duration;    ///< s
-  std::optional<double> given_step;  ///< s; none: chosen
-  Vec2 gravity;                      ///< m/s²
+  bool shaken = true;                  ///< colliding bodies
 };
 
 /// The tables of a case of either family.
 struct MotionTables {
   std::vector<ScheduleTable> schedule_tables;
   std::vector<WallTable> wall_tables;
-  std::vector<Probe> probe_tables;
 };
+
+/// Attributes of the keys of [run] that both families have: length, step, gravity.
+void run_duration(KeySpec& key);
+void run_time_step(KeySpec& key);
+void run_gravity(KeySpec& key);
+
+std::vector<Key<ScheduleTable>> schedule_keys();
+/// Bonded discs meet lines with a spring kN; colliding bodies meet all shapes, which may be shaken.
+std::vector<Key<WallTable>> wall_keys(BodyFamily family);
+/// Both families have the same keys; the quantities are those of the family, the first is the default.
+std::vector<Key<Probe>> probe_keys(BodyFamily family);
+
+/// Bind [[schedule]], [[wall]] and [[probe]] in a file of an F that is a MotionTables.
+/// \param probes chain of members to a std::vector of Probe
+template <class F, class... Links>
+void bind_motion(File<F>& file, BodyFamily family, Links... probes) {
+  file.table("schedule", &MotionTables::schedule_tables,
+             "how a motion or load changes in a run; without one it acts from the start")
+      .keys(schedule_keys());
+  file.table("wall", &MotionTables::wall_tables, "a wall of infinite mass, in a run").keys(wall_keys(family));
+  file.table("probe", probes..., "a history of some bodies in a run").keys(probe_keys(family));
+}
 
 /// The schedules of a document, checked, with the points of their files.
 /// \param root checked; the list [[schedule]] that the tables were read from
-/// \throws Error (bad_input) with line and key: two schedules of one name, an end before the start, points that are
-///         missing or do not ascend, a file that is not a table of two columns
+/// \throws Error (bad_input) with line and key: two schedules of one name, an end before the start, points that do not
+///         ascend, a file that is not a table of two columns
 std::vector<NamedSchedule> read_schedules(const TomlValue& root, const std::vector<ScheduleTable>& tables);
-
-/// The rows "time,value" of a file as the points of a table; '#' begins a comment.
-/// \param column name of the second column in an optional header row
-/// \throws Error (bad_input) with file and line: a row that is not two numbers, times that do not ascend, no rows
-void read_points(const std::filesystem::path& path, Schedule& table, std::string_view column);
 
 /// `value` times the schedule that the table names; constant if it names none.
 /// \param key of the table, for errors: "load"
@@ -79,17 +82,12 @@ Schedule scheduled(const TomlValue& table, const std::string& key, double value,
 
 /// The walls of a document with their motion.
 /// \throws Error (bad_input) with line and key: two walls of one name, a normal or direction of length 0, a segment or
-///         an arc that `check` refuses, a displacement without a schedule or without a direction, and the reverse
+///         an arc that `check` refuses, a displacement without a direction
 std::vector<Wall> read_walls(const TomlValue& root, const std::vector<WallTable>& tables,
                              std::span<const NamedSchedule> schedules);
 
-/// Refuse the former word "energy" among the quantities of probes; before the document is checked against its keys.
-/// \throws Error (bad_input) with its line
-void refuse_energy_of_probes(const TomlValue& root);
-
-/// Check the probes of a document by themselves.
-/// \throws Error (bad_input) with line and key: two probes of one name, a name that is not plain, neither or both of
-///         group and bodies
+/// Check the names of the probes of a document.
+/// \throws Error (bad_input) with line and key: two probes of one name, a name that is not plain
 void check_probes(const TomlValue& root);
 
 /// Check that the bodies that a probe names are there.
@@ -98,6 +96,6 @@ void check_probes(const TomlValue& root);
 void check_bodies(const TomlValue& table, const Probe& probe, std::size_t bodies);
 
 /// \throws Error (bad_input) if the time step is longer than the run
-void check_step(const TomlValue& run, const RunTable& read);
+void check_step(const TomlValue& run, const std::optional<double>& step, const std::optional<double>& duration);
 
-}  // namespace equidem
+}  // namespace equidem::casefile

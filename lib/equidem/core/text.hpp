@@ -56,6 +56,9 @@ std::string_view trimmed(std::string_view text);
 /// Without the mark that some programs put before a UTF-8 text.
 std::string_view without_byte_order_mark(std::string_view text);
 
+/// Whether the text consists of letters, digits, '_' and '-' only.
+bool is_plain_name(std::string_view text);
+
 /// Number of characters of a UTF-8 text.
 std::size_t columns_of(std::string_view text);
 

@@ -10,6 +10,17 @@
 
 namespace equidem {
 
+void check(const MeasureOptions& options, Body body) {
+  if (body == Body::sphere)
+    bad_input("the bodies are spheres", "areas of the plane say nothing of their volumes",
+              "Remove [measures], or take discs");
+  if (!options.region) return;
+  const auto& [low, high] = *options.region;
+  if (!(low.x < high.x && low.y < high.y))
+    bad_input_at("region", "the region has no area", "its lower left corner comes first",
+                 "Write it like [0.1, 0.1, 0.9, 0.5]");
+}
+
 BoxMeasures::BoxMeasures(const GrainScene& scene, MeasureOptions options, const std::optional<Shaking>& shaking)
     : scene_(scene),
       options_(std::move(options)),

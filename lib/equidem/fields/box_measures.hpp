@@ -25,6 +25,10 @@ struct MeasureOptions {
   std::optional<double> cell = {};    ///< width of the cells of the fields, m; none: no fields
 };
 
+/// \throws Error (bad_input), its place the name of the option: spheres, whose volumes no area of the plane tells; a
+///         region without an area
+void check(const MeasureOptions& options, Body body);
+
 /// Stands for a quantity that has no value at a moment.
 inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 

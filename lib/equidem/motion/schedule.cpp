@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "equidem/core/error.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/turns.hpp"
 
@@ -164,6 +165,28 @@ Schedule scaled(Schedule schedule, double factor) {
   for (double& value : schedule.values) value *= factor;
   for (double& rate : schedule.rates) rate *= factor;
   return schedule;
+}
+
+void read_points(const std::filesystem::path& path, Schedule& table, std::string_view column) {
+  TableFile file(path);
+  while (file.next()) {
+    const auto& cells = file.cells();
+    const bool pair = cells.size() == 2;
+    if (file.is_first() && pair && cells[0] == "time" && cells[1] == column) continue;
+    const auto time = number_from<double>(cells.front()), value = number_from<double>(cells.back());
+    if (!pair || !time || !value || !std::isfinite(*time) || !std::isfinite(*value)) {
+      file.fail("this row is not a time and a value", "two numbers with a comma are needed",
+                fmt::format("Write it like 0.5,1.0; the first row may be time,{}", column));
+    }
+    if (!table.times.empty() && *time <= table.times.back()) {
+      file.fail(fmt::format("the time {} s comes after {} s", *time, table.times.back()),
+                "times ascend, and a value cannot jump", "Order the rows and leave out repeated times");
+    }
+    table.times.push_back(*time);
+    table.values.push_back(*value);
+  }
+  if (table.times.empty())
+    bad_input(fmt::format("'{}' has no points", path.string()), "a table needs at least one", "Add rows like 0.5,1.0");
 }
 
 }  // namespace equidem

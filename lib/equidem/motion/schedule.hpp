@@ -4,6 +4,9 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "equidem/core/names.hpp"
@@ -66,5 +69,15 @@ std::int64_t count_steps(double duration, double step);
 
 /// The schedule multiplied by a factor.
 Schedule scaled(Schedule schedule, double factor);
+
+/// Append the rows "time,value" of a file to the points of a table; '#' begins a comment.
+/// \param column name of the second column in an optional header row
+/// \throws Error (bad_input) with file and line: a row that is not two numbers, times that do not ascend, no rows
+void read_points(const std::filesystem::path& path, Schedule& table, std::string_view column);
+
+struct NamedSchedule {
+  std::string name;
+  Schedule schedule;
+};
 
 }  // namespace equidem

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "equidem/casefile/engine/keys.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/error.hpp"
 
@@ -108,7 +109,7 @@ std::unique_ptr<RunJob> make_job(const RunVerb& options, bool collide) {
 }
 
 int run(const RunVerb& options) {
-  const bool collide = describes_grains(options.common.case_file, options.common.set);
+  const bool collide = describes_grains(casefile::read_document(options.common.case_file, options.common.set));
   check_options(options, collide);
   if (options.accuracy) return run_to_accuracy(options, *options.accuracy);
   const std::unique_ptr<RunJob> job = make_job(options, collide);

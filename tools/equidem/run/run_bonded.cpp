@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "equidem/casefile/assembly/build_run.hpp"
+#include "equidem/casefile/assembly/build.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/checksum.hpp"
 #include "equidem/core/error.hpp"

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "equidem/casefile/grains/grain_case.hpp"
-#include "equidem/casefile/grains/grain_step.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 
 #include "run/run_grains_measures.hpp"

@@ -2,15 +2,22 @@
 #include "equidem/casefile/assembly/build.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/files.hpp"
 #include "equidem/assembly/lattices.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/motion_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/dynamics/scene_check.hpp"
+#include "equidem/homogenize/tension_test.hpp"
 
 namespace equidem {
 namespace {
+
+using namespace casefile;
 
 Assembly generate(const AssemblyCase& wanted) {
   switch (wanted.kind) {
@@ -25,44 +32,25 @@ Assembly generate(const AssemblyCase& wanted) {
 }
 
 DiscGroup discs_of(const GroupCase& wanted, const Assembly& assembly, const std::string& where) {
-  const auto count = static_cast<std::int32_t>(assembly.size());
-  DiscGroup result;
-  for (const std::int32_t disc : wanted.discs) {
-    if (disc >= count) {
-      bad_input_at(where, fmt::format("group '{}' names disc {}", wanted.name, disc),
-                   fmt::format("the assembly has {}, numbered from 0", counted(count, "disc")), "Correct the list");
-    }
-    result.discs.push_back(disc);
-  }
-  std::sort(result.discs.begin(), result.discs.end());
+  if (wanted.box) return with_place(where, [&] { return discs_in(assembly, *wanted.box); });
+  DiscGroup result{wanted.discs, {}};
+  std::ranges::sort(result.discs);
   result.discs.erase(std::unique(result.discs.begin(), result.discs.end()), result.discs.end());
-  if (!wanted.box) return result;
-
-  const auto [low, high] = *wanted.box;
-  Vec2 least = assembly.centres.front(), most = least;
-  for (std::int32_t disc = 0; disc < count; ++disc) {
-    const Vec2 x = assembly.centres[static_cast<std::size_t>(disc)];
-    least = {std::min(least.x, x.x), std::min(least.y, x.y)};
-    most = {std::max(most.x, x.x), std::max(most.y, x.y)};
-    if (x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y) result.discs.push_back(disc);
-  }
-  if (result.discs.empty()) {
-    bad_input_at(where, fmt::format("no disc has its centre in the box of group '{}'", wanted.name),
-                 fmt::format("the centres lie in [{:.6g}, {:.6g}, {:.6g}, {:.6g}]", least.x, least.y, most.x, most.y),
-                 "Move or widen the box");
-  }
+  if (const std::int32_t last = result.discs.back(); static_cast<std::size_t>(last) >= assembly.size())
+    bad_input_at(where, fmt::format("group '{}' names disc {}", wanted.name, last),
+                 fmt::format("the assembly has {}, numbered from 0", counted(std::ssize(assembly.centres), "disc")),
+                 "Correct the list");
   return result;
 }
 
 void add_groups(Assembly& assembly, const Case& resolved) {
   for (std::size_t k = 0; k < resolved.groups.size(); ++k) {
     const GroupCase& wanted = resolved.groups[k];
-    const std::string where = resolved.where(fmt::format("group.{}.{}", k, wanted.box ? "box" : "discs"));
-    if (assembly.groups.contains(wanted.name)) {
+    if (assembly.groups.contains(wanted.name))
       bad_input_at(resolved.where(fmt::format("group.{}.name", k)),
                    fmt::format("the assembly has a group '{}' of its own", wanted.name), "a name means one group",
                    "Choose another name");
-    }
+    const std::string where = resolved.where(fmt::format("group.{}.{}", k, wanted.box ? "box" : "discs"));
     assembly.groups[wanted.name] = discs_of(wanted, assembly, where);
   }
 }
@@ -70,18 +58,15 @@ void add_groups(Assembly& assembly, const Case& resolved) {
 /// Tables that act on a group need an existing group that contains discs.
 void check_group_names(const Assembly& assembly, const Case& resolved) {
   for (const char* table : {"support", "load", "velocity", "probe"}) {
-    const TomlValue* list = resolved.document.find(table);
-    for (std::size_t k = 0; list != nullptr && k < list->items.size(); ++k) {
-      if (list->items[k].find("group") == nullptr) continue;
-      const std::string where = resolved.where(fmt::format("{}.{}.group", table, k));
-      const std::string& name = list->items[k].find("group")->text;
-      try {
-        if (group(assembly, name).discs.empty())
-          bad_input(fmt::format("group '{}' holds no disc", name), fmt::format("the {} would do nothing", table),
+    const std::vector<TomlValue>& list = repeated(resolved.document, table);
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      const TomlValue* name = list[k].find("group");
+      if (name == nullptr) continue;
+      with_place(resolved.where(fmt::format("{}.{}.group", table, k)), [&] {
+        if (group(assembly, name->text).discs.empty())
+          bad_input(fmt::format("group '{}' holds no disc", name->text), fmt::format("the {} would do nothing", table),
                     "Choose another group");
-      } catch (const Error& error) {
-        throw error.at(where);
-      }
+      });
     }
   }
 }
@@ -98,18 +83,26 @@ std::string described(const MaterialCase& material, const SpringConstants& sprin
                      relation.validity);
 }
 
+void add_test(const Case& resolved, const Assembly& assembly, Scene& scene) {
+  const auto constant = [](const std::optional<double>& value) -> std::optional<Schedule> {
+    if (!value) return {};
+    return Schedule{.value = *value};
+  };
+  const TensionSetup test = with_place(resolved.where("test"), [&] { return tension_setup(assembly, *resolved.test); });
+  for (const Support& support : test.supports)
+    scene.supports.push_back({support.group, constant(support.ux), constant(support.uy), constant(support.rotation)});
+  for (const Load& load : test.loads) scene.loads.push_back({.load = load, .factor = {.value = 1}});
+}
+
 }  // namespace
 
 Assembly build_assembly(const Case& resolved) {
-  Assembly assembly;
-  try {
-    assembly = generate(resolved.assembly);
-    if (!resolved.assembly.own_springs) {
-      assembly.contact_kN.clear();
-      assembly.contact_kT.clear();
-    }
-  } catch (const Error& error) {
-    throw error.at(resolved.where(resolved.assembly.kind == AssemblyKind::file ? "assembly.path" : "assembly"));
+  const AssemblyCase& wanted = resolved.assembly;
+  Assembly assembly = with_place(resolved.where(wanted.kind == AssemblyKind::file ? "assembly.path" : "assembly"),
+                                 [&] { return generate(wanted); });
+  if (!wanted.own_springs) {
+    assembly.contact_kN.clear();
+    assembly.contact_kT.clear();
   }
   add_groups(assembly, resolved);
   check_group_names(assembly, resolved);
@@ -118,12 +111,10 @@ Assembly build_assembly(const Case& resolved) {
 }
 
 std::optional<double> disc_density(const Case& resolved, const Assembly& assembly) {
-  try {
-    return disc_density(resolved.assembly.density, resolved.material ? resolved.material->density : std::nullopt,
+  return with_place(resolved.where("material.density"), [&] {
+    return disc_density(resolved.assembly.density, resolved.material ? resolved.material->given.density : std::nullopt,
                         resolved.assembly.body, assembly);
-  } catch (const Error& error) {
-    throw error.at(resolved.where("material.density"));
-  }
+  });
 }
 
 ChosenRelation spring_relation(const Case& resolved, const Assembly& assembly) {
@@ -143,8 +134,7 @@ BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
                      : "the case file gives none, and says that those of the assembly file do not count",
                  "Add [springs] with kN and kT to the case file");
   }
-  const std::string where = resolved.where(resolved.material ? "material" : "springs");
-  try {
+  const auto built = [&]() -> BuiltSprings {
     if (own) {
       return {contact_springs(assembly, resolved.springs.value_or(SpringConstants{}), resolved.weighting),
               {},
@@ -162,9 +152,49 @@ BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
                           material.static_only ? NegativeTangential::static_only : NegativeTangential::refuse);
     return {contact_springs(assembly, constants, resolved.weighting), constants,
             described(material, constants, resolved.weighting, spring_relation(resolved, assembly).relation)};
-  } catch (const Error& error) {
-    throw error.at(where);
+  };
+  return with_place(resolved.where(resolved.material ? "material" : "springs"), built);
+}
+
+Scene build_scene(const Case& resolved, const Assembly& assembly, const ContactSprings& springs) {
+  if (!resolved.run) {
+    bad_input_at(fmt::format("{}: run", resolved.document.where()), "missing table", "it says how long the run is",
+                 "Add [run] with duration = ... in s, or until_rest = 1e-10");
   }
+  const std::optional<double> density = disc_density(resolved, assembly);
+  if (!density) {
+    bad_input_at(resolved.where("assembly"), "the density is missing", "motion needs the mass of the discs",
+                 "Add density = ... in kg/m³ to [assembly], or that of the continuum to [material]");
+  }
+  const RunCase& run = *resolved.run;
+  Scene scene(assembly, springs, inertia_of(assembly, *density, resolved.assembly.body));
+  scene.supports = run.supports;
+  scene.loads = run.loads;
+  scene.velocities = run.velocities;
+  scene.walls = run.walls;
+  scene.gravity = run.gravity;
+  if (resolved.test) add_test(resolved, assembly, scene);
+  check(scene, resolved.rotation, [&](const std::string& path) { return resolved.where(path); });
+  return scene;
+}
+
+std::vector<Probe> build_probes(const Case& resolved, const Assembly& assembly) {
+  std::vector<Probe> probes = resolved.run->probes;
+  for (std::size_t k = 0; k < probes.size(); ++k) {
+    check_bodies(repeated(resolved.document, "probe")[k], probes[k], assembly.size());
+    if (probes[k].bodies.empty()) probes[k].bodies = group(assembly, probes[k].group).discs;
+  }
+  return probes;
+}
+
+SimulationOptions simulation_options(const Case& resolved, double time_step) {
+  assert(resolved.run && time_step > 0);
+  const RunCase& run = *resolved.run;
+  return {.motion = run.motion,
+          .integrator = run.integrator,
+          .rotation = resolved.rotation,
+          .damping = run.damping,
+          .time_step = time_step};
 }
 
 }  // namespace equidem

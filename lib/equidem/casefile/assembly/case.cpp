@@ -6,8 +6,7 @@
 
 #include "equidem/casefile/assembly/case_tables.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
-#include "equidem/casefile/grains/grain_tables.hpp"
-#include "equidem/core/error.hpp"
+#include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 
@@ -16,29 +15,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using casefile::fail_at;
-using casefile::repeated;
+using namespace casefile;
 
-void check_radii(const TomlValue& table, const DelaunayOptions& options) {
-  if (table.find("kind")->text != "delaunay") return;
-  casefile::check_one_of(table, "assembly.radius", {"radius", "radii"}, "the size of the discs is missing",
-                         "discs are of one radius, or of radii between two",
-                         "Give either radius = ... or [assembly.radii]");
-  if (options.radii.smallest > options.radii.largest) {
+void check_radii(const TomlValue& table, const RadiusDistribution& radii) {
+  if (table.find("radii") != nullptr && radii.smallest > radii.largest)
     fail_at(*table.find("radii"), "assembly.radii",
-            fmt::format("smallest = {} is larger than largest = {}", options.radii.smallest, options.radii.largest), "",
+            fmt::format("smallest = {} is larger than largest = {}", radii.smallest, radii.largest), "",
             "Exchange them");
-  }
 }
 
-void check_group(const TomlValue& table, const GroupCase& group) {
-  casefile::check_one_of(table, fmt::format("group '{}'", group.name), {"discs", "box"}, "it has neither discs nor box",
-                         "a group is a list of discs, or the discs in a box", "Give one of the two");
-  if (group.box && (group.box->low.x >= group.box->high.x || group.box->low.y >= group.box->high.y)) {
-    const TomlValue& box = *table.find("box");
-    fail_at(box, "group.box", fmt::format("the box {} is empty", box.shown()), "it is [x_min, y_min, x_max, y_max]",
+void check_box(const TomlValue& table, const Rectangle& box) {
+  const TomlValue& given = *table.find("box");
+  if (box.low.x >= box.high.x || box.low.y >= box.high.y)
+    fail_at(given, "group.box", fmt::format("the box {} is empty", given.shown()), "it is [x_min, y_min, x_max, y_max]",
             "Put the smaller numbers first");
-  }
 }
 
 void check_support(const TomlValue& table, const Support& support) {
@@ -48,6 +38,7 @@ void check_support(const TomlValue& table, const Support& support) {
 }
 
 void check_load(const TomlValue& table, const Load& load) {
+  check_plain_name(*table.find("case"), "load.case", "a load case", "it becomes part of the names of files");
   const TomlValue* moment = table.find("moment");
   if (table.find("force") == nullptr && moment == nullptr)
     fail_at(table, "load", fmt::format("the load on '{}' has neither force nor moment", load.group),
@@ -58,30 +49,26 @@ void check_load(const TomlValue& table, const Load& load) {
 }
 
 /// Loads with a name act in the case of that name, loads without in every case.
-std::vector<NamedLoads> load_cases_of(const std::vector<casefile::LoadTable>& tables) {
+std::vector<NamedLoads> load_cases_of(const std::vector<LoadTable>& tables) {
   std::vector<NamedLoads> cases;
-  for (const casefile::LoadTable& table : tables)
+  for (const LoadTable& table : tables)
     if (!table.load_case.empty() && std::ranges::find(cases, table.load_case, &NamedLoads::name) == cases.end())
       cases.push_back({table.load_case, {}});
   if (cases.empty()) cases.push_back({});
-  for (const casefile::LoadTable& table : tables)
+  for (const LoadTable& table : tables)
     for (NamedLoads& loads : cases)
       if (table.load_case.empty() || table.load_case == loads.name) loads.loads.push_back(table.load);
   return cases;
 }
 
-/// A file of springs takes the place of the table [springs].
+/// The table of a springs file takes the place of its name.
 void resolve_springs_file(TomlValue& root, const fs::path& folder) {
   TomlValue* named = root.find("springs");
   if (named == nullptr || named->type != TomlValue::Type::text) return;
-  const fs::path path = casefile::opened(named->text, folder);
-  TomlValue document;
-  try {
-    document = parse_toml(read_file(path), path.string());
-  } catch (const Error& error) {
-    throw error.at(fmt::format("{}: springs", named->where()));
-  }
-  casefile::springs_file_format().check(document);
+  const fs::path path = opened(named->text, folder);
+  TomlValue document = with_place(fmt::format("{}: springs", named->where()),
+                                  [&] { return parse_toml(read_file(path), path.string()); });
+  static_cast<void>(springs_file_format().read(document, folder));
   *named = *document.find("springs");
 }
 
@@ -120,17 +107,54 @@ void check_contradictions(const TomlValue& root, const AssemblyCase& assembly) {
   }
 }
 
-void complete_springs(const TomlValue& root, casefile::CaseTables& tables) {
-  if (const auto& springs = tables.springs_table) {
-    tables.springs = springs->springs;
-    tables.weighting = springs->weighting;
+TimedSupport timed(const Support& support, const TomlValue& table, std::span<const NamedSchedule> schedules) {
+  const auto motion = [&](const std::optional<double>& value) -> std::optional<Schedule> {
+    if (!value) return {};
+    return scheduled(table, "support", *value, schedules);
+  };
+  return {support.group, motion(support.ux), motion(support.uy), motion(support.rotation)};
+}
+
+void check_one_load_case(const std::vector<TomlValue>& tables, const std::string& first) {
+  for (const TomlValue& table : tables) {
+    const TomlValue& name = *table.find("case");
+    if (!name.text.empty() && name.text != first)
+      fail_at(name, "load.case", fmt::format("[run] has the load cases '{}' and '{}'", first, name.text),
+              "a run is one motion, in which all loads act", "Keep one, or remove [run]");
   }
-  if (const auto& material = tables.material_table) {
-    tables.weighting = material->weighting;
-    tables.material = MaterialCase{{}, material->material.density, material->static_only};
-    casefile::at_key(*root.find("material"), "material",
-                     [&] { tables.material->moduli = moduli_of(material->material); });
+}
+
+/// Nothing that acts in a run alone is passed over in silence.
+void check_no_run_needed(const TomlValue& root) {
+  for (const char* list : {"wall", "velocity", "probe"}) {
+    if (repeated(root, list).empty()) continue;
+    fail_at(repeated(root, list).front(), list, fmt::format("[[{}]] is given and [run] is not", list),
+            "it belongs to motion in time", "Add [run] with a duration, or remove it");
   }
+}
+
+/// Complete [run] by the tables that act in a run, with their schedules.
+void complete_run(const TomlValue& root, CaseTables& tables) {
+  std::vector<TimedSupport> supports;
+  for (std::size_t k = 0; k < tables.supports.size(); ++k)
+    supports.push_back(timed(tables.supports[k], repeated(root, "support")[k], tables.schedules));
+  std::vector<Schedule> factors;
+  for (const TomlValue& table : repeated(root, "load"))
+    factors.push_back(scheduled(table, "load", 1, tables.schedules));
+  const TomlValue* table = root.find("run");
+  if (table == nullptr) return check_no_run_needed(root);
+  RunCase& run = *tables.run;
+  run.supports = std::move(supports);
+  check_one_load_case(repeated(root, "load"), tables.load_cases.front().name);
+  for (std::size_t k = 0; k < factors.size(); ++k)
+    run.loads.push_back({tables.load_cases.front().loads[k], factors[k]});
+  run.walls = read_walls(root, tables.wall_tables, tables.schedules);
+  check_probes(root);
+  check_step(*table, run.time_step.step, run.duration);
+  run.time_step.duration = run.duration.value_or(0);
+  if (run.damping.stiffness > 0 && run.damping.contact > 0)
+    fail_at(*table->find("damping")->find("contact"), "run.damping.contact", "stiffness and contact are both given",
+            "each says which dashpots stand at the contacts", "Set one of them to 0");
 }
 
 }  // namespace
@@ -141,38 +165,29 @@ std::string Case::where(std::string_view key) const {
 
 Case parse_case(std::string_view content, const std::string& name, const fs::path& folder,
                 std::span<const std::string> overrides) {
-  TomlValue root = parse_toml(content, name);
-  for (const std::string& assignment : overrides) casefile::apply_override(root, assignment);
-  if (casefile::describes_grains(root)) {
-    throw Error(ErrorKind::bad_input, "the case describes grains that collide, and this verb needs an [assembly]",
-                "its contacts are there from the start and stay", "Use 'equidem run', or give an [assembly]",
-                root.where());
-  }
+  TomlValue root = parse_document(content, name, overrides);
+  if (describes_grains(root))
+    bad_input_at(root.where(), "the case describes grains that collide, and this verb needs an [assembly]",
+                 "its contacts are there from the start and stay", "Use 'equidem run', or give an [assembly]");
   check_one_source_of_springs(root);
-  refuse_energy_of_probes(root);
-  casefile::case_file().check(root);
   resolve_springs_file(root, folder);
-  casefile::CaseTables tables;
-  casefile::case_file().assign(root, folder, tables);
+  CaseTables tables = case_file().read(root, folder);
 
-  check_radii(*root.find("assembly"), tables.assembly.delaunay);
+  check_radii(*root.find("assembly"), tables.assembly.delaunay.radii);
   check_contradictions(root, tables.assembly);
-  complete_springs(root, tables);
-  casefile::check_names(root, "group");
-  for (std::size_t k = 0; k < tables.groups.size(); ++k) check_group(repeated(root, "group")[k], tables.groups[k]);
-  for (std::size_t k = 0; k < tables.support_tables.size(); ++k) {
-    check_support(repeated(root, "support")[k], tables.support_tables[k].support);
-    tables.supports.push_back(tables.support_tables[k].support);
-  }
-  for (std::size_t k = 0; k < tables.load_tables.size(); ++k) {
-    const TomlValue& table = repeated(root, "load")[k];
-    casefile::check_plain_name(*table.find("case"), "load.case", "a load case",
-                               "it becomes part of the names of files");
-    check_load(table, tables.load_tables[k].load);
-  }
+  if (tables.material)
+    tables.material->moduli =
+        at_key(*root.find("material"), "material", [&] { return moduli_of(tables.material->given); });
+  check_names(root, "group");
+  for (std::size_t k = 0; k < tables.groups.size(); ++k)
+    if (tables.groups[k].box) check_box(repeated(root, "group")[k], *tables.groups[k].box);
+  for (std::size_t k = 0; k < tables.supports.size(); ++k)
+    check_support(repeated(root, "support")[k], tables.supports[k]);
+  for (std::size_t k = 0; k < tables.load_tables.size(); ++k)
+    check_load(repeated(root, "load")[k], tables.load_tables[k].load);
   tables.load_cases = load_cases_of(tables.load_tables);
   tables.schedules = read_schedules(root, tables.schedule_tables);
-  casefile::complete_run(root, tables);
+  complete_run(root, tables);
   tables.document = std::move(root);
   return tables;
 }
@@ -192,12 +207,12 @@ std::string springs_file(const SpringConstants& springs, SpringWeighting weighti
     out += line.empty() ? "#\n" : fmt::format("# {}\n", line);
   }
   return out + fmt::format("schema = \"{}\"\ntitle = {}\n\n[springs]\nkN = {}\nkT = {}\nweighting = {}\n",
-                           casefile::springs_file_format().spec().schema, toml_text(title), toml_number(springs.kN),
+                           springs_file_format().spec().schema, toml_text(title), toml_number(springs.kN),
                            toml_number(springs.kT), toml_text(to_string(weighting)));
 }
 
 bool is_case_key(std::string_view path) {
-  return casefile::is_known_key(casefile::case_file().spec(), path);
+  return is_known_key(case_file().spec(), path);
 }
 
 Case read_case(const fs::path& path, std::span<const std::string> overrides) {

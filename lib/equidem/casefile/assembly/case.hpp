@@ -13,11 +13,12 @@
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
-#include "equidem/casefile/assembly/run_case.hpp"
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/casefile/motion_case.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
+#include "equidem/dynamics/simulation.hpp"
+#include "equidem/dynamics/time_step.hpp"
 #include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/ensemble/ensemble_statistics.hpp"
 #include "equidem/homogenize/tension_test.hpp"
@@ -46,10 +47,7 @@ struct AssemblyCase {
 struct GroupCase {
   std::string name;
   std::vector<std::int32_t> discs;
-  struct Box {
-    Vec2 low, high;
-  };
-  std::optional<Box> box;  ///< m
+  std::optional<Rectangle> box;  ///< m
 };
 
 /// [[load]] entries that act together.
@@ -77,9 +75,25 @@ struct EnsembleCase {
 
 /// [material].
 struct MaterialCase {
+  ElasticMaterial given;
   ElasticModuli moduli;
-  std::optional<double> density;  ///< kg/m³, gamma: of the continuum, discs and voids together
-  bool static_only = false;       ///< kT < 0 allowed
+  bool static_only = false;  ///< kT < 0 allowed
+};
+
+/// [run] and the tables that act in a run alone; exactly one of duration and until_rest is given.
+struct RunCase {
+  std::optional<double> duration;    ///< s
+  std::optional<double> until_rest;  ///< unbalanced force, relative
+  TimeStepOptions time_step;
+  Integrator integrator = SimulationOptions{}.integrator;
+  LoopKind::Motion motion = SimulationOptions{}.motion;
+  Damping damping;
+  Vec2 gravity;                        ///< m/s²
+  std::vector<TimedSupport> supports;  ///< supports of the case with their schedules; empty with [test], like loads
+  std::vector<TimedLoad> loads;
+  std::vector<Wall> walls;
+  std::vector<InitialVelocity> velocities;
+  std::vector<Probe> probes;
 };
 
 /// A checked case file: complete, in range and without contradiction. Conditions that depend on the assembly (non-empty

@@ -9,13 +9,19 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-std::vector<Key<SpringsTable>> springs_keys() {
-  return {key("kN", &SpringsTable::springs, &SpringConstants::kN, required, unit("Pa"), positive, "normal spring"),
-          key("kT", &SpringsTable::springs, &SpringConstants::kT, required, unit("Pa"),
-              "tangential spring; 0: none; negative: a static answer exists for small ones only"),
-          key("weighting", &SpringsTable::weighting,
-              "uniform: the same at every contact; contact_density: k/psi(theta), Abe (11), (21); voronoi: "
-              "k h/l, shared cell edge over centre distance")};
+Key<CaseTables> weighting_key(const std::string& help) {
+  return key_in<CaseTables>("weighting", &Case::weighting, help);
+}
+
+template <class... Attributes>
+void bind_springs(File<CaseTables>& file, const Attributes&... attributes) {
+  file.table("springs", &CaseTables::springs, "the two springs of a contact", attributes...)
+      .keys({key("kN", &SpringConstants::kN, required, unit("Pa"), positive, "normal spring"),
+             key("kT", &SpringConstants::kT, required, unit("Pa"),
+                 "tangential spring; 0: none; negative: a static answer exists for small ones only")});
+  file.table("springs").keys({weighting_key(
+      "uniform: the same at every contact; contact_density: k/psi(theta), Abe (11), (21); voronoi: k h/l, shared cell "
+      "edge over centre distance")});
 }
 
 void bind_assembly(File<CaseTables>& file) {
@@ -43,15 +49,14 @@ void bind_assembly(File<CaseTables>& file) {
            key("columns", &A::lattice, &L::columns, required, from(1, 1e6), when("kind", lattices),
                "discs in the longest row; " + lattice_counts()),
            key("rows", &A::lattice, &L::rows, required, from(1, 1e6), when("kind", lattices), "number of rows"),
-           key("radius", &A::lattice, &L::radius, required, unit("m"), positive, when("kind", lattices),
-               "radius of every disc"),
            key_with<A, double>(
                "radius",
                [](A& a, const double& radius) {
+                 a.lattice.radius = radius;
                  a.delaunay.radii = {radius, radius};
                },
-               unit("m"), positive, when("kind", delaunay),
-               "radius of every disc, half the mean spacing of neighbours; or give [assembly.radii]"),
+               unit("m"), positive, or_instead({"radii"}, "they say the size of the discs"), when("kind", made),
+               "radius of every disc; delaunay: half the mean spacing of neighbours, or give [assembly.radii]"),
            key("discs", &A::delaunay, &D::discs, from(3, 1e9), when("kind", delaunay),
                "number wanted; the report says how many there are; not used with [ensemble]"),
            key("points", &A::delaunay, &D::points, when("kind", delaunay),
@@ -78,32 +83,30 @@ void bind_assembly(File<CaseTables>& file) {
 }
 
 void bind_material(File<CaseTables>& file) {
-  using T = MaterialTable;
+  using T = MaterialCase;
   using M = ElasticMaterial;
-  file.table("springs", &CaseTables::springs_table, "the two springs of a contact").keys(springs_keys());
-  file.table("material", &CaseTables::material_table,
-             "the continuum that the springs shall stand for, instead of [springs]")
+  file.table("material", &CaseTables::material, "the continuum that the springs shall stand for, instead of [springs]")
       .keys(
-          {key("shear_modulus", &T::material, &M::shear_modulus, unit("Pa"), positive,
+          {key("shear_modulus", &T::given, &M::shear_modulus, unit("Pa"), positive,
                "G; with poisson_ratio or bulk_modulus_2d"),
-           key("young_modulus", &T::material, &M::young_modulus, unit("Pa"), positive, "E; with poisson_ratio"),
-           key("poisson_ratio", &T::material, &M::poisson_ratio, between(-1, 1),
+           key("young_modulus", &T::given, &M::young_modulus, unit("Pa"), positive, "E; with poisson_ratio"),
+           key("poisson_ratio", &T::given, &M::poisson_ratio, between(-1, 1),
                "with shear_modulus or young_modulus; discs can show at most 1/4 in plane strain, 1/3 in plane stress"),
-           key("bulk_modulus_2d", &T::material, &M::bulk_modulus_2d, unit("Pa"), positive,
+           key("bulk_modulus_2d", &T::given, &M::bulk_modulus_2d, unit("Pa"), positive,
                "K, mean stress of the plane over its change of area; with shear_modulus"),
-           key("p_wave_speed", &T::material, &M::p_wave_speed, unit("m/s"), positive,
+           key("p_wave_speed", &T::given, &M::p_wave_speed, unit("m/s"), positive,
                "Vp; with s_wave_speed and density: K + G = density Vp²"),
-           key("s_wave_speed", &T::material, &M::s_wave_speed, unit("m/s"), positive,
+           key("s_wave_speed", &T::given, &M::s_wave_speed, unit("m/s"), positive,
                "Vs; with p_wave_speed and density: G = density Vs²"),
-           key("density", &T::material, &M::density, unit("kg/m³"), positive,
+           key("density", &T::given, &M::density, unit("kg/m³"), positive,
                "density of the continuum, that is of discs and voids together: the discs have density / solid "
                "fraction"),
-           key("plane", &T::material, &M::plane, required,
+           key("plane", &T::given, &M::plane, required,
                "how Poisson's ratio and Young's modulus are meant: plane strain or plane stress; wave speeds and the "
                "two-dimensional moduli are the same in both"),
            key("static_only", &T::static_only,
-               "allow kT < 0 for larger Poisson's ratios: no dynamics with such springs"),
-           key("weighting", &T::weighting, "as in [springs]")});
+               "allow kT < 0 for larger Poisson's ratios: no dynamics with such springs")});
+  file.table("material").keys({weighting_key("as in [springs]")});
   file.table("effects", completed, "effects that may be switched off")
       .keys({key_in<CaseTables>("rotation", &Case::rotation, optional, choices({"free", "restrained"}),
                                 "rotation of the discs; left out: free where a tangential spring turns them")});
@@ -119,17 +122,16 @@ void bind_supports_and_loads(File<CaseTables>& file) {
                  "side")});
   file.table("group", &CaseTables::groups, "discs chosen by name")
       .keys({key("name", &GroupCase::name, required, "for use in [[support]] and [[load]]"),
-             key("discs", &GroupCase::discs, optional, "counted from 0; or give box"),
+             key("discs", &GroupCase::discs, or_instead({"box"}, "a group is a list of discs, or the discs in a box"),
+                 "counted from 0"),
              key("box", &GroupCase::box, unit("m"), "the discs with their centre inside")});
-  using S = SupportTable;
-  file.table("support", &CaseTables::support_tables, "prescribed motion of a group")
-      .keys(
-          {key("group", &S::support, &Support::group, required,
-               "left, right, bottom, top, bottom_left, bottom_right, top_left, top_right, or your own"),
-           key("ux", &S::support, &Support::ux, held, unit("m"), "prescribed motion; true: held at 0; left out: free"),
-           key("uy", &S::support, &Support::uy, held, unit("m")),
-           key("rotation", &S::support, &Support::rotation, held, unit("rad"), "counter-clockwise"),
-           key("schedule", &S::schedule, "in a run: the motion is multiplied by it")});
+  using S = Support;
+  file.table("support", &CaseTables::supports, "prescribed motion of a group")
+      .keys({key("group", &S::group, required,
+                 "left, right, bottom, top, bottom_left, bottom_right, top_left, top_right, or your own"),
+             key("ux", &S::ux, held, unit("m"), "prescribed motion; true: held at 0; left out: free"),
+             key("uy", &S::uy, held, unit("m")), key("rotation", &S::rotation, held, unit("rad"), "counter-clockwise"),
+             unbound_key<S>("schedule", KeyType::text, "in a run: the motion is multiplied by it")});
   using T = LoadTable;
   file.table("load", &CaseTables::load_tables, "forces and moments on a group")
       .keys({key("group", &T::load, &Load::group, required, "as in [[support]]"),
@@ -138,7 +140,46 @@ void bind_supports_and_loads(File<CaseTables>& file) {
              key("force", &T::load, &Load::force, optional, unit("N/m (traction: Pa)"), "[f_x, f_y]"),
              key("moment", &T::load, &Load::moment, optional, unit("N"), "N m per metre of depth, counter-clockwise"),
              key("case", &T::load_case, "loads of one name act together; a load without acts in every load case"),
-             key("schedule", &T::schedule, "in a run: force and moment are multiplied by it")});
+             unbound_key<T>("schedule", KeyType::text, "in a run: force and moment are multiplied by it")});
+}
+
+void bind_run(File<CaseTables>& file) {
+  using R = RunCase;
+  using T = TimeStepOptions;
+  file.table("run", &CaseTables::run, "motion in time, for the verb run")
+      .keys({key("duration", &R::duration, run_duration,
+                 or_instead({"until_rest"}, "a run ends after a time, or at rest")),
+             key("time_step", &R::time_step, &T::step, run_time_step, "auto: by step_rule"),
+             key("gravity", &R::gravity, run_gravity),
+             key("until_rest", &R::until_rest, between(0, 1),
+                 "relax until the unbalanced force is this small, relative, such as 1e-10"),
+             key("step_rule", &R::time_step, &T::rule,
+                 "rule of an automatic step; lanczos: step_fraction of the exact critical step; bound: of a guaranteed "
+                 "lower "
+                 "bound of it, sooner known; thesis: an eighth of the period of one disc on one spring, no guarantee"),
+             key("step_fraction", &R::time_step, &T::fraction, range({.low = 0, .high = 1, .low_open = true}),
+                 "share of the critical step, for lanczos and bound"),
+             key("allow_unstable_step", &R::time_step, &T::allow_unstable,
+                 "allow a step above the critical one, and kT < 0"),
+             key("integrator", &R::integrator,
+                 "leapfrog: central differences; velocity_verlet: the same motion; thesis: Sukegawa (3.14)-(3.17) as "
+                 "printed, order 1; fourth_order: symplectic, four forces a step"),
+             key("motion", &R::motion,
+                 "small: contacts keep their direction, exactly the stiffness of statics; finite: they follow the "
+                 "discs")});
+  file.table("run.damping", &CaseTables::run, &R::damping, "damping of a run; at most one of stiffness and contact")
+      .keys({key("mass", &Damping::mass, unit("1/s"), not_negative, "alpha: force -alpha m v on every disc"),
+             key("stiffness", &Damping::stiffness, unit("s"), not_negative,
+                 "beta: dashpots beta kN, beta kT at contacts"),
+             key("contact", &Damping::contact, not_negative,
+                 "zeta: dashpots 2 zeta sqrt(m k) at contacts, m the reduced mass; instead of stiffness"),
+             key("local", &Damping::local, range({.low = 0, .high = 1, .high_open = true}),
+                 "non-viscous: this share of the resultant force, against the velocity")});
+  bind_motion(file, BodyFamily::bonded, &CaseTables::run, &R::probes);
+  file.table("velocity", &CaseTables::run, &R::velocities, "velocity of a group at the start of a run")
+      .keys({key("group", &InitialVelocity::group, required, "as in [[support]]"),
+             key("velocity", &InitialVelocity::velocity, unit("m/s")),
+             key("spin", &InitialVelocity::spin, unit("rad/s"), "of each disc, counter-clockwise")});
 }
 
 void bind_tasks(File<CaseTables>& file) {
@@ -189,20 +230,21 @@ const File<CaseTables>& case_file() {
         {key_in<CaseTables>("title", &Case::title, "shown in reports and pictures"),
          unbound_key<CaseTables>("springs", KeyType::path, "a springs file, instead of [springs] or [material]")});
     bind_assembly(made);
+    bind_springs(made);
     bind_material(made);
     bind_supports_and_loads(made);
-    bind_run_tables(made);
+    bind_run(made);
     bind_tasks(made);
     return made;
   }();
   return file;
 }
 
-const File<SpringsTable>& springs_file_format() {
-  static const File<SpringsTable> file = [] {
-    File<SpringsTable> made("equidem-springs/1", "springs file");
-    made.table("").keys({unbound_key<SpringsTable>("title", KeyType::text, "shown in reports and pictures")});
-    made.table("springs", required, "the two springs of a contact").keys(springs_keys());
+const File<CaseTables>& springs_file_format() {
+  static const File<CaseTables> file = [] {
+    File<CaseTables> made("equidem-springs/1", "springs file");
+    made.table("").keys({unbound_key<CaseTables>("title", KeyType::text, "shown in reports and pictures")});
+    bind_springs(made, required);
     return made;
   }();
   return file;

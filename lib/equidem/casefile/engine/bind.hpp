@@ -100,6 +100,9 @@ inline auto unit(std::string text) {
 inline auto formerly(std::string name) {
   return [name](KeySpec& key) { key.former = name; };
 }
+inline auto refused(std::vector<RefusedWord> words) {
+  return [words](KeySpec& key) { key.refused = words; };
+}
 /// Words of a text or of a list, or the names of an enum that are allowed here.
 inline auto choices(std::vector<std::string> words) {
   return [words](KeySpec& key) {
@@ -113,6 +116,26 @@ inline auto when(std::string selector, std::vector<std::string> words) {
     spec.when_key = selector;
     spec.when = words;
   };
+}
+
+/// Relations to other keys, or tables, of the table; `why` is the reason in messages.
+inline auto related(KeyRelation::Kind kind, std::vector<std::string> others, std::string why) {
+  return [relation = KeyRelation{kind, std::move(others), std::move(why)}](KeySpec& key) {
+    key.relations.push_back(relation);
+    if (relation.kind == KeyRelation::Kind::exactly_one) key.fallback = KeySpec::none;
+  };
+}
+/// Exactly one of the key and the others is given.
+inline auto or_instead(std::vector<std::string> others, std::string why) {
+  return related(KeyRelation::Kind::exactly_one, std::move(others), std::move(why));
+}
+/// At most one of the key and the others is given.
+inline auto not_beside(std::vector<std::string> others, std::string why) {
+  return related(KeyRelation::Kind::at_most_one, std::move(others), std::move(why));
+}
+/// The key is given beside one of the others only.
+inline auto only_with(std::vector<std::string> others, std::string why) {
+  return related(KeyRelation::Kind::only_with, std::move(others), std::move(why));
 }
 
 template <class Spec, class Attribute>
@@ -192,20 +215,12 @@ Key<S> key(std::string name, M S::*first, const Arguments&... arguments) {
   return key_in<S>(std::move(name), first, arguments...);
 }
 
-/// Whether a key with a condition applies to a checked table.
-bool applies(const KeySpec& key, const TomlValue& table);
-
-/// Assign the keys of a checked table.
+/// Assign the keys that a checked table has.
 template <class S>
-void read_table(const std::vector<Key<S>>& keys, TomlValue& table, const std::filesystem::path& folder, S& into) {
-  for (const Key<S>& key : keys) {
-    TomlValue* value = table.find(key.spec.name);
-    if (value != nullptr && key.read && applies(key.spec, table)) key.read(into, *value, folder);
-  }
+void read_table(const std::vector<Key<S>>& keys, TomlValue table, S& into) {
+  for (const Key<S>& key : keys)
+    if (TomlValue* value = table.find(key.spec.name); value != nullptr && key.read) key.read(into, *value, {});
 }
-
-/// The table at a path such as "run.damping"; nullptr if there is none.
-TomlValue* find_table(TomlValue& root, std::string_view path);
 
 template <class T>
 struct ItemOf {
@@ -221,10 +236,8 @@ template <class F>
 class File {
  public:
   File(std::string schema, std::string noun) : spec_{std::move(schema), std::move(noun)} {
-    spec_.keys.push_back({.table = {},
-                          .name = "schema",
-                          .type = KeyType::text,
-                          .help = "says which rules the file follows: \"" + spec_.schema + "\""});
+    const std::string help = "says which rules the file follows: \"" + spec_.schema + "\"";
+    table("").keys({unbound_key<F>("schema", KeyType::text, required, help)});
   }
 
   template <class Target>
@@ -241,18 +254,26 @@ class File {
   }
   [[nodiscard]] const FileSpec& spec() const { return spec_; }
 
-  /// Check a document and fill in its defaults.
+  /// Check a document, fill in its defaults and assign its values.
+  /// \param folder to which paths are relative; those of the document become the paths that the program opens
   /// \throws Error (bad_input) as check_and_complete
-  void check(TomlValue& root) const { check_and_complete(root, spec_); }
-  /// Assign the values of a checked document in the order of the tables.
-  /// \param folder to which paths are relative; paths become those that the program opens
-  void assign(TomlValue& root, const std::filesystem::path& folder, F& into) const {
-    for (const auto& reader : readers_) reader(root, folder, into);
+  F read(TomlValue& root, const std::filesystem::path& folder) const {
+    F into;
+    const auto enter = [&](const TableSpec& table) {
+      for (const auto& [name, open] : openers_)
+        if (name == table.name) open(into);
+    };
+    const auto assign = [&](const KeySpec& key, TomlValue& value) {
+      if (const auto& read = readers_[static_cast<std::size_t>(&key - spec_.keys.data())]) read(into, value, folder);
+    };
+    check_and_complete(root, spec_, {.table = enter, .key = assign});
+    return into;
   }
 
  private:
   FileSpec spec_;
-  std::vector<std::function<void(TomlValue&, const std::filesystem::path&, F&)>> readers_;
+  std::vector<std::pair<std::string, std::function<void(F&)>>> openers_;  ///< by table: gives its target a value
+  std::vector<std::function<void(F&, TomlValue&, const std::filesystem::path&)>> readers_;  ///< of spec_.keys
 };
 
 template <class F>
@@ -269,31 +290,40 @@ class File<F>::Binder {
   /// Keys that are checked and described here, and read elsewhere.
   template <class S>
   void described(const std::vector<Key<S>>& keys) {
-    for (const Key<S>& key : keys) {
-      file_.spec_.keys.push_back(key.spec);
-      file_.spec_.keys.back().table = spec_.name;
-    }
-    if (!spec_.name.empty() && file_.spec_.table(spec_.name) == nullptr) file_.spec_.tables.push_back(spec_);
+    for (const Key<S>& key : keys) describe(key.spec);
   }
 
-  void keys(std::vector<Key<Item>> keys) {
-    described(keys);
-    file_.readers_.push_back([keys = std::move(keys), name = spec_.name, target = target_](
-                                 TomlValue& root, const std::filesystem::path& folder, F& into) {
-      TomlValue* table = find_table(root, name);
-      if (table == nullptr) return;
-      auto& bound = target(into);
-      if constexpr (is_vector<T>) {
-        for (TomlValue& item : table->items) read_table(keys, item, folder, bound.emplace_back());
-      } else if constexpr (is_optional<T>) {
-        read_table(keys, *table, folder, bound ? *bound : bound.emplace());
-      } else {
-        read_table(keys, *table, folder, bound);
-      }
-    });
+  void keys(const std::vector<Key<Item>>& keys) {
+    if constexpr (is_vector<T>) {
+      file_.openers_.emplace_back(spec_.name, [target = target_](F& into) { target(into).emplace_back(); });
+    } else if constexpr (is_optional<T>) {
+      file_.openers_.emplace_back(spec_.name, [target = target_](F& into) {
+        if (auto& bound = target(into); !bound) bound.emplace();
+      });
+    }
+    for (const Key<Item>& key : keys) {
+      describe(key.spec);
+      if (!key.read) continue;
+      file_.readers_.back() = [read = key.read, target = target_](F& into, TomlValue& value,
+                                                                  const std::filesystem::path& folder) {
+        if constexpr (is_vector<T>)
+          read(target(into).back(), value, folder);
+        else if constexpr (is_optional<T>)
+          read(*target(into), value, folder);
+        else
+          read(target(into), value, folder);
+      };
+    }
   }
 
  private:
+  void describe(KeySpec key) {
+    key.table = spec_.name;
+    file_.spec_.keys.push_back(std::move(key));
+    file_.readers_.emplace_back();
+    if (!spec_.name.empty() && file_.spec_.table(spec_.name) == nullptr) file_.spec_.tables.push_back(spec_);
+  }
+
   File& file_;
   TableSpec spec_;
   Target target_;

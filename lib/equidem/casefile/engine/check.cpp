@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 
 #include "equidem/casefile/engine/keys.hpp"
-#include "equidem/core/error.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 
@@ -16,202 +14,229 @@ std::string key_path(const std::string& path, const std::string& name) {
 }
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
+  return std::ranges::find(words, word) != words.end();
+}
+
+bool is_list_of_tables(const TomlValue& value) {
+  return value.is_array() && !value.items.empty() && value.items[0].is_table();
+}
+
+TomlValue default_of(const KeySpec& key) {
+  return *parse_toml(fmt::format("value = {}", key.fallback), "").find("value");
 }
 
 /// Walks a document beside its table of keys.
 class Checker {
  public:
-  Checker(TomlValue& root, const FileSpec& spec) : root_(root), spec_(spec) {}
+  Checker(TomlValue& root, const FileSpec& spec, const Visitor& visitor)
+      : root_(root), spec_(spec), visitor_(visitor) {}
 
   void run() {
     check_schema();
-    check_table("", root_);
+    check_table({}, root_);
     for (const TableSpec& table : spec_.tables) {
-      const std::string& name = table.name;
-      const std::size_t dot = name.find('.');
-      TomlValue* parent = dot == std::string::npos ? &root_ : root_.find(name.substr(0, dot));
-      const std::string leaf = dot == std::string::npos ? name : name.substr(dot + 1);
+      const std::size_t dot = table.name.find('.');
+      const bool inner = dot != std::string::npos;
+      TomlValue* parent = inner ? root_.find(table.name.substr(0, dot)) : &root_;
+      const std::string leaf = table.name.substr(inner ? dot + 1 : 0);
       if (parent == nullptr || parent->find(leaf) != nullptr) continue;
-      if (table.required) {
-        throw Error(ErrorKind::bad_input, "missing table", fmt::format("it describes {}", table.help),
-                    "Add " + table.heading(), fmt::format("{}: {}", root_.where(), table.heading()));
-      }
+      if (table.required)
+        fail_at(root_, table.heading(), "missing table", fmt::format("it describes {}", table.help),
+                "Add " + table.heading());
       if (table.completed) {
         TomlValue added;
         added.source = root_.source;
-        check_table(table.name, added);
+        check_table(table, added);
         parent->entries.push_back({leaf, std::move(added)});
       }
     }
   }
 
  private:
-  [[nodiscard]] std::vector<const KeySpec*> key_specs(const std::string& path, const std::string& name) const {
-    std::vector<const KeySpec*> found;
-    for (const KeySpec& key : spec_.keys)
-      if (path == key.table && name == key.name) found.push_back(&key);
-    return found;
-  }
-
-  [[noreturn]] void fail(const TomlValue& at, const std::string& key, const std::string& problem,
-                         const std::string& why, const std::string& remedy) const {
-    throw Error(ErrorKind::bad_input, problem, why, remedy, fmt::format("{}: {}", at.where(), key));
-  }
-
   void check_schema() const {
     const TomlValue* schema = root_.find("schema");
     const std::string remedy = fmt::format("Write schema = \"{}\" at the top of the file", spec_.schema);
     if (schema == nullptr)
-      fail(root_, "schema", "missing key", fmt::format("every {} names the rules it follows", spec_.noun), remedy);
+      fail_at(root_, "schema", "missing key", fmt::format("every {} names the rules it follows", spec_.noun), remedy);
     if (schema->type == TomlValue::Type::text && schema->text == spec_.schema) return;
-    fail(*schema, "schema", fmt::format("{} is not the schema of a {}", schema->shown(), spec_.noun),
-         fmt::format("this program reads \"{}\"", spec_.schema), remedy);
+    fail_at(*schema, "schema", fmt::format("{} is not the schema of a {}", schema->shown(), spec_.noun),
+            fmt::format("this program reads \"{}\"", spec_.schema), remedy);
   }
 
   /// The word on which other keys of the table depend, such as the kind of assembly; checked first.
-  std::string selector(const std::string& path, const TomlValue& table, const std::string& name) const {
-    for (const KeySpec* key : key_specs(path, name)) {
-      if (!applies(path, table, key->when_key, key->when)) continue;
-      if (const TomlValue* value = table.find(name)) {
-        check_value(*value, *key);
-        return value->text;
-      }
-      if (key->is_required()) fail_missing(path, table, *key);
-      return parse_toml(fmt::format("value = {}", key->fallback), "").find("value")->text;
+  std::string selected(const std::string& path, const TomlValue& table, const std::string& name) const {
+    const KeySpec* key = spec_.key(path, name);
+    if (key == nullptr || !applies(path, table, *key)) return {};
+    if (const TomlValue* value = table.find(name)) {
+      check_value(*value, *key);
+      return value->text;
     }
-    return {};
+    if (key->is_required()) fail_missing(table, *key);
+    return default_of(*key).text;
   }
 
-  bool applies(const std::string& path, const TomlValue& table, const std::string& when_key,
-               const std::vector<std::string>& when) const {
-    return when_key.empty() || contains(when, selector(path, table, when_key));
+  /// \param spec of a key or of a table inside the table
+  template <class Spec>
+  bool applies(const std::string& path, const TomlValue& table, const Spec& spec) const {
+    return spec.when_key.empty() || contains(spec.when, selected(path, table, spec.when_key));
   }
 
-  [[noreturn]] void fail_missing(const std::string& path, const TomlValue& table, const KeySpec& key) const {
-    const std::string why = fmt::format("{} is needed", expected(key));
-    fail(table, key_path(path, key.name), "missing key", why,
-         path.empty() ? fmt::format("Add {} = ... at the top of the file", key.name)
-                      : fmt::format("Add {} = ... to {}", key.name, bracketed(path)));
+  [[noreturn]] void fail_missing(const TomlValue& table, const KeySpec& key) const {
+    fail_at(table, key.path(), "missing key", fmt::format("{} is needed", expected(key)),
+            key.table.empty() ? fmt::format("Add {} = ... at the top of the file", key.name)
+                              : fmt::format("Add {} = ... to {}", key.name, spec_.table(key.table)->heading()));
   }
 
-  [[nodiscard]] std::string bracketed(const std::string& path) const {
-    const TableSpec* table = spec_.table(path);
-    return table != nullptr ? table->heading() : fmt::format("[{}]", path);
+  /// The keys and tables that a table may have.
+  [[nodiscard]] std::vector<std::string> names_below(const std::string& path, const TomlValue& table) const {
+    std::vector<std::string> names;
+    for (const KeySpec& key : spec_.keys)
+      if (path == key.table && applies(path, table, key)) names.push_back(key.name);
+    const std::string prefix = key_path(path, "");
+    for (const TableSpec& inner : spec_.tables) {
+      if (!inner.name.starts_with(prefix)) continue;
+      const std::string leaf = inner.name.substr(prefix.size());
+      if (leaf.find('.') == std::string::npos && !contains(names, leaf)) names.push_back(leaf);
+    }
+    return names;
   }
 
   [[noreturn]] void fail_unknown(const std::string& path, const TomlValue& table, const std::string& name,
                                  const TomlValue& value) const {
-    std::vector<std::string> here;
-    for (const KeySpec& key : spec_.keys) {
+    for (const KeySpec& key : spec_.keys)
       if (path == key.table && name == key.former)
-        fail(value, key_path(path, name), fmt::format("{} is called {} now", name, key.name),
-             "a key has one name for all kinds of bodies", fmt::format("Write {} instead", key.name));
-      if (path == key.table && applies(path, table, key.when_key, key.when) && !contains(here, key.name))
-        here.emplace_back(key.name);
-    }
-    const std::string prefix = path.empty() ? "" : path + ".";
-    for (const TableSpec& inner : spec_.tables) {
-      const std::string& full = inner.name;
-      const bool directly_below = full.starts_with(prefix) && full.find('.', prefix.size()) == std::string::npos;
-      if (directly_below && !contains(here, full.substr(prefix.size()))) here.push_back(full.substr(prefix.size()));
-    }
+        fail_at(value, key_path(path, name), fmt::format("{} is called {} now", name, key.name),
+                "a key has one name for all kinds of bodies", fmt::format("Write {} instead", key.name));
+    const std::vector<std::string> here = names_below(path, table);
     std::string remedy = fmt::format("Known here: {}", joined(here));
+    const auto elsewhere = std::ranges::find(spec_.keys, name, &KeySpec::name);
     if (const auto meant = nearest(name, here)) {
       remedy = fmt::format("Did you mean '{}'?", *meant);
-    } else {
-      for (const KeySpec& key : spec_.keys) {
-        if (name != key.name) continue;
-        remedy = key.table.empty() ? "It belongs at the top of the file, before the first [table]"
-                                   : fmt::format("It belongs to {}", bracketed(key.table));
-        break;
-      }
+    } else if (elsewhere != spec_.keys.end()) {
+      remedy = elsewhere->table.empty() ? "It belongs at the top of the file, before the first [table]"
+                                        : "It belongs to " + spec_.table(elsewhere->table)->heading();
     }
-    const bool as_table = value.is_table() || (value.is_array() && !value.items.empty() && value.items[0].is_table());
-    fail(value, key_path(path, name), as_table ? "unknown table" : "unknown key",
-         fmt::format("the {} is strict", spec_.noun), remedy);
+    const bool as_table = value.is_table() || is_list_of_tables(value);
+    fail_at(value, key_path(path, name), as_table ? "unknown table" : "unknown key",
+            fmt::format("the {} is strict", spec_.noun), remedy);
   }
 
   void check_inner_table(const std::string& path, const TomlValue& outer, TomlValue& value, const TableSpec& spec) {
     const std::string& full = spec.name;
-    if (!applies(path, outer, spec.when_key, spec.when)) {
-      fail(value, full, "this table does not apply here",
-           fmt::format("it is for {} = {}", spec.when_key, joined(spec.when)), "Remove it");
-    }
+    if (!applies(path, outer, spec))
+      fail_at(value, full, "this table does not apply here",
+              fmt::format("it is for {} = {}", spec.when_key, joined(spec.when)), "Remove it");
     if (spec.repeated) {
-      if (!value.is_array()) {
-        fail(value, full, fmt::format("this is {}", value.is_table() ? "a single table" : value.type_name()),
-             "there may be several, each with its own heading", fmt::format("Write [[{}]] above each", full));
-      }
+      if (!value.is_array())
+        fail_at(value, full, fmt::format("this is {}", value.is_table() ? "a single table" : value.type_name()),
+                "there may be several, each with its own heading", fmt::format("Write [[{}]] above each", full));
       for (TomlValue& item : value.items) {
         if (!item.is_table())
-          fail(item, full, fmt::format("{} is {}", item.shown(), item.type_name()), "a table is needed",
-               fmt::format("Write [[{}]] and its keys below", full));
-        check_table(full, item);
+          fail_at(item, full, fmt::format("{} is {}", item.shown(), item.type_name()), "a table is needed",
+                  fmt::format("Write [[{}]] and its keys below", full));
+        check_table(spec, item);
       }
       return;
     }
-    if (!value.is_table()) {
-      const bool heading = value.is_array() && !value.items.empty() && value.items[0].is_table();
-      fail(value, full,
-           heading ? fmt::format("[[{}]] is a list of tables", full)
-                   : fmt::format("{} is {}", value.shown(), value.type_name()),
-           "one table is needed", fmt::format("Write [{}] and its keys below", full));
-    }
-    check_table(full, value);
+    if (!value.is_table())
+      fail_at(value, full,
+              is_list_of_tables(value) ? fmt::format("[[{}]] is a list of tables", full)
+                                       : fmt::format("{} is {}", value.shown(), value.type_name()),
+              "one table is needed", fmt::format("Write [{}] and its keys below", full));
+    check_table(spec, value);
   }
 
-  void check_table(const std::string& path, TomlValue& table) {
+  void check_table(const TableSpec& spec, TomlValue& table) {
+    const std::string& path = spec.name;
     for (auto& [name, value] : table.entries) {
-      const TableSpec* inner = spec_.table(key_path(path, name));
-      const auto keys = key_specs(path, name);
-      const bool meant_as_key = !keys.empty() && (inner == nullptr || value.type == TomlValue::Type::text);
-      if (inner != nullptr && !meant_as_key) {
+      if (const TableSpec* inner = spec_.table(key_path(path, name))) {
         check_inner_table(path, table, value, *inner);
         continue;
       }
-      if (keys.empty()) fail_unknown(path, table, name, value);
-      const auto applying = std::find_if(
-          keys.begin(), keys.end(), [&](const KeySpec* key) { return applies(path, table, key->when_key, key->when); });
-      if (applying == keys.end()) fail_not_applying(path, table, name, value, keys);
-      check_value(value, **applying);
+      const KeySpec* key = spec_.key(path, name);
+      if (key == nullptr) fail_unknown(path, table, name, value);
+      if (!applies(path, table, *key)) fail_not_applying(table, *key, value);
+      check_value(value, *key);
     }
-    complete(path, table);
-  }
-
-  [[noreturn]] void fail_not_applying(const std::string& path, const TomlValue& table, const std::string& name,
-                                      const TomlValue& value, const std::vector<const KeySpec*>& keys) const {
-    std::vector<std::string> kinds;
-    for (const KeySpec* key : keys) kinds.insert(kinds.end(), key->when.begin(), key->when.end());
-    const std::string& selecting = keys.front()->when_key;
-    const std::string chosen = selector(path, table, selecting);
-    const std::string problem = chosen.empty()
-                                    ? fmt::format("this key does not apply here")
-                                    : fmt::format("this key does not apply to {} = \"{}\"", selecting, chosen);
-    fail(value, key_path(path, name), problem, fmt::format("it is for {}", joined(kinds)),
-         fmt::format("Remove it, or change {}", selecting));
-  }
-
-  void complete(const std::string& path, TomlValue& table) {
     for (const KeySpec& key : spec_.keys) {
-      if (path != key.table || table.find(key.name) != nullptr) continue;
-      if (!(key.is_required() || key.has_default()) || !applies(path, table, key.when_key, key.when)) continue;
-      if (key.is_required()) fail_missing(path, table, key);
-      TomlValue value = *parse_toml(fmt::format("value = {}", key.fallback), "").find("value");
-      value.source = table.source;
-      value.line = table.line;
-      table.entries.push_back({key.name, std::move(value)});
+      if (path != key.table || !applies(path, table, key)) continue;
+      for (const KeyRelation& relation : key.relations) check_relation(table, key, relation);
     }
+    visitor_.table(spec);
+    for (const KeySpec& key : spec_.keys)
+      if (path == key.table) complete_and_visit(table, key);
+  }
+
+  [[noreturn]] void fail_not_applying(const TomlValue& table, const KeySpec& key, const TomlValue& value) const {
+    const std::string chosen = selected(key.table, table, key.when_key);
+    fail_at(value, key.path(),
+            chosen.empty() ? "this key does not apply here"
+                           : fmt::format("this key does not apply to {} = \"{}\"", key.when_key, chosen),
+            fmt::format("it is for {}", joined(key.when)), fmt::format("Remove it, or change {}", key.when_key));
+  }
+
+  [[nodiscard]] bool is_automatic(const std::string& path, const TomlEntry& entry) const {
+    const KeySpec* key = spec_.key(path, entry.name);
+    return key != nullptr && key->type == KeyType::number_or_auto && entry.value.text == "auto";
+  }
+
+  void check_relation(const TomlValue& table, const KeySpec& key, const KeyRelation& relation) const {
+    using Kind = KeyRelation::Kind;
+    std::vector<std::string> names{key.name};
+    for (const std::string& other : relation.others) {
+      const KeySpec* beside = spec_.key(key.table, other);
+      const TableSpec* below = spec_.table(key_path(key.table, other));
+      if ((beside != nullptr && applies(key.table, table, *beside)) ||
+          (below != nullptr && applies(key.table, table, *below)))
+        names.push_back(other);
+    }
+    std::vector<const TomlEntry*> given;
+    for (const TomlEntry& entry : table.entries)
+      if (contains(names, entry.name) && !is_automatic(key.table, entry)) given.push_back(&entry);
+    if (relation.kind == Kind::only_with) {
+      const TomlValue* alone = table.find(key.name);
+      if (alone == nullptr || given.size() != 1) return;
+      names.erase(names.begin());
+      const std::string needed = listed(names.empty() ? relation.others : names, " or ");
+      fail_at(*alone, key.path(), fmt::format("{} is given without {}", key.name, needed), relation.why,
+              fmt::format("Add {} = ...", needed));
+    }
+    if (given.empty() && relation.kind == Kind::exactly_one) {
+      if (names.size() == 1) fail_missing(table, key);
+      const std::string none =
+          names.size() == 2 ? fmt::format("neither {} nor {}", names[0], names[1]) : "none of " + listed(names);
+      fail_at(table, key.table, none + " is given", relation.why, "Give one of them");
+    }
+    if (given.size() < 2) return;
+    const TomlEntry &first = *given[0], &second = *given[1];
+    const bool by_option = second.value.line == 0 && !spec_.table(key.table)->repeated;
+    fail_at(second.value, key_path(key.table, second.name),
+            fmt::format("{} and {} are both given", first.name, second.name), relation.why,
+            by_option ? fmt::format("Remove one of them: --set {}=none", key_path(key.table, first.name))
+                      : "Remove one of them");
+  }
+
+  void complete_and_visit(TomlValue& table, const KeySpec& key) const {
+    TomlValue* value = table.find(key.name);
+    if (value == nullptr) {
+      if (!(key.is_required() || key.has_default()) || !applies(key.table, table, key)) return;
+      if (key.is_required()) fail_missing(table, key);
+      value = &table.entries.emplace_back(TomlEntry{key.name, default_of(key)}).value;
+      value->source = table.source;
+      value->line = table.line;
+    }
+    visitor_.key(key, *value);
   }
 
   TomlValue& root_;
   const FileSpec& spec_;
+  const Visitor& visitor_;
 };
 
 }  // namespace
 
-void check_and_complete(TomlValue& root, const FileSpec& spec) {
-  Checker(root, spec).run();
+void check_and_complete(TomlValue& root, const FileSpec& spec, const Visitor& visitor) {
+  Checker(root, spec, visitor).run();
 }
 
 }  // namespace equidem::casefile

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -7,7 +6,7 @@
 #include <cstdint>
 
 #include "equidem/casefile/engine/keys.hpp"
-#include "equidem/core/error.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
@@ -23,8 +22,7 @@ std::string quoted_list(const std::vector<std::string>& words) {
 
 [[noreturn]] void fail(const TomlValue& value, const KeySpec& key, const std::string& problem,
                        const std::string& remedy) {
-  throw Error(ErrorKind::bad_input, problem, fmt::format("{} is {}", key.name, expected(key)), remedy,
-              fmt::format("{}: {}", value.where(), key.path()));
+  fail_at(value, key.path(), problem, fmt::format("{} is {}", key.name, expected(key)), remedy);
 }
 
 /// A kind of value. In the texts {unit}, {range}, {choices} and {words} stand for those of the key, {number} for a
@@ -132,11 +130,13 @@ void check_sizes(const TomlValue& value, const KeySpec& key) {
 
 void check_choice(const TomlValue& value, const KeySpec& key) {
   if (value.type != Type::text) fail_type(value, key);
-  if (std::find(key.choices.begin(), key.choices.end(), value.text) != key.choices.end()) return;
+  if (std::ranges::find(key.choices, value.text) != key.choices.end()) return;
+  const std::string problem =
+      fmt::format("{} is {} {}", value.shown(), key.type == KeyType::words ? "none of the" : "no known", key.name);
+  const auto refused = std::ranges::find(key.refused, value.text, &RefusedWord::word);
+  if (refused != key.refused.end()) fail_at(value, key.path(), problem, refused->why, refused->remedy);
   const auto meant = nearest(value.text, key.choices);
-  fail(value, key,
-       fmt::format("{} is {} {}", value.shown(), key.type == KeyType::words ? "none of the" : "no known", key.name),
-       meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Choose one of these");
+  fail(value, key, problem, meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Choose one of these");
 }
 
 void check_words(const TomlValue& value, const KeySpec& key) {

@@ -34,6 +34,9 @@ void append_wrapped(std::string& out, const std::string& words, std::size_t inde
 }
 
 std::string need_of(const KeySpec& key) {
+  for (const KeyRelation& relation : key.relations)
+    if (relation.kind == KeyRelation::Kind::exactly_one)
+      return fmt::format("required, or {}", listed(relation.others, " or "));
   return key.is_required() ? "required" : key.has_default() ? fmt::format("default {}", key.fallback) : "optional";
 }
 

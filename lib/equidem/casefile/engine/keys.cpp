@@ -37,4 +37,10 @@ const TableSpec* FileSpec::table(std::string_view name) const {
   return found == tables.end() ? nullptr : &*found;
 }
 
+const KeySpec* FileSpec::key(std::string_view table, std::string_view name) const {
+  const auto found =
+      std::ranges::find_if(keys, [&](const KeySpec& key) { return key.name == name && key.table == table; });
+  return found == keys.end() ? nullptr : &*found;
+}
+
 }  // namespace equidem::casefile

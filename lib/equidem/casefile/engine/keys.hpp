@@ -4,8 +4,11 @@
 /// bind their keys to options structs with bind.hpp, which fills these descriptions.
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,7 +53,24 @@ struct Range {
   [[nodiscard]] std::string text() const;
 };
 
-/// One key. A key whose meaning or necessity depends on the kind of its table has one entry for each kind.
+/// A condition on a key and others of its table. A number set to "auto" counts as not given; so do keys and tables that
+/// do not apply.
+struct KeyRelation {
+  enum class Kind {
+    exactly_one,  ///< the key or one of the others is given
+    at_most_one,  ///< none of the others is given beside the key, nor beside another
+    only_with,    ///< the key is given beside one of the others only
+  } kind;
+  std::vector<std::string> others;
+  std::string why;  ///< for messages
+};
+
+/// A word that a user may take for a choice, refused with a reason of its own.
+struct RefusedWord {
+  std::string word, why, remedy;
+};
+
+/// One key.
 struct KeySpec {
   std::string table;  ///< "assembly", "assembly.radii", "load"; "" at the top of the file
   std::string name;
@@ -61,7 +81,9 @@ struct KeySpec {
   std::vector<std::string> choices = {};
   std::string when_key = {};           ///< the key applies only where this key of the same table ...
   std::vector<std::string> when = {};  ///< ... is one of these
+  std::vector<KeyRelation> relations = {};
   std::string help = {};
+  std::vector<RefusedWord> refused = {};
   std::string former = {};  ///< an earlier name, which is an error that says the present one
 
   static constexpr const char* required = "required";
@@ -93,6 +115,7 @@ struct FileSpec {
   std::vector<KeySpec> keys = {};
 
   [[nodiscard]] const TableSpec* table(std::string_view name) const;
+  [[nodiscard]] const KeySpec* key(std::string_view table, std::string_view name) const;
 };
 
 /// "a number in Pa, > 0", `one of "square", "hexagonal"`: the values that a key accepts.
@@ -101,11 +124,19 @@ std::string expected(const KeySpec& key);
 /// \throws Error (bad_input), where = "file:line: table.key": wrong type, out of range, not finite, no choice
 void check_value(const TomlValue& value, const KeySpec& key);
 
+/// The tables of a document as they are checked. A table follows the tables that it contains.
+struct Visitor {
+  std::function<void(const TableSpec&)> table;  ///< called for each table, one of a list included
+  std::function<void(const KeySpec&, TomlValue&)>
+      key;  ///< then for its keys; the specification is one of FileSpec::keys
+};
+
 /// Check a document against its table of keys and fill in the defaults: afterwards every key that applies and has a
 /// default is present, with the right type and in range.
 /// \throws Error (bad_input), where = "file:line: table.key": unknown key (with the nearest known one), wrong type,
-///         missing key, a number that is not finite or out of range, a key that does not apply
-void check_and_complete(TomlValue& root, const FileSpec& spec);
+///         missing key, a number that is not finite or out of range, a key that does not apply, a relation of keys that
+///         does not hold
+void check_and_complete(TomlValue& root, const FileSpec& spec, const Visitor& visitor);
 
 /// Whether a path such as "springs.kT" or "load.0.moment" names a key of the file.
 bool is_known_key(const FileSpec& spec, std::string_view path);
@@ -127,5 +158,12 @@ std::optional<double> bytes_of(const TomlValue& value);
 /// \throws Error (bad_input) if the text is not an assignment, the value is not TOML, the path leads through a value,
 ///         or there is nothing to remove
 void apply_override(TomlValue& root, const std::string& assignment, const std::string& option = "--set");
+
+/// A document with overrides applied.
+/// \param source name of the file, for messages
+/// \throws Error (bad_input) as parse_toml and apply_override
+TomlValue parse_document(std::string_view text, const std::string& source, std::span<const std::string> overrides);
+/// \throws Error (bad_input) as read_file and parse_document
+TomlValue read_document(const std::filesystem::path& path, std::span<const std::string> overrides);
 
 }  // namespace equidem::casefile

@@ -3,6 +3,7 @@
 
 #include "equidem/casefile/engine/keys.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 
@@ -47,12 +48,11 @@ TomlValue value_from(const std::string& text, const std::string& source) {
       word.text = text;
       return word;
     }
-    throw Error(ErrorKind::bad_input, fmt::format("'{}' is no TOML value", text), error.why(),
-                "Write a number, true, false, [list] or text", source);
+    bad_input_at(source, fmt::format("'{}' is no TOML value", text), error.why(),
+                 "Write a number, true, false, [list] or text");
   }
   if (parsed.entries.size() != 1) {
-    throw Error(ErrorKind::bad_input, "this is more than one value", "one key is set at a time",
-                "Use one option for each key", source);
+    bad_input_at(source, "this is more than one value", "one key is set at a time", "Use one option for each key");
   }
   return parsed.entries.front().value;
 }
@@ -61,8 +61,8 @@ TomlValue value_from(const std::string& text, const std::string& source) {
 void remove(TomlValue& parent, const std::string& segment, const std::string& source) {
   TomlValue* const found = parent.find(segment);
   if (found == nullptr)
-    throw Error(ErrorKind::bad_input, fmt::format("there is no '{}' to take out", segment),
-                "'none' takes out a key of the case file", "Check its name", source);
+    bad_input_at(source, fmt::format("there is no '{}' to take out", segment),
+                 "'none' takes out a key of the case file", "Check its name");
   if (parent.is_array()) {
     parent.items.erase(parent.items.begin() + (found - parent.items.data()));
   } else {
@@ -78,8 +78,7 @@ void apply_override(TomlValue& root, const std::string& assignment, const std::s
   const auto source = std::make_shared<const std::string>(std::move(shown));
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0) {
-    throw Error(ErrorKind::bad_input, "this sets nothing", "a key, '=' and a value are needed",
-                "Write it as springs.kT=0.3e9", *source);
+    bad_input_at(*source, "this sets nothing", "a key, '=' and a value are needed", "Write it as springs.kT=0.3e9");
   }
   const std::string given(trimmed(std::string_view(assignment).substr(equals + 1)));
   TomlValue value = value_from(given, *source);
@@ -91,15 +90,14 @@ void apply_override(TomlValue& root, const std::string& assignment, const std::s
     const std::string& segment = segments[k];
     if (given == "none" && k + 1 == segments.size()) return remove(*at, segment, *source);
     if (!at->is_array() && !at->is_table()) {
-      throw Error(ErrorKind::bad_input, fmt::format("there is nothing below '{}'", segments[k - 1]),
-                  fmt::format("in the case file it is {}", at->shown()), "Set the key itself, or change the file",
-                  *source);
+      bad_input_at(*source, fmt::format("there is nothing below '{}'", segments[k - 1]),
+                   fmt::format("in the case file it is {}", at->shown()), "Set the key itself, or change the file");
     }
     TomlValue* next = at->find(segment);
     if (next == nullptr && at->is_array()) {
-      throw Error(ErrorKind::bad_input, fmt::format("there is no entry '{}'", segment),
-                  fmt::format("the case file has {} of them, counted from 0", at->items.size()), "Name one that exists",
-                  *source);
+      bad_input_at(*source, fmt::format("there is no entry '{}'", segment),
+                   fmt::format("the case file has {} of them, counted from 0", at->items.size()),
+                   "Name one that exists");
     }
     if (next == nullptr) {
       at->entries.push_back({segment, {}});
@@ -109,6 +107,16 @@ void apply_override(TomlValue& root, const std::string& assignment, const std::s
     at = next;
   }
   *at = std::move(value);
+}
+
+TomlValue parse_document(std::string_view text, const std::string& source, std::span<const std::string> overrides) {
+  TomlValue root = parse_toml(text, source);
+  for (const std::string& assignment : overrides) apply_override(root, assignment);
+  return root;
+}
+
+TomlValue read_document(const std::filesystem::path& path, std::span<const std::string> overrides) {
+  return parse_document(read_file(path), path.string(), overrides);
 }
 
 bool is_known_key(const FileSpec& spec, std::string_view path) {

@@ -1,24 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/engine/read_value.hpp"
 
-#include <algorithm>
-
 namespace equidem::casefile {
 
 const std::vector<TomlValue>& repeated(const TomlValue& root, const char* name) {
   static const std::vector<TomlValue> none;
   const TomlValue* list = root.find(name);
   return list == nullptr ? none : list->items;
-}
-
-void check_one_of(const TomlValue& table, const std::string& path, const std::array<const char*, 2>& keys,
-                  const std::string& missing, const std::string& why, const std::string& remedy,
-                  const std::string& remedy_of_both) {
-  const TomlValue *first = table.find(keys[0]), *second = table.find(keys[1]);
-  if ((first == nullptr) != (second == nullptr)) return;
-  if (first == nullptr) fail_at(table, path, missing, why, remedy);
-  fail_at(*second, path, fmt::format("{} and {} are both given", keys[0], keys[1]), why,
-          remedy_of_both.empty() ? remedy : remedy_of_both);
 }
 
 std::filesystem::path opened(const std::filesystem::path& written, const std::filesystem::path& folder) {
@@ -37,13 +25,6 @@ void check_names(const TomlValue& root, const char* list) {
               fmt::format("the other is at {}", tables[earlier].where()), "Give each its own name");
     }
   }
-}
-
-bool is_plain_name(std::string_view name) {
-  const auto plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  };
-  return std::all_of(name.begin(), name.end(), plain);
 }
 
 void check_plain_name(const TomlValue& value, const std::string& key, const std::string& what, const std::string& use) {

@@ -3,10 +3,8 @@
 /// Values of a checked document, by key; for the readers of its tables.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "equidem/casefile/engine/toml.hpp"
@@ -18,23 +16,31 @@ namespace equidem::casefile {
 /// Throw an Error (bad_input) that names the line of a value, and the key.
 [[noreturn]] inline void fail_at(const TomlValue& at, const std::string& key, const std::string& problem,
                                  const std::string& why, const std::string& remedy) {
-  throw Error(ErrorKind::bad_input, problem, why, remedy, fmt::format("{}: {}", at.where(), key));
+  bad_input_at(fmt::format("{}: {}", at.where(), key), problem, why, remedy);
 }
 
-/// Check that exactly one of two keys is given.
-/// \param missing the problem if neither is given; if both are given, the problem is "a and b are both given"
-/// \param remedy what to do; `remedy_of_both` if both are given and the remedy differs
-/// \throws Error (bad_input) at the second of both keys, or at the table
-void check_one_of(const TomlValue& table, const std::string& path, const std::array<const char*, 2>& keys,
-                  const std::string& missing, const std::string& why, const std::string& remedy,
-                  const std::string& remedy_of_both = {});
-
-/// Call a check of the library: its Error, whose place may be the name of an option, gets the line of that key of the
-/// table, or of the table.
-template <class Check>
-void at_key(const TomlValue& table, const std::string& path, const Check& check) {
+/// The result of a step; its Error gets a place, unless it has one.
+template <class Step>
+auto with_place(const std::string& where, const Step& step) {
   try {
-    check();
+    return step();
+  } catch (const Error& error) {
+    throw error.at(where);
+  }
+}
+
+/// The result of a step; its Error gets the line of that key of the table.
+template <class Step>
+auto with_key(const TomlValue& table, const std::string& path, const char* key, const Step& step) {
+  return with_place(fmt::format("{}: {}.{}", table.find(key)->where(), path, key), step);
+}
+
+/// The result of a step of the library: its Error, whose place may be the name of an option, gets the line of that key
+/// of the table, or of the table.
+template <class Step>
+auto at_key(const TomlValue& table, const std::string& path, const Step& step) {
+  try {
+    return step();
   } catch (const Error& error) {
     const TomlValue* key = error.where().empty() ? nullptr : table.find(error.where());
     throw Error(error.kind(), error.problem(), error.why(), error.remedy(),
@@ -51,9 +57,6 @@ std::filesystem::path opened(const std::filesystem::path& written, const std::fi
 
 /// \throws Error (bad_input) where two tables of a list have one name, or a name is empty
 void check_names(const TomlValue& root, const char* list);
-
-/// Whether the text consists of letters, digits, '_' and '-' only.
-bool is_plain_name(std::string_view name);
 
 /// \param what "a load case"
 /// \param use "it becomes part of the names of files"

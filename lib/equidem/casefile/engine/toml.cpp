@@ -226,9 +226,8 @@ TomlValue parse_toml(std::string_view text, const std::string& source) {
   try {
     return plain(toml::parse(text, std::string_view(source)), name);
   } catch (const toml::parse_error& error) {
-    throw Error(ErrorKind::bad_input, "this is not TOML", reason_of(error),
-                "Correct the line; 'equidem help case' shows a case file",
-                fmt::format("{}:{}", source, error.source().begin.line));
+    bad_input_at(fmt::format("{}:{}", source, error.source().begin.line), "this is not TOML", reason_of(error),
+                 "Correct the line; 'equidem help case' shows a case file");
   }
 }
 

@@ -2,7 +2,6 @@
 #include "equidem/casefile/grains/grain_case.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
@@ -14,23 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace casefile;
-
-TomlValue document_of(std::string_view content, const std::string& name, std::span<const std::string> overrides) {
-  TomlValue root = parse_toml(content, name);
-  for (const std::string& assignment : overrides) apply_override(root, assignment);
-  return root;
-}
-
-/// The letters of the paper are known, and no names.
-void check_letters(const TomlValue& root) {
-  const TomlValue* collisions = root.find("collisions");
-  const TomlValue* law = collisions == nullptr ? nullptr : collisions->find("law");
-  if (law == nullptr) return;
-  for (const LawDescription& meant : normal_laws())
-    if (law->text == meant.letter)
-      fail_at(*law, "collisions.law", fmt::format("{} is the letter of a law", law->shown()),
-              "laws go by their names here", fmt::format("Write law = \"{}\"", meant.name));
-}
 
 /// Names by which pairs are chosen mean one thing each.
 void check_names_of_kinds(const TomlValue& root, const std::vector<std::string>& groups) {
@@ -50,18 +32,16 @@ void check_names_of_kinds(const TomlValue& root, const std::vector<std::string>&
 }
 
 /// A probe of a group has its bodies.
-Probe probe_of(const TomlValue& table, Probe probe, const std::vector<std::string>& groups) {
+void choose_bodies(const TomlValue& table, const std::vector<std::string>& groups, Probe& probe) {
   check_bodies(table, probe, groups.size());
   const TomlValue* group = table.find("group");
-  if (group == nullptr) return probe;
+  if (group == nullptr) return;
   for (std::size_t g = 0; g < groups.size(); ++g)
     if (groups[g] == probe.group) probe.bodies.push_back(static_cast<std::int32_t>(g));
-  if (probe.bodies.empty()) {
-    const auto meant = nearest(probe.group, groups);
-    fail_at(*group, "probe.group", fmt::format("there are no grains of the group {}", group->shown()), "",
-            meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Name a group of [[grain]]");
-  }
-  return probe;
+  if (!probe.bodies.empty()) return;
+  const auto meant = nearest(probe.group, groups);
+  fail_at(*group, "probe.group", fmt::format("there are no grains of the group {}", group->shown()), "",
+          meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Name a group of [[grain]]");
 }
 
 void check_ellipse_contact(const TomlValue& collisions, const GrainScene& scene) {
@@ -73,37 +53,27 @@ void check_ellipse_contact(const TomlValue& collisions, const GrainScene& scene)
 }
 
 void complete_run(const TomlValue& run, GrainTables& tables) {
-  const GrainRunTable& given = tables.run;
-  if (given.given_step && given.steps_per_contact)
-    fail_at(*run.find("steps_per_contact"), "run.steps_per_contact", "time_step and steps_per_contact are both given",
-            "each says how long a step is", "Remove one of them");
-  check_step(run, given);
+  check_step(run, tables.step.time_step, tables.duration);
   const TomlValue* integrator = run.find("integrator");
   if (integrator != nullptr && !gives_force(tables.options.law))
     fail_at(*integrator, "run.integrator", fmt::format("{} has a step of its own", to_string(tables.options.law)),
             "integrators are for the laws that give a force: " + names_of_laws(LawKind::force),
             "Remove it, or change collisions.law");
-  tables.duration = *given.duration;
-  tables.scene.gravity = given.gravity;
-  tables.options.scheme = given.integrator;
-  tables.step = {
-      .time_step = given.given_step, .steps_per_contact = given.steps_per_contact, .longest = tables.duration};
+  tables.step.longest = tables.duration;
 }
 
-void check_measures(const TomlValue& table, const MeasureOptions& measures, Body body) {
-  if (body == Body::sphere)
-    fail_at(table, "measures", "the bodies are spheres", "areas of the plane say nothing of their volumes",
-            "Remove [measures], or take discs");
-  if (!measures.region) return;
-  const auto& [low, high] = *measures.region;
-  if (!(low.x < high.x && low.y < high.y))
-    fail_at(*table.find("region"), "measures.region", "the region has no area", "its lower left corner comes first",
-            "Write it like [0.1, 0.1, 0.9, 0.5]");
+/// The error of the library with the line of the option that it names.
+Error placed(const Error& error, const GrainCase& resolved) {
+  const std::string& option = error.where();
+  const std::string key = option == "law"     ? "collisions.law"
+                          : option == "bonds" ? resolved.document.find("bonds") != nullptr ? "bonds" : "bond"
+                                              : "run." + option;
+  return {error.kind(), error.problem(), error.why(), error.remedy(), resolved.where(key)};
 }
 
 }  // namespace
 
-bool casefile::describes_grains(const TomlValue& root) {
+bool describes_grains(const TomlValue& root) {
   for (const char* table : {"grains", "grain", "collisions"}) {
     const TomlValue* found = root.find(table);
     if (found == nullptr) continue;
@@ -120,40 +90,56 @@ std::string GrainCase::where(std::string_view key) const {
 
 std::string GrainCase::where_grain(std::size_t grain) const {
   if (grain < grain_lines.size()) return fmt::format("{}:{}", grain_file, grain_lines[grain]);
-  return fmt::format("{}: grain", casefile::repeated(document, "grain")[grain - grain_lines.size()].where());
-}
-
-bool describes_grains(const fs::path& path, std::span<const std::string> overrides) {
-  return casefile::describes_grains(document_of(read_file(path), path.string(), overrides));
+  return fmt::format("{}: grain", repeated(document, "grain")[grain - grain_lines.size()].where());
 }
 
 GrainCase parse_grain_case(std::string_view content, const std::string& name, const fs::path& folder,
                            std::span<const std::string> overrides) {
-  TomlValue root = document_of(content, name, overrides);
-  check_letters(root);
-  refuse_energy_of_probes(root);
-  grain_file().check(root);
-  GrainTables tables;
-  grain_file().assign(root, folder, tables);
-  const std::vector<std::string> groups = read_bodies(root, tables);
-  read_bonds(root, tables);
+  TomlValue root = parse_document(content, name, overrides);
+  GrainTables tables = grain_file().read(root, folder);
+  const std::vector<std::string> groups = complete_bodies(root, tables);
+  complete_bonds(root, tables);
   check_names_of_kinds(root, groups);
   const auto schedules = read_schedules(root, tables.schedule_tables);
   tables.scene.walls = read_walls(root, tables.wall_tables, schedules);
   check_ellipse_contact(*root.find("collisions"), tables.scene);
-  read_collisions(root, groups, tables);
+  complete_collisions(root, groups, tables);
   complete_run(*root.find("run"), tables);
-  if (tables.shaking_table) tables.shaking = read_shaking(root, tables);
-  if (tables.measures) check_measures(*root.find("measures"), *tables.measures, tables.body);
+  if (tables.shaking_table) complete_shaking(root, tables);
+  if (tables.measures) at_key(*root.find("measures"), "measures", [&] { check(*tables.measures, tables.body); });
   check_probes(root);
-  for (std::size_t k = 0; k < tables.probe_tables.size(); ++k)
-    tables.probes.push_back(probe_of(repeated(root, "probe")[k], tables.probe_tables[k], groups));
+  for (std::size_t k = 0; k < tables.probes.size(); ++k)
+    choose_bodies(repeated(root, "probe")[k], groups, tables.probes[k]);
   tables.document = std::move(root);
   return tables;
 }
 
 GrainCase read_grain_case(const fs::path& path, std::span<const std::string> overrides) {
   return parse_grain_case(read_file(path), path.string(), path.parent_path(), overrides);
+}
+
+GrainTimeStep choose_grain_step(const GrainCase& resolved) {
+  try {
+    return choose_time_step(resolved.scene, resolved.contacts, resolved.options, resolved.step);
+  } catch (const Error& error) {
+    throw placed(error, resolved);
+  }
+}
+
+std::int64_t count_steps(const GrainCase& resolved, double step) {
+  return with_place(resolved.where("run.duration"), [&] { return count_steps(resolved.duration, step); });
+}
+
+GrainScene build_grain_scene(const GrainCase& resolved, double step) {
+  GrainScene scene = resolved.scene;
+  scene.pairs = pairs_at(resolved.contacts, resolved.options.law, step);
+  return scene;
+}
+
+GrainOptions grain_options(const GrainCase& resolved, double step) {
+  GrainOptions options = resolved.options;
+  options.time_step = step;
+  return options;
 }
 
 }  // namespace equidem

@@ -47,9 +47,9 @@ struct GrainCase {
   [[nodiscard]] std::string where_grain(std::size_t grain) const;
 };
 
-/// Whether a case file describes colliding bodies.
-/// \throws Error (bad_input) if it cannot be read, is not TOML, or also has an [assembly]
-bool describes_grains(const std::filesystem::path& path, std::span<const std::string> overrides = {});
+/// Whether a document describes colliding bodies.
+/// \throws Error (bad_input) if it also has an [assembly]
+bool describes_grains(const TomlValue& document);
 
 /// Read and check a case file.
 /// \param overrides "collisions.friction=0.3", in order
@@ -61,5 +61,17 @@ GrainCase read_grain_case(const std::filesystem::path& path, std::span<const std
 /// \param folder to which paths in the text are relative
 GrainCase parse_grain_case(std::string_view text, const std::string& name, const std::filesystem::path& folder,
                            std::span<const std::string> overrides = {});
+
+/// The time step of a run.
+/// \throws Error (bad_input) as choose_time_step, with line and key
+GrainTimeStep choose_grain_step(const GrainCase& resolved);
+
+/// Number of steps of the whole duration.
+/// \throws Error (bad_input) as count_steps(double, double), with line and key
+std::int64_t count_steps(const GrainCase& resolved, double step);
+
+/// The scene and the options of a simulation with a time step, s.
+GrainScene build_grain_scene(const GrainCase& resolved, double step);
+GrainOptions grain_options(const GrainCase& resolved, double step);
 
 }  // namespace equidem

@@ -2,7 +2,6 @@
 /// \file
 /// [collisions], [collisions.walls] and [[collisions.pair]].
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <string_view>
 
@@ -11,8 +10,7 @@
 #include "equidem/contact/laws/normal_law.hpp"
 #include "equidem/core/text.hpp"
 
-namespace equidem {
-namespace casefile {
+namespace equidem::casefile {
 namespace {
 
 /// The names of the laws that have a property.
@@ -38,12 +36,10 @@ std::string unit_of_stiffness() {
 
 /// Name, letter, reference and summary of every law.
 std::string help_of_laws() {
-  std::string help;
-  for (const LawDescription& law : normal_laws()) {
-    const std::string source = *law.source ? std::string(", ") + law.source : "";
-    help += fmt::format("{}{} ({}{}): {}", help.empty() ? "" : "; ", law.name, law.letter, source, law.summary);
-  }
-  return help;
+  const auto help = [](const LawDescription& law) {
+    return fmt::format("{} ({}{}{}): {}", law.name, law.letter, *law.source ? ", " : "", law.source, law.summary);
+  };
+  return joined(normal_laws(), help, "; ");
 }
 
 /// A key that sets one of the alternatives of PairOptions.
@@ -58,30 +54,35 @@ Key<PairOptions> stiffness_key(const char* name, const Attributes&... attributes
       name, [](PairOptions& pair, const double& value) { pair.stiffness = Option{value}; }, positive, attributes...);
 }
 
-/// The laws whose contacts may pull by default.
-std::string laws_that_pull() {
-  std::vector<std::string> names;
+/// The letters of the paper are known, and no names.
+std::vector<RefusedWord> letters_of_laws() {
+  std::vector<RefusedWord> letters;
   for (const LawDescription& law : normal_laws())
-    if (law.usual_end == ContactEnd::at_zero_overlap) names.emplace_back(law.name);
-  return joined(names, ", ");
+    letters.push_back({law.letter, fmt::format("{} is its letter in the paper, and laws go by their names", law.letter),
+                       fmt::format("Write law = \"{}\"", law.name)});
+  return letters;
 }
 
-}  // namespace
-
+/// The keys of a contact. In [collisions] they have defaults and help; elsewhere they override those.
 std::vector<Key<PairOptions>> contact_keys(bool base) {
   using P = PairOptions;
+  const auto pulls = [](const LawDescription& law) { return law.usual_end == ContactEnd::at_zero_overlap; };
   std::vector<Key<P>> keys{
       rebound_key<Restitution>(
-          "restitution", from(0, 1),
+          "restitution", from(0, 1), not_beside({"damping"}, "each says how strong the dashpot is"),
           "speed after over speed before, of two bodies that meet head-on without gravity; give it or damping"),
       rebound_key<DashpotDamping>(
           "damping", range({.low = 0, .high = 10, .low_open = true}),
           "h of the dashpots 2 h sqrt(m k), along and across, m the mass of a disc, as in [settling] of a packing; of "
           "laws with linear springs and dashpots"),
       key("contact_end", &P::contact_end,
-          "of laws with a dashpot; zero_force: contacts never pull (default, except for " + laws_that_pull() +
+          "of laws with a dashpot; zero_force: contacts never pull (default, except for " + joined(laws_with(pulls)) +
               "); zero_overlap: they may pull while the bodies part"),
-      stiffness_key<SpringStiffness>("stiffness", unit(unit_of_stiffness()), "k; give it or one of the next keys"),
+      stiffness_key<SpringStiffness>("stiffness", unit(unit_of_stiffness()),
+                                     not_beside({"dimensionless_stiffness", "contact_duration", "largest_overlap",
+                                                 "young_modulus", "shear_wave_speed"},
+                                                "each says how stiff a contact is"),
+                                     "k; give it or one of the next keys"),
       stiffness_key<DimensionlessStiffness>(
           "dimensionless_stiffness",
           "a = k dt²/m, m the reduced mass: held whatever the step and the masses; a force k u^p: k d^(p - 1) dt²/m"),
@@ -94,6 +95,7 @@ std::vector<Key<PairOptions>> contact_keys(bool base) {
           "not linear"),
       key("friction", &P::friction, not_negative, "Coulomb's mu"),
       key("tangential_ratio", &P::tangential_ratio, from(0, 1e6),
+          not_beside({"shear_wave_speed"}, "each says how stiff the tangential spring is"),
           "kT/kN of the tangential spring, with friction; left out: 2/7, with wave speeds theirs, and for the maps, "
           "which act in one or two steps, 0: no spring, contacts slide"),
       key("tangential_damping", &P::tangential_damping, not_negative,
@@ -108,26 +110,34 @@ std::vector<Key<PairOptions>> contact_keys(bool base) {
   return keys;
 }
 
+}  // namespace
+
 void bind_collisions(File<GrainTables>& file) {
   using T = GrainTables;
+  using C = CollisionTable;
+  const std::string both = "both make the stiffness of a contact";
   const auto nonlinear = laws_with([](const LawDescription& law) { return !is_linear(law); });
   file.table("collisions", required, "how bodies meet, rebound and part")
-      .keys({key_in<T>("law", &GrainCase::options, &GrainOptions::law, help_of_laws()),
-             key("young_modulus", &T::young_modulus, unit("Pa"), positive,
+      .keys({key_in<T>("law", &GrainCase::options, &GrainOptions::law, refused(letters_of_laws()), help_of_laws())});
+  file.table("collisions", &T::collisions)
+      .keys({key("young_modulus", &C::young_modulus, unit("Pa"), positive, only_with({"poisson_ratio"}, both),
                  when("law", laws_with([](const LawDescription& law) { return law.hertz_spring; })),
                  "modulus of all spheres, walls being rigid: k by Hertz; with poisson_ratio, instead of stiffness"),
-             key("poisson_ratio", &T::poisson_ratio, range({.low = -1, .high = 0.5, .low_open = true}),
+             key("poisson_ratio", &C::poisson_ratio, range({.low = -1, .high = 0.5, .low_open = true}),
+                 only_with({"young_modulus", "shear_wave_speed"}, both),
                  "of all bodies; with young_modulus or shear_wave_speed (there below 0.5, plane strain)"),
-             key("shear_wave_speed", &T::shear_wave_speed, unit("m/s"), positive, when("law", laws_with(is_linear)),
-                 "Vs of all discs: kT = pi/4 rho Vs², kN = pi/4 rho Vp²; with poisson_ratio, instead of stiffness"),
-             key_in<T>("ellipse_contact", &GrainCase::options, &GrainOptions::ellipse_law, optional,
+             key("shear_wave_speed", &C::shear_wave_speed, unit("m/s"), positive, only_with({"poisson_ratio"}, both),
+                 when("law", laws_with(is_linear)),
+                 "Vs of all discs: kT = pi/4 rho Vs², kN = pi/4 rho Vp²; with poisson_ratio, instead of stiffness")});
+  file.table("collisions")
+      .keys({key_in<T>("ellipse_contact", &GrainCase::options, &GrainOptions::ellipse_law, optional,
                        "exact (default): closest points and common normal; enlarged: the test of Sukegawa (2010), "
                        "which takes the offset of an ellipse for an ellipse and so misses shallow contacts, with its "
                        "quadrants mended; enlarged_as_printed: with its errors, for comparison"),
              key_in<T>("reference_length", &GrainCase::options, &GrainOptions::reference_length, optional, unit("m"),
                        positive, when("law", nonlinear),
                        "d of dimensionless_stiffness; left out: twice the largest radius")});
-  file.table("collisions", &T::collisions).keys(contact_keys(true));
+  file.table("collisions", &T::collisions, &C::contact).keys(contact_keys(true));
   file.table("collisions.walls", "contacts of a grain with a wall, where they differ from that")
       .described(contact_keys(false));
   std::vector<Key<PairOptions>> pair{
@@ -139,67 +149,19 @@ void bind_collisions(File<GrainTables>& file) {
       .described(std::move(pair));
 }
 
-}  // namespace casefile
-
 namespace {
 
-using casefile::fail_at;
-using casefile::repeated;
-
-constexpr std::array ways_to_stiffness = {"stiffness",       "dimensionless_stiffness", "contact_duration",
-                                          "largest_overlap", "young_modulus",           "shear_wave_speed"};
-
-/// At most one way to the rebound and one to the stiffness of a contact.
-void check_alternatives(const TomlValue& table, const std::string& name) {
-  const TomlValue* damping = table.find("damping");
-  if (damping != nullptr && table.find("restitution") != nullptr)
-    fail_at(*damping, name + ".damping", "restitution and damping are both given",
-            "each says how strong the dashpot is", "Remove one of them");
-  const char* by = nullptr;
-  for (const char* way : ways_to_stiffness) {
-    const TomlValue* found = table.find(way);
-    if (found == nullptr) continue;
-    if (by != nullptr)
-      fail_at(*found, fmt::format("{}.{}", name, way), fmt::format("{} and {} are both given", by, way),
-              "each says how stiff a contact is", "Remove one of them");
-    by = way;
-  }
-}
-
 /// `options` with those that a table gives instead.
-PairOptions with(PairOptions options, const TomlValue& table, const std::string& name) {
-  static const auto keys = casefile::contact_keys(false);
-  check_alternatives(table, name);
-  TomlValue copy = table;
-  casefile::read_table(keys, copy, {}, options);
+PairOptions with(PairOptions options, const TomlValue& table) {
+  static const auto keys = contact_keys(false);
+  read_table(keys, table, options);
   return options;
 }
 
-/// Keys of [collisions] that belong together are given together, and those that exclude one another are not.
-void check_moduli(const TomlValue& table, const casefile::GrainTables& result) {
-  const TomlValue* young = table.find("young_modulus");
-  const TomlValue* shear = table.find("shear_wave_speed");
-  const TomlValue* poisson = table.find("poisson_ratio");
-  if (young == nullptr && shear == nullptr) {
-    if (poisson == nullptr) return;
-    const bool hertz = describe(result.options.law).hertz_spring;
-    fail_at(*poisson, "collisions.poisson_ratio",
-            fmt::format("poisson_ratio is given without {}", hertz ? "young_modulus" : "shear_wave_speed"),
-            "both make the stiffness of a contact",
-            hertz ? "Add young_modulus = ... in Pa" : "Add shear_wave_speed = ... in m/s");
-  }
-  const TomlValue& given = young != nullptr ? *young : *shear;
-  const char* name = young != nullptr ? "young_modulus" : "shear_wave_speed";
-  if (poisson == nullptr)
-    fail_at(given, fmt::format("collisions.{}", name), fmt::format("{} is given without poisson_ratio", name),
-            "both make the stiffness of a contact", "Add poisson_ratio = ...");
-  if (shear == nullptr) return;
-  if (const TomlValue* ratio = table.find("tangential_ratio"))
-    fail_at(*ratio, "collisions.tangential_ratio", "tangential_ratio and shear_wave_speed are both given",
-            "each says how stiff the tangential spring is", "Remove one of them");
-  const auto [least, most] = std::ranges::minmax(result.densities);
-  if (least < most && result.body == Body::disc)
-    fail_at(given, "collisions.shear_wave_speed",
+void check_one_density(const TomlValue& table, const GrainTables& tables) {
+  const auto [least, most] = std::ranges::minmax(tables.densities);
+  if (least < most && tables.body == Body::disc)
+    fail_at(*table.find("shear_wave_speed"), "collisions.shear_wave_speed",
             fmt::format("the grains have densities from {} to {} kg/m³", least, most),
             "springs of wave speeds belong to one density",
             "Give one density, or stiffness and tangential_ratio for each pair");
@@ -234,28 +196,28 @@ void check_moduli(const TomlValue& table, const casefile::GrainTables& result) {
 
 }  // namespace
 
-void casefile::read_collisions(const TomlValue& root, const std::vector<std::string>& groups, GrainTables& result) {
+void complete_collisions(const TomlValue& root, const std::vector<std::string>& groups, GrainTables& tables) {
   const TomlValue& table = *root.find("collisions");
-  check_alternatives(table, "collisions");
-  check_moduli(table, result);
-  CollisionOptions options{.body = result.body, .bodies = result.collisions};
-  if (result.young_modulus) options.bodies.stiffness = HertzModuli{*result.young_modulus, *result.poisson_ratio};
-  if (result.shear_wave_speed)
-    options.bodies.stiffness =
-        WaveSpeedStiffness{result.densities.front(), *result.shear_wave_speed, *result.poisson_ratio};
-  PairOptions walls = options.bodies;
-  if (const TomlValue* differs = table.find("walls")) options.walls = walls = with(walls, *differs, "collisions.walls");
+  const auto& [contact, young_modulus, poisson_ratio, shear_wave_speed] = tables.collisions;
+  CollisionOptions options{.body = tables.body, .bodies = contact};
+  if (young_modulus) options.bodies.stiffness = HertzModuli{*young_modulus, *poisson_ratio};
+  if (shear_wave_speed) {
+    check_one_density(table, tables);
+    options.bodies.stiffness = WaveSpeedStiffness{tables.densities.front(), *shear_wave_speed, *poisson_ratio};
+  }
+  if (const TomlValue* differs = table.find("walls")) options.walls = with(options.bodies, *differs);
+  const PairOptions& walls = options.walls ? *options.walls : options.bodies;
   for (const TomlValue& pair : repeated(table, "pair")) {
     const std::string& group = pair.find("group")->text;
     const std::string& other = pair.find("with")->text;
     const bool on_wall = std::ranges::find(groups, other) == groups.end();
-    options.pairs.push_back({group, other, with(on_wall ? walls : options.bodies, pair, "collisions.pair")});
+    options.pairs.push_back({group, other, with(on_wall ? walls : options.bodies, pair)});
   }
   try {
-    result.contacts = set_kinds(result.scene, groups, options, result.options.law);
+    tables.contacts = set_kinds(tables.scene, groups, options, tables.options.law);
   } catch (const Error& error) {
     fail_at_option(error, table);
   }
 }
 
-}  // namespace equidem
+}  // namespace equidem::casefile

@@ -8,9 +8,11 @@ namespace {
 
 void bind_bodies(File<GrainTables>& file) {
   using C = CommonBodyTable;
-  file.table("grains", &GrainTables::common, completed, "properties of all grains")
-      .keys({key("body", &C::body, "disc: a cylinder, kg and N per metre of depth; sphere: kg and N"),
-             key("density", &C::density, unit("kg/m³"), positive, "density of every grain that has none of its own"),
+  file.table("grains", completed, "properties of all grains")
+      .keys({key_in<GrainTables>("body", &GrainCase::body,
+                                 "disc: a cylinder, kg and N per metre of depth; sphere: kg and N")});
+  file.table("grains", &GrainTables::common)
+      .keys({key("density", &C::density, unit("kg/m³"), positive, "density of every grain that has none of its own"),
              key("path", &C::path,
                  "a CSV file of grains: the columns x, y, radius and, where wanted, short_half_axis (of an ellipse, "
                  "radius being the long one), discs (of a clump: x y r; x y r), vx, vy, spin, angle, density, group; "
@@ -18,7 +20,10 @@ void bind_bodies(File<GrainTables>& file) {
   using G = GrainTable;
   file.table("grain", &GrainTables::grain_tables, "one body")
       .keys({key("position", &G::grain, &Grain::position, required, unit("m"), "place of the mass centre"),
-             key("radius", &G::radius, unit("m"), positive, "radius of a disc or sphere; or give one of the next two"),
+             key("radius", &G::radius, unit("m"), positive,
+                 or_instead({"half_axes", "discs"},
+                            "a body has one shape: radius is for a disc, half_axes for an ellipse, discs for a clump"),
+                 "radius of a disc or sphere"),
              key("half_axes", &G::half_axes, unit("m"), positive,
                  "[a, b] of an ellipse, the long one first: it lies along x at angle 0"),
              key("discs", &G::discs, optional, unit("m"),
@@ -32,23 +37,27 @@ void bind_bodies(File<GrainTables>& file) {
 }
 
 void bind_run(File<GrainTables>& file) {
-  using R = GrainRunTable;
-  std::vector<Key<R>> keys = run_keys<R>("", "the shortest contact over steps_per_contact");
-  required(keys.front().spec);
-  keys.insert(keys.end(),
-              {key("steps_per_contact", &R::steps_per_contact, range({.low = 2}),
-                   "of an automatic step; left out: 50 for laws that give a force, 10 for the maps, pi (that is omega "
-                   "dt = 1) for exact_flow"),
-               key("integrator", &R::integrator, optional, formerly("scheme"),
-                   "of laws that give a force; semi_implicit_euler (default): first order, contacts that stick do not "
-                   "creep; velocity_verlet: second order, as LAMMPS steps; corrected_verlet: the same motion, but "
-                   "contacts that begin or end within a step push for their part of it only: for impacts, and where "
-                   "the balance of energy counts")});
-  file.table("run", &GrainTables::run, required, "how long and in which steps").keys(std::move(keys));
-  bind_motion(file, BodyFamily::colliding);
+  using T = GrainTables;
+  file.table("run", required, "how long and in which steps")
+      .keys({key_in<T>("duration", &GrainCase::duration, required, run_duration),
+             key_in<T>("time_step", &GrainCase::step, &GrainStepOptions::time_step, run_time_step,
+                       "auto: the shortest contact over steps_per_contact"),
+             key_in<T>("gravity", &GrainCase::scene, &GrainScene::gravity, run_gravity),
+             key_in<T>(
+                 "steps_per_contact", &GrainCase::step, &GrainStepOptions::steps_per_contact, range({.low = 2}),
+                 not_beside({"time_step"}, "each says how long a step is"),
+                 "of an automatic step; left out: 50 for laws that give a force, 10 for the maps, pi (that is omega "
+                 "dt = 1) for exact_flow"),
+             key_in<T>(
+                 "integrator", &GrainCase::options, &GrainOptions::scheme, optional, formerly("scheme"),
+                 "of laws that give a force; semi_implicit_euler (default): first order, contacts that stick do not "
+                 "creep; velocity_verlet: second order, as LAMMPS steps; corrected_verlet: the same motion, but "
+                 "contacts that begin or end within a step push for their part of it only: for impacts, and where "
+                 "the balance of energy counts")});
+  bind_motion(file, BodyFamily::colliding, &GrainCase::probes);
   bind_shaking(file);
   using M = MeasureOptions;
-  file.table("measures", &GrainTables::measures, "quantities measured on the bodies in a box")
+  file.table("measures", &GrainCase::measures, "quantities measured on the bodies in a box")
       .keys({key("region", &M::region, unit("m"),
                  "[x_min, y_min, x_max, y_max] in which the void ratio is measured; it goes with the shaking box. Left "
                  "out: the box without two mean diameters at its walls and without three below the lowest place of the "

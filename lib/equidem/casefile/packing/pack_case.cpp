@@ -31,7 +31,7 @@ struct SpringsOrSpeeds {
 struct PackTables : PackCase {
   PackingAmount amount;
   PackingBox::Sides sides = PackingBox::Sides::walls;
-  std::optional<SizeTable> radii;
+  SizeTable radii;
   SpringsOrSpeeds springs;
   enum class Start { fall, relax } start = Start::fall;
 };
@@ -81,7 +81,7 @@ void bind_bodies(File<PackTables>& file) {
   const auto uniform = when("distribution", {"uniform"}), log_normal = when("distribution", {"log_normal"});
   using R = SizeTable;
   using D = SizeDistribution;
-  file.table("packing.radii", &T::radii, "radii of the bodies; needed")
+  file.table("packing.radii", &T::radii, required, "radii of the bodies")
       .keys({key("distribution", &R::sizes, &D::kind, "by number of grains"),
              key("smallest", &R::sizes, &D::smallest, required, unit("m"), positive, uniform),
              key("largest", &R::sizes, &D::largest, required, unit("m"), positive, uniform),
@@ -96,12 +96,16 @@ void bind_contacts(File<PackTables>& file) {
   using T = PackTables;
   using O = SettlingOptions;
   using S = SpringsOrSpeeds;
+  const std::string how_stiff =
+      "two numbers say how stiff contacts are: kN and kT, or shear_wave_speed and poisson_ratio";
   file.table("springs", &T::springs, required, "springs of contacts: kN and kT, or wave speeds")
-      .keys({key("kN", &S::kN, unit("Pa"), positive, "of every contact, walls too; instead of the wave speeds"),
-             key("kT", &S::kT, unit("Pa"), not_negative),
+      .keys({key("kN", &S::kN, unit("Pa"), positive, or_instead({"shear_wave_speed"}, how_stiff),
+                 only_with({"kT"}, how_stiff), "of every contact, walls too; instead of the wave speeds"),
+             key("kT", &S::kT, unit("Pa"), not_negative, only_with({"kN"}, how_stiff)),
              key("shear_wave_speed", &S::shear_wave_speed, unit("m/s"), positive,
-                 "Vs: kT = pi/4 rho Vs², kN = pi/4 rho Vp²"),
-             key("poisson_ratio", &S::poisson_ratio, between(-1, 0.5), "plane strain; with shear_wave_speed")});
+                 only_with({"poisson_ratio"}, how_stiff), "Vs: kT = pi/4 rho Vs², kN = pi/4 rho Vp²"),
+             key("poisson_ratio", &S::poisson_ratio, between(-1, 0.5), only_with({"shear_wave_speed"}, how_stiff),
+                 "plane strain; with shear_wave_speed")});
   file.table("settling", completed, "how bodies fall and come to rest (method = falling)")
       .keys({key("start", &T::start,
                  "fall: all of it in time; relax: first brought down without inertia and friction, much faster and "
@@ -144,21 +148,14 @@ SizeDistribution sizes_of(const TomlValue& table, const SizeTable& given) {
             fmt::format("the largest radius {} m is below the smallest, {} m", sizes.largest, sizes.smallest), "",
             "Exchange them");
   }
-  if (!given.path) return sizes;
-  try {
-    sizes.sieves = read_sieve_curve(*given.path);
-  } catch (const Error& error) {
-    throw error.at(fmt::format("{}: packing.radii.path", table.find("path")->where()));
-  }
+  if (given.path)
+    sizes.sieves = with_key(table, "packing.radii", "path", [&] { return read_sieve_curve(*given.path); });
   return sizes;
 }
 
-SpringConstants springs_of(const TomlValue& table, const SpringsOrSpeeds& given, double density) {
-  const auto& [kN, kT, speed, poisson] = given;
-  if (kN && kT && !speed && !poisson) return {*kN, *kT};
-  if (speed && poisson && !kN && !kT) return springs_of_wave_speeds(density, wave_speeds_from_shear(*speed, *poisson));
-  fail_at(table, "springs", "it is not said how stiff contacts are", "two numbers say it",
-          "Give kN and kT, or shear_wave_speed and poisson_ratio, and no others");
+SpringConstants springs_of(const SpringsOrSpeeds& given, double density) {
+  if (given.kN) return {*given.kN, *given.kT};
+  return springs_of_wave_speeds(density, wave_speeds_from_shear(*given.shear_wave_speed, *given.poisson_ratio));
 }
 
 }  // namespace
@@ -169,24 +166,19 @@ const casefile::FileSpec& pack_file_spec() {
 
 PackCase parse_pack_case(std::string_view content, const std::string& name, const fs::path& folder,
                          std::span<const std::string> overrides) {
-  TomlValue root = parse_toml(content, name);
-  for (const std::string& assignment : overrides) apply_override(root, assignment);
-  pack_file().check(root);
-  PackTables tables;
-  pack_file().assign(root, folder, tables);
+  TomlValue root = parse_document(content, name, overrides);
+  PackTables tables = pack_file().read(root, folder);
   const TomlValue& packing = *root.find("packing");
-  if (!tables.radii)
-    fail_at(packing, "packing", "the table [packing.radii] is missing", "it says how large the discs are", "Add it");
   PackingOptions& options = tables.packing;
   const TomlValue* fraction = packing.find("solid_fraction");
   options.as_dense_as_possible = fraction != nullptr && !fraction->is_number();
   const bool open = tables.sides == PackingBox::Sides::walls && entry_of(options.method).open_top;
   options.box.sides = open ? PackingBox::Sides::open_top : tables.sides;
-  const SizeDistribution sizes = sizes_of(*packing.find("radii"), *tables.radii);
+  const SizeDistribution sizes = sizes_of(*packing.find("radii"), tables.radii);
   at_key(packing, "packing", [&] { set_amount(tables.amount, sizes, options); });
   SettlingOptions& settling = options.settling;
   settling.relax_first = tables.start == PackTables::Start::relax;
-  settling.springs = springs_of(*root.find("springs"), tables.springs, settling.density);
+  settling.springs = springs_of(tables.springs, settling.density);
   tables.document = std::move(root);
   return tables;
 }

@@ -89,9 +89,7 @@ StudyCase parse_study_case(std::string_view content, const std::string& name, co
   using casefile::fail_at;
   using casefile::repeated;
   TomlValue root = parse_toml(content, name);
-  study_file().check(root);
-  StudyCase result;
-  study_file().assign(root, folder, result);
+  StudyCase result = study_file().read(root, folder);
   const TomlValue& study = *root.find("study");
   if (result.truth == Truth::richardson && !result.order)
     fail_at(study, "study.order", "the order is missing", "the limit is extrapolated by it",

@@ -121,6 +121,15 @@ struct GrainOptions {
 };
 
 template <>
+struct EnumNames<GrainOptions::Scheme> {
+  using enum GrainOptions::Scheme;
+  static constexpr const char* what = "integrator";
+  static constexpr NamedValue<GrainOptions::Scheme> list[] = {{semi_implicit_euler, "semi_implicit_euler"},
+                                                              {velocity_verlet, "velocity_verlet"},
+                                                              {corrected_verlet, "corrected_verlet"}};
+};
+
+template <>
 struct EnumNames<GrainOptions::EllipseLaw> {
   using enum GrainOptions::EllipseLaw;
   static constexpr const char* what = "contact of ellipses";

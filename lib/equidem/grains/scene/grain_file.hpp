@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Bodies of a CSV file, such as grains.csv of a run or of a packing.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "equidem/grains/scene/grain_scene.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
+
+namespace equidem {
+
+/// Bodies with what their rows say besides; arrays of equal length.
+struct GrainRows {
+  std::vector<Grain> grains;
+  std::vector<double> densities;    ///< kg/m³
+  std::vector<std::string> groups;  ///< "grains" where none is given
+  std::vector<int> lines;           ///< in the file, from 1
+};
+
+/// The first row names the columns, in any order: x, y, radius, or discs of a clump as "x y r; x y r"; where wanted
+/// short_half_axis, vx, vy, spin, angle, density, group; also with their units, as a run writes them ("x_m"). A file
+/// of a run has further columns, which are not read.
+/// \param density kg/m³, of bodies whose row has none; none: each row needs its own
+/// \param shapes in which distinct clumps are kept
+/// \throws Error (bad_input) with file and line: no row of names, columns that are unknown, missing, in another unit or
+///         there twice, cells that are no numbers, a density that is missing or not positive, a group that is called
+///         "walls", shapes as GrainShapes
+GrainRows read_grains(const std::filesystem::path& path, std::optional<double> density, GrainShapes& shapes);
+
+}  // namespace equidem
