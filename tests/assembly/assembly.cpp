@@ -153,3 +153,10 @@ TEST_CASE("measures_of_an_assembly_are_means_over_its_discs") {
   CHECK_THROWS_WITH(pair_of_discs([](Assembly& bare) { bare.cell_areas.clear(); }).area(),
                     Catch::Matchers::StartsWith("the assembly has no cell areas"));
 }
+
+TEST_CASE("discs_in_a_box_have_their_centre_inside_or_on_its_sides") {
+  Assembly row;
+  row.centres = {{0, 0}, {1, 0}, {2, 0}};
+  CHECK(discs_in(row, {{1, -1}, {2, 1}}).discs == std::vector<std::int32_t>{1, 2});
+  CHECK_THROWS_WITH(discs_in(row, {{3, -1}, {4, 1}}), Catch::Contains("the centres lie in [0, 0, 2, 0]"));
+}

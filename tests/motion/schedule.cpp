@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numbers>
 #include <vector>
 
 #include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
 #include "equidem/core/random.hpp"
 
 #include "support/catch.hpp"
@@ -216,4 +218,15 @@ TEST_CASE("an_event_that_returns_within_a_step_is_missed_and_a_jump_is_not") {
   CHECK(missed(cycles(1, 0, 10, 4)).share < 1e-3);
   CHECK(missed(smooth({0.01, 0.0102, 0.0104}, {0, 1, 0}, {0, 0, 0})).share == Approx(1).epsilon(1e-12));
   CHECK(missed(sine(1, 0, 100)).share == Approx(1 - std::cos(0.1 * pi)).epsilon(1e-12));
+}
+
+TEST_CASE("rows_of_a_file_become_the_points_of_a_table") {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "equidem_points.csv";
+  write_file(file, "time,value\n0,1\n# halfway\n2,5\n", true);
+  Schedule table{.kind = Schedule::Kind::table};
+  read_points(file, table, "value");
+  CHECK(table.at(1) == 3);
+  Schedule other{.kind = Schedule::Kind::table};
+  CHECK_THROWS_WITH(read_points(file, other, "acceleration"), Catch::Contains("equidem_points.csv:1: "));
+  std::filesystem::remove(file);
 }

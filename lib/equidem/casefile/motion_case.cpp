@@ -80,7 +80,7 @@ std::vector<Key<ScheduleTable>> schedule_keys() {
       key("frequency", &T::schedule, &Schedule::frequency, required, unit("Hz"), positive, when("kind", sine)),
       key("times", &T::schedule, &Schedule::times, unit("s"), when("kind", table),
           or_instead({"path"}, "the points of a table are times and values, or a file"),
-          only_with({"values"}, "a point is a time and a value"), "ascending"),
+          only_with({"values"}, "a point is a time and a value"), "ascending, with values"),
       key("values", &T::schedule, &Schedule::values, optional, when("kind", table),
           only_with({"times"}, "a point is a time and a value"), "one for each time"),
       key("path", &T::path, when("kind", table), "a CSV file with two columns, time and value")};

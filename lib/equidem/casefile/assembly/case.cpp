@@ -159,10 +159,6 @@ void complete_run(const TomlValue& root, CaseTables& tables) {
 
 }  // namespace
 
-std::string Case::where(std::string_view key) const {
-  return fmt::format("{}: {}", value_at(document, key).where(), key);
-}
-
 Case parse_case(std::string_view content, const std::string& name, const fs::path& folder,
                 std::span<const std::string> overrides) {
   TomlValue root = parse_document(content, name, overrides);

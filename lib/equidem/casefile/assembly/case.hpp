@@ -96,10 +96,10 @@ struct RunCase {
   std::vector<Probe> probes;
 };
 
-/// A checked case file: complete, in range and without contradiction. Conditions that depend on the assembly (non-empty
+/// A checked case file: complete, in range and without contradiction; in its document a
+/// springs file is replaced by its content. Conditions that depend on the assembly (non-empty
 /// groups, sufficient supports) are checked when the case is built and solved.
-struct Case {
-  std::string title;
+struct Case : CaseDocument {
   AssemblyCase assembly;
   std::optional<SpringConstants> springs;  ///< or
   std::optional<MaterialCase> material;
@@ -115,12 +115,6 @@ struct Case {
   std::optional<RunCase> run;
   SolverOptions solver;
   OutputCase output;
-
-  /// The document of the case: defaults filled in, a springs file replaced by its content.
-  TomlValue document;
-
-  /// "cases/a.toml:7: load.0.group": place in the user's input, for error messages.
-  [[nodiscard]] std::string where(std::string_view key) const;
 };
 
 /// Read and check a case file.

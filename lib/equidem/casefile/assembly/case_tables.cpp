@@ -225,10 +225,9 @@ std::vector<Key<OutputCase>> output_keys() {
 
 const File<CaseTables>& case_file() {
   static const File<CaseTables> file = [] {
-    File<CaseTables> made("equidem/1", "case file");
+    File<CaseTables> made(case_schema, "case file");
     made.table("").keys(
-        {key_in<CaseTables>("title", &Case::title, "shown in reports and pictures"),
-         unbound_key<CaseTables>("springs", KeyType::path, "a springs file, instead of [springs] or [material]")});
+        {unbound_key<CaseTables>("springs", KeyType::path, "a springs file, instead of [springs] or [material]")});
     bind_assembly(made);
     bind_springs(made);
     bind_material(made);
@@ -243,7 +242,6 @@ const File<CaseTables>& case_file() {
 const File<CaseTables>& springs_file_format() {
   static const File<CaseTables> file = [] {
     File<CaseTables> made("equidem-springs/1", "springs file");
-    made.table("").keys({unbound_key<CaseTables>("title", KeyType::text, "shown in reports and pictures")});
     bind_springs(made, required);
     return made;
   }();

@@ -16,6 +16,10 @@
 /// std::optional has none. Members of members are given as a chain: key("columns", &AssemblyCase::lattice,
 /// &LatticeOptions::columns).
 ///
+/// A key that applies to some kinds of its table only has the attribute `when`; one that another key excludes, replaces
+/// or needs has `not_beside`, `or_instead` or `only_with`. What several tables must fulfil together is checked by the
+/// function that completes the case.
+///
 /// A table is bound to a struct (required or completed), to a std::optional of one (absent: no value) or to a
 /// std::vector of them ([[table]]).
 #pragma once
@@ -231,13 +235,17 @@ requires(is_optional<T> || is_vector<T>) struct ItemOf<T> {
   using type = typename T::value_type;
 };
 
-/// A kind of file, bound to an F.
+/// The schema of all case files.
+inline constexpr const char* case_schema = "equidem/1";
+
+/// A kind of file, bound to an F that is a CaseDocument.
 template <class F>
 class File {
  public:
   File(std::string schema, std::string noun) : spec_{std::move(schema), std::move(noun)} {
     const std::string help = "says which rules the file follows: \"" + spec_.schema + "\"";
-    table("").keys({unbound_key<F>("schema", KeyType::text, required, help)});
+    table("").keys({unbound_key<F>("schema", KeyType::text, required, help),
+                    key_in<F>("title", &CaseDocument::title, "shown in reports and pictures")});
   }
 
   template <class Target>

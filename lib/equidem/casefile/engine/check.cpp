@@ -199,7 +199,7 @@ class Checker {
       names.erase(names.begin());
       const std::string needed = listed(names.empty() ? relation.others : names, " or ");
       fail_at(*alone, key.path(), fmt::format("{} is given without {}", key.name, needed), relation.why,
-              fmt::format("Add {} = ...", needed));
+              fmt::format("Add {} = ... to {}", needed, spec_.table(key.table)->heading()));
     }
     if (given.empty() && relation.kind == Kind::exactly_one) {
       if (names.size() == 1) fail_missing(table, key);

@@ -149,17 +149,14 @@ void check_words(const TomlValue& value, const KeySpec& key) {
   }
 }
 
-void check_text(const TomlValue& value, const KeySpec& key) {
-  if (value.type != Type::text) fail_type(value, key);
+template <Type type>
+void check_type(const TomlValue& value, const KeySpec& key) {
+  if (value.type != type) fail_type(value, key);
 }
 
 void check_path(const TomlValue& value, const KeySpec& key) {
-  check_text(value, key);
+  check_type<Type::text>(value, key);
   if (value.text.empty()) fail(value, key, "the name is empty", "Name a file");
-}
-
-void check_flag(const TomlValue& value, const KeySpec& key) {
-  if (value.type != Type::boolean) fail_type(value, key);
 }
 
 void check_whole(const TomlValue& value, const KeySpec& key) {
@@ -184,10 +181,10 @@ void check_bytes(const TomlValue& value, const KeySpec& key) {
 }
 
 constexpr ValueKind kinds[] = {
-    {KeyType::text, "text in quotes", "\"...\"", check_text},
+    {KeyType::text, "text in quotes", "\"...\"", check_type<Type::text>},
     {KeyType::choice, "{choices}", "\"{first}\"", check_choice},
     {KeyType::path, "the name of a file, in quotes", "\"FILE\"", check_path},
-    {KeyType::flag, "true or false", "true", check_flag},
+    {KeyType::flag, "true or false", "true", check_type<Type::boolean>},
     {KeyType::whole, "a whole number{range}", "10", check_whole},
     {KeyType::number, "a number{unit}{range}", "{number}", check_number},
     {KeyType::vector, "two numbers [x, y]{unit}", "[1.0, 0.0]", check_numbers<2>},

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/engine/read_value.hpp"
 
+#include <map>
+#include <string_view>
+
 namespace equidem::casefile {
 
 const std::vector<TomlValue>& repeated(const TomlValue& root, const char* name) {
@@ -15,15 +18,13 @@ std::filesystem::path opened(const std::filesystem::path& written, const std::fi
 
 void check_names(const TomlValue& root, const char* list) {
   const std::string key = fmt::format("{}.name", list);
-  const std::vector<TomlValue>& tables = repeated(root, list);
-  for (std::size_t k = 0; k < tables.size(); ++k) {
-    const TomlValue& name = *tables[k].find("name");
+  std::map<std::string_view, const TomlValue*> known;
+  for (const TomlValue& table : repeated(root, list)) {
+    const TomlValue& name = *table.find("name");
     if (name.text.empty()) fail_at(name, key, "the name is empty", fmt::format("a name means one {}", list), "Name it");
-    for (std::size_t earlier = 0; earlier < k; ++earlier) {
-      if (tables[earlier].find("name")->text != name.text) continue;
+    if (const auto [other, is_new] = known.try_emplace(name.text, &table); !is_new)
       fail_at(name, key, fmt::format("there are two {}s '{}'", list, name.text),
-              fmt::format("the other is at {}", tables[earlier].where()), "Give each its own name");
-    }
+              fmt::format("the other is at {}", other->second->where()), "Give each its own name");
   }
 }
 

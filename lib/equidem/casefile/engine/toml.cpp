@@ -185,23 +185,7 @@ std::string TomlValue::where() const {
 }
 
 std::string TomlValue::type_name() const {
-  switch (type) {
-    case Type::table:
-      return "a table";
-    case Type::array:
-      return "an array";
-    case Type::integer:
-      return "a whole number";
-    case Type::real:
-      return "a number";
-    case Type::boolean:
-      return "true or false";
-    case Type::text:
-      return "text";
-    case Type::date:
-      return "a date";
-  }
-  return {};
+  return to_string(type);
 }
 
 std::string TomlValue::shown() const {
@@ -218,6 +202,10 @@ const TomlValue& value_at(const TomlValue& root, std::string_view path) {
     path.remove_prefix(std::min(dot + 1, path.size()));
   }
   return *at;
+}
+
+std::string CaseDocument::where(std::string_view key) const {
+  return fmt::format("{}: {}", value_at(document, key).where(), key);
 }
 
 TomlValue parse_toml(std::string_view text, const std::string& source) {

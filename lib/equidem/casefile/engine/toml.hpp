@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "equidem/core/names.hpp"
+
 namespace equidem {
 
 struct TomlEntry;
@@ -52,8 +54,28 @@ struct TomlEntry {
   TomlValue value;
 };
 
+template <>
+struct EnumNames<TomlValue::Type> {
+  using enum TomlValue::Type;
+  static constexpr const char* what = "type";
+  static constexpr NamedValue<TomlValue::Type> list[] = {
+      {table, "a table"}, {array, "an array"},        {integer, "a whole number"},
+      {real, "a number"}, {boolean, "true or false"}, {text, "text"},
+      {date, "a date"}};
+};
+
 /// The value at a path such as "load.0.group"; if the path ends early, the last value on it.
 const TomlValue& value_at(const TomlValue& root, std::string_view path);
+
+/// Base of the cases of all kinds of files.
+struct CaseDocument {
+  std::string title;
+  /// Defaults filled in; paths as the program opens them.
+  TomlValue document;
+
+  /// "cases/a.toml:7: load.0.group": place in the user's input, for error messages.
+  [[nodiscard]] std::string where(std::string_view key) const;
+};
 
 /// \param source name of the file, for messages
 /// \throws Error (bad_input) with file and line where the text is not TOML

@@ -84,10 +84,6 @@ bool describes_grains(const TomlValue& root) {
   return false;
 }
 
-std::string GrainCase::where(std::string_view key) const {
-  return fmt::format("{}: {}", value_at(document, key).where(), key);
-}
-
 std::string GrainCase::where_grain(std::size_t grain) const {
   if (grain < grain_lines.size()) return fmt::format("{}:{}", grain_file, grain_lines[grain]);
   return fmt::format("{}: grain", repeated(document, "grain")[grain - grain_lines.size()].where());

@@ -22,8 +22,7 @@ namespace equidem {
 
 /// A checked case: complete, in range and without contradiction; conditions on all bodies together are checked at the
 /// start of the simulation.
-struct GrainCase {
-  std::string title;
+struct GrainCase : CaseDocument {
   Body body = Body::disc;
   GrainScene scene;               ///< bodies of the file, then those of the case; `pairs` is not set
   std::vector<double> densities;  ///< kg/m³, of each grain
@@ -38,11 +37,6 @@ struct GrainCase {
   std::vector<Probe> probes;  ///< with the bodies of their groups
   OutputCase output;
 
-  /// The document of the case, defaults filled in.
-  TomlValue document;
-
-  /// "cases/a.toml:7: wall.0": place in the user's input, for error messages.
-  [[nodiscard]] std::string where(std::string_view key) const;
   /// Place of a grain in the user's input: "cases/a.toml:12: grain", "cases/grains.csv:3".
   [[nodiscard]] std::string where_grain(std::size_t grain) const;
 };

@@ -2,12 +2,11 @@
 /// \file
 /// [collisions], [collisions.walls] and [[collisions.pair]].
 #include <algorithm>
-#include <charconv>
-#include <string_view>
 
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/contact/laws/normal_law.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem::casefile {
@@ -58,7 +57,8 @@ Key<PairOptions> stiffness_key(const char* name, const Attributes&... attributes
 std::vector<RefusedWord> letters_of_laws() {
   std::vector<RefusedWord> letters;
   for (const LawDescription& law : normal_laws())
-    letters.push_back({law.letter, fmt::format("{} is its letter in the paper, and laws go by their names", law.letter),
+    letters.push_back({law.letter,
+                       fmt::format("that is the letter of {} in the paper, and laws go by their names", law.name),
                        fmt::format("Write law = \"{}\"", law.name)});
   return letters;
 }
@@ -169,29 +169,33 @@ void check_one_density(const TomlValue& table, const GrainTables& tables) {
 
 /// The error of set_kinds with the line and the key of its option: "walls.stiffness", "pairs.2.with".
 [[noreturn]] void fail_at_option(const Error& error, const TomlValue& collisions) {
-  std::string_view option = error.where();
-  std::string name = "collisions";
-  std::vector<const TomlValue*> tables{&collisions};  // the first that has the key is at fault
+  std::string option = error.where(), name = "collisions";
+  const auto next_segment = [&] {
+    const std::size_t dot = std::min(option.find('.'), option.size());
+    std::string segment = option.substr(0, dot);
+    option.erase(0, dot + 1);
+    return segment;
+  };
+  const TomlValue* walls = collisions.find("walls");
+  std::vector<const TomlValue*> tables;  // the first that has the key is at fault, else the first
   if (option.starts_with("pairs.")) {
-    std::size_t k = 0;
-    option.remove_prefix(6);
-    const char* after = std::from_chars(option.data(), option.data() + option.size(), k).ptr;
-    option.remove_prefix(static_cast<std::size_t>(after - option.data()));
-    if (option.starts_with('.')) option.remove_prefix(1);
-    tables.insert(tables.begin(), &repeated(collisions, "pair")[k]);
-    if (const TomlValue* walls = collisions.find("walls")) tables.insert(tables.begin() + 1, walls);
+    next_segment();
+    tables.push_back(&repeated(collisions, "pair")[*number_from<std::size_t>(next_segment())]);
+    if (walls != nullptr) tables.push_back(walls);
     name += ".pair";
   } else if (option.starts_with("walls")) {
-    option.remove_prefix(std::min<std::size_t>(6, option.size()));
-    tables.insert(tables.begin(), collisions.find("walls"));
+    next_segment();
+    tables.push_back(walls);
     name += ".walls";
+  } else if (option == "group") {
+    name = "grain";
   }
-  if (option == "group" && tables.size() == 1) name = "grain";
-  const TomlValue* at = tables.front();
-  for (auto table = tables.rbegin(); table != tables.rend(); ++table)
-    if (const TomlValue* value = (*table)->find(option)) at = value;
-  if (!option.empty()) name += '.' + std::string(option);
-  fail_at(*at, name, error.problem(), error.why(), error.remedy());
+  tables.push_back(&collisions);
+  const auto found =
+      std::ranges::find_if(tables, [&](const TomlValue* table) { return table->find(option) != nullptr; });
+  if (!option.empty()) name += '.' + option;
+  fail_at(found == tables.end() ? *tables.front() : *(*found)->find(option), name, error.problem(), error.why(),
+          error.remedy());
 }
 
 }  // namespace

@@ -75,8 +75,7 @@ void bind_run(File<GrainTables>& file) {
 
 const File<GrainTables>& grain_file() {
   static const File<GrainTables> file = [] {
-    File<GrainTables> made(case_file().spec().schema, "case file of colliding bodies");
-    made.table("").keys({key_in<GrainTables>("title", &GrainCase::title, "shown in reports and pictures")});
+    File<GrainTables> made(case_schema, "case file of colliding bodies");
     bind_bodies(made);
     bind_bonds(made);
     bind_collisions(made);

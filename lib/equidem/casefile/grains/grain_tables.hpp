@@ -104,9 +104,8 @@ template <>
 struct EnumNames<casefile::ShakingTable::Unit> {
   using enum casefile::ShakingTable::Unit;
   static constexpr const char* what = "unit of acceleration";
-  static constexpr AccelerationUnit list[] = {{m_per_s2, "m/s2", 1},
-                                              {equidem::casefile::ShakingTable::Unit::gal, "gal", equidem::gal},
-                                              {g, "g", standard_gravity}};
+  static constexpr AccelerationUnit list[] = {
+      {m_per_s2, "m/s2", 1}, {gal, "gal", equidem::gal}, {g, "g", standard_gravity}};
 };
 
 }  // namespace equidem

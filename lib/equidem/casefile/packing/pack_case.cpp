@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/packing/pack_case.hpp"
 
-#include "equidem/casefile/assembly/case_tables.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/material/wave_speed_springs.hpp"
@@ -132,8 +132,7 @@ void bind_contacts(File<PackTables>& file) {
 
 const File<PackTables>& pack_file() {
   static const File<PackTables> file = [] {
-    File<PackTables> made(case_file().spec().schema, "case file of a packing");
-    made.table("").keys({key_in<PackTables>("title", &PackCase::title, "shown in reports and pictures")});
+    File<PackTables> made(case_schema, "case file of a packing");
     bind_bodies(made);
     bind_contacts(made);
     return made;

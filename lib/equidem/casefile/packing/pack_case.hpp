@@ -17,12 +17,10 @@
 namespace equidem {
 
 /// A checked case: complete, in range and without contradiction.
-struct PackCase {
-  std::string title;
+struct PackCase : CaseDocument {
   PackingOptions packing;
   std::optional<Region> region;  ///< region of measurement
   bool csv = true, picture = true;
-  TomlValue document;  ///< document of the case, defaults filled in
 };
 
 /// The tables and keys of a case that fills a box.

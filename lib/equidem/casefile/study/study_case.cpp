@@ -6,7 +6,7 @@
 #include <set>
 #include <sstream>
 
-#include "equidem/casefile/assembly/case_tables.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/core/file.hpp"
 
@@ -29,8 +29,7 @@ const casefile::File<StudyCase>& study_file() {
   static const File<StudyCase> file = [] {
     using S = StudyCase;
     using V = VariedKey;
-    File<S> made(case_file().spec().schema, "study file");
-    made.table("").keys({key("title", &S::title, "shown in reports and pictures")});
+    File<S> made(case_schema, "study file");
     made.table("study", required, "error against time: what is measured")
         .keys({key("verb", &S::verb, choices({"solve", "homogenize", "calibrate", "stability", "pack", "run"}),
                    "what is done at each setting"),

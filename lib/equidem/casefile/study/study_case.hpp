@@ -33,8 +33,7 @@ struct EnumNames<VariedKey::Refines> {
 };
 
 /// A checked study file.
-struct StudyCase {
-  std::string title;
+struct StudyCase : CaseDocument {
   std::string verb = "solve";
   std::filesystem::path case_file;  ///< path resolved against the folder of the file
   std::string measure;              ///< "poisson_ratio.plane_strain"
@@ -43,7 +42,6 @@ struct StudyCase {
   std::optional<double> order;
   bool relative = true;
   std::vector<VariedKey> varied;  ///< at least one
-  TomlValue document;             ///< document of the study, defaults filled in
 };
 
 /// The tables and keys of a study file.

@@ -24,7 +24,7 @@ struct GrainRows {
 /// The first row names the columns, in any order: x, y, radius, or discs of a clump as "x y r; x y r"; where wanted
 /// short_half_axis, vx, vy, spin, angle, density, group; also with their units, as a run writes them ("x_m"). A file
 /// of a run has further columns, which are not read.
-/// \param density kg/m³, of bodies whose row has none; none: each row needs its own
+/// \param density kg/m³, of bodies in a file without that column; none: the column is needed
 /// \param shapes in which distinct clumps are kept
 /// \throws Error (bad_input) with file and line: no row of names, columns that are unknown, missing, in another unit or
 ///         there twice, cells that are no numbers, a density that is missing or not positive, a group that is called
