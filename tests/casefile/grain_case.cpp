@@ -43,7 +43,7 @@ TEST_CASE("a_case_of_grains_says_what_its_file_says") {
   CHECK(c.scene.grains[2].inertia.moment == inertia_of(0.03, 2500, Body::sphere).moment);
   CHECK(c.contacts.kinds == std::vector<std::string>{"grains", "steel", "walls", "floor"});
   CHECK(c.options.law == NormalLaw::linear_dashpot);
-  CHECK(c.options.scheme == GrainOptions::Scheme::velocity_verlet);
+  CHECK(c.options.integrator == GrainOptions::Integrator::velocity_verlet);
   CHECK(c.duration == 0.5);
   CHECK(c.step.time_step == 1e-5);
   CHECK(c.scene.gravity == Vec2{0, -9.81});

@@ -45,7 +45,7 @@ TEST_CASE("defaults_of_cases_of_grains_are_those_of_the_options") {
   const GrainTimeStep step = choose_time_step(scene, contacts, options, {.longest = 1});
 
   CHECK(given.options.law == options.law);
-  CHECK(given.options.scheme == options.scheme);
+  CHECK(given.options.integrator == options.integrator);
   CHECK(given.options.ellipse_law == options.ellipse_law);
   CHECK(given.options.bond_step == options.bond_step);
   CHECK(given.options.reference_length == options.reference_length);

@@ -27,7 +27,7 @@ GrainSimulation simulation_of(const std::vector<Grain>& grains, const std::vecto
   scene.walls = walls;
   scene.gravity = gravity;
   scene.pairs = {{.stiffness = stiffness, .restitution = 0.6}};
-  return {scene, {.law = stepping.law, .scheme = stepping.scheme, .time_step = step}};
+  return {scene, {.law = stepping.law, .integrator = stepping.integrator, .time_step = step}};
 }
 
 }  // namespace

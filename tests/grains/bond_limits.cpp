@@ -131,7 +131,7 @@ TEST_CASE("the_ledger_of_bonds_closes_with_the_step") {
   const double order = std::log2(errors[2] / errors[3]);
   CAPTURE(stepping.name(), errors, order);
   CHECK(errors.back() < 0.01);
-  CHECK(order > (stepping.scheme == Scheme::semi_implicit_euler ? 0.85 : 1.9));
+  CHECK(order > (stepping.integrator == GrainIntegrator::semi_implicit_euler ? 0.85 : 1.9));
 }
 
 TEST_CASE("a_spinning_pair_drifts_apart_at_centrifugal_force_over_dashpot") {

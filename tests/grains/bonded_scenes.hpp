@@ -11,11 +11,11 @@
 namespace equidem::test {
 
 /// Those that know bonds.
-inline const std::vector<Stepping> bonding_steppings{{NormalLaw::linear_dashpot, Scheme::semi_implicit_euler},
-                                                     {NormalLaw::linear_dashpot, Scheme::velocity_verlet},
-                                                     {NormalLaw::linear_dashpot, Scheme::corrected_verlet},
-                                                     {NormalLaw::hertz_dashpot, Scheme::semi_implicit_euler},
-                                                     {NormalLaw::energy_map, Scheme::semi_implicit_euler}};
+inline const std::vector<Stepping> bonding_steppings{{NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
+                                                     {NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
+                                                     {NormalLaw::linear_dashpot, GrainIntegrator::corrected_verlet},
+                                                     {NormalLaw::hertz_dashpot, GrainIntegrator::semi_implicit_euler},
+                                                     {NormalLaw::energy_map, GrainIntegrator::semi_implicit_euler}};
 inline constexpr std::array both_bond_steps{GrainOptions::BondStep::exact, GrainOptions::BondStep::explicit_euler};
 
 /// Every dashpot and spring.

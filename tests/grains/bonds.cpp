@@ -34,7 +34,7 @@ TEST_CASE("the_speed_of_a_pair_decays_as_the_exponential_at_any_step") {
   const double dashpot = 2, speed = 1e-3;
   const GrainScene scene = parting_pair(stepping.law, dashpot, speed);
   const double mass = 1 / (1 / scene.grains[0].inertia.mass + 1 / scene.grains[1].inertia.mass);
-  const bool verlet = stepping.scheme != Scheme::semi_implicit_euler;
+  const bool verlet = stepping.integrator != GrainIntegrator::semi_implicit_euler;
   for (const double share : {1e-3, 0.1, 1.0, 5.0}) {
     const double step = share * mass / dashpot;
     GrainSimulation simulation(scene, options_of(stepping, step));

@@ -67,7 +67,7 @@ TEST_CASE("a_clump_of_one_disc_moves_as_the_disc") {
   CHECK(expected.counters().contacts > 10);
   CHECK(found.counters().contacts == expected.counters().contacts);
   // corrected_verlet: discs find the instant of touching to one order of the step more
-  CHECK(difference < (stepping.scheme == Scheme::corrected_verlet ? 1e-3 : 1e-10));
+  CHECK(difference < (stepping.integrator == GrainIntegrator::corrected_verlet ? 1e-3 : 1e-10));
 }
 
 TEST_CASE("a_rigid_pair_flies_and_turns_freely") {
@@ -92,7 +92,7 @@ TEST_CASE("an_impact_turns_a_rigid_pair_by_its_arm") {
   GrainScene scene = scene_of({}, {line("floor", {0, 0}, {0, 1})}, {.stiffness = 1e8});
   const double height = 1 + std::sin(angle), arm = -std::cos(angle);
   scene.grains = {lump(scene, pair_of_discs(), {0, height + 1e-7}, angle, {0, -1})};
-  GrainSimulation simulation(scene, options_of({NormalLaw::linear_dashpot, Scheme::velocity_verlet}, 2e-7));
+  GrainSimulation simulation(scene, options_of({NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet}, 2e-7));
   REQUIRE(pass_contact(simulation, 20000));
   const Grain out = simulation.grains()[0];
   const double moment = scene.grains[0].inertia.moment, impulse = 2 / (1 + arm * arm / moment);

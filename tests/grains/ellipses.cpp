@@ -56,7 +56,7 @@ TEST_CASE("an_ellipse_of_aspect_one_moves_as_the_disc") {
     CAPTURE(stepping.name(), less, difference);
     CHECK(simulation.counters().contacts == expected.counters().contacts);
     // corrected_verlet: discs find the instant of touching to one order of the step more
-    CHECK(difference < (stepping.scheme == Scheme::corrected_verlet ? 1e-3 : 1e-10));
+    CHECK(difference < (stepping.integrator == GrainIntegrator::corrected_verlet ? 1e-3 : 1e-10));
   }
 }
 
@@ -100,7 +100,7 @@ TEST_CASE("an_eccentric_impact_has_the_restitution_of_its_smaller_mass") {
   const double mass = 1 / (1 + arm * arm / moment);
   const Grain grain = oval({0, support_down.reach + 1e-7}, 1, 0.3, angle, {0, -1});
   GrainSimulation simulation(scene_of({grain}, {floor_line()}, pair),
-                             options_of({NormalLaw::linear_dashpot, Scheme::velocity_verlet}, 2e-7));
+                             options_of({NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet}, 2e-7));
   REQUIRE(pass_contact(simulation, 10000));
   const Grain out = simulation.grains()[0];
   const double found = out.velocity.y + out.spin * arm;
@@ -129,7 +129,7 @@ TEST_CASE("the_ledger_of_an_elastic_ellipse_closes_with_the_order_of_the_integra
   }
   const double order = std::log2(errors.front() / errors.back()) / 2;
   CAPTURE(stepping.name(), on_floor, errors, order);
-  const bool second = stepping.scheme != Scheme::semi_implicit_euler;
+  const bool second = stepping.integrator != GrainIntegrator::semi_implicit_euler;
   CHECK(errors.back() < (second ? 1e-4 : 1e-2));
   CHECK(order > (second ? 1.7 : 0.85));
 }
@@ -176,7 +176,7 @@ TEST_CASE("an_ellipse_on_a_rough_floor_rocks_with_its_period") {
   const Ellipse shape = Ellipse::at_angle(a, b, tilt);
   const double height = support(shape, {0, -1}).reach - g / 1e6;
   GrainSimulation simulation(scene_of({oval({0, height}, a, b, tilt)}, {floor_line()}, pair, {0, -g}),
-                             options_of({NormalLaw::linear_dashpot, Scheme::velocity_verlet}, 2e-4));
+                             options_of({NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet}, 2e-4));
   double before = tilt, crossing = 0;
   int crossings = 0;
   while (crossings < 4 && simulation.time() < 20) {
@@ -218,7 +218,7 @@ TEST_CASE("needles_in_a_box_keep_their_energy") {
   post.end = {3, 2.02};
   walls.push_back(post);
   GrainSimulation simulation(scene_of(needles, walls, pair),
-                             options_of({NormalLaw::linear_dashpot, Scheme::velocity_verlet}, 1e-4));
+                             options_of({NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet}, 1e-4));
   simulation.advance(20000);
   const EnergyLedger ledger = simulation.energy();
   CAPTURE(ledger.error(), ledger.initial, simulation.counters().contacts, simulation.counters().evaluations);

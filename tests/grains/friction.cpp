@@ -110,7 +110,7 @@ TEST_CASE("no_oblique_impact_gains_energy") {
   // step.
   const Stepping stepping = GENERATE(from_range(all_steppings));
   const ContactEnd end = GENERATE(ContactEnd::at_zero_force, ContactEnd::at_zero_overlap);
-  const double step = stepping.scheme == Scheme::velocity_verlet ? 0.05 : 0.1;
+  const double step = stepping.integrator == GrainIntegrator::velocity_verlet ? 0.05 : 0.1;
   const double gain = largest_gain(stepping, step, 1000, end);
   const double finer = largest_gain(stepping, step / 2, 1000, end);
   const bool exact = is_map(stepping.law) || stepping.law == NormalLaw::exact_flow;

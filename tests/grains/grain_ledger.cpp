@@ -87,7 +87,7 @@ TEST_CASE("the_ledger_closes_to_the_order_of_the_integrator") {
     CHECK(*std::max_element(errors.begin(), errors.end()) < 1e-12);
   } else {
     CHECK(errors.front() < 0.03);
-    CHECK(order > (stepping.scheme == Scheme::semi_implicit_euler ? 0.9 : 1.9));
+    CHECK(order > (stepping.integrator == GrainIntegrator::semi_implicit_euler ? 0.9 : 1.9));
   }
 }
 
@@ -155,8 +155,8 @@ TEST_CASE("a_contact_that_begins_within_a_step_gets_its_part_of_it_from_correcte
   scene.pairs[0].end = end;
   std::vector<double> corrected, plain;
   for (const double step : {0.02, 0.01, 0.005}) {
-    corrected.push_back(error_when_over(scene, {law, Scheme::corrected_verlet}, step));
-    plain.push_back(error_when_over(scene, {law, Scheme::velocity_verlet}, step));
+    corrected.push_back(error_when_over(scene, {law, GrainIntegrator::corrected_verlet}, step));
+    plain.push_back(error_when_over(scene, {law, GrainIntegrator::velocity_verlet}, step));
   }
   CAPTURE(to_string(law), restitution, to_string(end), wall, corrected, plain);
   if (law == NormalLaw::linear_dashpot) {
@@ -182,8 +182,8 @@ TEST_CASE("corrected_verlet_moves_as_velocity_verlet_where_no_contact_begins_or_
   scene.pairs[0].restitution = 0.2;
   scene.walls[0].move_x = {Schedule::Kind::sine, 0.0005, 0, 0, 1};
   scene.walls[0].move_y = {Schedule::Kind::sine, -0.0003, 0, 0, 1.5};
-  const GrainOptions options = options_of({law, Scheme::velocity_verlet}, 0.002);
-  GrainSimulation plain(scene, options), corrected(scene, options_of({law, Scheme::corrected_verlet}, 0.002));
+  const GrainOptions options = options_of({law, GrainIntegrator::velocity_verlet}, 0.002);
+  GrainSimulation plain(scene, options), corrected(scene, options_of({law, GrainIntegrator::corrected_verlet}, 0.002));
   plain.advance(30000);
   corrected.restore(plain.save());
   REQUIRE(bits_of(corrected) == bits_of(plain));
@@ -204,7 +204,7 @@ TEST_CASE("corrected_verlet_moves_as_velocity_verlet_where_no_contact_begins_or_
 
 TEST_CASE("friction_leaves_an_error_of_the_second_order_of_the_step") {
   // What sticks and slips in turns; without a tangential dashpot nothing hides what the spring stores between both.
-  const auto scheme = GENERATE(Scheme::velocity_verlet, Scheme::corrected_verlet);
+  const auto integrator = GENERATE(GrainIntegrator::velocity_verlet, GrainIntegrator::corrected_verlet);
   const double dashpot = GENERATE(0.0, 0.2), friction = GENERATE(0.1, 0.5), ratio = GENERATE(0.5, 2.0);
   const bool wall = GENERATE(false, true);
   PairProperties pair = one_second(NormalLaw::linear_dashpot, 0.7, wall ? 1 : 0.5);
@@ -215,12 +215,12 @@ TEST_CASE("friction_leaves_an_error_of_the_second_order_of_the_step") {
   if (!wall) scene = scene_of({ball({0.5, 2.03}, 1, {0.4, -1}), ball({0, 0}, 1)}, {}, pair);
   std::vector<double> errors;
   for (const double step : {0.02, 0.005, 0.00125}) {
-    errors.push_back(error_when_over(scene, {NormalLaw::linear_dashpot, scheme}, step));
+    errors.push_back(error_when_over(scene, {NormalLaw::linear_dashpot, integrator}, step));
   }
-  CAPTURE(static_cast<int>(scheme), dashpot, friction, ratio, wall, errors);
+  CAPTURE(static_cast<int>(integrator), dashpot, friction, ratio, wall, errors);
   CHECK(errors[0] < 8e-4);
   CHECK(errors[2] < errors[0] / 150);  // 256 for the second order, 16 for the first
-  if (scheme == Scheme::corrected_verlet) CHECK(errors[0] < 1e-5);
+  if (integrator == GrainIntegrator::corrected_verlet) CHECK(errors[0] < 1e-5);
 }
 
 TEST_CASE("a_wall_works_on_what_it_pushes") {

@@ -58,12 +58,12 @@ std::vector<Spoiled> all_spoiled() {
       {"friction -0.1", [](S& s, O&) { s.pairs[0].friction = -0.1; }},
       {"tangential damping is given without", [](S& s, O&) { s.pairs[0].tangential_damping = 0.1; }},
       {"velocity_verlet is asked for with the law \"exact_flow\"",
-       [](S&, O& o) { o.scheme = Scheme::velocity_verlet; }},
+       [](S&, O& o) { o.integrator = GrainIntegrator::velocity_verlet; }},
       {"corrected_verlet is asked for with the law \"exact_flow\"",
-       [](S&, O& o) { o.scheme = Scheme::corrected_verlet; }},
+       [](S&, O& o) { o.integrator = GrainIntegrator::corrected_verlet; }},
       {"velocity_verlet is asked for with the law \"energy_map\"",
        [](S&, O& o) {
-         o.scheme = Scheme::velocity_verlet;
+         o.integrator = GrainIntegrator::velocity_verlet;
          o.law = NormalLaw::energy_map;
        }},
       {"the time step is 0 s", [](S&, O& o) { o.time_step = 0; }},

@@ -25,9 +25,9 @@ TEST_CASE("contacts_of_parts_by_eights_are_contacts_one_by_one") {
   }
   const GrainOptions options = options_of(stepping, 0.004);
   GrainSimulation eights(scene, options), singles(one_by_one(scene), options);
-  const bool predicts = stepping.scheme == Scheme::semi_implicit_euler;
+  const bool predicts = stepping.integrator == GrainIntegrator::semi_implicit_euler;
   // contacts of one body that begin or end in one step take in the order of the lists
-  const double order = stepping.scheme == Scheme::corrected_verlet ? 1e-6 : 1e-11;
+  const double order = stepping.integrator == GrainIntegrator::corrected_verlet ? 1e-6 : 1e-11;
   double apart = 0;
   for (int k = 0; k < 240; ++k) {
     eights.advance(1);
@@ -66,7 +66,7 @@ TEST_CASE("contacts_of_parts_by_eights_are_contacts_one_by_one") {
 
 TEST_CASE("contacts_of_needles_are_those_that_brute_force_finds") {
   const double margin = GENERATE(0.0, 1e-6, 2.0);
-  GrainOptions options = options_of({NormalLaw::linear_dashpot, Scheme::velocity_verlet}, 3e-4);
+  GrainOptions options = options_of({NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet}, 3e-4);
   options.margin = margin;
   GrainSimulation simulation(flying_needles(24, 31), options);
   std::size_t found = 0;
@@ -108,8 +108,8 @@ TEST_CASE("the_ledger_of_a_fill_of_ellipses_closes") {
     scene.grains.push_back(oval(place, 0.95, 0.45, random.uniform(0, 6), {random.uniform(-0.2, 0.2), 0}));
   }
   std::vector<double> errors;
-  for (const auto scheme : {Scheme::velocity_verlet, Scheme::corrected_verlet}) {
-    const GrainOptions options = options_of({NormalLaw::linear_dashpot, scheme}, 0.05 * std::sqrt(0.5 / 2e4));
+  for (const auto integrator : {GrainIntegrator::velocity_verlet, GrainIntegrator::corrected_verlet}) {
+    const GrainOptions options = options_of({NormalLaw::linear_dashpot, integrator}, 0.05 * std::sqrt(0.5 / 2e4));
     GrainSimulation simulation(scene, options);
     simulation.advance(static_cast<std::int64_t>(15 / options.time_step));
     const EnergyLedger ledger = simulation.energy();

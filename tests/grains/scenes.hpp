@@ -24,24 +24,27 @@ namespace equidem::test {
 
 constexpr std::array<NormalLaw, 5> all_laws{NormalLaw::linear_dashpot, NormalLaw::hertz_dashpot,
                                             NormalLaw::five_case_map, NormalLaw::energy_map, NormalLaw::exact_flow};
-using Scheme = GrainOptions::Scheme;
+using GrainIntegrator = GrainOptions::Integrator;
 
 /// A law and a way to step that go together.
 struct Stepping {
   NormalLaw law = NormalLaw::exact_flow;
-  Scheme scheme = Scheme::semi_implicit_euler;
+  GrainIntegrator integrator = GrainIntegrator::semi_implicit_euler;
   [[nodiscard]] std::string name() const {
-    return to_string(law) + (scheme == Scheme::velocity_verlet    ? ", velocity_verlet"
-                             : scheme == Scheme::corrected_verlet ? ", corrected_verlet"
-                                                                  : "");
+    return to_string(law) + (integrator == GrainIntegrator::velocity_verlet    ? ", velocity_verlet"
+                             : integrator == GrainIntegrator::corrected_verlet ? ", corrected_verlet"
+                                                                               : "");
   }
 };
-inline const std::vector<Stepping> all_steppings{
-    {NormalLaw::linear_dashpot, Scheme::semi_implicit_euler}, {NormalLaw::linear_dashpot, Scheme::velocity_verlet},
-    {NormalLaw::linear_dashpot, Scheme::corrected_verlet},    {NormalLaw::hertz_dashpot, Scheme::semi_implicit_euler},
-    {NormalLaw::hertz_dashpot, Scheme::velocity_verlet},      {NormalLaw::hertz_dashpot, Scheme::corrected_verlet},
-    {NormalLaw::five_case_map, Scheme::semi_implicit_euler},  {NormalLaw::energy_map, Scheme::semi_implicit_euler},
-    {NormalLaw::exact_flow, Scheme::semi_implicit_euler}};
+inline const std::vector<Stepping> all_steppings{{NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
+                                                 {NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
+                                                 {NormalLaw::linear_dashpot, GrainIntegrator::corrected_verlet},
+                                                 {NormalLaw::hertz_dashpot, GrainIntegrator::semi_implicit_euler},
+                                                 {NormalLaw::hertz_dashpot, GrainIntegrator::velocity_verlet},
+                                                 {NormalLaw::hertz_dashpot, GrainIntegrator::corrected_verlet},
+                                                 {NormalLaw::five_case_map, GrainIntegrator::semi_implicit_euler},
+                                                 {NormalLaw::energy_map, GrainIntegrator::semi_implicit_euler},
+                                                 {NormalLaw::exact_flow, GrainIntegrator::semi_implicit_euler}};
 /// Those that keep the balance of one contact to round-off.
 inline const std::vector<NormalLaw> exact_laws{NormalLaw::five_case_map, NormalLaw::energy_map, NormalLaw::exact_flow};
 
@@ -89,12 +92,12 @@ inline GrainScene scene_of(std::vector<Grain> grains, std::vector<Wall> walls, c
 inline GrainOptions options_of(Stepping stepping, double step) {
   GrainOptions options;
   options.law = stepping.law;
-  options.scheme = stepping.scheme;
+  options.integrator = stepping.integrator;
   options.time_step = step;
   return options;
 }
 inline GrainOptions options_of(NormalLaw law, double step) {
-  return options_of(Stepping{law, Scheme::semi_implicit_euler}, step);
+  return options_of(Stepping{law, GrainIntegrator::semi_implicit_euler}, step);
 }
 
 /// Step until something touched and nothing touches any more.

@@ -81,7 +81,7 @@ TEST_CASE("an_interlocked_clump_may_start_in_the_hollow_of_another") {
   for (int k = 0; k < 12; ++k)
     ring.push_back({{3 * std::cos(k * std::numbers::pi / 6), 3 * std::sin(k * std::numbers::pi / 6)}, 0.8});
   scene.grains = {lump(scene, ring, {0, 0}), lump(scene, pair_of_discs(), {0, 0}, 0.3, {1, 0.2})};
-  GrainSimulation simulation(scene, options_of({NormalLaw::linear_dashpot, Scheme::velocity_verlet}, 0.002));
+  GrainSimulation simulation(scene, options_of({NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet}, 0.002));
   simulation.advance(10000);
   const std::vector<Grain> grains = simulation.grains();
   CAPTURE(simulation.counters().contacts, simulation.energy().error());
@@ -177,7 +177,7 @@ TEST_CASE("an_ellipse_that_falls_into_a_bowl_is_refused_before_it_touches_twice"
   CHECK(bits_of(simulation) == before);
   // on the rim it rebounds from the end, a point
   scene.grains[0].position.x = 2.0;
-  GrainSimulation rim(scene, options_of({NormalLaw::linear_dashpot, Scheme::velocity_verlet}, 1e-4));
+  GrainSimulation rim(scene, options_of({NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet}, 1e-4));
   REQUIRE(pass_contact(rim, 20000));
   CHECK(rim.grains()[0].velocity.y > 5);
   CHECK(std::abs(rim.energy().error()) < 1e-3 * 20);
@@ -203,7 +203,7 @@ TEST_CASE("a_large_ellipse_meets_small_ones") {
   for (int k = -5; k <= 5; ++k)
     scene.grains.push_back(oval({2.5 * k, 1.2 - 0.5 * k * k * 0.063}, 1, 0.3, 0.1, {0, -1}));
   scene.grains[0].inertia = {1e4, 1e4 * (1e4 + 9801) / 4};
-  GrainSimulation simulation(scene, options_of({NormalLaw::linear_dashpot, Scheme::velocity_verlet}, 2e-4));
+  GrainSimulation simulation(scene, options_of({NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet}, 2e-4));
   simulation.advance(10000);
   CAPTURE(simulation.counters().contacts, simulation.energy().error());
   CHECK(simulation.counters().contacts >= 11);

@@ -79,7 +79,7 @@ TEST_CASE("an_ellipse_slides_over_a_joint_of_segments_as_over_one") {
       wall.end = {ends[k + 1], 0};
       scene.walls.push_back(wall);
     }
-    GrainSimulation simulation(scene, options_of({NormalLaw::linear_dashpot, Scheme::velocity_verlet}, 1e-3));
+    GrainSimulation simulation(scene, options_of({NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet}, 1e-3));
     simulation.advance(6000);
     CHECK(simulation.grains()[0].position.x > 2.9);
     return simulation.grains()[0];

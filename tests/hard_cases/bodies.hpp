@@ -101,7 +101,7 @@ inline double lack_of_balance(const GrainSimulation& simulation, const GrainScen
 }
 
 inline GrainOptions verlet(double step) {
-  return options_of({NormalLaw::linear_dashpot, Scheme::velocity_verlet}, step);
+  return options_of({NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet}, step);
 }
 
 inline Wall wall_between(std::string name, Vec2 from, Vec2 to) {

@@ -23,8 +23,8 @@ PairProperties one_second_quadratic() {
   return {.stiffness = std::pow(unit.duration, 3), .restitution = 1};
 }
 
-GrainOptions stepping(Scheme scheme, double step) {
-  return options_of(Stepping{quadratic, scheme}, step);
+GrainOptions stepping(GrainIntegrator integrator, double step) {
+  return options_of(Stepping{quadratic, integrator}, step);
 }
 
 double order_of_error(const std::vector<double>& errors) {
@@ -53,7 +53,8 @@ GrainScene crowd() {
 }  // namespace
 
 TEST_CASE("an_impact_of_quadratic_springs_is_elastic_and_as_deep_and_long_as_theory_says") {
-  const Scheme scheme = GENERATE(Scheme::semi_implicit_euler, Scheme::velocity_verlet, Scheme::corrected_verlet);
+  const GrainIntegrator integrator = GENERATE(GrainIntegrator::semi_implicit_euler, GrainIntegrator::velocity_verlet,
+                                              GrainIntegrator::corrected_verlet);
   const bool on_wall = GENERATE(false, true), shapes = GENERATE(false, true);
   // reduced mass 1
   std::vector<Grain> grains{ball({0, 0}, 1, {1, 0}, on_wall ? 1 : 2)};
@@ -67,7 +68,7 @@ TEST_CASE("an_impact_of_quadratic_springs_is_elastic_and_as_deep_and_long_as_the
   std::vector<Wall> walls;
   if (on_wall) walls.push_back(line("wall", {1.01, 0}, {-1, 0}));
   const double step = 1e-3;
-  GrainSimulation simulation(scene_of(grains, walls, one_second_quadratic()), stepping(scheme, step));
+  GrainSimulation simulation(scene_of(grains, walls, one_second_quadratic()), stepping(integrator, step));
   double deepest = 0;
   std::int64_t steps = 0;
   for (std::int64_t k = 0; k < 3000; ++k) {
@@ -78,45 +79,48 @@ TEST_CASE("an_impact_of_quadratic_springs_is_elastic_and_as_deep_and_long_as_the
   const std::vector<Grain> after = simulation.grains();
   const double restitution = on_wall ? -after[0].velocity.x : after[1].velocity.x - after[0].velocity.x;
   const ElasticImpact theory = describe(quadratic).elastic_impact(one_second_quadratic().stiffness, 1, 1);
-  CAPTURE(static_cast<int>(scheme), on_wall, shapes, restitution, deepest, theory.overlap, steps);
+  CAPTURE(static_cast<int>(integrator), on_wall, shapes, restitution, deepest, theory.overlap, steps);
   CHECK(restitution == Approx(1).epsilon(1e-5));
   CHECK(deepest == Approx(theory.overlap).epsilon(1e-3));
   CHECK(static_cast<double>(steps) * step == Approx(theory.duration).epsilon(0.01));
 }
 
 TEST_CASE("the_ledger_of_quadratic_springs_closes_to_the_order_of_the_scheme") {
-  const Scheme scheme = GENERATE(Scheme::semi_implicit_euler, Scheme::velocity_verlet, Scheme::corrected_verlet);
+  const GrainIntegrator integrator = GENERATE(GrainIntegrator::semi_implicit_euler, GrainIntegrator::velocity_verlet,
+                                              GrainIntegrator::corrected_verlet);
   std::vector<double> errors;
   for (const double step : {0.02, 0.01, 0.005, 0.0025}) {
-    errors.push_back(error_of_ledger(crowd(), stepping(scheme, step), 4));
+    errors.push_back(error_of_ledger(crowd(), stepping(integrator, step), 4));
   }
   const double order = order_of_error(errors);
-  CAPTURE(static_cast<int>(scheme), errors, order);
+  CAPTURE(static_cast<int>(integrator), errors, order);
   CHECK(errors.back() < 0.01);
-  CHECK(order > (scheme == Scheme::semi_implicit_euler ? 0.9 : 1.9));
+  CHECK(order > (integrator == GrainIntegrator::semi_implicit_euler ? 0.9 : 1.9));
 }
 
 TEST_CASE("quadratic_springs_move_discs_alike_one_by_one_and_eight_at_a_time") {
-  const Scheme scheme = GENERATE(Scheme::semi_implicit_euler, Scheme::velocity_verlet, Scheme::corrected_verlet);
-  GrainSimulation lanes(crowd(), stepping(scheme, 1e-3)), single(one_by_one(crowd()), stepping(scheme, 1e-3));
+  const GrainIntegrator integrator = GENERATE(GrainIntegrator::semi_implicit_euler, GrainIntegrator::velocity_verlet,
+                                              GrainIntegrator::corrected_verlet);
+  GrainSimulation lanes(crowd(), stepping(integrator, 1e-3)), single(one_by_one(crowd()), stepping(integrator, 1e-3));
   lanes.advance(4000);
   single.advance(4000);
-  CAPTURE(static_cast<int>(scheme), lanes.counters().contacts, distance_of_motions(lanes, single));
+  CAPTURE(static_cast<int>(integrator), lanes.counters().contacts, distance_of_motions(lanes, single));
   CHECK(lanes.counters().contacts > 3);
   CHECK(lanes.counters().contacts == single.counters().contacts);
   CHECK(distance_of_motions(lanes, single) < 1e-11);
 }
 
 TEST_CASE("quadratic_springs_move_clumps_and_ellipses_without_loss") {
-  const Scheme scheme = GENERATE(Scheme::velocity_verlet, Scheme::corrected_verlet);
+  const GrainIntegrator integrator = GENERATE(GrainIntegrator::velocity_verlet, GrainIntegrator::corrected_verlet);
   GrainScene scene = crowd();
   scene.grains[0].short_half_axis = 0.6;
   scene.clumps = {{{{{-0.5, 0}, 0.5}, {{0.5, 0}, 0.5}}}};
   scene.grains[1].clump = 0;
   std::vector<double> errors;
-  for (const double step : {0.01, 0.005, 0.0025}) errors.push_back(error_of_ledger(scene, stepping(scheme, step), 4));
+  for (const double step : {0.01, 0.005, 0.0025})
+    errors.push_back(error_of_ledger(scene, stepping(integrator, step), 4));
   const double order = order_of_error(errors);
-  CAPTURE(static_cast<int>(scheme), errors, order);
+  CAPTURE(static_cast<int>(integrator), errors, order);
   CHECK(errors.back() < 0.01);
   CHECK(order > 1.5);
 }

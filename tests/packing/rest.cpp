@@ -115,10 +115,10 @@ TEST_CASE("the_energy_of_what_falls_is_accounted_for_but_for_an_error_of_the_ord
         grain.velocity = {slip * 0.1, 0};
         scene.grains.push_back(grain);
       }
-      GrainSimulation run(
-          scene, {.law = NormalLaw::linear_dashpot,
-                  .scheme = corrected ? GrainOptions::Scheme::corrected_verlet : GrainOptions::Scheme::velocity_verlet,
-                  .time_step = step});
+      GrainSimulation run(scene, {.law = NormalLaw::linear_dashpot,
+                                  .integrator = corrected ? GrainOptions::Integrator::corrected_verlet
+                                                          : GrainOptions::Integrator::velocity_verlet,
+                                  .time_step = step});
       run.advance(std::llround(0.06 / step));
       const EnergyLedger ledger = run.energy();
       sum += std::abs(ledger.error()) / ledger.lost();

@@ -44,7 +44,7 @@ GrainScene start_of(PackingShape::Kind shape) {
 }
 
 constexpr GrainOptions options{
-    .law = NormalLaw::linear_dashpot, .scheme = GrainOptions::Scheme::velocity_verlet, .time_step = 1e-5};
+    .law = NormalLaw::linear_dashpot, .integrator = GrainOptions::Integrator::velocity_verlet, .time_step = 1e-5};
 
 /// The largest difference in place, over the smallest radius.
 double apart(const std::vector<Grain>& a, const std::vector<Grain>& b) {

@@ -55,7 +55,7 @@ ElasticImpact exact(const Elastic& impact) {
 }
 
 /// Duration is known to a step: contacts are counted in steps.
-ElasticImpact computed(const Elastic& impact, Scheme scheme, double step) {
+ElasticImpact computed(const Elastic& impact, GrainIntegrator integrator, double step) {
   const auto& [material, r, speed, wall] = impact;
   PairProperties pair;
   pair.stiffness = stiffness_of(impact);
@@ -67,7 +67,7 @@ ElasticImpact computed(const Elastic& impact, Scheme scheme, double step) {
     scene = scene_of({sphere(material, r, {-r - gap, 0}, {speed, 0}), sphere(material, r, {r + gap, 0}, {-speed, 0})},
                      {}, pair);
   }
-  GrainSimulation simulation(scene, options_of({NormalLaw::hertz_dashpot, scheme}, step));
+  GrainSimulation simulation(scene, options_of({NormalLaw::hertz_dashpot, integrator}, step));
   ElasticImpact result;
   std::int64_t steps = 0;
   do {
@@ -83,9 +83,9 @@ ElasticImpact computed(const Elastic& impact, Scheme scheme, double step) {
 }
 
 /// Largest error of overlap and force, relative.
-double error_of(const Elastic& impact, Scheme scheme, int steps) {
+double error_of(const Elastic& impact, GrainIntegrator integrator, int steps) {
   const ElasticImpact truth = exact(impact);
-  const ElasticImpact result = computed(impact, scheme, truth.duration / steps);
+  const ElasticImpact result = computed(impact, integrator, truth.duration / steps);
   return std::max(std::abs(result.overlap / truth.overlap - 1), std::abs(result.force / truth.force - 1));
 }
 
@@ -99,10 +99,10 @@ const std::vector<Elastic> elastic_impacts{{{"glass pair", 48e9, 0.20, 2800}, 0.
 TEST_CASE("chung_ooi_1_and_2_hertz_spheres_are_pressed_as_deep_and_as_long_as_hertz_says") {
   for (const Elastic& impact : elastic_impacts) {
     const ElasticImpact truth = exact(impact);
-    for (const Scheme scheme : {Scheme::semi_implicit_euler, Scheme::velocity_verlet}) {
+    for (const GrainIntegrator integrator : {GrainIntegrator::semi_implicit_euler, GrainIntegrator::velocity_verlet}) {
       const int steps = 2000;
-      const ElasticImpact result = computed(impact, scheme, truth.duration / steps);
-      CAPTURE(impact, static_cast<int>(scheme), truth.overlap, truth.force, truth.duration,
+      const ElasticImpact result = computed(impact, integrator, truth.duration / steps);
+      CAPTURE(impact, static_cast<int>(integrator), truth.overlap, truth.force, truth.duration,
               result.overlap / truth.overlap - 1, result.force / truth.force - 1, result.duration / truth.duration - 1);
       CHECK(std::abs(result.overlap / truth.overlap - 1) < 1e-3);
       CHECK(std::abs(result.force / truth.force - 1) < 1e-3);
@@ -114,10 +114,10 @@ TEST_CASE("chung_ooi_1_and_2_hertz_spheres_are_pressed_as_deep_and_as_long_as_he
 TEST_CASE("chung_ooi_1_and_2_errors_fall_with_the_square_of_the_step") {
   // Without a dashpot semi-implicit Euler is velocity Verlet seen half a step later: both are of second order.
   for (const Elastic& impact : elastic_impacts) {
-    for (const Scheme scheme : {Scheme::semi_implicit_euler, Scheme::velocity_verlet}) {
-      const double coarse = error_of(impact, scheme, 50), fine = error_of(impact, scheme, 800);
+    for (const GrainIntegrator integrator : {GrainIntegrator::semi_implicit_euler, GrainIntegrator::velocity_verlet}) {
+      const double coarse = error_of(impact, integrator, 50), fine = error_of(impact, integrator, 800);
       const double order = std::log2(coarse / fine) / 4;
-      CAPTURE(impact, static_cast<int>(scheme), coarse, fine, order);
+      CAPTURE(impact, static_cast<int>(integrator), coarse, fine, order);
       CHECK(order > 1.8);
     }
   }
@@ -172,13 +172,13 @@ const Material aluminium_alloy{"aluminium alloy", 70e9, 0.33, 2700};
 
 TEST_CASE("chung_ooi_3_spheres_rebound_with_the_restitution_asked_for") {
   for (const Material& material : {aluminium_oxide, cast_iron}) {
-    for (const Scheme scheme : {Scheme::semi_implicit_euler, Scheme::velocity_verlet}) {
+    for (const GrainIntegrator integrator : {GrainIntegrator::semi_implicit_euler, GrainIntegrator::velocity_verlet}) {
       for (const ContactEnd end : {ContactEnd::at_zero_force, ContactEnd::at_zero_overlap}) {
         for (const double e : {0.2, 0.4, 0.6, 0.8, 1.0}) {
           PairProperties pair;
           pair.restitution = e;
           pair.end = end;
-          const Stepping stepping{NormalLaw::hertz_dashpot, scheme};
+          const Stepping stepping{NormalLaw::hertz_dashpot, integrator};
           const double coarse = rebound(material, pair, stepping, 0, 1000).velocity.y / 3.9 - e;
           const double fine = rebound(material, pair, stepping, 0, 16000).velocity.y / 3.9 - e;
           CAPTURE(material.name, stepping.name(), to_string(end), e, coarse, fine, std::log2(coarse / fine) / 4);
@@ -197,9 +197,9 @@ TEST_CASE("chung_ooi_4_friction_takes_mu_of_the_normal_impulse_where_the_sphere_
   PairProperties pair;
   pair.restitution = e;
   pair.friction = mu;
-  const std::vector<Stepping> steppings{{NormalLaw::hertz_dashpot, Scheme::semi_implicit_euler},
-                                        {NormalLaw::hertz_dashpot, Scheme::velocity_verlet},
-                                        {NormalLaw::exact_flow, Scheme::semi_implicit_euler}};
+  const std::vector<Stepping> steppings{{NormalLaw::hertz_dashpot, GrainIntegrator::semi_implicit_euler},
+                                        {NormalLaw::hertz_dashpot, GrainIntegrator::velocity_verlet},
+                                        {NormalLaw::exact_flow, GrainIntegrator::semi_implicit_euler}};
   for (const Material& material : {aluminium_oxide, aluminium_alloy}) {
     for (const Stepping& stepping : steppings) {
       const bool exact_law = stepping.law == NormalLaw::exact_flow;
@@ -228,7 +228,7 @@ TEST_CASE("chung_ooi_4_a_tangential_spring_changes_nothing_where_the_sphere_slid
   PairProperties pair;
   pair.restitution = e;
   pair.friction = mu;
-  for (const Scheme scheme : {Scheme::semi_implicit_euler, Scheme::velocity_verlet}) {
+  for (const GrainIntegrator integrator : {GrainIntegrator::semi_implicit_euler, GrainIntegrator::velocity_verlet}) {
     for (const Material& material : {aluminium_oxide, aluminium_alloy}) {
       for (int degrees = 5; degrees <= 85; degrees += 5) {
         const double angle = degrees * std::numbers::pi / 180;
@@ -237,10 +237,11 @@ TEST_CASE("chung_ooi_4_a_tangential_spring_changes_nothing_where_the_sphere_slid
         // kT/kN of Mindlin at half the largest overlap; kN = 1.5 k overlap^0.5, kT = ratio k d_c^0.5, d_c the diameter
         pair.tangential_ratio = 2 * (1 - material.poisson) / (2 - material.poisson) * 1.5 *
                                 std::sqrt(0.5 * exact(impact).overlap / (2 * impact.radius));
-        const Rebound result = rebound(material, pair, {NormalLaw::hertz_dashpot, scheme}, angle, 2000);
+        const Rebound result = rebound(material, pair, {NormalLaw::hertz_dashpot, integrator}, angle, 2000);
         const double limit = mu * (1 + e) * (1 + 1 / beta), slope = tangential / normal;
         const double slipped = tangential - mu * (1 + e) * normal;
-        CAPTURE(material.name, static_cast<int>(scheme), degrees, result.velocity.x / slipped - 1, result.highest - 1);
+        CAPTURE(material.name, static_cast<int>(integrator), degrees, result.velocity.x / slipped - 1,
+                result.highest - 1);
         CHECK(result.highest < 1 + 1e-4);
         // far enough above the limit slip lasts until the spring is gone
         if (slope > 1.5 * limit) CHECK(std::abs(result.velocity.x / slipped - 1) < 1e-3);

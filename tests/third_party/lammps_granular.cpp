@@ -16,8 +16,8 @@ using namespace equidem::test;
 
 namespace {
 
-constexpr Stepping hooke{NormalLaw::linear_dashpot, Scheme::velocity_verlet};
-constexpr Stepping hertz{NormalLaw::hertz_dashpot, Scheme::velocity_verlet};
+constexpr Stepping hooke{NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet};
+constexpr Stepping hertz{NormalLaw::hertz_dashpot, GrainIntegrator::velocity_verlet};
 /// Positions and velocities agree to this: all that 17 digits and another order of additions leave over a run.
 constexpr double round_off = 1e-13;
 

@@ -20,7 +20,7 @@ namespace {
 
 using EllipseLaw = GrainOptions::EllipseLaw;
 using BondStep = GrainOptions::BondStep;
-using Scheme = GrainOptions::Scheme;
+using GrainIntegrator = GrainOptions::Integrator;
 
 constexpr double stiffness = 1e5;
 constexpr double pair_radius = 0.5 / std::numbers::sqrt2;  // of each disc of a pair
@@ -33,10 +33,10 @@ struct Shape {
   EllipseLaw law = EllipseLaw::exact;
   bool bonded = false;  ///< a pair bonded by dashpots, two grains
   BondStep bond_step = BondStep::exact;
-  Scheme scheme = Scheme::semi_implicit_euler;
+  GrainIntegrator integrator = GrainIntegrator::semi_implicit_euler;
 };
 
-/// Each scheme begins with the disc.
+/// Each integrator begins with the disc.
 std::vector<Shape> shapes() {
   std::vector<Shape> all{{"disc", 0},
                          {"disc in the loop of shapes", 1},
@@ -46,11 +46,13 @@ std::vector<Shape> shapes() {
                          {"ellipse, aspect 20", 20},
                          {"ellipse, aspect 2, enlarged, mended", 2, EllipseLaw::enlarged_mended},
                          {"rigid pair of discs", -1}};
-  for (const Scheme scheme : {Scheme::semi_implicit_euler, Scheme::velocity_verlet, Scheme::corrected_verlet}) {
-    if (scheme != Scheme::semi_implicit_euler)
-      all.push_back({"disc", 0, EllipseLaw::exact, false, BondStep::exact, scheme});
-    all.push_back({"bonded pair of discs", -1, EllipseLaw::exact, true, BondStep::exact, scheme});
-    all.push_back({"bonded pair of discs, explicit", -1, EllipseLaw::exact, true, BondStep::explicit_euler, scheme});
+  for (const GrainIntegrator integrator :
+       {GrainIntegrator::semi_implicit_euler, GrainIntegrator::velocity_verlet, GrainIntegrator::corrected_verlet}) {
+    if (integrator != GrainIntegrator::semi_implicit_euler)
+      all.push_back({"disc", 0, EllipseLaw::exact, false, BondStep::exact, integrator});
+    all.push_back({"bonded pair of discs", -1, EllipseLaw::exact, true, BondStep::exact, integrator});
+    all.push_back(
+        {"bonded pair of discs, explicit", -1, EllipseLaw::exact, true, BondStep::explicit_euler, integrator});
   }
   return all;
 }
@@ -104,7 +106,7 @@ GrainScene grains_to_fall(const Shape& shape, int side) {
 GrainSimulation settled(const Shape& shape, int side) {
   const GrainScene scene = grains_to_fall(shape, side);
   const GrainOptions options{.law = NormalLaw::linear_dashpot,
-                             .scheme = shape.scheme,
+                             .integrator = shape.integrator,
                              .time_step = step_of(scene.grains[0]),
                              .ellipse_law = shape.law,
                              .bond_step = shape.bond_step};
@@ -119,9 +121,9 @@ constexpr const char* introduction = R"(# Shapes
 {}, `bench_shapes --side {} --rounds {}`. {} grains of equal area that have fallen into a box under gravity, with
 friction, tangential springs and dashpots; the law linear_dashpot. One thread, processor time; medians (smallest ..
 largest) of rounds in which all take turns. A step contains contacts, near pairs without contact, motion and neighbour
-lists. Contacts are those with overlap; "over a disc" compares with the disc of the same scheme. Discs, round parts and
-ellipses are computed by loops over eight pairs at once, the enlarged ellipse contact by contact. A bonded pair counts
-as one grain: two discs and the dashpots between them.
+lists. Contacts are those with overlap; "over a disc" compares with the disc of the same integrator. Discs, round parts
+and ellipses are computed by loops over eight pairs at once, the enlarged ellipse contact by contact. A bonded pair
+counts as one grain: two discs and the dashpots between them.
 
 )";
 
@@ -138,7 +140,7 @@ void run(Report& report, int side, int rounds) {
   const std::vector<Seconds> seconds = take_turns(entries, steps, rounds);
   const double grains = side * side, grain_steps = grains * static_cast<double>(steps);
   TextTable table(
-      "shape & scheme & contacts per grain & ns per grain and step & over a disc & ns per contact & over a disc "
+      "shape & integrator & contacts per grain & ns per grain and step & over a disc & ns per contact & over a disc "
       "contact "
       "& bytes per grain");
   std::size_t disc = 0;
@@ -148,7 +150,7 @@ void run(Report& report, int side, int rounds) {
     const double contacts = made / (grain_steps * (rounds + 1));
     if (all[k].aspect == 0) disc = k, contacts_of_disc = contacts;
     const Range each = range_of(seconds[k]) * (1e9 / grain_steps), over_disc = ratio_of(seconds[k], seconds[disc]);
-    table.add("{} & {} & {:.2f} & {} & {} & {} & {} & {:.0f}", all[k].label, to_string(all[k].scheme), contacts,
+    table.add("{} & {} & {:.2f} & {} & {} & {} & {} & {:.0f}", all[k].label, to_string(all[k].integrator), contacts,
               each.text("{:.0f}"), over_disc.text("{:.2f}"), (each * (1 / contacts)).text("{:.0f}"),
               (over_disc * (contacts_of_disc / contacts)).text("{:.2f}"),
               simulations[k].bytes_per_body() * (all[k].bonded ? 2 : 1));

@@ -8,7 +8,7 @@
 namespace equidem {
 
 double GrainSimulation::Implementation::potential() const {
-  const bool behind = collide && system.options.scheme == GrainOptions::Scheme::semi_implicit_euler;
+  const bool behind = collide && system.options.integrator == GrainOptions::Integrator::semi_implicit_euler;
   double sum = 0;
   for (std::size_t i = 0; i < system.bodies.motions.size(); ++i) {
     Vec2 position = system.bodies.motions[i].position;

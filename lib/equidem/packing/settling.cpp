@@ -145,7 +145,7 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
   tie(scene, options.bond_share, step);
   // Friction of the midpoint rule creeps under a steady force; that of the Verlet schemes comes to rest.
   GrainSimulation simulation(scene, {.law = NormalLaw::linear_dashpot,
-                                     .scheme = GrainOptions::Scheme::corrected_verlet,
+                                     .integrator = GrainOptions::Integrator::corrected_verlet,
                                      .time_step = step,
                                      .reference_length = 0,
                                      .margin = 0});

@@ -106,7 +106,7 @@ PairProperties pair_of(const Variant& variant, double restitution) {
 }
 
 GrainSimulation start(const GrainScene& scene, const Variant& variant, double step) {
-  return {scene, {.law = variant.law, .scheme = variant.scheme, .time_step = step}};
+  return {scene, {.law = variant.law, .integrator = variant.integrator, .time_step = step}};
 }
 
 std::string compare_accuracy(std::span<const Variant> variants, int halvings) {

@@ -19,7 +19,7 @@ struct Variant {
   std::string name;
   NormalLaw law = NormalLaw::linear_dashpot;
   double dimensionless = 0;  ///< a = k dt²/m
-  GrainOptions::Scheme scheme = GrainOptions::Scheme::semi_implicit_euler;
+  GrainOptions::Integrator integrator = GrainOptions::Integrator::semi_implicit_euler;
 };
 PairProperties pair_of(const Variant& variant, double restitution);
 GrainSimulation start(const GrainScene& scene, const Variant& variant, double step);

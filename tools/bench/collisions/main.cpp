@@ -26,7 +26,7 @@ namespace {
 const std::vector<Variant> variants{
     {"C", NormalLaw::linear_dashpot, 0.1},
     {"C, a = 0.001", NormalLaw::linear_dashpot, 0.001},
-    {"C, velocity Verlet", NormalLaw::linear_dashpot, 0.1, GrainOptions::Scheme::velocity_verlet},
+    {"C, velocity Verlet", NormalLaw::linear_dashpot, 0.1, GrainOptions::Integrator::velocity_verlet},
     {"T", NormalLaw::hertz_dashpot, 4.62},
     {"F", NormalLaw::five_case_map, 0.1},
     {"P", NormalLaw::energy_map, 0.1},

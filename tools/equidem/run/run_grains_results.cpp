@@ -126,8 +126,8 @@ void add_law(Results& out, const GrainCase& resolved) {
       .add("law", "", to_string(resolved.options.law))
       .note(fmt::format(" ({}): {}", law.letter, law.summary));
   if (law.kind == LawKind::force) {
-    out.note(resolved.options.scheme == GrainOptions::Scheme::semi_implicit_euler ? ", semi-implicit Euler"
-             : resolved.options.scheme == GrainOptions::Scheme::velocity_verlet
+    out.note(resolved.options.integrator == GrainOptions::Integrator::semi_implicit_euler ? ", semi-implicit Euler"
+             : resolved.options.integrator == GrainOptions::Integrator::velocity_verlet
                  ? ", velocity Verlet"
                  : ", velocity Verlet, contacts that begin or end within a step corrected");
   }
@@ -212,7 +212,7 @@ std::string advice_on_balance(const GrainCase& resolved, const GrainSimulation& 
         ledger.error() > 0 ? "came from nothing" : "vanished uncounted");
   }
   const bool euler =
-      gives_force(resolved.options.law) && resolved.options.scheme == GrainOptions::Scheme::semi_implicit_euler;
+      gives_force(resolved.options.law) && resolved.options.integrator == GrainOptions::Integrator::semi_implicit_euler;
   if (euler && !simulation.effects().tangential_springs && ledger.lost_slip > std::abs(ledger.error())) {
     return "contacts without tangential springs that nearly stick count too large a loss by slip in "
            "semi_implicit_euler; take velocity_verlet, or a tangential_ratio above 0";

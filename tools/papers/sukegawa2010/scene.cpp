@@ -69,7 +69,7 @@ double step_of(const GrainScene& scene, const Fill& fill) {
 
 GrainOptions options_of(const GrainScene& scene, const Fill& fill) {
   return {.law = NormalLaw::linear_dashpot,
-          .scheme = GrainOptions::Scheme::corrected_verlet,
+          .integrator = GrainOptions::Integrator::corrected_verlet,
           .time_step = step_of(scene, fill),
           .ellipse_law = fill.ellipse_law};
 }

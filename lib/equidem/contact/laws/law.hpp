@@ -36,7 +36,7 @@
 namespace equidem {
 
 enum class LawKind {
-  force,         ///< a force from overlap and closing speed; GrainOptions::Scheme sets the step
+  force,         ///< a force from overlap and closing speed; GrainOptions::Integrator sets the step
   map,           ///< the velocity after a step in place of a force, each contact by itself
   simultaneous,  ///< the law solves the step, all contacts together
 };

@@ -9,7 +9,7 @@ namespace equidem {
 namespace {
 
 bool corrects(const GrainSystem& system) {
-  return system.options.scheme == GrainOptions::Scheme::corrected_verlet;
+  return system.options.integrator == GrainOptions::Integrator::corrected_verlet;
 }
 
 TouchImpulse impulse_on(const TouchInstant& contact) {

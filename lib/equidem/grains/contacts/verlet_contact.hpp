@@ -93,7 +93,7 @@ template <class Law, bool friction, class Others>
   const double stretch_before = candidate.stretch;
   if constexpr (friction) {
     if (sliding.coefficient > 0) {
-      if (begins && system.options.scheme == GrainOptions::Scheme::corrected_verlet) {
+      if (begins && system.options.integrator == GrainOptions::Integrator::corrected_verlet) {
         candidate.stretch -= (1 - part) * slip * dt;
       }
       const double normal_force = std::max(impulse, 0.0) / dt;

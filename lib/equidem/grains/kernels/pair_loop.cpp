@@ -289,7 +289,7 @@ void CollidePairs<Law, kind>::run(GrainSystem& system) {
                              Lanes{}, all(1 / law.tangential_stiffness)},
                             system.dt(),
                             system.step - (verlet ? 1 : 0),
-                            system.options.scheme == GrainOptions::Scheme::corrected_verlet,
+                            system.options.integrator == GrainOptions::Integrator::corrected_verlet,
                             near.record,
                             &system};
   near.records.resize(near.record ? near.groups.size() : 0);

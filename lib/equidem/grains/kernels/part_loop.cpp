@@ -218,7 +218,7 @@ struct CollideParts {
 template <class Law, PartLoopKind kind>
 void CollideParts<Law, kind>::run(GrainSystem& system, NearParts::List& list) {
   const PartLoopNumbers numbers{system.dt(), system.step - (kind.verlet ? 1 : 0),
-                                system.options.scheme == GrainOptions::Scheme::corrected_verlet,
+                                system.options.integrator == GrainOptions::Integrator::corrected_verlet,
                                 system.contacts.near.record, &system};
   LaneSums sums;
   for (PartGroup& group : list.groups) {

@@ -214,11 +214,11 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
   }
   check_laws_of_shapes(scene, options);
   if (!gives_force(options.law) && options.verlet()) {
-    bad_input(
-        fmt::format("{} is asked for with the law \"{}\"",
-                    options.scheme == GrainOptions::Scheme::velocity_verlet ? "velocity_verlet" : "corrected_verlet",
-                    to_string(options.law)),
-        "that law makes the step itself", "Leave the scheme out, or use " + names_of_laws(LawKind::force));
+    bad_input(fmt::format("{} is asked for with the law \"{}\"",
+                          options.integrator == GrainOptions::Integrator::velocity_verlet ? "velocity_verlet"
+                                                                                          : "corrected_verlet",
+                          to_string(options.law)),
+              "that law makes the step itself", "Leave the scheme out, or use " + names_of_laws(LawKind::force));
   }
   if (!std::isfinite(scene.gravity.x + scene.gravity.y)) {
     bad_input("gravity is not a number", "nothing could fall by it", "Give finite numbers");

@@ -94,15 +94,15 @@ struct GrainScene : AnyScene {
 
 struct GrainOptions {
   NormalLaw law = NormalLaw::exact_flow;
-  /// Scheme of the force laws; exact_flow and the maps have their own step.
-  enum class Scheme {
+  /// Integrator of the force laws; exact_flow and the maps have their own step.
+  enum class Integrator {
     semi_implicit_euler,  ///< v' = v + a(x, v) dt, x' = x + v' dt; gravity is added after the contact force (the
                           ///< paper's runs)
     velocity_verlet,      ///< half kick, drift, force with the velocities of the half step, half kick (LAMMPS)
     corrected_verlet,     ///< velocity_verlet, corrected for contacts that begin or end within a drift
                           ///< (touch_instants.hpp)
-  } scheme = Scheme::semi_implicit_euler;
-  [[nodiscard]] bool verlet() const { return scheme != Scheme::semi_implicit_euler; }
+  } integrator = Integrator::semi_implicit_euler;
+  [[nodiscard]] bool verlet() const { return integrator != Integrator::semi_implicit_euler; }
   double time_step = 0;         ///< s, > 0
   double reference_length = 0;  ///< d_c, m; 0: twice the largest radius (ellipses: long half-axis)
   double margin = 0;            ///< margin of the neighbour lists, m; 0: chosen from speeds and density
@@ -121,12 +121,12 @@ struct GrainOptions {
 };
 
 template <>
-struct EnumNames<GrainOptions::Scheme> {
-  using enum GrainOptions::Scheme;
+struct EnumNames<GrainOptions::Integrator> {
+  using enum GrainOptions::Integrator;
   static constexpr const char* what = "integrator";
-  static constexpr NamedValue<GrainOptions::Scheme> list[] = {{semi_implicit_euler, "semi_implicit_euler"},
-                                                              {velocity_verlet, "velocity_verlet"},
-                                                              {corrected_verlet, "corrected_verlet"}};
+  static constexpr NamedValue<GrainOptions::Integrator> list[] = {{semi_implicit_euler, "semi_implicit_euler"},
+                                                                  {velocity_verlet, "velocity_verlet"},
+                                                                  {corrected_verlet, "corrected_verlet"}};
 };
 
 template <>
