@@ -27,6 +27,17 @@ class Stability(ProgramTest):
         self.assertIn("UNSTABLE", report)
         self.assertNotIn("every motion costs energy", report)
 
+    def test_instability_comes_first_and_can_be_made_an_error(self):
+        for verb, case, unstable in (("solve", TENSION, ("--set", "springs.kT=-0.9e9")),
+                                     ("homogenize", CELL, self.UNSTABLE), ("stability", CELL, self.UNSTABLE)):
+            done = self.check_done(equidem(verb, case, *unstable))
+            self.assertTrue(done.stdout.startswith("UNSTABLE"), done.stdout)
+            required = equidem(verb, case, *unstable, "--require-stable")
+            self.assertEqual(required.returncode, 1, required.stderr)
+            self.assertTrue(required.stdout.startswith("UNSTABLE"))
+            self.assertIn("not stable", required.stderr)
+            self.check_done(equidem(verb, case, "--require-stable"))
+
     def test_an_ensemble_takes_no_mean_over_unstable_cells(self):
         out = self.folder / "out"
         equidem("homogenize", ENSEMBLE, "--set", "ensemble.discs=[30]", "--set", "springs.kT=-3e8", "--set",

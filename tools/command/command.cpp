@@ -43,6 +43,11 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   add_result_options(command, options);
 }
 
+void add_require_stable(CLI::App& command, CommonOptions& options) {
+  command.add_flag("--require-stable", options.require_stable,
+                   "end with exit code 1 unless the assembly is known to be stable");
+}
+
 void prepare(const CommonOptions& options) {
   if (options.threads > 0) set_thread_count(options.threads);
   set_progress_shown(!options.quiet);
@@ -91,7 +96,9 @@ void print(const std::string& text) {
 }
 
 void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times) {
-  Results all = results;
+  Results all;
+  if (status == "unstable") all.line("UNSTABLE", "any disturbance would grow: what follows is no state of rest");
+  all.append(results);
   if (!options.dry_run) {
     all.line("times", fmt::format("{:.2g} s in all", times.total()));
     constexpr double visible = 0.02;  // of all; shorter stages are left to the JSON
@@ -111,9 +118,14 @@ void deliver(const CommonOptions& options, const std::string& status, const Resu
   }
   // The files were found writable before the computation.
   if (options.json && !to_stdout) write_file(*options.json, json, true);
-  if (!options.out || options.dry_run) return;
-  write_file(*options.out / "result.json", json, true);
-  say(options, fmt::format("written to {}", options.out->string()));
+  if (options.out && !options.dry_run) {
+    write_file(*options.out / "result.json", json, true);
+    say(options, fmt::format("written to {}", options.out->string()));
+  }
+  if (options.require_stable && (status == "unstable" || status == "unjudged" || status == "mechanism")) {
+    computation_failed(fmt::format("the assembly is not stable: its status is \"{}\"", status),
+                       "--require-stable was given", "Raise kT, hold more discs, or leave the option out");
+  }
 }
 
 void throw_stopped(const CommonOptions& options, const std::string& done, const std::string& again) {

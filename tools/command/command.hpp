@@ -32,12 +32,15 @@ struct CommonOptions {
   bool dry_run = false;
   bool quiet = false;
   bool overwrite = false;
+  bool require_stable = false;
 };
 
 /// --out, --json, --threads, --quiet and --overwrite; the only options of verbs without a case file.
 void add_result_options(CLI::App& command, CommonOptions& options);
 /// The case file, its overrides, and add_result_options.
 void add_common_options(CLI::App& command, CommonOptions& options);
+/// --require-stable, which deliver applies.
+void add_require_stable(CLI::App& command, CommonOptions& options);
 
 /// Applies --threads and --quiet.
 void prepare(const CommonOptions& options);
@@ -74,7 +77,8 @@ class OutputPlan {
 /// Report and JSON of a list of results, with the times of the stages: the report to stdout, unless quiet or --json is
 /// "-"; the JSON to --json and OUT/result.json; then the folder on stderr. A dry run does not write to the folder.
 /// \param status the first key of the JSON: "solved", "dry_run", ...
-/// \throws Error (bad_input) where they cannot be written
+/// \throws Error (bad_input) where they cannot be written; (computation_failed) afterwards with --require-stable, where
+///         the status is "unstable", "unjudged" or "mechanism"
 void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times);
 
 /// case.toml in --out, if there is one, which reproduces the computation.

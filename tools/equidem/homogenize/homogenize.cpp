@@ -159,6 +159,7 @@ int homogenize(const HomogenizeVerb& options) {
 Run declare_homogenize(CLI::App& command) {
   const auto options = std::make_shared<HomogenizeVerb>();
   add_common_options(command, options->common);
+  add_require_stable(command, options->common);
   command.add_flag("--resume", options->resume, "with [ensemble]: keep the samples in --out, compute the others");
   add_accuracy_option(
       command, options->accuracy,

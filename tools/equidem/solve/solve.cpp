@@ -148,6 +148,7 @@ Run declare_solve(CLI::App& command) {
   const auto options = std::make_shared<CommonOptions>();
   const auto accuracy = std::make_shared<std::optional<double>>();
   add_common_options(command, *options);
+  add_require_stable(command, *options);
   add_accuracy_option(
       command, *accuracy,
       "tension test of a lattice: the size that tells nu to X;\nelse: fail unless the error is below X");

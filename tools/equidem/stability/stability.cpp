@@ -80,6 +80,7 @@ int stability(const CommonOptions& options) {
 Run declare_stability(CLI::App& command) {
   const auto options = std::make_shared<CommonOptions>();
   add_common_options(command, *options);
+  add_require_stable(command, *options);
   command.footer(
       "A periodic assembly needs neither supports nor loads; a free one is judged with its [[support]]\n"
       "or [test], or as a free body.\n"
