@@ -160,3 +160,17 @@ TEST_CASE("discs_in_a_box_have_their_centre_inside_or_on_its_sides") {
   CHECK(discs_in(row, {{1, -1}, {2, 1}}).discs == std::vector<std::int32_t>{1, 2});
   CHECK_THROWS_WITH(discs_in(row, {{3, -1}, {4, 1}}), Catch::Contains("the centres lie in [0, 0, 2, 0]"));
 }
+
+TEST_CASE("gaps_at_contacts_are_those_of_the_discs") {
+  const GapRange touching = gaps_at_contacts(hexagonal_lattice({.columns = 4, .rows = 4, .radius = 0.5}));
+  CHECK(std::abs(touching.smallest) < 1e-14);
+  CHECK(std::abs(touching.largest) < 1e-14);
+  Assembly three;
+  three.centres = {{0, 0}, {3, 0}, {3, 4}};
+  three.radii = {1, 1, 4};
+  three.contacts = {{.i = 0, .j = 1}, {.i = 1, .j = 2}};
+  CHECK(gaps_at_contacts(three).largest == Approx(0.5));    // 3/(1 + 1) - 1
+  CHECK(gaps_at_contacts(three).smallest == Approx(-0.2));  // 4/(1 + 4) - 1
+  three.sections.resize(3);
+  CHECK(gaps_at_contacts(three).largest == 0);
+}

@@ -47,6 +47,19 @@ void require_memory_for(const Case& resolved, Purpose purpose) {
                   grouped(static_cast<std::int64_t>(size.discs))));
 }
 
+/// Says where contacts join discs that do not just touch, as edges of a triangulation do.
+void add_gaps(Results& results, const Assembly& assembly) {
+  constexpr double noticeable = 0.01;
+  const GapRange gaps = gaps_at_contacts(assembly);
+  results.set("largest_overlap", std::max(-gaps.smallest, 0.0)).set("largest_gap", std::max(gaps.largest, 0.0));
+  if (gaps.smallest > -noticeable && gaps.largest < noticeable) return;
+  results.line("");
+  results.note(
+      fmt::format("contacts are bonds: their discs overlap by up to {} and are up to {} apart, of the sum of "
+                  "their radii. For bodies that collide, fill a box with 'equidem pack'.",
+                  percent(std::max(-gaps.smallest, 0.0)), percent(std::max(gaps.largest, 0.0))));
+}
+
 }  // namespace
 
 Problem problem_of(Case resolved, std::optional<Assembly> given, Purpose purpose) {
@@ -136,6 +149,7 @@ Results problem_results(const Problem& problem, const Effects& effects, Assembly
                  "The area is that of the rectangle around the discs of equal area: the file gives no \"box\", and the "
                  "outlines of the bodies are not known.");
   }
+  add_gaps(results, a);
   results.line("springs", problem.springs.report);
   if (problem.springs.constants && keys == AssemblyKeys::all)
     results.set("kN", problem.springs.constants->kN).set("kT", problem.springs.constants->kT);

@@ -258,6 +258,17 @@ double Assembly::mean_radius() const {
   return radii.empty() ? 0 : std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
 }
 
+GapRange gaps_at_contacts(const Assembly& assembly) {
+  if (!assembly.sections.empty() || assembly.contacts.empty()) return {};
+  GapRange range{.smallest = std::numeric_limits<double>::infinity(), .largest = -1};
+  for (const Contact& contact : assembly.contacts) {
+    const double reach = assembly.radii[contact.i] + assembly.radii[contact.j];
+    const double gap = norm(assembly.branch(contact)) / reach - 1;
+    range = {.smallest = std::min(range.smallest, gap), .largest = std::max(range.largest, gap)};
+  }
+  return range;
+}
+
 bool on_lines_of_centres(const Assembly& assembly) {
   return std::all_of(assembly.contact_arms.begin(), assembly.contact_arms.end(),
                      [](const ContactArms& arms) { return arms.offset_i == 0 && arms.offset_j == 0; });

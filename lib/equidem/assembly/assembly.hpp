@@ -92,6 +92,13 @@ struct Assembly {
   [[nodiscard]] double mean_radius() const;
 };
 
+/// Gaps at the contacts over the sum of the two radii; negative: overlap.
+struct GapRange {
+  double smallest = 0, largest = 0;
+};
+/// Of discs; 0 and 0 where bodies have sections of their own, or there are no contacts.
+GapRange gaps_at_contacts(const Assembly& assembly);
+
 /// Whether the normals of all contacts point through both centres, so that no normal force turns a body.
 bool on_lines_of_centres(const Assembly& assembly);
 
