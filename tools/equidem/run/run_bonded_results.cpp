@@ -64,7 +64,10 @@ Results BondedRun::scene() const {
   return out.line("integrator")
       .add("integrator", "", to_string(run.integrator))
       .add("", "order", order())
-      .note(order() < scheme.order ? " (dampers act half a step late)" : "")
+      .note(order() < scheme.order ? " (dampers act half a step late)"
+            : order() > 2 && !scene_.walls.empty()
+                ? " (2 over steps in which a disc touches or leaves a wall: its force has a kink)"
+                : "")
       .add("", "", scheme.force_evaluations, "force evaluation", {Shown::count})
       .note(" a step");
 }

@@ -7,17 +7,20 @@ namespace {
 
 using eight::Pair;
 
-/// Two numbers anywhere: copied byte by byte they would go through general registers.
-using PairAnywhere = double __attribute__((vector_size(16), aligned(8), may_alias));
+/// Two numbers anywhere: copied byte by byte they would go through general registers. A struct, because Clang 14 takes
+/// an alias of a vector type with less alignment for the aligned type.
+struct __attribute__((packed, may_alias)) PairAnywhere {
+  Pair value;
+};
 
 template <class Number>
 EQUIDEM_ALWAYS_INLINE Pair load_pair(const Number& from) {
-  return *reinterpret_cast<const PairAnywhere*>(&from);
+  return reinterpret_cast<const PairAnywhere*>(&from)->value;
 }
 /// The number at `to` and the one behind it.
 template <class Number>
 EQUIDEM_ALWAYS_INLINE void store_pair(const Pair& pair, Number& to) {
-  *reinterpret_cast<PairAnywhere*>(&to) = pair;
+  reinterpret_cast<PairAnywhere*>(&to)->value = pair;
 }
 
 /// \return the longest way of a body, squared, m²; no number where one is none
