@@ -95,8 +95,8 @@ TEST_CASE("a_springs_file_reads_back_bit_by_bit") {
   namespace fs = std::filesystem;
   const fs::path folder = fs::temp_directory_path() / "equidem_test_springs_file_round_trip";
   const double kT = GENERATE(1.0 / 3.0 * 1e9, 0.0, -0.1, 5e-324, 1.7976931348623157e308);
-  const SpringWeighting weighting =
-      GENERATE(SpringWeighting::uniform, SpringWeighting::contact_density, SpringWeighting::voronoi);
+  const SpringWeighting weighting = GENERATE(SpringWeighting::uniform, SpringWeighting::contact_density,
+                                             SpringWeighting::local_contact_density, SpringWeighting::voronoi);
   const SpringConstants springs{.kN = 1e9 + 1e-7, .kT = kT};
   const std::string text = springs_file(springs, weighting, "a \"title\" \\ äöü", "calibrated\n\nline\ttwo\x01");
   CAPTURE(text);

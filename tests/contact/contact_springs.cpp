@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "equidem/assembly/lattices.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
 
@@ -135,6 +136,57 @@ TEST_CASE("contact_density_of_an_isotropic_assembly_is_z_over_2_pi_at_every_cont
   }
 }
 
+TEST_CASE("local_contact_density_is_the_inverse_of_the_angle_that_a_contact_has_to_itself") {
+  // A disc with three contacts at 0, 100 and 200 degrees; each of the other discs has a single contact, the full turn.
+  constexpr double degree = std::numbers::pi / 180;
+  Assembly assembly;
+  assembly.centres = {{0, 0}};
+  for (const double angle : {0.0, 100.0, 200.0}) {
+    assembly.contacts.push_back({0, static_cast<std::int32_t>(assembly.centres.size()), 0, 0, 1, 1});
+    assembly.centres.push_back(2.0 * Vec2{std::cos(angle * degree), std::sin(angle * degree)});
+  }
+  assembly.radii.assign(4, 1.0);
+  const std::vector<double> psi = local_contact_density(assembly);
+  // gaps of 100, 100 and 160 degrees
+  const double expected[] = {130, 100, 130};
+  for (std::size_t c = 0; c < 3; ++c) {
+    CAPTURE(c, 1 / psi[c] / degree);
+    CHECK(1 / psi[c] == Approx((expected[c] + 360) / 2 * degree).epsilon(1e-14));
+  }
+}
+
+TEST_CASE("local_contact_density_does_not_count_the_open_side_of_an_assembly") {
+  // Row at a straight side: contacts at 0, 60, 120 and 180 degrees, the half turn below is open.
+  const Assembly block = hexagonal_lattice({.columns = 9, .rows = 9});
+  const std::vector<double> psi = local_contact_density(block);
+  std::vector<int> contacts(block.size());
+  for (const Contact& c : block.contacts) ++contacts[c.i], ++contacts[c.j];
+  int sides = 0;
+  for (std::size_t c = 0; c < psi.size(); ++c) {
+    const auto [i, j] = std::pair{contacts[block.contacts[c].i], contacts[block.contacts[c].j]};
+    if (i != 4 && j != 4) continue;
+    if (i != 4 && i != 6) continue;
+    if (j != 4 && j != 6) continue;
+    ++sides;
+    CAPTURE(c, block.contacts[c].i, block.contacts[c].j);
+    CHECK(psi[c] == Approx(3 / std::numbers::pi).epsilon(1e-14));
+  }
+  CHECK(sides > 30);
+}
+
+TEST_CASE("local_contact_density_of_a_lattice_is_that_of_all_discs") {
+  const bool square = GENERATE(true, false);
+  const LatticeOptions options{.columns = 6, .rows = 6, .periodic = true};
+  const Assembly cell = square ? square_lattice(options) : hexagonal_lattice(options);
+  const double mean = cell.coordination_number() / (2 * std::numbers::pi);
+  const ContactSprings springs = contact_springs(cell, {3, 2}, SpringWeighting::local_contact_density);
+  for (std::size_t c = 0; c < cell.contacts.size(); ++c) {
+    CAPTURE(cell.kind, c);
+    CHECK(springs[c].kN == Approx(3 / mean).epsilon(1e-13));
+    CHECK(springs[c].kT == Approx(2 / mean).epsilon(1e-13));
+  }
+}
+
 TEST_CASE("voronoi_weighting_scales_by_shared_edge_over_distance") {
   Assembly assembly = pairs_of_discs({0.0, 1.0, 2.0});
   assembly.facet_lengths = {1.0, 0.5, 4.0};
@@ -165,8 +217,8 @@ TEST_CASE("springs_of_the_assembly_override_those_of_the_case") {
   assembly.contact_kN = {3, 5};
   SECTION("both springs: the case and its weighting are not asked") {
     assembly.contact_kT = {0, -7};
-    const auto weighting =
-        GENERATE(SpringWeighting::uniform, SpringWeighting::contact_density, SpringWeighting::voronoi);
+    const auto weighting = GENERATE(SpringWeighting::uniform, SpringWeighting::contact_density,
+                                    SpringWeighting::local_contact_density, SpringWeighting::voronoi);
     const ContactSprings springs = contact_springs(assembly, {0, 0}, weighting);
     CHECK(springs[0].kN == 3);
     CHECK(springs[1].kN == 5);
@@ -225,9 +277,17 @@ TEST_CASE("bad_springs_are_refused_with_the_contact_and_the_value") {
   }
 }
 
+TEST_CASE("a_contact_given_three_times_has_no_local_density") {
+  Assembly assembly = pairs_of_discs({0.3});
+  assembly.contacts.assign(3, assembly.contacts.front());
+  const std::string message = message_of(assembly, {1, 1}, SpringWeighting::local_contact_density);
+  CAPTURE(message);
+  CHECK(contains(message, "three contacts in one direction at contact 0 (discs 0 and 1)"));
+}
+
 TEST_CASE("weightings_have_the_names_of_the_case_file") {
-  for (const std::string name : {"uniform", "contact_density", "voronoi"}) {
+  for (const std::string name : {"uniform", "contact_density", "local_contact_density", "voronoi"}) {
     CHECK(to_string(enum_from<SpringWeighting>(name)) == name);
   }
-  CHECK_THROWS_WITH(enum_from<SpringWeighting>("Voronoi"), Catch::Contains("\"contact_density\" or \"voronoi\""));
+  CHECK_THROWS_WITH(enum_from<SpringWeighting>("Voronoi"), Catch::Contains("\"local_contact_density\" or \"voronoi\""));
 }

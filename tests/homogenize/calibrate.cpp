@@ -61,7 +61,8 @@ std::vector<Kind> kinds() {
       {"five contacts a disc", diluted_cell(0.83), {}},
   };
   for (const PointProcess points : {PointProcess::poisson_disc, PointProcess::uniform}) {
-    for (const SpringWeighting weighting : {SpringWeighting::contact_density, SpringWeighting::voronoi})
+    for (const SpringWeighting weighting :
+         {SpringWeighting::contact_density, SpringWeighting::local_contact_density, SpringWeighting::voronoi})
       all.push_back({to_string(weighting), random_cell(points, 300), {.weighting = weighting}});
   }
   const std::size_t free = all.size();

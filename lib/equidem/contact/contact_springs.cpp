@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/contact/contact_springs.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -31,6 +32,18 @@ std::array<double, 4> harmonics_at(const Assembly& assembly, std::size_t contact
 std::vector<double> weights(const Assembly& assembly, SpringWeighting weighting) {
   const std::size_t count = assembly.contacts.size();
   std::vector<double> weight(count);
+  if (weighting == SpringWeighting::local_contact_density) {
+    const std::vector<double> psi = local_contact_density(assembly);
+    for (std::size_t c = 0; c < count; ++c) {
+      if (!std::isfinite(psi[c])) {
+        bad_input(fmt::format("both discs have three contacts in one direction at {}", name_of(assembly, c)),
+                  "the weighting \"local_contact_density\" would give it kN = 0",
+                  "Remove contacts that are given twice, or use another weighting");
+      }
+      weight[c] = 1 / psi[c];
+    }
+    return weight;
+  }
   if (weighting == SpringWeighting::contact_density) {
     const std::vector<double> psi = contact_density(assembly);
     for (std::size_t c = 0; c < count; ++c) {
@@ -113,6 +126,35 @@ std::vector<double> contact_density(const Assembly& assembly) {
     psi.push_back(psi_mean * (1 + mean.a2 * h[0] + mean.b2 * h[1] + mean.a4 * h[2] + mean.b4 * h[3]));
   }
   return psi;
+}
+
+std::vector<double> local_contact_density(const Assembly& assembly) {
+  struct Seen {
+    double angle;
+    std::size_t contact;
+  };
+  std::vector<std::vector<Seen>> around(assembly.size());
+  for (std::size_t contact = 0; contact < assembly.contacts.size(); ++contact) {
+    const Vec2 n = frame_of(assembly, contact).normal;
+    around[assembly.contacts[contact].i].push_back({std::atan2(n.y, n.x), contact});
+    around[assembly.contacts[contact].j].push_back({std::atan2(-n.y, -n.x), contact});
+  }
+  constexpr double turn = 2 * std::numbers::pi, side = turn / 2 * (1 - 1e-9);
+  std::vector<double> angle(assembly.contacts.size(), 0.0);
+  for (std::vector<Seen>& contacts : around) {
+    std::sort(contacts.begin(), contacts.end(), [](const Seen& a, const Seen& b) { return a.angle < b.angle; });
+    const std::size_t count = contacts.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      const bool first = k == 0, last = k + 1 == count;
+      double before = contacts[k].angle - contacts[first ? count - 1 : k - 1].angle + (first ? turn : 0);
+      double after = contacts[last ? 0 : k + 1].angle - contacts[k].angle + (last ? turn : 0);
+      if (before >= side && after < side) before = after;
+      if (after >= side && before < side) after = before;
+      angle[contacts[k].contact] += 0.25 * (before + after);  // half of either gap, half of each disc
+    }
+  }
+  for (double& a : angle) a = 1 / a;
+  return angle;
 }
 
 ContactSprings equal_springs(const ContactSprings& springs) {

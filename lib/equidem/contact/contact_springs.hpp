@@ -16,18 +16,21 @@ namespace equidem {
 
 /// Weighting of the given springs at each contact.
 enum class SpringWeighting {
-  uniform,          ///< the same at every contact
-  contact_density,  ///< k / psi(theta), psi the measured contacts per radian around a disc (Abe 1996, eqs. 11
-                    ///< and 21)
-  voronoi,          ///< k h/l, shared cell edge over centre distance (Bolander & Saito 1998)
+  uniform,                ///< the same at every contact
+  contact_density,        ///< k / psi(theta), psi the measured contacts per radian around a disc (Abe 1996, eqs. 11
+                          ///< and 21), a mean over all discs
+  local_contact_density,  ///< k / psi, psi that of the two discs of the contact alone
+  voronoi,                ///< k h/l, shared cell edge over centre distance (Bolander & Saito 1998)
 };
 
 template <>
 struct EnumNames<SpringWeighting> {
   static constexpr const char* what = "weighting of springs";
-  static constexpr NamedValue<SpringWeighting> list[] = {{SpringWeighting::uniform, "uniform"},
-                                                         {SpringWeighting::contact_density, "contact_density"},
-                                                         {SpringWeighting::voronoi, "voronoi"}};
+  static constexpr NamedValue<SpringWeighting> list[] = {
+      {SpringWeighting::uniform, "uniform"},
+      {SpringWeighting::contact_density, "contact_density"},
+      {SpringWeighting::local_contact_density, "local_contact_density"},
+      {SpringWeighting::voronoi, "voronoi"}};
 };
 
 /// One pair of springs for all contacts, or one for each; the first stores two numbers.
@@ -83,6 +86,13 @@ ContactHarmonics contact_harmonics(const Assembly& assembly);
 
 /// Contacts per radian around one disc at each contact's direction, psi(theta) of its harmonics (Abe 1996, eq. 11).
 std::vector<double> contact_density(const Assembly& assembly);
+
+/// psi of eq. (11) at each contact from the contacts of its two discs alone, contacts per radian: the inverse of the
+/// mean over both discs of the angle that the contact has to itself, half of the way to the next contact on either
+/// side. The sums (12) to (14) over the contacts of one disc, weighted by those angles, are the trapezoidal rule of the
+/// integrals over theta. An angle of half a turn or more between two contacts is that of a side of the assembly: the
+/// contact beside it counts its other side twice. A single contact has the full turn.
+std::vector<double> local_contact_density(const Assembly& assembly);
 
 /// Every spring replaced by one of 1 Pa, which keeps the zero-energy modes but not the energies of the other modes.
 ContactSprings equal_springs(const ContactSprings& springs);

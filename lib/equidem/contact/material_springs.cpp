@@ -12,6 +12,7 @@ namespace equidem {
 ChosenRelation spring_relation(const Assembly& assembly, SpringWeighting weighting, const Lattice* lattice) {
   switch (weighting) {
     case SpringWeighting::contact_density:
+    case SpringWeighting::local_contact_density:
       return {isotropic_relation, {assembly.solid_fraction(), 1.0}};
     case SpringWeighting::voronoi:
       return {isotropic_relation, {0.5, 1.0}};

@@ -20,9 +20,9 @@ struct ChosenRelation {
 };
 
 /// The relation that holds for an assembly: that of its lattice where springs are equal, else the isotropic one, (20)
-/// and (21), with the solid fraction and the coordination number; of springs weighted by contact_density k psi = K/phi
-/// by (21); of springs weighted by voronoi K = kN/2, since the facets of Voronoi cells obey sum h l = 2 V and uniform
-/// strain then stores w = kN <(n e n)²>.
+/// and (21), with the solid fraction and the coordination number; of springs weighted by contact_density or
+/// local_contact_density k psi = K/phi by (21); of springs weighted by voronoi K = kN/2, since the facets of Voronoi
+/// cells obey sum h l = 2 V and uniform strain then stores w = kN <(n e n)²>.
 /// \param lattice of the assembly; null: none
 ChosenRelation spring_relation(const Assembly& assembly, SpringWeighting weighting, const Lattice* lattice);
 

@@ -19,9 +19,10 @@ void bind_springs(File<CaseTables>& file, const Attributes&... attributes) {
       .keys({key("kN", &SpringConstants::kN, required, unit("Pa"), positive, "normal spring"),
              key("kT", &SpringConstants::kT, required, unit("Pa"),
                  "tangential spring; 0: none; negative: a static answer exists for small ones only")});
-  file.table("springs").keys({weighting_key(
-      "uniform: the same at every contact; contact_density: k/psi(theta), Abe (11), (21); voronoi: k h/l, shared cell "
-      "edge over centre distance")});
+  file.table("springs").keys(
+      {weighting_key("uniform: the same at every contact; contact_density: k/psi(theta), Abe (11), (21); "
+                     "local_contact_density: psi of "
+                     "the two discs of the contact alone; voronoi: k h/l, shared cell edge over centre distance")});
 }
 
 void bind_assembly(File<CaseTables>& file) {
