@@ -75,6 +75,21 @@ TEST_CASE("every_disc_has_the_colour_of_its_stress_at_its_displaced_place") {
   CHECK(run_python("pixels.py", arguments) == 0);
 }
 
+TEST_CASE("a_gauge_is_a_line_between_its_discs") {
+  const Assembly block = hexagonal_lattice({.columns = 9, .rows = 9});
+  const TemporaryFolder folder;
+  const PictureOptions options{.colour = DiscColour::none, .gauges = {{38, 42, "A", "B"}}};
+  write_picture(folder.path(), "block", {block}, options, false);
+  const PictureScene scene = plan_scene({block}, options);
+  const Vec2 a = scene.frame.to_page(block.centres[38]), b = scene.frame.to_page(block.centres[42]);
+  std::vector<std::string> arguments{(folder / "block.png").string()};
+  for (const Vec2 at : {a, b, 0.5 * (a + b)}) {
+    for (const double v : {at.x, at.y}) arguments.push_back(std::to_string(static_cast<int>(v)));
+    for (const double c : {ink.red, ink.green, ink.blue}) arguments.push_back(as_byte(c));
+  }
+  CHECK(run_python("pixels.py", arguments) == 0);
+}
+
 TEST_CASE("the_same_state_gives_the_same_picture") {
   const MadeUpState state = stretched_block();
   const TemporaryFolder folder;
@@ -82,7 +97,8 @@ TEST_CASE("the_same_state_gives_the_same_picture") {
                                .undeformed = true,
                                .width = 400,
                                .loads = {{0, {-1, 0}}, {3, {0, -2}}},
-                               .supports = {{1, true, true}, {2, false, true}, {4, true, false}}};
+                               .supports = {{1, true, true}, {2, false, true}, {4, true, false}},
+                               .gauges = {{0, 3, "A", "B"}}};
   write_picture(folder.path(), "a", state.view(), options, false);
   write_picture(folder.path(), "b", state.view(), options, false);
   const bool same_png = read_file(folder / "a.png") == read_file(folder / "b.png");
@@ -132,6 +148,7 @@ TEST_CASE("a_picture_that_cannot_be_drawn_is_refused") {
   refused(state.view(), {.width = 20}, "20 pixels");
   refused(state.view(), {.loads = {{99, {1, 0}}}}, "disc 99");
   refused(state.view(), {.supports = {{-1, true, true}}}, "disc -1");
+  refused(state.view(), {.gauges = {{0, 99, "A", "B"}}}, "gauge is drawn at disc 99");
   MadeUpState lost = stretched_block(3, 2);
   lost.motions[1].u.y = NAN;
   refused(lost.view(), {}, "disc 1");

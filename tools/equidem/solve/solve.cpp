@@ -2,7 +2,6 @@
 /// \file
 /// equidem solve: equilibrium under supports and loads, or Abe's tension test.
 #include <algorithm>
-#include <map>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -31,39 +30,6 @@ void check_outputs(const CommonOptions& options, const Case& resolved) {
   for (const NamedLoads& loads : resolved.load_cases) expect_state(plan, resolved.output, suffix_of(loads.name));
 }
 
-/// The force on each loaded disc.
-std::vector<DrawnLoad> drawn_loads(const Problem& problem, const LoadCase& loads) {
-  std::map<std::int32_t, Vec2> forces;
-  for (const Load& load : loads) {
-    const DiscGroup& pulled = group(problem.assembly, load.group);
-    for (std::size_t k = 0; k < pulled.discs.size(); ++k) {
-      double share = 1;
-      if (load.kind == LoadKind::total) share = 1 / static_cast<double>(pulled.discs.size());
-      if (load.kind == LoadKind::traction) share = pulled.tributary_lengths.at(k);
-      forces[pulled.discs[k]] += share * load.force;
-    }
-  }
-  std::vector<DrawnLoad> drawn;
-  for (const auto& [disc, force] : forces) drawn.push_back({disc, force});
-  return drawn;
-}
-
-std::vector<DrawnSupport> drawn_supports(const Problem& problem) {
-  std::map<std::int32_t, DrawnSupport> held;
-  for (const Support& support : problem.supports) {
-    for (const std::int32_t disc : group(problem.assembly, support.group).discs) {
-      DrawnSupport& drawn = held[disc];
-      drawn.disc = disc;
-      drawn.x = drawn.x || support.ux.has_value();
-      drawn.y = drawn.y || support.uy.has_value();
-    }
-  }
-  std::vector<DrawnSupport> all;
-  for (const auto& [disc, drawn] : held)
-    if (drawn.x || drawn.y) all.push_back(drawn);
-  return all;
-}
-
 void write_outputs(const CommonOptions& options, const Problem& problem, const LoadCase& loads,
                    const SolvedCase& result) {
   const OutputCase& wanted = problem.resolved.output;
@@ -73,8 +39,13 @@ void write_outputs(const CommonOptions& options, const Problem& problem, const L
                             .stresses = result.stresses};
   write_state(options, wanted, suffix_of(result.name), state);
   PictureOptions picture{.title = problem.resolved.title};
-  picture.loads = drawn_loads(problem, loads);
-  picture.supports = drawn_supports(problem);
+  picture.loads = drawn_loads(problem.assembly, loads);
+  picture.supports = drawn_supports(problem.assembly, problem.supports);
+  if (problem.tension) {
+    const auto& [a, b] = problem.tension->horizontal;
+    const auto& [c, d] = problem.tension->vertical;
+    picture.gauges = {{a, b, "A", "B"}, {c, d, "C", "D"}};
+  }
   write_state_picture(options, wanted, suffix_of(result.name), state, picture);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "equidem/core/text.hpp"
 #include "equidem/output/pictures/scene.hpp"
@@ -141,6 +142,27 @@ void draw_supports_and_loads(Canvas& canvas, const PictureScene& scene) {
       draw_arrow(canvas, centre + edge, centre + edge + arrow);
     } else {
       draw_arrow(canvas, centre - edge - arrow, centre - edge);
+    }
+  }
+}
+
+void draw_gauges(Canvas& canvas, const PictureScene& scene) {
+  constexpr Colour white{1, 1, 1};
+  constexpr double dot_radius = 4.5, halo = 2, label_distance = 15;
+  for (const DrawnGauge& gauge : scene.options.gauges) {
+    const Vec2 from = scene.frame.to_page(scene.centres[gauge.first]),
+               to = scene.frame.to_page(scene.centres[gauge.second]);
+    if (from == to) continue;
+    const Vec2 direction = (to - from) / norm(to - from);
+    canvas.line(from, to, 1.6 + 2 * halo, white);
+    canvas.line(from, to, 1.6, ink);
+    for (const auto& [at, outwards, label] :
+         {std::tuple{from, -1.0, gauge.first_label}, {to, 1.0, gauge.second_label}}) {
+      canvas.fill_circle(at, dot_radius + halo, white);
+      canvas.fill_circle(at, dot_radius, ink);
+      const Vec2 base = at + outwards * label_distance * direction + Vec2{0, 0.35 * small_text};
+      canvas.fill_circle(base - Vec2{0, 0.35 * small_text}, 0.62 * small_text, white);
+      canvas.text(label, base, small_text, TextAnchor::centre, ink, true);
     }
   }
 }

@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "equidem/core/names.hpp"
 #include "equidem/core/vector.hpp"
 #include "equidem/output/files/state.hpp"
+#include "equidem/statics/supports.hpp"
 
 namespace equidem {
 
@@ -40,6 +42,21 @@ struct DrawnSupport {
   bool y = false;
 };
 
+/// A strain gauge: a line from disc to disc with a letter at either end.
+struct DrawnGauge {
+  std::int32_t first = 0;
+  std::int32_t second = 0;
+  std::string first_label = {};
+  std::string second_label = {};
+};
+
+/// The force on each disc of a load case.
+/// \throws Error (bad_input) where a load names no group
+std::vector<DrawnLoad> drawn_loads(const Assembly& assembly, const LoadCase& loads);
+/// The discs with a held displacement.
+/// \throws Error (bad_input) where a support names no group
+std::vector<DrawnSupport> drawn_supports(const Assembly& assembly, std::span<const Support> supports);
+
 struct PictureOptions {
   std::string title = {};
   DiscColour colour = DiscColour::mean_stress;  ///< none is used if the state does not contain the quantity
@@ -53,6 +70,7 @@ struct PictureOptions {
   int width = 1000;  ///< pixels, 400 to 5000; text and lines grow with it, the height follows from the assembly
   std::vector<DrawnLoad> loads = {};
   std::vector<DrawnSupport> supports = {};
+  std::vector<DrawnGauge> gauges = {};
 };
 
 /// Above this many discs they are drawn as an image in which each point has the colour of the nearest disc, in the SVG
@@ -70,8 +88,8 @@ struct PictureResult {
 /// Write NAME.svg and NAME.png. Positions are those of the discs moved by the scaled displacements; a contact through
 /// the period is drawn as two halves. Numbers of both signs are coloured on a diverging map, of one sign on a
 /// sequential one (colour_map.hpp describes the choice of the range).
-/// \throws Error (bad_input) on an empty assembly, motions or radii that are not finite, a width out of range, a load
-///         or support at an absent disc, and as write_file does
+/// \throws Error (bad_input) on an empty assembly, motions or radii that are not finite, a width out of range, a load,
+///         support or gauge at an absent disc, and as write_file does
 PictureResult write_picture(const std::filesystem::path& folder, const std::string& name, const AssemblyState& state,
                             const PictureOptions& options, bool overwrite);
 

@@ -36,6 +36,10 @@ void check(const AssemblyState& state, const PictureOptions& options) {
   };
   for (const DrawnLoad& load : options.loads) check_disc(load.disc, "load");
   for (const DrawnSupport& support : options.supports) check_disc(support.disc, "support");
+  for (const DrawnGauge& gauge : options.gauges) {
+    check_disc(gauge.first, "gauge");
+    check_disc(gauge.second, "gauge");
+  }
   for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
     const Vec2 u = state.motions.empty() ? Vec2{} : state.motions[disc].u;
     const Vec2 c = assembly.centres[disc];

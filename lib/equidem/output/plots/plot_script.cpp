@@ -223,12 +223,12 @@ std::string plot_script(const std::string& name, const Plot& plot, const PlotDat
       "# Draws {0}.svg and {0}.png from {0}.csv. Edit it and run, in this folder:  gnuplot {0}.gp\n"
       "data = {1}\nset datafile separator comma\nset encoding utf8\n\n"
       "set border 3 lw 0.8 lc rgb '#333333'\nset tics out nomirror scale 0.7 tc rgb '#222222'\n"
-      "set title {2} offset 0,-0.2{3}\nset xlabel {4}{3}\nset ylabel {5}{3}\n",
+      "set title {2} offset 0,-0.2{3}\nset xlabel {4} offset 0,0.3{3}\nset ylabel {5}{3}\n",
       name, gnuplot_string(name + ".csv"), gnuplot_string(plot.title), plain, gnuplot_string(plot.x.label),
       gnuplot_string(plot.y.label));
   text += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", x.min, x.max, y.min, y.max);
   text += axis_scale('x', plot.x, x) + axis_scale('y', plot.y, y);
-  text += fmt::format("set key below horizontal Left reverse samplen 2.2 spacing 1.25 width 1{}\n", plain);
+  text += fmt::format("set key below horizontal Left reverse samplen 2.2 spacing 1.25 width 1 height 0.7{}\n", plain);
   for (const Band& band : plot.bands) {
     text += fmt::format(
         "set object rectangle from first {}, graph 0 to first {}, graph 1 fc rgb '#eef2f6' fs solid noborder "
