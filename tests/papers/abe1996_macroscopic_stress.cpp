@@ -6,7 +6,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
+#include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/material/spring_relations.hpp"
 
@@ -194,4 +197,34 @@ TEST_CASE("square_lattice_is_cubic_and_isotropic_only_for_equal_springs") {
     const Tensor2 t = disc_stresses(assembly, stress_of({0.5, 0, 0, -0.5})).front();
     CHECK((t.xx - t.yy) / 2 == Approx(0.5).margin(1e-13));
   }
+}
+
+TEST_CASE("stress_of_unequal_discs_scatters_about_the_applied_stress") {
+  // End of section 4.2: (50) with V the cell of the disc, and as printed with V = pi r²/phi.
+  const double largest_radius = GENERATE(0.005, 0.01);
+  const Assembly cell = delaunay_assembly(
+      {.discs = 400, .points = PointProcess::poisson_disc, .radii = {0.005, largest_radius}, .periodic = true});
+  const ContactSprings springs(SpringConstants{1, 0.25});
+  const EffectiveStiffness found = effective_stiffness(cell, springs);
+  const Matrix3 compliance = inverse(found.stiffness);
+  const auto states = strained_states(cell, springs, found, 1);
+  std::vector<ContactForce> forces(cell.contacts.size());
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t c = 0; c < forces.size(); ++c) {
+      forces[c].normal += compliance[k][0] * states[k].forces[c].normal;
+      forces[c].tangential += compliance[k][0] * states[k].forces[c].tangential;
+    }
+  }
+  const std::vector<Tensor2> stresses = disc_stresses(cell, forces);
+  double mean = 0, square = 0, printed = 0;
+  for (std::size_t d = 0; d < cell.size(); ++d) {
+    mean += cell.cell_areas[d] * stresses[d].xx / cell.area();
+    square += cell.cell_areas[d] * std::pow(stresses[d].xx - 1, 2) / cell.area();
+    const double volume = std::numbers::pi * cell.radii[d] * cell.radii[d] / cell.solid_fraction();
+    printed += volume * (stresses[d].xx * cell.cell_areas[d] / volume) / cell.area();
+  }
+  CAPTURE(largest_radius, mean, printed, std::sqrt(square));
+  CHECK(mean == Approx(1).epsilon(1e-10));
+  CHECK(printed == Approx(1).epsilon(1e-10));
+  CHECK(std::sqrt(square) == Approx(0.25).margin(0.05));
 }

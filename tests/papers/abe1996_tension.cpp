@@ -116,7 +116,45 @@ TEST_CASE("a_long_strip_bears_its_load_on_a_known_share_of_its_height") {
     const double stiffness = run.result.stiffness_ratio * run.setup.height / height;
     CAPTURE(rows, ratio, run.result.poisson_ratio, stiffness, run.equilibrium.relative_residual);
     CHECK(run.result.poisson_ratio == Approx(poisson_ratio_of_ratio(ratio)).margin(1e-10));
+    // plane stress, section 2: nu/(1 + nu) = (1 - r)/4
+    CHECK(-run.result.strain.yy / run.result.strain.xx == Approx((1 - ratio) / (3 + ratio)).margin(1e-10));
     CHECK(stiffness == Approx(hexagonal_stiffness_ratio(ratio)).epsilon(1e-10));
+  }
+}
+
+TEST_CASE("the_loads_of_the_uniform_state_make_the_tension_test_exact_on_a_block") {
+  // What the rim lacks in contact forces. Per row of the mean load f_h + f_d: f_h at short rows, f_h + 2 f_d at long
+  // ones and f_h + f_d at the corners, f_d/(f_h + f_d) = 2r/(3(1 + r)); the equal loads of the paper bend the field.
+  const int size = GENERATE(7, 21);
+  for (const double ratio : {-0.2, 0.1, 0.5, 1.0}) {
+    Assembly block = hexagonal_lattice({.columns = size, .rows = size, .radius = disc_radius});
+    const ContactSprings springs(SpringConstants{stiffness, ratio * stiffness});
+    const TensionTest test{.stress = pull};
+    TensionSetup setup = tension_setup(block, test);
+    const double e11 = pull / (stiffness * hexagonal_stiffness_ratio(ratio));
+    const Tensor2 strain{e11, 0, 0, -(1 - ratio) / (3 + ratio) * e11};
+    const auto missing = contact_resultants(block, affine_contact_forces(block, springs, strain, 0));
+    const double row = pull * sqrt3 * disc_radius;
+    setup.loads.clear();
+    for (std::size_t disc = 0; disc < block.size(); ++disc) {
+      if (norm(missing[disc].force) < 1e-9 * row && std::abs(missing[disc].moment) < 1e-9 * row * disc_radius) continue;
+      const std::string name = "disc " + std::to_string(disc);
+      block.groups[name] = {.discs = {static_cast<std::int32_t>(disc)}, .tributary_lengths = {}};
+      setup.loads.push_back({.group = name, .force = -missing[disc].force, .moment = -missing[disc].moment});
+    }
+    const std::vector<std::int32_t>& right = group(block, "right").discs;
+    const double diagonal = 2 * ratio / (3 * (1 + ratio));
+    CAPTURE(size, ratio, missing[right[0]].force.x / row, missing[right[1]].force.x / row);
+    CHECK(-missing[right[0]].force.x / row == Approx(1).epsilon(1e-12));
+    CHECK(-missing[right[1]].force.x / row == Approx(1 - diagonal).epsilon(1e-12));
+    CHECK(-missing[right[2]].force.x / row == Approx(1 + diagonal).epsilon(1e-12));
+
+    const Equilibrium rest = solve_equilibrium(block, springs, setup.supports, setup.loads);
+    const TensionResult exact = evaluate_tension(block, springs, test, setup, rest);
+    CHECK(exact.poisson_ratio == Approx(poisson_ratio_of_ratio(ratio)).margin(1e-11));
+    CHECK(exact.stiffness_ratio == Approx(hexagonal_stiffness_ratio(ratio)).epsilon(1e-11));
+    const double equal_loads = run_tension(size, size, ratio).result.poisson_ratio;
+    CHECK(std::abs(equal_loads - poisson_ratio_of_ratio(ratio)) > 0.01 * std::abs(ratio) / size);
   }
 }
 

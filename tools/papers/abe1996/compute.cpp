@@ -7,6 +7,8 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/material/spring_relations.hpp"
 #include "equidem/statics/critical_ratio.hpp"
@@ -37,18 +39,104 @@ TestRun run_test(const Assembly& assembly, const Block& block, double ratio, Rot
   return run;
 }
 
+RatioPoint test_ratio(const Assembly& assembly, const Block& block, double ratio) {
+  const TestRun run = run_test(assembly, block, ratio, Rotation::from_scene);
+  return {ratio,
+          run.result.poisson_ratio,
+          run.result.stiffness_ratio,
+          run.equilibrium.negative_pivots,
+          run.equilibrium.unstable_modes,
+          run.equilibrium.relative_residual};
+}
+
 std::vector<RatioPoint> test_ratios(const Block& block, Progress& progress) {
   const Assembly assembly = block_of(block, block.columns, block.rows);
   std::vector<RatioPoint> points;
   constexpr int first = -18, last = 20;  // in steps of 0.05: -0.9 to 1
   for (int step = first; step <= last; ++step) {
-    const double ratio = step / 20.0;
-    const TestRun run = run_test(assembly, block, ratio, Rotation::from_scene);
-    points.push_back({ratio, run.result.poisson_ratio, run.result.stiffness_ratio, run.equilibrium.negative_pivots,
-                      run.equilibrium.unstable_modes, run.equilibrium.relative_residual});
-    progress.update(0.4 * (step - first + 1.0) / (last - first + 1.0));
+    points.push_back(test_ratio(assembly, block, step / 20.0));
+    progress.update(0.2 * (step - first + 1.0) / (last - first + 1.0));
   }
   return points;
+}
+
+std::vector<RatioPoint> test_large_block(const Block& block, Progress& progress) {
+  const Assembly assembly = block_of(block, large_rows, large_rows);
+  std::vector<RatioPoint> points;
+  for (int step = -2; step <= 10; ++step) {
+    points.push_back(test_ratio(assembly, block, step / 10.0));
+    progress.update(0.2 + 0.2 * (step + 3) / 13.0);
+  }
+  return points;
+}
+
+/// Forces and moments that the contact forces of the uniform state leave unbalanced at the rim of a free block: its
+/// loads. One group for each loaded disc is added to the assembly.
+LoadCase loads_of_uniform_state(Assembly& assembly, const ContactSprings& springs, const Tensor2& gradient) {
+  const auto forces = affine_contact_forces(assembly, springs, gradient, mean_rotation(gradient));
+  std::vector<Load> missing(assembly.size());
+  double largest = 0;
+  for (std::size_t c = 0; c < forces.size(); ++c) {
+    const ContactFrame frame = frame_of(assembly, c);
+    const Contact& contact = assembly.contacts[c];
+    const Vec2 on_i = force_on_i(frame, forces[c]);
+    missing[contact.i].force -= on_i;
+    missing[contact.j].force += on_i;
+    missing[contact.i].moment -= moment_on_i(frame, forces[c]);
+    missing[contact.j].moment -= moment_on_j(frame, forces[c]);
+    largest = std::max(largest, norm(on_i));
+  }
+  LoadCase loads;
+  for (std::size_t disc = 0; disc < missing.size(); ++disc) {
+    Load& load = missing[disc];
+    if (norm(load.force) < 1e-9 * largest && std::abs(load.moment) < 1e-9 * largest * assembly.radii[disc]) continue;
+    load.group = fmt::format("loaded {}", disc);
+    assembly.groups[load.group] = {.discs = {static_cast<std::int32_t>(disc)}, .tributary_lengths = {}};
+    loads.push_back(load);
+  }
+  return loads;
+}
+
+/// nu of the test with the loads of the uniform state in place of equal ones; sets those loads in `edges`.
+double test_with_exact_loads(const Block& block, EdgeEffect& edges) {
+  Assembly assembly = block_of(block, block.columns, block.rows);
+  const ContactSprings springs(SpringConstants{block.kN, edges.ratio * block.kN});
+  TensionSetup setup = tension_setup(assembly, block.test);
+  const double e11 = block.test.stress / (block.kN * hexagonal_stiffness_ratio(edges.ratio));
+  const double e22 = -in_plane_stress(poisson_ratio_of_ratio(edges.ratio)) * e11;
+  setup.loads = loads_of_uniform_state(assembly, springs, {e11, 0, 0, e22});
+  const auto load_on = [&](std::int32_t disc) {
+    for (const Load& load : setup.loads)
+      if (assembly.groups[load.group].discs.front() == disc) return load.force.x;
+    return 0.0;
+  };
+  const std::vector<std::int32_t>& right = group(assembly, "right").discs;
+  const double mean = block.test.stress * setup.height / block.rows;
+  edges.rows = block.rows;
+  for (const std::int32_t disc : right) edges.total += load_on(disc) / mean;
+  edges.corner = load_on(right[0]) / mean;
+  edges.short_row = load_on(right[1]) / mean;
+  edges.long_row = load_on(right[2]) / mean;
+  const Equilibrium rest = solve_equilibrium(assembly, springs, setup.supports, setup.loads);
+  return evaluate_tension(assembly, springs, block.test, setup, rest).poisson_ratio;
+}
+
+EdgeEffect explain_error(const Block& block) {
+  EdgeEffect edges;
+  const auto add = [&](const std::string& name, double nu) { edges.variations.push_back({name, nu}); };
+  const auto size = [&](int columns, int rows) { return fmt::format("{} rows of {} discs", rows, columns); };
+  const auto nu_of = [&](int columns, int rows) {
+    return test_ratio(block_of(block, columns, rows), block, edges.ratio).poisson_ratio;
+  };
+  add(size(block.columns, block.rows) + ", equal loads (Fig. 6)", nu_of(block.columns, block.rows));
+  for (const int times : {2, 4, 8})
+    add(size(times * block.columns, block.rows), nu_of(times * block.columns, block.rows));
+  add(size(large_rows, large_rows), nu_of(large_rows, large_rows));
+  add(size(block.columns, block.rows) + ", loads of the uniform state", test_with_exact_loads(block, edges));
+  const Assembly cell = hexagonal_lattice({.columns = 8, .rows = 8, .radius = block.radius, .periodic = true});
+  const ContactSprings springs(SpringConstants{1, edges.ratio});
+  add("periodic cell, homogenized", effective_moduli(effective_stiffness(cell, springs).stiffness).poisson_strain);
+  return edges;
 }
 
 std::vector<Convergence> test_sizes(const Block& block, Progress& progress) {
@@ -61,7 +149,7 @@ std::vector<Convergence> test_sizes(const Block& block, Progress& progress) {
                                     std::abs(run.result.stiffness_ratio / hexagonal_stiffness_ratio(ratio) - 1)});
     }
     all.push_back(std::move(convergence));
-    progress.update(0.4 + 0.5 * static_cast<double>(all.size()) / 4);
+    progress.update(0.4 + 0.3 * static_cast<double>(all.size()) / 4);
   }
   return all;
 }
@@ -142,14 +230,21 @@ Reproduction reproduce(const Block& block) {
   result.gauge_length = norm(assembly.centres[setup.horizontal.second] - assembly.centres[setup.horizontal.first]);
   result.gauge_height = norm(assembly.centres[setup.vertical.second] - assembly.centres[setup.vertical.first]);
   result.points = test_ratios(block, progress);
+  result.large_points = test_large_block(block, progress);
   result.times.add("figures 7 and 8", watch.lap());
   result.convergence = test_sizes(block, progress);
+  result.edges = explain_error(block);
   result.times.add("error against size", watch.lap());
   result.lattice_limit = -1.0 / 3;
   result.block_limit = critical_ratio(assembly, setup.supports);
   result.times.add("critical ratio", watch.lap());
   result.stress = check_stress(block);
-  result.times.add("macroscopic stress", watch.lap());
+  progress.update(0.75);
+  result.square = measure_square_lattice(block);
+  result.waves = measure_restrained_waves(block);
+  result.times.add("macroscopic stress, waves", watch.lap());
+  result.unequal = measure_unequal_radii(block);
+  result.times.add("unequal radii", watch.lap());
   return result;
 }
 
