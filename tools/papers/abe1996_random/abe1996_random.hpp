@@ -38,7 +38,7 @@ struct Plan {
 Plan plan_of(bool quick);
 
 inline constexpr std::array weightings{SpringWeighting::uniform, SpringWeighting::contact_density,
-                                       SpringWeighting::voronoi};
+                                       SpringWeighting::voronoi, SpringWeighting::local_contact_density};
 
 enum Modulus { bulk, shear, poisson };  ///< K and G in kN; nu of plane strain
 enum Answer {

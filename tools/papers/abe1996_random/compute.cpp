@@ -50,11 +50,13 @@ std::array<double, 3> moduli_of_tensor(const Matrix3& stiffness) {
 }
 
 /// Abe's mean field: nu = (1 - kT/kN)/4 (eq. 22); K = phi z/(2 pi) kN for equal springs (eq. 21); with the correction
-/// (11), springs k/psi(theta), K = phi kN; with springs k h/l, whose facets obey sum h l = 2 A, K = kN/2.
+/// (11), springs k/psi, psi of all discs or of the two of a contact, K = phi kN; with springs k h/l, whose facets obey
+/// sum h l = 2 A, K = kN/2.
 std::array<double, 3> mean_field_moduli(double ratio, SpringWeighting weighting, const Disorder& cell) {
   IsotropicMeasures measures{.solid_fraction = cell.solid_fraction,
                              .contact_density = cell.coordination_number / (2 * std::numbers::pi)};
-  if (weighting == SpringWeighting::contact_density) measures.contact_density = 1;  // k / psi on psi contacts
+  if (weighting == SpringWeighting::contact_density || weighting == SpringWeighting::local_contact_density)
+    measures.contact_density = 1;  // k / psi on psi contacts
   if (weighting == SpringWeighting::voronoi) measures = {.solid_fraction = 0.5, .contact_density = 1};
   const ElasticModuli moduli = moduli_of({1, ratio}, isotropic_relation, measures);
   return {moduli.bulk_modulus_2d(), moduli.shear_modulus, moduli.poisson_ratio};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Plots, table, JSON and command line.
+#include <algorithm>
+
 #include "equidem/core/text.hpp"
 #include "equidem/material/spring_relations.hpp"
 
@@ -15,13 +17,21 @@ constexpr std::array colours{PlotColour::yellow, PlotColour::sky_blue, PlotColou
                              PlotColour::purple, PlotColour::blue,     PlotColour::vermilion, PlotColour::black};
 constexpr std::array markers{Marker::circle, Marker::square, Marker::triangle, Marker::diamond};
 
+/// The name of a weighting, without the underscores that enhanced text would make subscripts of.
+std::string spaced(SpringWeighting weighting) {
+  std::string name = to_string(weighting);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
 Plot poisson_plot(const Result& result, std::size_t weighting) {
   const std::vector<double>& ratios = result.plan.ratios;
   // Uniform stress in two dimensions, plane strain: Kruyt & Rothenburg (2002).
   const auto uniform_stress_ratio = [](double r) { return (1 - r) / (2 * (1 + r)); };
-  Plot plot{.title = fmt::format("Random assemblies, springs weighted \"{}\"", to_string(weightings[weighting])),
-            .x = {.label = "kT/kN"},
-            .y = {.label = "Poisson's ratio (plane strain)"}};
+  Plot plot{.title = fmt::format("Random assemblies, springs weighted \"{}\"", spaced(weightings[weighting])),
+            .x = {.label = "k_T/k_N"},
+            .y = {.label = "Poisson's ratio ν (plane strain)"}};
+  plot.enhanced = true;
   plot.series = {
       curve({.label = "mean field (22), Voigt", .column = "mean_field"}, 0, ratios.back(), poisson_ratio_of_ratio),
       curve({.label = "uniform stress", .style = SeriesStyle::dashed_line, .column = "uniform_stress"}, 0,
@@ -45,11 +55,13 @@ Plot poisson_plot(const Result& result, std::size_t weighting) {
 /// Error against the scatter of branch lengths: a line through the perturbed lattices, points for the others.
 Plot error_plot(const Result& result, std::size_t weighting, const std::string& label, std::size_t error) {
   Plot plot{.title = fmt::format("Springs weighted \"{}\"; lines: hexagonal lattices with disorder",
-                                 to_string(weightings[weighting])),
+                                 spaced(weightings[weighting])),
             .x = {.label = "scatter of branch lengths, sd/mean"},
             .y = {.label = label}};
+  plot.enhanced = true;
+  double lowest = 0, highest = 0;
   for (std::size_t r = 0; r < result.plan.ratios.size(); ++r) {
-    const std::string name = fmt::format("kT/kN = {:g}", result.plan.ratios[r]);
+    const std::string name = fmt::format("k_T/k_N = {:g}", result.plan.ratios[r]);
     Series lattices{.label = name,
                     .style = SeriesStyle::line_with_points,
                     .colour = colours[(r + 1) % colours.size()],
@@ -66,11 +78,18 @@ Plot error_plot(const Result& result, std::size_t weighting, const std::string& 
       Series& series = lattice ? lattices : others;
       series.x.push_back(scatter);
       series.y.push_back(result.at(f, weighting, r).mean(error));
-      if (r == 0 && !lattice) plot.vertical_lines.push_back({scatter, family.name, PlotColour::black});
+      if (r == 0 && !lattice) plot.vertical_lines.push_back({scatter, family.name, PlotColour::black, true});
+    }
+    for (const std::vector<double>& values : {lattices.y, others.y}) {
+      for (const double y : values) {
+        lowest = std::min(lowest, y);
+        highest = std::max(highest, y);
+      }
     }
     plot.series.push_back(lattices);
     plot.series.push_back(others);
   }
+  plot.y.max = highest + 0.35 * (highest - lowest);  // room for the labels of the vertical lines
   return plot;
 }
 
@@ -84,7 +103,7 @@ Named<Plot> plots(const Result& result) {
   for (std::size_t w = 0; w < weightings.size(); ++w) {
     all.emplace_back(plot_name(plot_names[0], w), poisson_plot(result, w));
     all.emplace_back(plot_name(plot_names[1], w),
-                     error_plot(result, w, "nu of the mean field less the exact one", error_of(poisson)));
+                     error_plot(result, w, "ν of the mean field less the exact one", error_of(poisson)));
     all.emplace_back(plot_name(plot_names[2], w),
                      error_plot(result, w, "G of the mean field over the exact one, less 1", error_of(shear)));
   }
