@@ -26,26 +26,35 @@ double flight_energy(NormalLaw law, const Grain& ball, double step, double g) {
   return 0.5 * ball.velocity.y * ball.velocity.y + g * (height(ball) - lag);
 }
 
+/// Energy per mass of position and velocity of the same step.
+double step_energy(const Grain& ball) {
+  return 0.5 * ball.velocity.y * ball.velocity.y + gravity * height(ball);
+}
+
 struct Impact {
-  double speed = 0;  ///< before
-  double ratio = 0;  ///< of energies after and before
+  double speed = 0;       ///< before
+  double ratio = 0;       ///< of energies that the flights after and before keep
+  double step_ratio = 0;  ///< of energies of the first step apart and of the step of contact
 };
 
 /// Computes a number of impacts. Flights of more than 100 steps are computed in one move.
 std::vector<Impact> impacts_of(NormalLaw law, GrainScene scene, double step, std::size_t wanted) {
   std::vector<Impact> impacts;
   Grain ball = scene.grains[0];
-  double before = flight_energy(law, ball, step, gravity);
+  double before = flight_energy(law, ball, step, gravity), at_contact = 0;
   GrainSimulation run = start(scene, law, step, false);
   for (bool met = false; impacts.size() < wanted;) {
     const std::int64_t contacts = run.counters().contacts;
     run.advance(1);
-    met = met || run.counters().contacts > contacts;
+    if (!met && run.counters().contacts > contacts) {
+      met = true;
+      at_contact = step_energy(ball);
+    }
     ball = run.grains()[0];
     if (!met || height(ball) <= 0) continue;
     met = false;
     const double after = flight_energy(law, ball, step, gravity);
-    impacts.push_back({std::sqrt(2 * before), after / before});
+    impacts.push_back({std::sqrt(2 * before), after / before, step_energy(ball) / at_contact});
     before = after;
     const double n = std::floor(2 * ball.velocity.y / (gravity * step)) - 3;
     if (n < 100) continue;
@@ -89,6 +98,52 @@ TEST_CASE("fujioka_2005_impacts_of_the_maps_have_the_ratio_e_squared_but_for_gra
     CHECK(std::abs(impacts[n].ratio - 0.49) < 3 * gain + 1e-12);
   }
   if (fast) CHECK(std::abs(impacts[0].ratio - 0.49) < 1e-6);
+}
+
+TEST_CASE("fujioka_2005_figure_4_is_of_the_energies_at_the_steps_of_contact_and_parting") {
+  // Independently computed: ratios of P and F over ten impacts of the slow ball. A phase of contact that differs by the
+  // round-off of the flights changes the last digit of the later ones.
+  struct Row {
+    NormalLaw law;
+    std::array<double, 10> ratios;
+    double narrow;  ///< the paper: F and P stay near 0.49, P nearer
+  };
+  const Row row = GENERATE(Row{NormalLaw::energy_map,
+                               {0.4900, 0.4902, 0.4901, 0.4903, 0.4902, 0.4904, 0.4911, 0.4905, 0.4885, 0.4904},
+                               0.002},
+                           Row{NormalLaw::five_case_map,
+                               {0.4887, 0.4880, 0.4881, 0.4880, 0.4858, 0.4841, 0.4842, 0.4786, 0.4878, 0.4609},
+                               0.03});
+  const auto impacts = impacts_of(row.law, column(pair_of(row.law), 1), 1e-3, 10);
+  for (std::size_t n = 0; n < impacts.size(); ++n) {
+    // velocities are half a step behind: what a flight keeps differs by g v dt/2, up before and down after an impact
+    const double lag = 1.19 * gravity * 1e-3 / impacts[n].speed;  // e + e²
+    CAPTURE(letter_of(row.law), n + 1, impacts[n].step_ratio, impacts[n].ratio, lag);
+    CHECK(impacts[n].step_ratio == Approx(row.ratios[n]).margin(1.5e-4));
+    CHECK(std::abs(impacts[n].step_ratio - 0.49) < row.narrow);
+    CHECK(impacts[n].ratio == Approx(impacts[n].step_ratio - lag).margin(0.15 * lag));
+  }
+}
+
+TEST_CASE("fujioka_2005_figure_5_T_goes_on_with_a_softer_spring_than_that_of_table_2") {
+  const double a = GENERATE(1.0, 1.5, 4.62);
+  GrainScene scene = column(pair_of(NormalLaw::hertz_dashpot, restitution, a), 1);
+  scene.grains[0].velocity.y = -1e5;
+  const bool of_table_2 = a > 2;
+  const auto impacts = impacts_of(NormalLaw::hertz_dashpot, scene, 1e-3, of_table_2 ? 1 : 20);
+  double least = 10, most = 0;
+  for (const Impact& impact : impacts) {
+    least = std::min(least, impact.step_ratio);
+    most = std::max(most, impact.step_ratio);
+  }
+  CAPTURE(a, least, most);
+  if (of_table_2) {
+    CHECK(most > 1);  // unstable: omega dt is too large at this depth
+  } else {
+    CHECK(least > 0.4);
+    CHECK(most < 0.7);
+    CHECK(most - least > 0.05);  // not constant, as the paper says
+  }
 }
 
 TEST_CASE("fujioka_2005_fast_impacts_without_gravity_have_the_ratio_e_squared_to_round_off") {

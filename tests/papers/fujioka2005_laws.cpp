@@ -143,6 +143,26 @@ TEST_CASE("fujioka_2005_mode_2_as_printed_would_lose_energy_beyond_a_slope") {
   }
 }
 
+TEST_CASE("fujioka_2005_the_depth_of_equation_20_is_the_corrected_one") {
+  // With d_j, as printed, the state does not keep the energy of (18).
+  constexpr double a = of_springs, e = 0.7;
+  for (double phase = 0.05; phase < 1; phase += 0.1) {
+    const double s = 1 / phase, corrected = s * e / std::sqrt(s * s + a);  // sigma^ by (17), sigma = 1
+    const auto energy_after = [&](double depth) {
+      const double f = -depth / (1 + a) * ((1 + a) * s + a - std::sqrt((1 + a) * s * s + a * a));
+      const double closing = corrected + f, overlap = corrected * phase + closing;
+      return closing * closing + a * overlap * overlap;
+    };
+    const double kept = energy_after(corrected * phase), printed = energy_after(phase);
+    CAPTURE(phase, kept, printed);
+    CHECK(kept == Approx(e * e).epsilon(1e-13));
+    CHECK(std::abs(printed - e * e) > 1e-3);
+    const ContactStep step = step_of(NormalLaw::energy_map, phase, 1, a, e);
+    const double closing = 1 + step.change, overlap = phase + step.shift + closing;
+    CHECK(closing * closing + a * overlap * overlap == Approx(kept).epsilon(1e-13));
+  }
+}
+
 TEST_CASE("fujioka_2005_statistics_over_the_phase_of_contact") {  // the reference: 4000 phases at random
   const nlohmann::json numbers = reference();
   for (const NormalLaw law : {NormalLaw::linear_dashpot, NormalLaw::five_case_map, NormalLaw::energy_map}) {

@@ -6,7 +6,7 @@ import unittest
 
 from program import ProgramTest, equidem, parse_json
 
-FIGURES = ("figure4", "figure5", "figure6", "figure7", "figure10", "figure11", "stacked_cost", "ball_cost", "rest",
+FIGURES = ("figure4", "figure4_flights", "figure5", "figure6", "figure7", "figure10", "figure11", "stacked_cost", "ball_cost", "rest",
            "column", "lossless")
 
 
@@ -29,6 +29,19 @@ class Fujioka2005(ProgramTest):
                     self.assertAlmostEqual(ratio, 0.49, delta=2e-4, msg=row["letter"])
             if row["letter"] == "C":
                 self.assertGreater(row["deepest"], 1)
+
+        slow = {row["letter"]: row for row in reversed(result["slow_impacts"])}
+        for ratio in slow["P"]["energy_ratios"][:10]:
+            self.assertAlmostEqual(ratio, 0.49, delta=2e-3)
+        self.assertLess(slow["P"]["energy_ratios_of_flights"][9], 0.45)
+        hertz = {row["a"]: row for row in result["fast_impacts"] if row["letter"] == "T"}
+        self.assertTrue(hertz[4.62]["ran_away"])
+        self.assertFalse(hertz[1.5]["ran_away"])
+        self.assertLess(max(hertz[1.5]["energy_ratios"]), 0.7)
+        self.assertGreater(min(hertz[1.5]["energy_ratios"]), 0.4)
+        report = (out / "report.txt").read_text(encoding="utf-8")
+        self.assertEqual(report.count("An evaluation of P costs +"), 1)
+        self.assertIn("The conclusions of the paper", report)
 
         for row in result["stacked"]:
             error = min(zip(row["time_step"], row["speed_error"]))[1]

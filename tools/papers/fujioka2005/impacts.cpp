@@ -22,6 +22,11 @@ double energy(const Variant& variant, const Grain& ball, double dt) {
   return 0.5 * ball.velocity.y * ball.velocity.y + gravity * (gap(ball) - lag);
 }
 
+/// Energy per mass of position and velocity of the same step.
+double energy_of_step(const Grain& ball) {
+  return 0.5 * ball.velocity.y * ball.velocity.y + gravity * gap(ball);
+}
+
 /// The flight up and down again to some steps above the floor in one move, by the closed form of its steps.
 void leap(const Variant& variant, Grain& ball, double dt) {
   const double n = std::floor(2 * ball.velocity.y / (gravity * dt)) - 3;
@@ -33,15 +38,18 @@ void leap(const Variant& variant, Grain& ball, double dt) {
 
 /// Impacts until there are enough of them or `most_steps` are made.
 Impacts watch_impacts(const Variant& variant, GrainScene scene, double dt, bool leaps, std::int64_t most_steps) {
-  Impacts seen{.variant = variant, .ratio = {}, .paths = {}};
+  Impacts seen{.variant = variant, .ratio = {}, .flight_ratio = {}, .paths = {}};
   Grain ball = scene.grains[0];
-  double before = energy(variant, ball, dt);
+  double before = energy(variant, ball, dt), at_contact = 0;
   std::optional<GrainSimulation> run = start(scene, variant.law, dt, false);
   bool met = false;  // contact with the floor since the last flight
   for (std::int64_t step = 0; step < most_steps && seen.ratio.size() < impacts_shown; ++step) {
     const std::int64_t contacts = run->counters().contacts;
     run->advance(1);
-    met = met || run->counters().contacts > contacts;
+    if (!met && run->counters().contacts > contacts) {
+      met = true;
+      at_contact = energy_of_step(ball);
+    }
     const double depth = -gap(ball) / diameter;
     if (depth > 0) {
       if (seen.paths.size() == seen.ratio.size()) seen.paths.emplace_back();
@@ -51,7 +59,8 @@ Impacts watch_impacts(const Variant& variant, GrainScene scene, double dt, bool 
     ball = run->grains()[0];
     if (!met || gap(ball) <= 0) continue;
     const double after = energy(variant, ball, dt);
-    seen.ratio.push_back(after / before);
+    seen.ratio.push_back(energy_of_step(ball) / at_contact);
+    seen.flight_ratio.push_back(after / before);
     seen.paths.resize(seen.ratio.size());
     before = after;
     met = false;
@@ -89,7 +98,9 @@ std::vector<Table2Row> count_table2() {
 
 std::vector<Impacts> impacts(bool fast) {
   std::vector<Impacts> all;
-  for (const Variant& variant : variants(very_stiff)) {
+  std::vector<Variant> laws = variants(very_stiff);
+  if (fast) laws.insert(laws.begin() + 2, {NormalLaw::hertz_dashpot, soft_hertz, "T soft"});
+  for (const Variant& variant : laws) {
     GrainScene scene = column(variant.pair(), 1);
     if (fast) scene.grains[0].velocity.y = -fast_speed;
     all.push_back(watch_impacts(variant, scene, paper_step, fast, fast ? 100000 : 8000));

@@ -25,6 +25,7 @@ Reproduction compute(bool quick) {
   result.table2 = count_table2();
   result.slow = impacts(false);
   result.fast = impacts(true);
+  result.printed = compare_printed();
   result.times.add("table 2, figures 4 to 7", watch.lap());
   result.ball = cost_of_ball(quick, progress);
   result.times.add("cost of a bouncing ball", watch.lap());
@@ -91,7 +92,10 @@ void add_curve(Results& object, const Curve& curve,
 void add_numbers(Results& object, const Reproduction& result) {
   using P = CurvePoint;
   const auto add_impacts = [](Results& o, const Impacts& law) {
-    o.set("energy_ratios", law.ratio).set("deepest", law.deepest).set("ran_away", law.ran_away);
+    o.set("energy_ratios", law.ratio)
+        .set("energy_ratios_of_flights", law.flight_ratio)
+        .set("deepest", law.deepest)
+        .set("ran_away", law.ran_away);
   };
   const auto add_rest = [](Results& o, const Rest& law) {
     o.set("balls", law.balls).set("speed_of_g_dt", law.speed).set("overlap_of_static", law.overlap);
@@ -129,8 +133,8 @@ void add_numbers(Results& object, const Reproduction& result) {
 
 int reproduce(const CommonOptions& options, bool quick) {
   start_paper(options,
-              {"figure4", "figure5", "figure6", "figure7", "figure10", "figure11", "stacked_cost", "ball_cost", "rest",
-               "column", "lossless"},
+              {"figure4", "figure4_flights", "figure5", "figure6", "figure7", "figure10", "figure11", "stacked_cost",
+               "ball_cost", "rest", "column", "lossless"},
               {"table1.csv", "table2.csv"});
   const Reproduction result = compute(quick);
   const Variant first = variants(1).front();

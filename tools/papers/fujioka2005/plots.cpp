@@ -11,10 +11,8 @@
 namespace equidem::fujioka2005 {
 namespace {
 
-constexpr double theory = restitution * restitution;
-
 std::string name_of(const Variant& variant) {
-  return fmt::format("{} (a = {:g})", variant.label == "X stiff" ? "X" : variant.label, variant.a);
+  return fmt::format("{} (a = {:g})", letter_of(variant.law), variant.a);
 }
 
 /// Each variant has one colour and marker in all figures.
@@ -27,6 +25,7 @@ Series series_of(const Variant& variant, const std::string& label) {
   };
   constexpr std::array looks{Look{"C", PlotColour::orange, Marker::square, true},
                              Look{"T", PlotColour::green, Marker::triangle, true},
+                             Look{"T soft", PlotColour::purple, Marker::triangle, false},
                              Look{"F", PlotColour::sky_blue, Marker::diamond, false},
                              Look{"P", PlotColour::blue, Marker::circle, true},
                              Look{"X", PlotColour::vermilion, Marker::circle, false},
@@ -40,23 +39,35 @@ Series series_of(const Variant& variant, const std::string& label) {
           .filled = look.filled};
 }
 
-Plot ratio_plot(const std::string& title, const std::vector<Impacts>& impacts, double least, double most) {
+/// F after P, with which it often coincides: its open marker or dashed line leaves P in sight.
+void draw_F_over_P(Plot& plot) {
+  const auto of = [&](PlotColour colour) {
+    return std::find_if(plot.series.begin(), plot.series.end(), [&](const Series& s) { return s.colour == colour; });
+  };
+  const auto f = of(PlotColour::sky_blue), p = of(PlotColour::blue);
+  if (f != plot.series.end() && p != plot.series.end() && f < p) std::iter_swap(f, p);
+}
+
+Plot ratio_plot(const std::string& title, const std::vector<Impacts>& impacts, double least, double most,
+                std::vector<double> Impacts::*ratio = &Impacts::ratio) {
   Plot plot{.title = title,
             .x = {.label = "impact", .min = 0, .max = 21},
             .y = {.label = "energy after / energy before the impact", .min = least, .max = most}};
   plot.series.push_back({.label = fmt::format("theory e² = {:.2f}", theory), .x = {0, 21}, .y = {theory, theory}});
   for (const Impacts& law : impacts) {
     Series series = series_of(law.variant, name_of(law.variant));
-    series.y = law.ratio;
-    for (std::size_t k = 0; k < law.ratio.size(); ++k) series.x.push_back(static_cast<double>(k + 1));
+    series.y = law.*ratio;
+    if (law.variant.label == "X stiff") series.style = SeriesStyle::dashed_line;  // its markers would hide those of P
+    for (std::size_t k = 0; k < series.y.size(); ++k) series.x.push_back(static_cast<double>(k + 1));
     plot.series.push_back(series);
   }
   return plot;
 }
 
 /// The first impacts of some laws in the plane of depth and closing.
-/// \param laws letters
-Plot phase_plot(const std::string& title, const std::vector<Impacts>& impacts, const std::string& laws, double depth) {
+/// \param laws labels
+Plot phase_plot(const std::string& title, const std::vector<Impacts>& impacts, const std::vector<std::string>& laws,
+                double depth) {
   constexpr double most = 0.5;
   Plot plot{.title = title,
             .x = {.label = "depth d, diameters", .min = 0, .max = depth},
@@ -69,13 +80,13 @@ Plot phase_plot(const std::string& title, const std::vector<Impacts>& impacts, c
   add_line("s = 1, s = 0, s = -√(1 - a)", "", 1);
   add_line("", "s = 0", 0);
   add_line("", "s = -root(1 - a)", -std::sqrt(1 - stiffness_of(NormalLaw::energy_map)));
-  if (laws.find('F') != std::string::npos) {
+  if (std::find(laws.begin(), laws.end(), "F") != laws.end()) {
     add_line("s = 1/e (F)", "", 1 / restitution);
     plot.series.back().colour = PlotColour::sky_blue;
   }
-  for (const char letter : laws) {
-    const Impacts& law = *std::find_if(impacts.begin(), impacts.end(),
-                                       [&](const Impacts& one) { return one.variant.label == std::string(1, letter); });
+  for (const std::string& label : laws) {
+    const Impacts& law =
+        *std::find_if(impacts.begin(), impacts.end(), [&](const Impacts& one) { return one.variant.label == label; });
     Series series = series_of(law.variant, name_of(law.variant));
     for (std::size_t k = 0; k < law.paths.size() && k < 8; ++k) {
       for (const auto& [d, closing] : law.paths[k]) {
@@ -86,7 +97,7 @@ Plot phase_plot(const std::string& title, const std::vector<Impacts>& impacts, c
       series.x.push_back(gap_in_line);
       series.y.push_back(gap_in_line);
     }
-    series.filled = series.filled && letter != 'T';  // the only state of T coincides with another
+    series.filled = series.filled && label != "T";  // the only state of T coincides with another
     plot.series.push_back(series);
   }
   return plot;
@@ -110,6 +121,7 @@ Plot curve_plot(const std::string& title, const std::string& label, const std::v
     }
     plot.series.push_back(with_points(series, points, x, y));
   }
+  draw_F_over_P(plot);
   return plot;
 }
 
@@ -131,7 +143,8 @@ Plot time_plot(const std::string& title, const std::string& label, double least,
 Plot rest_plot(const std::string& title, const std::vector<Rest>& laws) {
   Plot plot = time_plot(title, "energy above rest, of weight times diameter", 1e-16, laws,
                         [](const Rest& law, std::size_t k) { return law.energies[k]; });
-  plot.series[2].style = SeriesStyle::dashed_line;  // F, which coincides with P
+  plot.series[2].style = SeriesStyle::dashed_line;  // F
+  draw_F_over_P(plot);
   return plot;
 }
 
@@ -141,8 +154,8 @@ Named<Plot> plots(const Reproduction& r) {
   using P = CurvePoint;
   const std::string paper = "Fujioka & Ushijima (2005), Fig. ";
   const std::string speed_error = "relative error of d'";
-  Plot fig6 = phase_plot(paper + "6: fast impacts of C and X", r.fast, "CX", 1.3);
-  fig6.vertical_lines = {{1, "the ball is wholly in the wall", PlotColour::black}};
+  Plot fig6 = phase_plot(paper + "6: fast impacts of C and X; in the wall for d > 1", r.fast, {"C", "X"}, 1.3);
+  fig6.vertical_lines = {{1, "", PlotColour::black}};
   Plot fig11 = curve_plot(paper + "11: parting time T0 of the stacked spheres", "relative error of T0", r.stacked,
                           &P::step, &P::parting_error);
   const auto& steps = r.stacked.front().points;
@@ -154,10 +167,12 @@ Named<Plot> plots(const Reproduction& r) {
                          "rms error of the height, of the drop", r.ball, &P::seconds, &P::error);
   ball.series.back().label = "X, step 0.1 s, a = 1e4 to 1e12";
   const int balls = r.column.front().balls, lossless = r.lossless.front().balls;
-  return {{"figure4", ratio_plot(paper + "4: slow impacts", r.slow, 0.35, 0.6)},
-          {"figure5", ratio_plot(paper + "5: fast impacts", r.fast, 0.44, 0.6)},
+  return {{"figure4", ratio_plot(paper + "4: slow impacts, steps of contact and parting", r.slow, 0.35, 0.6)},
+          {"figure4_flights",
+           ratio_plot(paper + "4: slow impacts, from flight to flight", r.slow, 0.35, 0.6, &Impacts::flight_ratio)},
+          {"figure5", ratio_plot(paper + "5: fast impacts; F, P and X lie on the line of theory", r.fast, 0.4, 0.7)},
           {"figure6", fig6},
-          {"figure7", phase_plot(paper + "7: fast impacts of T, F and P", r.fast, "FPT", 0.6)},
+          {"figure7", phase_plot(paper + "7: fast impacts of T, F and P", r.fast, {"F", "P", "T soft", "T"}, 0.6)},
           {"figure10", curve_plot(paper + "10: final speed d' of the stacked spheres", speed_error, r.stacked, &P::step,
                                   &P::speed_error)},
           {"figure11", fig11},
