@@ -6,16 +6,22 @@
 #include <csignal>
 #include <filesystem>
 #include <iterator>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "equidem/core/error.hpp"
+#include "equidem/core/folder_lock.hpp"
 
 #include "support/catch.hpp"
+#include "support/fields.hpp"
 
 using namespace equidem;
+using equidem::test::refusal_of;
 namespace fs = std::filesystem;
 
 namespace {
@@ -141,4 +147,44 @@ TEST_CASE("a_place_without_permission_is_refused_before_the_work") {
 
 TEST_CASE("a_relative_path_without_a_folder_means_the_current_one") {
   CHECK_NOTHROW(check_writable("equidem-test-file-that-does-not-exist", false));
+}
+
+TEST_CASE("a_folder_is_locked_once_and_free_again_when_the_lock_is_gone") {
+  const TemporaryFolder folder;
+  const auto out = folder.path() / "deep/out";
+  std::optional<FolderLock> lock(out);
+  CHECK(std::filesystem::is_empty(out));
+  CHECK(refusal_of([&] { FolderLock second(out); }).says("/deep/out' is in use (another process of equidem"));
+  FolderLock moved = std::move(*lock);
+  lock.reset();
+  CHECK(refusal_of([&] { FolderLock second(out); }).says("is in use"));
+  { const FolderLock taken = std::move(moved); }
+  CHECK(refusal_of([&] { FolderLock second(out); }).message.empty());
+}
+
+TEST_CASE("the_lock_of_a_killed_process_is_gone") {
+  const TemporaryFolder folder;
+  int ready[2] = {};
+  REQUIRE(pipe(ready) == 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    const FolderLock lock(folder.path());
+    static_cast<void>(!write(ready[1], "x", 1));
+    pause();
+    _exit(0);
+  }
+  char byte = 0;
+  REQUIRE(read(ready[0], &byte, 1) == 1);
+  CHECK(refusal_of([&] { FolderLock second(folder.path()); }).says("is in use"));
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  CHECK(refusal_of([&] { FolderLock second(folder.path()); }).message.empty());
+  close(ready[0]);
+  close(ready[1]);
+}
+
+TEST_CASE("what_is_no_folder_is_not_locked") {
+  const TemporaryFolder folder;
+  write_file(folder.path() / "file", "", false);
+  CHECK(refusal_of([&] { FolderLock lock(folder.path() / "file"); }).says("cannot open the folder"));
 }

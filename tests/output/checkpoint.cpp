@@ -50,23 +50,23 @@ TEST_CASE("a_checkpoint_reads_back_to_the_same_bits") {
     state["previous"].clear();  // an integrator may not need it
   }
   const CheckpointWriter writer(folder / "deep/run.checkpoint.h5", case_text, false);
-  writer.write(state);
+  writer.write({state});
   CHECK(same_bits(read_checkpoint(folder / "deep/run.checkpoint.h5", case_text).state, state));
-  writer.write(state_at(7, discs));
+  writer.write({state_at(7, discs)});
   CHECK(same_bits(read_checkpoint(folder / "deep/run.checkpoint.h5", case_text).state, state_at(7, discs)));
   CHECK(folder.files() == 2);  // the folder, and nothing besides the checkpoint
 }
 
 TEST_CASE("the_same_state_makes_the_same_checkpoint") {
   const TemporaryFolder folder;
-  CheckpointWriter(folder / "a.h5", case_text, false).write(state_at(5, 20));
-  CheckpointWriter(folder / "b.h5", case_text, false).write(state_at(5, 20));
+  CheckpointWriter(folder / "a.h5", case_text, false).write({state_at(5, 20)});
+  CheckpointWriter(folder / "b.h5", case_text, false).write({state_at(5, 20)});
   CHECK(read_file(folder / "a.h5") == read_file(folder / "b.h5"));
 }
 
 TEST_CASE("an_empty_case_has_a_checkpoint_too") {
   const TemporaryFolder folder;
-  CheckpointWriter(folder / "a.h5", "", false).write(state_at(5, 20));
+  CheckpointWriter(folder / "a.h5", "", false).write({state_at(5, 20)});
   CHECK(same_bits(read_checkpoint(folder / "a.h5", "").state, state_at(5, 20)));
   CHECK(refusal_of([&] { read_checkpoint(folder / "a.h5", case_text); }).says("line 1: nothing there"));
 }
@@ -76,7 +76,7 @@ TEST_CASE("killed_at_any_moment_the_last_checkpoint_is_good") {
   const TemporaryFolder folder;
   const auto path = folder / "run.checkpoint.h5";
   const CheckpointWriter writer(path, case_text, false);
-  writer.write(state_at(0, discs));
+  writer.write({state_at(0, discs)});
   Random random(3);
   std::int64_t last = 0;
   int left_behind = 0;
@@ -84,7 +84,7 @@ TEST_CASE("killed_at_any_moment_the_last_checkpoint_is_good") {
   for (int round = 0; round < 80; ++round) {
     kill_during(
         [&] {
-          for (std::int64_t step = last + 1;; ++step) writer.write(state_at(step, discs));
+          for (std::int64_t step = last + 1;; ++step) writer.write({state_at(step, discs)});
         },
         static_cast<unsigned>(random.below(longest)));
     left_behind += std::filesystem::exists(path.string() + ".part") ? 1 : 0;
@@ -103,7 +103,7 @@ TEST_CASE("killed_at_any_moment_the_last_checkpoint_is_good") {
 TEST_CASE("an_altered_checkpoint_is_refused_whatever_byte_it_is") {
   const TemporaryFolder folder;
   const auto path = folder / "run.checkpoint.h5";
-  CheckpointWriter(path, case_text, false).write(state_at(5, 12));
+  CheckpointWriter(path, case_text, false).write({state_at(5, 12)});
   const std::string good = read_file(path);
   OpenFile file(path, OpenFile::Mode::update);
   Random random(9);
@@ -124,7 +124,7 @@ TEST_CASE("an_altered_checkpoint_is_refused_whatever_byte_it_is") {
 TEST_CASE("a_truncated_checkpoint_is_refused") {
   const TemporaryFolder folder;
   const auto path = folder / "run.checkpoint.h5";
-  CheckpointWriter(path, case_text, false).write(state_at(5, 12));
+  CheckpointWriter(path, case_text, false).write({state_at(5, 12)});
   OpenFile file(path, OpenFile::Mode::update);
   const std::uint64_t whole = file.size();
   for (std::uint64_t size = whole; size-- > 0;) {
@@ -143,7 +143,7 @@ TEST_CASE("a_truncated_checkpoint_is_refused") {
 TEST_CASE("a_checkpoint_of_another_case_is_refused_with_what_differs") {
   const TemporaryFolder folder;
   const auto path = folder / "run.checkpoint.h5";
-  CheckpointWriter(path, case_text, false).write(state_at(5, 12));
+  CheckpointWriter(path, case_text, false).write({state_at(5, 12)});
   const auto message_for = [&](const std::string& other) {
     return refusal_of([&] { read_checkpoint(path, other); }).message;
   };
@@ -159,13 +159,13 @@ TEST_CASE("a_checkpoint_of_another_case_is_refused_with_what_differs") {
 TEST_CASE("a_checkpoint_of_another_version_is_refused") {
   const TemporaryFolder folder;
   const auto path = folder / "run.checkpoint.h5";
-  CheckpointWriter(path, case_text, false).write(state_at(5, 12));
+  CheckpointWriter(path, case_text, false).write({state_at(5, 12)});
   std::string text = read_file(path);
-  text.replace(text.find("/3\n"), 3, "/2\n");
+  text.replace(text.find("/4\n"), 3, "/3\n");
   write_file(path, text, true);
   const auto refusal = refusal_of([&] { read_checkpoint(path, case_text); });
   INFO(refusal.message);
-  CHECK(refusal.says("its format has version '2', and this library reads version 3"));
+  CHECK(refusal.says("its format has version '3', and this library reads version 4"));
 }
 
 TEST_CASE("what_is_no_checkpoint_is_refused") {
@@ -182,7 +182,7 @@ TEST_CASE("what_is_no_checkpoint_is_refused") {
   CHECK_THAT(message_of("absent"), Catch::Contains("there is no such file"));
 }
 
-TEST_CASE("a_checkpoint_holds_its_case_and_the_record_of_the_run_so_far") {
+TEST_CASE("a_checkpoint_holds_its_case_the_record_of_the_run_so_far_and_the_marks_of_its_files") {
   const TemporaryFolder folder;
   const auto path = folder / "run.checkpoint.h5";
   const CheckpointWriter writer(path, case_text, false);
@@ -190,15 +190,28 @@ TEST_CASE("a_checkpoint_holds_its_case_and_the_record_of_the_run_so_far") {
   for (const std::int64_t count : {0, 1, 5}) {
     CAPTURE(count, bodies);
     RunRecord record;
+    std::vector<FileMark> files;
+    if (count > 1) {
+      record.recorded = {{"throws", 3, {4, 7, 0.1}}, {"none", 2, {}}};
+      files = {{"history.csv", 123456789012, UINT64_MAX}, {"frames.h5", 0, 17}};
+    }
     for (std::int64_t k = 0; k < count; ++k) {
       record.energies.push_back({8 * k, 0.1 * static_cast<double>(k), ledger_at(k)});
       if (bodies > 0) record.paths.emplace_back(bodies, Vec2{static_cast<double>(k), 1.0 / 7});
     }
-    writer.write(state_at(5, 12), record);
+    writer.write({state_at(5, 12), record, files});
     CHECK(case_of_checkpoint(path) == case_text);
     const Checkpoint read = read_checkpoint(path, case_text);
     CHECK(same_bits(read.state, state_at(5, 12)));
     CHECK(read.record.paths == record.paths);
+    CHECK(read.record.recorded == record.recorded);
+    REQUIRE(read.files.size() == files.size());
+    for (const FileMark& mark : files) {
+      CHECK(read.mark_of(mark.name).length == mark.length);
+      CHECK(read.mark_of(mark.name).checksum == mark.checksum);
+    }
+    CHECK(
+        refusal_of([&] { static_cast<void>(read.mark_of("measures.csv")); }).says("cannot go on with 'measures.csv'"));
     REQUIRE(read.record.energies.size() == record.energies.size());
     for (std::size_t k = 0; k < record.energies.size(); ++k) {
       CHECK(read.record.energies[k].step == record.energies[k].step);
@@ -214,9 +227,9 @@ TEST_CASE("a_full_disk_leaves_the_last_checkpoint") {
   const TemporaryFolder folder;
   const auto path = folder / "run.checkpoint.h5";
   const CheckpointWriter writer(path, case_text, false);
-  writer.write(state_at(5, 1000));
+  writer.write({state_at(5, 1000)});
   const std::uint64_t limit = GENERATE(100, 3000, 20000, 70000);
-  const std::string message = error_on_full_disk([&] { writer.write(state_at(6, 1000)); }, limit);
+  const std::string message = error_on_full_disk([&] { writer.write({state_at(6, 1000)}); }, limit);
   CAPTURE(limit, message);
   CHECK(message.find("cannot write '") == 0);
   CHECK(read_checkpoint(path, case_text).state.step == 5);

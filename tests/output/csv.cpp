@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstdint>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
@@ -14,8 +17,10 @@
 
 #include "output/states.hpp"
 #include "support/catch.hpp"
+#include "support/fields.hpp"
 
 using namespace equidem;
+using equidem::test::refusal_of;
 
 namespace {
 
@@ -72,6 +77,34 @@ TEST_CASE("csv_quotes_only_where_it_must") {
                           .add("with, comma", std::vector<std::string>{"line\nbreak", ""})
                           .add("number", std::vector<double>{std::nan(""), INFINITY});
   CHECK(table.csv() == "plain,\"with, comma\",number\nstable,\"line\nbreak\",nan\n\"a \"\"b\"\"\",,inf\n");
+}
+
+TEST_CASE("a_table_of_samples_reads_back_or_is_refused") {
+  const TemporaryFolder folder;
+  const auto path = folder / "samples.csv";
+  const auto table = [](std::vector<double> values, std::vector<std::string> messages) {
+    return Table().add("value", std::move(values)).add("message", std::move(messages));
+  };
+  write_samples(path, table({0.1, -2e-300, std::nan("")}, {"", "a, \"b\"\nc", "failed"}));
+  const std::string good = read_file(path);
+  const auto read = [&](const std::string& text) {
+    write_file(path, text, true);
+    return StoredTable(path, table({}, {}), "sweep", "Start afresh");
+  };
+  CHECK(read(good).rows() == 3);
+  CHECK(read(good).number(1, 0) == -2e-300);
+  CHECK(read(good).text(1, 1) == "a, \"b\"\nc");
+  CHECK(refusal_of([&] { read(good.substr(0, good.rfind(',') + 9)); }).says("line 4 was altered since it was written"));
+  CHECK(refusal_of([&] { read("value,message\n0.1,\n"); }).says("its columns are those of another sweep"));
+  for (std::size_t at = 0; at < good.size(); ++at) {
+    for (const unsigned bit : {0U, 5U}) {
+      std::string bad = good;
+      bad[at] = static_cast<char>(bad[at] ^ static_cast<char>(1U << bit));
+      const auto refusal = refusal_of([&] { read(bad); });
+      CAPTURE(at, bit, bad);
+      REQUIRE(refusal.says("samples.csv: the samples to continue cannot be read"));
+    }
+  }
 }
 
 TEST_CASE("a_table_refuses_columns_it_cannot_hold") {

@@ -161,6 +161,7 @@ TEST_CASE("a_killed_run_leaves_all_finished_frames_readable") {
     const TemporaryFolder folder;
     FrameWriter writer(folder.path(), "run", assembly, {.expected = 2});
     append(writer, assembly, 0);
+    const FileMark mark = writer.mark();
     kill_during(
         [&] {
           for (std::int64_t step = 1;; ++step) append(writer, assembly, step);
@@ -182,12 +183,12 @@ TEST_CASE("a_killed_run_leaves_all_finished_frames_readable") {
     least = std::min(least, found.finished);
     if (found.finished == 1) longest = std::min<std::uint64_t>(longest + longest / 4, 300000);
 
-    FrameWriter resumed(folder.path(), "run", assembly, {.continue_after = found.finished - 1});
-    CHECK(resumed.frames() == found.finished);
-    append(resumed, assembly, found.finished);
+    FrameWriter resumed(folder.path(), "run", assembly, {.continue_from = mark});
+    CHECK(resumed.frames() == 1);
+    append(resumed, assembly, 1);
     resumed.finish();
     const FoundFrames whole = read_frames(folder / "run.h5", assembly.size());
-    CHECK(whole.finished == found.finished + 1);
+    CHECK(whole.finished == 2);
     CHECK(whole.room == static_cast<std::uint64_t>(whole.finished));
     CHECK(whole.wrong == 0);
   }
@@ -197,16 +198,20 @@ TEST_CASE("a_killed_run_leaves_all_finished_frames_readable") {
 
 TEST_CASE("a_run_that_goes_on_drops_later_frames") {
   const Assembly assembly = block();
-  const std::int64_t after = GENERATE(-1, 0, 14, 15, 99);
-  CAPTURE(after);
+  const std::int64_t kept = GENERATE(0, 1, 4, 5);
+  CAPTURE(kept);
   const TemporaryFolder folder;
+  FileMark mark;
   {
     FrameWriter writer(folder.path(), "run", assembly, {.expected = 8});
-    for (const std::int64_t step : {0, 5, 10, 15, 20}) append(writer, assembly, step);
+    mark = writer.mark();
+    for (const std::int64_t step : {0, 5, 10, 15, 20}) {
+      append(writer, assembly, step);
+      if (writer.frames() == kept) mark = writer.mark();
+    }
   }
-  const std::int64_t kept = after < 0 ? 0 : std::min<std::int64_t>(after / 5 + 1, 5);
   {
-    FrameWriter writer(folder.path(), "run", assembly, {.continue_after = after});
+    FrameWriter writer(folder.path(), "run", assembly, {.continue_from = mark});
     CHECK(writer.frames() == kept);
     CHECK(writer.last_step() == (kept == 0 ? -1 : 5 * (kept - 1)));
     const FoundFrames found = read_frames(folder / "run.h5", assembly.size());
@@ -247,25 +252,63 @@ TEST_CASE("frames_of_another_assembly_are_refused") {
   moved.centres[7].x = std::nextafter(moved.centres[7].x, 1.0);
   Assembly other = hexagonal_lattice({.columns = 7, .rows = 5});
   const TemporaryFolder folder;
+  FileMark mark;
   {
     FrameWriter writer(folder.path(), "run", assembly, {});
     append(writer, assembly, 0);
+    mark = writer.mark();
   }
   const auto go_on = [&](const std::string& name, const Assembly& with) {
-    return refusal_of([&] { FrameWriter(folder.path(), name, with, {.continue_after = 0}); });
+    return refusal_of([&] { FrameWriter(folder.path(), name, with, {.continue_from = mark}); });
   };
   write_file(folder / "text.h5", "no HDF5", false);
   const std::string whole = read_file(folder / "run.h5");
   write_file(folder / "cut.h5", std::string_view(whole).substr(0, whole.size() / 2), false);
   write_hdf5_layout(folder / "foreign.h5", {.attributes = {}, .arrays = {{"x", Hdf5Number::float64, {3}}}});
 
-  CHECK(go_on("run", moved).says("its discs have other places or radii"));
-  CHECK(go_on("run", other).says("is not that of an assembly of"));
-  CHECK(go_on("text", assembly).says("the HDF5 library cannot open it"));
-  CHECK(go_on("cut", assembly).says("the HDF5 library cannot open it"));
-  CHECK(go_on("foreign", assembly).says("it has no array 'discs/centre'"));
+  CHECK(go_on("run", moved).says("its discs are others"));
+  CHECK(go_on("run", other).says(fmt::format("it has {} discs, not {}", assembly.size(), other.size())));
+  CHECK(go_on("text", assembly).says("it holds no frames"));
+  CHECK(go_on("cut", assembly).says("it ends after"));
+  CHECK(go_on("foreign", assembly).says("it holds no frames"));
   CHECK(go_on("absent", assembly).says("there is no such file"));
   CHECK(go_on("run", assembly).message.empty());
+}
+
+TEST_CASE("damaged_frames_are_refused_or_damaged_in_nothing_that_counts") {
+  Assembly assembly;
+  assembly.centres = {{0, 0}, {2, 0}};
+  assembly.radii = {1, 1};
+  assembly.contacts = {{.i = 0, .j = 1}};
+  const TemporaryFolder folder;
+  const auto path = folder / "run.h5";
+  FileMark mark;
+  {
+    FrameWriter writer(folder.path(), "run", assembly, {.expected = 5});
+    for (std::int64_t step = 0; step < 5; ++step) append(writer, assembly, step);
+    mark = writer.mark();
+  }
+  const std::string good = read_file(path);
+  Random random(12);
+  std::int64_t refused = 0;
+  for (std::size_t at = 0; at < good.size(); at += 29) {  // 29: all bytes of a double in turn
+    std::string bad = good;
+    bad[at] = static_cast<char>(bad[at] ^ static_cast<char>(1U << random.below(8)));
+    write_file(path, bad, true);
+    const auto refusal =
+        refusal_of([&] { FrameWriter(folder.path(), "run", assembly, {.continue_from = mark}).finish(); });
+    CAPTURE(at, refusal.message);
+    const bool same = read_file(path) == good;
+    REQUIRE(same == refusal.message.empty());
+    refused += same ? 0 : 1;
+  }
+  CHECK(refused > 5 * 2 * 8 * 8 / 29);  // the numbers of all frames, and more
+  for (std::size_t size = 0; size < good.size(); size += 371) {
+    write_file(path, good.substr(0, size), true);
+    CAPTURE(size);
+    REQUIRE(refusal_of([&] { FrameWriter(folder.path(), "run", assembly, {.continue_from = mark}); }).kind ==
+            ErrorKind::bad_input);
+  }
 }
 
 TEST_CASE("frames_are_not_overwritten_unasked") {

@@ -46,12 +46,15 @@ TEST_CASE("frames_of_travelling_bodies_hold_their_places") {
     assembly.centres.push_back(grain.position);
     assembly.radii.push_back(grain.radius);
   }
+  FileMark mark;
   {
     FrameWriter writer(folder.path(), "frames", assembly, {.expected = 1, .travelling = true});
-    for (std::int64_t step : {0, 4, 9}) writer.append(step, time_at(step), motions_at(step, 3), velocities_at(step, 3));
+    for (std::int64_t step : {0, 4, 9})
+      writer.append(step, time_at(step), motions_at(step, 3), velocities_at(step, 3), step < 9);
+    mark = writer.mark();
     writer.finish();
   }
-  FrameWriter again(folder.path(), "frames", assembly, {.expected = 1, .travelling = true, .continue_after = 4});
+  FrameWriter again(folder.path(), "frames", assembly, {.expected = 3, .travelling = true, .continue_from = mark});
   CHECK(again.frames() == 2);
   const Hdf5Layout layout = read_hdf5_layout(folder / "frames.h5", {"position", "angle", "velocity", "spin"});
   CHECK(layout["position"].shape == std::vector<std::uint64_t>{3, 3, 3});
@@ -81,21 +84,23 @@ TEST_CASE("a_growing_table_goes_on_where_the_run_is") {
   const TemporaryFolder folder;
   const auto path = folder / "history.csv";
   const std::vector<std::string> columns{"step", "time_s", "x_m"};
+  FileMark mark;
   {
     GrowingCsv table(path, columns, {});
-    for (std::int64_t step : {0, 3, 6}) table.add(step, {time_at(step), 0.5});
+    for (std::int64_t step : {0, 3, 6}) table.add(step, {time_at(step), 0.5}, step < 6);
+    mark = table.mark();
   }
   const std::string whole = read_file(path);
   CHECK(whole == "step,time_s,x_m\n0,0,0.5\n3,3.0000000000000004e-05,0.5\n6,6.000000000000001e-05,0.5\n");
   write_file(path, whole + "9,1", true);  // cut short
   {
-    GrowingCsv table(path, columns, {.continue_after = 3});
+    GrowingCsv table(path, columns, {.continue_from = mark});
     CHECK(table.last_step() == 3);
     table.add(6, {time_at(6), 0.5});
   }
   CHECK(read_file(path) == whole);
   CHECK(refusal_of([&] { GrowingCsv(path, columns, {}); }).says("history.csv"));
-  CHECK(refusal_of([&] { GrowingCsv(path, {"step", "y_m"}, {.continue_after = 3}); }).says("its columns are"));
+  CHECK(refusal_of([&] { GrowingCsv(path, {"step", "y_m"}, {.continue_from = mark}); }).says("its columns are"));
 }
 
 TEST_CASE("tables_of_grains_and_contacts_have_a_row_for_each") {

@@ -126,11 +126,14 @@ TEST_CASE("histories_of_a_resumed_run_are_those_of_an_uninterrupted_one") {
   Random random(5);
   for (int round = 0; round < 30; ++round) {
     CAPTURE(round);
+    FileMark mark;
     {
       ProbeWriter writer(path, probes, discs, {.overwrite = true});
       for (std::int64_t step = 0; step <= 300; ++step) {
         record(writer, step);
-        if (step == checkpoint) writer.sync();
+        if (step != checkpoint) continue;
+        writer.sync();
+        mark = writer.mark();
       }
     }
     if (round > 0) {  // killed while it wrote: cut at any place after the checkpoint
@@ -138,7 +141,7 @@ TEST_CASE("histories_of_a_resumed_run_are_those_of_an_uninterrupted_one") {
       const std::size_t safe = text.find(fmt::format("\n{},", checkpoint + 1)) + 1;
       std::filesystem::resize_file(path, safe + random.below(text.size() - safe));
     }
-    ProbeWriter writer(path, probes, discs, {.continue_after = checkpoint});
+    ProbeWriter writer(path, probes, discs, {.continue_from = mark});
     CHECK(writer.last_step() == checkpoint);
     for (std::int64_t step = checkpoint + 1; step <= 500; ++step) record(writer, step);
     writer.flush();
@@ -151,31 +154,66 @@ TEST_CASE("killed_at_any_moment_histories_can_go_on") {
   const auto path = folder / "probes.csv";
   Random random(6);
   for (int round = 0; round < 20; ++round) {
-    { ProbeWriter writer(path, probes, discs, {.overwrite = true}); }
+    FileMark mark;
+    {
+      ProbeWriter writer(path, probes, discs, {.interval = 0, .overwrite = true});
+      for (std::int64_t step = 0; step < 5; ++step) record(writer, step);
+      mark = writer.mark();
+      for (std::int64_t step = 5; step < 9; ++step) record(writer, step);
+    }
     kill_during(
         [&] {
-          ProbeWriter writer(path, probes, discs, {.interval = 0, .continue_after = 0});
-          for (std::int64_t step = 0;; ++step) record(writer, step);
+          ProbeWriter writer(path, probes, discs, {.interval = 0, .continue_from = mark});
+          for (std::int64_t step = 5;; ++step) record(writer, step);
         },
         static_cast<unsigned>(random.below(10000)));
-    ProbeWriter writer(path, probes, discs, {.continue_after = INT64_MAX});
-    const auto steps = steps_in(path);
-    CAPTURE(round, steps.size());
-    for (std::size_t k = 0; k < steps.size(); ++k) REQUIRE(steps[k] == static_cast<std::int64_t>(k));
+    ProbeWriter writer(path, probes, discs, {.continue_from = mark});
+    writer.flush();
+    CHECK(steps_in(path) == std::vector<std::int64_t>{0, 1, 2, 3, 4});
   }
 }
 
 TEST_CASE("histories_with_other_columns_are_refused") {
   const TemporaryFolder folder;
   const auto path = folder / "probes.csv";
-  { ProbeWriter writer(path, probes, discs, {}); }
+  const FileMark mark = ProbeWriter(path, probes, discs, {}).mark();
   const auto go_on = [&](const std::vector<Probe>& with) {
-    return refusal_of([&] { ProbeWriter(path, with, discs, {.continue_after = 0}); });
+    return refusal_of([&] { ProbeWriter(path, with, discs, {.continue_from = mark}); });
   };
   CHECK(go_on({probes[0]}).says("its columns are 'step,time_s,top_ux_m"));
   CHECK(go_on(probes).message.empty());
-  write_file(path, read_file(path) + "0,1\nzero,1\n", true);
-  CHECK(go_on(probes).says("'zero,1' is no row of it"));
+}
+
+TEST_CASE("a_damaged_history_is_refused_and_stays_as_it_is") {
+  const TemporaryFolder folder;
+  const auto path = folder / "probes.csv";
+  FileMark mark;
+  {
+    ProbeWriter writer(path, probes, discs, {});
+    for (std::int64_t step = 0; step < 4; ++step) record(writer, step);
+    mark = writer.mark();
+    writer.record(5, time_at(5), motions_at(5, discs), velocities_at(5, discs), ledger_at(5), false);
+    CHECK(writer.mark().length == mark.length);
+  }
+  const std::string good = read_file(path);
+  REQUIRE(good.size() > mark.length);
+  const auto refusal = [&](const std::string& text) {
+    write_file(path, text, true);
+    auto refused = refusal_of([&] { ProbeWriter(path, probes, discs, {.continue_from = mark}); });
+    CHECK(read_file(path) == text);
+    return refused;
+  };
+  for (std::size_t at = 0; at < mark.length; at += 13) {
+    std::string bad = good;
+    bad[at] = static_cast<char>(bad[at] ^ 1);
+    CAPTURE(at);
+    REQUIRE(refusal(bad).says("probes.csv' (it was altered since it was written"));
+    REQUIRE(refusal(good.substr(0, at)).says("it is truncated"));
+  }
+  CHECK(refusal(good.substr(0, mark.length)).message.empty());
+  CHECK(refusal(good.substr(0, mark.length) + "5,1\nzero,1\n").message.empty());
+  std::filesystem::remove(path);
+  CHECK(refusal_of([&] { ProbeWriter(path, probes, discs, {.continue_from = mark}); }).says("there is no such file"));
 }
 
 TEST_CASE("probes_that_cannot_measure_are_refused") {

@@ -95,6 +95,11 @@ void print(const std::string& text) {
     bad_input("cannot write to stdout", std::strerror(errno), "Send the output somewhere that has room for it");
 }
 
+std::optional<FolderLock> lock_out(const CommonOptions& options) {
+  if (!options.out || options.dry_run) return std::nullopt;
+  return FolderLock(*options.out);
+}
+
 void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times) {
   Results all;
   if (status == "unstable") all.line("UNSTABLE", "any disturbance would grow: what follows is no state of rest");
@@ -126,6 +131,22 @@ void deliver(const CommonOptions& options, const std::string& status, const Resu
     computation_failed(fmt::format("the assembly is not stable: its status is \"{}\"", status),
                        "--require-stable was given", "Raise kT, hold more discs, or leave the option out");
   }
+}
+
+void deliver(const CommonOptions& options, const std::string& status, Results results, StageTimes times,
+             const std::function<void(Results&)>& write_files) {
+  CommonOptions delivered = options;
+  std::optional<Error> failure;
+  const Stopwatch watch;
+  try {
+    write_files(results);
+  } catch (const Error& error) {
+    failure = error;
+    delivered.out.reset();
+  }
+  if (options.out) times.add("files", watch.seconds());
+  deliver(delivered, status, results, times);
+  if (failure) throw *failure;
 }
 
 void throw_stopped(const CommonOptions& options, const std::string& done, const std::string& again) {

@@ -5,12 +5,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/folder_lock.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/output/files/json.hpp"
 #include "equidem/output/results.hpp"
@@ -74,12 +76,21 @@ class OutputPlan {
   const CommonOptions& options_;
 };
 
+/// Keeps other processes from --out until the end of a verb, also from what it reads there; none without --out or on a
+/// dry run.
+/// \throws Error (bad_input) where another process has the folder
+[[nodiscard]] std::optional<FolderLock> lock_out(const CommonOptions& options);
+
 /// Report and JSON of a list of results, with the times of the stages: the report to stdout, unless quiet or --json is
 /// "-"; the JSON to --json and OUT/result.json; then the folder on stderr. A dry run does not write to the folder.
 /// \param status the first key of the JSON: "solved", "dry_run", ...
 /// \throws Error (bad_input) where they cannot be written; (computation_failed) afterwards with --require-stable, where
 ///         the status is "unstable", "unjudged" or "mechanism"
 void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times);
+/// Write files, which may add to the results, then deliver. Where a file cannot be written (the disk is full), report
+/// and --json are delivered before the error is thrown.
+void deliver(const CommonOptions& options, const std::string& status, Results results, StageTimes times,
+             const std::function<void(Results&)>& write_files);
 
 /// case.toml in --out, if there is one, which reproduces the computation.
 /// \param resolved a Case or the document of another kind of case

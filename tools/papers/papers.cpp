@@ -23,21 +23,25 @@ Run declare_with_quick(CLI::App& command, const std::string& footer,
   return [options, reproduce] { return reproduce(options->common, options->quick); };
 }
 
-void start_paper(const CommonOptions& options, const std::vector<std::string>& plots,
-                 const std::vector<std::string>& files) {
+std::optional<FolderLock> start_paper(const CommonOptions& options, const std::vector<std::string>& plots,
+                                      const std::vector<std::string>& files) {
   prepare(options);
   const OutputPlan plan(options);
   plan.expect_json();
   for (const std::string& name : plots) plan.expect_plot(name);
   for (const std::string& name : files) plan.expect(name);
   for (const char* name : {"report.txt", "result.json"}) plan.expect(name);
+  return lock_out(options);
 }
 
 int finish_paper(const CommonOptions& options, const PaperResult& result) {
-  std::string text = result.report;
-  StageTimes times = result.times;
-  if (options.out) {
-    Stopwatch watch;
+  const std::string& text = result.report;
+  Results results, effects;
+  add_effects(effects, result.effects);
+  results.block(text).set("paper", result.paper).append(effects.hidden());
+  result.add_numbers(results);
+  deliver(options, result.status, std::move(results), result.times, [&](Results& out) {
+    if (!options.out) return;
     write_file(*options.out / "report.txt", text, options.overwrite);
     for (const auto& [name, table] : result.tables) write_csv(*options.out / (name + ".csv"), table, options.overwrite);
     std::string failure;
@@ -46,14 +50,8 @@ int finish_paper(const CommonOptions& options, const PaperResult& result) {
       if (!written.drawn) failure = written.message;
     }
     const std::string plots = counted(static_cast<long long>(result.plots.size()), "plot");
-    text += "\n" + (failure.empty() ? fmt::format("{} in '{}'", plots, options.out->string()) : failure) + "\n";
-    times.add("files", watch.lap());
-  }
-  Results results, effects;
-  add_effects(effects, result.effects);
-  results.block(text).set("paper", result.paper).append(effects.hidden());
-  result.add_numbers(results);
-  deliver(options, result.status, results, times);
+    out.block("\n" + (failure.empty() ? fmt::format("{} in '{}'", plots, options.out->string()) : failure) + "\n");
+  });
   return 0;
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,9 +42,10 @@ Run declare_with_quick(CLI::App& command, const std::string& footer,
 
 /// Apply threads and quiet, and check before the computation that every file of it can be written.
 /// \param files beside report.txt and result.json
+/// \return lock_out, to be kept until finish_paper
 /// \throws Error (bad_input) where a file cannot be written
-void start_paper(const CommonOptions& options, const std::vector<std::string>& plots,
-                 const std::vector<std::string>& files);
+[[nodiscard]] std::optional<FolderLock> start_paper(const CommonOptions& options, const std::vector<std::string>& plots,
+                                                    const std::vector<std::string>& files);
 
 /// Results of the computation of a paper.
 struct PaperResult {

@@ -49,10 +49,11 @@ const MeasuredMoment& BoxMeasures::before() const {
   return *(later - 1);
 }
 
-void BoxMeasures::restore(std::vector<MeasuredMoment> moments, SurfaceProfile before,
+void BoxMeasures::restore(std::vector<MeasuredMoment> moments, const std::vector<SurfaceProfile>& profiles,
                           std::vector<std::optional<FirstThrow>> throws) {
   moments_ = std::move(moments);
-  before_ = std::move(before);
+  before_ = profiles.at(static_cast<std::size_t>(&before() - moments_.data()));
+  last_ = profiles.back();
   throws_ = std::move(throws);
 }
 

@@ -70,8 +70,9 @@ class BoxMeasures {
   /// \param grains in the order of the scene
   const MeasuredMoment& record(std::int64_t step, double time, const std::vector<Grain>& grains);
   /// Continue the history of an earlier run.
-  /// \param before surface at the last moment before the shaking
-  void restore(std::vector<MeasuredMoment> moments, SurfaceProfile before,
+  /// \param moments at least one
+  /// \param profiles of the surface at the moments
+  void restore(std::vector<MeasuredMoment> moments, const std::vector<SurfaceProfile>& profiles,
                std::vector<std::optional<FirstThrow>> throws);
 
   [[nodiscard]] const MeasureOptions& options() const { return options_; }  ///< columns chosen

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -113,6 +114,7 @@ Problem problem_with_material(Case resolved) {
 int calibrate(const CalibrateVerb& options) {
   const CommonOptions& common = options.common;
   check_outputs(options);
+  const auto lock = lock_out(common);
   Problem problem = problem_with_material(read_case(common));
   const Case& resolved = problem.resolved;
   if (common.dry_run) return dry_run_calibration(common, problem);
@@ -131,16 +133,16 @@ int calibrate(const CalibrateVerb& options) {
 
   const std::string file = text_of_springs(resolved, problem.assembly, found);
   const auto path = options.springs_path();
-  if (path) write_file(*path, file, common.overwrite);
-  write_case(common, resolved);
-
   Results results = calibrated_results(problem, found, guess);
   if (path) {
     results.line("springs file").add("springs_file", "", path->string());
   } else {
     results.block("\nsprings file (--springs FILE writes it):\n" + file + "\n").set("springs_file", nullptr);
   }
-  deliver(common, "calibrated", results, times);
+  deliver(common, "calibrated", std::move(results), std::move(times), [&](Results&) {
+    if (path) write_file(*path, file, common.overwrite);
+    write_case(common, resolved);
+  });
   if (path) say(common, fmt::format("springs written to {}", path->string()));
   return 0;
 }

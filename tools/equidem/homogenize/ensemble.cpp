@@ -120,14 +120,14 @@ Results cell_results(const Case& resolved, std::int64_t discs, std::uint64_t see
 
 void deliver_ensemble(const CommonOptions& options, const EnsembleResult& result, Results results,
                       const std::string& status, StageTimes times) {
-  if (options.out && status != "interrupted") {
-    const Stopwatch watch;
+  const bool complete = status != "interrupted";
+  results.set("complete", complete);
+  deliver(options, status, std::move(results), std::move(times), [&](Results& out) {
+    if (!options.out || !complete) return;
     write_csv(*options.out / statistics_name, statistics_table(result.statistics), true);
     for (const auto& [name, plot] : ensemble_plots(result))
-      results.block(write_plot(*options.out, name, plot, true).message + "\n");
-    times.add("files", watch.seconds());
-  }
-  deliver(options, status, results.set("complete", status != "interrupted"), times);
+      out.block(write_plot(*options.out, name, plot, true).message + "\n");
+  });
 }
 
 int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool resume) {
@@ -142,12 +142,13 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
   CommonOptions written = options;
   written.overwrite = options.overwrite || resume;
   check_ensemble_outputs(written);
+  const auto lock = lock_out(options);
   const std::vector<EnsembleSample> kept = samples_to_keep(options, resume);
 
   const auto& folder = options.out;
   write_case(options, resolved);
   const auto save = [&](const std::vector<EnsembleSample>& done) {
-    if (folder) write_csv(*folder / "samples.csv", samples_table(with_kept(done, kept)), true);
+    if (folder) write_samples(*folder / "samples.csv", samples_table(with_kept(done, kept)));
   };
   StageTimes times;
   Stopwatch watch;

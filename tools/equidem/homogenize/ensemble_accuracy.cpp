@@ -67,13 +67,14 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
                  "Set assembly.periodic = true");
   }
   check_ensemble_outputs(options);
+  const auto lock = lock_out(options);
   const EnsembleAccuracy wanted{.accuracy = accuracy,
                                 .confidence = resolved.ensemble.value_or(EnsembleCase{}).confidence,
                                 .first_seed = resolved.assembly.delaunay.seed};
   Results results = cell_results(resolved, wanted.smallest, wanted.first_seed);
   const auto& folder = options.out;
   const auto save = [&](const std::vector<EnsembleSample>& done) {
-    if (folder) write_csv(*folder / "samples.csv", samples_table(done), true);
+    if (folder) write_samples(*folder / "samples.csv", samples_table(done));
   };
   StageTimes times;
   Stopwatch watch;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -122,6 +123,7 @@ int homogenize(const HomogenizeVerb& options) {
   if (options.resume)
     bad_input("--resume has nothing to continue", "the case has no [ensemble]", "Leave it out, or add [ensemble]");
   check_outputs(common, resolved.output);
+  const auto lock = lock_out(common);
   const Problem problem = problem_of(std::move(resolved));
   if (common.dry_run) return dry_run_homogenization(common, problem);
 
@@ -133,12 +135,6 @@ int homogenize(const HomogenizeVerb& options) {
   if (options.accuracy)
     reached = solver_accuracy(*options.accuracy, result.error_bound / largest_entry(result.stiffness), result.condition,
                               times.total());
-  if (common.out) {
-    Stopwatch watch;
-    write_states(common, problem, result);
-    write_case(common, problem.resolved);
-    times.add("files", watch.lap());
-  }
   Results results = homogenized_results(problem, homogenized, relation_of(problem));
   results.set("strain_of_states", written_strain);
   if (reached) results.append(accuracy_results(*reached));
@@ -150,7 +146,11 @@ int homogenize(const HomogenizeVerb& options) {
           result.unstable_modes > 0   ? "unstable"
           : result.unstable_modes < 0 ? "unjudged"
                                       : "solved",
-          results, times);
+          std::move(results), std::move(times), [&](Results&) {
+            if (!common.out) return;
+            write_states(common, problem, result);
+            write_case(common, problem.resolved);
+          });
   return 0;
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <utility>
+
 #include <CLI/CLI.hpp>
 
 #include "equidem/assembly/files.hpp"
@@ -78,6 +80,7 @@ int run(const CommonOptions& common) {
     deliver(common, "dry_run", pack_case_results(resolved).set("grains", resolved.packing.radii.size()), {});
     return 0;
   }
+  const auto lock = lock_out(common);
   StageTimes times;
   Stopwatch watch;
   const GrainPacking packing = located(resolved, "method", [&] { return pack(resolved.packing); });
@@ -86,10 +89,10 @@ int run(const CommonOptions& common) {
   times.add("measures", watch.lap());
   const RestConfirmation rest = confirm_rest(packing, resolved.packing.settling);
   times.add("statics", watch.lap());
-  if (common.out) write_files(common, resolved, packing);
-  write_case(common, resolved.document);
-  times.add("files", watch.lap());
-  deliver(common, "done", packing_results(resolved, packing, measures, rest), times);
+  deliver(common, "done", packing_results(resolved, packing, measures, rest), std::move(times), [&](Results&) {
+    if (common.out) write_files(common, resolved, packing);
+    write_case(common, resolved.document);
+  });
   return 0;
 }
 

@@ -45,14 +45,11 @@ bool step_through(const RunVerb& options, RunJob& job, StepSearch* search = null
     return false;
   StageTimes times = job.times();
   times.add("steps", result.seconds);
-  if (common.out) {
-    const Stopwatch watch;
-    job.write_files(*common.out, result, common.overwrite || options.resume);
-    times.add("files", watch.seconds());
-  }
   Results results = run_results(job, plan, result);
   if (search != nullptr) results.append(accuracy_results(search->reached()));
-  deliver(common, "done", results, times);
+  deliver(common, "done", std::move(results), std::move(times), [&](Results&) {
+    if (common.out) job.write_files(*common.out, result, common.overwrite || options.resume);
+  });
   return true;
 }
 
@@ -61,8 +58,11 @@ void relax_to_rest(const RunVerb& options, RunJob& job) {
     bad_input("--resume of a run to rest", "it keeps no checkpoints: it ends where it ends", "Run it anew");
   }
   StageTimes times = job.times();
-  const Results results = job.relax(options.common.out.value_or(""), options.common.overwrite, times);
-  deliver(options.common, "at_rest", results, times);
+  Results results = job.relax(times);
+  const CommonOptions& common = options.common;
+  deliver(common, "at_rest", std::move(results), std::move(times), [&](Results&) {
+    if (common.out) job.write_files(*common.out, {}, common.overwrite);
+  });
 }
 
 int run_to_accuracy(RunVerb options, double accuracy) {
@@ -71,6 +71,7 @@ int run_to_accuracy(RunVerb options, double accuracy) {
     check_outputs(options, given);
     return StepSearch(options.common, accuracy, given);
   }();
+  const auto lock = lock_out(options.common);
   for (;;) {
     BondedRun job(search.propose());
     if (step_through(options, job, &search)) return 0;
@@ -114,6 +115,7 @@ int run(const RunVerb& options) {
   if (options.accuracy) return run_to_accuracy(options, *options.accuracy);
   const std::unique_ptr<RunJob> job = make_job(options, collide);
   check_outputs(options, *job);
+  const auto lock = lock_out(options.common);
   if (options.common.dry_run) {
     deliver(options.common, "dry_run", dry_run_results(*job), job->times());
   } else if (job->goes_to_rest()) {

@@ -236,16 +236,17 @@ void BondedRun::write_files(const std::filesystem::path& folder, const RunResult
       {"dissipated", PlotColour::orange, [](const EnergyLedger& l) { return l.lost(); }},
       {"put in", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.work(); }},
   };
+  if (goes_to_rest()) return write_state(folder, at_rest_, overwrite);
   write_state(folder, simulation_.motions(), overwrite);
   write_energy_plot(folder, "energy", problem_.resolved.title, Body::disc, result.record.energies, curves, overwrite);
 }
 
-Results BondedRun::relax(const std::filesystem::path& out, bool overwrite, StageTimes& times) {
+Results BondedRun::relax(StageTimes& times) {
   Stopwatch watch;
-  const Relaxation rest = equidem::relax(
+  Relaxation rest = equidem::relax(
       scene_, {.motion = run().motion, .rotation = problem_.resolved.rotation, .tolerance = *run().until_rest});
   times.add("relaxation", watch.lap());
-  if (!out.empty()) write_state(out, rest.motions, overwrite);
+  at_rest_ = std::move(rest.motions);
   return scene()
       .line("rest", rest.report())
       .set("steps", rest.steps)

@@ -55,7 +55,7 @@ class BondedRun final : public RunJob {
   [[nodiscard]] Results advice(const Balance& balance) const override;
   void write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const override;
   [[nodiscard]] bool goes_to_rest() const override { return run().until_rest.has_value(); }
-  Results relax(const std::filesystem::path& out, bool overwrite, StageTimes& times) override;
+  Results relax(StageTimes& times) override;
 
  private:
   /// The case text in a checkpoint: all data that affect the motion, including files that it names, without how long it
@@ -69,6 +69,7 @@ class BondedRun final : public RunJob {
   SimulationOptions options_;
   Simulation simulation_;
   RunawayWatch watch_;
+  std::vector<DiscMotion> at_rest_;  ///< after relax()
 };
 
 }  // namespace equidem

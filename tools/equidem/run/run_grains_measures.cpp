@@ -41,14 +41,13 @@ std::vector<double> cells_of(const MeasuredMoment& m) {
           static_cast<double>(m.outside)};
 }
 
-/// Rows of numbers of a table that the program wrote.
-std::vector<std::vector<double>> rows_of(const std::filesystem::path& path, std::size_t columns) {
-  auto cells = csv_cells(read_file(path));
+constexpr const char *table_name = "measures.csv", *profiles_name = "surface.csv";
+
+/// Rows of numbers of a table that a checkpoint counts on.
+std::vector<std::vector<double>> rows_of(const std::filesystem::path& folder, const FileMark& mark) {
+  const auto cells = csv_cells(read_marked(folder / mark.name, mark));
   std::vector<std::vector<double>> rows;
   for (std::size_t k = 1; k < cells.size(); ++k) {
-    if (cells[k].size() != columns)
-      bad_input(fmt::format("a row of '{}' has {} cells", path.string(), cells[k].size()),
-                fmt::format("the table has {} columns", columns), "Start the run afresh");
     rows.emplace_back();
     for (const std::string& cell : cells[k]) rows.back().push_back(csv_number(cell).value_or(not_measured));
   }
@@ -68,26 +67,25 @@ BoxMeasures measures_of(const GrainCase& resolved) {
 GrainMeasures::GrainMeasures(const GrainCase& resolved, const GrainSimulation& simulation)
     : resolved_(resolved), simulation_(simulation), measures_(measures_of(resolved)) {}
 
-void GrainMeasures::open(const std::filesystem::path& folder, bool overwrite,
-                         std::optional<std::int64_t> continue_after) {
+void GrainMeasures::open(const std::filesystem::path& folder, bool overwrite, const Checkpoint* from) {
   folder_ = folder;
-  if (continue_after) go_on(*continue_after);
-  check_writable(folder / "thrown.csv", overwrite || continue_after);
-  const GrowingCsvOptions options{.overwrite = overwrite, .continue_after = continue_after};
-  table_.emplace(folder / "measures.csv", columns_of_moments(), options);
+  check_writable(folder / "thrown.csv", overwrite || from != nullptr);
+  GrowingCsvOptions options{.overwrite = overwrite};
+  if (from != nullptr) options.continue_from = from->mark_of(table_name);
+  table_.emplace(folder / table_name, columns_of_moments(), options);
   std::vector<std::string> names{"step", "time_s"};
   const SurfaceProfile profile = measures_.empty_profile();
   for (std::size_t k = 0; k < measures_.options().columns; ++k)
     names.push_back(fmt::format("x_{:.6g}_m", profile.place(k)));
-  profiles_.emplace(folder / "surface.csv", names, options);
+  if (from != nullptr) options.continue_from = from->mark_of(profiles_name);
+  profiles_.emplace(folder / profiles_name, names, options);
+  if (from != nullptr) go_on(*from);
 }
 
-void GrainMeasures::go_on(std::int64_t after) {
+void GrainMeasures::go_on(const Checkpoint& from) {
   std::vector<MeasuredMoment> moments;
-  for (const auto& row : rows_of(folder_ / "measures.csv", columns_of_moments().size())) {
-    const auto step = static_cast<std::int64_t>(row[0]);
-    if (step > after) break;
-    moments.push_back({.step = step,
+  for (const auto& row : rows_of(folder_, from.mark_of(table_name))) {
+    moments.push_back({.step = static_cast<std::int64_t>(row[0]),
                        .time = row[1],
                        .void_ratio = row[2],
                        .porosity = row[3],
@@ -98,26 +96,27 @@ void GrainMeasures::go_on(std::int64_t after) {
                        .outside = static_cast<std::int64_t>(row[11])});
   }
   auto throws = measures_.throws();
-  for (const auto& row : rows_of(folder_ / "thrown.csv", 3)) {
-    const auto step = static_cast<std::int64_t>(row[1]);
-    if (step <= after) throws.at(static_cast<std::size_t>(row[0])) = FirstThrow{step, row[2]};
+  const std::vector<double>& thrown = from.record.recorded.front().values;
+  for (std::size_t k = 0; k < thrown.size(); k += 3) {
+    const auto step = static_cast<std::int64_t>(thrown[k + 1]);
+    if (step <= moments.back().step) throws[static_cast<std::size_t>(thrown[k])] = FirstThrow{step, thrown[k + 2]};
   }
-  measures_.restore(std::move(moments), {}, throws);
-  SurfaceProfile profile = measures_.empty_profile();
-  for (const auto& row : rows_of(folder_ / "surface.csv", measures_.options().columns + 2))
-    if (!measures_.moments().empty() && static_cast<std::int64_t>(row[0]) == measures_.before().step)
-      profile.heights = {row.begin() + 2, row.end()};
-  measures_.restore(measures_.moments(), profile, std::move(throws));
+  std::vector<SurfaceProfile> profiles;
+  for (const auto& row : rows_of(folder_, from.mark_of(profiles_name))) {
+    profiles.push_back(measures_.empty_profile());
+    profiles.back().heights = {row.begin() + 2, row.end()};
+  }
+  measures_.restore(std::move(moments), profiles, std::move(throws));
 }
 
-void GrainMeasures::record(std::int64_t step, double time) {
+void GrainMeasures::record(std::int64_t step, double time, bool regular) {
   const MeasuredMoment& moment = measures_.record(step, time, simulation_.grains());
   if (!table_) return;
-  table_->add(step, cells_of(moment));
+  table_->add(step, cells_of(moment), regular);
   std::vector<double> cells{time};
   const std::vector<double>& heights = measures_.surface().heights;
   cells.insert(cells.end(), heights.begin(), heights.end());
-  profiles_->add(step, cells);
+  profiles_->add(step, cells, regular);
 }
 
 void GrainMeasures::write_thrown() const {
@@ -133,11 +132,20 @@ void GrainMeasures::write_thrown() const {
   write_file(folder_ / "thrown.csv", text.text(), true);
 }
 
-void GrainMeasures::sync() {
-  if (!table_) return;
+void GrainMeasures::save(Checkpoint& checkpoint) {
   write_thrown();
   table_->sync();
   profiles_->sync();
+  checkpoint.files.push_back(table_->mark());
+  checkpoint.files.push_back(profiles_->mark());
+  SavedArray saved{.name = "throws", .columns = 3, .values = {}};
+  const auto& throws = measures_.throws();
+  for (std::size_t g = 0; g < throws.size(); ++g) {
+    if (!throws[g]) continue;
+    saved.values.insert(saved.values.end(),
+                        {static_cast<double>(g), static_cast<double>(throws[g]->step), throws[g]->time});
+  }
+  checkpoint.record.recorded.push_back(std::move(saved));
 }
 
 }  // namespace equidem

@@ -25,14 +25,13 @@ class GrainMeasures final : public RunRecorder {
   GrainMeasures(const GrainCase& resolved, const GrainSimulation& simulation);
 
   /// Write measures.csv, surface.csv and thrown.csv (when a body was first seen apart) into a folder.
-  /// \param continue_after continue the files of an earlier run
   /// \throws Error (bad_input) as GrowingCsv
-  void open(const std::filesystem::path& folder, bool overwrite, std::optional<std::int64_t> continue_after) override;
+  void open(const std::filesystem::path& folder, bool overwrite, const Checkpoint* from) override;
   [[nodiscard]] std::int64_t last_step() const override {
     return measures_.moments().empty() ? -1 : measures_.moments().back().step;
   }
-  void record(std::int64_t step, double time) override;
-  void sync() override;
+  void record(std::int64_t step, double time, bool regular) override;
+  void save(Checkpoint& checkpoint) override;
 
   /// measures: before and after, after the last step.
   [[nodiscard]] Results results() const;
@@ -40,7 +39,7 @@ class GrainMeasures final : public RunRecorder {
   void write_files(const std::filesystem::path& folder, bool overwrite) const;
 
  private:
-  void go_on(std::int64_t after);
+  void go_on(const Checkpoint& from);
   void write_thrown() const;
 
   const GrainCase& resolved_;

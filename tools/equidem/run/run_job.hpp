@@ -46,9 +46,8 @@ class RunJob {
 
   /// Whether the case asks for relaxation in place of steps.
   [[nodiscard]] virtual bool goes_to_rest() const { return false; }
-  /// Relax the scene to rest.
-  /// \param out folder of the state at rest; empty: nothing is written
-  virtual Results relax(const std::filesystem::path& /*out*/, bool /*overwrite*/, StageTimes& /*times*/) { return {}; }
+  /// Relax the scene to rest, the state that write_files() then writes.
+  virtual Results relax(StageTimes& /*times*/) { return {}; }
 };
 
 }  // namespace equidem

@@ -3,6 +3,7 @@
 /// equidem solve: equilibrium under supports and loads, or Abe's tension test.
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -80,17 +81,14 @@ bool solve_once(const CommonOptions& options, const Problem& problem, const std:
   } else if (accuracy) {
     reached = bound_of(results, *accuracy, times.total());
   }
-  Stopwatch watch;
-  if (options.out) {
+  Results all = solve_results(problem, solver.effects(), results);
+  if (reached) all.append(accuracy_results(*reached));
+  deliver(options, results.front().status(), std::move(all), std::move(times), [&](Results&) {
+    if (!options.out) return;
     for (std::size_t k = 0; k < results.size(); ++k)
       write_outputs(options, problem, problem.load_cases[k].loads, results[k]);
     write_case(options, problem.resolved);
-    times.add("files", watch.lap());
-  }
-
-  Results all = solve_results(problem, solver.effects(), results);
-  if (reached) all.append(accuracy_results(*reached));
-  deliver(options, results.front().status(), all, times);
+  });
   return true;
 }
 
@@ -98,6 +96,7 @@ int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
   refuse_dry_run_with_accuracy(options, accuracy.has_value());
   Case resolved = read_case(options);
   check_outputs(options, resolved);
+  const auto lock = lock_out(options);
   if (accuracy && BlockSearch::serves(resolved)) {
     BlockSearch search(options, resolved, *accuracy);
     while (!solve_once(options, build_problem(search.propose()), accuracy, &search)) {

@@ -3,6 +3,7 @@
 /// equidem stability: mechanisms, inertia, waves, critical kT/kN, highest frequency and time step.
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -62,16 +63,18 @@ int stability(const CommonOptions& options) {
   const OutputPlan plan(options);
   plan.expect_results();
   expect_survey(plan);
+  const auto lock = lock_out(options);
   // Nothing needs to act: an assembly without supports is judged as a free body or a periodic cell.
   const Problem problem = acts(resolved) ? build_problem(std::move(resolved)) : problem_of(std::move(resolved));
   if (options.dry_run) return dry_run_survey(options, problem);
   const Stability result =
       analyze_stability(problem.assembly, problem.springs.springs, problem.supports, options_of(problem.resolved));
-  if (options.out) write_survey(*options.out, problem.resolved.title, result, options.overwrite);
-  write_case(options, problem.resolved);
   StageTimes times = problem.times;
   times.add(result.times);
-  deliver(options, result.status(), stability_results(problem, result), times);
+  deliver(options, result.status(), stability_results(problem, result), std::move(times), [&](Results&) {
+    if (options.out) write_survey(*options.out, problem.resolved.title, result, options.overwrite);
+    write_case(options, problem.resolved);
+  });
   return 0;
 }
 

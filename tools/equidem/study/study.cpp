@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -60,8 +61,9 @@ struct SampleRow {
 };
 
 /// One row per timing: setting (its number), round (0: the values, not timed), seconds, processor_seconds, one column
-/// per quantity (round 0 only), refusal, checksum.
-Table samples_table(const Study& study, const StudySamples& samples, const std::string& checksum) {
+/// per quantity (round 0 only), refusal, study.
+/// \param identity checksum of study, machine and build
+Table samples_table(const Study& study, const StudySamples& samples, const std::string& identity) {
   std::vector<SampleRow> rows;
   for (std::size_t k = 0; k < samples.tasks.size(); ++k) {
     const TaskSamples& task = samples.tasks[k];
@@ -84,19 +86,19 @@ Table samples_table(const Study& study, const StudySamples& samples, const std::
     });
   }
   table.add("refusal", rows, [](const SampleRow& row) { return row.round == 0 ? row.task->refusal : std::string(); });
-  return table.add("checksum", rows, [&](const SampleRow&) { return checksum; });
+  return table.add("study", rows, [&](const SampleRow&) { return identity; });
 }
 
 /// Reads a table of samples_table; numbers have the same bits.
 /// \throws Error (bad_input) where the file is another table, damaged, or of another study, machine or build
-StudySamples read_samples(const std::filesystem::path& path, const Study& study, const std::string& checksum) {
-  const StoredTable table(path, samples_table(study, {}, checksum), "study",
+StudySamples read_samples(const std::filesystem::path& path, const Study& study, const std::string& identity) {
+  const StoredTable table(path, samples_table(study, {}, identity), "study",
                           "Choose another --out, or pass --overwrite to begin anew");
   StudySamples samples;
   samples.tasks.resize(study.tasks.size());
   const std::size_t first = 4, refusal = first + study.quantities.size();
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    if (table.text(row, refusal + 1) != checksum)
+    if (table.text(row, refusal + 1) != identity)
       table.refuse("they are of another study: settings, quantities, seed, machine or build differ");
     TaskSamples& task =
         samples.tasks[static_cast<std::size_t>(table.integer(row, 0, 0, std::ssize(samples.tasks) - 1))];
@@ -112,11 +114,11 @@ StudySamples read_samples(const std::filesystem::path& path, const Study& study,
 }
 
 /// Measurements that an earlier run left; none where it begins anew.
-StudySamples samples_to_keep(const StudyVerb& verb, const Study& study, const std::string& checksum) {
+StudySamples samples_to_keep(const StudyVerb& verb, const Study& study, const std::string& identity) {
   if (!verb.common.out || verb.common.overwrite) return {};
   const auto table = *verb.common.out / "samples.csv";
   if (!std::filesystem::exists(table)) return {};
-  return read_samples(table, study, checksum);
+  return read_samples(table, study, identity);
 }
 
 /// Files of an earlier run of the same study are replaced; those of anything else are not.
@@ -170,42 +172,45 @@ int run_verb(const StudyVerb& verb) {
   const Study study =
       is_file(verb.what) ? study_of_file(verb.what, verb.common) : built_in_study(verb.what, verb.quick);
   const Machine machine = this_machine();
-  const std::string checksum =
+  const std::string identity =
       study.checksum(fmt::format("{} seed {} threads {}", machine.text(), verb.options.seed, thread_count()));
-  StudySamples kept = samples_to_keep(verb, study, checksum);
+  const auto lock = lock_out(verb.common);
+  StudySamples kept = samples_to_keep(verb, study, identity);
   const bool continues = !kept.tasks.empty();
   check_outputs(verb, study, continues);
   const auto& folder = verb.common.out;
   Stopwatch since_saved;
-  const auto save = [&](const StudySamples& done, bool now) {
-    if (!folder || (!now && since_saved.seconds() < 1)) return;
-    write_csv(*folder / "samples.csv", samples_table(study, done, checksum), true);
-    since_saved.lap();
+  const auto save = [&](const StudySamples& done) {
+    write_samples(*folder / "samples.csv", samples_table(study, done, identity));
   };
-  const StudySamples samples =
-      run_study(study, verb.options, std::move(kept), [&](const StudySamples& done) { save(done, false); });
-  save(samples, true);
+  const StudySamples samples = run_study(study, verb.options, std::move(kept), [&](const StudySamples& done) {
+    if (!folder || since_saved.seconds() < 1) return;
+    save(done);
+    since_saved.lap();
+  });
 
   StudyReport report{.study = study,
                      .result = evaluate(study, samples),
                      .options = verb.options,
                      .machine = machine,
                      .command = command_of(verb),
-                     .checksum = checksum,
+                     .checksum = identity,
                      .accuracy = verb.accuracy,
                      .recommendations = {}};
   if (verb.accuracy) report.recommendations = recommend(study, report.result, *verb.accuracy);
   Results results = study_results(report);
   if (samples.stopped)
     results.block(fmt::format("INCOMPLETE: stopped after {} of all settings\n", counted(samples.rounds(), "round")));
-  if (folder) {
-    write_csv(*folder / "study.csv", study_table(report), true);
-    for (const auto& [name, plot] : study_plots(report))
-      results.block(write_plot(*folder, name, plot, true).message + "\n");
-  }
   StageTimes times;
   times.add("study", watch.seconds());
-  deliver(verb.common, report.result.complete ? "done" : "interrupted", results, times);
+  deliver(verb.common, report.result.complete ? "done" : "interrupted", std::move(results), std::move(times),
+          [&](Results& out) {
+            if (!folder) return;
+            save(samples);
+            write_csv(*folder / "study.csv", study_table(report), true);
+            for (const auto& [name, plot] : study_plots(report))
+              out.block(write_plot(*folder, name, plot, true).message + "\n");
+          });
   if (samples.stopped) {
     throw_stopped(verb.common, fmt::format("{} of all settings are done", counted(samples.rounds(), "round")),
                   "Run the same command to go on");

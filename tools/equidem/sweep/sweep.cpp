@@ -256,14 +256,14 @@ struct Progressed {
   StageTimes times;                ///< of all points
 };
 
+void write_points(const SweepOptions& options, const std::vector<SweepPoint>& points) {
+  write_samples(*options.common.out / table_name, sweep_table(options.key, points));
+}
+
 /// Compute the points that are not kept, and save the table every second: whatever ends the program, little is lost.
 Progressed compute_points(const SweepOptions& options, const Case& base, const std::vector<double>& values,
                           const std::vector<SweepPoint>& kept) {
   Progressed run;
-  const auto save = [&] {
-    if (!options.common.out) return;
-    write_csv(*options.common.out / table_name, sweep_table(options.key, merged(run.points, kept)), true);
-  };
   ProblemFactory build(options);
   Stopwatch since_saved;
   try {
@@ -275,15 +275,14 @@ Progressed compute_points(const SweepOptions& options, const Case& base, const s
       });
       run.points.push_back(done != kept.end() ? *done
                                               : compute(options, base, values[k], build, run.effects, run.times));
-      if (since_saved.seconds() < 1) continue;
-      save();
+      if (!options.common.out || since_saved.seconds() < 1) continue;
+      write_points(options, merged(run.points, kept));
       since_saved.lap();
     }
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::interrupted) throw;
     run.stopped = true;
   }
-  save();
   return run;
 }
 
@@ -294,6 +293,7 @@ int sweep(const SweepOptions& options) {
   check_key(options, base, values.front());
   check_outputs(options);
   if (options.common.dry_run) return dry_run(options, base, values);
+  const auto lock = lock_out(options.common);
   const std::vector<SweepPoint> kept = points_to_keep(options, base);
 
   const auto& folder = options.common.out;
@@ -313,11 +313,18 @@ int sweep(const SweepOptions& options) {
         fmt::format("{} failed, {} done\n", counted(static_cast<long long>(failed), "point"), points.size() - failed));
   }
   if (run.stopped) results.block(fmt::format("INCOMPLETE: stopped after {} of {} points\n", done, values.size()));
-  if (folder && !run.stopped && base.test) results.block(plot_curves(options, base, points, true));
   Results effects;
   add_effects(effects, run.effects);
   results.append(effects.hidden());
-  deliver(options.common, run.stopped ? "interrupted" : all_failed ? "failed" : "done", results, run.times);
+  deliver(options.common,
+          run.stopped  ? "interrupted"
+          : all_failed ? "failed"
+                       : "done",
+          std::move(results), run.times, [&](Results& out) {
+            if (!folder) return;
+            write_points(options, points);
+            if (!run.stopped && base.test) out.block(plot_curves(options, base, points, true));
+          });
   if (run.stopped) {
     throw_stopped(options.common, fmt::format("{} of {} points are done", done, values.size()),
                   "Run the same command with --resume to do the rest");

@@ -224,8 +224,9 @@ struct Options {
 int reproduce(const Options& options) {
   Block block = options.block;
   block.test.gauge = enum_from<GaugePlacement>(options.gauge);
-  start_paper(options.common, {"figure7", "figure7_plane_stress", "figure8", "error_by_size"},
-              {"figure6.svg", "figure6.png", "tension.vtm", "tension_discs.vtp", "tension_contacts.vtp"});
+  const auto lock =
+      start_paper(options.common, {"figure7", "figure7_plane_stress", "figure8", "error_by_size"},
+                  {"figure6.svg", "figure6.png", "tension.vtm", "tension_discs.vtp", "tension_contacts.vtp"});
   const Reproduction result = reproduce(block);
   if (options.common.out) show_block(block, options.common);
   const ContactSprings springs(SpringConstants{block.kN, shown_ratio * block.kN});

@@ -171,7 +171,7 @@ int reproduce(const CommonOptions& options, bool quick) {
   std::vector<std::string> names;
   for (std::size_t w = 0; w < weightings.size(); ++w)
     for (const char* what : plot_names) names.push_back(plot_name(what, w));
-  start_paper(options, names, {"mean_field.csv"});
+  const auto lock = start_paper(options, names, {"mean_field.csv"});
   const Result result = compute(plan_of(quick));
   return finish_paper(options, {.paper = "abe1996_random",
                                 .report = report(result),

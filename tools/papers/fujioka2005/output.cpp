@@ -132,10 +132,10 @@ void add_numbers(Results& object, const Reproduction& result) {
 }
 
 int reproduce(const CommonOptions& options, bool quick) {
-  start_paper(options,
-              {"figure4", "figure4_flights", "figure5", "figure6", "figure7", "figure10", "figure11", "stacked_cost",
-               "ball_cost", "rest", "column", "lossless"},
-              {"table1.csv", "table2.csv"});
+  const auto lock = start_paper(options,
+                                {"figure4", "figure4_flights", "figure5", "figure6", "figure7", "figure10", "figure11",
+                                 "stacked_cost", "ball_cost", "rest", "column", "lossless"},
+                                {"table1.csv", "table2.csv"});
   const Reproduction result = compute(quick);
   const Variant first = variants(1).front();
   return finish_paper(options, {.paper = "fujioka2005",

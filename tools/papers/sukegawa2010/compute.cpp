@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <exception>
 #include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <span>
 
+#include "equidem/core/checksum.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/progress.hpp"
@@ -52,6 +55,10 @@ class Store {
     Outcome outcome;
     for (const OutcomeKey& key : outcome_keys)
       outcome.*key.value = number_in_json(text, key.name).value_or(std::numeric_limits<double>::quiet_NaN());
+    if (text.find("\"" + checksum_of(name, outcome) + "\"") == std::string::npos) {
+      throw Error(ErrorKind::bad_input, "the run there, or its history in CSV, was altered since it was written",
+                  "its checksum is wrong", "Remove the file, and the run is computed again", path.string());
+    }
     return outcome;
   }
 
@@ -60,6 +67,7 @@ class Store {
     Results object;
     object.set("settings", settings);
     for (const OutcomeKey& key : outcome_keys) object.set(key.name, outcome.*key.value);
+    object.set("checksum", checksum_of(name, outcome));
     write_file(file(name, ".json"), object.json(), true);
   }
 
@@ -72,10 +80,22 @@ class Store {
   void keep_state(const Fill& fill, const std::string& settings, const SavedState& state) const {
     if (!folder_) return;
     const std::lock_guard lock(mutex_);
-    CheckpointWriter(file(fill.name(), ".h5"), settings, true).write(state);
+    CheckpointWriter(file(fill.name(), ".h5"), settings, true).write({.state = state});
   }
 
  private:
+  /// Checksum of an outcome and of the history beside it.
+  [[nodiscard]] std::string checksum_of(const std::string& name, const Outcome& outcome) const {
+    const auto history = file(name, ".csv");
+    std::string text = std::filesystem::exists(history) ? read_file(history) : "";
+    for (const OutcomeKey& key : outcome_keys) {
+      const double value = outcome.*key.value;
+      text += std::isfinite(value) ? fmt::format(" {}", value) : " null";
+    }
+    Checksum sum;
+    sum.add(std::as_bytes(std::span(text)));
+    return sum.text();
+  }
   [[nodiscard]] std::filesystem::path file(const std::string& name, const char* end) const {
     return folder_ ? *folder_ / "runs" / (name + end) : std::filesystem::path();
   }

@@ -29,7 +29,8 @@ Table table_of(const Reproduction& result) {
 int reproduce(const CommonOptions& options, bool quick) {
   CommonOptions without_folder = options;
   without_folder.out.reset();  // its files may be there: compute() checks that they belong to the same runs
-  start_paper(without_folder, {}, {});
+  static_cast<void>(start_paper(without_folder, {}, {}));
+  const auto lock = lock_out(options);
   Reproduction result;
   result.quick = quick;
   Stopwatch watch;

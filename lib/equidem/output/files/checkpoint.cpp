@@ -23,7 +23,7 @@ namespace equidem {
 namespace {
 
 constexpr std::string_view magic = "equidem-checkpoint/";
-constexpr int format_version = 3;
+constexpr int format_version = 4;
 constexpr std::size_t header_size = 512;
 
 /// The 512 bytes before the HDF5 part; the last line is a checksum of the lines before and of all that follows.
@@ -130,9 +130,11 @@ std::string first_differences(std::string_view there, std::string_view here) {
   return shown.empty() ? "the ends of their lines" : joined(shown, "; ");
 }
 
-/// Energies and paths as arrays beside those of the state; names that no simulation uses.
+constexpr std::string_view first_of_record = "energies";
+
+/// The record as arrays behind those of the state; names that no simulation uses.
 std::vector<SavedArray> arrays_of(const RunRecord& record) {
-  SavedArray energies{.name = "energies", .columns = 2 + energy_terms().size(), .values = {}};
+  SavedArray energies{.name = std::string(first_of_record), .columns = 2 + energy_terms().size(), .values = {}};
   for (const EnergySample& sample : record.energies) {
     energies.values.insert(energies.values.end(), {static_cast<double>(sample.step), sample.time});
     for (const EnergyTerm& term : energy_terms()) energies.values.push_back(sample.ledger.*term.value);
@@ -141,11 +143,14 @@ std::vector<SavedArray> arrays_of(const RunRecord& record) {
       .name = "paths", .columns = record.paths.empty() ? 1 : 2 * record.paths.front().size(), .values = {}};
   for (const std::vector<Vec2>& places : record.paths)
     for (const Vec2 place : places) paths.values.insert(paths.values.end(), {place.x, place.y});
-  return {std::move(energies), std::move(paths)};
+  std::vector<SavedArray> arrays{std::move(energies), std::move(paths)};
+  arrays.insert(arrays.end(), record.recorded.begin(), record.recorded.end());
+  return arrays;
 }
 
-RunRecord record_of(const SavedArray& energies, const SavedArray& paths) {
-  RunRecord record;
+RunRecord record_of(std::span<const SavedArray> arrays) {
+  const SavedArray &energies = arrays[0], &paths = arrays[1];
+  RunRecord record{.energies = {}, .paths = {}, .recorded = {arrays.begin() + 2, arrays.end()}};
   for (const double* next = energies.values.data(); next != energies.values.data() + energies.values.size();) {
     EnergySample& sample = record.energies.emplace_back();
     sample.step = static_cast<std::int64_t>(*next++);
@@ -160,8 +165,23 @@ RunRecord record_of(const SavedArray& energies, const SavedArray& paths) {
   return record;
 }
 
+std::string text_of(const std::vector<FileMark>& files) {
+  std::string text;
+  for (const FileMark& mark : files) text += fmt::format("{} {} {:016x} ", mark.name, mark.length, mark.checksum);
+  return text;
+}
+
+std::vector<FileMark> marks_in(const std::string& text) {
+  std::vector<FileMark> files;
+  std::istringstream words(text);
+  for (FileMark mark; words >> mark.name >> std::dec >> mark.length >> std::hex >> mark.checksum;)
+    files.push_back(mark);
+  return files;
+}
+
 /// The names of the arrays stand in an attribute of the file.
-Hdf5Layout layout_of(const std::vector<SavedArray>& arrays, const std::string& case_text) {
+Hdf5Layout layout_of(const std::vector<SavedArray>& arrays, const std::vector<FileMark>& files,
+                     const std::string& case_text) {
   Hdf5Layout layout;
   layout.user_block = header_size;
   layout.arrays = {{"case", Hdf5Number::text, {case_text.size()}}, {"step", Hdf5Number::int64, {1}}};
@@ -171,6 +191,7 @@ Hdf5Layout layout_of(const std::vector<SavedArray>& arrays, const std::string& c
     layout.arrays.push_back({array.name, Hdf5Number::float64, std::move(shape)});
   }
   layout.attributes["arrays"] = joined(arrays, &SavedArray::name, " ");
+  layout.attributes["files"] = text_of(files);
   return layout;
 }
 
@@ -214,16 +235,25 @@ CheckpointWriter::CheckpointWriter(std::filesystem::path path, std::string case_
   check_writable(path_, overwrite);
 }
 
-void CheckpointWriter::write(const SavedState& state, const RunRecord& record) const {
+const FileMark& Checkpoint::mark_of(const std::string& name) const {
+  const auto found = std::ranges::find(files, name, &FileMark::name);
+  if (found == files.end()) {
+    bad_input(fmt::format("the run cannot go on with '{}'", name), "it was stopped without that file",
+              "Record what the run recorded when it was stopped, or start it afresh");
+  }
+  return *found;
+}
+
+void CheckpointWriter::write(const Checkpoint& checkpoint) const {
   std::error_code ignored;
   if (path_.has_parent_path()) std::filesystem::create_directories(path_.parent_path(), ignored);
-  std::vector<SavedArray> arrays = state.arrays;
-  for (SavedArray& array : arrays_of(record)) arrays.push_back(std::move(array));
+  std::vector<SavedArray> arrays = checkpoint.state.arrays;
+  for (SavedArray& array : arrays_of(checkpoint.record)) arrays.push_back(std::move(array));
   Replacement replacement(path_);
-  const Hdf5Layout layout = write_hdf5_layout(replacement.path(), layout_of(arrays, case_text_));
+  const Hdf5Layout layout = write_hdf5_layout(replacement.path(), layout_of(arrays, checkpoint.files, case_text_));
   OpenFile file(replacement.path(), OpenFile::Mode::update);
   put(file, layout["case"], std::span<const char>(case_text_));
-  put(file, layout["step"], std::span(&state.step, 1));
+  put(file, layout["step"], std::span(&checkpoint.state.step, 1));
   for (const SavedArray& array : arrays) put(file, layout[array.name], std::span<const double>(array.values));
   Header header{.library = library_version(), .bytes = file.size()};
   header.checksum = checksum_of(file, header);
@@ -249,9 +279,11 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string&
     arrays.push_back({found.name, found.shape.size() > 1 ? found.shape[1] : 1, std::vector<double>(found.size())});
     get(file, found, std::span(arrays.back().values));
   }
-  result.record = record_of(arrays[arrays.size() - 2], arrays.back());
-  arrays.resize(arrays.size() - 2);
+  const auto record = std::ranges::find(arrays, first_of_record, &SavedArray::name);
+  result.record = record_of({record, arrays.end()});
+  arrays.erase(record, arrays.end());
   result.state.arrays = std::move(arrays);
+  result.files = marks_in(layout.attributes.at("files"));
   return result;
 }
 

@@ -3,6 +3,7 @@
 /// Checkpoint file of a run, from which it continues bit-identically.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,13 +17,32 @@ namespace equidem {
 struct RunRecord {
   std::vector<EnergySample> energies;
   std::vector<std::vector<Vec2>> paths;  ///< positions of all bodies at each sample; empty: not recorded
+  std::vector<SavedArray> recorded;      ///< of a RunRecorder
+};
+
+/// The part of a file that a checkpoint counts on. Entries behind it were written after the checkpoint, or only because
+/// the run ended there; a run that goes on replaces them.
+struct FileMark {
+  std::string name;            ///< without folder and spaces
+  std::uint64_t length = 0;    ///< bytes of a table, frames of an animation
+  std::uint64_t checksum = 0;  ///< of that part
+};
+
+struct Checkpoint {
+  SavedState state;
+  RunRecord record = {};
+  std::vector<FileMark> files = {};
+
+  /// \throws Error (bad_input) where the checkpoint counts on no file of that name
+  [[nodiscard]] const FileMark& mark_of(const std::string& name) const;
 };
 
 /// Writes NAME.checkpoint.h5: an HDF5 file after 512 bytes of text that name the format, the version of the library,
 /// the length of the file and a checksum of all of it. Arrays: case (the text of the resolved case); step; those of the
-/// saved state; energies: step, time and every term of the ledger, a row for each sample so far; paths. A checkpoint is
-/// written to a temporary file, synced to disk, and then renamed, so that the last complete one survives a kill at any
-/// moment, a power failure or a full disk.
+/// saved state; energies: step, time and every term of the ledger, a row for each sample so far; paths; those of the
+/// recorder; attribute "files": name, length and checksum of each file counted on. A checkpoint is written to a
+/// temporary file, synced to disk, and then renamed, so that the last complete one survives a kill at any moment, a
+/// power failure or a full disk.
 class CheckpointWriter {
  public:
   /// \param case_text the resolved case, by which read_checkpoint identifies the run of a checkpoint
@@ -31,16 +51,11 @@ class CheckpointWriter {
   CheckpointWriter(std::filesystem::path path, std::string case_text, bool overwrite);
 
   /// \throws Error (computation_failed) if the disk is full; the last checkpoint remains
-  void write(const SavedState& state, const RunRecord& record = {}) const;
+  void write(const Checkpoint& checkpoint) const;
 
  private:
   std::filesystem::path path_;
   std::string case_text_;
-};
-
-struct Checkpoint {
-  SavedState state;
-  RunRecord record;
 };
 
 /// \param case_text the resolved case to continue

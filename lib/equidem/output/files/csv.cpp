@@ -6,8 +6,10 @@
 #include <charconv>
 #include <iterator>
 #include <limits>
+#include <span>
 #include <utility>
 
+#include "equidem/core/checksum.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/names.hpp"
@@ -160,6 +162,27 @@ std::vector<std::vector<std::string>> csv_cells(const std::string& text) {
   return rows;
 }
 
+namespace {
+
+/// Checksum of the first cells of a row.
+std::string checksum_of(const std::vector<std::string>& row, std::size_t cells) {
+  Checksum sum;
+  for (std::size_t k = 0; k < cells; ++k) {
+    sum.add(std::as_bytes(std::span(row[k])));
+    sum.add(std::uint64_t{row[k].size()});
+  }
+  return sum.text();
+}
+
+}  // namespace
+
+void write_samples(const std::filesystem::path& path, Table table) {
+  std::vector<std::string> checksums;
+  for (const std::vector<std::string>& row : csv_cells(table.csv())) checksums.push_back(checksum_of(row, row.size()));
+  checksums.erase(checksums.begin());  // of the columns
+  write_csv(path, table.add("checksum", std::move(checksums)), true);
+}
+
 std::optional<double> csv_number(const std::string& cell) {
   return cell.empty() ? std::numeric_limits<double>::quiet_NaN() : whole_cell<double>(cell);
 }
@@ -170,11 +193,16 @@ std::optional<std::int64_t> csv_integer(const std::string& cell) {
 
 StoredTable::StoredTable(std::filesystem::path path, const Table& like, const std::string& of, std::string remedy)
     : path_(std::move(path)), remedy_(std::move(remedy)), cells_(csv_cells(read_file(path_))) {
-  if (cells_.empty() || cells_.front() != names_in(like.columns()))
+  std::vector<std::string> columns = names_in(like.columns());
+  columns.emplace_back("checksum");
+  if (cells_.empty() || cells_.front() != columns)
     refuse(fmt::format("its columns are those of another {}, or of another table", of));
-  for (std::size_t row = 1; row < cells_.size(); ++row)
-    if (cells_[row].size() != like.columns().size())
+  for (std::size_t row = 1; row < cells_.size(); ++row) {
+    if (cells_[row].size() != columns.size())
       refuse(fmt::format("line {} has {}", row + 1, counted(std::ssize(cells_[row]), "cell")));
+    if (cells_[row].back() != checksum_of(cells_[row], columns.size() - 1))
+      refuse(fmt::format("line {} was altered since it was written: its checksum is wrong", row + 1));
+  }
 }
 
 double StoredTable::number(std::size_t row, std::size_t column) const {

@@ -83,13 +83,17 @@ std::optional<double> csv_number(const std::string& cell);
 /// The integer of a whole cell; nothing where it is none.
 std::optional<std::int64_t> csv_integer(const std::string& cell);
 
-/// The rows of a table of samples that an earlier computation wrote and that this one continues.
+/// Write a table of samples that a later computation can continue: with a last column "checksum" of each row.
+/// \throws Error (bad_input) as write_file does
+void write_samples(const std::filesystem::path& path, Table table);
+
+/// The rows of a table of write_samples that an earlier computation wrote and that this one continues.
 class StoredTable {
  public:
-  /// \param like has the columns that are expected
+  /// \param like has the columns that are expected, without the checksum
   /// \param of what the samples are of: "sweep", "study"
   /// \param remedy of every error
-  /// \throws Error (bad_input) where the columns are others, or a row has another number of cells
+  /// \throws Error (bad_input) where the columns are others, or a row was altered since it was written
   StoredTable(std::filesystem::path path, const Table& like, const std::string& of, std::string remedy);
 
   [[nodiscard]] std::size_t rows() const { return cells_.size() - 1; }

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <limits>
 #include <numeric>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -33,6 +34,25 @@ constexpr std::array<const char*, 4> moving(bool travelling) {
   return {translation_of(travelling), rotation_of(travelling), "velocity", "spin"};
 }
 
+/// Arrays with one entry per frame.
+constexpr std::array<const char*, 6> growing(bool travelling) {
+  const auto [translation, rotation, velocity, spin] = moving(travelling);
+  return {"time", "step", translation, rotation, velocity, spin};
+}
+
+constexpr std::size_t text_header = 512;  // bytes
+
+/// Number of discs, room, offsets of the growing arrays; the last line is a checksum of the lines before.
+std::string header_of(const Hdf5Layout& layout, std::size_t discs, bool travelling) {
+  std::string text = fmt::format("{}\ndiscs {}\nroom {}\n", schema, discs, layout["time"].shape[0]);
+  for (const char* name : growing(travelling)) text += fmt::format("{} {}\n", name, layout[name].offset);
+  Checksum sum;
+  sum.add(std::as_bytes(std::span(text)));
+  text += fmt::format("fnv1a {}\n", sum.text());
+  text.resize(text_header, '\0');
+  return text;
+}
+
 /// Bytes of one frame, and where it begins.
 std::uint64_t frame_bytes(const Hdf5Array& array) {
   return array.bytes() / array.shape[0];
@@ -50,6 +70,12 @@ template <typename Number>
 std::vector<Number> read_numbers(const OpenFile& file, const Hdf5Array& array, std::uint64_t count) {
   std::vector<Number> numbers(count);
   file.read_at(array.offset, std::as_writable_bytes(std::span(numbers)));
+  return numbers;
+}
+
+std::vector<double> numbers_of(const std::vector<Vec2>& points) {
+  std::vector<double> numbers;
+  for (const Vec2 point : points) numbers.insert(numbers.end(), {point.x, point.y});
   return numbers;
 }
 
@@ -79,15 +105,9 @@ void write_count(OpenFile& file, const Hdf5Layout& layout, std::size_t frames) {
   write_numbers(file, layout["frames"].offset, std::vector<std::int64_t>{static_cast<std::int64_t>(frames)});
 }
 
-template <typename Entry>
-bool holds(const OpenFile& file, const Hdf5Array& array, const std::vector<Entry>& wanted) {
-  const auto found = read_numbers<std::byte>(file, array, array.bytes());
-  return std::ranges::equal(found, std::as_bytes(std::span(wanted)));
-}
-
 [[noreturn]] void cannot_add_frames(const std::filesystem::path& path, const std::string& why) {
   bad_input(fmt::format("cannot add frames to '{}'", path.string()), why,
-            "Go on where the frames of this very run lie, or start it afresh under another name");
+            "Put back the file as this run wrote it, or start the run afresh");
 }
 
 }  // namespace
@@ -101,11 +121,15 @@ FrameWriter::FrameWriter(const std::filesystem::path& folder, const std::string&
       of_discs_(options.of_discs),
       parts_(options.parts) {
   assert(options.expected >= 1);
-  const bool replace = options.overwrite || options.continue_after;
+  const bool replace = options.overwrite || options.continue_from;
   check_writable(path_, replace);
   check_writable(index_path_, replace);
-  if (options.continue_after) {
-    go_on(*options.continue_after);
+  sum_.add(numbers_of(assembly_.centres));
+  sum_.add(assembly_.radii);
+  for (const DiscNumbers& added : of_discs_) sum_.add(added.values);
+  marked_ = {path_.filename().string(), 0, sum_.value()};
+  if (options.continue_from) {
+    go_on(*options.continue_from, options.expected);
   } else {
     std::error_code ignored;
     std::filesystem::create_directories(folder, ignored);
@@ -115,7 +139,7 @@ FrameWriter::FrameWriter(const std::filesystem::path& folder, const std::string&
 }
 
 void FrameWriter::append(std::int64_t step, double time, std::span<const DiscMotion> motions,
-                         std::span<const DiscMotion> velocities) {
+                         std::span<const DiscMotion> velocities, bool regular) {
   assert(step > last_step());
   std::vector<DiscMotion> of_parts, rates_of_parts;
   if (!parts_.empty()) {
@@ -132,6 +156,8 @@ void FrameWriter::append(std::int64_t step, double time, std::span<const DiscMot
   assert(motions.size() == assembly_.size() && velocities.size() == assembly_.size());
   const std::size_t frame = times_.size();
   if (frame == layout_["time"].shape[0]) resize(2 * frames());
+  sum_.add(static_cast<std::uint64_t>(step));
+  sum_.add(time);
   write_field(translation_of(travelling_), rotation_of(travelling_), motions);
   write_field("velocity", "spin", velocities);
   write_numbers(*file_, frame_offset(layout_["time"], frame), std::vector{time});
@@ -139,6 +165,7 @@ void FrameWriter::append(std::int64_t step, double time, std::span<const DiscMot
   write_count(*file_, layout_, frame + 1);  // last: what is counted is there
   times_.push_back(time);
   steps_.push_back(step);
+  if (regular) marked_ = {marked_.name, times_.size(), sum_.value()};
   list_frame(frame);
   if (times_.size() % (1 + times_.size() / 200) == 0) write_index();
 }
@@ -153,12 +180,17 @@ void FrameWriter::write_field(const std::string& translation, const std::string&
                               std::span<const DiscMotion> values) {
   const std::size_t frame = times_.size();
   write_entries<double>(*file_, frame_offset(layout_[translation], frame), values,
-                        [](std::vector<double>& numbers, const DiscMotion& motion) {
-                          numbers.insert(numbers.end(), {motion.u.x, motion.u.y, 0.0});
+                        [this](std::vector<double>& numbers, const DiscMotion& motion) {
+                          for (const double number : {motion.u.x, motion.u.y, 0.0}) {
+                            numbers.push_back(number);
+                            sum_.add(number);
+                          }
                         });
-  write_entries<double>(
-      *file_, frame_offset(layout_[rotation], frame), values,
-      [](std::vector<double>& numbers, const DiscMotion& motion) { numbers.push_back(motion.theta); });
+  write_entries<double>(*file_, frame_offset(layout_[rotation], frame), values,
+                        [this](std::vector<double>& numbers, const DiscMotion& motion) {
+                          numbers.push_back(motion.theta);
+                          sum_.add(motion.theta);
+                        });
 }
 
 void FrameWriter::write_static(OpenFile& file, const Hdf5Layout& layout) const {
@@ -189,6 +221,7 @@ Hdf5Layout FrameWriter::layout_of(std::int64_t room) const {
   using enum Hdf5Number;
   const std::uint64_t n = assembly_.size(), m = assembly_.contacts.size(), k = static_cast<std::uint64_t>(room);
   Hdf5Layout layout;
+  layout.user_block = text_header;
   layout.attributes = {{"schema", schema}, {"library_version", library_version()}};
   layout.arrays = {{"discs/centre", float64, {n, 2}, "m"},
                    {"discs/radius", float64, {n}, "m"},
@@ -214,6 +247,8 @@ void FrameWriter::resize(std::int64_t room) {
   Replacement replacement(path_);
   const Hdf5Layout layout = write_hdf5_layout(replacement.path(), layout_of(room));
   OpenFile file(replacement.path(), OpenFile::Mode::update);
+  const std::string header = header_of(layout, assembly_.size(), travelling_);
+  file.write_at(0, std::as_bytes(std::span(header)));
   write_static(file, layout);
   std::vector<std::byte> bytes;
   for (const char* name : moving(travelling_)) {
@@ -234,44 +269,45 @@ void FrameWriter::resize(std::int64_t room) {
   for (std::size_t frame = 0; frame < times_.size(); ++frame) list_frame(frame);
 }
 
-void FrameWriter::go_on(std::int64_t after) {
+/// The frames of the mark, copied into a new file.
+void FrameWriter::go_on(const FileMark& mark, std::int64_t expected) {
   std::error_code ignored;
   if (!std::filesystem::exists(path_, ignored)) cannot_add_frames(path_, "there is no such file");
-  std::vector<std::string> names;
-  for (const Hdf5Array& array : layout_of(1).arrays) names.push_back(array.name);
-  layout_ = read_hdf5_layout(path_, names);
-  if (layout_.attributes["schema"] != schema) {
-    cannot_add_frames(path_, fmt::format("its schema is '{}', not '{}'", layout_.attributes["schema"], schema));
+  file_.emplace(path_, OpenFile::Mode::read);
+  std::string text(std::min<std::uint64_t>(text_header, file_->size()), '\0');
+  file_->read_at(0, std::as_writable_bytes(std::span(text)));
+  std::istringstream words(text);
+  std::string word;
+  std::uint64_t discs = 0;
+  std::int64_t room = 0;
+  words >> word >> word >> discs >> word >> room;
+  if (words && discs != assembly_.size())
+    cannot_add_frames(path_, fmt::format("it has {} discs, not {}", discs, assembly_.size()));
+  layout_ = layout_of(room);
+  for (const char* name : growing(travelling_)) {
+    const auto array = std::ranges::find(layout_.arrays, name, &Hdf5Array::name);
+    words >> word >> array->offset;
   }
-  const std::vector<std::uint64_t> time_shape = layout_["time"].shape;
-  const std::uint64_t room = time_shape.size() == 1 ? time_shape[0] : 0;
-  for (const Hdf5Array& wanted : layout_of(static_cast<std::int64_t>(room)).arrays) {
-    const Hdf5Array& found = layout_[wanted.name];
-    if (found.number != wanted.number || found.shape != wanted.shape || room == 0) {
-      cannot_add_frames(path_, fmt::format("its array '{}' is not that of an assembly of {} and {}", wanted.name,
-                                           counted(static_cast<long long>(assembly_.size()), "disc"),
-                                           counted(static_cast<long long>(assembly_.contacts.size()), "contact")));
+  if (text != header_of(layout_, assembly_.size(), travelling_))
+    cannot_add_frames(path_, "it holds no frames, or it was altered since it was written");
+  if (static_cast<std::uint64_t>(room) < mark.length)
+    cannot_add_frames(path_, fmt::format("it has room for {} of {} frames", room, mark.length));
+  steps_ = read_numbers<std::int64_t>(*file_, layout_["step"], mark.length);
+  times_ = read_numbers<double>(*file_, layout_["time"], mark.length);
+  std::vector<double> numbers;
+  for (std::size_t frame = 0; frame < mark.length; ++frame) {
+    sum_.add(static_cast<std::uint64_t>(steps_[frame]));
+    sum_.add(times_[frame]);
+    for (const char* name : moving(travelling_)) {
+      numbers.resize(frame_bytes(layout_[name]) / sizeof(double));
+      file_->read_at(frame_offset(layout_[name], frame), std::as_writable_bytes(std::span(numbers)));
+      sum_.add(numbers);
     }
   }
-  file_.emplace(path_, OpenFile::Mode::update);
-  if (!holds(*file_, layout_["discs/centre"], assembly_.centres) ||
-      !holds(*file_, layout_["discs/radius"], assembly_.radii)) {
-    cannot_add_frames(path_, "its discs have other places or radii");
-  }
-  for (const DiscNumbers& added : of_discs_)
-    if (!holds(*file_, layout_["discs/" + added.name], added.values))
-      cannot_add_frames(path_, fmt::format("its discs have others of '{}'", added.name));
-  const std::int64_t finished = read_numbers<std::int64_t>(*file_, layout_["frames"], 1)[0];
-  if (finished < 0 || static_cast<std::uint64_t>(finished) > room) {
-    cannot_add_frames(path_, fmt::format("it says that {} of {} frames are finished", finished, room));
-  }
-  steps_ = read_numbers<std::int64_t>(*file_, layout_["step"], static_cast<std::uint64_t>(finished));
-  times_ = read_numbers<double>(*file_, layout_["time"], static_cast<std::uint64_t>(finished));
-  steps_.erase(std::upper_bound(steps_.begin(), steps_.end(), after), steps_.end());
-  times_.resize(steps_.size());
-  write_count(*file_, layout_, times_.size());
-  write_absent(*file_, layout_, times_.size());
-  for (std::size_t frame = 0; frame < times_.size(); ++frame) list_frame(frame);
+  if (sum_.value() != mark.checksum)
+    cannot_add_frames(path_, "it was altered since it was written, or its discs are others");
+  marked_ = mark;
+  resize(std::max(expected, frames()));
 }
 
 void FrameWriter::list_frame(std::size_t frame) {

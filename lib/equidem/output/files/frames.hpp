@@ -12,6 +12,8 @@
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/frame.hpp"
+#include "equidem/core/checksum.hpp"
+#include "equidem/output/files/checkpoint.hpp"
 #include "equidem/output/files/hdf5.hpp"
 #include "equidem/output/files/open_file.hpp"
 
@@ -37,13 +39,13 @@ struct FrameOptions {
   /// Travelling bodies: write positions and angles, as `position` and `angle`, in place of displacements and rotations;
   /// ParaView shows the points at their positions.
   bool travelling = false;
-  /// Continue the files of an earlier run: frames later than this step are dropped.
-  std::optional<std::int64_t> continue_after = {};
-  std::vector<DiscNumbers> of_discs = {};  ///< beside the radius
-  std::vector<FramePart> parts = {};       ///< of each disc; empty: every disc is a body
+  std::optional<FileMark> continue_from = {};  ///< continue the files of an earlier run behind this mark
+  std::vector<DiscNumbers> of_discs = {};      ///< beside the radius
+  std::vector<FramePart> parts = {};           ///< of each disc; empty: every disc is a body
 };
 
-/// Writes frames. NAME.h5 (schema "equidem-frames/1"), n discs, m contacts, room for K frames:
+/// Writes frames. NAME.h5 (schema "equidem-frames/1"), n discs, m contacts, room for K frames, behind 512 bytes of text
+/// that name the places of the arrays for a run that goes on (the HDF5 library may crash on a damaged file):
 ///   discs/centre (n, 2) and discs/radius (n), m; discs/number (n); what FrameOptions::of_discs adds; contacts/discs
 ///   (m, 2), contacts/shift (m, 2), contacts/lever (m, 2), m; period (2), m, where there is one; frames (1): how many
 /// are finished; the arrays of the others are undefined, and their times are NaN; time (K), s; step (K); displacement
@@ -54,8 +56,8 @@ struct FrameOptions {
 class FrameWriter {
  public:
   /// \param assembly must outlive the writer
-  /// \throws Error (bad_input) where a file exists and neither `overwrite` nor `continue_after` is set, where it cannot
-  ///         be written, or if the file to continue contains no frames of this assembly
+  /// \throws Error (bad_input) where a file exists and neither `overwrite` nor `continue_from` is set, where it cannot
+  ///         be written, or if the file to continue does not contain the frames of the mark
   FrameWriter(const std::filesystem::path& folder, const std::string& name, const Assembly& assembly,
               const FrameOptions& options);
 
@@ -63,20 +65,23 @@ class FrameWriter {
   /// \param step greater than last_step()
   /// \param time s
   /// \param motions, velocities per body; m and rad, m/s and rad/s
+  /// \param regular false: the frame is the last one, and a longer run has none at its step
   /// \throws Error (computation_failed) where the disk is full; earlier frames stay
   void append(std::int64_t step, double time, std::span<const DiscMotion> motions,
-              std::span<const DiscMotion> velocities);
+              std::span<const DiscMotion> velocities, bool regular = true);
   /// Sync all frames to disk, as required before a checkpoint refers to them.
   void sync() { file_->sync(); }
   /// Release the space of unused frames, and list all frames in NAME.xdmf2.
   void finish();
 
+  /// Name, number and checksum of the frames without a last one that is not regular.
+  [[nodiscard]] FileMark mark() const { return marked_; }
   [[nodiscard]] std::int64_t frames() const { return static_cast<std::int64_t>(times_.size()); }
   /// Step of the last frame; -1: none.
   [[nodiscard]] std::int64_t last_step() const { return steps_.empty() ? -1 : steps_.back(); }
 
  private:
-  void go_on(std::int64_t after);
+  void go_on(const FileMark& mark, std::int64_t expected);
   void resize(std::int64_t room);
   [[nodiscard]] Hdf5Layout layout_of(std::int64_t room) const;
   void write_static(OpenFile& file, const Hdf5Layout& layout) const;
@@ -93,6 +98,8 @@ class FrameWriter {
   std::optional<OpenFile> file_;
   std::vector<double> times_;
   std::vector<std::int64_t> steps_;
+  Checksum sum_;       ///< of the discs, then of step, time and numbers of each frame
+  FileMark marked_;    ///< of the regular frames
   std::string index_;  ///< of the finished frames, without head and tail
 };
 

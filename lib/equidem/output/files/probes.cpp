@@ -65,11 +65,10 @@ ProbeWriter::ProbeWriter(std::filesystem::path path, std::vector<Probe> probes, 
     : probes_(checked(std::move(probes), bodies)),
       family_(options.family),
       table_(std::move(path), probe_columns(probes_, options),
-             {.interval = options.interval, .overwrite = options.overwrite, .continue_after = options.continue_after}) {
-}
+             {.interval = options.interval, .overwrite = options.overwrite, .continue_from = options.continue_from}) {}
 
 void ProbeWriter::record(std::int64_t step, double time, std::span<const DiscMotion> motions,
-                         std::span<const DiscMotion> velocities, const EnergyLedger& ledger) {
+                         std::span<const DiscMotion> velocities, const EnergyLedger& ledger, bool regular) {
   std::vector<double> cells = {time};
   for (const Probe& probe : probes_) {
     const DiscMotion motion = mean_of(probe.bodies, motions), velocity = mean_of(probe.bodies, velocities);
@@ -84,7 +83,7 @@ void ProbeWriter::record(std::int64_t step, double time, std::span<const DiscMot
     }
   }
   for (const double cell : energy_cells(family_, ledger)) cells.push_back(cell);
-  table_.add(step, cells);
+  table_.add(step, cells, regular);
 }
 
 }  // namespace equidem

@@ -23,8 +23,7 @@ struct ProbeOptions {
   Body body = Body::disc;                  ///< unit of energies: J per metre of depth, of spheres J
   double interval = 5;     ///< s of wall-clock time between two writes; 64 KiB of rows are written at once
   bool overwrite = false;  ///< a file of that name
-  /// Continue the file of an earlier run: rows later than this step, and a row cut short, are dropped.
-  std::optional<std::int64_t> continue_after = {};
+  std::optional<FileMark> continue_from = {};  ///< continue the file of an earlier run behind this mark
 };
 
 /// Writes rows: step, time_s; the quantities of every probe: NAME_ux_m, NAME_uy_m; NAME_rotation_rad; NAME_x_m,
@@ -34,20 +33,22 @@ class ProbeWriter {
  public:
   /// \param bodies of the scene
   /// \throws Error (bad_input) where two probes share a name or one has no body or one that is not there, where the
-  ///         file exists and neither `overwrite` nor `continue_after` is set, where it cannot be written, or if the
-  ///         file to continue has other columns
+  ///         file exists and neither `overwrite` nor `continue_from` is set, where it cannot be written, or as
+  ///         GrowingCsv where it cannot be continued
   ProbeWriter(std::filesystem::path path, std::vector<Probe> probes, std::size_t bodies, const ProbeOptions& options);
 
   /// Add a row.
   /// \param step greater than last_step()
   /// \param motions displacements and rotations, or positions and angles, of all bodies
+  /// \param regular as in GrowingCsv::add
   /// \throws Error (computation_failed) where the disk is full
   void record(std::int64_t step, double time, std::span<const DiscMotion> motions,
-              std::span<const DiscMotion> velocities, const EnergyLedger& ledger);
+              std::span<const DiscMotion> velocities, const EnergyLedger& ledger, bool regular = true);
   /// Write all rows to the operating system.
   void flush() { table_.flush(); }
   /// Sync all rows to disk, as required before a checkpoint refers to them.
   void sync() { table_.sync(); }
+  [[nodiscard]] FileMark mark() const { return table_.mark(); }
 
   /// Step of the last row; -1: none.
   [[nodiscard]] std::int64_t last_step() const { return table_.last_step(); }

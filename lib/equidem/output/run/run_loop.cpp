@@ -69,34 +69,35 @@ class RunLoop {
  private:
   void open(const RunFiles& files) {
     const std::filesystem::path path = *files.folder / "run.checkpoint.h5";
-    if (files.resume) go_on(read_checkpoint(path, plan_.case_text));
+    std::optional<Checkpoint> from;
+    if (files.resume) from = go_on(path);
     checkpoint_.emplace(path, plan_.case_text, files.overwrite || files.resume);
-    const auto after = [&](const Recurrence& times) {
-      return files.resume ? std::optional(last_entry(times)) : std::nullopt;
-    };
-    if (plan_.frame_interval) {
-      const double steps = static_cast<double>(plan_.steps);
-      const double count = std::min(steps, steps * plan_.time_step / *plan_.frame_interval);
-      FrameOptions options = plan_.frames;
-      options.expected = static_cast<std::int64_t>(count) + 2;
-      options.overwrite = files.overwrite;
-      options.continue_after = after(frame_times_);
-      frames_.emplace(*files.folder, "frames", *plan_.frame_discs, options);
-    }
-    if (plan_.recorder != nullptr) plan_.recorder->open(*files.folder, files.overwrite, after(probe_times_));
+    const auto mark_of = [&](const char* name) { return from ? std::optional(from->mark_of(name)) : std::nullopt; };
+    // What cannot go on is refused before a file is changed: tables change with their first row, frames at once.
+    if (plan_.recorder != nullptr) plan_.recorder->open(*files.folder, files.overwrite, from ? &*from : nullptr);
     if (plan_.probe_interval) {
       const std::size_t bodies = simulation_.motions().size();
       history_.emplace(*files.folder / "history.csv", plan_.probes, bodies,
                        ProbeOptions{.family = simulation_.family(),
                                     .body = plan_.body,
                                     .overwrite = files.overwrite,
-                                    .continue_after = after(probe_times_)});
+                                    .continue_from = mark_of("history.csv")});
+    }
+    if (plan_.frame_interval) {
+      const double steps = static_cast<double>(plan_.steps);
+      const double count = std::min(steps, steps * plan_.time_step / *plan_.frame_interval);
+      FrameOptions options = plan_.frames;
+      options.expected = static_cast<std::int64_t>(count) + 2;
+      options.overwrite = files.overwrite;
+      options.continue_from = mark_of("frames.h5");
+      frames_.emplace(*files.folder, "frames", *plan_.frame_discs, options);
     }
   }
 
   /// Samples of a shorter run are more, and at every power of two steps: those of this run are among them, but for the
   /// one at its end.
-  void go_on(Checkpoint checkpoint) {
+  Checkpoint go_on(const std::filesystem::path& path) {
+    Checkpoint checkpoint = read_checkpoint(path, plan_.case_text);
     simulation_.restore(checkpoint.state);
     if (simulation_.step() > plan_.steps) {
       bad_input(fmt::format("the run is to end at {:.6g} s, and its checkpoint lies at {:.6g} s",
@@ -109,11 +110,7 @@ class RunLoop {
       result_.record.energies.push_back(record.energies[k]);
       if (!record.paths.empty()) result_.record.paths.push_back(std::move(record.paths[k]));
     }
-  }
-
-  /// Continuation of the run: an entry made only because the run ended is dropped.
-  [[nodiscard]] std::int64_t last_entry(const Recurrence& times) const {
-    return times.at(simulation_.step()) ? simulation_.step() : simulation_.step() - 1;
+    return checkpoint;
   }
 
   void step_to(std::int64_t step) {
@@ -134,9 +131,10 @@ class RunLoop {
     const std::int64_t step = simulation_.step();
     const bool last = step == plan_.steps;
     auto& energies = result_.record.energies;
-    const bool probing = probe_times_.at(step) || last;
+    const bool regular_frame = frame_times_.at(step), regular_row = probe_times_.at(step);
+    const bool probing = regular_row || last;
     const bool sample = (energies.empty() || energies.back().step < step) && (last || step % stride_ == 0);
-    const bool frame = frames_ && frames_->last_step() < step && (frame_times_.at(step) || last);
+    const bool frame = frames_ && frames_->last_step() < step && (regular_frame || last);
     const bool row = history_ && history_->last_step() < step && probing;
     const bool recorded = plan_.recorder != nullptr && plan_.recorder->last_step() < step && probing;
     if (!plan_.watch_between && !sample && !frame && !row && !recorded) return;
@@ -148,7 +146,7 @@ class RunLoop {
     }
     const double time = simulation_.time();
     if (sample) energies.push_back({step, time, ledger});
-    if (recorded) plan_.recorder->record(step, time);
+    if (recorded) plan_.recorder->record(step, time, regular_row);
     const bool path = sample && plan_.paths;
     if (!path && !frame && !row) return;
     const std::vector<DiscMotion> motions = simulation_.motions(), velocities = simulation_.velocities();
@@ -156,17 +154,24 @@ class RunLoop {
       auto& places = result_.record.paths.emplace_back();
       for (const DiscMotion& motion : motions) places.push_back(motion.u);
     }
-    if (frame) frames_->append(step, time, motions, velocities);
-    if (row) history_->record(step, time, motions, velocities, ledger);
+    if (frame) frames_->append(step, time, motions, velocities, regular_frame);
+    if (row) history_->record(step, time, motions, velocities, ledger, regular_row);
   }
 
   /// Everything that the checkpoint counts on is on the disk before it is.
   void save() {
     if (!checkpoint_) return;
-    if (history_) history_->sync();
-    if (frames_) frames_->sync();
-    if (plan_.recorder != nullptr) plan_.recorder->sync();
-    checkpoint_->write(simulation_.save(), result_.record);
+    Checkpoint checkpoint{simulation_.save(), result_.record};
+    if (history_) {
+      history_->sync();
+      checkpoint.files.push_back(history_->mark());
+    }
+    if (frames_) {
+      frames_->sync();
+      checkpoint.files.push_back(frames_->mark());
+    }
+    if (plan_.recorder != nullptr) plan_.recorder->save(checkpoint);
+    checkpoint_->write(checkpoint);
   }
 
   void close() {

@@ -22,13 +22,13 @@ namespace equidem {
 class RunRecorder {
  public:
   virtual ~RunRecorder() = default;
-  /// \param continue_after continue the files of an earlier run: rows later than this step are dropped
-  virtual void open(const std::filesystem::path& folder, bool overwrite,
-                    std::optional<std::int64_t> continue_after) = 0;
+  /// \param from continue the files of an earlier run from here; null: a new run
+  virtual void open(const std::filesystem::path& folder, bool overwrite, const Checkpoint* from) = 0;
   [[nodiscard]] virtual std::int64_t last_step() const = 0;  ///< -1: none
-  virtual void record(std::int64_t step, double time) = 0;
-  /// Sync all rows to disk.
-  virtual void sync() = 0;
+  /// \param regular false: only because the run ends
+  virtual void record(std::int64_t step, double time, bool regular) = 0;
+  /// Sync all rows to disk, and add to a checkpoint what open() needs.
+  virtual void save(Checkpoint& checkpoint) = 0;
 };
 
 struct RunPlan {
@@ -66,7 +66,7 @@ struct RunResult {
 /// checkpoint is also written at an interrupt and when a step fails. A run that is resumed writes the same files as one
 /// that was never stopped.
 /// \throws Error as the writers, the watch, advance() and stop_if_interrupted; (bad_input) where a checkpoint lies past
-///         the end
+///         the end, or a file that it counts on was altered: then no file is changed
 RunResult run_through(AnySimulation& simulation, const RunPlan& plan, const RunFiles& files);
 
 /// Estimate of the wall-clock seconds of all steps, from the first few steps, which are performed.

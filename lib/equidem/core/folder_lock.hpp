@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Lock of a folder against other processes.
+#pragma once
+
+#include <filesystem>
+
+namespace equidem {
+
+/// A folder that one process at a time may write. The kernel releases the lock when the process ends, whatever ends it.
+/// Where the file system has no locks for folders (NFS), the folder is not locked.
+class FolderLock {
+ public:
+  /// Missing folders are made.
+  /// \throws Error (bad_input) where the folder is locked already, or where it cannot be opened
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(FolderLock&& other) noexcept;
+  FolderLock& operator=(FolderLock&&) = delete;
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
+
+}  // namespace equidem
