@@ -61,6 +61,16 @@ class Sukegawa2010(ProgramTest):
         kept.write_text(json.dumps(dict(json.loads(kept.read_text(encoding="utf-8")), settings="others")),
                         encoding="utf-8")
         self.check_error(equidem(*command), 2, "other settings", "discs_3_400gal_10Hz.json", "--out")
+        kept.unlink()
+
+        # Nor is one that was altered.
+        for name in ("discs_1_400gal_10Hz.json", "discs_1_400gal_10Hz.csv", "discs_1.csv"):
+            path = out / "runs" / name
+            good = path.read_bytes()
+            at = good.rindex(b".") + 1
+            path.write_bytes(good[:at] + bytes([good[at] ^ 1]) + good[at + 1:])
+            self.check_error(equidem(*command), 2, "altered", name.replace(".csv", ".json"))
+            path.write_bytes(good)
 
     def test_options_of_other_papers_are_refused(self):
         self.check_error(equidem("sukegawa2010", "--rows", "5"), 2, "--rows", "sukegawa2010")
