@@ -139,8 +139,9 @@ void compute(const CommonOptions& options, Reproduction& result) {
   std::map<std::string, std::string> names;
   double total = 0;
   for (const Run& run : runs) {
-    [[maybe_unused]] const auto [known, is_new] = names.emplace(run.fill.name(), settings_of(run.fill));
+    const auto [known, is_new] = names.emplace(run.fill.name(), settings_of(run.fill));
     assert((is_new || known->second == settings_of(run.fill)) && "one filling per name");
+    if (is_new) static_cast<void>(store.find(known->first, known->second));  // its history is drawn
     outcomes.push_back(store.find(run.name(), settings_of(run)));
     if (outcomes.back()) continue;
     total += cost_of(run);
