@@ -88,8 +88,11 @@ inline GrainScene flying_needles(int count, std::uint64_t seed) {
   Random random(seed);
   while (static_cast<int>(scene.grains.size()) < count) {
     const double root = std::pow(30, random.uniform(0, 0.5)), a = 0.5 * root, b = 0.5 / root;
-    Grain grain = oval({random.uniform(a, side - a), random.uniform(a, side - a)}, a, b, random.uniform(-3, 3),
-                       {random.uniform(-1, 1), random.uniform(-1, 1)});
+    // one after the other: the order in which arguments are evaluated depends on the compiler
+    const Vec2 velocity{random.uniform(-1, 1), random.uniform(-1, 1)};
+    const double angle = random.uniform(-3, 3);
+    const Vec2 position{random.uniform(a, side - a), random.uniform(a, side - a)};
+    Grain grain = oval(position, a, b, angle, velocity);
     grain.spin = random.uniform(-3, 3);
     const bool free = std::all_of(scene.grains.begin(), scene.grains.end(), [&](const Grain& other) {
       const Vec2 branch = other.position - grain.position;
