@@ -31,8 +31,10 @@ const char* describe_ellipse_contact(GrainOptions::EllipseLaw law) {
   using enum GrainOptions::EllipseLaw;
   return law == exact ? "ellipses meet at their closest points (exact)"
          : law == enlarged_mended
-             ? "ellipses meet by the test of enlarged ellipses, mended: shallow contacts are missed"
-             : "ellipses meet by the test of enlarged ellipses as printed: many contacts are missed";
+             ? "ellipses meet by the test of enlarged ellipses, mended: shallow contacts are missed, and the normal "
+               "is that of the body with the lower number"
+             : "ellipses meet by the test of enlarged ellipses as printed: many contacts are missed, and the normal "
+               "is that of the body with the lower number";
 }
 
 void add_bodies(Results& out, const GrainCase& resolved) {

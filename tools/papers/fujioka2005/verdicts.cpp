@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t impacts_of_paper = 10;
 
 template <class Row>
-const Row& of(const std::vector<Row>& rows, const std::string& label) {
+const Row& of(const std::vector<Row>& rows, std::string_view label) {
   return *std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.variant.label == label; });
 }
 
@@ -84,8 +84,7 @@ std::string fast_impacts(const std::vector<Impacts>& fast) {
       "    a = {:g} {}: ratios from {:.2f} to {:.2f}.\n"
       "5.3 \"F and P are near the theory\": {}. Worst of {} impacts: P {:.0e}, F {:.0e}.\n"
       "5.3 \"P passes through modes 1, 2, 4\": in {:.0f} % of the impacts; {:.0f} % part from mode 2, where (21) is "
-      "replaced "
-      "by (23).\n",
+      "replaced by (23).\n",
       decided(c.ratio.size() < 2), c.deepest, decided(!t.ran_away), t.variant.a, t.ratio.front(), soft.variant.a,
       soft.ran_away ? "neither" : "it holds", *low, *high, decided(std::max(f_worst, p_worst) < 1e-3), p.ratio.size(),
       p_worst, f_worst, 100 * passages(p).by_1_2_4, 100 * passages(p).from_mode_2);
