@@ -164,13 +164,20 @@ class Memory(ProgramTest):
         done = self.within(1 << 30, "solve", TENSION, "--set", "assembly.columns=440", "--set", "assembly.rows=440")
         self.check_error(done, 1, "of address space", "ulimit -v")
 
+    def test_too_little_to_start_is_told(self):
+        for megabytes in (100, 200, 399):
+            done = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, timeout=60,
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS,
+                                                                        (megabytes << 20, megabytes << 20)))
+            self.check_error(done, 1, "address space", "ulimit -v")
+
     def test_a_file_that_memory_cannot_hold_is_refused(self):
         file = self.folder / "many.json"
-        file.write_text('{"schema": "equidem-assembly/1", "discs": [' + "[0, 0, 0.5]," * 4000000 + "[0, 0, 0.5]]}")
+        file.write_text('{"schema": "equidem-assembly/1", "discs": [' + "[0, 0, 0.5]," * 7000000 + "[0, 0, 0.5]]}")
         case = self.folder / "many.toml"
         case.write_text('schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "many.json"\n'
                         '[springs]\nkN = 1.0\nkT = 0.5\n')
-        self.check_error(self.within(300 << 20, "homogenize", case), 1, "many.json", "of JSON need about")
+        self.check_error(self.within(450 << 20, "homogenize", case), 1, "many.json", "of JSON need about")
 
 
 class Outputs(ProgramTest):

@@ -9,8 +9,10 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "equidem/casefile/engine/toml.hpp"
@@ -179,6 +181,22 @@ void end_interrupted(int) {
   static_cast<void>(!write(STDERR_FILENO, sentence.data(), sentence.size()));
   _exit(static_cast<int>(ErrorKind::interrupted));
 }
+
+/// OpenBLAS 0.3.29 maps its buffers when it is loaded, and tries for ever where the limit of the process forbids it.
+/// Only what stands in .preinit_array runs earlier; sanitizers are not ready there.
+__attribute__((no_sanitize("address"), no_sanitize("thread"), no_sanitize("undefined"))) void
+require_address_space_to_start(int, char**, char**) {
+  constexpr rlim_t least = rlim_t{400} << 20;
+  constexpr std::string_view sentence =
+      "equidem: the address space is limited to less than 420 MB (the libraries of linear algebra need as much to "
+      "start). Raise the limit (ulimit -v).\n";
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur >= least) return;
+  if (write(STDERR_FILENO, sentence.data(), sentence.size()) < 0) _exit(2);
+  _exit(1);
+}
+using AtStart = void (*)(int, char**, char**);
+__attribute__((section(".preinit_array"), used)) const AtStart before_libraries = require_address_space_to_start;
 
 /// OpenBLAS starts threads when it is loaded, before main, and they spin beside ours, although every call here runs on
 /// one thread. Only its environment can prevent that: where the user leaves it unset, set it and start again. Handlers
