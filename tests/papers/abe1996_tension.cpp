@@ -123,7 +123,7 @@ TEST_CASE("a_long_strip_bears_its_load_on_a_known_share_of_its_height") {
 }
 
 TEST_CASE("the_loads_of_the_uniform_state_make_the_tension_test_exact_on_a_block") {
-  // What the rim lacks in contact forces. Per row of the mean load f_h + f_d: f_h at short rows, f_h + 2 f_d at long
+  // The loads stand for the contacts that the rim lacks. Per row, mean f_h + f_d: f_h at short, f_h + 2 f_d at long
   // ones and f_h + f_d at the corners, f_d/(f_h + f_d) = 2r/(3(1 + r)); the equal loads of the paper bend the field.
   const int size = GENERATE(7, 21);
   for (const double ratio : {-0.2, 0.1, 0.5, 1.0}) {

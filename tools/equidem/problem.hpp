@@ -33,7 +33,7 @@ struct Problem {
   }
 };
 
-/// What is done with an assembly, by which the memory is estimated before it is built.
+/// Use of an assembly; the memory is estimated by it before the assembly is built.
 enum class Purpose { factorize, step };
 
 /// Assembly and springs of the case, without supports and loads.

@@ -96,7 +96,7 @@ struct Assembly {
 struct GapRange {
   double smallest = 0, largest = 0;
 };
-/// Of discs; 0 and 0 where bodies have sections of their own, or there are no contacts.
+/// The gaps are 0 where bodies have sections of their own, or there are no contacts.
 GapRange gaps_at_contacts(const Assembly& assembly);
 
 /// Whether the normals of all contacts point through both centres, so that no normal force turns a body.

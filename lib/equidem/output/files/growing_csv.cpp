@@ -99,7 +99,7 @@ FileMark GrowingCsv::mark() const {
   return {path_.filename().string(), marked_, sum_.value()};
 }
 
-/// What follows the mark stays in the file until rows are written, and with it a result whose run does not go on.
+/// Rows behind the mark stay in the file until rows are written: a run that is refused keeps its result.
 void GrowingCsv::go_on(const FileMark& mark) {
   const std::string text = read_marked(path_, mark);
   if (!text.starts_with(header_)) {

@@ -73,7 +73,7 @@ class RunLoop {
     if (files.resume) from = go_on(path);
     checkpoint_.emplace(path, plan_.case_text, files.overwrite || files.resume);
     const auto mark_of = [&](const char* name) { return from ? std::optional(from->mark_of(name)) : std::nullopt; };
-    // What cannot go on is refused before a file is changed: tables change with their first row, frames at once.
+    // Tables are opened first, because they change with their first row, frames at once: a refusal changes no file.
     if (plan_.recorder != nullptr) plan_.recorder->open(*files.folder, files.overwrite, from ? &*from : nullptr);
     if (plan_.probe_interval) {
       const std::size_t bodies = simulation_.motions().size();
