@@ -7,6 +7,7 @@
 #include <ctime>
 #include <exception>
 #include <fstream>
+#include <string_view>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -18,7 +19,13 @@
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 
+#include "machine.hpp"
+
 namespace equidem::bench {
+
+void Report::begin(const char* title) {
+  add(fmt::format("# {}\n\n    {}\n\n{}.\n", title, command_, this_machine().text()));
+}
 
 void Report::add(const std::string& text) {
   std::fputs(text.c_str(), stdout);
@@ -32,6 +39,18 @@ void write(const std::string& path, const std::string& text) {
   if (!file.flush()) bad_input(fmt::format("'{}' cannot be written", path), "", "Choose another path");
 }
 
+/// The command without --markdown and its value: where a page is written does not change it.
+static std::string command_line(const char* name, int argc, char** argv) {
+  std::string text = name;
+  for (int k = 1; k < argc; ++k) {
+    if (std::string_view(argv[k]) == "--markdown")
+      ++k;
+    else
+      text += fmt::format(" {}", argv[k]);
+  }
+  return text;
+}
+
 int run_benchmark(const char* name, const char* purpose, int argc, char** argv,
                   const std::function<void(CLI::App&)>& declare, const std::function<void(Report&)>& run) {
   CLI::App app(purpose, name);
@@ -40,7 +59,7 @@ int run_benchmark(const char* name, const char* purpose, int argc, char** argv,
   app.add_option("--markdown", file, "file for the report");
   CLI11_PARSE(app, argc, argv);
   try {
-    Report report;
+    Report report(command_line(name, argc, argv));
     run(report);
     if (!file.empty()) write(file, report.text());
     return 0;

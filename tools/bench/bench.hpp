@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What the benchmarks share: options and report, rounds in which all contenders take turns, medians, scenes.
+/// Options and report of a benchmark, rounds in which all contenders take turns, medians, scenes.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
@@ -21,11 +22,15 @@ namespace equidem::bench {
 /// Text that is printed at once and written to the file of --markdown in the end.
 class Report {
  public:
+  explicit Report(std::string command) : command_(std::move(command)) {}
+
+  /// The title of the page, the command that makes it, and the machine.
+  void begin(const char* title);
   void add(const std::string& text);
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
-  std::string text_;
+  std::string command_, text_;
 };
 
 /// \throws Error (bad_input) where the file cannot be written

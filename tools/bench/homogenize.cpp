@@ -6,7 +6,6 @@
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/core/stopwatch.hpp"
-#include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/homogenize/stress.hpp"
@@ -14,7 +13,6 @@
 #include "equidem/statics/stiffness_solver.hpp"
 
 #include "bench.hpp"
-#include "machine.hpp"
 #include "text_table.hpp"
 
 namespace equidem::bench {
@@ -50,8 +48,8 @@ void compare(TextTable& table, std::int64_t discs, int threads, int rounds) {
     one.push_back(one_solution(cell, springs));
     whole.push_back(whole_stiffness(cell, springs));
   }
-  table.add("{} & {} & {} & {:.3f} & {:.3f} & {}", cell.size(), threads, rounds, range_of(one).median,
-            range_of(whole).median, ratio_of(whole, one).text("{:.2f}"));
+  table.add("{} & {} & {} & {} & {} & {}", cell.size(), threads, rounds, range_of(one).text("{:.3f}"),
+            range_of(whole).text("{:.3f}"), ratio_of(whole, one).text("{:.2f}"));
 }
 
 }  // namespace
@@ -71,12 +69,15 @@ int main(int argc, char** argv) {
         app.add_option("--rounds", rounds, "of both, one after the other")->check(CLI::PositiveNumber);
       },
       [&](Report& report) {
-        equidem::TextTable table("discs & threads & rounds & one solution & effective stiffness & ratio");
+        report.begin("Effective stiffness");
+        equidem::TextTable table("discs & threads & rounds & one solution, s & effective stiffness, s & ratio");
         for (const double count : discs)
           for (const int each : threads) compare(table, static_cast<std::int64_t>(count), each, rounds);
-        report.add(fmt::format("# Effective stiffness\n\n{}: three load cases, error bound and rigidity included, over "
-                               "one solution; medians of rounds, s\n\n",
-                               equidem::this_machine().text()) +
-                   table.markdown());
+        report.add(
+            "\nA periodic Delaunay cell, kT/kN = 0.5. One solution: order, analyze, assemble, factorize, solve and "
+            "refine "
+            "for one mean strain. Effective stiffness: three mean strains, error bound and rigidity included. Seconds, "
+            "medians (smallest .. largest) of rounds in which both take turns.\n\n" +
+            table.markdown());
       });
 }

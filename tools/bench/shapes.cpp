@@ -12,7 +12,6 @@
 #include "equidem/grains/scene/clump.hpp"
 
 #include "bench.hpp"
-#include "machine.hpp"
 #include "text_table.hpp"
 
 namespace equidem::bench {
@@ -116,9 +115,8 @@ GrainSimulation settled(const Shape& shape, int side) {
   return simulation;
 }
 
-constexpr const char* introduction = R"(# Shapes
-
-{}, `bench_shapes --side {} --rounds {}`. {} grains of equal area that have fallen into a box under gravity, with
+constexpr const char* introduction = R"(
+{} grains of equal area that have fallen into a box under gravity, with
 friction, tangential springs and dashpots; the law linear_dashpot. One thread, processor time; medians (smallest ..
 largest) of rounds in which all take turns. A step contains contacts, near pairs without contact, motion and neighbour
 lists. Contacts are those with overlap; "over a disc" compares with the disc of the same integrator. Discs, round parts
@@ -155,7 +153,8 @@ void run(Report& report, int side, int rounds) {
               (over_disc * (contacts_of_disc / contacts)).text("{:.2f}"),
               simulations[k].bytes_per_body() * (all[k].bonded ? 2 : 1));
   }
-  report.add(fmt::format(introduction, this_machine().text(), side, rounds, side * side) + table.markdown());
+  report.begin("Shapes");
+  report.add(fmt::format(introduction, side * side) + table.markdown());
 }
 
 }  // namespace

@@ -15,7 +15,6 @@
 #include "bench.hpp"
 #include "hard_discs.hpp"
 #include "loops.hpp"
-#include "machine.hpp"
 #include "text_table.hpp"
 
 namespace equidem::bench {
@@ -173,9 +172,8 @@ std::string compare_friction(int rounds) {
   return table_beside_hand_loop(entries, seconds, bytes, static_cast<double>(side * side * steps));
 }
 
-constexpr const char* introduction = R"(# Collisions
-
-{}, `bench_collisions --rounds {} --halvings {}`. One thread, processor time; medians (smallest .. largest) of rounds in
+constexpr const char* introduction = R"(
+One thread, processor time; medians (smallest .. largest) of rounds in
 which all take turns. Laws: C linear spring and dashpot, T Hertz spring and dashpot, F and P the maps of Fujioka &
 Ushijima, X the linear spring and dashpot solved exactly within the step. Dimensionless stiffness a = k dt²/m = 0.1
 (T: 4.62) unless stated. `equidem-papers fujioka2005` measures the evaluation of each law alone, `equidem study
@@ -188,7 +186,8 @@ collision_laws` the order of its error.
 )";
 
 void run(Report& report, int rounds, int halvings) {
-  report.add(fmt::format(introduction, this_machine().text(), rounds, halvings) + compare_laws("gas", rounds));
+  report.begin("Collisions");
+  report.add(introduction + compare_laws("gas", rounds));
   report.add("\n2500 discs packed by gravity, e = 0.7, with lasting contacts:\n\n" + compare_laws("bed", rounds));
   report.add(
       "\n## Time at equal accuracy\n\nThe dimensionless stiffness is kept as the step falls: all laws tend to rigid "

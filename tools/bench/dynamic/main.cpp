@@ -14,7 +14,6 @@
 
 #include "bench.hpp"
 #include "loops.hpp"
-#include "machine.hpp"
 #include "scene.hpp"
 #include "text_table.hpp"
 
@@ -160,10 +159,12 @@ std::string compare_absent_effects(const Assembly& assembly, int rounds) {
 
 void run(Report& report, const Request& request) {
   const Limits limits = machine_limits();
-  report.add(fmt::format(
-      "# Steps in time\n\n{}. One core: triad {:.1f} GB/s, multiply-adds on four numbers {:.1f} Gflop/s.\nMedians "
-      "(smallest .. largest) of {} rounds in which all take turns; one thread: processor time, more: wall time.\n",
-      this_machine().text(), 1e-9 * limits.bandwidth, 1e-9 * limits.arithmetic, request.rounds));
+  report.begin("Steps in time");
+  report.add(
+      fmt::format("\nOne core: triad {:.1f} GB/s, multiply-adds on four numbers {:.1f} Gflop/s. Medians (smallest .. "
+                  "largest) of {} "
+                  "rounds in which all take turns; one thread: processor time, more: wall time.\n",
+                  1e-9 * limits.bandwidth, 1e-9 * limits.arithmetic, request.rounds));
   report.add(
       "\n## Beside plain loops\n\nSprings kN and kT, rotation, small motions, leapfrog. Bandwidth counts the bytes "
       "that "

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the comparisons share: commands, medians, tables."""
+"""Commands, medians and tables of the comparisons."""
 
 import json
 import os

@@ -20,32 +20,39 @@ def build(folder):
 
 
 def compare(bench, quick, rounds):
-    discs = 10_000 if quick else 100_000
-    found = {"discs": discs, "peers": {name: [] for name in PEERS}, "ours": {}}
     with tempfile.TemporaryDirectory() as folder:
         program = build(folder)
-        matrix = Path(folder, "matrix")
-        call([bench, "--write-matrix", matrix, "--kinds", "hexagonal", "--discs", discs])
-        for k in range(rounds):
-            for name in PEERS:
-                text = call([program, matrix, name], seconds=600)
-                match = re.search(r"analyze (\S+) factorize (\S+) solve (\S+) residual (\S+) iterations (\d+)", text)
-                if not match:
-                    raise Failure(f"{name} gave no result: {text.strip()[-300:]}")
-                found["peers"][name].append([float(word) for word in match.groups()])
-            file = Path(folder, f"ours{k}.json")
-            solvers = ["equidem", "cholmod-metis", "cholmod-amd"]
-            call([bench, "--discs", discs, "--kinds", "hexagonal", "--solvers", ",".join(solvers), "--threads", "1,2", "--repetitions", 1,
-                  "--json", file], OMP_THREAD_LIMIT="2")
-            for run in json.loads(file.read_text())["comparisons"][0]["series"]:
-                total = sum(run[stage][0] for stage in ("order", "analyze", "factorize", "solve"))
-                one = {"total": total, "residual": run["residual"][0]}
-                found["ours"].setdefault(f"{run['solver']}, {run['threads']}", []).append(one)
-            tell(f"matrix: round {k + 1} of {rounds}")
+        return [measure(program, bench, discs, rounds, folder) for discs in ([10_000] if quick else [10_000, 100_000])]
+
+
+def measure(program, bench, discs, rounds, folder):
+    found = {"discs": discs, "peers": {name: [] for name in PEERS}, "ours": {}}
+    matrix = Path(folder, "matrix")
+    call([bench, "--write-matrix", matrix, "--kinds", "hexagonal", "--discs", discs])
+    for k in range(rounds):
+        for name in PEERS:
+            text = call([program, matrix, name], seconds=600)
+            match = re.search(r"analyze (\S+) factorize (\S+) solve (\S+) residual (\S+) iterations (\d+)", text)
+            if not match:
+                raise Failure(f"{name} gave no result: {text.strip()[-300:]}")
+            found["peers"][name].append([float(word) for word in match.groups()])
+        file = Path(folder, f"ours{k}.json")
+        solvers = ["equidem", "cholmod-metis", "cholmod-amd"]
+        call([bench, "--discs", discs, "--kinds", "hexagonal", "--solvers", ",".join(solvers), "--threads", "1,2", "--repetitions", 1,
+              "--json", file], OMP_THREAD_LIMIT="2")
+        for run in json.loads(file.read_text())["comparisons"][0]["series"]:
+            total = sum(run[stage][0] for stage in ("order", "analyze", "factorize", "solve"))
+            one = {"total": total, "residual": run["residual"][0]}
+            found["ours"].setdefault(f"{run['solver']}, {run['threads']}", []).append(one)
+        tell(f"matrix: {discs} discs, round {k + 1} of {rounds}")
     return found
 
 
 def report(found):
+    return "\n\n".join(table_of(size) for size in found)
+
+
+def table_of(found):
     rows = []
     base = median([run["total"] for run in found["ours"]["equidem, 1"]])
     for name, runs in found["ours"].items():

@@ -170,15 +170,16 @@ Results json(const std::string& kind, const std::vector<Series>& all) {
 void run(Report& report, const Request& request) {
   const std::string threads = joined(
       solvers(), [](const Solver& solver) { return fmt::format("{}: {}", solver.label, solver.threads); }, "; ");
+  report.begin("Static solves");
   report.add(fmt::format(
-      "# Static solves\n\n{}\n\nkT/kN = 0.5, 3 unknowns per disc, left side fixed, load on the right side. Seconds, "
+      "\nkT/kN = 0.5, 3 unknowns per disc, left side fixed, load on the right side. Seconds, "
       "medians (smallest .. largest); total = order + analyze + factorize + solve, one right-hand side, no refinement. "
       "K: assembly of the stiffness matrix, not in the total. nnz(L): lower triangle, without explicit zeros. Factor: "
       "stored of L. Peak: of the whole process, the assembly and K included. CPU: seconds of all threads since the "
       "start of the process, the set-up of the problem included; it depends least on other load of the machine. Every "
       "run is a fresh process, solvers take turns.\nThreads of {}. CHOLMOD runs supernodal, with 32-bit indices and "
       "OMP_THREAD_LIMIT=1.\n",
-      this_machine().text(), threads));
+      threads));
   std::vector<Results> comparisons;
   for (const std::string& kind : request.kinds) {
     for (const double discs : request.discs) {
