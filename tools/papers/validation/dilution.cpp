@@ -187,7 +187,7 @@ Plot onset_plot(const std::vector<Onsets>& all, const std::string& what, const s
     plot.series.push_back(std::move(series));
   }
   plot.vertical_lines = {{published(key).value, fmt::format("{:.4f}, {}", published(key).value, published(key).source),
-                          PlotColour::black}};
+                          PlotColour::black, true}};
   return plot;
 }
 
@@ -211,15 +211,12 @@ void add_thresholds(Findings& findings, const std::vector<Onsets>& all, const st
 }
 
 constexpr const char* method =
-    "Periodic cells of a triangular lattice whose points are moved at random by up to a tenth of the spacing, so that "
-    "no "
-    "two bonds are in line (the *generic* lattice of the source); kT = 0. The {0} come back in a random order; the "
-    "onset "
-    "of a cell is the share of them at which it resists every mean strain, found by bisection. Missing bonds keep "
-    "1e-11 "
-    "of their stiffness (up to 1e-9 where the matrix would be singular); a cell counts as floppy where these carry "
-    "more than half of the energy of its softest strain "
-    "(`effective_stiffness`, `strained_states`). The extrapolation takes nu = {1} of the source.";
+    "Periodic cells of a triangular lattice whose points are moved at random by up to a tenth of the spacing, so "
+    "that no two bonds are in line (the *generic* lattice of the source); kT = 0. The {0} come back in a random "
+    "order; the onset of a cell is the share of them at which it resists every mean strain, found by bisection. "
+    "Missing bonds keep 1e-11 of their stiffness (up to 1e-9 where the matrix would be singular); a cell counts as "
+    "floppy where these carry more than half of the energy of its softest strain (`effective_stiffness`, "
+    "`strained_states`). The extrapolation takes nu = {1} of the source.";
 
 /// A cell of the regular lattice with a share p of its bonds: K and G over those of the full lattice.
 std::pair<double, double> relative_moduli(int side, double p, std::uint64_t seed) {
@@ -312,8 +309,8 @@ Findings bond_dilution(bool quick) {
   Findings findings;
   findings.text = fmt::format(method, "bonds", published("rigidity exponent").value) +
                   "\n\nModuli: the regular lattice, K and G over those of the full one. Effective-medium theory has "
-                  "them linear in p; its slope at p = 1 is exact, what it leaves out are correlations between missing "
-                  "bonds.";
+                  "them linear in p; its slope at p = 1 is exact, what it leaves out are correlations between "
+                  "missing bonds.";
   add_thresholds(findings, all, "bond threshold");
   const std::vector<Dilution> moduli = dilute(quick);
   for (const auto& [name, modulus] : {std::pair{"K", &Dilution::bulk}, std::pair{"G", &Dilution::shear}}) {

@@ -165,10 +165,10 @@ Findings disc_moduli(bool quick) {
   Findings findings;
   findings.text = fmt::format(
       "Periodic cells of {} discs with radii between 0.4 and 0.7 of a length, compressed without friction to mean "
-      "overlaps of {:g} to {:g} of the mean radius (`pack` by growth); {} seeds. Their contacts then carry springs kN "
-      "and "
-      "kT (`network_of`, `effective_stiffness`), beside the moduli of uniform strain (`voigt_stiffness`). The paper's "
-      "moduli over z and kT/kN are figures, and its tables could not be had: its statements are decided here.",
+      "overlaps of {:g} to {:g} of the mean radius (`pack` by growth); {} seeds. Their contacts then carry springs "
+      "kN and kT (`network_of`, `effective_stiffness`), beside the moduli of uniform strain (`voigt_stiffness`). The "
+      "paper's moduli over z and kT/kN are figures, and its tables could not be had: its statements are decided "
+      "here.",
       discs, overlaps.front(), overlaps.back(), samples);
   findings.trends = {rises(points, ratios, "K", &ModuliPoint::bulk_share),
                      rises(points, ratios, "G", &ModuliPoint::shear_share)};

@@ -212,8 +212,8 @@ SurfacePoint surface_point(const Oblique& impact) {
 
 Plot oblique_plot(const std::vector<SurfacePoint>& hertz, const std::vector<SurfacePoint>& linear) {
   Plot plot{.title = "Test 5: oblique elastic impact of a sphere on a rigid plane",
-            .x = {.label = "surface speed before, over friction times normal speed"},
-            .y = {.label = "surface speed after, over friction times normal speed"}};
+            .x = {.label = "surface speed before / (µ normal speed)"},
+            .y = {.label = "surface speed after / (µ normal speed)"}};
   plot.series.push_back(
       curve({.label = "slides throughout: x - 7", .column = "sliding"}, 7, 14, [](double x) { return x - 7; }));
   plot.series.push_back(curve(
@@ -222,9 +222,12 @@ Plot oblique_plot(const std::vector<SurfacePoint>& hertz, const std::vector<Surf
   for (const auto& [points, label, colour, marker] :
        {std::tuple{&hertz, "Hertz", PlotColour::vermilion, Marker::circle},
         std::tuple{&linear, "linear springs", PlotColour::blue, Marker::square}}) {
-    plot.series.push_back(
-        with_points({.label = label, .style = SeriesStyle::points, .colour = colour, .marker = marker, .filled = false},
-                    *points, &SurfacePoint::before, &SurfacePoint::after));
+    plot.series.push_back(with_points({.label = label,
+                                       .style = SeriesStyle::points,
+                                       .colour = colour,
+                                       .marker = marker,
+                                       .filled = marker == Marker::circle},
+                                      *points, &SurfacePoint::before, &SurfacePoint::after));
   }
   return plot;
 }
@@ -271,13 +274,10 @@ Findings impacts(bool quick) {
   findings.text =
       "Spheres in the plane, law `hertz_dashpot` and linear springs; the numbers of the source are its closed forms: "
       "Hertz' force, overlap and duration, restitution as given, and the tangential velocity and spin of a contact "
-      "that "
-      "slides throughout, v_t - µ (1 + e) v_n and ω - 5/2 µ (1 + e) v_n/R. With linear springs and kT/kN = 2/7 both "
-      "springs "
-      "of a sphere have the same period, and a contact that sticks reverses the velocity of its surface. The error is "
-      "the "
-      "change from time steps of 1/2000 of the contact to a quarter of that. Materials and velocities are those of the "
-      "source.";
+      "that slides throughout, v_t - µ (1 + e) v_n and ω - 5/2 µ (1 + e) v_n/R. With linear springs and kT/kN = 2/7 "
+      "both springs of a sphere have the same period, and a contact that sticks reverses the velocity of its "
+      "surface. The error is the change from time steps of 1/2000 of the contact to a quarter of that. Materials and "
+      "velocities are those of the source.";
   for (const Material& material : {glass, limestone})
     compare_elastic(findings, fmt::format("test 1, {}", material.name), meeting_spheres(material),
                     hertz_stiffness_of(material, 0.005, true), 20);
@@ -331,10 +331,9 @@ Findings impacts(bool quick) {
                       "Chung & Ooi 2011", ordered && std::abs(slides_from - 7) <= 1.5,
                       fmt::format("the first that does is {:g} µ v_n", slides_from)}};
   findings.notes = {
-      "Experiments and finite elements that the source shows beside its closed forms are figures only; they "
-      "are not compared. Of tests 4 to 8 the part in which contacts stick depends on the tangential law; "
-      "with linear springs it has a closed form, with Hertz springs the law of the source is Mindlin's, "
-      "which this program lacks."};
+      "Experiments and finite elements that the source shows beside its closed forms are figures only; they are not "
+      "compared. Of tests 4 to 8 the part in which contacts stick depends on the tangential law; with linear springs "
+      "it has a closed form, with Hertz springs the law of the source is Mindlin's, which this program lacks."};
   Table table;
   table.add("surface_before", hertz, &SurfacePoint::before).add("surface_after_hertz", hertz, &SurfacePoint::after);
   table.add("surface_after_linear", linear, &SurfacePoint::after);

@@ -19,8 +19,7 @@ constexpr double their_tolerance = 1e-10;  // relative, of the comparison with a
 
 constexpr const char* attraction =
     "LAMMPS limits friction by the size of the normal force also while the dashpot attracts, before a contact ends; "
-    "here "
-    "friction needs pressure";
+    "here friction needs pressure";
 constexpr const char* segments =
     "LAMMPS runs the system in parts, at the start of which the dashpot sees velocities of the full step";
 constexpr const char* first_step =
@@ -194,9 +193,8 @@ Findings lammps(bool /*quick*/) {
   Findings findings;
   findings.text =
       "LAMMPS keeps fifteen programs, dem01 to dem15, each with systems whose trajectories it recorded to 17 digits "
-      "and "
-      "compares to 1e-10, or with closed forms. Those below are replayed with `velocity_verlet`, the linear or Hertz "
-      "springs and the step of the system; *agrees* means to 1e-10.";
+      "and compares to 1e-10, or with closed forms. Those below are replayed with `velocity_verlet`, the linear or "
+      "Hertz springs and the step of the system; *agrees* means to 1e-10.";
   Replays replays(findings);
   head_on(replays);
   hertz(replays);
@@ -209,8 +207,7 @@ Findings lammps(bool /*quick*/) {
   formulas(replays);
   findings.notes = {
       "Not replayed, since this program lacks what they test: dem07 (rolling resistance), dem08 (cohesion), dem09 "
-      "(drag of "
-      "a fluid), dem12 (superellipsoids), dem13 (twisting friction), dem14 (conduction of heat).",
+      "(drag of a fluid), dem12 (superellipsoids), dem13 (twisting friction), dem14 (conduction of heat).",
       "dem11 and dem15: their recorded numbers could not be had; the closed forms that they check are computed with "
       "numbers of our own."};
   return findings;

@@ -117,8 +117,8 @@ Run declare(CLI::App& command) {
   }();
   command.add_option("--only", options->only, "items to compute, of " + joined(names))->check(CLI::IsMember(names));
   command.footer(
-      "Numbers that others have published (rigidity, adsorption, jamming, friction, impacts, LAMMPS, a point load,\n"
-      "moduli), computed again, with error bars and verdicts.");
+      "Numbers that others have published (rigidity, adsorption, jamming, friction, impacts, LAMMPS, a point "
+      "load,\nmoduli), computed again, with error bars and verdicts.");
   return [options] { return validate(*options); };
 }
 

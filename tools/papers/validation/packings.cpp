@@ -104,17 +104,26 @@ JammedSize jam_many(std::size_t discs, std::size_t samples) {
           estimate(&BidispersePacking::rattlers)};
 }
 
-/// Intercept of the line of estimates over x.
+/// The line of estimates over x.
 template <class Rows, class X>
-Estimate intercept(const Rows& rows, const X& x_of, MeanEstimate Rows::value_type::*member) {
+LineFit fit_of(const Rows& rows, const X& x_of, MeanEstimate Rows::value_type::*member) {
   std::vector<double> x, y, errors;
   for (const auto& row : rows) {
     x.push_back(std::invoke(x_of, row));
     y.push_back((row.*member).mean);
     errors.push_back((row.*member).standard_error);
   }
-  const LineFit fit = fit_line(x, y, errors);
+  return fit_line(x, y, errors);
+}
+
+Estimate at_zero(const LineFit& fit) {
   return {fit.intercept, fit.intercept_error};
+}
+
+/// The line down to x = 0.
+Series fitted_line(const LineFit& fit, double to) {
+  return curve({.label = "fit", .style = SeriesStyle::dashed_line}, 0, to,
+               [&](double x) { return fit.intercept + fit.slope * x; });
 }
 
 template <class Rows, class X>
@@ -190,12 +199,9 @@ Findings adsorption(bool quick) {
   Findings findings;
   findings.text = fmt::format(
       "Periodic squares of {0:g} x {0:g} diameters, {1} seeds; discs are tried one by one at random places and stay "
-      "where "
-      "they overlap none (`pack` by rejection, one attempt a disc). The time t is the number of attempts times the "
-      "area "
-      "of a disc over that of the cell. Feder's law, coverage = limit - c t^(-1/2), is fitted to the last four times "
-      "of "
-      "each seed (t = {2:g} to {3:g}).",
+      "where they overlap none (`pack` by rejection, one attempt a disc). The time t is the number of attempts times "
+      "the area of a disc over that of the cell. Feder's law, coverage = limit - c t^(-1/2), is fitted to the last "
+      "four times of each seed (t = {2:g} to {3:g}).",
       side, samples, times[late], times.back());
   findings.comparisons = {compare("coverage at saturation", "adsorption coverage", mean_of(limits),
                                   "the law holds in the limit only; earlier times bend the line"),
@@ -206,7 +212,7 @@ Findings adsorption(bool quick) {
   table.add("coverage", all, [](const LateCoverage& c) { return c.coverage.mean; });
   table.add("standard_error", all, [](const LateCoverage& c) { return c.coverage.standard_error; });
   Plot plot{.title = "Random sequential adsorption of equal discs",
-            .x = {.label = "t^{-1/2}", .min = 0, .max = 0.52},
+            .x = {.label = "t^{-1/2}", .min = -0.01, .max = 0.52},
             .y = {.label = "coverage"}};
   plot.enhanced = true;
   const double limit = mean_of(limits).value;
@@ -215,7 +221,7 @@ Findings adsorption(bool quick) {
                               [&](double x) { return limit + slope * x; }));
   const auto inverse_root = [](const LateCoverage& c) { return 1 / std::sqrt(c.time); };
   add_points(plot, {.label = "rejection", .colour = PlotColour::vermilion}, all, inverse_root, &LateCoverage::coverage);
-  plot.series.push_back({.label = "0.5471, Zhang & Torquato 2013",
+  plot.series.push_back({.label = "0.5471, Zhang and Torquato 2013",
                          .x = {0},
                          .y = {published("adsorption coverage").value},
                          .style = SeriesStyle::points,
@@ -235,25 +241,22 @@ Findings jamming(bool quick) {
   Findings findings;
   findings.text = fmt::format(
       "Half of the discs are 1.4 times as large as the others; periodic squares, no friction. The discs grow from "
-      "random "
-      "places and push each other apart; the radii then shrink until the mean overlap is {1:g} of the mean radius "
-      "(`pack` "
-      "by growth). Rattlers, discs with fewer than three contacts, are left out of the coordination z, and counted in "
-      "the solid fraction. Size dependence: N^(-1/(2 nu)), nu = {0:g} of O'Hern et al. At jamming N' discs that are "
-      "held have 2 N' - 1 contacts, so that z = 4 - 2/N'; at the overlap left z is larger by about {2:.2g} (O'Hern et "
-      "al.), "
-      "which is allowed for.",
+      "random places and push each other apart; the radii then shrink until the mean overlap is {1:g} of the mean "
+      "radius (`pack` by growth). Rattlers, discs with fewer than three contacts, are left out of the coordination "
+      "z, and counted in the solid fraction. Size dependence: N^(-1/(2 nu)), nu = {0:g} of O'Hern et al. At jamming "
+      "N' discs that are held have 2 N' - 1 contacts, so that z = 4 - 2/N'; at the overlap left z is larger by about "
+      "{2:.2g} (O'Hern et al.), which is allowed for.",
       published("jamming exponent").value, jamming_overlap, excess_coordination());
+  const LineFit fractions = fit_of(all, &JammedSize::x, &JammedSize::solid_fraction);
   findings.comparisons = {
       compare(
-          "solid fraction, extrapolated to infinite size", "jamming fraction",
-          intercept(all, &JammedSize::x, &JammedSize::solid_fraction),
+          "solid fraction, extrapolated to infinite size", "jamming fraction", at_zero(fractions),
           "it depends on how the packing is made (see below): here the discs are compressed in steps, there they are "
           "quenched from random places at once"),
       compare(
           "z without rattlers, extrapolated in 1/N", "jamming coordination",
-          intercept(
-              all, [](const JammedSize& s) { return 1 / static_cast<double>(s.discs); }, &JammedSize::coordination))};
+          at_zero(fit_of(
+              all, [](const JammedSize& s) { return 1 / static_cast<double>(s.discs); }, &JammedSize::coordination)))};
   findings.comparisons.back().allowance = excess_coordination();
   for (const JammedSize& size : all) {
     findings.comparisons.push_back(compare(fmt::format("contacts beyond 2 N' - 1, N = {}", size.discs),
@@ -284,11 +287,12 @@ Findings jamming(bool quick) {
               [&](const JammedSize& s) { return (s.*member).standard_error; });
   }
   Plot plot{.title = "Bidisperse discs (1 : 1.4) at jamming",
-            .x = {.label = "N^{-1/(2ν)}, ν = 0.71", .min = 0},
+            .x = {.label = "N^{-1/(2ν)}, ν = 0.71", .min = -0.001},
             .y = {.label = "solid fraction"}};
   plot.enhanced = true;
   add_points(plot, {.label = "growth in periodic cells", .colour = PlotColour::vermilion}, all, &JammedSize::x,
              &JammedSize::solid_fraction);
+  plot.series.push_back(fitted_line(fractions, all.front().x()));
   plot.series.push_back({.label = "0.842, O'Hern et al. 2003",
                          .x = {0},
                          .y = {published("jamming fraction").value},
@@ -310,19 +314,18 @@ Findings friction(bool quick) {
   for (const double mu : frictions) over_friction.push_back(settle_many(mu, soft, discs, samples));
   over_stiffness = {over_friction.back()};
   for (double k = 10 * soft; k < 2 * hard; k *= 10) over_stiffness.push_back(settle_many(10, k, discs, samples));
-  const Estimate rigid = intercept(
-      over_stiffness, [](const Frictional& f) { return f.depth.mean; }, &Frictional::coordination);
+  const auto depth_of = [](const Frictional& f) { return f.depth.mean; };
+  const LineFit over_depth = fit_of(over_stiffness, depth_of, &Frictional::coordination);
   Findings findings;
   findings.text = fmt::format(
       "{} discs of radii 5 and 7 mm fall into a box and come to rest (`pack` by falling, h = 1 of the dashpots, kT = "
-      "kN; "
-      "{} seeds). z of discs without rattlers away from walls and surface, at friction 10 extrapolated to rigid discs "
-      "over the square root of the largest overlap.",
+      "kN; {} seeds). z of discs without rattlers away from walls and surface, at friction 10 extrapolated to rigid "
+      "discs over the square root of the largest overlap.",
       discs, samples);
-  findings.comparisons = {compare("z without rattlers, friction 10, rigid discs", "frictional coordination", rigid,
+  findings.comparisons = {compare("z without rattlers, friction 10, rigid discs", "frictional coordination",
+                                  at_zero(over_depth),
                                   "3 is the least that can carry load, reached as the packing is made ever more "
-                                  "slowly; discs that fall arrive with "
-                                  "some contacts more")};
+                                  "slowly; discs that fall arrive with some contacts more")};
   bool falls = true;
   std::string evidence;
   for (std::size_t k = 0; k < over_friction.size(); ++k) {
@@ -344,12 +347,13 @@ Findings friction(bool quick) {
   table.add("standard_error", rows, [](const Frictional& f) { return f.coordination.standard_error; });
   table.add("root_of_largest_overlap", rows, [](const Frictional& f) { return f.depth.mean; });
   Plot plot{.title = "Coordination of discs settled with friction 10",
-            .x = {.label = "square root of the largest overlap over the radius", .min = 0},
+            .x = {.label = "square root of the largest overlap over the radius", .min = -0.001},
             .y = {.label = "z without rattlers", .min = 2.95}};
-  add_points(
-      plot, {.label = "kN = 1e7 Pa and more, from right to left", .colour = PlotColour::vermilion}, over_stiffness,
-      [](const Frictional& f) { return f.depth.mean; }, &Frictional::coordination);
-  plot.series.push_back(curve({.label = "3", .style = SeriesStyle::dashed_line}, 0, over_stiffness.front().depth.mean,
+  add_points(plot, {.label = "kN = 1e7 Pa and more, from right to left", .colour = PlotColour::vermilion},
+             over_stiffness, depth_of, &Frictional::coordination);
+  plot.series.push_back(fitted_line(over_depth, over_stiffness.front().depth.mean));
+  plot.series.push_back(curve({.label = "3, Shundyak et al. 2007", .column = "published"}, 0,
+                              over_stiffness.front().depth.mean,
                               [](double) { return published("frictional coordination").value; }));
   findings.tables = {{"friction", std::move(table)}};
   findings.plots = {{"friction", std::move(plot)}};

@@ -93,10 +93,10 @@ std::string page(const std::vector<Section>& sections, bool quick) {
   std::string text = fmt::format(
       "# Validation\n\nNumbers that others have published, beside those of this program with their standard errors; "
       "written by\n\n    {}\n\nin {} on {}, into DIR/validation.md; DIR holds the figures (SVG, PNG), the numbers "
-      "behind them (CSV) and all comparisons (comparisons.csv). Nothing is fitted to the published numbers; where "
-      "a size dependence is removed with a published exponent, the text says so.\n\nA number *agrees* where the "
-      "difference is at most 2.6 standard errors, ours and the published one together, which a true value exceeds once "
-      "in a hundred times. Where it does not, the reason stands beside it.\n\n",
+      "behind them (CSV) and all comparisons (comparisons.csv). Nothing is fitted to the published numbers; where a "
+      "size dependence is removed with a published exponent, the text says so.\n\nA number *agrees* where the "
+      "difference is at most 2.6 standard errors, ours and the published one together, which a true value exceeds "
+      "once in a hundred times. Where it does not, the reason stands beside it.\n\n",
       command("", quick), seconds_text(seconds), this_machine().text());
   text += summary(sections) + "\n";
   for (const Section& section : sections) text += section_text(section, quick);

@@ -127,11 +127,11 @@ Findings point_load(bool quick) {
   if (quick) depths = {12, 24, 48};
   Findings findings;
   findings.text =
-      "A block of a hexagonal lattice, twice as wide as deep, the middle disc of its top row pushed down; discs of the "
-      "other sides are moved as the elastic half-plane is (`solve_equilibrium`). In the half ring from a quarter to "
-      "three "
-      "quarters of the depth the stress of each disc (`disc_stresses`) and its displacement are set beside Flamant's. "
-      "There are no error bars: the difference is that of a lattice from a continuum, and has to vanish with the size.";
+      "A block of a hexagonal lattice, twice as wide as deep, the middle disc of its top row pushed down; discs of "
+      "the other sides are moved as the elastic half-plane is (`solve_equilibrium`). In the half ring from a quarter "
+      "to three quarters of the depth the stress of each disc (`disc_stresses`) and its displacement are set beside "
+      "Flamant's. There are no error bars: the difference is that of a lattice from a continuum, and has to vanish "
+      "with the size.";
   Plot plot{.title = "Point load on a hexagonal half-plane: difference from the elastic solution",
             .x = {.label = "depth of the block, rows", .logarithmic = true},
             .y = {.label = "root mean square of the difference", .logarithmic = true}};
@@ -180,8 +180,8 @@ Findings point_load(bool quick) {
   table.add("stress_difference", rows, &LoadedBlock::stress).add("other_stresses", rows, &LoadedBlock::other_stress);
   table.add("displacement_difference", rows, &LoadedBlock::displacement);
   findings.notes = {
-      "Measurements on few layers of discs or grains (Geng et al. 2001; Goldenberg & Goldhirsch 2002) show "
-      "figures only and are not compared; they differ from the half-plane as small blocks do here."};
+      "Measurements on few layers of discs or grains (Geng et al. 2001; Goldenberg & Goldhirsch 2002) show figures "
+      "only and are not compared; they differ from the half-plane as small blocks do here."};
   findings.tables = {{"point_load", std::move(table)}};
   findings.plots = {{"point_load", std::move(plot)}};
   return findings;

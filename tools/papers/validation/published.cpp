@@ -25,21 +25,21 @@ constexpr std::array the_sources{
            "G. Zhang & S. Torquato (2013), Precise algorithm to generate random sequential addition of hard "
            "hyperspheres at saturation, Phys. Rev. E 88, 053312"},
     Source{"O'Hern et al. 2003",
-           "C. S. O'Hern, L. E. Silbert, A. J. Liu & S. R. Nagel (2003), Jamming at zero temperature and zero applied "
-           "stress: the epitome of disorder, Phys. Rev. E 68, 011306"},
+           "C. S. O'Hern, L. E. Silbert, A. J. Liu & S. R. Nagel (2003), Jamming at zero temperature and zero "
+           "applied stress: the epitome of disorder, Phys. Rev. E 68, 011306"},
     Source{
         "Schreck et al. 2011",
         "C. F. Schreck, C. S. O'Hern & L. E. Silbert (2011), Tuning jammed frictionless disk packings from isostatic "
         "to hyperstatic, Phys. Rev. E 84, 011305; arXiv:1007.2162"},
     Source{"Goodrich et al. 2012",
-           "C. P. Goodrich, A. J. Liu & S. R. Nagel (2012), Finite-size scaling at the jamming transition, Phys. Rev. "
-           "Lett. 109, 095704"},
+           "C. P. Goodrich, A. J. Liu & S. R. Nagel (2012), Finite-size scaling at the jamming transition, Phys. "
+           "Rev. Lett. 109, 095704"},
     Source{"Shundyak et al. 2007",
            "K. Shundyak, M. van Hecke & W. van Saarloos (2007), Force mobilization and generalized isostaticity in "
            "jammed packings of frictional grains, Phys. Rev. E 75, 010301"},
     Source{"Chung & Ooi 2011",
-           "Y. C. Chung & J. Y. Ooi (2011), Benchmark tests for verifying discrete element modelling codes at particle "
-           "impact level, Granular Matter 13, 643"},
+           "Y. C. Chung & J. Y. Ooi (2011), Benchmark tests for verifying discrete element modelling codes at "
+           "particle impact level, Granular Matter 13, 643"},
     Source{
         "Hertz 1882",
         "H. Hertz (1882), Über die Berührung fester elastischer Körper, J. reine angew. Math. 92, 156; as printed by "
@@ -49,9 +49,9 @@ constexpr std::array the_sources{
         "The LAMMPS developers (2026), unittest/granular of the LAMMPS distribution (versions of 30 March and 4 July "
         "2026), recorded trajectories and closed forms; https://www.lammps.org"},
     Source{"Flamant 1892",
-           "A. Flamant (1892), Sur la répartition des pressions dans un solide rectangulaire chargé transversalement, "
-           "C. R. Acad. Sci. Paris 114, 1465; displacements: S. P. Timoshenko & J. N. Goodier (1970), Theory of "
-           "Elasticity, article 36"},
+           "A. Flamant (1892), Sur la répartition des pressions dans un solide rectangulaire chargé "
+           "transversalement, C. R. Acad. Sci. Paris 114, 1465; displacements: S. P. Timoshenko & J. N. Goodier "
+           "(1970), Theory of Elasticity, article 36"},
     Source{"Agnolin & Kruyt 2008",
            "I. Agnolin & N. P. Kruyt (2008), On the elastic moduli of two-dimensional assemblies of disks: relevance "
            "and modeling of fluctuations in particle displacements and rotations, Comput. Math. Appl. 55, 245; "
