@@ -220,8 +220,8 @@ Plot oblique_plot(const std::vector<SurfacePoint>& hertz, const std::vector<Surf
       {.label = "sticks, linear springs with kT/kN = 2/7: -x", .style = SeriesStyle::dashed_line, .column = "sticking"},
       0, 3.5, [](double x) { return -x; }));
   for (const auto& [points, label, colour, marker] :
-       {std::tuple{&hertz, "Hertz", PlotColour::vermilion, Marker::circle},
-        std::tuple{&linear, "linear springs", PlotColour::blue, Marker::square}}) {
+       {std::tuple{&linear, "linear springs", PlotColour::blue, Marker::square},
+        std::tuple{&hertz, "Hertz, tangential spring of constant stiffness", PlotColour::vermilion, Marker::circle}}) {
     plot.series.push_back(with_points({.label = label,
                                        .style = SeriesStyle::points,
                                        .colour = colour,
