@@ -96,7 +96,9 @@ std::string page(const std::vector<Section>& sections, bool quick) {
       "behind them (CSV) and all comparisons (comparisons.csv). Nothing is fitted to the published numbers; where a "
       "size dependence is removed with a published exponent, the text says so.\n\nA number *agrees* where the "
       "difference is at most 2.6 standard errors, ours and the published one together, which a true value exceeds "
-      "once in a hundred times. Where it does not, the reason stands beside it.\n\n",
+      "once in a hundred times. Where a published relation leaves out something of known size (the overlap left at "
+      "jamming, the turn of a normal in a contact of finite duration), that is allowed for. Where the two differ, "
+      "the reason stands beside them.\n\n",
       command("", quick), seconds_text(seconds), this_machine().text());
   text += summary(sections) + "\n";
   for (const Section& section : sections) text += section_text(section, quick);
