@@ -147,7 +147,7 @@ struct Frictional {
 /// Discs of two sizes fall into a box and come to rest.
 Frictional settle_many(double friction, double stiffness, std::size_t discs, std::size_t samples, double damping = 1) {
   std::vector<double> coordination(samples), depth(samples);
-  for_samples(fmt::format("settling with friction {:g}, kN = {:g} Pa:", friction, stiffness), samples,
+  for_samples(fmt::format("settling with friction {:g}, kN = {:g} MPa:", friction, 1e-6 * stiffness), samples,
               [&](std::size_t k) {
                 PackingOptions options;
                 options.method = PackingMethod::falling;
@@ -241,7 +241,7 @@ Findings jamming(bool quick) {
   Findings findings;
   findings.text = fmt::format(
       "Half of the discs are 1.4 times as large as the others; periodic squares, no friction. The discs grow from "
-      "random places and push each other apart; the radii then shrink until the mean overlap is {1:g} of the mean "
+      "random places and push each other apart; the radii then shrink until the mean overlap is {1:.0e} of the mean "
       "radius (`pack` by growth). Rattlers, discs with fewer than three contacts, are left out of the coordination "
       "z, and counted in the solid fraction. Size dependence: N^(-1/(2 nu)), nu = {0:g} of O'Hern et al. At jamming "
       "N' discs that are held have 2 N' - 1 contacts, so that z = 4 - 2/N'; at the overlap left z is larger by about "
@@ -316,16 +316,17 @@ Findings friction(bool quick) {
   for (double k = 10 * soft; k < 2 * hard; k *= 10) over_stiffness.push_back(settle_many(10, k, discs, samples));
   const auto depth_of = [](const Frictional& f) { return f.depth.mean; };
   const LineFit over_depth = fit_of(over_stiffness, depth_of, &Frictional::coordination);
+  const std::string why =
+      "3 is the least that can carry load, reached as the packing is made ever more slowly; discs that fall arrive "
+      "with some contacts more";
   Findings findings;
   findings.text = fmt::format(
       "{} discs of radii 5 and 7 mm fall into a box and come to rest (`pack` by falling, h = 1 of the dashpots, kT = "
       "kN; {} seeds). z of discs without rattlers away from walls and surface, at friction 10 extrapolated to rigid "
       "discs over the square root of the largest overlap.",
       discs, samples);
-  findings.comparisons = {compare("z without rattlers, friction 10, rigid discs", "frictional coordination",
-                                  at_zero(over_depth),
-                                  "3 is the least that can carry load, reached as the packing is made ever more "
-                                  "slowly; discs that fall arrive with some contacts more")};
+  findings.comparisons = {
+      compare("z without rattlers, friction 10, rigid discs", "frictional coordination", at_zero(over_depth), why)};
   bool falls = true;
   std::string evidence;
   for (std::size_t k = 0; k < over_friction.size(); ++k) {
@@ -348,10 +349,10 @@ Findings friction(bool quick) {
                                  slowest.coordination.standard_error, damping));
   }
   findings.comparisons.push_back(
-      compare(fmt::format("z without rattlers, friction 10, kN = {:g} Pa, h = {:g}", 10 * soft, dampings.back()),
-              "frictional coordination", estimate_of(slowest.coordination), "the overlap left closes some contacts"));
-  findings.notes = {fmt::format("How slowly the discs come to rest matters: at friction 10 and kN = {:g} Pa, z is {}.",
-                                10 * soft, listed(braked))};
+      compare(fmt::format("z without rattlers, friction 10, kN = {:g} MPa, h = {:g}", 1e-5 * soft, dampings.back()),
+              "frictional coordination", estimate_of(slowest.coordination), why));
+  findings.notes = {fmt::format("How slowly the discs come to rest matters: at friction 10 and kN = {:g} MPa, z is {}.",
+                                1e-5 * soft, listed(braked))};
   Table table;
   std::vector<Frictional> rows = over_friction;
   rows.insert(rows.end(), over_stiffness.begin() + 1, over_stiffness.end());
@@ -362,7 +363,9 @@ Findings friction(bool quick) {
   Plot plot{.title = "Coordination of discs settled with friction 10",
             .x = {.label = "square root of the largest overlap over the radius", .min = -0.001},
             .y = {.label = "z without rattlers", .min = 2.95}};
-  add_points(plot, {.label = "kN = 1e7 Pa and more, from right to left", .colour = PlotColour::vermilion},
+  add_points(plot,
+             {.label = fmt::format("kN = {:g} to {:g} MPa, from right to left", 1e-6 * soft, 1e-6 * hard),
+              .colour = PlotColour::vermilion},
              over_stiffness, depth_of, &Frictional::coordination);
   plot.series.push_back(fitted_line(over_depth, over_stiffness.front().depth.mean));
   plot.series.push_back(curve({.label = "3, Shundyak et al. 2007", .column = "published"}, 0,
