@@ -24,7 +24,7 @@ namespace {
 
 /// A removed bond keeps this share of its stiffness, so that floppy cells have a modulus, too; ten or a hundred times
 /// as much where the matrix is else too close to singular.
-constexpr double remainder = 1e-11, largest_remainder = 1e-9;
+constexpr double least_remainder = 1e-11, largest_remainder = 1e-9;
 
 enum class Removed { bonds, sites };
 
@@ -47,7 +47,7 @@ std::vector<std::size_t> random_order(std::size_t count, std::uint64_t seed) {
 }
 
 ContactSprings springs_of(const Assembly& lattice, Removed removed, const std::vector<std::size_t>& order,
-                          std::size_t kept, double removed_stiffness = remainder) {
+                          std::size_t kept, double removed_stiffness = least_remainder) {
   std::vector<char> there(order.size(), 0);
   for (std::size_t k = 0; k < kept; ++k) there[order[k]] = 1;
   std::vector<SpringConstants> springs;
@@ -78,7 +78,7 @@ double share_in_removed(const Assembly& lattice, const ContactSprings& springs) 
 
 double share_of_remainders(const Assembly& lattice, Removed removed, const std::vector<std::size_t>& order,
                            std::size_t kept) {
-  for (double stiffness = remainder;; stiffness *= 10) {
+  for (double stiffness = least_remainder;; stiffness *= 10) {
     try {
       return share_in_removed(lattice, springs_of(lattice, removed, order, kept, stiffness));
     } catch (const Error& error) {
@@ -87,26 +87,19 @@ double share_of_remainders(const Assembly& lattice, Removed removed, const std::
   }
 }
 
-/// The share of bonds or sites at which a cell becomes rigid, as they come back in a random order.
-struct Onset {
-  double share = 0;
-  double above = 0, below = 0;  ///< share of remainders at the onset, and with one unit less
-};
-Onset onset_of(Removed removed, int size, std::uint64_t seed) {
+/// The share of bonds or sites at which a cell becomes rigid, as they come back in a random order: more of them never
+/// make it softer.
+double onset_of(Removed removed, int size, std::uint64_t seed) {
   const Assembly lattice = generic_lattice(size, seed);
   const auto order =
       random_order(removed == Removed::bonds ? lattice.contacts.size() : lattice.size(), seed ^ 0x5bd1e995ULL);
   const auto units = static_cast<double>(order.size());
-  std::size_t floppy = static_cast<std::size_t>(0.5 * units), rigid = static_cast<std::size_t>(0.9 * units);
-  Onset onset;
+  auto floppy = static_cast<std::size_t>(0.5 * units), rigid = static_cast<std::size_t>(0.9 * units);
   while (rigid - floppy > 1) {
     const std::size_t middle = (floppy + rigid) / 2;
-    const double share = share_of_remainders(lattice, removed, order, middle);
-    (share < 0.5 ? rigid : floppy) = middle;
-    (share < 0.5 ? onset.above : onset.below) = share;
+    (share_of_remainders(lattice, removed, order, middle) < 0.5 ? rigid : floppy) = middle;
   }
-  onset.share = static_cast<double>(rigid) / units;
-  return onset;
+  return static_cast<double>(rigid) / units;
 }
 
 struct Size {
@@ -136,7 +129,7 @@ std::vector<Onsets> all_onsets(Removed removed, bool quick) {
     Onsets onsets{.size = size, .shares = std::vector<double>(size.samples), .mean = {}};
     const std::string what = removed == Removed::bonds ? "bonds" : "sites";
     for_samples(fmt::format("removing {} of {} x {} discs:", what, size.side, size.side), size.samples,
-                [&](std::size_t k) { onsets.shares[k] = onset_of(removed, size.side, k + 1).share; });
+                [&](std::size_t k) { onsets.shares[k] = onset_of(removed, size.side, k + 1); });
     std::sort(onsets.shares.begin(), onsets.shares.end());
     onsets.mean = estimate_mean(onsets.shares, 0.95);
     all.push_back(std::move(onsets));

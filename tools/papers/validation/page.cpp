@@ -2,7 +2,9 @@
 /// \file
 /// The page and the report.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "equidem/core/text.hpp"
@@ -57,20 +59,25 @@ std::string section_text(const Section& section, bool quick) {
                             seconds_text(section.seconds));
 }
 
+/// Keys of the sources that a section uses, each once.
+std::vector<std::string> sources_of(const Section& section) {
+  std::vector<std::string> used;
+  const auto use = [&](const std::string& source) {
+    if (std::find(used.begin(), used.end(), source) == used.end()) used.push_back(source);
+  };
+  for (const Comparison& c : section.findings.comparisons) use(c.source);
+  for (const Trend& t : section.findings.trends) use(t.source);
+  return used;
+}
+
 std::string summary(const std::vector<Section>& sections) {
   std::string text = head({"", "compared", "agree or hold", "source"});
   for (const Section& section : sections) {
-    std::vector<std::string> used;
-    const auto use = [&](const std::string& source) {
-      if (std::find(used.begin(), used.end(), source) == used.end()) used.push_back(source);
-    };
-    for (const Comparison& c : section.findings.comparisons) use(c.source);
-    for (const Trend& t : section.findings.trends) use(t.source);
     std::string anchor = section.item->heading;
     std::replace(anchor.begin(), anchor.end(), ' ', '-');
     std::transform(anchor.begin(), anchor.end(), anchor.begin(), [](unsigned char c) { return std::tolower(c); });
     text += row({fmt::format("[{}](#{})", section.item->heading, anchor), fmt::format("{}", section.statements()),
-                 fmt::format("{}", section.agreements()), joined(used)});
+                 fmt::format("{}", section.agreements()), joined(sources_of(section))});
   }
   return text;
 }
@@ -103,7 +110,13 @@ std::string page(const std::vector<Section>& sections, bool quick) {
   text += summary(sections) + "\n";
   for (const Section& section : sections) text += section_text(section, quick);
   text += "## Sources\n\n";
-  for (const Source& source : sources()) text += fmt::format("- **{}**: {}.\n", source.key, source.text);
+  std::set<std::string> used;
+  for (const Section& section : sections) {
+    for (const std::string& source : sources_of(section)) used.insert(source);
+  }
+  for (const Source& source : sources()) {
+    if (used.contains(source.key)) text += fmt::format("- **{}**: {}.\n", source.key, source.text);
+  }
   return text;
 }
 
