@@ -195,7 +195,7 @@ Table onset_table(const std::vector<Onsets>& all) {
 }
 
 void add_thresholds(Findings& findings, const std::vector<Onsets>& all, const std::string& key) {
-  const std::string why = "in small cells the onset depends on the size by more than its first power size^(-1/nu)";
+  const std::string why = "in small cells the onset depends on the size by more than its first power size^(-1/ν)";
   findings.comparisons.push_back(
       compare("threshold, mean onset extrapolated to infinite size", key, extrapolated(all), why));
   findings.comparisons.push_back(
@@ -209,7 +209,7 @@ constexpr const char* method =
     "order; the onset of a cell is the share of them at which it resists every mean strain, found by bisection. "
     "Missing bonds keep 1e-11 of their stiffness (up to 1e-9 where the matrix would be singular); a cell counts as "
     "floppy where these carry more than half of the energy of its softest strain (`effective_stiffness`, "
-    "`strained_states`). The extrapolation takes nu = {1} of the source.";
+    "`strained_states`). The extrapolation takes ν = {1} of the source.";
 
 /// A cell of the regular lattice with a share p of its bonds: K and G over those of the full lattice.
 std::pair<double, double> relative_moduli(int side, double p, std::uint64_t seed) {

@@ -214,11 +214,13 @@ Plot oblique_plot(const std::vector<SurfacePoint>& hertz, const std::vector<Surf
   Plot plot{.title = "Test 5: oblique elastic impact of a sphere on a rigid plane",
             .x = {.label = "surface speed before / (µ normal speed)"},
             .y = {.label = "surface speed after / (µ normal speed)"}};
+  plot.enhanced = true;
   plot.series.push_back(
       curve({.label = "slides throughout: x - 7", .column = "sliding"}, 7, 14, [](double x) { return x - 7; }));
-  plot.series.push_back(curve(
-      {.label = "sticks, linear springs with kT/kN = 2/7: -x", .style = SeriesStyle::dashed_line, .column = "sticking"},
-      0, 3.5, [](double x) { return -x; }));
+  plot.series.push_back(curve({.label = "sticks, linear springs with k_T/k_N = 2/7: -x",
+                               .style = SeriesStyle::dashed_line,
+                               .column = "sticking"},
+                              0, 3.5, [](double x) { return -x; }));
   for (const auto& [points, label, colour, marker] :
        {std::tuple{&linear, "linear springs", PlotColour::blue, Marker::square},
         std::tuple{&hertz, "Hertz, tangential spring of constant stiffness", PlotColour::vermilion, Marker::circle}}) {

@@ -195,9 +195,8 @@ Findings point_load(bool quick) {
   table.add("stress_difference", rows, &LoadedBlock::stress).add("other_stresses", rows, &LoadedBlock::other_stress);
   table.add("displacement_difference", rows, &LoadedBlock::displacement);
   findings.notes = {
-      "Measurements on a few layers of discs or grains (Geng et al. 2001; Goldenberg & Goldhirsch 2002) are published "
-      "as "
-      "figures and are not compared."};
+      "Measurements on a few layers of discs or grains (Geng et al. 2001; Goldenberg & Goldhirsch 2002) are "
+      "published as figures and are not compared."};
   findings.tables = {{"point_load", std::move(table)}};
   findings.plots = {{"point_load", std::move(plot)}};
   return findings;
