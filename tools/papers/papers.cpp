@@ -43,6 +43,7 @@ int finish_paper(const CommonOptions& options, const PaperResult& result) {
   deliver(options, result.status, std::move(results), result.times, [&](Results& out) {
     if (!options.out) return;
     write_file(*options.out / "report.txt", text, options.overwrite);
+    for (const auto& [name, content] : result.texts) write_file(*options.out / name, content, options.overwrite);
     for (const auto& [name, table] : result.tables) write_csv(*options.out / (name + ".csv"), table, options.overwrite);
     std::string failure;
     for (const auto& [name, plot] : result.plots) {

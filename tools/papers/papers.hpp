@@ -35,6 +35,9 @@ equidem::Run declare(CLI::App& command);
 namespace sukegawa2010 {
 equidem::Run declare(CLI::App& command);
 }
+namespace validation {
+equidem::Run declare(CLI::App& command);
+}
 
 /// Options of a paper with a full and a quick computation: those of results, and --quick.
 Run declare_with_quick(CLI::App& command, const std::string& footer,
@@ -56,6 +59,7 @@ struct PaperResult {
   std::function<void(Results&)> add_numbers;  ///< keys of this paper alone
   Named<Table> tables = {};                   ///< NAME.csv in --out
   Named<Plot> plots = {};                     ///< files of write_plot in --out
+  Named<std::string> texts = {};              ///< files in --out, with their names
   std::string status = "done";
 };
 
