@@ -25,13 +25,21 @@ namespace {
 
 /// All settings that a filling depends on.
 std::string settings_of(const Fill& fill) {
-  return fmt::format(
+  std::string text = fmt::format(
       "{} columns {} rows {} seed {} softness {} damping {} friction {} step {} bonds {} rows {} cap {} ellipses {} "
       "version {}",
       plural_of(fill.shape), fill.grid.columns, fill.grid.rows, fill.seed, fill.softness, fill.damping, fill.friction,
       fill.step ? fmt::format("{} s", *fill.step) : fmt::format("{}", fill.step_share), fill.bond_step, fill.row_share,
       fill.cap == FrictionCap::whole_force ? "whole" : "spring",
       fill.ellipse_law == EllipseLaw::exact ? "exact" : "mended", library_version());
+  if (fill.bulk_density != Fill::BulkDensity::unused)
+    text += fmt::format(" bulk {}", fill.bulk_density == Fill::BulkDensity::of_springs ? "springs" : "all");
+  if (fill.printed) {
+    text += fmt::format(" printed {} beta {} c {}",
+                        fill.printed->integrator == PrintedOptions::Integrator::printed ? "(3.17)" : "semi-implicit",
+                        fill.printed->beta, fill.printed->mass_damping);
+  }
+  return text;
 }
 std::string settings_of(const Run& run) {
   std::string text = settings_of(run.fill);
