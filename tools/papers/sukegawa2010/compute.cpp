@@ -145,11 +145,15 @@ void compute(const CommonOptions& options, Reproduction& result) {
   std::map<std::string, std::unique_ptr<SharedFill>> fills;
   std::map<std::string, bool> shown;
   std::map<std::string, std::string> names;
+  std::map<std::string, Outcome> fillings;
+  std::mutex filling;
   double total = 0;
   for (const Run& run : runs) {
     const auto [known, is_new] = names.emplace(run.fill.name(), settings_of(run.fill));
     assert((is_new || known->second == settings_of(run.fill)) && "one filling per name");
-    if (is_new) static_cast<void>(store.find(known->first, known->second));  // its history is drawn
+    if (is_new) {
+      if (const auto outcome = store.find(known->first, known->second)) fillings[known->first] = *outcome;
+    }
     outcomes.push_back(store.find(run.name(), settings_of(run)));
     if (outcomes.back()) continue;
     total += cost_of(run);
@@ -183,6 +187,8 @@ void compute(const CommonOptions& options, Reproduction& result) {
           store.keep_state(run.fill, settings, fill.box->state);
           store.keep(run.fill.name(), settings, fill.box->outcome);
         }
+        const std::lock_guard adding(filling);
+        fillings[run.fill.name()] = fill.box->outcome;
         work.add(counted, base = cost);
       }
     }
@@ -199,6 +205,10 @@ void compute(const CommonOptions& options, Reproduction& result) {
   }
   for (std::size_t k = 0; k < runs.size(); ++k)
     if (outcomes[k]) result.runs.push_back({runs[k], *outcomes[k]});
+  for (const Run& run : runs) {
+    const auto found = fillings.extract(run.fill.name());
+    if (found) result.fills.push_back({{.fill = run.fill}, found.mapped()});
+  }
   if (interruption) std::rethrow_exception(interruption);
 }
 

@@ -37,11 +37,15 @@ int reproduce(const CommonOptions& options, bool quick) {
   std::optional<Error> stopped;
   try {
     compute(options, result);
+    result.times.add("runs", watch.lap());
+    result.packings = pack_every_way(quick);
+    result.times.add("packings", watch.lap());
+    result.fallen_ellipses = drop_ellipses(quick);
+    result.times.add("contact tests of ellipses", watch.lap());
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::interrupted) throw;
     stopped = error;
   }
-  result.times.add("runs", watch.lap());
   if (!stopped || options.out) {
     CommonOptions common = options;
     common.overwrite = true;

@@ -144,8 +144,8 @@ std::vector<Run> plan(bool quick) {
   long_shaken({}, 1);
   long_shaken(as_printed(Shape::disc), 1);
   runs.push_back(shaken({.step = printed_step, .variant = "printed_step"}, 400, 10));
-  // The thesis's contact test for ellipses is twenty times as slow: fewer and softer grains. As printed it misses
-  // overlaps until grains are locked in each other, which stops the fall: only the corrected test is run.
+  // The thesis's contact test for ellipses is twenty times as slow: fewer and softer grains, and the corrected test
+  // alone; as printed: drop_ellipses.
   for (const auto& [law, name] :
        {std::pair{EllipseLaw::exact, "small"}, std::pair{EllipseLaw::enlarged_mended, "mended_test"}}) {
     runs.push_back(shaken({.shape = Shape::ellipse,

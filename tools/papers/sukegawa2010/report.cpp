@@ -228,7 +228,8 @@ std::string report(const Reproduction& result) {
         "and right of row 13.\n";
   }
   return text + "\n" + void_ratios(result) + "\n" + contact_margin(result) + "\n" + variants(result) +
-         shakings(result) + "\n" + best_compaction(result) + periods(result) + "\n" + bonds(result) + numerics(result);
+         shakings(result) + "\n" + best_compaction(result) + periods(result) + "\n" + bonds(result) + numerics(result) +
+         "\n" + report_of(result.packings) + "\n" + report_of(result.fallen_ellipses);
 }
 
 }  // namespace equidem::sukegawa2010

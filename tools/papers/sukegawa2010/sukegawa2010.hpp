@@ -18,6 +18,7 @@
 #include "equidem/packing/packing_shape.hpp"
 
 #include "papers.hpp"
+#include "sukegawa2010/packings.hpp"
 #include "sukegawa2010/printed_discs.hpp"
 
 namespace equidem::sukegawa2010 {
@@ -172,7 +173,10 @@ struct Done {
 struct Reproduction {
   bool quick = false;
   std::size_t planned = 0;
-  std::vector<Done> runs;  ///< those done, in the order of the plan
+  std::vector<Done> runs;   ///< those done, in the order of the plan
+  std::vector<Done> fills;  ///< the fillings of those, each once
+  std::vector<PackedDiscs> packings;
+  std::vector<FallenEllipses> fallen_ellipses;
   StageTimes times;
 
   [[nodiscard]] bool complete() const { return runs.size() == planned; }
