@@ -53,6 +53,7 @@ int reproduce(const CommonOptions& options, bool quick) {
     const GrainScene scene = start_of(fill);
     const bool any = !result.runs.empty();
     const Table table = table_of(result);
+    if (options.out) write_sheets(result, *options.out);
     finish_paper(common, {.paper = "sukegawa2010",
                           .report = report(result),
                           .times = result.times,

@@ -110,17 +110,18 @@ std::vector<Run> plan(bool quick) {
       }
     }
   };
-  filled({Shape::disc, Shape::bonded_pair, Shape::ellipse}, 1);
-  for (const std::uint64_t seed : seeds) {
+  const auto printed = [&](std::uint64_t seed) {
     for (const Fill& fill : printed_variants_of({.seed = seed})) runs.push_back(shaken(fill, 400, 10));
+  };
+  for (const std::uint64_t seed : seeds) {
+    filled({Shape::disc, Shape::bonded_pair, Shape::ellipse}, seed);
     shakings(Shape::disc, seed);
     shakings(Shape::bonded_pair, seed);
-    if (seed != seeds.back()) filled({Shape::disc, Shape::bonded_pair}, seed + 1);
+    if (seed == 1) printed(seed);
   }
-  for (const std::uint64_t seed : seeds) {
-    if (seed != 1) filled({Shape::ellipse}, seed);
-    filled({Shape::rigid_pair}, seed);
-  }
+  for (const std::uint64_t seed : seeds) filled({Shape::rigid_pair}, seed);
+  for (const std::uint64_t seed : seeds)
+    if (seed != 1) printed(seed);
   for (const std::uint64_t seed : seeds) {
     for (const Fill& fill : variants_of({.seed = seed})) runs.push_back(shaken(fill, 400, 10));
     runs.push_back(shaken(as_printed(Shape::disc, seed), 400, 10));

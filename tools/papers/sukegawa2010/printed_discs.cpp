@@ -13,6 +13,7 @@ namespace {
 
 constexpr double margin_share = 0.2;  // margin of the list of near pairs, of the smallest radius
 constexpr std::size_t columns_of_contact = 5;
+constexpr double clearly_apart = 1 + 1e-9;  // distance over reach that needs no root
 
 double dashpot(double damping, double mass, double stiffness) {
   return 2 * damping * std::sqrt(mass * stiffness);
@@ -54,6 +55,7 @@ void PrintedDiscs::find_near() {
   const auto add = [&](std::int32_t i, std::int32_t j) {
     Near near{.i = i, .j = j};
     const PairProperties& pair = properties(near);
+    near.pair = &pair;
     const double inverse = bodies_[static_cast<std::size_t>(i)].inverse_mass;
     const double mass = j >= 0 ? 2 / (inverse + bodies_[static_cast<std::size_t>(j)].inverse_mass) : 1 / inverse;
     near.normal_dashpot = dashpot(options_.damping, mass, pair.stiffness);
@@ -76,16 +78,20 @@ void PrintedDiscs::find_near() {
 }
 
 void PrintedDiscs::add_forces(Near& near) {
-  const PairProperties& pair = properties(near);
+  const PairProperties& pair = *near.pair;
   Body& a = bodies_[static_cast<std::size_t>(near.i)];
   Vec2 normal, slip = a.increment.u;
   double distance = 0, reach = a.radius, turn = a.radius * a.increment.theta;
   if (near.j >= 0) {
     const Body& b = bodies_[static_cast<std::size_t>(near.j)];
     const Vec2 to = b.place.u - a.place.u;
+    reach += b.radius;
+    if (squared(to) > squared(clearly_apart * options_.beta * reach)) {
+      near.normal = near.tangential = 0;
+      return;
+    }
     distance = norm(to);
     normal = to / distance;
-    reach += b.radius;
     slip -= b.increment.u;
     turn += b.radius * b.increment.theta;
   } else {

@@ -32,6 +32,8 @@ class PrintedDiscs final : public AnySimulation {
  public:
   /// \param scene discs without bonds between walls that are lines; stiffnesses in N/m
   PrintedDiscs(const GrainScene& scene, const PrintedOptions& options);
+  PrintedDiscs(const PrintedDiscs&) = delete;
+  PrintedDiscs& operator=(const PrintedDiscs&) = delete;
 
   [[nodiscard]] const Effects& effects() const override { return effects_; }
   /// \throws Error (computation_failed) where motions are not finite
@@ -56,6 +58,7 @@ class PrintedDiscs final : public AnySimulation {
   /// Two discs, or a disc and the wall ~j.
   struct Near {
     std::int32_t i = 0, j = 0;
+    const PairProperties* pair = nullptr;
     double normal_dashpot = 0, tangential_dashpot = 0;  ///< C_n, C_s, N s/m
     double normal = 0, tangential = 0;                  ///< forces of the springs, N
     double overlap = 0;                                 ///< r_i + r_j less the distance, m

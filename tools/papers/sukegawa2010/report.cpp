@@ -121,22 +121,6 @@ std::string shakings(const Reproduction& result) {
          table.text();
 }
 
-std::string best_compaction(const Reproduction& result) {
-  std::string text;
-  for (const Shape shape : {Shape::disc, Shape::bonded_pair}) {
-    std::vector<Done> runs = mapped(result, shape);
-    std::erase_if(runs, [](const Done& done) { return !std::isfinite(done.outcome.void_ratio); });
-    if (runs.size() < 2) continue;
-    const Done& best = *std::min_element(runs.begin(), runs.end(), [](const Done& a, const Done& b) {
-      return a.outcome.void_ratio < b.outcome.void_ratio;
-    });
-    text += fmt::format("  {} are densest after {:g} gal, {:.3g} Hz: e = {:.4f}, of {} shakings of one filling\n",
-                        words(plural_of(shape)), best.run.shaking->gal, best.run.shaking->frequency,
-                        best.outcome.void_ratio, runs.size());
-  }
-  return text.empty() ? "" : "Shaking that compacts best (section 9.2)\n" + text + "\n";
-}
-
 std::string periods(const Reproduction& result) {
   const auto discs = std::find_if(result.runs.begin(), result.runs.end(), [](const Done& done) {
     return done.run.fill.shape == Shape::disc && done.run.fill.variant.empty();
@@ -228,8 +212,8 @@ std::string report(const Reproduction& result) {
         "and right of row 13.\n";
   }
   return text + "\n" + void_ratios(result) + "\n" + contact_margin(result) + "\n" + variants(result) +
-         shakings(result) + "\n" + best_compaction(result) + periods(result) + "\n" + bonds(result) + numerics(result) +
-         "\n" + report_of(result.packings) + "\n" + report_of(result.fallen_ellipses);
+         shakings(result) + "\n" + verdicts(result) + periods(result) + "\n" + bonds(result) + numerics(result) + "\n" +
+         report_of(result.packings) + "\n" + report_of(result.fallen_ellipses);
 }
 
 }  // namespace equidem::sukegawa2010

@@ -262,7 +262,11 @@ double amplification_of(const Done& done);
 /// Amplification of a liquid without viscosity that is shaken at that period.
 double liquid_amplification(double period, double width, double depth);
 
+/// The conclusions of sections 8.5, 8.9 and 9.2 and whether they hold.
+std::string verdicts(const Reproduction& result);
 std::string report(const Reproduction& result);
 Named<Plot> plots(const Reproduction& result, const Folder& folder);
+/// The pictures of the nine shakings of discs and of bonded pairs (Figs. 8.33 to 8.51), a sheet a shape.
+void write_sheets(const Reproduction& result, const std::filesystem::path& folder);
 
 }  // namespace equidem::sukegawa2010
