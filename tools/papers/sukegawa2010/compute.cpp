@@ -139,7 +139,6 @@ struct SharedFill {
 
 void compute(const CommonOptions& options, Reproduction& result) {
   const std::vector<Run> runs = plan(result.quick);
-  result.planned = runs.size();
   const Store store(options);
   std::vector<std::optional<Outcome>> outcomes;
   std::map<std::string, std::unique_ptr<SharedFill>> fills;
