@@ -54,7 +54,6 @@ int reproduce(const CommonOptions& options, bool quick) {
     const GrainScene scene = start_of(fill);
     const bool any = !result.runs.empty();
     const Table table = table_of(result);
-    if (options.out) write_sheets(result, *options.out);
     finish_paper(common, {.paper = "sukegawa2010",
                           .report = report(result),
                           .times = result.times,
@@ -67,6 +66,7 @@ int reproduce(const CommonOptions& options, bool quick) {
                           .tables = any ? Named<Table>{{"runs", table}} : Named<Table>{},
                           .plots = any ? plots(result, options.out) : Named<Plot>{},
                           .status = result.complete() ? "done" : "incomplete"});
+    if (options.out) write_sheets(result, *options.out);
   }
   if (!stopped) return 0;
   throw Error(

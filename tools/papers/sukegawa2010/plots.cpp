@@ -217,23 +217,49 @@ bool has_points(const Plot& plot) {
 
 }  // namespace
 
-void write_sheets(const Reproduction& result, const std::filesystem::path& folder) {
-  for (const Shape shape : {Shape::disc, Shape::bonded_pair}) {
-    std::vector<SheetPicture> pictures;
-    for (const double frequency : {10, 2, 1}) {
-      for (const double acceleration : {400, 800, 1200}) {
-        for (const Done& done : mapped(result, shape)) {
-          const Shaking& shaking = *done.run.shaking;
-          const auto file = folder / (done.run.name() + "_during.png");
-          if (shaking.frequency == frequency && shaking.gal == acceleration && std::filesystem::exists(file))
-            pictures.push_back({file, fmt::format("{:g} gal, {:g} Hz", acceleration, frequency)});
-        }
+namespace {
+
+/// Pictures of the nine shakings, as far as they were done.
+std::vector<SheetPicture> shakings_of(const Reproduction& result, Shape shape, const std::filesystem::path& folder) {
+  std::vector<SheetPicture> pictures;
+  for (const double frequency : {10, 2, 1}) {
+    for (const double acceleration : {400, 800, 1200}) {
+      for (const Done& done : mapped(result, shape)) {
+        const Shaking& shaking = *done.run.shaking;
+        const auto file = folder / (done.run.name() + "_during.png");
+        if (shaking.frequency == frequency && shaking.gal == acceleration && std::filesystem::exists(file))
+          pictures.push_back({file, fmt::format("{:g} gal, {:g} Hz", acceleration, frequency)});
       }
     }
-    if (pictures.empty()) continue;
-    const std::string name = plural_of(shape);
-    write_picture_sheet(folder / (name + "_shakings.png"),
-                        words(name) + " when their centre of mass is displaced farthest", pictures, 3, true);
+  }
+  return pictures;
+}
+
+/// Plots of the nine grains along x, along y and in rotation, while the box is filled or shaken.
+std::vector<SheetPicture> histories_of(Shape shape, const char* stage, const std::filesystem::path& folder) {
+  std::vector<SheetPicture> pictures;
+  for (const char* component : {"x", "y", "angle"}) {
+    const auto file = folder / fmt::format("{}_{}_{}.png", plural_of(shape), stage, component);
+    if (std::filesystem::exists(file)) pictures.push_back({file});
+  }
+  return pictures;
+}
+
+}  // namespace
+
+void write_sheets(const Reproduction& result, const std::filesystem::path& folder) {
+  const auto write = [&](Shape shape, const char* name, const std::string& title,
+                         const std::vector<SheetPicture>& pictures) {
+    if (pictures.empty()) return;
+    write_picture_sheet(folder / fmt::format("{}_{}.png", plural_of(shape), name), title, pictures, 3, true);
+  };
+  for (const Shape shape : {Shape::disc, Shape::ellipse, Shape::bonded_pair, Shape::rigid_pair}) {
+    const std::string bodies = words(plural_of(shape));
+    write(shape, "shakings", "Largest displacement of the centre of mass: " + bodies,
+          shakings_of(result, shape, folder));
+    write(shape, "falling", "Nine of the " + bodies + " while the box is filled",
+          histories_of(shape, "falling", folder));
+    write(shape, "shaken", "Nine of the " + bodies + " under 400 gal, 10 Hz", histories_of(shape, "shaken", folder));
   }
 }
 

@@ -66,6 +66,11 @@ std::vector<int> layers_of(const GrainScene& scene) {
   return layers;
 }
 
+/// Void ratio as the thesis prints it, and porosity.
+std::string density_of(const Outcome& outcome) {
+  return fmt::format(", e = {:.3f}, n = {:.2f} %", outcome.whole, 100 * outcome.whole / (1 + outcome.whole));
+}
+
 std::string title_of(const Run& run, const std::string& when) {
   std::string text = fmt::format("{}, seed {}", words(plural_of(run.fill.shape)), run.fill.seed);
   if (run.shaking) text += fmt::format(", {:g} gal {:.3g} Hz", run.shaking->gal, run.shaking->frequency);
@@ -309,7 +314,7 @@ FilledBox fill_box(const Fill& fill, bool shown, const Folder& folder, const std
   Outcome& o = filled.outcome;  // the box was empty before
   o.void_ratio_before = o.whole_before = o.height_before = o.roughness_before = o.slope = o.swing = o.thrown = unknown;
   box.write(run.name());
-  box.draw(run.name() + "_filled", "filled, at rest");
+  box.draw(run.name() + "_filled", "filled, at rest" + density_of(o));
   return filled;
 }
 
@@ -329,7 +334,7 @@ Outcome shake_box(const Run& run, const FilledBox& filled, const Folder& folder,
   outcome.steps -= static_cast<double>(filled.state.step);
   box.write(run.name());
   box.draw_farthest(run.name() + "_during", "largest displacement");
-  box.draw(run.name() + "_after", "at rest again");
+  box.draw(run.name() + "_after", "at rest again" + density_of(outcome));
   box.animate(run.name());
   return outcome;
 }

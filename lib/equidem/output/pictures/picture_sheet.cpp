@@ -12,9 +12,12 @@ namespace equidem {
 
 void write_picture_sheet(const std::filesystem::path& file, const std::string& title,
                          const std::vector<SheetPicture>& pictures, std::size_t columns, bool overwrite) {
-  constexpr double cell = 600, gap = 16, head = 48, label = 28;  // pixels
+  constexpr double cell = 600, gap = 16, head = 48;  // pixels
   constexpr Colour black{0, 0, 0};
   if (pictures.empty()) bad_input_at(file.string(), "the sheet would be empty", "there are no pictures", "Give some");
+  const bool labelled = std::ranges::any_of(pictures, [](const SheetPicture& one) { return !one.label.empty(); });
+  const double label = labelled ? 28 : 0;  // pixels
+  columns = std::min(columns, pictures.size());
   std::vector<Raster> rasters;
   double highest = 0;
   for (const SheetPicture& picture : pictures) {

@@ -11,7 +11,7 @@ namespace equidem {
 
 struct SheetPicture {
   std::filesystem::path file;  ///< PNG
-  std::string label = {};      ///< above it
+  std::string label = {};      ///< above it; may be empty
 };
 
 /// Write a PNG with the pictures in rows, each in a cell of 600 x (height) pixels, all as high as the highest.
