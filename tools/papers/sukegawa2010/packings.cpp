@@ -206,8 +206,9 @@ std::string report_of(const std::vector<PackedDiscs>& packings) {
              "{:g}. Under gravity: the springs, dashpots and friction of section 8.2.\n",
              dense, moved_fraction) +
          table.text() +
-         "Relieved of its strain, the fallen heap keeps its density and loses its contacts. Where a part of it is "
-         "removed at 60\ndegrees, the rest slides to a new slope.\n";
+         "Relieved of its strain, the fallen heap keeps its density, and its discs only just touch: none is held. "
+         "Where a "
+         "part of it is\nremoved at 60 degrees, the rest slides to a new slope.\n";
 }
 
 }  // namespace equidem::sukegawa2010

@@ -100,7 +100,7 @@ class Judged {
       };
       const Verdict one = judge(difference);
       verdict = std::max(verdict, one);
-      rows += fmt::format("      {:<62} {:>9.3g} < {:>9.3g}, by {:<18} {}\n", c.text, common(c.smaller, c.larger),
+      rows += fmt::format("      {:<62} {:>9.3g} < {:>9.3g}, by {:<20} {}\n", c.text, common(c.smaller, c.larger),
                           common(c.larger, c.smaller), interval(difference), name_of(one));
     }
     text_ += fmt::format("  {} {}: {}\n{}", section, text, upper(name_of(verdict)), rows);
@@ -234,18 +234,19 @@ std::string best_shakings(const Reproduction& result) {
     const std::size_t seeds = all[all.size() / 2].void_ratios.size();
     std::erase_if(all, [&](const Shaken& one) { return one.void_ratios.size() < seeds; });
     std::ranges::sort(all, {}, &Shaken::mean);
+    text += fmt::format("  {}: densest after {}, e = {}, of {} shakings of {} filling{}", words(plural_of(shape)),
+                        all[0].name, interval(estimate_of(all[0].void_ratios)), all.size(), seeds,
+                        seeds == 1 ? ": no scatter is known\n" : "s; ");
+    if (seeds == 1) continue;
     std::string rivals;
     for (std::size_t k = 1; k < all.size(); ++k) {
       const MeanEstimate more =
           estimate_of(combined(all[0].void_ratios, all[k].void_ratios, [](double a, double b) { return b - a; }));
-      if (judge(more) != Verdict::holds)
-        rivals += fmt::format("{}{} ({})", rivals.empty() ? "" : ", ", all[k].name, interval(more));
+      if (judge(more) == Verdict::holds) continue;
+      rivals += fmt::format("    {:<16} by {}\n", all[k].name, interval(more));
     }
-    text +=
-        fmt::format("  {}: densest after {}, e = {}, of {} shakings of {} filling{}; ", words(plural_of(shape)),
-                    all[0].name, interval(estimate_of(all[0].void_ratios)), all.size(), seeds, seeds == 1 ? "" : "s");
     text += rivals.empty() ? "no other is as good within the scatter\n"
-                           : "NOT DECIDED within the scatter against\n    " + rivals + "\n";
+                           : "NOT DECIDED within the scatter against\n" + rivals;
   }
   return text;
 }
