@@ -36,17 +36,16 @@ TEST_CASE("a_sheet_shows_its_pictures_in_rows_with_one_width") {
   const auto red = folder.path() / "red.png", blue = folder.path() / "blue.png", sheet = folder.path() / "sheet.png";
   write_plain(red, 300, 200, {1, 0, 0});
   write_plain(blue, 900, 300, {0, 0, 1});
-  write_picture_sheet(sheet, "two colours", {{red, "red"}, {blue, "blue"}, {red, "red again"}}, 2, false);
+  write_picture_sheet(sheet, "two colours", {{red, "red"}, {blue, "blue"}, {blue, "blue again"}}, 2, false);
   const Raster drawn = read_png(sheet);
-  REQUIRE(drawn.width == 2 * 616 + 16);
-  // Rows of a label, 28 pixels, and 400 pixels, the height of 300 x 200 at the width of 600; the flatter one lies
-  // below.
-  CHECK(drawn.height == 48 + 2 * (28 + 400 + 16));
-  CHECK(pixel(drawn, 316, 276) == 0xffff0000U);
-  CHECK(pixel(drawn, 932, 376) == 0xff0000ffU);
-  CHECK(pixel(drawn, 932, 200) == 0xffffffffU);
-  CHECK(pixel(drawn, 316, 720) == 0xffff0000U);
-  CHECK(pixel(drawn, 932, 720) == 0xffffffffU);
+  REQUIRE(drawn.width == 2 * 466 + 16);
+  // Above each row 28 pixels for the labels; at a width of 450 the red picture is 300 high, the blue one 150.
+  REQUIRE(drawn.height == 48 + (28 + 300 + 16) + (28 + 150 + 16));
+  CHECK(pixel(drawn, 241, 226) == 0xffff0000U);
+  CHECK(pixel(drawn, 707, 301) == 0xff0000ffU);
+  CHECK(pixel(drawn, 707, 150) == 0xffffffffU);
+  CHECK(pixel(drawn, 241, 495) == 0xff0000ffU);
+  CHECK(pixel(drawn, 707, 495) == 0xffffffffU);
 }
 
 TEST_CASE("a_sheet_of_nothing_or_of_what_is_no_picture_is_refused") {

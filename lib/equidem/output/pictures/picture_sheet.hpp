@@ -14,7 +14,7 @@ struct SheetPicture {
   std::string label = {};      ///< above it; may be empty
 };
 
-/// Write a PNG with the pictures in rows, each in a cell of 600 x (height) pixels, all as high as the highest.
+/// Write a PNG with the pictures in rows, each 450 pixels wide; a row is as high as its highest picture.
 /// \param columns >= 1
 /// \throws Error (bad_input) without pictures, on files that are no PNG, and as write_file does
 void write_picture_sheet(const std::filesystem::path& file, const std::string& title,
