@@ -41,11 +41,24 @@ class Sukegawa2010(ProgramTest):
         self.assertGreater(runs["bonded_pairs_1_400gal_10Hz"]["bond_creep"], 0)
         self.assertIsNone(runs["rigid_pairs_1_400gal_10Hz"]["bond_creep"])
 
+        # Forces in increments are those of the library: with the whole force limited the packing is as dense; with
+        # (2.16) it is looser, with beta = 1.05 as loose as discs that much larger.
+        def before(variant):
+            return runs[f"discs_{variant}_1_400gal_10Hz"]["whole_void_ratio_before"]
+        self.assertLess(min(before("increments_capped"), max(discs)), before("increments"))
+        self.assertLess(abs(before("increments_capped") - runs["discs_1_400gal_10Hz"]["whole_void_ratio_before"]), 0.02)
+        self.assertLess(before("printed_integrator"), 0.35)
+        self.assertGreater(before("beta_1.05"), before("increments") + 0.05)
+        # rho = (1 + e) gamma in springs and masses: the same motion but for rounding, until it grows.
+        self.assertAlmostEqual(before("bulk_density"), runs["discs_1_400gal_10Hz"]["whole_void_ratio_before"], 3)
+        self.assertTrue((out / "discs_shakings.png").exists())
+
         page = (out / "discs_1_1200gal_2Hz.html").read_text(encoding="utf-8")
         self.assertTrue(page.startswith("<!DOCTYPE html>"))
         self.assertLess(len(page), 2_000_000)
         report = (out / "report.txt").read_text(encoding="utf-8")
-        for words in ("0.213", "0.139", "1.85 s follows from neither", "(7.2) as printed"):
+        for words in ("0.213", "0.139", "1.85 s follows from neither", "(7.2) as printed", "8.5.2", "NOT DECIDED",
+                      "rejection, growth, gravity", "would be pressed into"):
             self.assertIn(words, report)
         with open(out / "runs.csv", newline="", encoding="utf-8") as file:
             self.assertEqual([row["run"] for row in csv.DictReader(file)], list(runs))

@@ -50,7 +50,10 @@ struct PackingOptions {
   bool as_dense_as_possible = false;
   double overlap = 1e-6;           ///< largest allowed, of the smaller radius; of jammed bodies the mean wanted
   std::int64_t attempts = 100000;  ///< to place a body by rejection or insertion; sweeps of local moves
-  SettlingOptions settling;        ///< falling
+  /// Local moves start from the places of a rectangular grid, as many as there are bodies, in the order given (Sukegawa
+  /// 2010, section 2.7 b); otherwise from random places.
+  bool from_grid = false;
+  SettlingOptions settling;  ///< falling
 };
 
 /// Bodies in a box.

@@ -25,13 +25,21 @@ namespace {
 
 /// All settings that a filling depends on.
 std::string settings_of(const Fill& fill) {
-  return fmt::format(
+  std::string text = fmt::format(
       "{} columns {} rows {} seed {} softness {} damping {} friction {} step {} bonds {} rows {} cap {} ellipses {} "
       "version {}",
       plural_of(fill.shape), fill.grid.columns, fill.grid.rows, fill.seed, fill.softness, fill.damping, fill.friction,
       fill.step ? fmt::format("{} s", *fill.step) : fmt::format("{}", fill.step_share), fill.bond_step, fill.row_share,
       fill.cap == FrictionCap::whole_force ? "whole" : "spring",
       fill.ellipse_law == EllipseLaw::exact ? "exact" : "mended", library_version());
+  if (fill.bulk_density != Fill::BulkDensity::unused)
+    text += fmt::format(" bulk {}", fill.bulk_density == Fill::BulkDensity::of_springs ? "springs" : "all");
+  if (fill.printed) {
+    text += fmt::format(" printed {} beta {} c {}",
+                        fill.printed->integrator == PrintedOptions::Integrator::printed ? "(3.17)" : "semi-implicit",
+                        fill.printed->beta, fill.printed->mass_damping);
+  }
+  return text;
 }
 std::string settings_of(const Run& run) {
   std::string text = settings_of(run.fill);
@@ -131,17 +139,20 @@ struct SharedFill {
 
 void compute(const CommonOptions& options, Reproduction& result) {
   const std::vector<Run> runs = plan(result.quick);
-  result.planned = runs.size();
   const Store store(options);
   std::vector<std::optional<Outcome>> outcomes;
   std::map<std::string, std::unique_ptr<SharedFill>> fills;
   std::map<std::string, bool> shown;
   std::map<std::string, std::string> names;
+  std::map<std::string, Outcome> fillings;
+  std::mutex filling;
   double total = 0;
   for (const Run& run : runs) {
     const auto [known, is_new] = names.emplace(run.fill.name(), settings_of(run.fill));
     assert((is_new || known->second == settings_of(run.fill)) && "one filling per name");
-    if (is_new) static_cast<void>(store.find(known->first, known->second));  // its history is drawn
+    if (is_new) {
+      if (const auto outcome = store.find(known->first, known->second)) fillings[known->first] = *outcome;
+    }
     outcomes.push_back(store.find(run.name(), settings_of(run)));
     if (outcomes.back()) continue;
     total += cost_of(run);
@@ -175,6 +186,8 @@ void compute(const CommonOptions& options, Reproduction& result) {
           store.keep_state(run.fill, settings, fill.box->state);
           store.keep(run.fill.name(), settings, fill.box->outcome);
         }
+        const std::lock_guard adding(filling);
+        fillings[run.fill.name()] = fill.box->outcome;
         work.add(counted, base = cost);
       }
     }
@@ -191,6 +204,10 @@ void compute(const CommonOptions& options, Reproduction& result) {
   }
   for (std::size_t k = 0; k < runs.size(); ++k)
     if (outcomes[k]) result.runs.push_back({runs[k], *outcomes[k]});
+  for (const Run& run : runs) {
+    const auto found = fillings.extract(run.fill.name());
+    if (found) result.fills.push_back({{.fill = run.fill}, found.mapped()});
+  }
   if (interruption) std::rethrow_exception(interruption);
 }
 

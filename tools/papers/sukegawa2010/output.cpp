@@ -33,16 +33,21 @@ int reproduce(const CommonOptions& options, bool quick) {
   const auto lock = lock_out(options);
   Reproduction result;
   result.quick = quick;
+  result.planned = plan(quick).size();
   Stopwatch watch;
   std::optional<Error> stopped;
   try {
+    result.packings = pack_every_way(quick);
+    result.times.add("packings", watch.lap());
+    result.fallen_ellipses = drop_ellipses(quick);
+    result.times.add("contact tests of ellipses", watch.lap());
     compute(options, result);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::interrupted) throw;
     stopped = error;
   }
   result.times.add("runs", watch.lap());
-  if (!stopped || options.out) {
+  if (!stopped || (options.out && !result.runs.empty())) {
     CommonOptions common = options;
     common.overwrite = true;
     const Fill fill = result.runs.empty() ? plan(quick).front().fill : result.runs.front().run.fill;
@@ -61,6 +66,7 @@ int reproduce(const CommonOptions& options, bool quick) {
                           .tables = any ? Named<Table>{{"runs", table}} : Named<Table>{},
                           .plots = any ? plots(result, options.out) : Named<Plot>{},
                           .status = result.complete() ? "done" : "incomplete"});
+    if (options.out) write_sheets(result, *options.out);
   }
   if (!stopped) return 0;
   throw Error(

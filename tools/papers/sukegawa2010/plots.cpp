@@ -6,6 +6,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/fields/spectrum.hpp"
 #include "equidem/output/files/csv.hpp"
+#include "equidem/output/pictures/picture_sheet.hpp"
 
 #include "sukegawa2010/sukegawa2010.hpp"
 #include "tables.hpp"
@@ -13,19 +14,26 @@
 namespace equidem::sukegawa2010 {
 namespace {
 
+/// Each seed before (open) and after (filled): between the walls, away from them, and as printed.
 Plot void_ratio_plot(const Reproduction& result) {
-  Plot plot{.title = "Void ratio before and after 400 gal, 10 Hz",
+  Plot plot{.title = "Void ratio before (open) and after (filled) 400 gal, 10 Hz",
             .x = {.label = "1 discs   2 ellipses   3 bonded pairs   4 rigid pairs", .min = 0.5, .max = 4.5},
             .y = {.label = "void ratio"}};
-  const auto add = [&](const char* label, bool computed, double offset, const auto& values_of) {
-    Series series{.label = label,
+  struct Kept {
+    const char* label;
+    PlotColour colour;
+    Marker marker;
+    double offset;
+  };
+  const auto add = [&](const Kept& kept, bool after, const auto& values_of) {
+    Series series{.label = std::string(kept.label) + (after ? ", after" : ", before"),
                   .style = SeriesStyle::points,
-                  .colour = computed ? PlotColour::blue : PlotColour::vermilion,
-                  .marker = computed ? Marker::circle : Marker::square,
-                  .filled = offset > 0};
+                  .colour = kept.colour,
+                  .marker = kept.marker,
+                  .filled = after};
     for (std::size_t k = 0; k < printed_void_ratios.size(); ++k) {
       for (const double e : values_of(printed_void_ratios[k])) {
-        series.x.push_back(static_cast<double>(k + 1) + offset);
+        series.x.push_back(static_cast<double>(k + 1) + kept.offset + (after ? 0.06 : -0.06));
         series.y.push_back(e);
       }
     }
@@ -39,10 +47,15 @@ Plot void_ratio_plot(const Reproduction& result) {
       return one.*value == 0 ? std::vector<double>{} : std::vector<double>{one.*value};
     };
   };
-  add("computed before, each seed", true, -0.1, computed(&Outcome::void_ratio_before));
-  add("computed after", true, 0.1, computed(&Outcome::void_ratio));
-  add("printed before", false, -0.2, printed(&Printed::before));
-  add("printed after", false, 0.2, printed(&Printed::after));
+  const Kept whole{"between the walls, each seed", PlotColour::blue, Marker::circle, -0.24};
+  const Kept inner{"away from walls and surface", PlotColour::green, Marker::triangle, 0.24};
+  const Kept thesis{"printed", PlotColour::vermilion, Marker::square, 0};
+  add(whole, false, computed(&Outcome::whole_before));
+  add(whole, true, computed(&Outcome::whole));
+  add(thesis, false, printed(&Printed::before));
+  add(thesis, true, printed(&Printed::after));
+  add(inner, false, computed(&Outcome::void_ratio_before));
+  add(inner, true, computed(&Outcome::void_ratio));
   return plot;
 }
 
@@ -203,6 +216,52 @@ bool has_points(const Plot& plot) {
 }
 
 }  // namespace
+
+namespace {
+
+/// Pictures of the nine shakings, as far as they were done.
+std::vector<SheetPicture> shakings_of(const Reproduction& result, Shape shape, const std::filesystem::path& folder) {
+  std::vector<SheetPicture> pictures;
+  for (const double frequency : {10, 2, 1}) {
+    for (const double acceleration : {400, 800, 1200}) {
+      for (const Done& done : mapped(result, shape)) {
+        const Shaking& shaking = *done.run.shaking;
+        const auto file = folder / (done.run.name() + "_during.png");
+        if (shaking.frequency == frequency && shaking.gal == acceleration && std::filesystem::exists(file))
+          pictures.push_back({file, fmt::format("{:g} gal, {:g} Hz", acceleration, frequency)});
+      }
+    }
+  }
+  return pictures;
+}
+
+/// Plots of the nine grains along x, along y and in rotation, while the box is filled or shaken.
+std::vector<SheetPicture> histories_of(Shape shape, const char* stage, const std::filesystem::path& folder) {
+  std::vector<SheetPicture> pictures;
+  for (const char* component : {"x", "y", "angle"}) {
+    const auto file = folder / fmt::format("{}_{}_{}.png", plural_of(shape), stage, component);
+    if (std::filesystem::exists(file)) pictures.push_back({file});
+  }
+  return pictures;
+}
+
+}  // namespace
+
+void write_sheets(const Reproduction& result, const std::filesystem::path& folder) {
+  const auto write = [&](Shape shape, const char* name, const std::string& title,
+                         const std::vector<SheetPicture>& pictures) {
+    if (pictures.empty()) return;
+    write_picture_sheet(folder / fmt::format("{}_{}.png", plural_of(shape), name), title, pictures, 3, true);
+  };
+  for (const Shape shape : {Shape::disc, Shape::ellipse, Shape::bonded_pair, Shape::rigid_pair}) {
+    const std::string bodies = words(plural_of(shape));
+    write(shape, "shakings", "Largest displacement of the centre of mass: " + bodies,
+          shakings_of(result, shape, folder));
+    write(shape, "falling", "Nine of the " + bodies + " while the box is filled",
+          histories_of(shape, "falling", folder));
+    write(shape, "shaken", "Nine of the " + bodies + " under 400 gal, 10 Hz", histories_of(shape, "shaken", folder));
+  }
+}
 
 Named<Plot> plots(const Reproduction& result, const Folder& folder) {
   Named<Plot> all;

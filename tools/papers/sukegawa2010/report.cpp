@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "equidem/core/text.hpp"
 #include "equidem/fields/spectrum.hpp"
+#include "equidem/material/wave_speed_springs.hpp"
 
 #include "sukegawa2010/sukegawa2010.hpp"
 #include "tables.hpp"
@@ -55,6 +57,42 @@ std::string contact_margin(const Reproduction& result) {
   return text + "  printed 0.1756\n";
 }
 
+/// What is left to explain the void ratio of discs under (2.16), 0.245 against the printed 0.213.
+std::string printed_level(const Reproduction& result) {
+  const auto whole = &Outcome::whole_before;
+  const Fill fill;
+  const double printed = printed_void_ratios[0].before, radius = 0.5 * (smallest_radius + largest_radius);
+  const double stiffness = springs_of_wave_speeds(density, wave_speeds_from_shear(shear_speed, poisson_ratio)).kN;
+  const double mass = std::numbers::pi * radius * radius * density;
+  const double fastest = mass * gravity / dashpot_of(fill.damping, mass, stiffness);
+  std::string text;
+  const MeanEstimate capped = sample_of(result, {.variant = "printed_cap"}, whole);
+  for (const auto& [variant, name] :
+       {std::pair{"increments", "forces in increments"}, std::pair{"printed_integrator", "integrator (3.16)-(3.17)"},
+        std::pair{"mass_damping_1", "c_i = 1/s m_i"}, std::pair{"mass_damping_10", "c_i = 10/s m_i"},
+        std::pair{"beta_1.05", "beta = 1.05"}}) {
+    const MeanEstimate with = sample_of(result, {.variant = variant}, whole);
+    if (with.samples == 0 || capped.samples == 0) continue;
+    const bool known = std::isfinite(with.half_width);
+    const char* verdict = !known                  ? "one seed"
+                          : with.low() > printed  ? "does not explain it: too loose"
+                          : with.high() < printed ? "does not explain it: too dense"
+                                                  : "agrees with it within the scatter";
+    text += fmt::format("  {:<26} {} against {} without, printed {:g}: {}\n", name, spread(with, 4), spread(capped, 4),
+                        printed, verdict);
+  }
+  if (text.empty()) return "";
+  return "Whether what is printed explains the void ratio of discs before shaking, over the whole width, all with "
+         "(2.16):\n" +
+         text +
+         fmt::format(
+             "  c_i is not given. Read as (2.27), 2 h sqrt(m k), it would let a disc of {:g} cm fall at {:.2g} m/s at "
+             "most: {:.2g} s for\n  the {:g} m of the start, {:.1g} printed steps. rho = (1 + e) gamma in springs and "
+             "masses multiplies all forces and\n  masses by the same number: the same motion but for rounding.\n\n",
+             100 * radius, fastest, printed_box_height / fastest, printed_box_height,
+             printed_box_height / fastest / printed_step);
+}
+
 std::string variants(const Reproduction& result) {
   if (result.quick) return "";
   const std::vector<std::pair<Kind, const char*>> rows{
@@ -68,6 +106,14 @@ std::string variants(const Reproduction& result) {
       {{.variant = "printed_cap"}, "friction limits the spring alone (2.16)"},
       {{.variant = "printed_cap", .cycles = long_shakings[0]}, "(2.16), shaken for 5 s"},
       {{.variant = "printed_cap", .cycles = long_shakings[1]}, "(2.16), shaken for 20 s"},
+      {{.variant = "increments_capped"}, "forces of chapter 2 in increments, friction limits all"},
+      {{.variant = "increments"}, "forces in increments, (2.16)"},
+      {{.variant = "printed_integrator"}, "the same with the integrator (3.16)-(3.17)"},
+      {{.variant = "mass_damping_1"}, "the same with c_i = 1/s m_i in (3.13)"},
+      {{.variant = "mass_damping_10"}, "the same with c_i = 10/s m_i"},
+      {{.variant = "beta_1.05"}, "the same with beta = 1.05 of (3.1) in the force"},
+      {{.variant = "bulk_springs"}, "springs of E, nu, rho = (1+e) gamma (2.23)-(2.26)"},
+      {{.variant = "bulk_density"}, "rho = (1+e) gamma in springs and masses"},
       {{.variant = "low_drop"}, "rows 0.7 times as high at the start"},
       {{.variant = "smooth"}, "no friction between grains"},
       {{.variant = "rough"}, "friction 0.5"},
@@ -92,7 +138,8 @@ std::string variants(const Reproduction& result) {
   return "Dependence of the void ratio on one parameter at a time: over the whole width, and in the inner region\n" +
          table.text() +
          "With (2.16) the tangential dashpot force has no limit: no contact sticks, the heap comes to rest looser and "
-         "continues\nto compact for as long as it is shaken (compaction_over_time.png).\n\n";
+         "continues\nto compact for as long as it is shaken (compaction_over_time.png).\n\n" +
+         printed_level(result);
 }
 
 std::string shakings(const Reproduction& result) {
@@ -119,22 +166,6 @@ std::string shakings(const Reproduction& result) {
   return "Shaking of one filling of each shape: settlement of the surface and of the centre of mass, roughness and "
          "largest slope\nof the surface\n" +
          table.text();
-}
-
-std::string best_compaction(const Reproduction& result) {
-  std::string text;
-  for (const Shape shape : {Shape::disc, Shape::bonded_pair}) {
-    std::vector<Done> runs = mapped(result, shape);
-    std::erase_if(runs, [](const Done& done) { return !std::isfinite(done.outcome.void_ratio); });
-    if (runs.size() < 2) continue;
-    const Done& best = *std::min_element(runs.begin(), runs.end(), [](const Done& a, const Done& b) {
-      return a.outcome.void_ratio < b.outcome.void_ratio;
-    });
-    text += fmt::format("  {} are densest after {:g} gal, {:.3g} Hz: e = {:.4f}, of {} shakings of one filling\n",
-                        words(plural_of(shape)), best.run.shaking->gal, best.run.shaking->frequency,
-                        best.outcome.void_ratio, runs.size());
-  }
-  return text.empty() ? "" : "Shaking that compacts best (section 9.2)\n" + text + "\n";
 }
 
 std::string periods(const Reproduction& result) {
@@ -228,7 +259,8 @@ std::string report(const Reproduction& result) {
         "and right of row 13.\n";
   }
   return text + "\n" + void_ratios(result) + "\n" + contact_margin(result) + "\n" + variants(result) +
-         shakings(result) + "\n" + best_compaction(result) + periods(result) + "\n" + bonds(result) + numerics(result);
+         shakings(result) + "\n" + verdicts(result) + periods(result) + "\n" + bonds(result) + numerics(result) + "\n" +
+         report_of(result.packings) + "\n" + report_of(result.fallen_ellipses);
 }
 
 }  // namespace equidem::sukegawa2010

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <mutex>
 
 #include "equidem/core/file.hpp"
@@ -65,10 +66,45 @@ std::vector<int> layers_of(const GrainScene& scene) {
   return layers;
 }
 
+/// Void ratio as the thesis prints it, and porosity.
+std::string density_of(const Outcome& outcome) {
+  return fmt::format(", e = {:.3f}, n = {:.2f} %", outcome.whole, 100 * outcome.whole / (1 + outcome.whole));
+}
+
 std::string title_of(const Run& run, const std::string& when) {
   std::string text = fmt::format("{}, seed {}", words(plural_of(run.fill.shape)), run.fill.seed);
   if (run.shaking) text += fmt::format(", {:g} gal {:.3g} Hz", run.shaking->gal, run.shaking->frequency);
   return text + ": " + when;
+}
+
+/// A simulation, and what the two kinds of it have beyond AnySimulation.
+struct Moved {
+  std::unique_ptr<AnySimulation> simulation;
+  std::function<std::vector<Grain>()> grains;
+  std::function<std::vector<GrainContact>()> contacts;
+  std::function<BondReport()> bonds;
+};
+
+template <class Simulation>
+Moved moved_by(std::unique_ptr<Simulation> simulation) {
+  const Simulation& kept = *simulation;
+  Moved moved;
+  moved.simulation = std::move(simulation);
+  moved.grains = [&kept] { return kept.grains(); };
+  moved.contacts = [&kept] { return kept.contacts(); };
+  moved.bonds = [&kept] {
+    if constexpr (requires { kept.bonds(); }) return kept.bonds();
+    return BondReport{};
+  };
+  return moved;
+}
+
+Moved simulation_of(const GrainScene& scene, const Fill& fill) {
+  if (!fill.printed) return moved_by(std::make_unique<GrainSimulation>(scene, options_of(scene, fill)));
+  PrintedOptions options = *fill.printed;
+  options.damping = fill.damping;
+  options.time_step = step_of(scene, fill);
+  return moved_by(std::make_unique<PrintedDiscs>(scene, options));
 }
 
 /// Filling or shaking of a box.
@@ -77,7 +113,8 @@ class BoxRun {
   BoxRun(const Run& run, GrainScene scene, bool shown, const Folder& folder)
       : run_(run),
         scene_(std::move(scene)),
-        simulation_(scene_, options_of(scene_, run.fill)),
+        moved_(simulation_of(scene_, run.fill)),
+        simulation_(*moved_.simulation),
         folder_(folder),
         shown_(shown && folder),
         layers_(layers_of(scene_)),
@@ -91,7 +128,7 @@ class BoxRun {
     ever_.assign(scene_.grains.size(), 0);
   }
 
-  GrainSimulation& simulation() { return simulation_; }
+  AnySimulation& simulation() { return simulation_; }
 
   void start() {
     zero_ = simulation_.time();
@@ -123,21 +160,22 @@ class BoxRun {
     o.centre_before = first_.centre.y, o.centre = last_.centre.y;
     o.slope = slope_;
     o.thrown = static_cast<double>(std::count(ever_.begin(), ever_.end(), 1));
-    const auto contacts = simulation_.contacts();
+    const auto contacts = moved_.contacts();
     double ends = 0;
     for (const GrainContact& contact : contacts) {
       ends += contact.j >= 0 ? 2 : 1;
       o.overlap = std::max(o.overlap, contact.overlap / smallest_);
     }
     o.coordination = ends / static_cast<double>(scene_.grains.size() - scene_.bonds.size());
-    const BondReport bonds = simulation_.bonds();
+    const BondReport bonds = moved_.bonds();
     o.creep = bonds.number > 0 ? bonds.distance.mean : unknown;
     o.roll = bonds.number > 0 ? bonds.roll.mean : unknown;
     o.steps = static_cast<double>(simulation_.step());
     o.time = simulation_.time() - zero_;
     o.time_step = step_of(scene_, run_.fill);
     const EnergyLedger energy = simulation_.energy();
-    o.energy_error = energy.error() / std::abs(energy.potential);
+    o.energy_error = run_.fill.printed ? unknown : energy.error() / std::abs(energy.potential);
+    movement_.tell(o, run_.fill.grid.width());
     o.seconds = computing_.lap();
     return o;
   }
@@ -165,7 +203,7 @@ class BoxRun {
 
   /// The bodies now. \param when part of the title
   void draw(const std::string& name, const std::string& when) const {
-    draw(name, when, simulation_.grains(), simulation_.time());
+    draw(name, when, moved_.grains(), simulation_.time());
   }
   /// The bodies when their centre of mass was displaced farthest.
   void draw_farthest(const std::string& name, const std::string& when) const {
@@ -200,7 +238,7 @@ class BoxRun {
   }
 
   void sample() {
-    const std::vector<Grain> grains = simulation_.grains();
+    const std::vector<Grain> grains = moved_.grains();
     const double time = simulation_.time();
     last_ = measure(scene_, grains, time, diameter_);
     for (std::size_t g = 0; g < grains.size(); ++g)
@@ -213,6 +251,7 @@ class BoxRun {
       farthest_ = grains;
       farthest_time_ = time;
     }
+    movement_.add(grains, box_of(scene_.walls, grains, time).inside.low.x, time - zero_);
     record(grains, time - zero_);
     if (run_.animated && run_.shaking && time - zero_ >= static_cast<double>(frames_.size()) * frame_interval)
       frames_.push_back(frame_of(grains, time));
@@ -245,7 +284,8 @@ class BoxRun {
 
   const Run& run_;
   GrainScene scene_;
-  GrainSimulation simulation_;
+  Moved moved_;
+  AnySimulation& simulation_;
   const Folder& folder_;
   bool shown_;
   std::vector<int> layers_;
@@ -254,6 +294,7 @@ class BoxRun {
   double slope_ = 0, swings_from_ = 0;
   Moment first_, last_;
   std::vector<char> ever_;
+  GrainMovement movement_;
   double farthest_swing_ = -1, farthest_time_ = 0;
   std::vector<Grain> farthest_;
   std::vector<GrainFrame> frames_;
@@ -273,7 +314,7 @@ FilledBox fill_box(const Fill& fill, bool shown, const Folder& folder, const std
   Outcome& o = filled.outcome;  // the box was empty before
   o.void_ratio_before = o.whole_before = o.height_before = o.roughness_before = o.slope = o.swing = o.thrown = unknown;
   box.write(run.name());
-  box.draw(run.name() + "_filled", "filled, at rest");
+  box.draw(run.name() + "_filled", "filled, at rest" + density_of(o));
   return filled;
 }
 
@@ -293,7 +334,7 @@ Outcome shake_box(const Run& run, const FilledBox& filled, const Folder& folder,
   outcome.steps -= static_cast<double>(filled.state.step);
   box.write(run.name());
   box.draw_farthest(run.name() + "_during", "largest displacement");
-  box.draw(run.name() + "_after", "at rest again");
+  box.draw(run.name() + "_after", "at rest again" + density_of(outcome));
   box.animate(run.name());
   return outcome;
 }

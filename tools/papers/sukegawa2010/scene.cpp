@@ -21,6 +21,22 @@ SettlingOptions material_of(const Fill& fill) {
                           .gravity = gravity,
                           .friction = fill.friction,
                           .wall_friction = wall_friction};
+  const double bulk = 1 + bulk_void_ratio;
+  switch (fill.bulk_density) {
+    case Fill::BulkDensity::unused:
+      break;
+    case Fill::BulkDensity::of_springs: {
+      // From E and nu, (2.23) to (2.26): the speeds are those of the medium, the density that of the discs.
+      const ElasticModuli moduli =
+          moduli_from_young(2 * (1 + poisson_ratio) * density * squared(shear_speed), poisson_ratio, Plane::strain);
+      options.springs = springs_of_wave_speeds(bulk * density, wave_speeds_of(moduli, density));
+      break;
+    }
+    case Fill::BulkDensity::of_springs_and_masses:
+      options.density = bulk * density;
+      options.springs = springs_of_wave_speeds(options.density, speeds);
+      break;
+  }
   options.springs.kN /= fill.softness;
   options.springs.kT /= fill.softness;
   return options;
@@ -50,8 +66,9 @@ Bodies placed(const Fill& fill) {
 
 GrainScene start_of(const Fill& fill) {
   GrainPacking packing;
-  make_grains({.kind = fill.shape}, placed(fill), density, packing);
-  GrainScene scene = scene_of_box(fill.grid.width(), material_of(fill));
+  const SettlingOptions material = material_of(fill);
+  make_grains({.kind = fill.shape}, placed(fill), material.density, packing);
+  GrainScene scene = scene_of_box(fill.grid.width(), material);
   for (PairProperties& pair : scene.pairs) pair.cap = fill.cap;
   scene.grains = std::move(packing.grains);
   scene.clumps = std::move(packing.clumps);

@@ -18,6 +18,8 @@
 #include "equidem/packing/packing_shape.hpp"
 
 #include "papers.hpp"
+#include "sukegawa2010/packings.hpp"
+#include "sukegawa2010/printed_discs.hpp"
 
 namespace equidem::sukegawa2010 {
 
@@ -31,6 +33,7 @@ constexpr double smallest_radius = 0.005, largest_radius = 0.01;           ///< 
 constexpr double printed_step = 1e-6;                                      ///< s
 constexpr double printed_box_height = 2.25;                                ///< m, section 8.9.3
 constexpr double printed_period = 1.85;                                    ///< s, section 8.9.3
+constexpr double bulk_void_ratio = 0.213;                                  ///< e of (2.25) in the variants that use it
 
 /// Before and after 400 gal, 10 Hz (Figs. 8.2 to 8.24); 0: not in the thesis.
 struct Printed {
@@ -72,8 +75,11 @@ struct Fill {
   double bond_step = printed_step;           ///< s: dashpots of bonds C_n = m_r/bond_step, C_s = C_n/3
   FrictionCap cap = FrictionCap::whole_force;
   EllipseLaw ellipse_law = EllipseLaw::exact;
-  double row_share = 1;      ///< height of the rows at the start over that of the thesis
-  std::string variant = {};  ///< part of names; empty: as in the thesis, except for the step
+  double row_share = 1;  ///< height of the rows at the start over that of the thesis
+  /// rho = (1 + e) gamma (2.25) with gamma = `density`: in the springs, and in the masses too.
+  enum class BulkDensity { unused, of_springs, of_springs_and_masses } bulk_density = BulkDensity::unused;
+  std::optional<PrintedOptions> printed = {};  ///< discs moved by PrintedDiscs; its damping and step are those above
+  std::string variant = {};                    ///< part of names; empty: as in the thesis, except for the step
 
   [[nodiscard]] std::string name() const;  ///< "discs_1"
 };
@@ -103,9 +109,17 @@ struct Outcome {
   double swing = 0;         ///< amplitude of the centre of mass along x in the box at the frequency of shaking
   double thrown = 0;        ///< bodies that at any moment were a mean diameter away from the heap
   double coordination = 0;  ///< contacts per body
-  double creep = 0;         ///< bonds: mean drift of the distance over the sum of radii
-  double roll = 0;          ///< bonds: mean relative rotation, rad
-  double overlap = 0;       ///< the largest, over the smallest radius
+  // motion of the grains in the box, means over all of them (GrainMovement)
+  double path = 0, path_x = 0;  ///< length of the path, and of its part along x
+  double first_path = 0;        ///< of the path, in the first 0.1 s
+  double turn = 0;              ///< sum of the rotations one way and the other, rad
+  double displaced_x = 0;       ///< root mean square of the displacement along x
+  double inward = 0;            ///< displacement towards the middle, of the outer thirds of the width
+  double sunk = 0;              ///< displacement downwards
+  double layered = 0;           ///< share of the squares of displacements along x that ten layers have in common
+  double creep = 0;             ///< bonds: mean drift of the distance over the sum of radii
+  double roll = 0;              ///< bonds: mean relative rotation, rad
+  double overlap = 0;           ///< the largest, over the smallest radius
   double time_step = 0, steps = 0, time = 0;  ///< s, -, s of motion
   double energy_error = 0;                    ///< of the energy balance, over the potential energy lost
   double seconds = 0;                         ///< of computing
@@ -133,6 +147,14 @@ inline constexpr std::array outcome_keys{OutcomeKey{"void_ratio_before", &Outcom
                                          OutcomeKey{"swing_m", &Outcome::swing},
                                          OutcomeKey{"thrown", &Outcome::thrown},
                                          OutcomeKey{"coordination", &Outcome::coordination},
+                                         OutcomeKey{"path_m", &Outcome::path},
+                                         OutcomeKey{"path_along_x_m", &Outcome::path_x},
+                                         OutcomeKey{"first_path_m", &Outcome::first_path},
+                                         OutcomeKey{"turned_rad", &Outcome::turn},
+                                         OutcomeKey{"displaced_x_m", &Outcome::displaced_x},
+                                         OutcomeKey{"inward_m", &Outcome::inward},
+                                         OutcomeKey{"sunk_m", &Outcome::sunk},
+                                         OutcomeKey{"layered", &Outcome::layered},
                                          OutcomeKey{"bond_creep", &Outcome::creep},
                                          OutcomeKey{"bond_roll_rad", &Outcome::roll},
                                          OutcomeKey{"largest_overlap", &Outcome::overlap},
@@ -151,7 +173,10 @@ struct Done {
 struct Reproduction {
   bool quick = false;
   std::size_t planned = 0;
-  std::vector<Done> runs;  ///< those done, in the order of the plan
+  std::vector<Done> runs;   ///< those done, in the order of the plan
+  std::vector<Done> fills;  ///< the fillings of those, each once
+  std::vector<PackedDiscs> packings;
+  std::vector<FallenEllipses> fallen_ellipses;
   StageTimes times;
 
   [[nodiscard]] bool complete() const { return runs.size() == planned; }
@@ -174,6 +199,22 @@ GrainScene start_of(const Fill& fill);
 /// Step of the loop, s: the one given, else step_share of the limit of a contact of the two lightest bodies.
 double step_of(const GrainScene& scene, const Fill& fill);
 GrainOptions options_of(const GrainScene& scene, const Fill& fill);
+
+/// Motion of grains in the box between samples.
+class GrainMovement {
+ public:
+  /// \param left side of the box, m \param time s since the first sample
+  void add(const std::vector<Grain>& grains, double left, double time);
+  /// Set the members of an outcome that tell of it. \param width of the box, m
+  void tell(Outcome& outcome, double width) const;
+
+ private:
+  struct Way {
+    double all = 0, along_x = 0, first = 0, turned = 0;
+  };
+  std::vector<Grain> start_, last_;  ///< positions in the box
+  std::vector<Way> ways_;
+};
 
 using Folder = std::optional<std::filesystem::path>;  ///< for the files of runs; empty: no files
 
@@ -221,7 +262,12 @@ double amplification_of(const Done& done);
 /// Amplification of a liquid without viscosity that is shaken at that period.
 double liquid_amplification(double period, double width, double depth);
 
+/// The conclusions of sections 8.5, 8.9 and 9.2 and whether they hold.
+std::string verdicts(const Reproduction& result);
 std::string report(const Reproduction& result);
 Named<Plot> plots(const Reproduction& result, const Folder& folder);
+/// A sheet a shape of the pictures of its nine shakings (Figs. 8.33 to 8.51), and of the plots of its nine grains while
+/// it falls (Figs. 8.4, 8.13, 8.22) and while it is shaken; of the files that are in the folder.
+void write_sheets(const Reproduction& result, const std::filesystem::path& folder);
 
 }  // namespace equidem::sukegawa2010

@@ -89,6 +89,29 @@ void Raster::set(int x, int y, const Colour& colour) {
   std::memcpy(pixel, &argb, sizeof argb);
 }
 
+Raster read_png(const std::filesystem::path& path) {
+  cairo_surface_t* file = cairo_image_surface_create_from_png(path.c_str());
+  const cairo_status_t status = cairo_surface_status(file);
+  if (status != CAIRO_STATUS_SUCCESS) {
+    cairo_surface_destroy(file);
+    bad_input_at(path.string(), "the picture cannot be read", cairo_status_to_string(status), "Draw it again");
+  }
+  Raster raster(cairo_image_surface_get_width(file), cairo_image_surface_get_height(file));
+  const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(file));
+  const std::size_t row_bytes = 4 * static_cast<std::size_t>(raster.width);
+  const bool opaque = cairo_image_surface_get_format(file) == CAIRO_FORMAT_RGB24;
+  for (std::size_t row = 0; row < static_cast<std::size_t>(raster.height); ++row)
+    std::memcpy(&raster.bytes[row * row_bytes], cairo_image_surface_get_data(file) + row * stride, row_bytes);
+  cairo_surface_destroy(file);
+  for (std::size_t pixel = 0; opaque && pixel < raster.bytes.size(); pixel += 4) {
+    std::uint32_t argb = 0;
+    std::memcpy(&argb, &raster.bytes[pixel], sizeof argb);
+    argb |= 0xff000000U;  // undefined in RGB24
+    std::memcpy(&raster.bytes[pixel], &argb, sizeof argb);
+  }
+  return raster;
+}
+
 struct Canvas::Implementation {
   PageFormat format;
   std::string bytes;

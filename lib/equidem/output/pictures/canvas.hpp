@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,6 +27,9 @@ struct Raster {
   Raster(int w, int h) : width(w), height(h), bytes(4 * static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
   void set(int x, int y, const Colour& colour);
 };
+
+/// \throws Error (bad_input) on a file that is no PNG
+Raster read_png(const std::filesystem::path& path);
 
 class Canvas {
  public:
