@@ -27,6 +27,7 @@ struct Request {
   std::vector<int> threads = {1, 2};
   double effects_discs = 1e4;
   int rounds = 9;
+  bool absent = false;  ///< absent effects alone
 };
 
 /// About a tenth of a second.
@@ -158,7 +159,18 @@ std::string compare_absent_effects(const Assembly& assembly, int rounds) {
   return table.markdown();
 }
 
+void report_absent_effects(Report& report, const Assembly& assembly, int rounds) {
+  report.add("\nCost of absent effects: each scene beside a loop written by hand for it alone.\n\n" +
+             compare_absent_effects(assembly, 3 * rounds));
+}
+
 void run(Report& report, const Request& request) {
+  if (request.absent) {
+    const auto discs = static_cast<std::int64_t>(request.effects_discs);
+    for (const std::string& kind : request.kinds)
+      report_absent_effects(report, build_assembly(kind, discs, 1), request.rounds);
+    return;
+  }
   const Limits limits = machine_limits();
   report.add(fmt::format(
       "# Steps in time\n\n{}. One core: triad {:.1f} GB/s, multiply-adds on four numbers {:.1f} Gflop/s.\nMedians "
@@ -182,8 +194,7 @@ void run(Report& report, const Request& request) {
     const Assembly assembly = build_assembly(kind, static_cast<std::int64_t>(request.effects_discs), 1);
     report.add(fmt::format("\n## Cost of effects: {}, {} discs\n\n", kind, assembly.size()) +
                compare_effects(assembly, request.rounds));
-    report.add("\nCost of absent effects: each scene beside a loop written by hand for it alone.\n\n" +
-               compare_absent_effects(assembly, 3 * request.rounds));
+    report_absent_effects(report, assembly, request.rounds);
   }
 }
 
@@ -202,6 +213,7 @@ int main(int argc, char** argv) {
         app.add_option("--effects-discs", request.effects_discs, "discs for the tables of effects")
             ->check(CLI::PositiveNumber);
         app.add_option("--rounds", request.rounds, "of all entries in turn")->check(CLI::PositiveNumber);
+        app.add_flag("--absent", request.absent, "the loops by hand alone: cost of absent effects");
       },
       [&](Report& report) { run(report, request); });
 }
