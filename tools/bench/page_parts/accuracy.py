@@ -18,12 +18,12 @@ STUDIES = {
     "settled_void_ratio": ("Void ratio of discs that fell", "", [0]),
     "neighbour_margin": ("Margin of the neighbour lists", "", [0]),
 }
-ASKED = (1e-2, 1e-4, 1e-8)
+ASKED = ("1e-2", "1e-3", "1e-4", "1e-8")
 # Commands with --accuracy: what is computed, command, repetitions.
 VERBS = [
-    ("K, G and ν of random cells", "homogenize data/cases/random_cell.toml --accuracy 0.01"),
+    ("K, G and ν of random cells", "homogenize data/cases/random_cell.toml --accuracy 1e-2"),
     ("ν and G of a lattice from a block in tension", "solve data/cases/abe1996_fig6.toml --accuracy 1e-3"),
-    ("motion of bonded discs", "run data/cases/run_pulse.toml --accuracy 0.01"),
+    ("motion of bonded discs", "run data/cases/run_pulse.toml --accuracy 1e-2"),
 ]
 
 TEXT = """# Cost of accuracy
@@ -34,8 +34,7 @@ Error against time, measured; written by
 
 Times are medians on one thread, on {machine}.
 
-{summary}
-*error* is the measured one; of the last {verbs} rows, which choose their setting themselves, the estimated one, with 95 % confidence, and
+{summary}*error* is the measured one; of the last {verbs} rows, which choose their setting themselves, the estimated one, with 95 % confidence, and
 the time is that of the whole command. A study is repeated with all its settings, plots and CSV by `equidem study NAME --out DIR`. Its
 times are medians over rounds, each with all settings in random order.
 
@@ -44,8 +43,7 @@ times are medians over rounds, each with all settings in random order.
 Where a verb has a setting to choose, `--accuracy X` chooses it: `equidem homogenize` size and number of random cells, `equidem solve`
 the size of the block of a tension test, `equidem run` the time step of bonded discs. Tests make random requests, whose true error is known:
 
-{requests}
-*cheap* settings cost at most twice the cheapest sufficient one. Pilot computations are not counted there; the report states their cost:
+{requests}*cheap* settings cost at most twice the cheapest sufficient one. Pilot computations are not counted there; the report states their cost:
 two to five runs for a time step, thousands of discs for random cells, and little compared with a large block.
 
 """
@@ -69,15 +67,15 @@ def cheapest_ways(name, result):
         done = [row for row in result["settings"] if row["problem"] == problem and "refusal" not in row and row["seconds"]["repetitions"]]
         chosen = {}
         for asked in ASKED:
-            sufficient = [row for row in done if worst(row) is not None and worst(row) <= asked]
+            sufficient = [row for row in done if worst(row) is not None and worst(row) <= float(asked)]
             if sufficient:
                 chosen[label(min(sufficient, key=lambda row: row["seconds"]["median"]))] = asked
         by_label = {label(row): row for row in done}
         for way, asked in chosen.items():
             row = by_label[way]
             task = ": ".join(part for part in (STUDIES[name][1], problem) if part)
-            rows.append([task, f"{asked:g}", way, f"{worst(row, 'errors'):.1e}", seconds(row["seconds"]["median"]),
-                         f"`equidem study {name} --accuracy {asked:g}`"])
+            rows.append([task, asked, way, f"{worst(row, 'errors'):.1e}", seconds(row["seconds"]["median"]),
+                         f"`equidem study {name} --accuracy {asked}`"])
     return rows
 
 
@@ -92,7 +90,7 @@ def verb_rows(run):
             times.append(time.monotonic() - begin)
         reached = json.loads(target.read_text(encoding="utf-8"))["accuracy"]
         way = ", ".join(f"{key} = {value:.6g}" for key, value in reached["value"].items())
-        rows.append([task, f"{reached['requested']:g}", way, f"{reached['estimated']:.1e}", seconds(statistics.median(times)),
+        rows.append([task, command.split()[-1], way, f"{reached['estimated']:.1e}", seconds(statistics.median(times)),
                      f"`equidem {command}`"])
     return rows
 

@@ -161,16 +161,22 @@ Plot time_plot(const StudyReport& report, const std::string& problem) {
 /// A bar for each setting, of its processor time with quartiles.
 BarChart time_chart(const StudyReport& report, const std::string& problem) {
   const Study& study = report.study;
-  const bool each = study.pieces > 0;
-  const double scale = each ? 1e9 / study.pieces : 1e3;
-  BarChart chart{.title = problem.empty() ? study.title : study.title + ": " + problem,
-                 .axis = each ? "ns per " + study.piece : "processor time, ms"};
+  const double pieces = study.pieces > 0 ? study.pieces : 1;
+  double longest = 0;
+  for (const StudyRow& row : report.result.rows)
+    if (row.setting.problem == problem) longest = std::max(longest, row.time.processor_median / pieces);
+  const auto [unit, scale] = longest < 1e-6   ? std::pair{"ns", 1e9}
+                             : longest < 1e-3 ? std::pair{"µs", 1e6}
+                                              : std::pair{"ms", 1e3};
+  BarChart chart{
+      .title = problem.empty() ? study.title : study.title + ": " + problem,
+      .axis = study.pieces > 0 ? fmt::format("{} per {}", unit, study.piece) : fmt::format("processor time, {}", unit)};
   for (const StudyRow& row : report.result.rows) {
     if (row.setting.problem != problem || row.time.repetitions == 0) continue;
     chart.bars.push_back({.label = row.setting.label(),
-                          .value = scale * row.time.processor_median,
-                          .low = scale * row.time.processor_lower_quartile,
-                          .high = scale * row.time.processor_upper_quartile});
+                          .value = scale / pieces * row.time.processor_median,
+                          .low = scale / pieces * row.time.processor_lower_quartile,
+                          .high = scale / pieces * row.time.processor_upper_quartile});
   }
   return chart;
 }
