@@ -159,6 +159,10 @@ TEST_CASE("series_that_coincide_are_told_apart") {
     const Plot stairs{.series = {{.x = {0, 1, 1, 2, 2}, .y = {0, 0, 1, 1, 4}}, line}};
     CHECK(looks_of(stairs, frame_of(stairs))[1].dash == 0);
   }
+  SECTION("a short line under a long one") {
+    const Plot under{.series = {{.x = {0, 0.5}, .y = {0, 0.5}}, {.x = {0, 2}, .y = {0, 2}}}};
+    CHECK(looks_of(under, frame_of(under))[1].dash == 1);
+  }
   SECTION("in another panel it is alone") {
     Plot apart{.series = {line, same}, .panels = {"left", "right"}};
     apart.series[1].panel = 1;

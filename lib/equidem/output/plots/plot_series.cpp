@@ -155,9 +155,12 @@ std::vector<SeriesLook> looks_of(const Plot& plot, const PlotFrame& frame) {
       const Series& earlier = plot.series[j];
       const bool lines = has_line(series) && has_line(earlier), markers = has_markers(series) && has_markers(earlier);
       if (series.panel != earlier.panel) continue;
-      if (lines && looks[k].dash <= looks[j].dash && coincide(along(places[k]), places[j], true))
+      const auto either = [&](const std::vector<Vec2>& one, const std::vector<Vec2>& other, bool along_line) {
+        return coincide(one, other, along_line) || coincide(other, one, along_line);
+      };
+      if (lines && looks[k].dash <= looks[j].dash && either(along(places[k]), along(places[j]), true))
         looks[k].dash = looks[j].dash + 1;
-      if (markers && coincide(places[k], places[j], false)) looks[j].marker_size += 0.45;
+      if (markers && either(places[k], places[j], false)) looks[j].marker_size += 0.45;
     }
   }
   return looks;

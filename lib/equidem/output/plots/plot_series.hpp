@@ -25,7 +25,7 @@ struct SeriesLook {
   int dash = 0;            ///< 0: solid; else the number of a pattern of dashes
   double marker_size = 1;  ///< over the usual one
 };
-/// Two series of one panel coincide where most points of one lie within 1/200 of the frame from the other. The later
+/// Two series of one panel coincide where most points of either lie within 1/200 of the frame from the other. The later
 /// one then has another dash pattern, and the earlier one larger markers.
 std::vector<SeriesLook> looks_of(const Plot& plot, const PlotFrame& frame);
 
