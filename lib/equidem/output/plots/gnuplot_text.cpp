@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/output/plots/gnuplot_text.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <string_view>
