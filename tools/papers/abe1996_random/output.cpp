@@ -63,9 +63,8 @@ Plot poisson_plot(const Result& result, std::size_t weighting) {
 
 /// Error against the scatter of branch lengths: a line through the perturbed lattices, points for the others.
 Plot error_plot(const Result& result, std::size_t weighting, const std::string& label, std::size_t error) {
-  Plot plot{.title = fmt::format(
-                "Springs weighted \"{}\"; lines: hexagonal lattices with disorder; bars: two standard errors",
-                spaced(weightings[weighting])),
+  Plot plot{.title = fmt::format("Springs weighted \"{}\"; lines: disordered lattices; bars: two standard errors",
+                                 spaced(weightings[weighting])),
             .x = {.label = "scatter of branch lengths, sd/mean"},
             .y = {.label = label}};
   plot.enhanced = true;
