@@ -50,8 +50,8 @@ std::string bar_script(const std::string& name, const BarChart& chart) {
         std::max(bar.value, bar.high), row);
   }
   text += fmt::format("set ytics ({})\n", joined(tics, ", \\\n     "));
-  return text + draw_twice(name, [](double font_size) {
-           return fmt::format("set ytics font ',{:.3g}'\n", 0.9 * font_size) +
+  return text + draw_twice(name, [&](double font_size) {
+           return title_font(chart.title, font_size) + fmt::format("set ytics font ',{:.3g}'\n", 0.9 * font_size) +
                   "plot data using \"value\":($0 + 1):\"low\":\"high\" with xerrorbars pt -1 lw 1.2 lc rgb '#222222'\n";
          });
 }

@@ -71,6 +71,12 @@ std::string script_head(const std::string& name, const std::string& title, const
       name, gnuplot_string(name + ".csv"), gnuplot_string(title), plain);
 }
 
+std::string title_font(const std::string& title, double font_size) {
+  constexpr double fits = 72;  // characters
+  const auto width = static_cast<double>(columns_of(title));
+  return width > fits ? fmt::format("set title font ',{:.3g}'\n", font_size * fits / width) : "";
+}
+
 std::string draw_twice(const std::string& name, const std::function<std::string(double font_size)>& commands,
                        std::size_t svg_stride) {
   const auto draw = [&](const char* terminal, const char* extension, double font_size, double marker,

@@ -21,6 +21,9 @@ const char* hex(PlotColour colour);
 /// \param plain " noenhanced", or nothing
 std::string script_head(const std::string& name, const std::string& title, const std::string& plain);
 
+/// A smaller font for a title that is wider than the picture; nothing for others.
+std::string title_font(const std::string& title, double font_size);
+
 /// The commands that draw NAME.svg and NAME.png. Each terminal of gnuplot has its own unit for fonts and markers: the
 /// commands are for a certain font size, of which others are a share, and use `marker` as the size of a marker and
 /// `stride` as the step from one point of a line to the next.

@@ -95,7 +95,7 @@ std::string one_panel(const std::string& name, const Plot& plot, std::vector<std
                           "set key below horizontal Left reverse samplen 2.2 spacing 1.2 width 1 height 0.4 font "
                           "',{:.3g}'{}\n",
                           share * font_size, plain) +
-                      plot_command(clauses);
+                      title_font(plot.title, font_size) + plot_command(clauses);
              },
              svg_stride(plot));
 }
