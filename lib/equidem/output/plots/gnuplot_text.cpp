@@ -72,7 +72,7 @@ std::string script_head(const std::string& name, const std::string& title, const
 }
 
 std::string title_font(const std::string& title, double font_size) {
-  constexpr double fits = 72;  // characters
+  constexpr double fits = 90;  // characters
   const auto width = static_cast<double>(columns_of(title));
   return width > fits ? fmt::format("set title font ',{:.3g}'\n", font_size * fits / width) : "";
 }
