@@ -16,6 +16,7 @@ import sys
 LONGEST_SOURCE = 400  # lines
 WIDEST_LINE = 120  # characters
 FULLEST_FOLDER = 30  # sources in one folder of lib or tools
+LARGEST_SVG = 300_000  # bytes of a figure in data
 # Folders above it, with the number that they may not exceed: being divided, never added to.
 OVERFULL = {
     "lib/equidem/output/files": 32,
@@ -182,6 +183,8 @@ def violations(root):
     yield from check_folders(paths)
     for path in paths:
         full = os.path.join(root, path)
+        if path.startswith("data/") and path.endswith(".svg") and os.path.getsize(full) > LARGEST_SVG:
+            yield path, 1, f"the figure has {os.path.getsize(full)} bytes, more than {LARGEST_SVG}: keep its PNG alone"
         if os.path.islink(full) or os.path.getsize(full) > 1_000_000:
             continue
         try:

@@ -106,6 +106,9 @@ class TheCheck(unittest.TestCase):
         self.fails_with(files, "tools/equidem:1", "has 31 sources")
         self.assertEqual(violations_of(dict(list(files.items())[:29])), [])
 
+    def test_rejects_a_huge_figure(self):
+        self.fails_with({"data/a/figure.svg": "<svg>" + " " * 300_000}, "data/a/figure.svg:1", "keep its PNG alone")
+
     def test_rejects_paths_of_one_machine(self):
         for place in ("work/main", "tmp/x", "root", "home/me"):
             self.fails_with({"README.md": f"Look into /{place}.\n"}, "README.md:1: a path of one machine")

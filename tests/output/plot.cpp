@@ -8,6 +8,7 @@
 #include "equidem/core/file.hpp"
 #include "equidem/output/plots/gnuplot.hpp"
 #include "equidem/output/plots/plot_script.hpp"
+#include "equidem/output/plots/plot_series.hpp"
 
 #include "output/png.hpp"
 #include "output/states.hpp"
@@ -120,6 +121,133 @@ TEST_CASE("data_of_a_plot_has_named_columns") {
   CHECK(data.places[2].x == "kT_kN_2");
 }
 
+TEST_CASE("error_bars_are_data_and_drawn") {
+  const TemporaryFolder folder;
+  const Plot plot{.series = {{.label = "mean",
+                              .x = {1, 2, 3},
+                              .y = {1, 2, 3},
+                              .style = SeriesStyle::points,
+                              .low = {0.5, 1.5, NAN},
+                              .high = {1.5, 9, NAN}}}};
+  const PlotData data = plot_data(plot);
+  CHECK(data.csv == "x,mean,mean_low,mean_high\n1,1,0.5,1.5\n2,2,1.5,9\n3,3,nan,nan\n");
+  const std::string script = plot_script("bars", plot, data);
+  CAPTURE(script);
+  CHECK(script.find("\"mean_low\":\"mean_high\" with yerrorbars") != std::string::npos);
+  CHECK(script.find("set yrange [0") != std::string::npos);
+  CHECK(frame_of(plot).y.max > 9);  // the bar fits into the frame
+  const PlotResult result = write_plot(folder.path(), "bars", plot, false);
+  if (gnuplot_is_missing(result)) return;
+  CAPTURE(result.message);
+  CHECK(result.drawn);
+}
+
+TEST_CASE("series_that_coincide_are_told_apart") {
+  const Series line{.label = "a", .x = {0, 1, 2}, .y = {0, 1, 4}, .style = SeriesStyle::line_with_points};
+  Series same = line, other = line;
+  same.label = "b";
+  other.label = "c", other.y = {4, 1, 0};
+  const Plot plot{.series = {line, same, other}};
+  const std::vector<SeriesLook> looks = looks_of(plot, frame_of(plot));
+  CHECK(looks[0].dash == 0);
+  CHECK(looks[1].dash == 1);
+  CHECK(looks[2].dash == 0);
+  CHECK(looks[0].marker_size > looks[1].marker_size);
+  CHECK(looks[1].marker_size == looks[2].marker_size);
+
+  SECTION("a staircase through the points of a line is another line") {
+    const Plot stairs{.series = {{.x = {0, 1, 1, 2, 2}, .y = {0, 0, 1, 1, 4}}, line}};
+    CHECK(looks_of(stairs, frame_of(stairs))[1].dash == 0);
+  }
+  SECTION("a short line under a long one") {
+    const Plot under{.series = {{.x = {0, 0.5}, .y = {0, 0.5}}, {.x = {0, 2}, .y = {0, 2}}}};
+    CHECK(looks_of(under, frame_of(under))[1].dash == 1);
+  }
+  SECTION("in another panel it is alone") {
+    Plot apart{.series = {line, same}, .panels = {"left", "right"}};
+    apart.series[1].panel = 1;
+    CHECK(looks_of(apart, frame_of(apart))[1].dash == 0);
+  }
+}
+
+TEST_CASE("points_outside_the_frame_are_explained_in_the_legend") {
+  Plot plot = rich_plot();
+  const std::string told = "outside the frame, at its edge";
+  CHECK(plot_script("p", plot, plot_data(plot)).find(told) != std::string::npos);
+  plot.y.min = -4, plot.y.max = 8;
+  CHECK(plot_script("p", plot, plot_data(plot)).find(told) == std::string::npos);
+}
+
+TEST_CASE("panels_share_the_range_of_their_axes") {
+  const TemporaryFolder folder;
+  Plot plot{.title = "nine grains", .x = {.label = "time, s"}, .y = {.label = "height, m"}};
+  for (std::size_t k = 0; k < 9; ++k) {
+    plot.panels.push_back("grain " + std::to_string(k + 1));
+    plot.series.push_back(
+        {.x = {0, 1, 2}, .y = {0, 0.1 * static_cast<double>(k), 1}, .column = "y" + std::to_string(k), .panel = k});
+  }
+  const PlotData data = plot_data(plot);
+  CHECK(data.csv.substr(0, data.csv.find('\n')) == "time_s,y0,y1,y2,y3,y4,y5,y6,y7,y8");
+  const std::string script = plot_script("panels", plot, data);
+  CHECK(script.find("set multiplot layout 3,3") != std::string::npos);
+  const PlotResult result = write_plot(folder.path(), "panels", plot, false);
+  if (gnuplot_is_missing(result)) return;
+  CAPTURE(result.message);
+  CHECK(result.drawn);
+  CHECK(run_python("well_formed.py", {(folder / "panels.svg").string()}) == 0);
+}
+
+TEST_CASE("an_svg_of_long_histories_stays_small") {
+  const TemporaryFolder folder;
+  Plot plot;
+  for (int s = 0; s < 5; ++s) {
+    Series series{.label = std::to_string(s)};
+    for (int k = 0; k < 20000; ++k) {
+      series.x.push_back(1e-3 * k);
+      series.y.push_back(std::sin(0.01 * k + s));
+    }
+    plot.series.push_back(series);
+  }
+  const PlotResult result = write_plot(folder.path(), "long", plot, false);
+  if (gnuplot_is_missing(result)) return;
+  CHECK(fs::file_size(folder / "long.svg") < 300000);
+  CHECK(fs::file_size(folder / "long.csv") > 300000);
+}
+
+TEST_CASE("bars_are_drawn_with_their_labels") {
+  const TemporaryFolder folder;
+  BarChart chart{
+      .title = "cost",
+      .axis = "ns per disc-step",
+      .bars = {{.label = "plain 'scene'", .value = 7, .low = 6.5, .high = 8}, {.label = "+ a wall", .value = 19}}};
+  const PlotResult result = write_plot(folder.path(), "bars", chart, false);
+  CHECK(read_file(folder / "bars.csv") == "label,value,low,high\nplain 'scene',7,6.5,8\n+ a wall,19,nan,nan\n");
+  if (!gnuplot_is_missing(result)) {
+    CAPTURE(result.message);
+    CHECK(result.drawn);
+    CHECK(read_file(folder / "bars.svg").find("plain 'scene'") != std::string::npos);
+  }
+  chart.bars[1].value = -1;
+  CHECK_THROWS_WITH(write_plot(folder.path(), "b", chart, false),
+                    Catch::Contains("'+ a wall' of a chart has the value -1"));
+  CHECK_THROWS_WITH(write_plot(folder.path(), "b", BarChart{}, false), Catch::Contains("has no bar"));
+}
+
+TEST_CASE("text_of_the_user_is_literal_where_other_text_has_subscripts") {
+  CHECK(literal("a_b^{c} \\ @d ~ & e") == "a\\_b\\^\\{c\\} \\\\ \\@d \\~ \\& e");
+  CHECK(with_symbols("kT/kN = 0.5, nu of kT_max, menu") == "k_T/k_N = 0.5, ν of k_T\\_max, menu");
+  const TemporaryFolder folder;
+  Plot plot{.title = literal("my_{sweep}^2"),
+            .x = {.label = "k_T/k_N"},
+            .series = {{.x = {1, 2}, .y = {1, 2}}},
+            .enhanced = true};
+  const PlotResult result = write_plot(folder.path(), "texts", plot, false);
+  if (gnuplot_is_missing(result)) return;
+  const std::string svg = read_file(folder / "texts.svg");
+  CHECK(svg.find("my_{sweep}^2") != std::string::npos);
+  CHECK(svg.find("k_T") == std::string::npos);
+}
+
 TEST_CASE("no_text_reaches_a_shell_or_breaks_the_script") {
   const TemporaryFolder folder;
   const std::string wild =
@@ -186,5 +314,11 @@ TEST_CASE("a_plot_that_cannot_be_drawn_is_refused") {
   plot = good;
   plot.x.min = 2, plot.x.max = 1;
   refused("p", plot, "from 2 to 1");
+  plot = good;
+  plot.series[0].low = {0, 1};
+  refused("p", plot, "2 lower ends and 0 upper ends");
+  plot = good;
+  plot.series[0].panel = 1;
+  refused("p", plot, "is in panel 1");
   CHECK(folder.files() == 0);
 }

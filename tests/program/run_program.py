@@ -246,6 +246,16 @@ class Sweep(ProgramTest):
         for name in ("poisson_ratio.csv", "poisson_ratio.gp", "stiffness_ratio.csv", "case.toml", "result.json"):
             self.assertTrue((out / name).exists(), name)
 
+    def test_the_title_of_the_curve_is_the_users_and_its_symbols_are_typeset(self):
+        for number, (options, title) in enumerate([(["--title", "My a_b {sweep}"], r"My a\_b \{sweep\}"),
+                                                   (["--set", 'title="Block of 50_000"'], r"Block of 50\_000"),
+                                                   (["--set", 'title=""'], "k_T/k_N varied")]):
+            out = self.folder / str(number)
+            self.check_done(equidem("sweep", TENSION, "--key", "ratio", "--values", "0,0.5", "--out", out, *options))
+            script = (out / "stiffness_ratio.gp").read_text(encoding="utf-8")
+            self.assertIn(f"set title '{title}'", script)
+            self.assertIn("set ylabel '2G/((1 - ν) k_N)'", script)
+
     def test_a_point_equals_the_solve_of_its_value(self):
         swept = parse_json(self.check_done(equidem("sweep", TENSION, "--key", "springs.kT", "--values", "0.25e9",
                                                    "--json", "-")).stdout)

@@ -41,6 +41,21 @@ class Study(ProgramTest):
             self.assertTrue((out / name).exists(), name)
         self.assertEqual(len(rows(out / "study.csv")), 5)
 
+    def test_effects_are_bars_of_the_time_of_one_piece(self):
+        out = self.folder / "out"
+        done = self.check_done(equidem("study", "effects_statics", "--quick", *SHORT, "--out", out, "--json", "-"))
+        result = parse_json(done.stdout)
+        self.assertEqual(result["piece"], "disc")
+        self.assertIn("ns per disc", result["report"])
+        plain, restrained, free = result["settings"][:3]
+        self.assertEqual(plain["values"]["unknowns"], restrained["values"]["unknowns"])
+        self.assertGreater(free["values"]["factor_entries"], 1.9 * plain["values"]["factor_entries"])
+        bars = rows(out / "effects_statics_time.csv")
+        self.assertEqual([bar["label"] for bar in bars], [row["method"] for row in result["settings"]])
+        for bar, row in zip(bars, result["settings"]):
+            self.assertAlmostEqual(float(bar["value"]), 1e6 * row["seconds"]["processor_median"] / result["pieces"], 6)
+        self.assertIn("'µs per disc'", (out / "effects_statics_time.gp").read_text(encoding="utf-8"))
+
     def test_the_accuracy_asked_for_is_reached_or_refused(self):
         done = self.check_done(equidem("study", STUDY, *SHORT, "--accuracy", 0.03, "--json", "-"))
         chosen = parse_json(done.stdout)["recommendations"][0]["setting"]
@@ -100,7 +115,7 @@ class Study(ProgramTest):
     def test_the_built_in_studies_are_listed(self):
         listed = self.check_done(equidem("study", "--list")).stdout
         for name in ("abe_lattice", "random_assembly", "solvers", "collision_laws", "integrators", "ellipse_contact",
-                     "settled_void_ratio", "neighbour_margin", "effects"):
+                     "settled_void_ratio", "neighbour_margin", "effects", "effects_statics"):
             self.assertIn(name, listed)
         self.check_error(equidem("study", "integrator"), 2, "Did you mean 'integrators'?")
         self.check_error(equidem("study"), 2, "not said what to study")

@@ -23,6 +23,7 @@
 #include "equidem/waves/bloch.hpp"
 
 #include "support/catch.hpp"
+#include "support/requests.hpp"
 
 using namespace equidem;
 
@@ -195,10 +196,11 @@ Got refine(const std::function<Values(std::int64_t)>& evaluate, const Refinement
 struct Score {
   int requests = 0, kept = 0, cheap = 0;
 
-  void check() const {
+  void check(const std::string& task) const {
     CAPTURE(kept, cheap, requests);
     CHECK(kept >= 0.95 * requests);
     CHECK(cheap >= 0.95 * requests);
+    write_down({.task = task, .requests = requests, .kept = kept, .cheap = cheap});
   }
 };
 
@@ -232,7 +234,7 @@ TEST_CASE("accuracy_asked_of_abes_test_is_kept_at_most_twice_the_least_cost") {
     dearest = std::max(dearest, dearer);
   }
   CAPTURE(dearest);
-  score.check();
+  score.check("equidem solve: Abe's tension test");
 }
 
 TEST_CASE("accuracy_asked_of_an_oscillator_is_kept_at_most_twice_the_least_cost") {
@@ -254,7 +256,7 @@ TEST_CASE("accuracy_asked_of_an_oscillator_is_kept_at_most_twice_the_least_cost"
     const std::int64_t half = got.level / 2;
     score.cheap += half < first || largest(evaluate(half), truth) > accuracy ? 1 : 0;
   }
-  score.check();
+  score.check("time step: an oscillator, leapfrog");
 }
 
 TEST_CASE("accuracy_asked_of_bonded_waves_is_kept_at_most_twice_the_least_cost") {
@@ -282,7 +284,7 @@ TEST_CASE("accuracy_asked_of_bonded_waves_is_kept_at_most_twice_the_least_cost")
     score.cheap += half < first || relative(evaluate(half), truth) > accuracy ? 1 : 0;
     pilots.push_back(got.pilots);
   }
-  score.check();
+  score.check("equidem run: bonded waves, " + std::string(to_string(integrator)));
   std::sort(pilots.begin(), pilots.end());
   CAPTURE(pilots.front(), pilots[pilots.size() / 2], pilots.back());
   CHECK(pilots[pilots.size() / 2] < 3);  // 1 + 1.4 + 2 of a run that the case's own step does

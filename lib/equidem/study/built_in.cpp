@@ -19,7 +19,8 @@ constexpr BuiltInStudy studies[] = {
     {"ellipse_contact", "contact of ellipses: exact, sampled, enlarged as printed and mended", ellipse_contact_study},
     {"settled_void_ratio", "void ratio of discs that fell, against the time step", settled_void_ratio_study},
     {"neighbour_margin", "margin of the neighbour lists: time alone", neighbour_margin_study},
-    {"effects", "each effect on and off: time and bytes", effects_study},
+    {"effects", "each effect of the motion: time and bytes", effects_study},
+    {"effects_statics", "tangential springs and rotations in statics: unknowns, factor, time", effects_statics_study},
 };
 
 }  // namespace

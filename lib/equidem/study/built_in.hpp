@@ -34,5 +34,6 @@ Study ellipse_contact_study(bool quick);
 Study settled_void_ratio_study(bool quick);
 Study neighbour_margin_study(bool quick);
 Study effects_study(bool quick);
+Study effects_statics_study(bool quick);
 
 }  // namespace equidem

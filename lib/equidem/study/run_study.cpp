@@ -132,6 +132,8 @@ Timing summarize(std::span<const TimeSample> samples) {
           .lower_quartile = quantile(wall, 0.25),
           .upper_quartile = quantile(wall, 0.75),
           .processor_median = quantile(processor, 0.5),
+          .processor_lower_quartile = quantile(processor, 0.25),
+          .processor_upper_quartile = quantile(processor, 0.75),
           .repetitions = static_cast<int>(samples.size())};
 }
 

@@ -20,9 +20,10 @@ struct TimeSample {
 /// Many timings of the same work. The median, because disturbances of a machine only slow it down, occasionally by
 /// much.
 struct Timing {
-  double median = 0;                              ///< s
-  double lower_quartile = 0, upper_quartile = 0;  ///< s
-  double processor_median = 0;                    ///< s
+  double median = 0;                                                  ///< s
+  double lower_quartile = 0, upper_quartile = 0;                      ///< s
+  double processor_median = 0;                                        ///< s
+  double processor_lower_quartile = 0, processor_upper_quartile = 0;  ///< s
   int repetitions = 0;
 
   /// Relative standard error of the median: 1.2533 sd/sqrt(n), sd from the quartiles, which lie 1.349 sd apart (normal

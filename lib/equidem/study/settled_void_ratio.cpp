@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "equidem/core/random.hpp"
+#include "equidem/core/statistics.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/packing/measures.hpp"
 #include "equidem/study/built_in.hpp"
@@ -38,6 +39,7 @@ Study settled_void_ratio_study(bool quick) {
               .quantities = {{.name = "void_ratio",
                               .label = "difference of the mean void ratio from that of the finest step",
                               .source = "the finest step"},
+                             {.name = "standard_error", .label = "standard error of the mean void ratio", .fact = true},
                              {.name = "coordination", .label = "mean number of contacts of a disc", .fact = true}},
               .tasks = {},
               .truth = Truth::finest};
@@ -53,13 +55,15 @@ Study settled_void_ratio_study(bool quick) {
         packings.push_back(pack(options_of(discs, step, static_cast<std::uint64_t>(seed))));
     };
     const auto values = [=](const std::vector<GrainPacking>& packings) {
-      double voids = 0, contacts = 0;
+      std::vector<double> voids;
+      double contacts = 0;
       for (const GrainPacking& packing : packings) {
         const PackingMeasures measures = measure(packing);
-        voids += measures.void_ratio / seeds;
+        voids.push_back(measures.void_ratio);
         contacts += measures.coordination / seeds;
       }
-      return std::vector{voids, contacts};
+      const MeanEstimate mean = estimate_mean(voids, 0.95);
+      return std::vector{mean.mean, mean.standard_error, contacts};
     };
     study.tasks.push_back(task_on(
         std::move(setting), [] { return std::vector<GrainPacking>(); }, work, values));

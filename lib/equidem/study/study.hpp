@@ -93,6 +93,9 @@ struct Study {
   Truth truth = Truth::known;
   std::vector<ExpectedOrder> orders = {};
   std::vector<std::string> notes = {};  ///< sentences: what is computed, and what to make of it
+  /// Equal pieces of the work of each setting, such as a step of one disc: the time of one is reported. 0: none.
+  double pieces = 0;
+  std::string piece = {};  ///< name of one: "disc-step"
 
   /// The first entry that fits; empty: no theory.
   [[nodiscard]] const ExpectedOrder* expected(const Setting& setting, const std::string& quantity) const;

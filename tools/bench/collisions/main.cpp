@@ -185,14 +185,7 @@ collision_laws` the order of its error.
 
 )";
 
-void run(Report& report, int rounds, int halvings) {
-  report.begin("Collisions");
-  report.add(introduction + compare_laws("gas", rounds));
-  report.add("\n2500 discs packed by gravity, e = 0.7, with lasting contacts:\n\n" + compare_laws("bed", rounds));
-  report.add(
-      "\n## Time at equal accuracy\n\nThe dimensionless stiffness is kept as the step falls: all laws tend to rigid "
-      "bodies, for which the exact motion is known. Times are the shortest of three rounds.\n" +
-      compare_accuracy(variants, halvings));
+void report_absent_effects(Report& report, int rounds) {
   report.add(
       "\n## Cost of absent effects\n\nFree flight: 10000 discs that fall and drift without contact, beside `v += g dt; "
       "x += v dt`.\n\n" +
@@ -203,17 +196,35 @@ void run(Report& report, int rounds, int halvings) {
       compare_friction(rounds));
 }
 
+void run(Report& report, int rounds, int halvings) {
+  report.begin("Collisions");
+  report.add(introduction + compare_laws("gas", rounds));
+  report.add("\n2500 discs packed by gravity, e = 0.7, with lasting contacts:\n\n" + compare_laws("bed", rounds));
+  report.add(
+      "\n## Time at equal accuracy\n\nThe dimensionless stiffness is kept as the step falls: all laws tend to rigid "
+      "bodies, for which the exact motion is known. Times are the shortest of three rounds.\n" +
+      compare_accuracy(variants, halvings));
+  report_absent_effects(report, rounds);
+}
+
 }  // namespace
 }  // namespace equidem::bench
 
 int main(int argc, char** argv) {
   using namespace equidem::bench;
   int rounds = 9, halvings = 10;
+  bool absent = false;
   return run_benchmark(
       "bench_collisions", "Cost of colliding bodies, law by law, and of absent effects", argc, argv,
       [&](CLI::App& app) {
         app.add_option("--rounds", rounds, "of all entries in turn")->check(CLI::PositiveNumber);
         app.add_option("--halvings", halvings, "of the coarsest step, at equal accuracy")->check(CLI::PositiveNumber);
+        app.add_flag("--absent", absent, "the loops by hand alone: cost of absent effects");
       },
-      [&](Report& report) { run(report, rounds, halvings); });
+      [&](Report& report) {
+        if (absent)
+          report_absent_effects(report, rounds);
+        else
+          run(report, rounds, halvings);
+      });
 }

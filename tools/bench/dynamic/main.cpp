@@ -26,6 +26,7 @@ struct Request {
   std::vector<int> threads = {1, 2};
   double effects_discs = 1e4;
   int rounds = 9;
+  bool absent = false;  ///< absent effects alone
 };
 
 /// About a tenth of a second.
@@ -157,7 +158,18 @@ std::string compare_absent_effects(const Assembly& assembly, int rounds) {
   return table.markdown();
 }
 
+void report_absent_effects(Report& report, const Assembly& assembly, int rounds) {
+  report.add("\nCost of absent effects: each scene beside a loop written by hand for it alone.\n\n" +
+             compare_absent_effects(assembly, 3 * rounds));
+}
+
 void run(Report& report, const Request& request) {
+  if (request.absent) {
+    const auto discs = static_cast<std::int64_t>(request.effects_discs);
+    for (const std::string& kind : request.kinds)
+      report_absent_effects(report, build_assembly(kind, discs, 1), request.rounds);
+    return;
+  }
   const Limits limits = machine_limits();
   report.begin("Steps in time");
   report.add(
@@ -183,8 +195,7 @@ void run(Report& report, const Request& request) {
     const Assembly assembly = build_assembly(kind, static_cast<std::int64_t>(request.effects_discs), 1);
     report.add(fmt::format("\n## Cost of effects: {}, {} discs\n\n", kind, assembly.size()) +
                compare_effects(assembly, request.rounds));
-    report.add("\nCost of absent effects: each scene beside a loop written by hand for it alone.\n\n" +
-               compare_absent_effects(assembly, 3 * request.rounds));
+    report_absent_effects(report, assembly, request.rounds);
   }
 }
 
@@ -203,6 +214,7 @@ int main(int argc, char** argv) {
         app.add_option("--effects-discs", request.effects_discs, "discs for the tables of effects")
             ->check(CLI::PositiveNumber);
         app.add_option("--rounds", request.rounds, "of all entries in turn")->check(CLI::PositiveNumber);
+        app.add_flag("--absent", request.absent, "the loops by hand alone: cost of absent effects");
       },
       [&](Report& report) { run(report, request); });
 }

@@ -37,10 +37,11 @@ Plot plot_means(const EnsembleResult& result, std::size_t quantity, const std::s
     low.y.push_back(e.low());
     high.y.push_back(e.high());
   }
-  Plot plot{.title = result.title,
+  Plot plot{.title = literal(result.title),
             .x = {.label = "discs in the cell, N", .logarithmic = true},
             .y = {.label = label},
-            .series = {samples}};
+            .series = {samples},
+            .enhanced = true};
   const SizeDependence& d = result.statistics.dependence[quantity];
   if (d.drifts) {
     Series fit{.label = "fit: limit + b/N", .style = SeriesStyle::line, .column = "fit"};
@@ -59,18 +60,20 @@ Plot plot_means(const EnsembleResult& result, std::size_t quantity, const std::s
 }
 
 Plot plot_scatter(const EnsembleResult& result) {
-  Plot plot{.title = result.title,
+  Plot plot{.title = literal(result.title),
             .x = {.label = "discs in the cell, N", .logarithmic = true},
-            .y = {.label = "scatter of one cell (moduli: over the mean)", .logarithmic = true}};
+            .y = {.label = "scatter of one cell (moduli: over the mean)", .logarithmic = true},
+            .enhanced = true};
   constexpr std::array colours{PlotColour::green, PlotColour::blue, PlotColour::vermilion};
   constexpr std::array markers{Marker::square, Marker::circle, Marker::triangle};
   for (std::size_t q = 0; q < colours.size(); ++q) {
     const SizeDependence& d = result.statistics.dependence[q];
     if (!d.scattered) continue;
-    Series measured{.label = fmt::format("{}, line N^-{:.2f}", ensemble_quantities[q].symbol, d.exponent),
-                    .style = SeriesStyle::points,
-                    .colour = colours[q],
-                    .marker = markers[q]};
+    Series measured{
+        .label = fmt::format("{}, line N^{{-{:.2f}}}", with_symbols(ensemble_quantities[q].symbol), d.exponent),
+        .style = SeriesStyle::points,
+        .colour = colours[q],
+        .marker = markers[q]};
     Series law{.style = SeriesStyle::dashed_line,
                .colour = colours[q],
                .column = fmt::format("law_{}", ensemble_quantities[q].name)};
@@ -98,7 +101,7 @@ std::vector<std::pair<std::string, Plot>> ensemble_plots(const EnsembleResult& r
                                [](const EnsembleSample& sample) { return !sample.refused(); });
   if (!any) return plots;
   plots.emplace_back(ensemble_plot_names[0], plot_means(result, shear_modulus, "shear modulus G, Pa"));
-  plots.emplace_back(ensemble_plot_names[1], plot_means(result, poisson_ratio, "Poisson's ratio (plane strain)"));
+  plots.emplace_back(ensemble_plot_names[1], plot_means(result, poisson_ratio, "Poisson's ratio ν (plane strain)"));
   Plot scatter = plot_scatter(result);
   if (!scatter.series.empty()) plots.emplace_back(ensemble_plot_names[2], std::move(scatter));
   return plots;

@@ -69,12 +69,15 @@ Table critical_over_zone(const WaveSurvey& survey) {
 /// A plot along the path, with the points of symmetry marked.
 Plot along_path(const WaveSurvey& survey, const std::string& title, const std::string& y) {
   const std::string names = joined(survey.zone.path, &ZonePoint::name, " - ");
-  Plot plot{.title = title, .x = {.label = "wave vector along " + names + ", rad/m"}, .y = {.label = y}};
+  Plot plot{.title = title,
+            .x = {.label = literal("wave vector along " + names + ", rad/m")},
+            .y = {.label = y},
+            .enhanced = true};
   plot.x.min = 0;
   plot.x.max = survey.path.back().along;
   for (const PathPoint& point : survey.path)
     if (!point.at.name.empty() && point.along > 0 && point.along < *plot.x.max)
-      plot.vertical_lines.push_back({point.along, point.at.name});
+      plot.vertical_lines.push_back({point.along, literal(point.at.name)});
   return plot;
 }
 
@@ -86,8 +89,8 @@ std::vector<double> positions(const WaveSurvey& survey) {
 
 Plot plot_of_dispersion(const Stability& s, const std::string& title) {
   const WaveSurvey& survey = *s.survey;
-  Plot plot = along_path(survey, title.empty() ? "Dispersion" : title,
-                         s.lowest ? "omega, rad/s; below 0: growth rate, 1/s" : "omega, rad/s");
+  Plot plot = along_path(survey, title.empty() ? "Dispersion" : literal(title),
+                         s.lowest ? "ω, rad/s; below 0: growth rate, 1/s" : "ω, rad/s");
   const std::size_t branches = survey.path.front().squared_frequencies.size();
   constexpr std::array colours{PlotColour::blue, PlotColour::vermilion, PlotColour::black};
   for (std::size_t b = 0; b < branches; ++b) {
@@ -103,7 +106,7 @@ Plot plot_of_dispersion(const Stability& s, const std::string& title) {
 
 Plot plot_of_critical_ratio(const Stability& s) {
   const WaveSurvey& survey = *s.survey;
-  Plot plot = along_path(survey, "kT/kN at which each wave loses its stiffness in statics", "critical kT/kN");
+  Plot plot = along_path(survey, "k_T/k_N at which each wave loses its stiffness in statics", "critical k_T/k_N");
   Series series{
       .label = "of each wave", .x = positions(survey), .colour = PlotColour::blue, .column = "critical_ratio"};
   for (const PathPoint& point : survey.path) series.y.push_back(point.critical_ratio);

@@ -208,8 +208,10 @@ int run_verb(const StudyVerb& verb) {
             if (!folder) return;
             save(samples);
             write_csv(*folder / "study.csv", study_table(report), true);
-            for (const auto& [name, plot] : study_plots(report))
-              out.block(write_plot(*folder, name, plot, true).message + "\n");
+            for (const auto& [name, plot] : study_plots(report)) {
+              const auto write = [&, &file = name](const auto& one) { return write_plot(*folder, file, one, true); };
+              out.block(std::visit(write, plot).message + "\n");
+            }
           });
   if (samples.stopped) {
     throw_stopped(verb.common, fmt::format("{} of all settings are done", counted(samples.rounds(), "round")),

@@ -49,7 +49,7 @@ std::string name_of(const Study& study, const std::string& problem, const std::s
 }
 
 std::string title_of(const Study& study, const std::string& problem) {
-  return problem.empty() ? study.title : study.title + ": " + problem;
+  return with_symbols(problem.empty() ? study.title : study.title + ": " + problem);
 }
 
 /// "order 1.02 (theory 1)".
@@ -65,7 +65,7 @@ std::string order_text(const StudyReport& report, const std::string& problem, co
 
 std::string legend_of(const std::string& method, const std::string& order) {
   if (method.empty()) return order.empty() ? "measured" : order;
-  return order.empty() ? method : method + ", " + order;
+  return literal(order.empty() ? method : method + ", " + order);
 }
 
 /// The rows of a problem, method by method in the order of the study.
@@ -87,7 +87,8 @@ Plot error_plot(const StudyReport& report, const StudyFront& front) {
   const Quantity& quantity = report.study.quantities[front.quantity];
   Plot plot{.title = title_of(report.study, front.problem),
             .x = {.label = "time of computing, s", .logarithmic = true},
-            .y = {.label = quantity.label, .logarithmic = true}};
+            .y = {.label = with_symbols(quantity.label), .logarithmic = true},
+            .enhanced = true};
   Series line{.label = "front", .style = SeriesStyle::dashed_line, .colour = PlotColour::black, .column = "front"};
   for (std::size_t k = 0; k < front.rows.size(); ++k) {
     const StudyRow& row = report.result.rows[front.rows[k]];
@@ -115,47 +116,75 @@ Plot error_plot(const StudyReport& report, const StudyFront& front) {
   return plot;
 }
 
-/// Time against the first value that is varied, or where none is, against the number of the setting.
+/// Time against the first value that is varied. A setting that varies nothing is a level.
 Plot time_plot(const StudyReport& report, const std::string& problem) {
-  Plot plot{.title = title_of(report.study, problem), .x = {}, .y = {.label = "time of computing, s", .min = 0}};
+  Plot plot{.title = title_of(report.study, problem),
+            .x = {.logarithmic = true},
+            .y = {.label = "time of computing, s", .min = 0},
+            .enhanced = true};
+  double least = INFINITY, most = 0;
+  for (const StudyRow& row : report.result.rows) {
+    if (row.setting.problem != problem || row.setting.values.empty()) continue;
+    plot.x.label = row.setting.values.front().first;
+    least = std::min(least, row.setting.values.front().second);
+    most = std::max(most, row.setting.values.front().second);
+  }
+  std::ranges::replace(plot.x.label, '_', ' ');
   std::size_t count = 0;
-  double place = 0;
   for (const auto& [method, rows] : by_method(report, problem)) {
     Series series = series_of(count++, rows.size());
-    series.label = method.empty() ? "median" : method;
+    series.label = method.empty() ? "median, bars from quartile to quartile" : literal(method);
     series.column = method.empty() ? "time" : method;
+    const auto add = [&](double x, const Timing& time) {
+      series.x.push_back(x);
+      series.y.push_back(time.median);
+      series.low.push_back(time.lower_quartile);
+      series.high.push_back(time.upper_quartile);
+    };
     for (const std::size_t k : rows) {
       const StudyRow& row = report.result.rows[k];
-      const bool varied = !row.setting.values.empty();
-      if (varied) {
-        plot.x.label = row.setting.values.front().first;
-        plot.x.logarithmic = true;
+      if (!row.setting.values.empty()) {
+        add(row.setting.values.front().second, row.time);
+        continue;
       }
-      place += 1;
-      series.x.push_back(varied ? row.setting.values.front().second : place);
-      series.y.push_back(row.time.median);
+      series.style = SeriesStyle::dashed_line;
+      Timing level;
+      level.median = row.time.median;
+      level.lower_quartile = level.upper_quartile = NAN;
+      for (const double x : {least, most}) add(x, level);
     }
     plot.series.push_back(std::move(series));
   }
-  if (plot.x.label.empty()) plot.x.label = "setting";
-  if (plot.x.logarithmic) {
-    // A setting that varies no key is a reference level.
-    double least = INFINITY, most = 0;
-    for (const StudyRow& row : report.result.rows) {
-      if (row.setting.problem != problem || row.setting.values.empty()) continue;
-      least = std::min(least, row.setting.values.front().second);
-      most = std::max(most, row.setting.values.front().second);
-    }
-    std::size_t at = 0;
-    for (const auto& [method, rows] : by_method(report, problem)) {
-      Series& series = plot.series[at++];
-      if (!report.result.rows[rows.front()].setting.values.empty()) continue;
-      series.style = SeriesStyle::dashed_line;
-      series.x = {least, most};
-      series.y = {series.y.front(), series.y.front()};
-    }
-  }
   return plot;
+}
+
+/// A bar for each setting, of its processor time with quartiles.
+BarChart time_chart(const StudyReport& report, const std::string& problem) {
+  const Study& study = report.study;
+  const double pieces = study.pieces > 0 ? study.pieces : 1;
+  double longest = 0;
+  for (const StudyRow& row : report.result.rows)
+    if (row.setting.problem == problem) longest = std::max(longest, row.time.processor_median / pieces);
+  const auto [unit, scale] = longest < 1e-6   ? std::pair{"ns", 1e9}
+                             : longest < 1e-3 ? std::pair{"µs", 1e6}
+                                              : std::pair{"ms", 1e3};
+  BarChart chart{
+      .title = problem.empty() ? study.title : study.title + ": " + problem,
+      .axis = study.pieces > 0 ? fmt::format("{} per {}", unit, study.piece) : fmt::format("processor time, {}", unit)};
+  for (const StudyRow& row : report.result.rows) {
+    if (row.setting.problem != problem || row.time.repetitions == 0) continue;
+    chart.bars.push_back({.label = row.setting.label(),
+                          .value = scale / pieces * row.time.processor_median,
+                          .low = scale / pieces * row.time.processor_lower_quartile,
+                          .high = scale / pieces * row.time.processor_upper_quartile});
+  }
+  return chart;
+}
+
+bool varies_nothing(const StudyReport& report, const std::string& problem) {
+  return std::ranges::all_of(report.result.rows, [&](const StudyRow& row) {
+    return row.setting.problem != problem || row.setting.values.empty();
+  });
 }
 
 bool all_facts(const Study& study) {
@@ -175,16 +204,19 @@ std::vector<std::string> study_plot_names(const Study& study) {
   return names;
 }
 
-std::vector<std::pair<std::string, Plot>> study_plots(const StudyReport& report) {
-  std::vector<std::pair<std::string, Plot>> plots;
+std::vector<std::pair<std::string, StudyPlot>> study_plots(const StudyReport& report) {
+  std::vector<std::pair<std::string, StudyPlot>> plots;
   for (const StudyFront& front : report.result.fronts)
     plots.emplace_back(name_of(report.study, front.problem, report.study.quantities[front.quantity].name),
                        error_plot(report, front));
-  if (all_facts(report.study)) {
-    for (const std::string& problem : problems_of(report.study)) {
-      Plot plot = time_plot(report, problem);
-      if (!plot.series.empty()) plots.emplace_back(name_of(report.study, problem, "time"), std::move(plot));
-    }
+  if (!all_facts(report.study)) return plots;
+  for (const std::string& problem : problems_of(report.study)) {
+    if (by_method(report, problem).empty()) continue;
+    const std::string name = name_of(report.study, problem, "time");
+    if (varies_nothing(report, problem))
+      plots.emplace_back(name, time_chart(report, problem));
+    else
+      plots.emplace_back(name, time_plot(report, problem));
   }
   return plots;
 }

@@ -48,6 +48,9 @@ std::vector<Results> table_of(const StudyReport& report, const std::string& prob
     line.add("", "time", readable_seconds(time.median))
         .add("", "spread", (time.upper_quartile - time.lower_quartile) / time.median, "", {Shown::percent, 2})
         .add("", "n", time.repetitions);
+    if (report.study.pieces > 0)
+      line.add("", "ns per " + report.study.piece,
+               fmt::format("{:.3g}", 1e9 * time.processor_median / report.study.pieces));
     for (const std::size_t q : told) {
       const Quantity& quantity = report.study.quantities[q];
       line.add("", (quantity.fact ? "" : "err ") + quantity.name,
@@ -74,6 +77,8 @@ Results row_results(const StudyReport& report, const StudyRow& row) {
       .set("seconds/lower_quartile", row.time.lower_quartile)
       .set("seconds/upper_quartile", row.time.upper_quartile)
       .set("seconds/processor_median", row.time.processor_median)
+      .set("seconds/processor_lower_quartile", row.time.processor_lower_quartile)
+      .set("seconds/processor_upper_quartile", row.time.processor_upper_quartile)
       .set("seconds/repetitions", row.time.repetitions);
   out.set("values", values).set("errors", errors).set("assured_errors", assured);
   return row.refusal.empty() ? out : out.set("refusal", row.refusal);
@@ -137,6 +142,7 @@ Results study_results(const StudyReport& report) {
   out.set("command", report.command).set("machine", report.machine.results());
   out.set("seed", report.options.seed).set("rounds", result.rounds).set("budget", report.options.budget);
   out.set("checksum", report.checksum).block(study.title + "\n\n");
+  if (study.pieces > 0) out.set("pieces", study.pieces).set("piece", study.piece);
   std::vector<Results> quantities, settings, curves, fronts, recommendations;
   for (const Quantity& quantity : study.quantities) quantities.push_back(quantity_results(study, quantity));
   for (const StudyRow& row : result.rows) settings.push_back(row_results(report, row));

@@ -31,8 +31,9 @@ struct SweepOptions {
   std::string key;
   std::optional<double> from, to;
   int steps = 11;
-  std::vector<std::string> values;  ///< "a,b,c"
-  std::string verb;                 ///< no longer taken
+  std::vector<std::string> values;   ///< "a,b,c"
+  std::string verb;                  ///< no longer taken
+  std::optional<std::string> title;  ///< of the curves
   bool resume = false;
 };
 
@@ -137,7 +138,13 @@ constexpr const char* table_name = "sweep.csv";
 constexpr std::array curve_names{"poisson_ratio", "stiffness_ratio"};
 
 std::string axis_label(const std::string& key) {
-  return key == "ratio" ? "kT/kN" : key;
+  return key == "ratio" ? "k_T/k_N" : literal(key);
+}
+
+/// The user's own, or what is varied.
+std::string title_of(const SweepOptions& options, const Case& base) {
+  if (options.title) return literal(*options.title);
+  return base.title.empty() ? axis_label(options.key) + " varied" : literal(base.title);
 }
 
 std::string plot_curves(const SweepOptions& options, const Case& base, const std::vector<SweepPoint>& points,
@@ -149,9 +156,9 @@ std::string plot_curves(const SweepOptions& options, const Case& base, const std
     double SweepPoint::*theory;
   };
   const std::array curves{
-      Curve{curve_names[0], "Poisson's ratio (plane strain)", &SweepPoint::poisson_ratio,
+      Curve{curve_names[0], "Poisson's ratio ν (plane strain)", &SweepPoint::poisson_ratio,
             &SweepPoint::theory_poisson_ratio},
-      Curve{curve_names[1], "2G/((1 - nu) kN)", &SweepPoint::stiffness_ratio, &SweepPoint::theory_stiffness_ratio}};
+      Curve{curve_names[1], "2G/((1 - ν) k_N)", &SweepPoint::stiffness_ratio, &SweepPoint::theory_stiffness_ratio}};
   std::vector<SweepPoint> ordered = points;
   std::stable_sort(ordered.begin(), ordered.end(),
                    [](const SweepPoint& a, const SweepPoint& b) { return a.value < b.value; });
@@ -181,7 +188,10 @@ std::string plot_curves(const SweepOptions& options, const Case& base, const std
       series.x.push_back(point.value);
       series.y.push_back(point.*curve.computed);
     }
-    Plot plot{.title = base.title, .x = {.label = axis_label(options.key)}, .y = {.label = curve.label}, .series = {}};
+    Plot plot{.title = title_of(options, base),
+              .x = {.label = axis_label(options.key)},
+              .y = {.label = curve.label},
+              .enhanced = true};
     for (const Series* series : {&theory, &stable, &unstable})
       if (!series->x.empty()) plot.series.push_back(*series);
     if (stable.x.empty() && unstable.x.empty()) continue;
@@ -350,6 +360,7 @@ Run declare_sweep(CLI::App& command) {
       ->type_name("N");
   command.add_option("--values", options->values, "the values themselves")->allow_extra_args(false)->type_name("A,B,C");
   command.add_option("--verb", options->verb)->group("");
+  command.add_option("--title", options->title, "title of the curves; left out: that of the case")->type_name("TEXT");
   command.add_flag("--resume", options->resume, "keep the points that lie in --out, compute the others");
   command.footer(
       "Examples:\n"

@@ -24,11 +24,19 @@ std::string spaced(SpringWeighting weighting) {
   return name;
 }
 
+/// A point with a bar of two standard errors to either side.
+void add_with_error(Series& series, const MeanEstimate& estimate) {
+  series.y.push_back(estimate.mean);
+  series.low.push_back(estimate.mean - 2 * estimate.standard_error);
+  series.high.push_back(estimate.mean + 2 * estimate.standard_error);
+}
+
 Plot poisson_plot(const Result& result, std::size_t weighting) {
   const std::vector<double>& ratios = result.plan.ratios;
   // Uniform stress in two dimensions, plane strain: Kruyt & Rothenburg (2002).
   const auto uniform_stress_ratio = [](double r) { return (1 - r) / (2 * (1 + r)); };
-  Plot plot{.title = fmt::format("Random assemblies, springs weighted \"{}\"", spaced(weightings[weighting])),
+  Plot plot{.title = fmt::format("Random assemblies, springs weighted \"{}\"; bars: two standard errors",
+                                 spaced(weightings[weighting])),
             .x = {.label = "k_T/k_N"},
             .y = {.label = "Poisson's ratio ν (plane strain)"}};
   plot.enhanced = true;
@@ -46,7 +54,8 @@ Plot poisson_plot(const Result& result, std::size_t weighting) {
                   .colour = colours[style % colours.size()],
                   .marker = markers[style % markers.size()]};
     ++style;
-    for (std::size_t r = 0; r < ratios.size(); ++r) series.y.push_back(result.at(f, weighting, r).mean(exact, poisson));
+    for (std::size_t r = 0; r < ratios.size(); ++r)
+      add_with_error(series, result.at(f, weighting, r).numbers[number_of(exact, poisson)]);
     plot.series.push_back(series);
   }
   return plot;
@@ -54,7 +63,7 @@ Plot poisson_plot(const Result& result, std::size_t weighting) {
 
 /// Error against the scatter of branch lengths: a line through the perturbed lattices, points for the others.
 Plot error_plot(const Result& result, std::size_t weighting, const std::string& label, std::size_t error) {
-  Plot plot{.title = fmt::format("Springs weighted \"{}\"; lines: hexagonal lattices with disorder",
+  Plot plot{.title = fmt::format("Springs weighted \"{}\"; lines: disordered lattices; bars: two standard errors",
                                  spaced(weightings[weighting])),
             .x = {.label = "scatter of branch lengths, sd/mean"},
             .y = {.label = label}};
@@ -77,7 +86,7 @@ Plot error_plot(const Result& result, std::size_t weighting, const std::string& 
       const double scatter = result.disorder[f].branch_scatter;
       Series& series = lattice ? lattices : others;
       series.x.push_back(scatter);
-      series.y.push_back(result.at(f, weighting, r).mean(error));
+      add_with_error(series, result.at(f, weighting, r).numbers[error]);
       if (r == 0 && !lattice) plot.vertical_lines.push_back({scatter, family.name, PlotColour::black, true});
     }
     for (const std::vector<double>& values : {lattices.y, others.y}) {

@@ -9,6 +9,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/output/plots/bar_chart.hpp"
 #include "equidem/output/plots/gnuplot.hpp"
 #include "equidem/output/plots/plot_script.hpp"
 
@@ -44,40 +45,61 @@ void check_axis(const Axis& axis, const char* letter) {
   }
 }
 
+/// \return whether it has a finite point
+bool check_series(const Series& series, const Plot& plot) {
+  if (series.x.size() != series.y.size()) {
+    bad_input(fmt::format("series '{}' of a plot has {} of x and {} of y", series.label,
+                          counted(series.x.size(), "value"), counted(series.y.size(), "value")),
+              "each point has both", "Give as many x as y");
+  }
+  if (series.low.size() != series.high.size() || (!series.low.empty() && series.low.size() != series.y.size())) {
+    bad_input(fmt::format("series '{}' of a plot has {} with {} and {} of error bars", series.label,
+                          counted(series.y.size(), "point"), counted(series.low.size(), "lower end"),
+                          counted(series.high.size(), "upper end")),
+              "each bar has a point and two ends", "Give as many of each, or no bars");
+  }
+  if (series.panel >= std::max<std::size_t>(plot.panels.size(), 1)) {
+    bad_input(fmt::format("series '{}' of a plot is in panel {}", series.label, series.panel),
+              fmt::format("panels are counted from 0, and there are {}", plot.panels.size()),
+              "Name another panel, or add it");
+  }
+  bool any_point = false;
+  for (std::size_t k = 0; k < series.x.size(); ++k) {
+    if (!std::isfinite(series.x[k]) || !std::isfinite(series.y[k])) continue;
+    any_point = true;
+    if ((plot.x.logarithmic && series.x[k] <= 0) || (plot.y.logarithmic && series.y[k] <= 0)) {
+      bad_input(fmt::format("point {} of series '{}' of a plot is ({}, {})", k, series.label, series.x[k], series.y[k]),
+                "a logarithmic axis shows positive values only", "Leave it out, or use a linear axis");
+    }
+  }
+  return any_point;
+}
+
 void check_plot(const Plot& plot) {
   check_axis(plot.x, "x");
   check_axis(plot.y, "y");
   bool any_point = false;
-  for (const Series& series : plot.series) {
-    if (series.x.size() != series.y.size()) {
-      bad_input(fmt::format("series '{}' of a plot has {} of x and {} of y", series.label,
-                            counted(series.x.size(), "value"), counted(series.y.size(), "value")),
-                "each point has both", "Give as many x as y");
-    }
-    for (std::size_t k = 0; k < series.x.size(); ++k) {
-      if (!std::isfinite(series.x[k]) || !std::isfinite(series.y[k])) continue;
-      any_point = true;
-      if ((plot.x.logarithmic && series.x[k] <= 0) || (plot.y.logarithmic && series.y[k] <= 0)) {
-        bad_input(
-            fmt::format("point {} of series '{}' of a plot is ({}, {})", k, series.label, series.x[k], series.y[k]),
-            "a logarithmic axis shows positive values only", "Leave it out, or use a linear axis");
-      }
-    }
-  }
+  for (const Series& series : plot.series) any_point = check_series(series, plot) || any_point;
   if (!any_point) bad_input("a plot has no finite point", "there is nothing to draw", "Give it a series");
 }
 
-}  // namespace
+void check_chart(const BarChart& chart) {
+  if (chart.bars.empty()) bad_input("a chart has no bar", "there is nothing to draw", "Give it a bar");
+  for (const Bar& bar : chart.bars) {
+    if (std::isfinite(bar.value) && bar.value >= 0) continue;
+    bad_input(fmt::format("the bar '{}' of a chart has the value {}", bar.label, bar.value),
+              "the length of a bar is finite and not negative", "Leave it out");
+  }
+}
 
-PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const Plot& plot, bool overwrite) {
-  check_name(name);
-  check_plot(plot);
+/// Write data and script, and let gnuplot draw.
+PlotResult draw(const std::filesystem::path& folder, const std::string& name, const std::string& csv,
+                const std::string& script, bool overwrite) {
   const auto path = [&](const char* extension) { return folder / (name + extension); };
   for (const char* extension : {".csv", ".gp", ".svg", ".png"}) check_writable(path(extension), overwrite);
 
-  const PlotData data = plot_data(plot);
-  write_file(path(".csv"), data.csv, overwrite);
-  write_file(path(".gp"), plot_script(name, plot, data), overwrite);
+  write_file(path(".csv"), csv, overwrite);
+  write_file(path(".gp"), script, overwrite);
   PlotResult result;
   result.files = {path(".csv"), path(".gp")};
   // A picture of earlier data must not stay beside new data where gnuplot fails.
@@ -97,6 +119,22 @@ PlotResult write_plot(const std::filesystem::path& folder, const std::string& na
                                  path(".gp").string());
   }
   return result;
+}
+
+}  // namespace
+
+PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const Plot& plot, bool overwrite) {
+  check_name(name);
+  check_plot(plot);
+  const PlotData data = plot_data(plot);
+  return draw(folder, name, data.csv, plot_script(name, plot, data), overwrite);
+}
+
+PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const BarChart& chart,
+                      bool overwrite) {
+  check_name(name);
+  check_chart(chart);
+  return draw(folder, name, bar_data(chart), bar_script(name, chart), overwrite);
 }
 
 }  // namespace equidem

@@ -17,7 +17,8 @@ enum class Marker { circle, square, triangle, diamond };
 /// The colour-blind-safe palette of Okabe and Ito (2008).
 enum class PlotColour { black, orange, sky_blue, green, yellow, blue, vermilion, purple };
 
-/// One curve. A point that is not finite is a gap.
+/// One curve. A point that is not finite is a gap. A line that runs along an earlier one is drawn dashed over it, and
+/// the markers of the earlier one are larger, so that both are seen.
 struct Series {
   std::string label = {};      ///< in the legend; empty: not in the legend
   std::vector<double> x = {};  ///< one value per y; series with the same x share one column of the data file
@@ -27,6 +28,9 @@ struct Series {
   Marker marker = Marker::circle;
   bool filled = true;       ///< markers: filled, or open with a white face
   std::string column = {};  ///< name of y in the data file; empty: made of the label
+  /// Ends of an error bar at each point; empty: none. A bar with an end that is not finite is left out.
+  std::vector<double> low = {}, high = {};
+  std::size_t panel = 0;  ///< where the plot has panels
 };
 
 /// A vertical line across the plot with its label written along its upper end.
@@ -60,12 +64,20 @@ struct Plot {
   std::vector<Series> series = {};  ///< later ones are drawn on top
   std::vector<VerticalLine> vertical_lines = {};
   std::vector<Band> bands = {};
-  /// Labels use gnuplot's enhanced text: "k_T/k_N", "{/:Italic x}". Only for text that is not the user's; Greek as
-  /// Unicode, since viewers of SVG lack the font of "{/Symbol n}".
+  /// Texts use gnuplot's enhanced text: "k_T/k_N", "{/:Italic x}". Text that is the user's goes through literal();
+  /// Greek as Unicode, since viewers of SVG lack the font of "{/Symbol n}".
   bool enhanced = false;
-  /// A marker whose y lies outside the given range is shown as a small triangle at that edge.
+  /// A marker whose y lies outside the given range is shown as a small triangle at that edge, which the legend
+  /// explains.
   bool mark_points_outside = true;
+  /// Titles of panels beside and below each other, with axes of the same range; series name theirs. Empty: one plot.
+  std::vector<std::string> panels = {};
 };
+
+/// Text for an enhanced plot that is drawn as it is, whatever characters it holds.
+std::string literal(const std::string& text);
+/// literal(), but the words kT and kN are written with subscripts, and "nu" as the Greek letter.
+std::string with_symbols(const std::string& text);
 
 /// Result of writing a plot.
 struct PlotResult {
@@ -74,11 +86,32 @@ struct PlotResult {
   std::vector<std::filesystem::path> files = {};
 };
 
+/// One bar of a chart.
+struct Bar {
+  std::string label = {};  ///< left of the bar
+  double value = 0;        ///< its length, >= 0
+  double low = 0;          ///< error bar from here to `high`; where both are 0: none
+  double high = 0;
+  PlotColour colour = PlotColour::blue;
+  std::string note = {};  ///< right of the bar, after its value
+};
+
+/// Horizontal bars, from top to bottom.
+struct BarChart {
+  std::string title = {};
+  std::string axis = {};  ///< label of the axis of values
+  std::vector<Bar> bars = {};
+};
+
 /// Write NAME.csv (the data), NAME.gp (the script; `gnuplot NAME.gp` in that folder draws again) and, by gnuplot,
 /// NAME.svg and NAME.png (900 x 650 pixels). If gnuplot is absent or fails, data and script are still written and the
-/// result states the reason. The legend stands below the plot.
+/// result states the reason. The legend stands below the plot. The SVG draws at most 15,000 points of lines, every
+/// n-th.
 /// \throws Error (bad_input) on a plot that cannot be drawn (x and y of different length, no finite point, a value not
 ///         positive on a logarithmic axis, an empty range, a name that is no plain file name), and as write_file does
 PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const Plot& plot, bool overwrite);
+/// Likewise, a chart of bars. \throws Error (bad_input) without a bar, or where a value is negative or not finite
+PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const BarChart& chart,
+                      bool overwrite);
 
 }  // namespace equidem

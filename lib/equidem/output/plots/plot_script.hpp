@@ -15,6 +15,7 @@ struct PlotData {
   struct Place {
     std::string x;  ///< column names
     std::string y;
+    std::string low, high;  ///< empty: no error bars
   };
   std::string csv;
   std::vector<Place> places;  ///< per series
