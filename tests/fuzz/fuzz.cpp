@@ -48,8 +48,8 @@ constexpr bool sanitized = false;
 namespace equidem::fuzz {
 namespace {
 
-constexpr double longest = 1;          // s of processor time for one input
-constexpr int hang = 20;               // s of processor time after which a process is ended
+constexpr double longest = 1;  // s of processor time for one input
+constexpr int hang = 20;       // s of processor time after which a process is ended
 constexpr std::size_t most_readers = 32, most_findings = 100, longest_text = 400;
 
 /// What the processes that read share with the one that starts them.

@@ -149,7 +149,8 @@ void change(std::string& text, const std::string& other, Random& random) {
 
 /// A short piece many times over: deep brackets, long words, long lines.
 void lengthen(std::string& text, Random& random) {
-  constexpr std::array pieces = {"["sv, "{a="sv, "a."sv, "9"sv, "\""sv, "1,"sv, "\n"sv, "{\"a\":"sv, "x"sv, "[[a]]\n"sv};
+  constexpr std::array pieces = {"["sv,  "{a="sv, "a."sv,      "9"sv, "\""sv,
+                                 "1,"sv, "\n"sv,  "{\"a\":"sv, "x"sv, "[[a]]\n"sv};
   const std::string_view piece = pieces[random.below(pieces.size())];
   std::string many;
   for (std::uint64_t times = random.below(3000); times > 0; --times) many += piece;
@@ -160,8 +161,9 @@ void lengthen(std::string& text, Random& random) {
 
 std::string mutated(const std::vector<std::string>& seeds, Random& random) {
   std::string text = seeds[random.below(seeds.size())];
-  for (std::uint64_t changes = 1 + random.below(6); changes > 0; --changes)
-    change(text, seeds[random.below(seeds.size())], random);
+  std::uint64_t changes = 1;
+  while (changes < 8 && random.below(2) == 0) ++changes;
+  for (; changes > 0; --changes) change(text, seeds[random.below(seeds.size())], random);
   if (random.below(100) == 0) lengthen(text, random);
   if (text.size() > most_bytes) text.resize(most_bytes);
   return text;

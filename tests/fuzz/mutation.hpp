@@ -10,8 +10,8 @@
 
 namespace equidem::fuzz {
 
-/// One of the seeds, changed one to six times: bits and bytes altered, spans removed, repeated or copied from another
-/// seed, lines exchanged, numbers and words replaced by extreme ones, the end cut off.
+/// One of the seeds, changed one to eight times, twice on average: bits and bytes altered, spans removed, repeated or
+/// copied from another seed, lines exchanged, numbers and words replaced by extreme ones, the end cut off.
 /// \param seeds at least one, none of them empty
 std::string mutated(const std::vector<std::string>& seeds, Random& random);
 

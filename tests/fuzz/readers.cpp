@@ -64,7 +64,8 @@ const std::string grains =
     "x_m,y_m,radius_m,vx_m_per_s,vy_m_per_s,spin_rad_per_s,angle_rad,density_kg_per_m3,group\n"
     "0.01,0.02,0.005,0,-1,0,0,2500,grains\n0.03,0.02,0.004,0.5,0,1,0.25,2600,others\n";
 const std::string ellipses = "x,y,radius,short_half_axis,angle\n0.01,0.02,0.005,0.004,0.3\n0.05,0.02,0.005,0.0025,1\n";
-const std::string clumps = "x,y,angle,discs\n0.01,0.02,0,-0.003 0 0.005; 0.003 0 0.005\n0.05,0.02,1,0 0 0.01; 0.01 0 0.004\n";
+const std::string clumps =
+    "x,y,angle,discs\n0.01,0.02,0,-0.003 0 0.005; 0.003 0 0.005\n0.05,0.02,1,0 0 0.01; 0.01 0 0.004\n";
 const std::string bonds = "i,j,normal_dashpot,tangential_dashpot\n0,1,100,50\n1,2,,\n4,3,1e3,0\n";
 const std::string schedule = "# a pulse\ntime,value\n0,0\n1e-3,1\n2e-3,-1\n3e-3,0\n";
 const std::string sieves = "# share of the mass\ndiameter_m,passing\n0.002,0\n0.004,0.25\n0.008,0.7\n0.016,1\n";
@@ -81,11 +82,7 @@ struct Cases {
     for (const fs::path& path : paths) {
       const std::string text = read_file(path);
       const auto has = [&](const char* table) { return text.find(table) != std::string::npos; };
-      (has("[study]")       ? study
-       : has("[packing]")   ? packing
-       : has("[assembly]")  ? bonded
-                            : grains)
-          .push_back(text);
+      (has("[study]") ? study : has("[packing]") ? packing : has("[assembly]") ? bonded : grains).push_back(text);
     }
   }
 };
