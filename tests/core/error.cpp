@@ -51,6 +51,11 @@ TEST_CASE("a_long_word_of_the_user_is_shortened_in_the_sentence_and_kept_beside_
   }
 }
 
+TEST_CASE("control_characters_of_the_user_do_not_reach_the_terminal") {
+  const Error error(ErrorKind::bad_input, "unknown key 'a\x1b[2J\n\x7f'", "", "");
+  CHECK(std::string(error.what()) == "unknown key 'a\\x1b[2J\\x0a\\x7f'.");
+}
+
 TEST_CASE("parts_of_a_text_are_one_more_than_its_separators") {
   using Parts = std::vector<std::string_view>;
   CHECK(parts_of("1, ,2", ',') == Parts{"1", "", "2"});

@@ -59,6 +59,11 @@ class Magnitudes(ProgramTest):
             done = equidem("homogenize", CELL, "--set", "assembly.discs=100", "--set", f"assembly.radius={radius}")
             self.check_error(done, 2, "radius of a disc", "1e-70")
 
+    def test_springs_too_far_apart_are_refused_before_memory_is_taken(self):
+        for tangential in ("-1e308", "1e308", "-1e20"):
+            done = equidem("stability", CELL, "--set", "assembly.discs=10000", "--set", f"springs.kT={tangential}")
+            self.check_error(done, 2, "contact 0 has kT/kN", "so ill-scaled")
+
     def test_springs_of_any_size_have_moduli(self):
         known = None
         for size in ("1e-300", "1e-160", "1e0", "1e160", "1e300"):

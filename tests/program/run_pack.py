@@ -54,6 +54,20 @@ class Files(PackTest):
             equidem("calibrate", self.case_of(out / "assembly.json", wanted), "--json", "-")).stdout)
         self.assertAlmostEqual(done["achieved"]["shear_modulus"] / 1e8, 1, delta=1e-6)
 
+    def test_steps_and_time_of_falling_are_estimated_before_they_are_taken(self):
+        for case, falling in ((SOIL, True), (PAIRS, True), (JAMMED, False)):
+            with self.subTest(case=case.name):
+                few = FEW if case == SOIL else ("--set", "packing.grains=60")
+                estimate = parse_json(self.check_done(equidem("pack", case, *few, "--dry-run", "--json", "-")).stdout)
+                self.assertEqual("estimated_steps" in estimate, falling)
+                if not falling:
+                    continue
+                result, _ = self.pack(case, *few, name=case.stem)
+                self.assertEqual(result["time_step"], estimate["time_step"])
+                self.assertLess(abs(math.log2(result["steps"] / estimate["estimated_steps"])), 1)
+                self.assertLess(estimate["estimated_steps"], estimate["most_steps"])
+                self.assertGreater(estimate["estimated_seconds"], 0)
+
     def test_discs_at_rest_are_solved_by_statics_and_stay_at_rest_in_a_run(self):
         result, out = self.pack(SOIL, *FEW)
         self.assertLessEqual(result["unbalanced_force_ratio"], 1e-6)

@@ -188,6 +188,18 @@ TEST_CASE("magnitudes_whose_squares_are_no_numbers_are_refused") {
   CHECK(!refused(1e100, 1e100));
 }
 
+TEST_CASE("tangential_springs_that_drown_the_normal_ones_are_refused") {
+  const Assembly assembly = periodic_hexagonal(2, 2);
+  for (const double sign : {1.0, -1.0}) {
+    CHECK_NOTHROW(check_magnitudes(assembly, ContactSprings(SpringConstants{1, sign * 1e9}), unit_masses(assembly)));
+    for (const double kT : {1e11, 1e150, 1e308}) {
+      CHECK_THROWS_WITH(
+          check_magnitudes(assembly, ContactSprings(SpringConstants{1, sign * kT}), unit_masses(assembly)),
+          Catch::Contains("contact 0 has kT/kN = ") && Catch::Contains("so ill-scaled"));
+    }
+  }
+}
+
 // Discs that touch only their own images: K is zero, or negative where rotations have kT < 0.
 TEST_CASE("a_cell_in_which_nothing_vibrates_has_the_frequency_zero") {
   const double kT = GENERATE(0.0, -0.1);

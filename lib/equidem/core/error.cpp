@@ -8,13 +8,26 @@
 namespace equidem {
 namespace {
 
+/// Control characters of the user's files as \xHH, which a terminal does not obey.
+std::string without_controls(const std::string& text) {
+  std::string plain;
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7f)
+      plain += fmt::format("\\x{:02x}", code);
+    else
+      plain += c;
+  }
+  return plain;
+}
+
 std::string sentence(const std::string& problem, const std::string& why, const std::string& remedy,
                      const std::string& where) {
   std::string text = (where.empty() ? "" : where + ": ") + problem;
   if (!why.empty()) text += " (" + why + ")";
   text += ".";
   if (!remedy.empty()) text += " " + remedy + (remedy.ends_with('?') ? "" : ".");
-  return with_short_words(text);
+  return with_short_words(without_controls(text));
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ enum class ErrorKind {
   interrupted = 130,       ///< the user asked to stop
 };
 
-/// A sentence for the user: "[where: ]problem (why it is one). What to do." Words of more than 200 bytes are shortened.
+/// A sentence for the user: "[where: ]problem (why it is one). What to do." Words of more than 200 bytes are
+/// shortened, control characters are written as \xHH.
 class Error : public std::runtime_error {
  public:
   /// \param problem what is wrong, starting in lower case, without a full stop

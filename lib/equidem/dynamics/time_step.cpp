@@ -232,7 +232,7 @@ TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, 
   const double bound_omega = std::sqrt(vibration.bound(scene.springs));
   const double guaranteed = critical_step(vibration, bound, bound_omega);
   const double first_step = wanted.step ? *wanted.step : wanted.fraction * guaranteed;
-  bool use_bound = wanted.rule == TimeStepRule::bound && !wanted.step;
+  bool use_bound = wanted.rule == TimeStepRule::bound && (!wanted.step || wanted.step_of_rule);
   if (!use_bound && first_step <= guaranteed && wanted.duration > 0 &&
       wanted.duration / first_step < steps_worth_lanczos) {
     use_bound = true;

@@ -32,6 +32,7 @@ struct TimeStepOptions {
   TimeStepRule rule = TimeStepRule::lanczos;
   double fraction = 0.8;            ///< of the critical step or of the bound, in (0, 1]
   std::optional<double> step = {};  ///< given step, s: the rule is not used
+  bool step_of_rule = false;  ///< the given step is one of the rule, of a run that goes on: so is the critical step
   /// Duration of the run, s: if the run takes less time than the exact critical step, the bound is used. 0: not known.
   double duration = 0;
   bool allow_unstable = false;  ///< allow a step above the limit, and kT < 0

@@ -13,7 +13,6 @@
 #include "equidem/packing/outline.hpp"
 
 namespace equidem {
-namespace {
 
 void check(const PackingOptions& options) {
   const bool falls = entry_of(options.method).open_top;
@@ -70,8 +69,6 @@ void check(const PackingOptions& options) {
   }
   if (options.attempts < 1) bad_input(fmt::format("{} attempts", options.attempts), "one is needed", "Give 1 or more");
 }
-
-}  // namespace
 
 void make_grains(const PackingShape& shape, const Bodies& bodies, double density, GrainPacking& packing) {
   const UnitBody body = unit_body_of(shape);

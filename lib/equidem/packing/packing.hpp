@@ -83,6 +83,13 @@ struct GrainPacking {
 ///         the reverse; (computation_failed): the bodies do not fit, naming how dense they came to lie, and as settle
 GrainPacking pack(const PackingOptions& options);
 
+/// \throws Error (bad_input) as pack
+void check(const PackingOptions& options);
+
+/// Steps and time of a packing by falling, without the relaxation where that comes first.
+/// \throws Error (bad_input) as pack
+SettlingEstimate estimate_falling(const PackingOptions& options);
+
 /// Bodies as grains of a scene: `grains`, `clumps`, `bonds` (without dashpots) and `radii` of a packing.
 void make_grains(const PackingShape& shape, const Bodies& bodies, double density, GrainPacking& packing);
 

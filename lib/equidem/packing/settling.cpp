@@ -6,6 +6,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/grain_time_step.hpp"
 #include "equidem/material/inertia.hpp"
@@ -54,6 +55,24 @@ void tie(GrainScene& scene, double share, double step) {
     bond.normal_dashpot = share * 2 * mass / step;
     bond.tangential_dashpot = bond.normal_dashpot / (1 + 1 / moment_of_disc);
   }
+}
+
+/// Friction of the midpoint rule creeps under a steady force; that of the Verlet schemes comes to rest.
+GrainSimulation simulation_of(const GrainScene& scene, double step) {
+  return {scene,
+          {.law = NormalLaw::linear_dashpot,
+           .integrator = GrainOptions::Integrator::corrected_verlet,
+           .time_step = step,
+           .reference_length = 0,
+           .margin = 0}};
+}
+
+/// Twice the time of the free fall from the highest body: what is left after the fall is measured to take half as long
+/// to as long again as the fall.
+double time_to_rest(const GrainScene& scene, const SettlingOptions& options) {
+  double highest = 0;
+  for (const Grain& grain : scene.grains) highest = std::max(highest, grain.position.y);
+  return std::min(options.longest, 2 * std::sqrt(2 * highest / options.gravity));
 }
 
 double mean_mass(std::span<const Grain> grains) {
@@ -139,16 +158,29 @@ SettlingReport unbalance(std::span<const Grain> grains, std::span<const GrainCon
   return report;
 }
 
+SettlingEstimate estimate_settling(GrainScene scene, const SettlingOptions& options) {
+  check(options);
+  SettlingEstimate estimate{.time_step = chosen_step(scene, options)};
+  tie(scene, options.bond_share, estimate.time_step);
+  estimate.steps = static_cast<std::int64_t>(std::ceil(time_to_rest(scene, options) / estimate.time_step));
+  estimate.most = static_cast<std::int64_t>(std::ceil(options.longest / estimate.time_step));
+  GrainSimulation simulation = simulation_of(scene, estimate.time_step);
+  constexpr double enough = 0.05;      // s of wall-clock time
+  constexpr double with_contacts = 2;  // cost of a step of bodies that touch over that of bodies that fall freely
+  const Stopwatch watch;
+  for (std::int64_t steps = 1; watch.seconds() < enough && simulation.step() + steps <= estimate.steps; steps *= 2)
+    simulation.advance(steps);
+  if (simulation.step() > 0)
+    estimate.seconds =
+        with_contacts * watch.seconds() / static_cast<double>(simulation.step()) * static_cast<double>(estimate.steps);
+  return estimate;
+}
+
 SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
   check(options);
   const double step = chosen_step(scene, options);
   tie(scene, options.bond_share, step);
-  // Friction of the midpoint rule creeps under a steady force; that of the Verlet schemes comes to rest.
-  GrainSimulation simulation(scene, {.law = NormalLaw::linear_dashpot,
-                                     .integrator = GrainOptions::Integrator::corrected_verlet,
-                                     .time_step = step,
-                                     .reference_length = 0,
-                                     .margin = 0});
+  GrainSimulation simulation = simulation_of(scene, step);
 
   // Once the bodies lie, they still swing in the slowest modes, which contacts hardly damp. Where
   // the kinetic energy has fallen to half a peak all of them are stopped, and the springs find them nearer to rest.
@@ -162,12 +194,14 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
       static_cast<double>(scene.grains.size()) * mean_mass(scene.grains) * options.gravity * smallest;
   constexpr std::int64_t block = 100;
   const double steps = std::ceil(options.longest / step);
-  Progress progress("settling");
+  const double expected = std::ceil(time_to_rest(scene, options) / step);
+  Progress progress(fmt::format("settling, about {:.2g} steps", expected));
   double peak = 0;
   while (static_cast<double>(simulation.step()) < steps) {
     simulation.advance(block);
     const double kinetic = simulation.energy().kinetic;
-    progress.update(std::min(static_cast<double>(simulation.step()) / steps, 1.0));
+    constexpr double nearly_done = 0.99;  // rest may take longer than expected
+    progress.update(std::min(static_cast<double>(simulation.step()) / expected, nearly_done));
     peak = std::max(peak, kinetic);
     if (kinetic <= resting_drop * weight_radius) {
       const auto grains = simulation.grains();

@@ -66,6 +66,17 @@ double contact_step_limit(const GrainScene& scene, const SettlingOptions& option
 ///         GrainSimulation
 SettledBodies settle(GrainScene scene, const SettlingOptions& options);
 
+/// Work until bodies that fall are at rest, known before they do.
+struct SettlingEstimate {
+  double time_step = 0;    ///< s
+  std::int64_t steps = 0;  ///< expected: twice the fall from the highest body to the floor, measured within a factor 2
+  std::int64_t most = 0;   ///< steps after which `longest` gives it up
+  double seconds = 0;      ///< wall-clock time of the expected steps, from the first few
+};
+
+/// 	hrows Error (bad_input) as settle
+SettlingEstimate estimate_settling(GrainScene scene, const SettlingOptions& options);
+
 /// Unbalanced forces: contact forces plus weights. Bonded grains are one body.
 SettlingReport unbalance(std::span<const Grain> grains, std::span<const GrainContact> contacts,
                          std::span<const GrainBond> bonds, Vec2 gravity);

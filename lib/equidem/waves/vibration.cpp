@@ -16,6 +16,7 @@
 namespace equidem {
 
 void check_magnitudes(const Assembly& assembly, const ContactSprings& springs, const std::vector<Inertia>& inertia) {
+  constexpr double most_ratio = 1e10;  // leaves six digits of the normal stiffness
   const auto fits = [](double value) { return value >= 1e-150 && value <= 1e150; };
   const auto refuse = [](const std::string& problem) {
     bad_input(problem, "beyond 1e-150 to 1e150 squares of frequencies and speeds leave the range of numbers",
@@ -28,10 +29,17 @@ void check_magnitudes(const Assembly& assembly, const ContactSprings& springs, c
   }
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const Contact& contact = assembly.contacts[c];
+    const SpringConstants k = springs[c];
     for (const std::int32_t d : {contact.i, contact.j}) {
-      const double squared = springs[c].kN / inertia[d].mass;
+      const double squared = k.kN / inertia[d].mass;
       if (!fits(squared)) refuse(fmt::format("contact {} has kN/m = {:.3g} 1/s² at disc {}", c, squared, d));
     }
+    if (std::abs(k.kT) <= most_ratio * k.kN) continue;
+    bad_input(fmt::format("contact {} has kT/kN = {:.3g}", c, k.kT / k.kN),
+              fmt::format("springs so ill-scaled lose the normal stiffness in the round-off of the tangential one, "
+                          "from about {:.0e} on",
+                          most_ratio),
+              "Choose kT nearer to kN");
   }
 }
 

@@ -14,7 +14,7 @@
 namespace equidem {
 
 /// \throws Error (bad_input) where a mass, a moment or a kN/m is not within 1e-150 to 1e150: squares of frequencies and
-///         speeds would leave the range of numbers
+///         speeds would leave the range of numbers; where |kT| exceeds 1e10 kN
 void check_magnitudes(const Assembly& assembly, const ContactSprings& springs, const std::vector<Inertia>& inertia);
 
 /// An end of the spectrum of M^-1 K, (rad/s)², over the components that are not held; in a periodic cell: of the

@@ -77,7 +77,9 @@ int run(const CommonOptions& common) {
   const PackCase resolved = read_pack_case(common.case_file, overrides_of(common, "packing.seed"));
   check_outputs(common, resolved);
   if (common.dry_run) {
-    deliver(common, "dry_run", pack_case_results(resolved).set("grains", resolved.packing.radii.size()), {});
+    const Results estimate = located(resolved, "method", [&] { return pack_estimate_results(resolved); });
+    deliver(common, "dry_run",
+            pack_case_results(resolved).set("grains", resolved.packing.radii.size()).append(estimate), {});
     return 0;
   }
   const auto lock = lock_out(common);

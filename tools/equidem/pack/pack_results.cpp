@@ -70,6 +70,23 @@ Results pack_case_results(const PackCase& resolved) {
   return out.line("springs").add("", "kN =", springs.kN, "Pa").add("", "kT =", springs.kT, "Pa");
 }
 
+Results pack_estimate_results(const PackCase& resolved) {
+  Results out;
+  if (resolved.packing.method != PackingMethod::falling) return out;
+  const SettlingEstimate estimate = estimate_falling(resolved.packing);
+  return out.line("steps")
+      .add("estimated_steps", "about", estimate.steps, "", {Shown::count})
+      .note(" of ")
+      .add("time_step", "", estimate.time_step, "s", {.digits = 4})
+      .note("; ")
+      .add("most_steps", "given up after", estimate.most, "", {Shown::count})
+      .line("", "")
+      .add("estimated_seconds", "about", estimate.seconds,
+           resolved.packing.settling.relax_first ? "s of settling; the relaxation before it is not counted"
+                                                 : "s, from the first steps",
+           {.digits = 2});
+}
+
 Results packing_results(const PackCase& resolved, const GrainPacking& packing, const PackingMeasures& measures,
                         const RestConfirmation& rest) {
   const PackingOptions& options = resolved.packing;

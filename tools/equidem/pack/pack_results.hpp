@@ -13,6 +13,9 @@ namespace equidem {
 /// Bodies, box, method and springs of the case; the report alone.
 Results pack_case_results(const PackCase& resolved);
 
+/// Steps and time that are expected of bodies that fall; empty for other methods, which have no steps.
+Results pack_estimate_results(const PackCase& resolved);
+
 /// Report and JSON of the verb.
 Results packing_results(const PackCase& resolved, const GrainPacking& packing, const PackingMeasures& measures,
                         const RestConfirmation& rest);

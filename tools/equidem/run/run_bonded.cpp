@@ -46,7 +46,11 @@ TimeStep step_of(Problem& problem, const Scene& scene, const std::optional<KeptS
     step.step = 1;
     return step;
   }
-  if (kept && !wanted.step) wanted.step = kept->step;
+  if (kept && !wanted.step) {
+    wanted.step = kept->step;
+    wanted.step_of_rule = true;
+    if (kept->rule == to_string(TimeStepRule::bound)) wanted.rule = TimeStepRule::bound;
+  }
   try {
     step = choose_time_step(scene, simulation_options(problem.resolved, 1), wanted);
   } catch (const Error& error) {

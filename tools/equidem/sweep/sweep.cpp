@@ -98,14 +98,19 @@ class ProblemFactory {
   std::optional<Assembly> last_;
 };
 
+std::unique_ptr<Problem> problem_of(const SweepOptions& options, const Case& base, double value,
+                                    ProblemFactory& build) {
+  CommonOptions common = options.common;
+  common.set.push_back(override_of(options, base, value));
+  return build(read_case(common));
+}
+
 SweepPoint compute(const SweepOptions& options, const Case& base, double value, ProblemFactory& build, Effects& effects,
                    StageTimes& times) {
   SweepPoint point;
   point.value = value;
   try {
-    CommonOptions common = options.common;
-    common.set.push_back(override_of(options, base, value));
-    const auto problem = build(read_case(common));
+    const auto problem = problem_of(options, base, value, build);
     if (problem->load_cases.size() > 1)
       bad_input("the case has several load cases", "a sweep shows one", "Leave one [[load]] case in the file");
     const EquilibriumSolver solver(problem->assembly, problem->springs.springs, problem->supports, problem->options());
@@ -285,6 +290,10 @@ Progressed compute_points(const SweepOptions& options, const Case& base, const s
       });
       run.points.push_back(done != kept.end() ? *done
                                               : compute(options, base, values[k], build, run.effects, run.times));
+      if (done != kept.end() && k + 1 == values.size()) {
+        const auto problem = problem_of(options, base, values[k], build);
+        run.effects = derive_effects(problem->assembly, problem->springs.springs, problem->resolved.rotation);
+      }
       if (!options.common.out || since_saved.seconds() < 1) continue;
       write_points(options, merged(run.points, kept));
       since_saved.lap();

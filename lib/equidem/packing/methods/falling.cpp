@@ -52,22 +52,40 @@ void relax_down(const PackingOptions& options, const UnitBody& shape, Bodies& bo
   }
 }
 
-}  // namespace
-
-void fill_by_falling(const PackingOptions& options, GrainPacking& packing) {
+Bodies bodies_above(const PackingOptions& options, const UnitBody& shape) {
   Random random(options.seed);
-  const UnitBody shape = unit_body_of(options.shape);
   std::vector<double> reaches;
   for (const double radius : options.radii) reaches.push_back(shape.reach * radius);
   Bodies bodies{staggered_grid(reaches, options.box.size.x, random), options.radii, {}};
   if (!options.shape.is_disc())
     for (std::size_t k = 0; k < bodies.size(); ++k) bodies.turns.push_back(random.uniform());
-  if (options.settling.relax_first) relax_down(options, shape, bodies, packing.work);
+  return bodies;
+}
+
+/// The bodies as grains of the packing, and the scene in which they fall.
+GrainScene scene_of(const PackingOptions& options, const Bodies& bodies, GrainPacking& packing) {
   make_grains(options.shape, bodies, options.settling.density, packing);
   GrainScene scene = scene_of_box(options.box.size.x, options.settling);
   scene.grains = packing.grains;
   scene.clumps = packing.clumps;
   scene.bonds = packing.bonds;
+  return scene;
+}
+
+}  // namespace
+
+SettlingEstimate estimate_falling(const PackingOptions& options) {
+  check(options);
+  GrainPacking packing;
+  return estimate_settling(scene_of(options, bodies_above(options, unit_body_of(options.shape)), packing),
+                           options.settling);
+}
+
+void fill_by_falling(const PackingOptions& options, GrainPacking& packing) {
+  const UnitBody shape = unit_body_of(options.shape);
+  Bodies bodies = bodies_above(options, shape);
+  if (options.settling.relax_first) relax_down(options, shape, bodies, packing.work);
+  GrainScene scene = scene_of(options, bodies, packing);
   SettledBodies settled = settle(std::move(scene), options.settling);
   packing.work += settled.report.steps;
   packing.grains = std::move(settled.grains);

@@ -1,0 +1,182 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Programs that are killed at random times, and then given the same command again, end with the same bytes.
+
+    run_kills.py PROGRAM SOURCE_FOLDER [--kills N] [--seed S] [--report FILE]
+
+N is 12 unless given; half of the kills are SIGKILL, the others SIGTERM. The same commands on one thread and on two end with
+the same bytes, too. The numbers for the page of hard cases: run_kills.py PROGRAM SOURCE_FOLDER --kills 100 --report
+data/hard_cases/kills.json
+"""
+import argparse
+import json
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+# In result.json, what depends on the machine, the clock and the name of the folder, or tells of the part of the run since it
+# was resumed.
+VARYING = ("report", "times", "particle_steps_per_second", "bytes_per_grain", "loop_bytes", "springs_file",
+           "sweeps", "rebuilds", "seconds", "threads")
+
+
+def jobs_of(cases, papers):
+    """Name -> (program or None, arguments, file from which --resume goes on or None)."""
+    no_picture = ("--set", "output.picture=false")
+    often = (*no_picture, "--set", "output.checkpoint_interval=0.02")
+    support = "support=[{group = \"bottom\", ux = 0.0, uy = 0.0}]"
+    load = "load=[{group = \"top\", kind = \"total\", force = [0.0, 1.0]}]"
+    jobs = {
+        "run, bonded discs": (None, ["run", cases / "run_shake.toml", *often, "--set", "run.duration=0.01", "--set",
+                                     "run.step_rule=bound"], "run.checkpoint.h5"),
+        "run, colliding bodies": (None, ["run", cases / "grains_shaken.toml", *often, "--set", "shaking.start=0.02", "--set",
+                                         "run.duration=0.1", "--set", "output.probe_interval=4e-3"], "run.checkpoint.h5"),
+        "pack, growth": (None, ["pack", cases / "pack_jammed.toml", "--set", "packing.grains=150"], None),
+        "pack, falling": (None, ["pack", cases / "pack_soil.toml", "--set", "packing.grains=60", "--set",
+                                 "packing.box=[0.15, 1.0]"], None),
+        "solve": (None, ["solve", cases / "abe1996_fig6.toml", "--set", "assembly.columns=81", "--set", "assembly.rows=81"],
+                  None),
+        "stability": (None, ["stability", cases / "random_cell.toml"], None),
+        "homogenize": (None, ["homogenize", cases / "random_cell.toml", "--set", "assembly.discs=3000"], None),
+        "homogenize, ensemble": (None, ["homogenize", cases / "ensemble.toml", "--set", "ensemble.discs=[50, 100]", "--set",
+                                        "ensemble.samples=60"], "samples.csv"),
+        "homogenize --accuracy": (None, ["homogenize", cases / "random_cell.toml", "--accuracy", "0.01"], None),
+        "sweep": (None, ["sweep", cases / "abe1996_fig6.toml", "--key", "ratio", "--values",
+                         "0,0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9,1", "--set", "test=none", "--set", support, "--set", load], "sweep.csv"),
+        "calibrate": (None, ["calibrate", cases / "calibrate_random.toml"], None),
+        "study": (None, ["study", cases / "study_tension.toml", "--rounds", "3", "--budget", "0"], None),
+        "papers, abe1996": (papers, ["abe1996", "--rows", "17", "--columns", "17"], None),
+        "papers, abe1996_random": (papers, ["abe1996_random", "--quick"], None),
+    }
+    return jobs
+
+
+def lasting(value):
+    """JSON without what varies."""
+    if isinstance(value, list):
+        return [lasting(entry) for entry in value]
+    if isinstance(value, dict):
+        return {key: lasting(entry) for key, entry in value.items() if key not in VARYING}
+    return value
+
+
+class Killing:
+    def __init__(self, arguments, folder):
+        self.program = arguments.program
+        self.papers = str(pathlib.Path(arguments.program).parent / "equidem-papers")
+        self.jobs = jobs_of(pathlib.Path(arguments.source) / "data" / "cases", self.papers)
+        self.random = random.Random(arguments.seed)
+        self.folder = folder
+        self.findings = []
+
+    def command(self, name, out, threads=1):
+        program, given, resumed_from = self.jobs[name]
+        command = [program or self.program, *map(str, given), "--out", str(out), "--threads", str(threads), "--quiet"]
+        if given[0] == "study":
+            return command  # a study goes on of itself
+        if resumed_from and (out / resumed_from).exists():
+            return [*command, "--resume"]
+        return [*command, "--overwrite"]
+
+    def whole(self, name, threads=1):
+        out = self.folder / f"whole_{list(self.jobs).index(name)}_{threads}"
+        shutil.rmtree(out, ignore_errors=True)
+        began = time.monotonic()
+        done = subprocess.run(self.command(name, out, threads), capture_output=True, text=True, timeout=600, check=False)
+        if done.returncode != 0:
+            raise SystemExit(f"{name}: {done.stderr}")
+        return out, time.monotonic() - began
+
+    def contents(self, name, out):
+        """Bytes of every file; of JSON what does not vary; of a study, whose tables hold measured times, the errors."""
+        files = {}
+        for path in sorted(out.iterdir()):
+            files[path.name] = path.read_bytes()
+            if path.name == "result.json":
+                files[path.name] = lasting(json.loads(files[path.name]))
+        if name == "study":
+            result = files["result.json"]
+            return {"files": sorted(files), "errors": [[row["setting"], row["errors"]] for row in result["settings"]]}
+        return files
+
+    def compare(self, name, wanted, found, what):
+        a, b = self.contents(name, wanted), self.contents(name, found)
+        different = sorted(set(a) ^ set(b)) or [file for file in a if a[file] != b[file]]
+        for file in different:
+            keys = ""
+            if file == "result.json" and file in a and file in b:
+                keys = ": " + ", ".join(key for key in a[file] if a[file][key] != b[file].get(key))
+            self.find(f"{name}, {what}: {file}{keys}")
+
+    def find(self, text):
+        self.findings.append(text)
+        print(text, file=sys.stderr)
+
+    def kill_once(self, name, out, seconds, how):
+        """Whether the program was still at work when it was killed."""
+        with subprocess.Popen(self.command(name, out), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+            time.sleep(self.random.uniform(0, 1) * seconds)
+            running.send_signal(how)
+            errors = running.communicate(timeout=120)[1]
+        if running.returncode not in (0, 130, -signal.SIGKILL, -signal.SIGTERM):
+            self.find(f"{name}, {how.name}: exit code {running.returncode}: {errors.strip()}")
+        return running.returncode != 0
+
+    def kill(self, name, kills):
+        """Kill a job so often, at times all over its length, in a folder that goes on two kills long."""
+        wanted, seconds = self.whole(name)
+        done = idle = 0
+        out = self.folder / "killed"
+        while done < kills and idle < 20:
+            shutil.rmtree(out, ignore_errors=True)
+            for _ in range(2):
+                how = signal.SIGKILL if self.random.random() < 0.5 else signal.SIGTERM
+                if done < kills and self.kill_once(name, out, seconds, how):
+                    done += 1
+                else:
+                    idle += 1
+            again = subprocess.run(self.command(name, out), capture_output=True, text=True, timeout=600, check=False)
+            if again.returncode != 0:
+                self.find(f"{name}, again: exit code {again.returncode}: {again.stderr.strip()}")
+                continue
+            self.compare(name, wanted, out, "killed")
+        return done
+
+    def threads(self, name):
+        self.compare(name, self.whole(name)[0], self.whole(name, 2)[0], "two threads")
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("program")
+    parser.add_argument("source")
+    parser.add_argument("--kills", type=int, default=12)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--report")
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory(prefix="equidem_test_") as folder:
+        killing = Killing(arguments, pathlib.Path(folder))
+        names = list(killing.jobs)
+        if arguments.kills < len(names):  # a short run: what can be resumed first
+            names.sort(key=lambda name: killing.jobs[name][2] is None)
+        kills = {name: 0 for name in names}
+        for k in range(arguments.kills):
+            kills[names[k % len(names)]] += 1
+        done = {name: killing.kill(name, count) for name, count in kills.items() if count > 0}
+        for name in names if arguments.kills >= len(names) else names[:4]:
+            killing.threads(name)
+    report = {"command": f"tests/program/run_kills.py PROGRAM SOURCE_FOLDER --kills {arguments.kills} --seed {arguments.seed}",
+              "kills": done, "threads_compared": [1, 2], "findings": killing.findings}
+    print(json.dumps(report, indent=2))
+    if arguments.report:
+        pathlib.Path(arguments.report).write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
+    return 1 if killing.findings or sum(done.values()) < arguments.kills else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
