@@ -7,12 +7,14 @@
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/files.hpp"
 #include "equidem/assembly/lattices.hpp"
+#include "equidem/assembly/touching.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/motion_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/dynamics/scene_check.hpp"
 #include "equidem/homogenize/tension_test.hpp"
+#include "equidem/packing/network.hpp"
 
 namespace equidem {
 namespace {
@@ -25,8 +27,13 @@ Assembly generate(const AssemblyCase& wanted) {
       return wanted.arrangement->make(wanted.lattice);
     case AssemblyKind::delaunay:
       return delaunay_assembly(wanted.delaunay);
+    case AssemblyKind::packing: {
+      Assembly assembly = network_of(pack(*wanted.packing), {.gap_tolerance = wanted.gap_tolerance});
+      if (!assembly.contacts.empty()) measure_cells(assembly);
+      return assembly;
+    }
     case AssemblyKind::file:
-      return read_assembly(wanted.path);
+      return read_assembly(wanted.path, wanted.gap_tolerance);
   }
   return {};
 }
@@ -98,8 +105,11 @@ void add_test(const Case& resolved, const Assembly& assembly, Scene& scene) {
 
 Assembly build_assembly(const Case& resolved) {
   const AssemblyCase& wanted = resolved.assembly;
-  Assembly assembly = with_place(resolved.where(wanted.kind == AssemblyKind::file ? "assembly.path" : "assembly"),
-                                 [&] { return generate(wanted); });
+  const bool packed = wanted.kind == AssemblyKind::packing;
+  const char* source = wanted.kind == AssemblyKind::file ? "assembly.path" : packed ? "packing.method" : "assembly";
+  Assembly assembly = with_place(resolved.where(source), [&] { return generate(wanted); });
+  with_place(resolved.where(packed ? "packing.gap_tolerance" : "assembly.gap_tolerance"),
+             [&] { check_found_contacts(assembly); });
   if (!wanted.own_springs) {
     assembly.contact_kN.clear();
     assembly.contact_kT.clear();
