@@ -11,6 +11,8 @@
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/material/spring_relations.hpp"
 
+#include "left_out.hpp"
+
 namespace equidem {
 namespace {
 
@@ -52,6 +54,13 @@ void require_memory_for(const Case& resolved, Purpose purpose) {
       bytes_of_network(size.discs) + size.discs * beside,
       fmt::format("{} of {} discs needs at least", purpose == Purpose::factorize ? "the factor of a network" : "a run",
                   grouped(static_cast<std::int64_t>(size.discs))));
+}
+
+void add_left_out(Results& results, const LeftOut& left_out) {
+  if (left_out.bodies.empty()) return;
+  results.line("left out", joined(left_out.sentences, "; "));
+  results.line("", "results number the others from 0 on");
+  results.set("left_out", left_out.bodies);
 }
 
 /// Says by which tolerance contacts were found, and what a larger one would find.
@@ -100,6 +109,7 @@ Problem build_problem(Case resolved, std::optional<Assembly> given) {
                  "Add [test], or [[support]] and [[load]]");
   }
   Problem problem = problem_of(std::move(resolved), std::move(given));
+  leave_out_loose(problem);
   problem.supports = problem.resolved.supports;
   problem.load_cases = problem.resolved.load_cases;
   if (problem.resolved.test) {
@@ -168,6 +178,7 @@ Results problem_results(const Problem& problem, const Effects& effects, Assembly
   }
   add_found_contacts(results, a);
   add_gaps(results, a);
+  add_left_out(results, problem.left_out);
   results.line("springs", problem.springs.report);
   if (problem.springs.constants && keys == AssemblyKeys::all)
     results.set("kN", problem.springs.constants->kN).set("kT", problem.springs.constants->kT);

@@ -2,6 +2,7 @@
 /// \file
 /// equidem sweep: solve over a range of one key.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -82,13 +83,14 @@ std::string override_of(const SweepOptions& options, const Case& base, double va
 class ProblemFactory {
  public:
   explicit ProblemFactory(const SweepOptions& options)
-      : reusable_(!options.key.starts_with("assembly.") && !options.key.starts_with("group.")) {}
+      : reusable_(std::ranges::none_of(std::array{"assembly.", "group.", "packing.", "settling."},
+                                       [&](const char* table) { return options.key.starts_with(table); })) {}
 
   std::unique_ptr<Problem> operator()(Case resolved) {
     std::optional<Assembly> given;
     if (reusable_ && last_) given = *last_;
     auto problem = std::make_unique<Problem>(build_problem(std::move(resolved), std::move(given)));
-    if (reusable_ && !last_) last_ = problem->assembly;
+    if (reusable_ && !last_ && problem->left_out.bodies.empty()) last_ = problem->assembly;
     return problem;
   }
 
