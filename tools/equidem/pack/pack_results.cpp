@@ -96,7 +96,7 @@ Results packing_results(const PackCase& resolved, const GrainPacking& packing, c
   if (!packing.complete) {
     out.line("packed", packing.size() < options.radii.size()
                            ? fmt::format("{} of {}", packing.size(), options.radii.size())
-                           : fmt::format("radii {:.6g} of those asked for", packing.radii[0] / options.radii[0]));
+                           : fmt::format("all radii scaled by {:.6g}", packing.radii[0] / options.radii[0]));
   }
   const Region& region = measures.region;
   out.line("solid fraction")

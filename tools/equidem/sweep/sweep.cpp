@@ -40,8 +40,9 @@ struct SweepOptions {
 std::vector<double> values_of(const SweepOptions& options) {
   const bool range = options.from && options.to;
   if (range == !options.values.empty() || options.from.has_value() != options.to.has_value())
-    bad_input("the values of the sweep are not clear", "either a list or a range is needed",
-              "Give --values a,b,c or --from A --to B --steps N");
+    bad_input(
+        options.values.empty() ? "the sweep is given no values" : "the sweep is given a list of values and a range",
+        "it takes either one", "Give --values a,b,c or --from A --to B --steps N");
   std::vector<double> values;
   for (const std::string& list : options.values) {
     for (const std::string_view part : parts_of(list, ',')) {

@@ -144,14 +144,14 @@ BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
                      : "the case file gives none, and says that those of the assembly file do not count",
                  "Add [springs] with kN and kT to the case file");
   }
+  if (own && (resolved.springs || resolved.material)) {
+    bad_input_at(resolved.where(resolved.springs ? "springs" : "material"),
+                 "the case gives springs, and so does the assembly file", "one of the two would not count",
+                 "Remove those of the case, or set assembly.own_springs = false to take them");
+  }
   const auto built = [&]() -> BuiltSprings {
-    if (own) {
-      return {contact_springs(assembly, resolved.springs.value_or(SpringConstants{}), resolved.weighting),
-              {},
-              resolved.springs || resolved.material
-                  ? "springs of the assembly file; those of the case file are not used (own_springs = false: they are)"
-                  : "springs of the assembly file"};
-    }
+    if (own)
+      return {contact_springs(assembly, {}, resolved.weighting), {}, "springs of the assembly file"};
     if (!resolved.material) {
       return {contact_springs(assembly, *resolved.springs, resolved.weighting), *resolved.springs,
               described(*resolved.springs, resolved.weighting)};
