@@ -15,27 +15,13 @@
 #include "equidem/core/file.hpp"
 
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
 
 using namespace equidem;
+using equidem::test::TemporaryFolder;
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A folder that is removed with its content.
-class TemporaryFolder {
- public:
-  TemporaryFolder() : path_(fs::temp_directory_path() / ("equidem_test_files_" + std::to_string(getpid()))) {
-    fs::create_directories(path_);
-  }
-  ~TemporaryFolder() { fs::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  [[nodiscard]] fs::path operator/(const char* name) const { return path_ / name; }
-
- private:
-  fs::path path_;
-};
 
 Assembly read_text(const std::string& text) {
   const TemporaryFolder folder;
@@ -157,6 +143,19 @@ TEST_CASE("discs_touch_up_to_rounding_and_overlap_counts") {
   CHECK(narrow.contacts[0].shift_x == 1);
   CHECK(read_text(R"({"schema": "equidem-assembly/1", "cell": [1, 10], "discs": [[9.2, -3, 1.1]]})").contacts.size() ==
         2);
+}
+
+TEST_CASE("a_gap_tolerance_bonds_discs_of_a_file_that_gives_no_contacts") {
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& rest, double tolerance) {
+    write_file(folder / "a.json",
+               R"({"schema": "equidem-assembly/1", "discs": [[0, 0, 1], [2.1, 0, 1], [1, 1.9, 1]])" + rest + "}", true);
+    return read_assembly(folder / "a.json", tolerance);
+  };
+  CHECK(read("", 0.049).contacts.empty());
+  CHECK(read("", 0.051).contacts.size() == 1);
+  CHECK(read("", 0.1).contacts.size() == 3);
+  CHECK_THROWS_AS(read(R"(, "contacts": [[0, 1, 0, 0]])", 0.1), Error);
 }
 
 TEST_CASE("levers_springs_and_groups_are_read") {

@@ -5,11 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "equidem/assembly/files.hpp"
+#include "equidem/casefile/assembly/build.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/packing/network.hpp"
 
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
 
 using namespace equidem;
+using equidem::test::TemporaryFolder;
 
 namespace {
 
@@ -127,4 +132,93 @@ TEST_CASE("contradictions_of_a_packing_are_told_with_their_line") {
       CHECK_FALSE(error.where().empty());
     }
   }
+}
+
+namespace {
+
+constexpr const char* rock = R"(schema = "equidem/1"
+[assembly]
+kind = "packing"
+[packing]
+grains = 80
+solid_fraction = 0.7
+gap_tolerance = 0.05
+[packing.radii]
+smallest = 0.5e-3
+largest  = 1e-3
+[springs]
+kN = 1.0e8
+kT = 0.5e8
+)";
+
+Assembly assembly_of(const std::vector<std::string>& overrides) {
+  return build_assembly(parse_case(rock, "rock.toml", "", overrides));
+}
+
+std::string refusal(const std::vector<std::string>& overrides) {
+  try {
+    static_cast<void>(assembly_of(overrides));
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("an_assembly_that_is_a_packing_is_the_one_that_pack_writes") {
+  const std::vector<std::string> overrides{
+      GENERATE(as<std::string>{}, "packing.sides=periodic", "packing.sides=walls"),
+      GENERATE(as<std::string>{}, "packing.shape.kind=disc", "packing.shape.kind=ellipse")};
+  CAPTURE(overrides);
+  const PackCase packed = parse_pack_case(rock, "rock.toml", "", overrides);
+  const TemporaryFolder folder;
+  write_assembly(folder / "a.json", network_of(pack(packed.packing), packed.network), false);
+
+  const Assembly written = read_assembly(folder / "a.json"), built = assembly_of(overrides);
+
+  CHECK(built.centres == written.centres);
+  CHECK(built.radii == written.radii);
+  REQUIRE(built.contacts.size() == written.contacts.size());
+  for (std::size_t k = 0; k < built.contacts.size(); ++k) {
+    CHECK(built.contacts[k].j == written.contacts[k].j);
+    CHECK(built.contacts[k].lever_i == written.contacts[k].lever_i);
+  }
+  CHECK(built.cell_areas == written.cell_areas);
+  CHECK(built.groups.size() == written.groups.size());
+  CHECK(written.contact_kN == std::vector<double>(written.contacts.size(), 1e8));
+}
+
+TEST_CASE("a_gap_tolerance_that_bonds_nothing_or_too_much_is_refused_with_one_that_serves") {
+  const std::string nothing = refusal({"packing.gap_tolerance=0", "packing.solid_fraction=0.4"});
+  CAPTURE(nothing);
+  CHECK(nothing.find("gap_tolerance: no two of the 80 bodies are within a gap of 0") != std::string::npos);
+  CHECK(nothing.find("would find") != std::string::npos);
+  const std::string too_much = refusal({"packing.gap_tolerance=0.9"});
+  CAPTURE(too_much);
+  CHECK(too_much.find("contacts cross") != std::string::npos);
+  CHECK(too_much.find("Smaller: gap_tolerance = ") != std::string::npos);
+}
+
+TEST_CASE("the_bodies_of_a_packing_have_one_density") {
+  const auto case_of = [](const std::vector<std::string>& overrides) {
+    return parse_case(rock, "rock.toml", "", overrides);
+  };
+  CHECK(case_of({"assembly.density=2600"}).assembly.packing->settling.density == 2600);
+  CHECK(case_of({"packing.density=2700"}).assembly.density == 2700);
+  CHECK(!case_of({}).assembly.density);
+  const Case both = case_of({"assembly.density=2600"});
+  CHECK(parse_case(to_toml(both, "."), "case.toml", "").assembly.packing->settling.density == 2600);
+  CHECK(refusal({"assembly.density=2600", "packing.density=2700"}).find("2700 kg/m³ here and 2600") !=
+        std::string::npos);
+}
+
+TEST_CASE("a_packing_that_no_assembly_names_is_refused_by_name") {
+  const std::string error = refusal({"assembly=none"});
+  CAPTURE(error);
+  CHECK(error.find("Use 'equidem pack'") != std::string::npos);
+  CHECK(refusal({"packing.method=falling", "packing.solid_fraction=none", "packing.box=[0.02, 0.02]", "springs=none",
+                 "material={shear_modulus = 1e9, poisson_ratio = 0.2, plane = "
+                 "\"strain\"}"})
+            .find("bodies fall, and the case gives no springs") != std::string::npos);
 }

@@ -19,34 +19,14 @@
 
 #include "support/catch.hpp"
 #include "support/fields.hpp"
+#include "support/temporary_folder.hpp"
 
 using namespace equidem;
 using equidem::test::refusal_of;
+using equidem::test::TemporaryFolder;
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A folder of its own, gone afterwards.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (fs::temp_directory_path() / "equidem-test-XXXXXX").string();
-    path_ = mkdtemp(pattern.data());
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::permissions(path_, fs::perms::owner_all, ignored);
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-  [[nodiscard]] const fs::path& path() const { return path_; }
-  [[nodiscard]] long entries() const { return std::distance(fs::directory_iterator(path_), fs::directory_iterator()); }
-
- private:
-  fs::path path_;
-};
 
 /// Files of this process may not grow beyond this many bytes, as on a full disc.
 class FileSizeLimit {
@@ -88,7 +68,7 @@ TEST_CASE("an_existing_file_is_kept_unless_overwriting_is_asked") {
   CHECK_NOTHROW(check_writable(folder / "file", true));
   write_file(folder / "file", "yours", true);
   CHECK(read_file(folder / "file") == "yours");
-  CHECK(folder.entries() == 1);
+  CHECK(folder.files() == 1);
 }
 
 TEST_CASE("a_write_that_fails_halfway_leaves_nothing_new_and_the_old_file_whole") {
@@ -101,7 +81,7 @@ TEST_CASE("a_write_that_fails_halfway_leaves_nothing_new_and_the_old_file_whole"
     CHECK_THROWS_WITH(write_file(folder / "file", std::string(1000000, 'x'), true),
                       Catch::Contains("cannot write") && Catch::Contains("large"));
   }
-  CHECK(folder.entries() == (existed ? 1 : 0));
+  CHECK(folder.files() == (existed ? 1 : 0));
   if (existed) CHECK(read_file(folder / "file") == "old");
 }
 

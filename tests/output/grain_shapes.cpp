@@ -28,13 +28,13 @@ using namespace equidem;
 namespace {
 
 /// A disc, an ellipse, two clumps of one shape and one of another, moving.
-struct Bodies {
+struct SampleBodies {
   GrainShapes shapes{Body::disc};
   std::vector<Grain> grains;
   std::vector<std::string> groups;
   std::vector<double> densities;
 
-  Bodies() {
+  SampleBodies() {
     const std::vector<Clump::Disc> pair{{{1, 2}, 0.1}, {{1.15, 2.01}, 0.12}};
     for (int k = 0; k < 5; ++k) {
       Grain& grain = grains.emplace_back();
@@ -63,7 +63,7 @@ std::vector<double> numbers_of(const OpenFile& file, const Hdf5Array& array) {
 
 TEST_CASE("a_table_of_grains_is_read_back_to_the_same_bits") {
   const TemporaryFolder folder;
-  const Bodies bodies;
+  const SampleBodies bodies;
   write_grain_csv(folder / "grains.csv", bodies.rows(), false);
   CAPTURE(read_file(folder / "grains.csv"));
   const GrainCase found = parse_grain_case(
@@ -98,7 +98,7 @@ TEST_CASE("a_table_of_grains_is_read_back_to_the_same_bits") {
 
 TEST_CASE("frames_show_clumps_as_their_discs_and_ellipses_with_both_half_axes") {
   const TemporaryFolder folder;
-  Bodies bodies;
+  SampleBodies bodies;
   const auto& clumps = bodies.shapes.clumps();
   FileMark mark;
   {
@@ -148,7 +148,7 @@ TEST_CASE("frames_show_clumps_as_their_discs_and_ellipses_with_both_half_axes") 
   CHECK(index.find("Name=\"short_half_axis\"") != std::string::npos);
   CHECK(index.find("Name=\"body\"") != std::string::npos);
   // Frames of other shapes cannot be continued.
-  Bodies other;
+  SampleBodies other;
   other.grains[1].short_half_axis = 0.11;
   CHECK(equidem::test::refusal_of([&] {
           FrameOptions options{.expected = 1, .continue_from = mark};
@@ -159,7 +159,7 @@ TEST_CASE("frames_show_clumps_as_their_discs_and_ellipses_with_both_half_axes") 
 
 TEST_CASE("pictures_of_clumps_and_ellipses_are_written") {
   const TemporaryFolder folder;
-  const Bodies bodies;
+  const SampleBodies bodies;
   CHECK(write_grain_picture(folder.path(), "shapes", {.grains = bodies.grains, .clumps = bodies.shapes.clumps()}, false)
             .size() == 2);
   const std::string picture = read_file(folder / "shapes.svg");

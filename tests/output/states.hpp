@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Assemblies with synthetic states, a temporary folder, and checks by Python scripts.
+/// Assemblies with synthetic states, and checks by Python scripts.
 #pragma once
 
 #include <cmath>
@@ -16,6 +16,8 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/state.hpp"
+
+#include "support/temporary_folder.hpp"
 
 namespace equidem {
 
@@ -51,29 +53,7 @@ inline MadeUpState stretched_block(int columns = 7, int rows = 6, bool periodic 
                  {1e-3, 2e-4, -1e-4, -3e-4});
 }
 
-/// A new folder below that for temporary files, removed at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "equidem-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  [[nodiscard]] std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(std::filesystem::recursive_directory_iterator(path_), {}));
-  }
-
- private:
-  std::filesystem::path path_;
-};
+using equidem::test::TemporaryFolder;
 
 /// Run a script of this folder with Python; its error output appears in the log of the test.
 /// \return its exit code

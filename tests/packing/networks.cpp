@@ -2,6 +2,7 @@
 /// \file
 /// Packings of all shapes as networks of contacts with springs.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -70,7 +71,7 @@ TEST_CASE("settled_bodies_of_every_shape_are_confirmed_by_statics") {
   for (Grain& grain : heavier.grains) grain.inertia.mass *= 1.001;
   CHECK(confirm_rest(heavier, options.settling).share() > 10 * rest.share());
 
-  const HeldNetwork held = held_network_of(packing, options.settling.springs);
+  const HeldNetwork held = held_network_of(packing, {.springs = options.settling.springs});
   check(held.assembly);
   CHECK(held.assembly.contact_arms.empty() == shape.is_disc());
   CHECK(held.assembly.groups.at("walls").discs.size() + held.bodies.size() == held.assembly.size());
@@ -85,7 +86,7 @@ TEST_CASE("pairs_tied_by_dashpots_are_confirmed_as_rigid_ones") {
   CHECK(packing.settling.unbalanced <= 1e-6);
   CHECK(rest.residual < 1e-12);
   CHECK(rest.share() < 1e-3);
-  const Assembly network = network_of(packing, options.settling.springs);
+  const Assembly network = network_of(packing, {.springs = options.settling.springs});
   REQUIRE(network.size() == packing.size());
   const std::vector<Inertia> inertia = inertia_of(network, options.settling.density, Body::disc);
   for (std::size_t k = 0; k < packing.size(); ++k) {
@@ -101,7 +102,7 @@ TEST_CASE("networks_have_all_contacts_masses_and_areas_of_their_packing_and_modu
   const PackingShape shape = GENERATE(from_range(networked_shapes()));
   const PackingOptions options = jammed(shape, 80);
   const GrainPacking packing = pack(options);
-  const Assembly assembly = network_of(packing, usual);
+  const Assembly assembly = network_of(packing, {.springs = usual});
   check(assembly);
   REQUIRE(assembly.size() == packing.size());
   CHECK(assembly.contacts.size() == contacts_of(packing).size());
@@ -127,7 +128,7 @@ TEST_CASE("a_free_sample_takes_the_rectangle_about_its_bodies") {
   const double side = std::sqrt(area_of(shape, options.radii) / 0.3);
   options.box.size = {side, side};
   const GrainPacking packing = pack(options);
-  Assembly assembly = network_of(packing, usual);
+  Assembly assembly = network_of(packing, {.springs = usual});
   measure_cells(assembly);
   // By places on the outlines, one by one; between two of them an arc rises by at most 1/2 (pi/n)² of its half-axis.
   constexpr int places = 2000;
@@ -151,7 +152,7 @@ TEST_CASE("a_free_sample_takes_the_rectangle_about_its_bodies") {
 
 TEST_CASE("round_ellipses_and_clumps_of_one_disc_have_the_moduli_of_discs") {
   const GrainPacking packing = pack(jammed({}, 80));
-  const Assembly discs = network_of(packing, usual);
+  const Assembly discs = network_of(packing, {.springs = usual});
   const ContactSprings springs(usual);
   const Matrix3 expected = effective_stiffness(discs, springs).stiffness;
   Bodies bodies{{}, packing.radii, std::vector<double>(packing.size(), 0.0)};
@@ -164,7 +165,7 @@ TEST_CASE("round_ellipses_and_clumps_of_one_disc_have_the_moduli_of_discs") {
   GrainPacking same;
   same.box = packing.box;
   make_grains(shape, bodies, 1, same);
-  const Assembly network = network_of(same, usual);
+  const Assembly network = network_of(same, {.springs = usual});
   REQUIRE(network.contacts.size() == discs.contacts.size());
   CHECK(on_lines_of_centres(network));
   CAPTURE(to_string(shape.kind));
@@ -180,7 +181,7 @@ TEST_CASE("jammed_ellipses_without_friction_have_no_modulus_and_no_support_is_as
     PackingOptions options = jammed({.kind = Kind::ellipse, .aspect = 2}, 30);
     options.box.size *= size;
     for (double& radius : options.radii) radius *= size;
-    const Assembly assembly = network_of(pack(options), usual);
+    const Assembly assembly = network_of(pack(options), {.springs = usual});
     REQUIRE(2 * assembly.contacts.size() < 6 * assembly.size());
     std::string remedy = "none";
     try {
@@ -199,12 +200,12 @@ TEST_CASE("clumps_that_touch_twice_have_a_spring_in_each_place") {
   packing.box = {{10, 10}, PackingBox::Sides::walls};
   // Two pairs lying on each other, side by side, the lower on the floor.
   make_grains({.kind = Kind::rigid_pair}, {{{5, 1}, {5, 3}}, {1, 1}, {0, 0}}, 1, packing);
-  const Assembly free = network_of(packing, usual);
+  const Assembly free = network_of(packing, {.springs = usual});
   REQUIRE(free.contacts.size() == 2);
   CHECK(free.contact_arms[0].offset_i + free.contact_arms[1].offset_i == Approx(0).margin(1e-14));
   CHECK(std::abs(free.contact_arms[0].offset_i) == Approx(1));
   CHECK(free.contacts[0].lever_i == Approx(1));
-  const HeldNetwork held = held_network_of(packing, usual);
+  const HeldNetwork held = held_network_of(packing, {.springs = usual});
   REQUIRE(held.assembly.contacts.size() == 4);
   CHECK(held.assembly.groups.at("walls").discs.size() == 1);
   // Normal springs alone hold what rests in two places: statics has an answer, stiff against rocking as two springs two
@@ -215,4 +216,57 @@ TEST_CASE("clumps_that_touch_twice_have_a_spring_in_each_place") {
   const Equilibrium rocked =
       solve_equilibrium(scene, ContactSprings(usual), walls, {{.group = "top", .force = {}, .moment = 1}});
   CHECK(rocked.motions[1].theta == Approx(1 / usual.kN).epsilon(1e-9));
+}
+
+TEST_CASE("bonds_join_the_discs_whose_gap_is_within_the_tolerance_and_no_others") {
+  const double tolerance = GENERATE(0.0, 0.01, 0.1, 0.5);
+  const auto sides = GENERATE(PackingBox::Sides::periodic, PackingBox::Sides::walls);
+  const GrainPacking packing = pack(square_box(PackingMethod::growth, sides, 60, 0.7));
+  const Assembly network = network_of(packing, {.gap_tolerance = tolerance});
+  std::vector<std::array<std::int32_t, 4>> expected, found;
+  const int images = packing.box.periodic() ? 1 : 0;
+  for (std::int32_t i = 0; i < std::ssize(packing.grains); ++i) {
+    for (std::int32_t j = i + 1; j < std::ssize(packing.grains); ++j) {
+      for (int sx = -images; sx <= images; ++sx) {
+        for (int sy = -images; sy <= images; ++sy) {
+          const Vec2 shift{sx * packing.box.size.x, sy * packing.box.size.y};
+          const double ri = packing.radii[static_cast<std::size_t>(i)], rj = packing.radii[static_cast<std::size_t>(j)];
+          const Vec2 branch = packing.grains[static_cast<std::size_t>(j)].position + shift -
+                              packing.grains[static_cast<std::size_t>(i)].position;
+          if (norm(branch) - ri - rj <= std::max(tolerance * (ri + rj), 1e-8 * std::min(ri, rj)))
+            expected.push_back({i, j, sx, sy});
+        }
+      }
+    }
+  }
+  for (const Contact& c : network.contacts) found.push_back({c.i, c.j, c.shift_x, c.shift_y});
+  std::ranges::sort(expected);
+  std::ranges::sort(found);
+  CAPTURE(tolerance, packing.box.periodic(), expected.size());
+  CHECK(found == expected);
+  for (const BondCount& count : bond_counts(packing))
+    if (count.gap_tolerance == tolerance) CHECK(count.contacts == std::ssize(expected));
+  CHECK(bond_counts(network).back().contacts == bond_counts(packing).back().contacts);
+}
+
+TEST_CASE("bonds_of_every_shape_meet_between_the_surfaces_of_their_bodies") {
+  const PackingShape shape = GENERATE(from_range(networked_shapes()));
+  PackingOptions options = jammed(shape, 60);
+  options.as_dense_as_possible = false;
+  options.overlap = 1e-6;
+  const GrainPacking packing = pack(options);
+  std::size_t fewer = 0;
+  for (const double tolerance : {0.0, 0.05, 0.2}) {
+    const auto contacts = contacts_of(packing, tolerance);
+    CAPTURE(to_string(shape.kind), tolerance, contacts.size());
+    CHECK(contacts.size() >= fewer);
+    fewer = contacts.size();
+    for (const PackingContact& contact : contacts) {
+      const double sum =
+          packing.radii[static_cast<std::size_t>(contact.i)] + packing.radii[static_cast<std::size_t>(contact.j)];
+      CHECK(-contact.overlap <= std::max(tolerance, 1e-8) * sum);
+      CHECK(norm(contact.normal) == Approx(1).epsilon(1e-12));
+    }
+  }
+  CHECK(fewer > 20);
 }

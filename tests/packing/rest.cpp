@@ -69,7 +69,7 @@ TEST_CASE("jammed_discs_have_moduli_between_those_of_their_bounds") {
   options.overlap = 1e-3;
   const GrainPacking packing = pack(options);
   const SpringConstants springs{1e8, 5e7};
-  const Assembly assembly = network_of(packing, springs);
+  const Assembly assembly = network_of(packing, {.springs = springs});
   check(assembly);
   REQUIRE(assembly.contacts.size() == contacts_of(packing).size());
   const Matrix3 c = effective_stiffness(assembly, ContactSprings(springs)).stiffness;

@@ -196,7 +196,7 @@ class Output(RunTest):
     def test_the_balance_is_held_against_the_most_energy_of_the_run(self):
         for case in (CORNER, PULSE):
             report = self.check_done(equidem("run", case, "--threads", 1)).stdout
-            end, most = (float(x) for x in re.search(r"lacks (\S+) of the largest term of the run\s+at its end, at most "
+            end, most = (float(x) for x in re.search(r"error (\S+) of the largest term of the run\s+at its end, at most "
                                                      r"(\S+) on the way", report).groups())
             self.assertLessEqual(end, most)
 

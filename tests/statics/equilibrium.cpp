@@ -316,3 +316,33 @@ TEST_CASE("a_state_of_rest_has_the_same_bits_for_every_number_of_threads") {
     }
   }
 }
+
+TEST_CASE("a_mechanism_is_held_where_no_load_drives_it_and_changes_no_force") {
+  // A triangle held at two discs; a fourth disc above, on one contact without tangential spring: it may slide sideways.
+  Assembly truss;
+  truss.kind = "truss";
+  truss.centres = {{0, 0}, {1, 0}, {0.5, std::sqrt(0.75)}, {0.5, std::sqrt(0.75) + 1}};
+  truss.radii.assign(4, 0.5);
+  for (const auto& [i, j] : {std::pair{0, 1}, {1, 2}, {0, 2}, {2, 3}})
+    truss.contacts.push_back({.i = i, .j = j, .lever_i = 0.5, .lever_j = 0.5});
+  for (std::int32_t disc = 0; disc < 4; ++disc) truss.groups[std::to_string(disc)] = {{disc}, {}};
+  const ContactSprings springs(SpringConstants{1e9, 0});
+  const std::vector<Support> supports{{.group = "0", .ux = 0.0, .uy = 0.0, .rotation = {}},
+                                      {.group = "1", .ux = 0.0, .uy = 0.0, .rotation = {}}};
+  const EquilibriumOptions hold{.solver = {}, .mechanisms = Mechanisms::hold};
+  const EquilibriumSolver solver(truss, springs, supports, hold);
+
+  const Equilibrium along = solver.solve({{.group = "3", .force = {0, -7}}});
+  CHECK(along.mechanisms == 1);
+  CHECK(along.contact_forces[3].normal == Approx(-7).epsilon(1e-12));
+  CHECK(along.contact_forces[1].normal == Approx(-7 / std::sqrt(3)).epsilon(1e-12));
+  const Equilibrium below = solver.solve({{.group = "2", .force = {3, 0}}});
+  CHECK(std::abs(below.contact_forces[3].normal) < 1e-12);
+  CHECK(below.contact_forces[1].normal == Approx(-3).epsilon(1e-12));
+  CHECK(below.contact_forces[2].normal == Approx(3).epsilon(1e-12));
+
+  const Refusal driven = refusal_of([&] { static_cast<void>(solver.solve({{.group = "3", .force = {1, 0}}})); });
+  CAPTURE(driven.message);
+  CHECK(driven.says("a load drives a mechanism"));
+  CHECK_THROWS_AS(EquilibriumSolver(truss, springs, supports), Error);
+}

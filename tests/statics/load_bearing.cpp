@@ -286,3 +286,30 @@ TEST_CASE("the_part_keeps_what_belongs_to_its_discs_and_contacts") {
     CHECK(k == kept.discs.size());
   }
 }
+
+TEST_CASE("loose_bodies_are_those_that_no_contact_holds_in_place") {
+  // A triangle, held at 0 and 1; beside it a disc on one contact (3), a disc on two (4), a pair that floats (5, 6), a
+  // disc alone (7), and a chain of two (8, 9).
+  const double h = std::sqrt(0.75);
+  const Assembly a =
+      discs_at({{0, 0}, {1, 0}, {0.5, h}, {-0.5, -h}, {1.5, h}, {5, 0}, {6, 0}, {9, 9}, {0.5, h + 1}, {0.5, h + 2}},
+               {{.i = 0, .j = 1},
+                {.i = 1, .j = 2},
+                {.i = 0, .j = 2},
+                {.i = 0, .j = 3},
+                {.i = 1, .j = 4},
+                {.i = 2, .j = 4},
+                {.i = 5, .j = 6},
+                {.i = 2, .j = 8},
+                {.i = 8, .j = 9}});
+  const std::vector<std::uint8_t> held{1, 1, 0, 0, 0, 0, 0, 0, 0, 0};
+  const auto left = [&](double kT, Rotation rotation) {
+    const ContactSprings springs(SpringConstants{1, kT});
+    const auto found = load_bearing_network(a, springs, derive_effects(springs, rotation), held, LeaveOut::loose);
+    return found.part ? found.part->discs : std::vector<std::int32_t>{};
+  };
+  CHECK(left(0.5, Rotation::free) == std::vector<std::int32_t>{0, 1, 2, 4});
+  CHECK(left(0, Rotation::from_scene) == std::vector<std::int32_t>{0, 1, 2, 4});
+  // A contact with kT joins a disc that cannot turn firmly.
+  CHECK(left(0.5, Rotation::restrained) == std::vector<std::int32_t>{0, 1, 2, 3, 4, 8, 9});
+}

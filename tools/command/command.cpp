@@ -38,7 +38,9 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_option("--set", options.set, "set a key of the case, as springs.kT=0.3e9; KEY=none: take it out")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
-  command.add_option("--seed", options.seed, "short for --set assembly.seed=S")->check(whole_number(0))->type_name("S");
+  command.add_option("--seed", options.seed, "short for --set assembly.seed=S, of a packing packing.seed=S")
+      ->check(whole_number(0))
+      ->type_name("S");
   command.add_flag("--dry-run", options.dry_run, "say how large the computation is, without doing it");
   add_result_options(command, options);
 }
@@ -53,15 +55,25 @@ void prepare(const CommonOptions& options) {
   set_progress_shown(!options.quiet);
 }
 
-std::vector<std::string> overrides_of(const CommonOptions& options, const std::string& seed_key) {
+/// The key that --seed sets: a packing has a seed of its own.
+static const char* seed_key(const CommonOptions& options) {
+  const TomlValue root = casefile::read_document(options.case_file, options.set);
+  const TomlValue* assembly = root.find("assembly");
+  const TomlValue* kind = assembly != nullptr && assembly->is_table() ? assembly->find("kind") : nullptr;
+  const bool packed =
+      kind != nullptr ? kind->text == "packing" : assembly == nullptr && root.find("packing") != nullptr;
+  return packed ? "packing.seed" : "assembly.seed";
+}
+
+std::vector<std::string> overrides_of(const CommonOptions& options) {
   std::vector<std::string> overrides = options.set;
-  if (options.seed) overrides.push_back(fmt::format("{}={}", seed_key, *options.seed));
+  if (options.seed) overrides.push_back(fmt::format("{}={}", seed_key(options), *options.seed));
   return overrides;
 }
 
 Case read_case(const CommonOptions& options) {
   prepare(options);
-  return read_case(options.case_file, overrides_of(options, "assembly.seed"));
+  return read_case(options.case_file, overrides_of(options));
 }
 
 void OutputPlan::expect(const std::string& name) const {

@@ -46,8 +46,8 @@ void add_require_stable(CLI::App& command, CommonOptions& options);
 
 /// Applies --threads and --quiet.
 void prepare(const CommonOptions& options);
-/// --set, and --seed as an assignment of the key.
-std::vector<std::string> overrides_of(const CommonOptions& options, const std::string& seed_key);
+/// --set, and --seed as an assignment of its key.
+std::vector<std::string> overrides_of(const CommonOptions& options);
 /// Apply threads and quiet, and read the case with its overrides.
 Case read_case(const CommonOptions& options);
 

@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/material/spring_relations.hpp"
+
+#include "left_out.hpp"
 
 namespace equidem {
 namespace {
@@ -26,6 +29,12 @@ ExpectedSize expected_size(const AssemblyCase& assembly) {
     case AssemblyKind::delaunay: {
       const auto discs = static_cast<double>(assembly.delaunay.discs);
       return {discs, std::sqrt(discs * std::min(assembly.delaunay.aspect, 1 / assembly.delaunay.aspect))};
+    }
+    case AssemblyKind::packing: {
+      const auto discs = static_cast<double>(assembly.packing->radii.size());
+      const Vec2 box = assembly.packing->box.size;
+      const double aspect = box.y > 0 ? std::min(box.x / box.y, box.y / box.x) : 1;
+      return {discs, std::sqrt(discs * aspect)};
     }
     case AssemblyKind::file:
       return {};
@@ -47,12 +56,29 @@ void require_memory_for(const Case& resolved, Purpose purpose) {
                   grouped(static_cast<std::int64_t>(size.discs))));
 }
 
+void add_left_out(Results& results, const LeftOut& left_out) {
+  if (left_out.bodies.empty()) return;
+  results.line("left out", joined(left_out.sentences, "; "));
+  results.line("", "results number the others from 0 on");
+  results.set("left_out", left_out.bodies);
+}
+
+/// Says by which tolerance contacts were found, and what a larger one would find.
+void add_found_contacts(Results& results, const Assembly& assembly) {
+  if (!assembly.gap_tolerance) return;
+  results.line("").add("gap_tolerance", "contacts where the gap is at most", *assembly.gap_tolerance,
+                       "of the sum of the radii");
+  if (!assembly.sections.empty()) return;
+  const std::string larger = suggested_tolerance(bond_counts(assembly), *assembly.gap_tolerance);
+  if (!larger.empty()) results.note("; " + larger);
+}
+
 /// Says where contacts join discs that do not just touch, as edges of a triangulation do.
 void add_gaps(Results& results, const Assembly& assembly) {
   constexpr double noticeable = 0.01;
   const GapRange gaps = gaps_at_contacts(assembly);
   results.set("largest_overlap", std::max(-gaps.smallest, 0.0)).set("largest_gap", std::max(gaps.largest, 0.0));
-  if (gaps.smallest > -noticeable && gaps.largest < noticeable) return;
+  if (assembly.gap_tolerance || (gaps.smallest > -noticeable && gaps.largest < noticeable)) return;
   results.line("");
   results.note(
       fmt::format("contacts are bonds: their discs overlap by up to {} and are up to {} apart, of the sum of "
@@ -83,6 +109,7 @@ Problem build_problem(Case resolved, std::optional<Assembly> given) {
                  "Add [test], or [[support]] and [[load]]");
   }
   Problem problem = problem_of(std::move(resolved), std::move(given));
+  leave_out_loose(problem);
   problem.supports = problem.resolved.supports;
   problem.load_cases = problem.resolved.load_cases;
   if (problem.resolved.test) {
@@ -149,7 +176,9 @@ Results problem_results(const Problem& problem, const Effects& effects, Assembly
                  "The area is that of the rectangle around the discs of equal area: the file gives no \"box\", and the "
                  "outlines of the bodies are not known.");
   }
+  add_found_contacts(results, a);
   add_gaps(results, a);
+  add_left_out(results, problem.left_out);
   results.line("springs", problem.springs.report);
   if (problem.springs.constants && keys == AssemblyKeys::all)
     results.set("kN", problem.springs.constants->kN).set("kT", problem.springs.constants->kT);

@@ -18,6 +18,12 @@
 
 namespace equidem {
 
+/// Bodies that are not solved for.
+struct LeftOut {
+  std::vector<std::int64_t> bodies;    ///< numbers in the whole assembly
+  std::vector<std::string> sentences;  ///< "3 rattlers (...) touch nothing and are left out"
+};
+
 /// The input of an EquilibriumSolver, which refers to it: it must outlive the solver and not move.
 struct Problem {
   Case resolved;
@@ -27,9 +33,15 @@ struct Problem {
   std::vector<Support> supports;
   std::vector<NamedLoads> load_cases;
   StageTimes times;  ///< of building it
+  LeftOut left_out = {};
 
+  /// Networks of chance may have mechanisms that no load moves; of lattices and triangulations one is a mistake.
   [[nodiscard]] EquilibriumOptions options() const {
-    return {.rotation = resolved.rotation, .solver = resolved.solver};
+    const AssemblyKind kind = resolved.assembly.kind;
+    const bool by_chance = kind == AssemblyKind::packing || kind == AssemblyKind::file;
+    return {.rotation = resolved.rotation,
+            .solver = resolved.solver,
+            .mechanisms = by_chance ? Mechanisms::hold : Mechanisms::refuse};
   }
 };
 

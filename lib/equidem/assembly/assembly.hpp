@@ -63,7 +63,8 @@ struct Assembly {
   std::vector<Vec2> centres;  ///< m
   std::vector<double> radii;  ///< m
   std::vector<Contact> contacts;
-  std::optional<Vec2> period;  ///< (Lx, Ly) in m of a periodic cell; none: free boundary
+  std::optional<double> gap_tolerance;  ///< by which the contacts were found (touching_discs); none: they were given
+  std::optional<Vec2> period;           ///< (Lx, Ly) in m of a periodic cell; none: free boundary
   std::optional<Rectangle>
       box;  ///< free: the region that the cells fill; none: the smallest rectangle that holds all discs
   std::vector<double> cell_areas;     ///< m², the Voronoi (power) cell of each disc, clipped to the sides where free

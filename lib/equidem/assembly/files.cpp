@@ -206,7 +206,7 @@ void refuse_repeated(const Assembly& assembly) {
                "its springs would count twice", "Remove one of them");
 }
 
-void read_contacts(const Json& file, Assembly& assembly) {
+void read_contacts(const Json& file, double gap_tolerance, Assembly& assembly) {
   if (!file.contains("contacts")) {
     for (const char* key : {"levers", "normals", "offsets", "springs"}) {
       if (!file.contains(key)) continue;
@@ -218,8 +218,13 @@ void read_contacts(const Json& file, Assembly& assembly) {
                    "Add \"contacts\"");
     }
     check(assembly);
-    assembly.contacts = touching_discs(assembly);
+    assembly.contacts = touching_discs(assembly, gap_tolerance);
+    assembly.gap_tolerance = gap_tolerance;
     return;
+  }
+  if (gap_tolerance > 0) {
+    bad_input_at("contacts", "the file gives contacts, and the case a gap_tolerance", "it is for files that give none",
+                 "Remove gap_tolerance, or the contacts");
   }
   const Json& contacts = file["contacts"];
   check_list(contacts, "contacts");
@@ -342,12 +347,12 @@ Json parse(const std::string& text) {
   }
 }
 
-Assembly assembly_of(const Json& file) {
+Assembly assembly_of(const Json& file, double gap_tolerance) {
   check_keys(file);
   Assembly assembly;
   assembly.kind = "file";
   read_discs(file, assembly);
-  read_contacts(file, assembly);
+  read_contacts(file, gap_tolerance, assembly);
   read_levers_and_springs(file, assembly);
   if (file.contains("groups")) {
     if (!file["groups"].is_object()) wrong_kind(file["groups"], "an object of groups", "groups");
@@ -366,10 +371,10 @@ std::string quoted_json(const std::string& text) {
   return Json(text).dump();
 }
 
-Assembly read_assembly(const std::filesystem::path& path) {
+Assembly read_assembly(const std::filesystem::path& path, double gap_tolerance) {
   const std::string text = read_file(path);
   try {
-    return assembly_of(parse(text));
+    return assembly_of(parse(text), gap_tolerance);
   } catch (const Error& error) {
     // "file: entry", so that the user finds both.
     const std::string where = error.where().empty() ? path.string() : path.string() + ": " + error.where();

@@ -9,7 +9,7 @@
 
 namespace equidem {
 
-/// Read an assembly. `contacts` missing: touching discs (gap at most 1e-9 of the smaller radius). The contact point
+/// Read an assembly. `contacts` missing: those of touching_discs, at least one. The contact point
 /// is the midpoint of the branch unless "levers": [[r_i, r_j], ...] is given (see Contact); off the line of
 /// centres "normals":
 /// [[n_x, n_y], ...] and "offsets": [[o_i, o_j], ...] give its place (see ContactArms); "springs": [[kN, kT], ...]
@@ -20,8 +20,8 @@ namespace equidem {
 /// the discs whose cells touch the side of that rectangle.
 /// \throws Error (bad_input) with file and, where there is one, the entry: unreadable or truncated file, missing or
 ///         unknown key,
-///         wrong type, absent disc, non-finite number, ...
-Assembly read_assembly(const std::filesystem::path& path);
+///         wrong type, absent disc, non-finite number, ...; a gap tolerance above 0 beside contacts
+Assembly read_assembly(const std::filesystem::path& path, double gap_tolerance = 0);
 
 /// Write all that read_assembly reads; numbers in the shortest form that reads back to the same bits.
 void write_assembly(const std::filesystem::path& path, const Assembly& assembly, bool overwrite);

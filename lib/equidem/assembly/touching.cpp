@@ -14,15 +14,16 @@ namespace equidem {
 namespace {
 
 /// Gaps up to this share of the smaller radius are rounding of the centres.
-constexpr double largest_gap = 1e-9;
+constexpr double rounding_gap = 1e-9;
 /// Discs wider than this many periods are taken for a mistake.
 constexpr int most_periods = 16;
 
 /// Discs sorted into squares at least one largest diameter wide, so that touching discs lie in squares that touch.
 class Grid {
  public:
-  explicit Grid(const Assembly& assembly) : assembly_(assembly) {
-    const double reach = 2 * (1 + largest_gap) * *std::max_element(assembly.radii.begin(), assembly.radii.end());
+  Grid(const Assembly& assembly, double gap_tolerance) : assembly_(assembly) {
+    const double reach = 2 * (1 + std::max(gap_tolerance, rounding_gap)) *
+                         *std::max_element(assembly.radii.begin(), assembly.radii.end());
     low_ = high_ = assembly.centres.front();
     for (const Vec2 x : assembly.centres) {
       low_ = {std::min(low_.x, x.x), std::min(low_.y, x.y)};
@@ -142,8 +143,8 @@ class Grid {
 
 }  // namespace
 
-std::vector<Contact> touching_discs(const Assembly& assembly) {
-  const Grid grid(assembly);
+std::vector<Contact> touching_discs(const Assembly& assembly, double gap_tolerance) {
+  const Grid grid(assembly, gap_tolerance);
   std::vector<Contact> contacts;
   for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
     const std::size_t first = contacts.size();
@@ -152,8 +153,8 @@ std::vector<Contact> touching_discs(const Assembly& assembly) {
       if (std::tuple(i, 0, 0) >= std::tuple(j, shift_x, shift_y)) return;
       Contact contact{.i = i, .j = j, .shift_x = shift_x, .shift_y = shift_y};
       const double distance = norm(assembly.branch(contact));
-      const double gap = distance - assembly.radii[i] - assembly.radii[j];
-      if (gap > largest_gap * std::min(assembly.radii[i], assembly.radii[j])) return;
+      const double ri = assembly.radii[i], rj = assembly.radii[j];
+      if (distance - ri - rj > std::max(rounding_gap * std::min(ri, rj), gap_tolerance * (ri + rj))) return;
       contact.lever_i = contact.lever_j = 0.5 * distance;
       contacts.push_back(contact);
     });
@@ -163,6 +164,63 @@ std::vector<Contact> touching_discs(const Assembly& assembly) {
               });
   }
   return contacts;
+}
+
+std::vector<BondCount> bond_counts(std::span<const double> gaps, std::size_t bodies) {
+  std::vector<BondCount> counts;
+  for (const double tolerance : {0.0, 0.01, 0.02, 0.05, 0.1, 0.2, largest_counted_gap}) {
+    const std::int64_t found = std::ranges::count_if(gaps, [&](double gap) { return gap <= tolerance; });
+    counts.push_back({tolerance, found, 2 * static_cast<double>(found) / static_cast<double>(bodies)});
+  }
+  return counts;
+}
+
+std::vector<BondCount> bond_counts(const Assembly& discs) {
+  std::vector<double> gaps;
+  for (const Contact& c : touching_discs(discs, largest_counted_gap)) {
+    const double sum = discs.radii[static_cast<std::size_t>(c.i)] + discs.radii[static_cast<std::size_t>(c.j)];
+    const double gap = norm(discs.branch(c)) / sum - 1;
+    gaps.push_back(gap <= rounding_gap ? std::min(gap, 0.0) : gap);
+  }
+  return bond_counts(gaps, discs.size());
+}
+
+std::string suggested_tolerance(std::span<const BondCount> counts, double tolerance) {
+  constexpr double wanted = 4;
+  const BondCount* best = nullptr;
+  std::int64_t now = 0;
+  for (const BondCount& count : counts) {
+    if (count.gap_tolerance <= tolerance) {
+      now = count.contacts;
+    } else if (best == nullptr || best->coordination < wanted) {
+      best = &count;
+    }
+  }
+  if (best == nullptr || best->contacts <= now) return {};
+  return fmt::format("gap_tolerance = {} would find {} (z = {:.3g})", best->gap_tolerance,
+                     counted(best->contacts, "contact"), best->coordination);
+}
+
+void check_found_contacts(const Assembly& assembly) {
+  if (!assembly.gap_tolerance) return;
+  // The edges of a triangulation of many points in the plane: six of each.
+  constexpr double most = 6;
+  const double tolerance = *assembly.gap_tolerance, coordination = assembly.coordination_number();
+  if (assembly.contacts.empty()) {
+    const std::string larger = suggested_tolerance(bond_counts(assembly), tolerance);
+    bad_input(fmt::format("no two of the {} are within a gap of {} of the sum of their radii",
+                          counted(std::ssize(assembly.centres), "body", "bodies"), tolerance),
+              "without contacts nothing resists a deformation",
+              larger.empty() ? "Pack them denser, or correct the radii" : "Larger: " + larger);
+  }
+  if (tolerance == 0 || coordination <= most) return;
+  std::string smaller = "Take a smaller one";
+  for (const BondCount& count : bond_counts(assembly))
+    if (count.coordination <= most && count.gap_tolerance < tolerance)
+      smaller = fmt::format("Smaller: gap_tolerance = {} finds {} (z = {:.3g})", count.gap_tolerance,
+                            counted(count.contacts, "contact"), count.coordination);
+  bad_input(fmt::format("a gap tolerance of {} joins each body to {:.3g} others", tolerance, coordination),
+            "above six contacts cross: they join bodies with others between them", smaller);
 }
 
 }  // namespace equidem

@@ -61,7 +61,9 @@ rest is below. An example:
 
 constexpr const char* pack_example =
     R"(
-Discs that fill a box, for 'equidem pack': a case with [packing] in place of [assembly]. An example:
+Bodies that fill a box, for 'equidem pack'. With [assembly] kind = "packing" beside them, [packing]
+and [settling] make an assembly for every verb, with the springs of [springs] or [material]. An
+example:
 
   schema = "equidem/1"
   [packing]
@@ -99,11 +101,12 @@ struct Part {
   const char* introduction;
   const casefile::FileSpec& spec;
   bool describes_top = false;
-  std::vector<std::string_view> left_out = {};  ///< tables that an earlier part describes
+  std::vector<std::string_view> left_out = {};  ///< tables that another part describes
 };
 
 std::vector<Part> parts() {
-  return {{"Assemblies of discs", case_help, casefile::case_file().spec(), true},
+  const std::vector<std::string_view> packing = {"packing", "packing.shape", "packing.radii", "settling"};
+  return {{"Assemblies of discs", case_help, casefile::case_file().spec(), true, packing},
           {"Bodies that collide", grain_example, casefile::grain_file().spec(), false, {"schedule", "output"}},
           {"Packings", pack_example, pack_file_spec()},
           {"Studies", study_example, study_file_spec()}};

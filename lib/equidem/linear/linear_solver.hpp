@@ -74,4 +74,10 @@ struct SolveEstimate {
   double operations = 0;  ///< additions and multiplications
 };
 
+/// Treatment of zero-energy modes.
+enum class Mechanisms {
+  refuse,  ///< an Error that names it
+  hold,    ///< hold as many unknowns as there are such motions: FactorReport::zero_pivots
+};
+
 }  // namespace equidem

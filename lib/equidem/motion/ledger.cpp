@@ -32,7 +32,7 @@ constexpr ListedTerm all_terms[] = {
     {{"lost_dashpot", "normal dashpots", lost, &EnergyLedger::lost_dashpot}, colliding},
     {{"lost_slip", "slip", lost, &EnergyLedger::lost_slip}, colliding},
     {{"lost_tangential_dashpot", "tangential dashpots", lost, &EnergyLedger::lost_tangential_dashpot}, colliding},
-    {{"lost_release", "springs let go", lost, &EnergyLedger::lost_release}, colliding},
+    {{"lost_release", "released when contacts opened", lost, &EnergyLedger::lost_release}, colliding},
     {{"lost_bond", "bonds", lost, &EnergyLedger::lost_bond}, colliding},
     {{"work_of_loads", "loads", work, &EnergyLedger::work_of_loads}, bonded},
     {{"work_of_supports", "supports", work, &EnergyLedger::work_of_supports}, bonded},

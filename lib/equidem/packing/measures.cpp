@@ -60,7 +60,7 @@ std::vector<char> rattlers_of(const std::vector<std::vector<std::int32_t>>& part
   return out;
 }
 
-std::vector<PackingContact> contacts_of(const GrainPacking& packing) {
+std::vector<PackingContact> contacts_of(const GrainPacking& packing, double gap_tolerance) {
   std::vector<PackingContact> contacts;
   std::vector<Outline> outlines;
   std::vector<Circle> circles;
@@ -68,7 +68,11 @@ std::vector<PackingContact> contacts_of(const GrainPacking& packing) {
     outlines.push_back(outline_of(grain, packing.clumps));
     circles.push_back({grain.position, grain.radius});
   }
-  const double margin = touching_gap * *std::max_element(packing.radii.begin(), packing.radii.end());
+  const auto gap_of = [&](double r, double s) {
+    return std::max(touching_gap * std::min(r, s), gap_tolerance * (r + s));
+  };
+  const double largest = *std::max_element(packing.radii.begin(), packing.radii.end());
+  const double margin = gap_of(largest, largest);
   const auto whole = [](double shift, double period) {
     return period > 0 ? static_cast<std::int32_t>(std::lround(shift / period)) : 0;
   };
@@ -77,7 +81,7 @@ std::vector<PackingContact> contacts_of(const GrainPacking& packing) {
     const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
     if (packing.body_of(i) == packing.body_of(j) && pair.shift == Vec2{}) continue;
     const Vec2 branch = circles[j].centre + pair.shift - circles[i].centre;
-    const double gap = touching_gap * std::min(radius_of(packing, pair.i), radius_of(packing, pair.j));
+    const double gap = gap_of(radius_of(packing, pair.i), radius_of(packing, pair.j));
     for_touches(outlines[i], outlines[j], branch, gap, [&](const Touch& touch) {
       // Midway between the points of the two surfaces, then nearer to the smaller one.
       const Vec2 middle = 0.5 * (touch.arm_i + touch.arm_j + branch);
@@ -88,13 +92,24 @@ std::vector<PackingContact> contacts_of(const GrainPacking& packing) {
   }
   for (std::size_t k = 0; k < circles.size(); ++k) {
     const auto grain = static_cast<std::int32_t>(k);
-    for_wall_touches(outlines[k], circles[k].centre, packing.box, touching_gap * radius_of(packing, grain),
+    for_wall_touches(outlines[k], circles[k].centre, packing.box,
+                     std::max(touching_gap, gap_tolerance) * radius_of(packing, grain),
                      [&](int wall, const Touch& touch) {
                        contacts.push_back({grain, ~wall, 0, 0, touch.overlap, touch.normal,
                                            touch.arm_i - touch.overlap * touch.normal});
                      });
   }
   return contacts;
+}
+
+std::vector<BondCount> bond_counts(const GrainPacking& packing) {
+  std::vector<double> gaps;
+  for (const PackingContact& contact : contacts_of(packing, largest_counted_gap)) {
+    if (contact.j < 0) continue;
+    const double r = radius_of(packing, contact.i), s = radius_of(packing, contact.j);
+    gaps.push_back(-contact.overlap <= touching_gap * std::min(r, s) ? 0 : -contact.overlap / (r + s));
+  }
+  return bond_counts(gaps, packing.size());
 }
 
 Region measured_region(const GrainPacking& packing) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "equidem/assembly/touching.hpp"
 #include "equidem/grains/scene/clipped_area.hpp"
 #include "equidem/packing/packing.hpp"
 
@@ -24,9 +25,13 @@ struct PackingContact {
   Vec2 arm_i;
 };
 
-/// All pairs that overlap or whose gap is at most 1e-8 of the smaller radius; i < j, ordered. The grains of a bonded
-/// pair do not touch each other.
-std::vector<PackingContact> contacts_of(const GrainPacking& packing);
+/// All pairs that overlap, or whose gap is at most `gap_tolerance` times the sum of the radii of the two bodies, of the
+/// body where the other is a wall; 0: at most 1e-8 of the smaller radius; i < j, ordered. The grains of a bonded pair
+/// do not touch each other.
+std::vector<PackingContact> contacts_of(const GrainPacking& packing, double gap_tolerance = 0);
+
+/// Contacts between bodies that gap tolerances would find (assembly/touching.hpp).
+std::vector<BondCount> bond_counts(const GrainPacking& packing);
 
 /// 1 for the bodies that are left out where those with fewer than `needed` contacts are removed, one after another.
 /// \param partners of each body, one for each contact; negative: a wall

@@ -81,8 +81,8 @@ Rectangle outline_of_all(const GrainPacking& packing) {
 }
 
 /// The contacts of bodies instead of grains: i and j name bodies, arms begin at their centres.
-std::vector<PackingContact> contacts_of_bodies(const GrainPacking& packing) {
-  std::vector<PackingContact> contacts = contacts_of(packing);
+std::vector<PackingContact> contacts_of_bodies(const GrainPacking& packing, double gap_tolerance) {
+  std::vector<PackingContact> contacts = contacts_of(packing, gap_tolerance);
   for (PackingContact& contact : contacts) {
     const auto i = static_cast<std::size_t>(contact.i);
     contact.arm_i += place_in_body(packing, i);
@@ -93,7 +93,7 @@ std::vector<PackingContact> contacts_of_bodies(const GrainPacking& packing) {
 }
 
 /// \param found between bodies of the assembly
-void add_contact(PackingShape::Kind shape, const PackingContact& found, const SpringConstants& springs,
+void add_contact(PackingShape::Kind shape, const PackingContact& found, const std::optional<SpringConstants>& springs,
                  Assembly& assembly) {
   Contact contact{.i = found.i, .j = found.j, .shift_x = found.shift_x, .shift_y = found.shift_y};
   const Vec2 branch = assembly.branch(contact);
@@ -110,8 +110,9 @@ void add_contact(PackingShape::Kind shape, const PackingContact& found, const Sp
     assembly.contact_arms.push_back({n, offset(found.arm_i), offset(rest)});
   }
   assembly.contacts.push_back(contact);
-  assembly.contact_kN.push_back(springs.kN);
-  assembly.contact_kT.push_back(springs.kT);
+  if (!springs) return;
+  assembly.contact_kN.push_back(springs->kN);
+  assembly.contact_kT.push_back(springs->kT);
 }
 
 /// Force and moment that a body lacks to be in balance.
@@ -152,22 +153,23 @@ std::vector<char> held_by_two(const std::vector<PackingContact>& contacts, std::
 
 }  // namespace
 
-Assembly network_of(const GrainPacking& packing, const SpringConstants& springs) {
+Assembly network_of(const GrainPacking& packing, const NetworkOptions& options) {
   Assembly assembly;
   assembly.kind = "packing";
+  assembly.gap_tolerance = options.gap_tolerance;
   for (std::size_t k = 0; k < packing.size(); ++k) add_body(packing, k, centre_of(packing, k), assembly);
   if (packing.box.periodic()) {
     assembly.period = packing.box.size;
   } else if (packing.shape != PackingShape::Kind::disc) {
     assembly.box = outline_of_all(packing);
   }
-  for (const PackingContact& found : contacts_of_bodies(packing))
-    if (found.j >= 0) add_contact(packing.shape, found, springs, assembly);
+  for (const PackingContact& found : contacts_of_bodies(packing, options.gap_tolerance))
+    if (found.j >= 0) add_contact(packing.shape, found, options.springs, assembly);
   return assembly;
 }
 
-HeldNetwork held_network_of(const GrainPacking& packing, const SpringConstants& springs) {
-  const auto contacts = contacts_of_bodies(packing);
+HeldNetwork held_network_of(const GrainPacking& packing, const NetworkOptions& options) {
+  const auto contacts = contacts_of_bodies(packing, options.gap_tolerance);
   const std::vector<char> held = held_by_two(contacts, packing.size());
   HeldNetwork result;
   Assembly& assembly = result.assembly;
@@ -196,7 +198,7 @@ HeldNetwork held_network_of(const GrainPacking& packing, const SpringConstants& 
       found.j = mirror->second;
     }
     found.i = number[i];
-    add_contact(packing.shape, found, springs, assembly);
+    add_contact(packing.shape, found, options.springs, assembly);
   }
   if (!walls.discs.empty()) assembly.groups["walls"] = walls;
   return result;
@@ -206,7 +208,7 @@ namespace {
 
 void confirm_by_statics(const GrainPacking& packing, const SettlingOptions& options, RestConfirmation& result) {
   const std::vector<Lack> lacks = lacks_of(packing, options.gravity);
-  HeldNetwork network = held_network_of(packing, options.springs);
+  HeldNetwork network = held_network_of(packing, {.springs = options.springs});
   Assembly& assembly = network.assembly;
   result.left_out = static_cast<std::int64_t>(packing.size() - network.bodies.size());
   for (const GrainContact& contact : packing.contacts)

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,13 @@
 
 namespace equidem {
 
-/// The bodies and the contacts between them with the springs given.
-Assembly network_of(const GrainPacking& packing, const SpringConstants& springs);
+struct NetworkOptions {
+  std::optional<SpringConstants> springs = {};  ///< of every contact; none: left to the user of the network
+  double gap_tolerance = 0;                     ///< of contacts_of
+};
+
+/// The bodies and the contacts between them.
+Assembly network_of(const GrainPacking& packing, const NetworkOptions& options);
 
 /// The network with walls as supports.
 struct HeldNetwork {
@@ -30,7 +36,7 @@ struct HeldNetwork {
   Assembly assembly;
   std::vector<std::int32_t> bodies;  ///< of the packing: the first of the assembly
 };
-HeldNetwork held_network_of(const GrainPacking& packing, const SpringConstants& springs);
+HeldNetwork held_network_of(const GrainPacking& packing, const NetworkOptions& options);
 
 /// The contact network of a packing at rest, for statics.
 struct RestConfirmation {

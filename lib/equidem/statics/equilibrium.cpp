@@ -8,6 +8,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/internal_force.hpp"
+#include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/rigidity.hpp"
 #include "equidem/statics/solver_choice.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
@@ -88,6 +89,7 @@ struct EquilibriumSolver::Implementation {
 
   StiffnessSolver build(std::span<const Support> supports);
   [[nodiscard]] Equilibrium solve(const LoadCase& loads) const;
+  void check_mechanisms(const RightHandSide& given, Equilibrium& result) const;
   void bound_error(const RightHandSide& given, const Solution& solution, Equilibrium& result) const;
   void describe_state(std::span<const double> f, const PreciseMotion& motion, Equilibrium& result) const;
 };
@@ -102,7 +104,7 @@ StiffnessSolver EquilibriumSolver::Implementation::build(std::span<const Support
               "Add discs that touch it");
   }
   times.add("check", watch.lap());
-  return {assembly, springs, std::move(graph), std::move(unknowns), options.solver, Mechanisms::refuse, times};
+  return {assembly, springs, std::move(graph), std::move(unknowns), options.solver, options.mechanisms, times};
 }
 
 Equilibrium EquilibriumSolver::Implementation::solve(const LoadCase& loads) const {
@@ -113,6 +115,7 @@ Equilibrium EquilibriumSolver::Implementation::solve(const LoadCase& loads) cons
   RightHandSide given;
   given.force = assemble_loads(assembly, unknowns, loads);
   check_inert_loads(assembly, unknowns, given.force);
+  check_mechanisms(given, result);
   given.prescribed = unknowns.prescribed;
   Solution solution = std::move(solver.solve({&given, 1}, result.times).front());
   Stopwatch watch;
@@ -136,6 +139,33 @@ Equilibrium EquilibriumSolver::Implementation::solve(const LoadCase& loads) cons
   result.factor_nonzeros = report.nonzeros;
   result.factor_bytes = report.bytes;
   return result;
+}
+
+/// A mechanism deforms no contact: prescribed motions do no work on it, loads may.
+void EquilibriumSolver::Implementation::check_mechanisms(const RightHandSide& given, Equilibrium& result) const {
+  constexpr std::int64_t most = 1000;
+  constexpr double negligible = 1e-8;  // over the size of the terms: what rounding leaves where loads balance
+  result.mechanisms = solver.factor().report().zero_pivots;
+  const auto description = [&](std::int64_t k) {
+    return describe_motion(assembly, disc_motions(solver.unknowns(), solver.factor().null_motion(k)));
+  };
+  if (result.mechanisms > 0) result.first_mechanism = description(0);
+  if (result.mechanisms > most) {
+    bad_input(fmt::format("the assembly is floppy: it has {} mechanisms", result.mechanisms),
+              fmt::format("it can move at no cost: {}", result.first_mechanism),
+              "Add contacts, or give the contacts tangential springs (kT > 0)");
+  }
+  for (std::int64_t k = 0; k < result.mechanisms; ++k) {
+    const std::vector<double> motion = solver.factor().null_motion(k);
+    double work = 0, size = 0;
+    for (std::size_t e = 0; e < motion.size(); ++e) {
+      work += motion[e] * given.force[e];
+      size += std::abs(motion[e] * given.force[e]);
+    }
+    if (std::abs(work) <= negligible * size) continue;
+    bad_input("a load drives a mechanism", fmt::format("it moves the assembly at no cost: {}", description(k)),
+              "Hold that motion by a support, add contacts, or take the load off those discs");
+  }
 }
 
 void EquilibriumSolver::Implementation::bound_error(const RightHandSide& given, const Solution& solution,

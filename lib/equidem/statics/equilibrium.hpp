@@ -48,8 +48,10 @@ struct Equilibrium {
   /// unstable motions. 0: the equilibrium is statically stable; -1: the solver does not
   /// determine it.
   std::int64_t unstable_modes = 0;
-  double pivot_growth = 0;     ///< largest |L_ij| of the factorization
-  double factor_nonzeros = 0;  ///< entries of L
+  std::int64_t mechanisms = 0;  ///< that are held
+  std::string first_mechanism;  ///< description; empty where there is none
+  double pivot_growth = 0;      ///< largest |L_ij| of the factorization
+  double factor_nonzeros = 0;   ///< entries of L
   double factor_bytes = 0;
   std::string solver;  ///< the back end and factorization used
   StageTimes times;    ///< assembly of K, ordering, analysis, factorization, solve, refinement, ...
@@ -64,6 +66,8 @@ struct EquilibriumOptions {
   Rotation rotation = Rotation::from_scene;
   SolverOptions solver;
   bool error_bound = false;  ///< estimate the condition of K: two more solves
+  /// hold: up to 1000 mechanisms stay as they are where no load does work on them
+  Mechanisms mechanisms = Mechanisms::refuse;
 };
 
 /// A factorized stiffness matrix of an assembly with its supports: any number of load cases, one factorization.

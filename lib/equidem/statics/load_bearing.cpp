@@ -54,14 +54,15 @@ bool turns_rigidly(const Assembly& assembly, const ContactSprings& springs, cons
 class Pruning {
  public:
   Pruning(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
-          const std::vector<std::uint8_t>& held)
+          const std::vector<std::uint8_t>& held, LeaveOut which)
       : assembly_(assembly),
         springs_(springs),
         rotation_(effects.rotation),
         held_(held),
         anchored_(assembly.periodic() ||
                   std::any_of(held.begin(), held.end(), [](std::uint8_t value) { return value != 0; })),
-        cut_at_discs_(turns_rigidly(assembly, springs, effects)),
+        only_loose_(which == LeaveOut::loose),
+        cut_at_discs_(!only_loose_ && turns_rigidly(assembly, springs, effects)),
         graph_(assembly),
         fate_(assembly.size(), Fate::left),
         contacts_left_(assembly.size()) {
@@ -101,6 +102,7 @@ class Pruning {
   /// rows allow two contacts at most.
   [[nodiscard]] bool carries_nothing(std::size_t disc) const {
     if (contacts_left_[disc] > 2 || is_held(disc)) return false;
+    if (only_loose_) return contacts_left_[disc] < 2 && is_loosely_joined(disc);
     if (!assembly_.contact_arms.empty()) return off_line_carries_nothing(disc);
     Vec2 normals[2];
     int count = 0;
@@ -114,6 +116,20 @@ class Pruning {
       if (springs_[edge.contact].kT != 0) tangential += rotation_ && lever > 0 ? 1 : 2;
     }
     return count < 2 || (tangential < 2 && std::abs(cross(normals[0], normals[1])) > round_off);
+  }
+
+  /// Whether a contact as the only one between two parts lets them turn or slide.
+  [[nodiscard]] bool is_loose(std::int32_t contact) const {
+    return rotation_ || springs_[static_cast<std::size_t>(contact)].kT == 0;
+  }
+
+  /// Of a disc with one contact left, or none.
+  [[nodiscard]] bool is_loosely_joined(std::size_t disc) const {
+    for (const auto& edge : graph_.of(disc)) {
+      if (!left(edge.other)) continue;
+      return static_cast<std::size_t>(edge.other) != disc && is_loose(edge.contact);
+    }
+    return true;
   }
 
   /// As above, with the columns (n, -offset) and (s, lever).
@@ -248,7 +264,8 @@ class Pruning {
     std::int32_t core = 0;
     for (std::int32_t k = 1; k < end;) {
       const Step& step = steps_[k];
-      const bool parts = step.low > step.parent || (cut_at_discs_ && step.low == step.parent);
+      const bool by_one = step.low > step.parent && (!only_loose_ || is_loose(step.contact));
+      const bool parts = by_one || (cut_at_discs_ && step.low == step.parent);
       if (parts && step.anchors == 0) {
         leave_out_steps(k, k + step.size, Fate::dangling);
         k += step.size;
@@ -293,6 +310,7 @@ class Pruning {
     LoadBearingNetwork::Part result{{}, springs_, {}, {}};
     Assembly& rest = result.assembly;
     rest.kind = whole.kind;
+    rest.gap_tolerance = whole.gap_tolerance;
     rest.period = whole.period;
     rest.box = whole.box;
     std::vector<std::int32_t> number(whole.size(), -1);
@@ -342,6 +360,7 @@ class Pruning {
   bool rotation_;
   const std::vector<std::uint8_t>& held_;
   bool anchored_;      ///< the period or held discs can load the network
+  bool only_loose_;    ///< LeaveOut::loose
   bool cut_at_discs_;  ///< what a single disc joins to the rest can follow it
   ContactGraph graph_;
   std::vector<Fate> fate_;
@@ -356,8 +375,8 @@ class Pruning {
 }  // namespace
 
 LoadBearingNetwork load_bearing_network(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
-                                        const std::vector<std::uint8_t>& held) {
-  return Pruning(assembly, springs, effects, held).prune();
+                                        const std::vector<std::uint8_t>& held, LeaveOut which) {
+  return Pruning(assembly, springs, effects, held, which).prune();
 }
 
 std::int64_t count_self_stresses(const Assembly& assembly, const ContactSprings& springs, std::int64_t unknowns,

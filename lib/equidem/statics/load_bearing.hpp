@@ -53,11 +53,21 @@ struct LoadBearingNetwork {
   std::optional<Part> part;
 };
 
+/// What is left out.
+enum class LeaveOut {
+  unloaded,  ///< all that carries no force, as above
+  /// Of that only what no contact holds in place under loads: rattlers, floating pieces, and what a single contact
+  /// joins to the rest that lets it turn or slide (rotation is free, or its kT = 0). Motions of all others are
+  /// determined.
+  loose,
+};
+
 /// In a time proportional to the contacts (once more for every time that leaving out discs with two contacts lets
 /// others dangle).
 /// \param held per disc, 1: held or loaded from outside, never left out (a sample between boundaries); empty: none
 LoadBearingNetwork load_bearing_network(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
-                                        const std::vector<std::uint8_t>& held = {});
+                                        const std::vector<std::uint8_t>& held = {},
+                                        LeaveOut which = LeaveOut::unloaded);
 
 /// Maxwell & Calladine: independent states of self-stress = constraints - unknowns + motions without energy, a
 /// constraint being a stretch or, where kT != 0, a slip.

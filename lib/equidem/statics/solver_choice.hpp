@@ -29,12 +29,6 @@ SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& u
 ///         where it is 0
 void check_memory(const SolveEstimate& estimate, double memory_limit);
 
-/// Treatment of zero-energy modes.
-enum class Mechanisms {
-  refuse,  ///< an Error that names it
-  hold,    ///< hold as many unknowns as there are such motions: FactorReport::zero_pivots, Factorization::null_motion
-};
-
 /// Cholesky where no spring is negative, else L D L^T with delayed pivots, unless the user names a method. A
 /// factorization that breaks down, or whose softest motion costs no energy, means a mechanism.
 /// \throws Error (bad_input) naming the mechanism; (computation_failed) where the chosen method cannot factorize K, or

@@ -121,7 +121,7 @@ void add_anisotropy(Results& out, const Matrix3& stiffness, double anisotropy) {
                                      shown(axes.two_directions), percent(axes.two_axes)));
   }
   if (anisotropy > visible_anisotropy && !directions.empty())
-    out.line("", "stretch meets more stiffness " + joined(directions, ", and "));
+    out.line("", "stiffest " + joined(directions, ", and "));
   out.set("stiffness_axes", Results()
                                 .set("one_axis", axes.one_axis)
                                 .set("one_direction", axes.one_direction)

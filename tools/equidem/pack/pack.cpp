@@ -40,9 +40,9 @@ void write_files(const CommonOptions& common, const PackCase& resolved, const Gr
     write_grain_csv(folder / "grains.csv", {packing.grains, packing.clumps, groups, densities}, common.overwrite);
     if (!packing.bonds.empty()) write_bond_csv(folder / "bonds.csv", packing.bonds, {}, common.overwrite);
   }
-  write_assembly(folder / "assembly.json", network_of(packing, settling.springs), common.overwrite);
+  write_assembly(folder / "assembly.json", network_of(packing, resolved.network), common.overwrite);
   if (!packing.box.periodic()) {
-    const HeldNetwork held = held_network_of(packing, settling.springs);
+    const HeldNetwork held = held_network_of(packing, resolved.network);
     if (!held.bodies.empty()) write_assembly(folder / "assembly_with_walls.json", held.assembly, common.overwrite);
   }
   if (resolved.picture) {
@@ -74,7 +74,7 @@ auto located(const PackCase& resolved, const char* key, const Task& task) {
 
 int run(const CommonOptions& common) {
   prepare(common);
-  const PackCase resolved = read_pack_case(common.case_file, overrides_of(common, "packing.seed"));
+  const PackCase resolved = read_pack_case(common.case_file, overrides_of(common));
   check_outputs(common, resolved);
   if (common.dry_run) {
     const Results estimate = located(resolved, "method", [&] { return pack_estimate_results(resolved); });
@@ -103,7 +103,6 @@ int run(const CommonOptions& common) {
 Run declare_pack(CLI::App& command) {
   auto common = std::make_shared<CommonOptions>();
   add_common_options(command, *common);
-  command.get_option("--seed")->description("short for --set packing.seed=S");
   command.footer(
       "With --out: grains.csv for 'equidem run', and assembly.json, the contacts with their springs for homogenize,\n"
       "stability, calibrate and solve; where walls hold the bodies also assembly_with_walls.json, whose group "

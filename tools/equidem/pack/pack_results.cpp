@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "equidem/core/text.hpp"
+#include "equidem/packing/network.hpp"
 
 #include "problem.hpp"
 
@@ -49,11 +50,24 @@ void add_rest(Results& out, const GrainPacking& packing, const RestConfirmation&
       .add("largest_bond_slip", "surfaces slipped by", bonds.slip.largest, "at most", {.digits = 2});
 }
 
+/// The contacts of the assembly that is written, and those of other tolerances.
+void add_bonds(Results& out, const GrainPacking& packing, double gap_tolerance) {
+  const auto bonds = static_cast<std::int64_t>(network_of(packing, {.gap_tolerance = gap_tolerance}).contacts.size());
+  out.line("bonds")
+      .add("bonds", "", bonds, "in the assembly", {Shown::count})
+      .note(fmt::format(", z = {:.3g}; ", 2 * static_cast<double>(bonds) / static_cast<double>(packing.size())))
+      .add("gap_tolerance", "gap_tolerance =", gap_tolerance);
+  std::vector<std::string> others;
+  for (const BondCount& count : bond_counts(packing))
+    if (count.gap_tolerance > 0)
+      others.push_back(fmt::format("{}: {} (z = {:.3g})", count.gap_tolerance, count.contacts, count.coordination));
+  out.line("", "with other values of it: " + joined(others));
+}
+
 }  // namespace
 
 Results pack_case_results(const PackCase& resolved) {
   const PackingOptions& options = resolved.packing;
-  const SpringConstants& springs = options.settling.springs;
   const auto [low, high] = std::ranges::minmax(options.radii);
   const bool open = options.box.sides == PackingBox::Sides::open_top;
   Results out;
@@ -67,6 +81,8 @@ Results pack_case_results(const PackCase& resolved) {
                                      name_of(options.box.sides)));
   out.line("method", to_string(options.method));
   add_effects(out, {});
+  if (!resolved.network.springs) return out;
+  const SpringConstants& springs = *resolved.network.springs;
   return out.line("springs").add("", "kN =", springs.kN, "Pa").add("", "kT =", springs.kT, "Pa");
 }
 
@@ -97,7 +113,7 @@ Results packing_results(const PackCase& resolved, const GrainPacking& packing, c
   if (!packing.complete) {
     out.line("packed", packing.size() < options.radii.size()
                            ? fmt::format("{} of {}", packing.size(), options.radii.size())
-                           : fmt::format("radii {:.6g} of those asked for", packing.radii[0] / options.radii[0]));
+                           : fmt::format("all radii scaled by {:.6g}", packing.radii[0] / options.radii[0]));
   }
   const Region& region = measures.region;
   out.line("solid fraction")
@@ -115,6 +131,7 @@ Results packing_results(const PackCase& resolved, const GrainPacking& packing, c
       .add("coordination_number_without_rattlers", "", measures.coordination_without_rattlers, "without", {.digits = 4})
       .note(" ")
       .add("rattlers", "", measures.rattlers, "rattler", {Shown::count});
+  add_bonds(out, packing, resolved.network.gap_tolerance);
   out.line("overlap").add("largest_overlap", "at most", measures.largest_overlap, "of the smaller radius",
                           {.digits = 3});
   if (!packing.contacts.empty()) add_rest(out, packing, rest, noun);

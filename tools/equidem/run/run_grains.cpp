@@ -150,7 +150,7 @@ void GrainRun::write_files(const std::filesystem::path& folder, const RunResult&
       {"lost by friction", PlotColour::purple,
        [](const EnergyLedger& l) { return l.lost_slip + l.lost_tangential_dashpot; }},
       {"lost in bonds", PlotColour::yellow, [](const EnergyLedger& l) { return l.lost_bond; }},
-      {"put in by walls", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.work_of_walls; }},
+      {"work done by walls", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.work_of_walls; }},
   };
   const GrainCase& resolved = case_;
   const std::vector<Grain> grains = simulation_.grains();

@@ -29,7 +29,7 @@ void add_sloshing(Results& out, const Sloshing& slosh) {
     out.add("sloshing/period", "strongest period of the slope", slosh.period, "s", {.digits = 4})
         .add("sloshing/from", "from t =", slosh.from, "s on", {.digits = 4})
         .add("sloshing/amplitude", "amplitude", slosh.amplitude, "", {.digits = 2})
-        .note(fmt::format(", periods from {:.3g} to {:.3g} s are one", 1 / (frequency + resolution),
+        .note(fmt::format("; periods from {:.3g} to {:.3g} s cannot be resolved", 1 / (frequency + resolution),
                           1 / std::max(1e-300, frequency - resolution)));
   } else {
     out.note("no period: " + slosh.missing).set("sloshing/period", slosh.period);

@@ -50,7 +50,7 @@ void add_energies(Results& out, const RunJob& job, BodyFamily family, Body body,
   out.line("").add("energy/initial", "at the start", l.initial);
   const double overlap = record.energies.front().ledger.elastic();
   if (overlap > 1e-6 * l.largest()) out.add("", "", overlap, "of it elastic");
-  add_terms(out, "; put in by ", family, l, EnergyRole::work);
+  add_terms(out, "; work done by ", family, l, EnergyRole::work);
   if (std::abs(l.sway) > worth_telling * l.largest()) {
     out.line("", "leapfrog lets kinetic + elastic energy sway with the motion, now by ")
         .add("energy/sway", "", l.sway, "", {.digits = 3});
@@ -58,8 +58,8 @@ void add_energies(Results& out, const RunJob& job, BodyFamily family, Body body,
   out.line("").add("energy/dissipated", "lost", l.lost());
   add_terms(out, ": ", family, l, EnergyRole::lost);
   const Balance balance = balance_of(l, record, scale);
-  out.line("balance")
-      .add("", "lacks", std::abs(balance.at_end),
+  out.line("energy balance")
+      .add("", "error", std::abs(balance.at_end),
            family == BodyFamily::bonded ? "of the largest term of the run at its end"
                                         : "of the largest term at the end of the run",
            {Shown::power, 1})
@@ -134,7 +134,7 @@ void write_energy_plot(const std::filesystem::path& folder, const std::string& n
     if (std::ranges::any_of(series.y, [](double y) { return y != 0; })) plot.series.push_back(std::move(series));
   };
   for (const EnergyCurve& curve : curves) add(curve);
-  add({"what the balance lacks", PlotColour::black, [](const EnergyLedger& l) { return l.error(); }});
+  add({"energy balance error", PlotColour::black, [](const EnergyLedger& l) { return l.error(); }});
   if (!plot.series.empty()) write_plot(folder, name, plot, overwrite);
 }
 

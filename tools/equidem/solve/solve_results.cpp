@@ -76,6 +76,14 @@ void add_tension(Results& out, const Problem& problem, const SolvedCase& result)
   };
   compare("poisson_ratio", "nu, (35)", t.poisson_ratio, theory ? theory->poisson_ratio : 0);
   compare("stiffness_ratio", "2G/((1-nu)kN)", t.stiffness_ratio, theory ? theory->stiffness_ratio : 0);
+  // e11 = s11/E in plane stress, (1 - nu²) s11/E in plane strain
+  const double nu = t.poisson_ratio, young = t.stress.xx / t.strain.xx;
+  out.line("  plane strain")
+      .add("plane_strain/poisson_ratio", "nu =", nu, "", {.digits = 9})
+      .add("plane_strain/young_modulus", "E =", (1 - nu * nu) * young, "Pa", {.digits = 9});
+  out.line("  plane stress")
+      .add("plane_stress/poisson_ratio", "nu =", nu / (1 - nu), "", {.digits = 9})
+      .add("plane_stress/young_modulus", "E =", young, "Pa", {.digits = 9});
   out.line("  whole field")
       .add("fitted_poisson_ratio", "nu =", t.fitted_poisson_ratio, "", {.digits = 9})
       .note(", fitted to the inner half of the block");
@@ -89,6 +97,14 @@ Results solver_results(const Problem& problem, const Equilibrium& e) {
       .add("solver", "", e.solver)
       .add("factor_nonzeros", "", e.factor_nonzeros, "entries in the factor", {.digits = 3})
       .add("factor_bytes", "", e.factor_bytes, "", {Shown::bytes});
+  if (e.mechanisms > 0) {
+    out.line("mechanisms")
+        .add("mechanisms", "", e.mechanisms, "motion", {Shown::count})
+        .note(fmt::format(" at no cost, on which no load does work: {}{}", e.first_mechanism,
+                          e.mechanisms > 1 ? "; ..." : ""));
+  } else {
+    out.set("mechanisms", e.mechanisms);
+  }
   out.line("stability", stability(problem, e));
   out.set("negative_pivots", known(e.negative_pivots)).set("unstable_modes", known(e.unstable_modes));
   return out.set("pivot_growth", e.pivot_growth);

@@ -2,6 +2,7 @@
 /// \file
 /// equidem sweep: solve over a range of one key.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -40,8 +41,9 @@ struct SweepOptions {
 std::vector<double> values_of(const SweepOptions& options) {
   const bool range = options.from && options.to;
   if (range == !options.values.empty() || options.from.has_value() != options.to.has_value())
-    bad_input("the values of the sweep are not clear", "either a list or a range is needed",
-              "Give --values a,b,c or --from A --to B --steps N");
+    bad_input(
+        options.values.empty() ? "the sweep is given no values" : "the sweep is given a list of values and a range",
+        "it takes either one", "Give --values a,b,c or --from A --to B --steps N");
   std::vector<double> values;
   for (const std::string& list : options.values) {
     for (const std::string_view part : parts_of(list, ',')) {
@@ -83,13 +85,14 @@ std::string override_of(const SweepOptions& options, const Case& base, double va
 class ProblemFactory {
  public:
   explicit ProblemFactory(const SweepOptions& options)
-      : reusable_(!options.key.starts_with("assembly.") && !options.key.starts_with("group.")) {}
+      : reusable_(std::ranges::none_of(std::array{"assembly.", "group.", "packing.", "settling."},
+                                       [&](const char* table) { return options.key.starts_with(table); })) {}
 
   std::unique_ptr<Problem> operator()(Case resolved) {
     std::optional<Assembly> given;
     if (reusable_ && last_) given = *last_;
     auto problem = std::make_unique<Problem>(build_problem(std::move(resolved), std::move(given)));
-    if (reusable_ && !last_) last_ = problem->assembly;
+    if (reusable_ && !last_ && problem->left_out.bodies.empty()) last_ = problem->assembly;
     return problem;
   }
 

@@ -7,12 +7,14 @@
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/files.hpp"
 #include "equidem/assembly/lattices.hpp"
+#include "equidem/assembly/touching.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/motion_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/dynamics/scene_check.hpp"
 #include "equidem/homogenize/tension_test.hpp"
+#include "equidem/packing/network.hpp"
 
 namespace equidem {
 namespace {
@@ -25,8 +27,13 @@ Assembly generate(const AssemblyCase& wanted) {
       return wanted.arrangement->make(wanted.lattice);
     case AssemblyKind::delaunay:
       return delaunay_assembly(wanted.delaunay);
+    case AssemblyKind::packing: {
+      Assembly assembly = network_of(pack(*wanted.packing), {.gap_tolerance = wanted.gap_tolerance});
+      if (!assembly.contacts.empty()) measure_cells(assembly);
+      return assembly;
+    }
     case AssemblyKind::file:
-      return read_assembly(wanted.path);
+      return read_assembly(wanted.path, wanted.gap_tolerance);
   }
   return {};
 }
@@ -98,8 +105,11 @@ void add_test(const Case& resolved, const Assembly& assembly, Scene& scene) {
 
 Assembly build_assembly(const Case& resolved) {
   const AssemblyCase& wanted = resolved.assembly;
-  Assembly assembly = with_place(resolved.where(wanted.kind == AssemblyKind::file ? "assembly.path" : "assembly"),
-                                 [&] { return generate(wanted); });
+  const bool packed = wanted.kind == AssemblyKind::packing;
+  const char* source = wanted.kind == AssemblyKind::file ? "assembly.path" : packed ? "packing.method" : "assembly";
+  Assembly assembly = with_place(resolved.where(source), [&] { return generate(wanted); });
+  with_place(resolved.where(packed ? "packing.gap_tolerance" : "assembly.gap_tolerance"),
+             [&] { check_found_contacts(assembly); });
   if (!wanted.own_springs) {
     assembly.contact_kN.clear();
     assembly.contact_kT.clear();
@@ -134,14 +144,14 @@ BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
                      : "the case file gives none, and says that those of the assembly file do not count",
                  "Add [springs] with kN and kT to the case file");
   }
+  if (own && (resolved.springs || resolved.material)) {
+    bad_input_at(resolved.where(resolved.springs ? "springs" : "material"),
+                 "the case gives springs, and so does the assembly file", "one of the two would not count",
+                 "Remove those of the case, or set assembly.own_springs = false to take them");
+  }
   const auto built = [&]() -> BuiltSprings {
-    if (own) {
-      return {contact_springs(assembly, resolved.springs.value_or(SpringConstants{}), resolved.weighting),
-              {},
-              resolved.springs || resolved.material
-                  ? "springs of the assembly file; those of the case file are not used (own_springs = false: they are)"
-                  : "springs of the assembly file"};
-    }
+    if (own)
+      return {contact_springs(assembly, {}, resolved.weighting), {}, "springs of the assembly file"};
     if (!resolved.material) {
       return {contact_springs(assembly, *resolved.springs, resolved.weighting), *resolved.springs,
               described(*resolved.springs, resolved.weighting)};

@@ -105,6 +105,10 @@ void check_contradictions(const TomlValue& root, const AssemblyCase& assembly) {
     fail_at(*root.find("assembly")->find("periodic"), "assembly.periodic", "a periodic assembly has no sides to pull",
             "[test] pulls at the left and right sides", "Set periodic = false, or remove [test]");
   }
+  if (test != nullptr && assembly.packing && assembly.packing->box.periodic()) {
+    fail_at(*root.find("packing")->find("sides"), "packing.sides", "a periodic assembly has no sides to pull",
+            "[test] pulls at the left and right sides", "Set sides = \"walls\", or remove [test]");
+  }
 }
 
 TimedSupport timed(const Support& support, const TomlValue& table, std::span<const NamedSchedule> schedules) {
@@ -157,6 +161,39 @@ void complete_run(const TomlValue& root, CaseTables& tables) {
             "each says which dashpots stand at the contacts", "Set one of them to 0");
 }
 
+/// Density that the file states for the bodies of a packing; none: it leaves the default.
+std::optional<double> stated_packing_density(const TomlValue& root) {
+  const TomlValue* packing = root.find("packing");
+  const TomlValue* density = packing != nullptr && packing->is_table() ? packing->find("density") : nullptr;
+  return density != nullptr && density->is_number() ? std::optional(density->real) : std::nullopt;
+}
+
+/// The packing of an assembly that is one: its bodies have one density, its contacts the springs of the case.
+void complete_packing(TomlValue& root, std::optional<double> stated_density, CaseTables& tables) {
+  AssemblyCase& assembly = tables.assembly;
+  assembly.gap_tolerance = tables.packing_tables.gap_tolerance;
+  assembly.region = tables.packing_tables.region;
+  PackingOptions options = packing_options(root, tables.packing_tables);
+  TomlValue& packing = *root.find("packing");
+  if (stated_density && assembly.density && *stated_density != *assembly.density)
+    fail_at(*packing.find("density"), "packing.density",
+            fmt::format("it is {} kg/m³ here and {} kg/m³ in [assembly]", *stated_density, *assembly.density),
+            "both are the density of the bodies themselves", "Remove one of them");
+  if (assembly.density) {
+    options.settling.density = *assembly.density;
+    TomlValue& shown = *packing.find("density");
+    shown.type = TomlValue::Type::real;
+    shown.real = *assembly.density;
+  }
+  if (stated_density) assembly.density = stated_density;
+  if (tables.springs) options.settling.springs = *tables.springs;
+  if (entry_of(options.method).open_top && !tables.springs)
+    fail_at(*packing.find("method"), "packing.method", "bodies fall, and the case gives no springs",
+            "they collide by kN and kT; [material] gives springs only for an assembly that is there",
+            "Give [springs], or pack by growth");
+  assembly.packing = std::move(options);
+}
+
 }  // namespace
 
 Case parse_case(std::string_view content, const std::string& name, const fs::path& folder,
@@ -165,10 +202,15 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
   if (describes_grains(root))
     bad_input_at(root.where(), "the case describes grains that collide, and this verb needs an [assembly]",
                  "its contacts are there from the start and stay", "Use 'equidem run', or give an [assembly]");
+  if (root.find("packing") != nullptr && root.find("assembly") == nullptr)
+    bad_input_at(root.where(), "the case fills a box, and this verb needs an [assembly]", "",
+                 "Use 'equidem pack', or add [assembly] with kind = \"packing\"");
   check_one_source_of_springs(root);
   resolve_springs_file(root, folder);
+  const std::optional<double> packing_density = stated_packing_density(root);
   CaseTables tables = case_file().read(root, folder);
 
+  if (tables.assembly.kind == AssemblyKind::packing) complete_packing(root, packing_density, tables);
   check_radii(*root.find("assembly"), tables.assembly.delaunay.radii);
   check_contradictions(root, tables.assembly);
   if (tables.material)

@@ -25,11 +25,13 @@
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/material/elastic_moduli.hpp"
 #include "equidem/material/inertia.hpp"
+#include "equidem/packing/measures.hpp"
+#include "equidem/packing/packing.hpp"
 #include "equidem/statics/supports.hpp"
 
 namespace equidem {
 
-enum class AssemblyKind { lattice, delaunay, file };
+enum class AssemblyKind { lattice, delaunay, packing, file };
 
 /// [assembly]; the options of the other kinds keep their defaults.
 struct AssemblyCase {
@@ -37,9 +39,12 @@ struct AssemblyCase {
   const Lattice* arrangement = nullptr;  ///< the lattice, for the kind lattice; else null
   LatticeOptions lattice;
   DelaunayOptions delaunay;
-  std::filesystem::path path;     ///< path resolved against the folder of the file
-  bool own_springs = true;        ///< use the springs of the file
-  std::optional<double> density;  ///< kg/m³, of the discs themselves
+  std::optional<PackingOptions> packing;  ///< for the kind packing; else none
+  std::optional<Region> region;           ///< in which the packing is measured
+  double gap_tolerance = 0;               ///< of the contacts of a packing, or of a file that gives none
+  std::filesystem::path path;             ///< path resolved against the folder of the file
+  bool own_springs = true;                ///< use the springs of the file
+  std::optional<double> density;          ///< kg/m³, of the discs themselves
   Body body = Body::disc;
 };
 

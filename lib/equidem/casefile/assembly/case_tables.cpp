@@ -30,7 +30,7 @@ void bind_assembly(File<CaseTables>& file) {
   Words made = lattices;
   made.emplace_back("delaunay");
   Words kinds = made;
-  kinds.emplace_back("file");
+  for (const char* kind : {"packing", "file"}) kinds.emplace_back(kind);
   using A = AssemblyCase;
   using L = LatticeOptions;
   using D = DelaunayOptions;
@@ -42,11 +42,14 @@ void bind_assembly(File<CaseTables>& file) {
                  assembly.arrangement = find_lattice(kind);
                  assembly.kind = assembly.arrangement != nullptr ? AssemblyKind::lattice
                                  : kind == "file"                ? AssemblyKind::file
+                                 : kind == "packing"             ? AssemblyKind::packing
                                                                  : AssemblyKind::delaunay;
                },
                required, choices(kinds),
-               "delaunay: random points, the edges of their triangulation are the contacts; file: read from a file; "
-               "others: lattices of equal touching discs"),
+               "delaunay: random points, the edges of their triangulation are the contacts; packing: bodies that fill "
+               "a "
+               "box by [packing], its walls left out; file: read from a file; others: lattices of equal touching "
+               "discs"),
            key("columns", &A::lattice, &L::columns, required, from(1, 1e6), when("kind", lattices),
                "discs in the longest row; " + lattice_counts()),
            key("rows", &A::lattice, &L::rows, required, from(1, 1e6), when("kind", lattices), "number of rows"),
@@ -74,6 +77,10 @@ void bind_assembly(File<CaseTables>& file) {
                "density of the discs themselves; for waves, time steps and motion"),
            key("body", &A::body, "what a disc stands for: a cylinder per metre of depth, or a sphere; for its inertia"),
            key("path", &A::path, required, when("kind", from_file), "an assembly file (JSON)"),
+           key("gap_tolerance", &A::gap_tolerance, from(0, 1), when("kind", from_file),
+               "of a file without contacts: discs are bonded where the gap between them is at most this share of the "
+               "sum "
+               "of their radii; 0: where they touch"),
            key("own_springs", &A::own_springs, when("kind", from_file),
                "true: springs that the file gives are used; false: those of the case, or of calibrate")});
   file.table("assembly.radii", &CaseTables::assembly, &A::delaunay, &D::radii, when("kind", delaunay),
@@ -81,6 +88,7 @@ void bind_assembly(File<CaseTables>& file) {
       .keys({key("smallest", &RadiusDistribution::smallest, required, unit("m"), positive),
              key("largest", &RadiusDistribution::largest, required, unit("m"), positive,
                  "radii are uniform between the two")});
+  bind_packing(file, &CaseTables::packing_tables, when("assembly.kind", {"packing"}));
 }
 
 void bind_material(File<CaseTables>& file) {

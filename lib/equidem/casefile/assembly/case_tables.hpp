@@ -9,6 +9,7 @@
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/motion_case.hpp"
+#include "equidem/casefile/packing/packing_tables.hpp"
 
 namespace equidem::casefile {
 
@@ -21,6 +22,7 @@ struct LoadTable {
 /// A Case and the tables from which it is completed.
 struct CaseTables : Case, MotionTables {
   std::vector<LoadTable> load_tables;
+  PackingTables packing_tables;
 };
 
 /// The case file, schema "equidem/1".

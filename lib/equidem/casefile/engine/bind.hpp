@@ -114,7 +114,8 @@ inline auto choices(std::vector<std::string> words) {
     if (key.type == KeyType::text) key.type = KeyType::choice;
   };
 }
-/// The key, or the table, applies only where the key `selector` of its table is one of these words.
+/// The key, or the table, applies only where the key `selector` of its table (of another one: "assembly.kind") is one
+/// of these words.
 inline auto when(std::string selector, std::vector<std::string> words) {
   return [selector, words](auto& spec) {
     spec.when_key = selector;

@@ -40,6 +40,7 @@ class Checker {
       TomlValue* parent = inner ? root_.find(table.name.substr(0, dot)) : &root_;
       const std::string leaf = table.name.substr(inner ? dot + 1 : 0);
       if (parent == nullptr || parent->find(leaf) != nullptr) continue;
+      if (!applies(inner ? table.name.substr(0, dot) : "", *parent, table)) continue;
       if (table.required)
         fail_at(root_, table.heading(), "missing table", fmt::format("it describes {}", table.help),
                 "Add " + table.heading());
@@ -78,7 +79,13 @@ class Checker {
   /// \param spec of a key or of a table inside the table
   template <class Spec>
   bool applies(const std::string& path, const TomlValue& table, const Spec& spec) const {
-    return spec.when_key.empty() || contains(spec.when, selected(path, table, spec.when_key));
+    if (spec.when_key.empty()) return true;
+    const std::size_t dot = spec.when_key.find('.');
+    if (dot == std::string::npos) return contains(spec.when, selected(path, table, spec.when_key));
+    const std::string other = spec.when_key.substr(0, dot);
+    const TomlValue* found = root_.find(other);
+    return found != nullptr && found->is_table() &&
+           contains(spec.when, selected(other, *found, spec.when_key.substr(dot + 1)));
   }
 
   [[noreturn]] void fail_missing(const TomlValue& table, const KeySpec& key) const {

@@ -98,8 +98,8 @@ struct TableSpec {
   std::string name;       ///< "assembly", "assembly.radii", "load"
   bool repeated = false;  ///< [[load]]
   bool required = false;
-  bool completed = false;  ///< missing: added with the defaults of its keys
-  std::string when_key = {};
+  bool completed = false;     ///< missing: added with the defaults of its keys
+  std::string when_key = {};  ///< of the table around it, or of another: "assembly.kind"
   std::vector<std::string> when = {};
   std::string help = {};
 

@@ -48,7 +48,7 @@ TomlValue value_from(const std::string& text, const std::string& source) {
       word.text = text;
       return word;
     }
-    bad_input_at(source, fmt::format("'{}' is no TOML value", text), error.why(),
+    bad_input_at(source, fmt::format("'{}' is not a valid TOML value", text), error.why(),
                  "Write a number, true, false, [list] or text");
   }
   if (parsed.entries.size() != 1) {

@@ -12,6 +12,7 @@
 #include "equidem/casefile/engine/keys.hpp"
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/packing/measures.hpp"
+#include "equidem/packing/network.hpp"
 #include "equidem/packing/packing.hpp"
 
 namespace equidem {
@@ -19,6 +20,7 @@ namespace equidem {
 /// A checked case: complete, in range and without contradiction.
 struct PackCase : CaseDocument {
   PackingOptions packing;
+  NetworkOptions network;        ///< of the assembly that is written
   std::optional<Region> region;  ///< region of measurement
   bool csv = true, picture = true;
 };
@@ -26,6 +28,7 @@ struct PackCase : CaseDocument {
 /// The tables and keys of a case that fills a box.
 const casefile::FileSpec& pack_file_spec();
 
+/// The case file of a packing, or a case file whose [assembly] is one.
 /// \param overrides "packing.seed=3", in order
 /// \throws Error (bad_input) with file, line and key
 PackCase read_pack_case(const std::filesystem::path& path, std::span<const std::string> overrides = {});

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "left_out.hpp"
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "equidem/assembly/delaunay.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/statics/load_bearing.hpp"
+
+namespace equidem {
+namespace {
+
+/// The sides and corners of a free assembly that were measured: those that its file does not give.
+std::set<std::string> measured_sides(const Assembly& assembly) {
+  std::set<std::string> names;
+  if (assembly.periodic()) return names;
+  Assembly bare = assembly;
+  bare.groups.clear();
+  measure_cells(bare);
+  for (const auto& [name, side] : bare.groups) {
+    const auto found = assembly.groups.find(name);
+    if (found != assembly.groups.end() && found->second.discs == side.discs &&
+        found->second.tributary_lengths == side.tributary_lengths)
+      names.insert(name);
+  }
+  return names;
+}
+
+/// 1 for the bodies with a support or load of their own; on a measured side for those with two contacts or more.
+std::vector<std::uint8_t> held_by_the_case(const Problem& problem, const std::set<std::string>& sides) {
+  const Assembly& assembly = problem.assembly;
+  std::vector<int> contacts(assembly.size(), 0);
+  for (const Contact& c : assembly.contacts)
+    ++contacts[static_cast<std::size_t>(c.i)], ++contacts[static_cast<std::size_t>(c.j)];
+  std::vector<std::uint8_t> held(assembly.size(), 0);
+  const auto hold = [&](const std::string& name) {
+    const auto found = assembly.groups.find(name);
+    if (found == assembly.groups.end()) return;
+    for (const std::int32_t disc : found->second.discs) {
+      const auto k = static_cast<std::size_t>(disc);
+      if (contacts[k] > 1 || !sides.contains(name)) held[k] = 1;
+    }
+  };
+  for (const Support& support : problem.resolved.supports) hold(support.group);
+  for (const NamedLoads& loads : problem.resolved.load_cases)
+    for (const Load& load : loads.loads) hold(load.group);
+  return held;
+}
+
+}  // namespace
+
+void leave_out_loose(Problem& problem) {
+  const AssemblyKind kind = problem.resolved.assembly.kind;
+  if (kind != AssemblyKind::packing && kind != AssemblyKind::file) return;
+  Assembly& assembly = problem.assembly;
+  const Effects effects = derive_effects(assembly, problem.springs.springs, problem.resolved.rotation);
+  const std::set<std::string> sides = measured_sides(assembly);
+  LoadBearingNetwork network = load_bearing_network(assembly, problem.springs.springs, effects,
+                                                    held_by_the_case(problem, sides), LeaveOut::loose);
+  if (!network.part) return;
+  if (network.part->discs.empty())
+    bad_input_at(problem.resolved.where("assembly"), "no body is held in place by the others",
+                 "each has one contact or none", "Take a larger gap_tolerance, or pack them denser");
+  std::vector<std::uint8_t> kept(assembly.size(), 0);
+  for (const std::int32_t disc : network.part->discs) kept[static_cast<std::size_t>(disc)] = 1;
+  for (std::size_t disc = 0; disc < kept.size(); ++disc)
+    if (!kept[disc]) problem.left_out.bodies.push_back(static_cast<std::int64_t>(disc));
+  problem.left_out.sentences = std::move(network.sentences);
+  Assembly rest = std::move(network.part->assembly);
+  std::erase_if(rest.groups, [&](const auto& group) { return sides.contains(group.first); });
+  measure_cells(rest);
+  problem.springs.springs = std::move(network.part->springs);
+  assembly = std::move(rest);
+}
+
+}  // namespace equidem
