@@ -10,6 +10,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "equidem/assembly/files.hpp"
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
@@ -39,6 +40,7 @@ void check_outputs(const CalibrateVerb& options) {
   const CommonOptions& common = options.common;
   const OutputPlan plan(common);
   plan.expect_results();
+  plan.expect("assembly.json");
   const auto path = options.springs_path();
   if (!path) return;
   options.springs ? plan.expect_file(*path) : check_writable(*path, common.overwrite);
@@ -46,7 +48,9 @@ void check_outputs(const CalibrateVerb& options) {
   std::error_code ignored;
   std::vector<fs::path> others;
   if (common.json && *common.json != "-") others.emplace_back(*common.json);
-  if (common.out) others.insert(others.end(), {*common.out / "result.json", *common.out / "case.toml"});
+  if (common.out)
+    others.insert(others.end(),
+                  {*common.out / "result.json", *common.out / "case.toml", *common.out / "assembly.json"});
   const auto place = [&](const fs::path& file) { return fs::weakly_canonical(fs::absolute(file), ignored); };
   for (const fs::path& other : others) {
     if (place(other) != place(*path)) continue;
@@ -83,7 +87,7 @@ std::string text_of_springs(const Case& resolved, const Assembly& assembly, cons
                    ? "."
                    : fmt::format(" between boundaries of kind {}.", to_string(found.achieved.boundary));
   }
-  return springs_file(found.springs, resolved.weighting, resolved.title,
+  return springs_file(found.springs, resolved.weighting, disc_density(resolved, assembly), resolved.title,
                       comment + fmt::format("\nBy equidem calibrate, {}.", found.method));
 }
 
@@ -141,6 +145,7 @@ int calibrate(const CalibrateVerb& options) {
   }
   deliver(common, "calibrated", std::move(results), std::move(times), [&](Results&) {
     if (path) write_file(*path, file, common.overwrite);
+    if (common.out) write_assembly(*common.out / "assembly.json", problem.assembly, common.overwrite);
     write_case(common, resolved);
   });
   if (path) say(common, fmt::format("springs written to {}", path->string()));

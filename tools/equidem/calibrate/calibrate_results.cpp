@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "equidem/core/text.hpp"
+#include "equidem/material/wave_speed_springs.hpp"
+#include "equidem/waves/vibration.hpp"
 
 namespace equidem {
 namespace {
@@ -129,6 +131,28 @@ void add_mean_field(Results& out, const MeanFieldGuess& guess, const ElasticModu
                        wanted.poisson_ratio));
 }
 
+/// Density, wave speeds and the time step that it allows.
+void add_motion(Results& out, const Problem& problem, double disc_density, const ElasticModuli& wanted) {
+  const Assembly& a = problem.assembly;
+  const double fraction = a.solid_fraction(), density = disc_density * fraction;
+  out.line("density")
+      .add("density/continuum", "", density, "kg/m³ of the continuum")
+      .add("density/discs", "", disc_density, "kg/m³ of the discs, solid fraction")
+      .note(fmt::format(" {:.6g}", fraction));
+  if (problem.resolved.assembly.body == Body::disc) {
+    const WaveSpeeds speeds = wave_speeds_of(wanted, density);
+    out.line("long waves")
+        .add("wave_speeds/pressure", "Vp =", speeds.pressure, "m/s")
+        .add("wave_speeds/shear", "Vs =", speeds.shear, "m/s");
+  }
+  const std::vector<Inertia> inertia = inertia_of(a, disc_density, problem.resolved.assembly.body);
+  const ContactSprings& springs = problem.springs.springs;
+  const bool rotation = derive_effects(a, springs, problem.resolved.rotation).rotation;
+  const double omega = std::sqrt(element_bound(a, springs, inertia, rotation));
+  out.line("time step")
+      .add("guaranteed_step", "any below", 2 / omega, "s is stable, from the highest frequency of a single contact");
+}
+
 /// The relation for restrained rotation beside the springs of a lattice whose discs do not turn.
 void add_operator(Results& out, const ElasticModuli& wanted, const SpringRelation& restrained) {
   const SpringConstants k = springs_for(wanted, restrained, {}, NegativeTangential::static_only);
@@ -152,6 +176,8 @@ Results calibrated_results(const Problem& problem, const Calibration& found,
   add_reached(out, found);
   add_range(out, found, wanted.plane);
   if (guess) add_mean_field(out, *guess, wanted);
+  if (const auto density = disc_density(resolved, problem.assembly); density && k.kT >= 0)
+    add_motion(out, problem, *density, wanted);
   const Lattice* lattice = resolved.assembly.arrangement;
   if (lattice != nullptr && lattice->restrained != nullptr && resolved.rotation == Rotation::restrained)
     add_operator(out, wanted, *lattice->restrained);

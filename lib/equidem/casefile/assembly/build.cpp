@@ -150,8 +150,7 @@ BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
                  "Remove those of the case, or set assembly.own_springs = false to take them");
   }
   const auto built = [&]() -> BuiltSprings {
-    if (own)
-      return {contact_springs(assembly, {}, resolved.weighting), {}, "springs of the assembly file"};
+    if (own) return {contact_springs(assembly, {}, resolved.weighting), {}, "springs of the assembly file"};
     if (!resolved.material) {
       return {contact_springs(assembly, *resolved.springs, resolved.weighting), *resolved.springs,
               described(*resolved.springs, resolved.weighting)};

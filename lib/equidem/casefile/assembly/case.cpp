@@ -161,6 +161,17 @@ void complete_run(const TomlValue& root, CaseTables& tables) {
             "each says which dashpots stand at the contacts", "Set one of them to 0");
 }
 
+/// The density of the discs, from [assembly] or the springs.
+void complete_density(const TomlValue& root, CaseTables& tables) {
+  if (!tables.springs_density) return;
+  std::optional<double>& density = tables.assembly.density;
+  if (density && *density != *tables.springs_density)
+    fail_at(*root.find("springs")->find("density"), "springs.density",
+            fmt::format("it is {} kg/m³ here and {} kg/m³ in [assembly]", *tables.springs_density, *density),
+            "both are the density of the discs themselves", "Remove one of them");
+  density = tables.springs_density;
+}
+
 /// Density that the file states for the bodies of a packing; none: it leaves the default.
 std::optional<double> stated_packing_density(const TomlValue& root) {
   const TomlValue* packing = root.find("packing");
@@ -210,6 +221,7 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
   const std::optional<double> packing_density = stated_packing_density(root);
   CaseTables tables = case_file().read(root, folder);
 
+  complete_density(root, tables);
   if (tables.assembly.kind == AssemblyKind::packing) complete_packing(root, packing_density, tables);
   check_radii(*root.find("assembly"), tables.assembly.delaunay.radii);
   check_contradictions(root, tables.assembly);
@@ -234,8 +246,8 @@ std::string to_toml(const Case& resolved, const fs::path& folder) {
   return to_toml(resolved.document, folder);
 }
 
-std::string springs_file(const SpringConstants& springs, SpringWeighting weighting, const std::string& title,
-                         const std::string& comment) {
+std::string springs_file(const SpringConstants& springs, SpringWeighting weighting, std::optional<double> density,
+                         const std::string& title, const std::string& comment) {
   std::string out;
   std::istringstream lines(comment);
   for (std::string line; std::getline(lines, line);) {
@@ -244,9 +256,11 @@ std::string springs_file(const SpringConstants& springs, SpringWeighting weighti
       if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
     out += line.empty() ? "#\n" : fmt::format("# {}\n", line);
   }
-  return out + fmt::format("schema = \"{}\"\ntitle = {}\n\n[springs]\nkN = {}\nkT = {}\nweighting = {}\n",
-                           springs_file_format().spec().schema, toml_text(title), toml_number(springs.kN),
-                           toml_number(springs.kT), toml_text(to_string(weighting)));
+  out += fmt::format("schema = \"{}\"\ntitle = {}\n\n[springs]\nkN = {}\nkT = {}\nweighting = {}\n",
+                     springs_file_format().spec().schema, toml_text(title), toml_number(springs.kN),
+                     toml_number(springs.kT), toml_text(to_string(weighting)));
+  if (density) out += fmt::format("density = {}\n", toml_number(*density));
+  return out;
 }
 
 bool is_case_key(std::string_view path) {

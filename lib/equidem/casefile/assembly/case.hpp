@@ -150,7 +150,8 @@ std::string to_toml(const Case& resolved, const std::filesystem::path& folder);
 /// A springs file, schema "equidem-springs/1", to which `springs = "FILE"` of a case file refers; it reads back to the
 /// same bits.
 /// \param comment lines for people at the top of the file, may be empty
-std::string springs_file(const SpringConstants& springs, SpringWeighting weighting, const std::string& title,
-                         const std::string& comment);
+/// \param density kg/m³, of the discs; none: not written
+std::string springs_file(const SpringConstants& springs, SpringWeighting weighting, std::optional<double> density,
+                         const std::string& title, const std::string& comment);
 
 }  // namespace equidem

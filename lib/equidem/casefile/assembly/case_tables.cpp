@@ -22,7 +22,10 @@ void bind_springs(File<CaseTables>& file, const Attributes&... attributes) {
   file.table("springs").keys(
       {weighting_key("uniform: the same at every contact; contact_density: k/psi(theta), Abe (11), (21); "
                      "local_contact_density: psi of "
-                     "the two discs of the contact alone; voronoi: k h/l, shared cell edge over centre distance")});
+                     "the two discs of the contact alone; voronoi: k h/l, shared cell edge over centre distance"),
+       key("density", &CaseTables::springs_density, unit("kg/m³"), positive,
+           "density of the discs that these springs are for, as assembly.density; calibrate writes it into a springs "
+           "file")});
 }
 
 void bind_assembly(File<CaseTables>& file) {

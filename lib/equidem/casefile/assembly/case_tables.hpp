@@ -23,6 +23,7 @@ struct LoadTable {
 struct CaseTables : Case, MotionTables {
   std::vector<LoadTable> load_tables;
   PackingTables packing_tables;
+  std::optional<double> springs_density;  ///< kg/m³, of the discs that [springs] are for
 };
 
 /// The case file, schema "equidem/1".
