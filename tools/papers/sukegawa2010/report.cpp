@@ -73,13 +73,17 @@ std::string printed_level(const Reproduction& result) {
         std::pair{"beta_1.05", "beta = 1.05"}}) {
     const MeanEstimate with = sample_of(result, {.variant = variant}, whole);
     if (with.samples == 0 || capped.samples == 0) continue;
-    const bool known = std::isfinite(with.half_width);
-    const char* verdict = !known                  ? "one seed"
-                          : with.low() > printed  ? "does not explain it: too loose"
-                          : with.high() < printed ? "does not explain it: too dense"
-                                                  : "agrees with it within the scatter";
-    text += fmt::format("  {:<26} {} against {} without, printed {:g}: {}\n", name, spread(with, 4), spread(capped, 4),
-                        printed, verdict);
+    // Of one seed: the scatter is that of the runs with (2.16) alone.
+    const bool one = with.samples == 1;
+    const double half = one && capped.samples > 1
+                            ? student_critical_value(0.95, capped.samples - 1) * capped.standard_deviation
+                            : with.half_width;
+    const char* verdict = !std::isfinite(half)         ? "not decided"
+                          : with.mean - half > printed ? "does not explain it, too loose"
+                          : with.mean + half < printed ? "does not explain it, too dense"
+                                                       : "agrees with it within the scatter";
+    text += fmt::format("  {:<26} {} against {} without, printed {:g}: {}{}\n", name, spread(with, 4),
+                        spread(capped, 4), printed, verdict, one ? " (one seed)" : "");
   }
   if (text.empty()) return "";
   return "Whether what is printed explains the void ratio of discs before shaking, over the whole width, all with "

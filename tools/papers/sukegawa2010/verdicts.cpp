@@ -100,7 +100,7 @@ class Judged {
       };
       const Verdict one = judge(difference);
       verdict = std::max(verdict, one);
-      rows += fmt::format("      {:<62} {:>9.3g} < {:>9.3g}, by {:<20} {}\n", c.text, common(c.smaller, c.larger),
+      rows += fmt::format("      {:<66} {:>8.3g} < {:>8.3g}, by {:<20} {}\n", c.text, common(c.smaller, c.larger),
                           common(c.larger, c.smaller), interval(difference), name_of(one));
     }
     text_ += fmt::format("  {} {}: {}\n{}", section, text, upper(name_of(verdict)), rows);
@@ -182,7 +182,7 @@ void judge_shakings(const Reproduction& result, Judged& judged) {
       for (const auto& [name, value] : measures) {
         const OfSeeds mild = at(shape, 400, 10, value);
         comparisons.push_back(
-            {fmt::format("{}, change of the {}, / a fifth of that by both", words(plural_of(shape)), name),
+            {fmt::format("{}, change of the {}, less than a fifth of that by both", words(plural_of(shape)), name),
              difference(mild, at(shape, gal, frequency, value), 1),
              difference(mild, at(shape, 1200, 1, value), small)});
       }
