@@ -19,6 +19,8 @@ import sys
 import tempfile
 import time
 
+import h5py
+
 # In result.json, what depends on the machine, the clock and the name of the folder, or tells of the part of the run since it
 # was resumed.
 VARYING = ("report", "times", "particle_steps_per_second", "bytes_per_grain", "loop_bytes", "springs_file",
@@ -63,6 +65,14 @@ def lasting(value):
     if isinstance(value, dict):
         return {key: lasting(entry) for key, entry in value.items() if key not in VARYING}
     return value
+
+
+def datasets(path):
+    found = {}
+    with h5py.File(path, "r") as file:
+        file.visititems(lambda name, item: found.update({name: item[()].tobytes()})
+                        if isinstance(item, h5py.Dataset) else None)
+    return found
 
 
 class Killing:
@@ -111,6 +121,9 @@ class Killing:
             keys = ""
             if file == "result.json" and file in a and file in b:
                 keys = ": " + ", ".join(key for key in a[file] if a[file][key] != b[file].get(key))
+            if file.endswith(".h5") and file in a and file in b:
+                left, right = datasets(wanted / file), datasets(found / file)
+                keys = ": " + ", ".join(key for key in left if left[key] != right.get(key))
             self.find(f"{name}, {what}: {file}{keys}")
 
     def find(self, text):
@@ -157,11 +170,12 @@ def main():
     parser.add_argument("source")
     parser.add_argument("--kills", type=int, default=12)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", help="a word of the names of the jobs that are killed")
     parser.add_argument("--report")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="equidem_test_") as folder:
         killing = Killing(arguments, pathlib.Path(folder))
-        names = list(killing.jobs)
+        names = [name for name in killing.jobs if (arguments.only or "") in name]
         if arguments.kills < len(names):  # a short run: what can be resumed first
             names.sort(key=lambda name: killing.jobs[name][2] is None)
         kills = {name: 0 for name in names}
