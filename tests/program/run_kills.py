@@ -103,12 +103,15 @@ class Killing:
         return out, time.monotonic() - began
 
     def contents(self, name, out):
-        """Bytes of every file; of JSON what does not vary; of a study, whose tables hold measured times, the errors."""
+        """Bytes of every file; of JSON what does not vary; of a checkpoint all arrays but the counters of work (the neighbours
+        are searched once more where a run goes on); of a study, whose tables hold measured times, the errors."""
         files = {}
         for path in sorted(out.iterdir()):
             files[path.name] = path.read_bytes()
             if path.name == "result.json":
                 files[path.name] = lasting(json.loads(files[path.name]))
+            elif path.name == "run.checkpoint.h5":
+                files[path.name] = {key: value for key, value in datasets(path).items() if key != "counters"}
         if name == "study":
             result = files["result.json"]
             return {"files": sorted(files), "errors": [[row["setting"], row["errors"]] for row in result["settings"]]}
@@ -119,11 +122,8 @@ class Killing:
         different = sorted(set(a) ^ set(b)) or [file for file in a if a[file] != b[file]]
         for file in different:
             keys = ""
-            if file == "result.json" and file in a and file in b:
+            if isinstance(a.get(file), dict) and file in b:
                 keys = ": " + ", ".join(key for key in a[file] if a[file][key] != b[file].get(key))
-            if file.endswith(".h5") and file in a and file in b:
-                left, right = datasets(wanted / file), datasets(found / file)
-                keys = ": " + ", ".join(key for key in left if left[key] != right.get(key))
             self.find(f"{name}, {what}: {file}{keys}")
 
     def find(self, text):
