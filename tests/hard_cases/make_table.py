@@ -144,7 +144,7 @@ def attacks():
     text += (f"**Kills.** {sum(kills['kills'].values())} programs were ended by SIGKILL or SIGTERM at random times and given the same "
              "command again, with\n`--resume` where the verb has it: "
              f"{', '.join(f'{name} {count}' for name, count in kills['kills'].items())}.\nAll files equal those of a program that was "
-             "never ended, to the byte (of `result.json`, what does not depend on the clock or\nthe folder; of a study, the errors); "
+             "never ended, to the byte (of `result.json`, what does not depend on the clock or\nthe folder; of a checkpoint, all but counters of work; of a study, the errors); "
              "so do those of one thread and of two. Differences: "
              f"{len(kills['findings']) or 'none'}. Command:\n`{kills['command']} --report data/hard_cases/kills.json`\n\n")
     return text

@@ -19,6 +19,8 @@ import sys
 import tempfile
 import time
 
+import h5py
+
 # In result.json, what depends on the machine, the clock and the name of the folder, or tells of the part of the run since it
 # was resumed.
 VARYING = ("report", "times", "particle_steps_per_second", "bytes_per_grain", "loop_bytes", "springs_file",
@@ -65,6 +67,14 @@ def lasting(value):
     return value
 
 
+def datasets(path):
+    found = {}
+    with h5py.File(path, "r") as file:
+        file.visititems(lambda name, item: found.update({name: item[()].tobytes()})
+                        if isinstance(item, h5py.Dataset) else None)
+    return found
+
+
 class Killing:
     def __init__(self, arguments, folder):
         self.program = arguments.program
@@ -93,12 +103,15 @@ class Killing:
         return out, time.monotonic() - began
 
     def contents(self, name, out):
-        """Bytes of every file; of JSON what does not vary; of a study, whose tables hold measured times, the errors."""
+        """Bytes of every file; of JSON what does not vary; of a checkpoint all arrays but the counters of work (the neighbours
+        are searched once more where a run goes on); of a study, whose tables hold measured times, the errors."""
         files = {}
         for path in sorted(out.iterdir()):
             files[path.name] = path.read_bytes()
             if path.name == "result.json":
                 files[path.name] = lasting(json.loads(files[path.name]))
+            elif path.name == "run.checkpoint.h5":
+                files[path.name] = {key: value for key, value in datasets(path).items() if key != "counters"}
         if name == "study":
             result = files["result.json"]
             return {"files": sorted(files), "errors": [[row["setting"], row["errors"]] for row in result["settings"]]}
@@ -109,7 +122,7 @@ class Killing:
         different = sorted(set(a) ^ set(b)) or [file for file in a if a[file] != b[file]]
         for file in different:
             keys = ""
-            if file == "result.json" and file in a and file in b:
+            if isinstance(a.get(file), dict) and file in b:
                 keys = ": " + ", ".join(key for key in a[file] if a[file][key] != b[file].get(key))
             self.find(f"{name}, {what}: {file}{keys}")
 
@@ -157,11 +170,12 @@ def main():
     parser.add_argument("source")
     parser.add_argument("--kills", type=int, default=12)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", help="a word of the names of the jobs that are killed")
     parser.add_argument("--report")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="equidem_test_") as folder:
         killing = Killing(arguments, pathlib.Path(folder))
-        names = list(killing.jobs)
+        names = [name for name in killing.jobs if (arguments.only or "") in name]
         if arguments.kills < len(names):  # a short run: what can be resumed first
             names.sort(key=lambda name: killing.jobs[name][2] is None)
         kills = {name: 0 for name in names}

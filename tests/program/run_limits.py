@@ -143,6 +143,15 @@ class Inputs(ProgramTest):
         self.assertIn("ux", header)
         self.assertNotIn("stress", header)
 
+    def test_a_solid_fraction_above_1_is_explained(self):
+        sizes = ("--set", "assembly.discs=200", "--set", "assembly.radius=none", "--set",
+                 "assembly.radii={smallest = 0.0001, largest = 0.01}")
+        done = parse_json(self.check_done(equidem("homogenize", CELL, *sizes, "--json", "-")).stdout)
+        self.assertGreater(done["solid_fraction"], 1)
+        self.assertIn("solid fraction exceeds 1, since discs overlap", " ".join(done["report"].split()))
+        equal = self.check_done(equidem("homogenize", CELL, "--set", "assembly.discs=200"))
+        self.assertNotIn("exceeds 1", equal.stdout)
+
     def test_springs_and_material_together_are_named_before_their_keys(self):
         self.check_error(equidem("solve", CASES / "calibrate_random.toml", "--set", "springs.kN=1e9"), 2, "both given")
 

@@ -171,6 +171,11 @@ Results problem_results(const Problem& problem, const Effects& effects, Assembly
         .add(key("solid_fraction"), "solid fraction", a.solid_fraction())
         .note(a.periodic() ? ", periodic" : "");
   }
+  if ((a.periodic() || !a.cell_areas.empty()) && a.solid_fraction() > 1) {
+    results.line("",
+                 "The solid fraction exceeds 1, since discs overlap and each is counted whole: it is the sum of their "
+                 "areas over the area, not the share that they cover.");
+  }
   if (!a.periodic() && !a.box && !a.cell_areas.empty() && !a.sections.empty()) {
     results.line("",
                  "The area is that of the rectangle around the discs of equal area: the file gives no \"box\", and the "

@@ -67,7 +67,7 @@ Fluctuations tangential_fluctuations(const Assembly& network, const std::vector<
 
 PackedModuli moduli_of(const GrainPacking& packing, double ratio) {
   const SpringConstants springs{1, ratio};
-  const Assembly network = network_of(packing, springs);
+  const Assembly network = network_of(packing, {.springs = springs});
   const ContactSprings all(springs);
   const EffectiveStiffness result = effective_stiffness(network, all);
   const EffectiveModuli exact = effective_moduli(result.stiffness);
