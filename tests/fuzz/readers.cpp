@@ -207,7 +207,8 @@ std::vector<Reader> make_readers(const fs::path& source, const fs::path& scratch
          put(scratch / "springs.toml", input);
          static_cast<void>(parse_case(case_of_springs, "a.toml", scratch));
        }},
-      reader_of_file("assemblies (JSON)", scratch / "assembly.json", assembly_seeds, read_assembly),
+      reader_of_file("assemblies (JSON)", scratch / "assembly.json", assembly_seeds,
+                     [](const fs::path& file) { return read_assembly(file); }),
       reader_of_file("grains (CSV)", scratch / "grains.csv", {grains, ellipses, clumps},
                      [](const fs::path& file) {
                        GrainShapes shapes(Body::disc);

@@ -199,7 +199,8 @@ TEST_CASE("accuracy_asked_of_random_cells_is_kept_at_most_twice_the_least_cost_a
   write_down({.task = "equidem homogenize: moduli of random cells",
               .requests = rates.requests,
               .kept = rates.kept,
-              .cheap = rates.cheap});
+              .cheap = rates.cheap,
+              .honest = rates.honest});
 }
 
 TEST_CASE("accuracy_of_cells_beyond_all_means_is_refused_with_what_can_be_reached") {
