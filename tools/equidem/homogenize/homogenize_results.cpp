@@ -120,8 +120,7 @@ void add_anisotropy(Results& out, const Matrix3& stiffness, double anisotropy) {
     directions.push_back(fmt::format("along {} and at right angles to it by {} (between them softer)",
                                      shown(axes.two_directions), percent(axes.two_axes)));
   }
-  if (anisotropy > visible_anisotropy && !directions.empty())
-    out.line("", "stiffest " + joined(directions, ", and "));
+  if (anisotropy > visible_anisotropy && !directions.empty()) out.line("", "stiffest " + joined(directions, ", and "));
   out.set("stiffness_axes", Results()
                                 .set("one_axis", axes.one_axis)
                                 .set("one_direction", axes.one_direction)
