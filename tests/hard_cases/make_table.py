@@ -113,18 +113,19 @@ def orders_of(task, measured):
 
 
 def shortfalls_of(table):
-    """What second order does not reach, and what is promised nothing."""
+    """Tasks that do not reach second order, and those of which nothing is promised."""
     lines = []
     for case, tasks in table.items():
         for (task, promised, _), cells in tasks.items():
             orders = orders_of(task, cells[0][1])
             link = f"[{case}](#{anchor_of(case)})"
             if orders and min(orders) < 1.8:
-                lines.append(f"- {link}, {task}: observed orders {orders[0]:.1f} and {orders[1]:.1f}, where a smooth motion has 2. "
-                             "Contacts that begin and end within a step, several at a time, make the error irregular.")
+                lines.append(f"| {link} | {task} | orders {orders[0]:.1f}, {orders[1]:.1f} |")
             if promised.startswith("none"):
-                lines.append(f"- {link}, {task}: nothing is promised ({promised.partition(': ')[2]}); {cells[0][1]}.")
-    return lines
+                lines.append(f"| {link} | {task} | not promised ({promised.partition(': ')[2]}): {cells[0][1]} |")
+    return ("## Orders that are not reached, and what is not promised\n\nA smooth motion has order 2. Where contacts begin and end "
+            "within a step, several at a time, errors at three steps that halve\nfall irregularly.\n\n| case | task | found "
+            "|\n|---|---|---|\n" + "\n".join(lines) + "\n\n")
 
 
 def attacks():
@@ -135,7 +136,7 @@ def attacks():
     readers = fuzzing["readers"]
     accepted = sum(count["accepted"] for count in readers.values())
     text += (f"**Nearly valid inputs.** {fuzzing['inputs']:,} files, valid ones changed at random, were given to {len(readers)} "
-             f"readers\n({', '.join(readers)}),\nsanitizers: {fuzzing['sanitizers']}. {accepted:,} were accepted, and cases among them "
+             f"readers\n({', '.join(readers)}).\nSanitizers: {fuzzing['sanitizers']}. {accepted:,} were accepted, and cases among them "
              "read back to the same text; the others were refused by one\nline. Crashes, hangs (more than a second), defects: "
              f"{fuzzing['findings'] or 'none'}. The slowest took {fuzzing['slowest_ms']} ms. Command:\n`{fuzzing['command']} --report "
              "data/hard_cases/fuzzing.json`\n\n")
@@ -143,8 +144,9 @@ def attacks():
         kills = json.load(file)
     text += (f"**Kills.** {sum(kills['kills'].values())} programs were ended by SIGKILL or SIGTERM at random times and given the same "
              "command again, with\n`--resume` where the verb has it: "
-             f"{', '.join(f'{name} {count}' for name, count in kills['kills'].items())}.\nAll files equal those of a program that was "
-             "never ended, to the byte (of `result.json`, what does not depend on the clock or\nthe folder; of a checkpoint, all but counters of work; of a study, the errors); "
+             f"{'; '.join(f'{name}: {count}' for name, count in kills['kills'].items())}.\nAll files equal those of a program that was "
+             "never ended, to the byte (of `result.json`, what does not depend on the clock or\nthe folder; of a "
+             "checkpoint, all but counters of work; of a study, the errors); "
              "so do those of one thread and of two. Differences: "
              f"{len(kills['findings']) or 'none'}. Command:\n`{kills['command']} --report data/hard_cases/kills.json`\n\n")
     return text
@@ -191,8 +193,7 @@ def page_of(runs, rows_of_runs, attacked):
     for part, names in parts.items():
         text += f"{part}: " + " ·\n".join(f"[{name}](#{anchor_of(name)})" for name in names) + ".\n\n"
     text += attacked
-    lines = shortfalls_of(table)
-    text += "## Orders that are not reached, and what is not promised\n\n" + "\n".join(lines) + "\n\n"
+    text += shortfalls_of(table)
     for part, names in parts.items():
         text += f"## {part}\n\n" + "".join(section_of(name, why[name], table[name]) for name in names)
     return text.rstrip("\n") + "\n"

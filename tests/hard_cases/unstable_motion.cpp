@@ -73,7 +73,7 @@ TEST_CASE("bonded_discs_with_negative_tangential_springs_keep_their_energy_or_ar
     CAPTURE(ratio, rate, step.growth_rate);
     CHECK(rate >= 0.98 * step.growth_rate);
     CHECK(rate <= 1.5 * step.growth_rate);
-    table.note(task + ", allowed", "grows at the rate told, which is a lower bound, up to 1.5 times",
+    table.note(task + ", allowed", "grows at 0.98 to 1.5 times the rate told",
                fmt::format("{:.3f} times", rate / step.growth_rate));
   }
 }

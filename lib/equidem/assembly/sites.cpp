@@ -13,9 +13,9 @@ namespace {
 
 /// Margin of images at first, in mean spacings: empty circles of random points are seldom wider.
 constexpr double first_margin = 4;
-/// Images beyond this many per disc, and this many at all, are refused: more of them on one line take seconds.
+/// Images beyond this many per disc, and this many at all, are refused: thousands on one line take seconds.
 constexpr double most_images_per_disc = 24;
-constexpr double most_images = 8e3;
+constexpr double most_images = 2e3;
 
 }  // namespace
 
