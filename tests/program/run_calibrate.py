@@ -66,7 +66,7 @@ class Calibrate(program.ProgramTest):
     def test_files_are_written_as_asked_and_never_replaced_unasked(self):
         out = self.folder / "out"
         first = self.check_done(equidem("calibrate", LATTICE, "--out", out))
-        self.assertEqual({path.name for path in out.iterdir()}, {"result.json", "case.toml", "springs.toml"})
+        self.assertEqual({path.name for path in out.iterdir()}, {"result.json", "case.toml", "springs.toml", "assembly.json"})
         self.assertIn("springs.toml", first.stdout)
         before = (out / "springs.toml").read_bytes()
         self.check_error(equidem("calibrate", LATTICE, "--springs", out / "springs.toml"), 2, "exists already",
