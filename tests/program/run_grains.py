@@ -264,7 +264,7 @@ class Refusals(GrainTest):
     def test_bytes_of_a_file_do_not_reach_the_terminal_raw(self):
         self.write("x,y,radius\n0,0.02,\x1b[31m\x07\n", "grains.csv")
         done = equidem("run", self.write(BALL.replace("density", 'path = "grains.csv"\ndensity', 1)))
-        self.check_error(done, 2, "grains.csv:2", "?[31m?")
+        self.check_error(done, 2, "grains.csv:2", "\\x1b[31m\\x07")
 
     def test_a_grain_in_a_wrong_place_is_told_with_its_line(self):
         self.check_error(equidem("run", self.write(BALL.replace("[0.0, 0.02]", "[0.0, -0.02]"))), 2,
