@@ -194,7 +194,7 @@ TEST_CASE("accuracy_asked_of_random_cells_is_kept_at_most_twice_the_least_cost_a
   CHECK(rates.estimated_in_vain == 0);
   CHECK(rates.percent(rates.kept) >= 95);
   CHECK(rates.percent(rates.honest) >= 95);
-  CHECK(rates.percent(rates.cheap) >= 90);
+  CHECK(rates.percent(rates.cheap) >= 95);
   CHECK(pessimism <= 2);
   write_down({.task = "equidem homogenize: moduli of random cells",
               .requests = rates.requests,

@@ -16,7 +16,7 @@ namespace equidem {
 namespace {
 
 constexpr std::size_t judged = 3;  // K, G, nu in plane strain
-constexpr int small_pilots = 64, large_pilots = 8, fewest_cells = 8;
+constexpr int small_pilots = 64, large_pilots = 12, fewest_cells = 8;
 constexpr std::int64_t pilot_ratio = 8;  // of the sizes of both
 constexpr double most_cells = 1e9;
 constexpr double aim = 0.98;  // share of the wanted accuracy
