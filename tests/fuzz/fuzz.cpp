@@ -52,7 +52,7 @@ constexpr double longest = 1;  // s of processor time for one input
 constexpr int hang = 20;       // s of processor time after which a process is ended
 constexpr std::size_t most_readers = 32, most_findings = 100, longest_text = 400;
 
-/// What the processes that read share with the one that starts them.
+/// Memory that the reading processes share with the one that starts them.
 struct Shared {
   std::int64_t at = 0;  ///< input that is being read
   std::array<std::int64_t, most_readers> accepted = {}, refused = {};

@@ -53,7 +53,7 @@ double rebound(double damping, Integrator integrator, double step) {
 
 TEST_CASE("discs_as_printed_part_with_the_restitution_of_a_dashpot_that_may_pull") {
   for (const double h : {0.02, 0.1, 0.3}) {
-    // Of two equal discs the damping ratio is sqrt(2) h.
+    // The damping ratio of two equal discs is sqrt(2) h.
     const double exact = restitution_of(std::sqrt(2.0) * h, ContactEnd::at_zero_overlap);
     CAPTURE(h, exact, rebound(h, Integrator::semi_implicit, 1e-8));
     CHECK(rebound(h, Integrator::semi_implicit, 1e-8) == Approx(exact).epsilon(2e-3));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "left_out.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <set>
 #include <string>
@@ -31,11 +32,14 @@ std::set<std::string> measured_sides(const Assembly& assembly) {
 }
 
 /// 1 for the bodies with a support or load of their own; on a measured side for those with two contacts or more.
-std::vector<std::uint8_t> held_by_the_case(const Problem& problem, const std::set<std::string>& sides) {
+std::vector<std::uint8_t> held_by_the_case(const Problem& problem) {
   const Assembly& assembly = problem.assembly;
   std::vector<int> contacts(assembly.size(), 0);
   for (const Contact& c : assembly.contacts)
     ++contacts[static_cast<std::size_t>(c.i)], ++contacts[static_cast<std::size_t>(c.j)];
+  // Cells are measured only where a side could matter.
+  const bool dangling = std::ranges::any_of(contacts, [](int count) { return count < 2; });
+  const std::set<std::string> sides = dangling ? measured_sides(assembly) : std::set<std::string>{};
   std::vector<std::uint8_t> held(assembly.size(), 0);
   const auto hold = [&](const std::string& name) {
     const auto found = assembly.groups.find(name);
@@ -58,9 +62,8 @@ void leave_out_loose(Problem& problem) {
   if (kind != AssemblyKind::packing && kind != AssemblyKind::file) return;
   Assembly& assembly = problem.assembly;
   const Effects effects = derive_effects(assembly, problem.springs.springs, problem.resolved.rotation);
-  const std::set<std::string> sides = measured_sides(assembly);
-  LoadBearingNetwork network = load_bearing_network(assembly, problem.springs.springs, effects,
-                                                    held_by_the_case(problem, sides), LeaveOut::loose);
+  LoadBearingNetwork network =
+      load_bearing_network(assembly, problem.springs.springs, effects, held_by_the_case(problem), LeaveOut::loose);
   if (!network.part) return;
   if (network.part->discs.empty())
     bad_input_at(problem.resolved.where("assembly"), "no body is held in place by the others",
@@ -70,6 +73,7 @@ void leave_out_loose(Problem& problem) {
   for (std::size_t disc = 0; disc < kept.size(); ++disc)
     if (!kept[disc]) problem.left_out.bodies.push_back(static_cast<std::int64_t>(disc));
   problem.left_out.sentences = std::move(network.sentences);
+  const std::set<std::string> sides = measured_sides(assembly);
   Assembly rest = std::move(network.part->assembly);
   std::erase_if(rest.groups, [&](const auto& group) { return sides.contains(group.first); });
   measure_cells(rest);

@@ -123,7 +123,7 @@ class Pruning {
     return rotation_ || springs_[static_cast<std::size_t>(contact)].kT == 0;
   }
 
-  /// Of a disc with one contact left, or none.
+  /// A disc with one contact left, or none, is joined loosely unless that contact holds it in place.
   [[nodiscard]] bool is_loosely_joined(std::size_t disc) const {
     for (const auto& edge : graph_.of(disc)) {
       if (!left(edge.other)) continue;

@@ -53,10 +53,10 @@ struct LoadBearingNetwork {
   std::optional<Part> part;
 };
 
-/// What is left out.
+/// The discs to leave out.
 enum class LeaveOut {
   unloaded,  ///< all that carries no force, as above
-  /// Of that only what no contact holds in place under loads: rattlers, floating pieces, and what a single contact
+  /// only those that no contact holds in place under loads: rattlers, floating pieces, and what a single contact
   /// joins to the rest that lets it turn or slide (rotation is free, or its kT = 0). Motions of all others are
   /// determined.
   loose,

@@ -57,7 +57,7 @@ std::string contact_margin(const Reproduction& result) {
   return text + "  printed 0.1756\n";
 }
 
-/// What is left to explain the void ratio of discs under (2.16), 0.245 against the printed 0.213.
+/// Compares printed details, one at a time, with the void ratio of discs under (2.16), 0.245, and the printed 0.213.
 std::string printed_level(const Reproduction& result) {
   const auto whole = &Outcome::whole_before;
   const Fill fill;
@@ -73,7 +73,7 @@ std::string printed_level(const Reproduction& result) {
         std::pair{"beta_1.05", "beta = 1.05"}}) {
     const MeanEstimate with = sample_of(result, {.variant = variant}, whole);
     if (with.samples == 0 || capped.samples == 0) continue;
-    // Of one seed: the scatter is that of the runs with (2.16) alone.
+    // An entry with one seed is judged by the scatter of the runs with (2.16) alone.
     const bool one = with.samples == 1;
     const double half = one && capped.samples > 1
                             ? student_critical_value(0.95, capped.samples - 1) * capped.standard_deviation

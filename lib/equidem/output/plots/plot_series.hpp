@@ -20,7 +20,7 @@ struct PlotFrame {
 };
 PlotFrame frame_of(const Plot& plot);
 
-/// What makes a series visible where others coincide with it.
+/// Changes that keep a series visible where others coincide with it.
 struct SeriesLook {
   int dash = 0;            ///< 0: solid; else the number of a pattern of dashes
   double marker_size = 1;  ///< over the usual one
