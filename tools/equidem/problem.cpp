@@ -8,8 +8,10 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/material/spring_relations.hpp"
+#include "equidem/statics/solve_time.hpp"
 
 #include "left_out.hpp"
 
@@ -191,7 +193,9 @@ Results problem_results(const Problem& problem, const Effects& effects, Assembly
   return results;
 }
 
-Results estimate_results(const SolveEstimate& e) {
+namespace {
+
+Results estimate_results(const SolveEstimate& e, double solutions) {
   Results results;
   results.line("unknowns").add("unknowns", "", e.unknowns, "", {Shown::count});
   results.line("memory")
@@ -199,14 +203,19 @@ Results estimate_results(const SolveEstimate& e) {
       .add("factor_bytes", "", e.factor_bytes, "of it for the factor", {Shown::bytes})
       .add("factor_nonzeros", "", e.factor_nonzeros, "entries in the factor", {.digits = 3});
   results.line("work").add("operations", "", e.operations, "multiplications and additions to factorize", {.digits = 3});
+  const double seconds = solutions * estimate_seconds(e, measure_solve_rates(), thread_count());
+  results.line("time").add("estimated_seconds", "about", seconds, "s with these threads, mostly within a factor of two",
+                           {.digits = 2});
   return results.block("nothing was solved (--dry-run)\n");
 }
 
-Results dry_run_results(const Problem& problem, const Results& further, AssemblyKeys keys) {
+}  // namespace
+
+Results dry_run_results(const Problem& problem, double solutions, const Results& further, AssemblyKeys keys) {
   const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
   const SolveEstimate estimate =
       estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options());
-  return problem_results(problem, effects, keys).append(further).append(estimate_results(estimate));
+  return problem_results(problem, effects, keys).append(further).append(estimate_results(estimate, solutions));
 }
 
 Results moduli_results(const EffectiveModuli& m, const std::string& name, bool of_solid) {

@@ -97,11 +97,10 @@ enum class AssemblyKeys {
 /// Title, assembly, springs, effects.
 Results problem_results(const Problem& problem, const Effects& effects, AssemblyKeys keys = AssemblyKeys::all);
 
-/// Size, memory and work of a factorization that was not done.
-Results estimate_results(const SolveEstimate& estimate);
-
-/// The problem, further results, and the size of its factorization, for --dry-run.
-Results dry_run_results(const Problem& problem, const Results& further = {}, AssemblyKeys keys = AssemblyKeys::all);
+/// The problem, further results, size, memory and work of a factorization, and the time of all, for --dry-run.
+/// \param solutions factorizations with the solution of a load case each
+Results dry_run_results(const Problem& problem, double solutions, const Results& further = {},
+                        AssemblyKeys keys = AssemblyKeys::all);
 
 /// K <= G/3, that is nu <= -1 in plane strain.
 inline constexpr const char* no_solid = "no isotropic solid has these moduli: K <= G/3";

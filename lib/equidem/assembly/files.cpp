@@ -314,6 +314,13 @@ Json parse(const std::string& text) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     bad_input_at("line 1, column 1", "the file is empty", "an assembly is made of discs", "Write it again");
   }
+  const std::string_view first_line(text.data(), std::min(text.find('\n'), text.size()));
+  if (text.find('{') == std::string::npos && first_line.find(',') != std::string_view::npos) {
+    bad_input_at("line 1", "this is a CSV table, not an assembly",
+                 "an assembly is a JSON file with \"discs\": [[x, y, radius], ...]",
+                 "Name the assembly.json that 'equidem pack' writes beside grains.csv; a table of grains belongs to "
+                 "[grains] path, for 'equidem run'");
+  }
   // Numbers of a line such as "[0.5, 1, 0.25]" take the most: 16 bytes each and a vector that grows. Refused
   // beforehand, because the parser cannot free its values where memory has run out.
   constexpr double bytes_per_byte = 6;

@@ -132,12 +132,19 @@ std::vector<Key<Probe>> probe_keys(BodyFamily family) {
   std::vector<std::string> words;
   for (const ProbeQuantity quantity : own) words.push_back(to_string(quantity));
   const auto first = [&](KeySpec& key) { key.fallback = default_text(std::vector{own.front()}); };
-  return {key("name", &Probe::name, required, "begins the names of its columns"),
-          key("group", &Probe::group, or_instead({"bodies"}, "they say whose history it is"), "a group"),
-          key("bodies", &Probe::bodies, optional, formerly("grains"), "counted from 0; those of a file first"),
-          key("quantities", &Probe::quantities, choices(std::move(words)), first,
-              refused({{"energy", "the energies of the whole scene are in every history", "Remove it"}}),
-              "the means over these bodies; the energies of the whole scene are in every history")};
+  std::vector<Key<Probe>> keys{
+      key("name", &Probe::name, required, "begins the names of its columns"),
+      key("group", &Probe::group, or_instead({"bodies"}, "they say whose history it is"), "a group"),
+      key("bodies", &Probe::bodies, optional, formerly("grains"), "counted from 0; those of a file first"),
+      key("quantities", &Probe::quantities, choices(std::move(words)), first,
+          refused({{"energy", "the energies of the whole scene are in every history", "Remove it"}}),
+          "the means over these bodies; the energies of the whole scene are in every history")};
+  if (family == BodyFamily::bonded) {
+    keys.push_back(key("wavelength", &Probe::wavelength, unit("m"), positive,
+                       "of a standing wave: the report gives the period of the mean velocity, from its passages "
+                       "through zero, and the speed, wavelength over period"));
+  }
+  return keys;
 }
 
 std::vector<NamedSchedule> read_schedules(const TomlValue& root, const std::vector<ScheduleTable>& tables) {

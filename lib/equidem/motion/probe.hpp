@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,7 @@ struct Probe {
   std::vector<std::int32_t> bodies;  ///< numbers from 0; empty: those of `group`
   std::vector<ProbeQuantity> quantities = {ProbeQuantity::displacement};
   std::string group = {};
+  std::optional<double> wavelength = {};  ///< m, of a standing wave whose period the mean velocity has
 };
 
 }  // namespace equidem

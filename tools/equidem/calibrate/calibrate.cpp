@@ -96,7 +96,7 @@ int dry_run_calibration(const CommonOptions& options, const Problem& problem) {
   results.line("factorizations",
                "six or fewer of this size, some thirty where nu does not fall throughout with kT/kN, and one more to "
                "judge the mean field");
-  deliver(options, "dry_run", dry_run_results(problem, results, AssemblyKeys::size), problem.times);
+  deliver(options, "dry_run", dry_run_results(problem, 8, results, AssemblyKeys::size), problem.times);
   return 0;
 }
 

@@ -168,6 +168,8 @@ BondedRun::BondedRun(Case resolved, const std::optional<KeptStep>& kept)
       step_(step_of(problem_, scene_, kept)),
       options_(simulation_options(problem_.resolved, step_.step)),
       simulation_(simulation_of(problem_, scene_, options_)),
+      probes_(build_probes(problem_.resolved, problem_.assembly)),
+      waves_(simulation_, probes_),
       watch_(scene_, options_, {.growth = 100, .critical_step = step_.critical, .growth_rate = step_.growth_rate}) {
   if (!goes_to_rest()) check_events(problem_.resolved, step_);
 }
@@ -190,7 +192,8 @@ RunPlan BondedRun::plan() {
           .probe_interval = output.probe_interval,
           .checkpoint_interval = output.checkpoint_interval,
           .frame_discs = &problem_.assembly,
-          .probes = build_probes(problem_.resolved, problem_.assembly),
+          .probes = probes_,
+          .recorder = waves_.empty() ? nullptr : &waves_,
           .watch = [this](const EnergyLedger& energy) { watch_.look(simulation_, energy); },
           .watch_between = true};
 }

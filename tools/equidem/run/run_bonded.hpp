@@ -14,6 +14,7 @@
 
 #include "problem.hpp"
 #include "run/run_job.hpp"
+#include "run/run_waves.hpp"
 
 namespace equidem {
 
@@ -52,6 +53,7 @@ class BondedRun final : public RunJob {
   [[nodiscard]] StageTimes times() const override { return problem_.times; }
   [[nodiscard]] Results scene() const override;
   [[nodiscard]] Results step() const override;
+  [[nodiscard]] Results events() const override { return waves_.results(); }
   [[nodiscard]] Results advice(const Balance& balance) const override;
   void write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const override;
   [[nodiscard]] bool goes_to_rest() const override { return run().until_rest.has_value(); }
@@ -68,6 +70,8 @@ class BondedRun final : public RunJob {
   TimeStep step_;
   SimulationOptions options_;
   Simulation simulation_;
+  std::vector<Probe> probes_;
+  StandingWaves waves_;
   RunawayWatch watch_;
   std::vector<DiscMotion> at_rest_;  ///< after relax()
 };

@@ -105,7 +105,7 @@ int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
   }
   const Problem problem = build_problem(std::move(resolved));
   if (options.dry_run) {
-    deliver(options, "dry_run", dry_run_results(problem), problem.times);
+    deliver(options, "dry_run", dry_run_results(problem, 1), problem.times);
     return 0;
   }
   solve_once(options, problem, accuracy, nullptr);

@@ -77,7 +77,7 @@ void add_tension(Results& out, const Problem& problem, const SolvedCase& result)
   compare("poisson_ratio", "nu, (35)", t.poisson_ratio, theory ? theory->poisson_ratio : 0);
   compare("stiffness_ratio", "2G/((1-nu)kN)", t.stiffness_ratio, theory ? theory->stiffness_ratio : 0);
   // e11 = s11/E in plane stress, (1 - nu²) s11/E in plane strain
-  const double nu = t.poisson_ratio, young = t.stress.xx / t.strain.xx;
+  const double nu = t.poisson_ratio, fitted = t.fitted_poisson_ratio, young = t.stress.xx / t.strain.xx;
   out.line("  plane strain")
       .add("plane_strain/poisson_ratio", "nu =", nu, "", {.digits = 9})
       .add("plane_strain/young_modulus", "E =", (1 - nu * nu) * young, "Pa", {.digits = 9});
@@ -86,7 +86,33 @@ void add_tension(Results& out, const Problem& problem, const SolvedCase& result)
       .add("plane_stress/young_modulus", "E =", young, "Pa", {.digits = 9});
   out.line("  whole field")
       .add("fitted_poisson_ratio", "nu =", t.fitted_poisson_ratio, "", {.digits = 9})
-      .note(", fitted to the inner half of the block");
+      .add("fitted_young_modulus", "E =", (1 - fitted * fitted) * t.stress.xx / t.fitted_gradient.xx, "Pa",
+           {.digits = 9})
+      .note(" in plane strain, fitted to the inner half of the block");
+}
+
+/// How much contacts deform, relative to the sum of their radii: forces over kN. Small motions are assumed.
+void add_deformation(Results& out, const Problem& problem, const SolvedCase& result) {
+  constexpr double large = 0.05, doubtful = 1e-9;
+  const Assembly& assembly = problem.assembly;
+  double most = 0, largest_radius = 0;
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    const Contact& contact = assembly.contacts[c];
+    const double kN = problem.springs.springs[c].kN;
+    if (kN == 0) continue;
+    const double radii = assembly.radii[contact.i] + assembly.radii[contact.j];
+    most = std::max(most, std::abs(result.equilibrium.contact_forces[c].normal / kN) / radii);
+  }
+  for (const double radius : assembly.radii) largest_radius = std::max(largest_radius, radius);
+  out.line("deformation")
+      .add("largest_deformation", "contacts change by at most", most, "of the sum of their radii", {.digits = 3});
+  if (most > large) {
+    out.note(": much, for the motions are taken as small");
+  } else if (most > 0 && most < doubtful) {
+    out.note(fmt::format(
+        ": very little. Radii (up to {:.3g} m), springs (Pa) and loads (N/m, Pa) may be in other units than meant",
+        largest_radius));
+  }
 }
 
 /// The factorization, which all load cases share.
@@ -130,6 +156,7 @@ Results load_case_results(const Problem& problem, const SolvedCase& result, bool
   constexpr double doubtful = 1e-10;
   if (e.relative_residual > doubtful)
     out.line("", "WARNING: K is nearly singular; do not trust more digits than the residual leaves");
+  add_deformation(out, problem, result);
   out.line("energy").add("energy", "", e.energy, "N (J per m of depth, per m)");
   add_stress(out, result);
   if (result.tension) add_tension(out, problem, result);

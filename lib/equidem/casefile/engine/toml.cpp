@@ -214,6 +214,14 @@ TomlValue parse_toml(std::string_view text, const std::string& source) {
   try {
     return plain(toml::parse(text, std::string_view(source)), name);
   } catch (const toml::parse_error& error) {
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    const bool json = first != std::string_view::npos && text[first] == '{';
+    if (json || source.ends_with(".csv")) {
+      bad_input_at(source, json ? "this is JSON, not a case file" : "this is a CSV table, not a case file",
+                   "a case file is TOML that says what is computed",
+                   json ? "Name an assembly as path in [assembly], with kind = \"file\""
+                        : "Name a table of grains as path in [grains], a sieve curve in [packing.radii]");
+    }
     bad_input_at(fmt::format("{}:{}", source, error.source().begin.line), "this is not TOML", reason_of(error),
                  "Correct the line; 'equidem help case' shows a case file");
   }

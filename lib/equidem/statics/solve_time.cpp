@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/statics/solve_time.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "equidem/assembly/lattices/hexagonal.hpp"
+#include "equidem/core/stopwatch.hpp"
+#include "equidem/linear/multifrontal/dense_kernels.hpp"
+#include "equidem/statics/equilibrium.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr int rounds = 3;
+
+template <typename Task>
+double least_seconds(const Task& task) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < rounds; ++round) {
+    const Stopwatch watch;
+    task();
+    least = std::min(least, watch.seconds());
+  }
+  return least;
+}
+
+double seconds_per_operation() {
+  constexpr std::size_t n = 384;
+  const std::vector<double> a(n * n, 1e-3);
+  std::vector<double> c(n * n, 0.0);
+  dense::use_one_thread_per_call();
+  const double seconds =
+      least_seconds([&] { dense::subtract_product_transposed(n, n, n, a.data(), n, a.data(), n, c.data(), n); });
+  return seconds / (2.0 * n * n * n);
+}
+
+}  // namespace
+
+SolveRates measure_solve_rates() {
+  const Assembly block = hexagonal_lattice({.columns = 41, .rows = 41, .radius = 1});
+  const ContactSprings springs(SpringConstants{1, 0.5});
+  const std::vector<Support> supports{{.group = "left", .ux = 0, .uy = 0, .rotation = {}}};
+  const LoadCase loads{{.group = "right", .force = {1, 0}}};
+  const SolveEstimate estimate = estimate_solve(block, springs, supports);
+  const double seconds =
+      least_seconds([&] { static_cast<void>(EquilibriumSolver(block, springs, supports).solve(loads)); });
+  SolveRates rates{.per_operation = seconds_per_operation()};
+  rates.per_entry = std::max(0.0, seconds - estimate.operations * rates.per_operation) / estimate.factor_nonzeros;
+  return rates;
+}
+
+double estimate_seconds(const SolveEstimate& estimate, const SolveRates& rates, int threads) {
+  constexpr double efficiency = 0.8;  // of a second thread, measured at 1e5 and 1e6 discs
+  const double seconds = estimate.factor_nonzeros * rates.per_entry + estimate.operations * rates.per_operation;
+  return seconds / (1 + efficiency * (threads - 1));
+}
+
+}  // namespace equidem

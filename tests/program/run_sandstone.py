@@ -1,0 +1,37 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From a grading and a rock to springs, moduli, a static test and a wave: run_sandstone.py PROGRAM SOURCE_FOLDER."""
+import shutil
+import unittest
+
+from program import CASES, ProgramTest, equidem, parse_json
+
+YOUNG, NU = 20e9, 0.2
+
+
+class Sandstone(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.cases = self.folder / "sandstone"
+        shutil.copytree(CASES / "sandstone", self.cases, ignore=shutil.ignore_patterns("rock", "out"))
+
+    def result_of(self, verb, case, *options):
+        return parse_json(self.check_done(equidem(verb, self.cases / case, "--json", "-", *options)).stdout)
+
+    def test_the_commands_of_the_readme_lead_from_the_grading_to_the_wave(self):
+        bonds = self.result_of("pack", "rock.toml")
+        self.assertGreater(bonds["bonds"]["contacts"], 2 * bonds["grains"])
+        found = self.result_of("calibrate", "rock.toml", "--out", self.cases / "rock")
+        cell = self.result_of("homogenize", "cell.toml")
+        self.assertAlmostEqual(cell["young_modulus"]["plane_strain"] / YOUNG, 1, delta=1e-9)
+        self.assertAlmostEqual(cell["poisson_ratio"]["plane_strain"], NU, delta=1e-9)
+        test = self.result_of("solve", "tension.toml")
+        self.assertAlmostEqual(test["fitted_young_modulus"] / YOUNG, 1, delta=0.1)
+        self.assertAlmostEqual(test["fitted_poisson_ratio"], NU, delta=0.03)
+        wave = self.result_of("run", "wave.toml")["waves"]["west"]
+        self.assertAlmostEqual(wave["speed"] / found["wave_speeds"]["pressure"], 1, delta=0.01)
+        self.assertAlmostEqual(wave["speed"] * wave["period"], wave["wavelength"], delta=1e-12)
+
+
+if __name__ == "__main__":
+    unittest.main()

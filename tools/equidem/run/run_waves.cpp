@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/run_waves.hpp"
+
+#include <cmath>
+#include <span>
+
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr std::size_t columns = 2 + Oscillation::saved;  // step, component, oscillation
+
+Vec2 mean_velocity(const std::vector<DiscMotion>& velocities, const std::vector<std::int32_t>& bodies) {
+  Vec2 sum;
+  for (const std::int32_t body : bodies) sum += velocities[static_cast<std::size_t>(body)].u;
+  return sum / static_cast<double>(bodies.size());
+}
+
+}  // namespace
+
+StandingWaves::StandingWaves(const AnySimulation& simulation, const std::vector<Probe>& probes)
+    : simulation_(simulation) {
+  for (const Probe& probe : probes)
+    if (probe.wavelength) waves_.push_back({.probe = probe});
+}
+
+void StandingWaves::open(const std::filesystem::path& /*folder*/, bool /*overwrite*/, const Checkpoint* from) {
+  if (from == nullptr) return;
+  const std::vector<double>& rows = from->record.recorded.front().values;
+  for (std::size_t k = 0; k < waves_.size(); ++k) {
+    const std::span<const double> row = std::span(rows).subspan(k * columns, columns);
+    last_step_ = static_cast<std::int64_t>(row[0]);
+    waves_[k].component = static_cast<Component>(static_cast<int>(row[1]));
+    waves_[k].oscillation = Oscillation::restored(row.last<Oscillation::saved>());
+  }
+}
+
+void StandingWaves::record(std::int64_t step, double time, bool regular) {
+  if (!regular) return;
+  last_step_ = step;
+  const std::vector<DiscMotion> velocities = simulation_.velocities();
+  for (Wave& wave : waves_) {
+    const Vec2 v = mean_velocity(velocities, wave.probe.bodies);
+    if (wave.component == Component::none && (v.x != 0 || v.y != 0))
+      wave.component = std::abs(v.x) >= std::abs(v.y) ? Component::x : Component::y;
+    if (wave.component != Component::none) wave.oscillation.add(time, wave.component == Component::x ? v.x : v.y);
+  }
+}
+
+void StandingWaves::save(Checkpoint& checkpoint) {
+  SavedArray saved{.name = "waves", .columns = columns, .values = {}};
+  for (const Wave& wave : waves_) {
+    saved.values.push_back(static_cast<double>(last_step_));
+    saved.values.push_back(static_cast<double>(static_cast<int>(wave.component)));
+    const auto state = wave.oscillation.save();
+    saved.values.insert(saved.values.end(), state.begin(), state.end());
+  }
+  checkpoint.record.recorded.push_back(std::move(saved));
+}
+
+Results StandingWaves::results() const {
+  Results out;
+  for (const Wave& wave : waves_) {
+    const std::string key = fmt::format("waves/{}/", wave.probe.name);
+    const auto period = wave.oscillation.period();
+    out.line("wave " + wave.probe.name).set(key + "wavelength", *wave.probe.wavelength);
+    if (!period) {
+      out.note(
+          "not measured: the velocity passes through zero fewer than two times in this run; give a longer duration");
+      out.set(key + "period", nullptr).set(key + "speed", nullptr);
+      continue;
+    }
+    out.add(key + "speed", "", *wave.probe.wavelength / *period, "m/s")
+        .note(fmt::format(", wavelength {:.6g} m over a ", *wave.probe.wavelength))
+        .add(key + "period", "period of", *period, "s")
+        .note(fmt::format(" ({} through zero of {}, ", counted(wave.oscillation.passages(), "passage"),
+                          wave.component == Component::x ? "vx" : "vy"))
+        .add(key + "spread_of_half_periods", "half periods within", *wave.oscillation.spread(), "of their mean",
+             {Shown::percent, 2})
+        .note(")");
+    out.set(key + "passages", wave.oscillation.passages());
+  }
+  return out;
+}
+
+}  // namespace equidem

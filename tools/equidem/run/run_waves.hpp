@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Standing waves of a bonded run: period and speed, from the velocities of probes that have a wavelength.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "equidem/motion/oscillation.hpp"
+#include "equidem/motion/probe.hpp"
+#include "equidem/output/results.hpp"
+#include "equidem/output/run/run_loop.hpp"
+
+namespace equidem {
+
+class StandingWaves final : public RunRecorder {
+ public:
+  /// \param probes those without a wavelength are left out
+  StandingWaves(const AnySimulation& simulation, const std::vector<Probe>& probes);
+
+  [[nodiscard]] bool empty() const { return waves_.empty(); }
+  /// For each wave the period and the speed, wavelength over period; why not, where it did not oscillate.
+  [[nodiscard]] Results results() const;
+
+  void open(const std::filesystem::path& folder, bool overwrite, const Checkpoint* from) override;
+  [[nodiscard]] std::int64_t last_step() const override { return last_step_; }
+  void record(std::int64_t step, double time, bool regular) override;
+  void save(Checkpoint& checkpoint) override;
+
+ private:
+  enum class Component { none, x, y };  ///< of the velocity; none while it is 0
+  struct Wave {
+    Probe probe;
+    Component component = Component::none;
+    Oscillation oscillation = {};
+  };
+
+  const AnySimulation& simulation_;
+  std::vector<Wave> waves_;
+  std::int64_t last_step_ = -1;
+};
+
+}  // namespace equidem
