@@ -32,6 +32,15 @@ class Sandstone(ProgramTest):
         self.assertAlmostEqual(wave["speed"] / found["wave_speeds"]["pressure"], 1, delta=0.01)
         self.assertAlmostEqual(wave["speed"] * wave["period"], wave["wavelength"], delta=1e-12)
 
+    def test_loose_bodies_of_a_packing_are_left_out_of_the_static_test_and_named(self):
+        self.check_done(equidem("calibrate", self.cases / "rock.toml", "--out", self.cases / "rock"))
+        packed = self.result_of("pack", "tension.toml")["grains"]
+        test = self.result_of("solve", "tension.toml")
+        self.assertGreater(len(test["left_out"]), 0)
+        self.assertEqual(test["discs"] + len(test["left_out"]), packed)
+        self.assertRegex(test["report"], r"left out +\d+ rattlers? \(disc \d+")
+        self.assertLess(test["relative_residual"], 1e-14)
+
 
 if __name__ == "__main__":
     unittest.main()
