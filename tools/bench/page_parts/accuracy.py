@@ -190,11 +190,11 @@ def others():
     if not same:
         return ""
     discs = same[0].split("bonded lattice of ")[1].split(" ")[0]
-    own = same[0].split("one thread: ")[1].split(" (")[0]
-    lines = "".join(f"- YADE, damping {row[0]}: {row[1]} s to 1e-3, {row[2]} s to 1e-6; over equidem in the same run: {row[3]}.\n"
-                    for row in tables_of(same[0])[0][1:])
+    rows = {row[0].split(",")[0]: row for row in reversed(tables_of(same[0])[0][1:])}  # of equidem the first, one thread
+    own, yade = rows["equidem"], rows["YADE"]
     said = (f"Other programs on such tasks, from [side by side](benchmarks/peers.md). The displacements of {discs} discs in tension by "
-            f"damped motion, seconds on one thread, where equidem takes {own} to round-off:\n\n{lines}\n")
+            f"damped motion, one thread: YADE, with the best damping, takes {yade[1].replace(' to ', ' s to ')} "
+            f"({own[3]} and {own[4]} times as long as equidem, which takes {own[1].split(' (')[0]} s to {own[2]}).\n\n")
     for part in text.split("\n## "):
         if not part.startswith("The same matrix"):
             continue

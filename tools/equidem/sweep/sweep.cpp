@@ -261,7 +261,9 @@ int dry_run(const SweepOptions& options, const Case& base, const std::vector<dou
   Results results;
   results.block(
       fmt::format("{} of {}, each about as large as this one:\n\n", counted(std::ssize(values), "point"), options.key));
-  results.append(dry_run_results(problem, static_cast<double>(values.size()))).set("key", options.key).set("values", values);
+  results.append(dry_run_results(problem, static_cast<double>(values.size())))
+      .set("key", options.key)
+      .set("values", values);
   deliver(options.common, "dry_run", results, problem.times);
   return 0;
 }
