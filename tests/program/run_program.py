@@ -182,6 +182,37 @@ class Solve(ProgramTest):
         self.assertEqual(size["unknowns"], solved["unknowns"])
         self.assertEqual(size["factor_nonzeros"], solved["factor_nonzeros"])
 
+    def test_a_dry_run_tells_the_time_of_every_verb_of_statics(self):
+        for verb, case in (("solve", TENSION), ("homogenize", CASES / "random_cell.toml"),
+                           ("calibrate", CASES / "calibrate_random.toml"), ("stability", CASES / "hexagonal_cell.toml")):
+            with self.subTest(verb=verb):
+                size = parse_json(self.check_done(equidem(verb, case, "--dry-run", "--json", "-")).stdout)
+                self.assertGreater(size["estimated_seconds"], 0)
+                self.assertIn("with these threads", size["report"])
+
+    def test_a_table_or_an_assembly_in_place_of_a_case_is_recognised(self):
+        self.check_error(equidem("solve", CASES / "pack_graded.csv"), 2, "this is a CSV table, not a case file")
+        self.check_error(equidem("solve", CASES / "truss.json"), 2, "this is JSON, not a case file", '[assembly]')
+        self.check_error(equidem("solve", CASES / "truss.toml", "--set", "assembly.path=grains_piston.csv"), 2,
+                         "grains_piston.csv: line 1", "CSV table, not an assembly", "assembly.json")
+
+    def test_deformations_that_do_not_fit_the_units_are_questioned(self):
+        def deformation(*options):
+            result = parse_json(self.check_done(equidem("solve", TENSION, *options, "--json", "-")).stdout)
+            line = result["report"].split("deformation ")[1].split("\n\n")[0].split("energy  ")[0]
+            return result["largest_deformation"], " ".join(line.split())
+
+        usual, told = deformation()
+        self.assertNotIn("other units", told)
+        self.assertNotIn("much", told)
+        stress = parse_json(self.check_done(equidem("solve", TENSION, "--json", "-")).stdout)["stress"][0]
+        little, told = deformation("--set", f"test.stress={stress * 1e-9 / usual * 0.5}")
+        self.assertAlmostEqual(little / 0.5e-9, 1, delta=0.01)
+        self.assertIn("in other units than meant", told)
+        much, told = deformation("--set", f"test.stress={stress * 0.1 / usual}")
+        self.assertAlmostEqual(much / 0.1, 1, delta=0.01)
+        self.assertIn("the motions are taken as small", told)
+
     def test_a_case_that_cannot_stand_says_which_motion_is_free(self):
         done = equidem("solve", CASES / "truss.toml", "--set", "support=[{group = \"apex\", ux = true}]")
         self.check_error(done, 2, "free")

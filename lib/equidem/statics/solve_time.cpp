@@ -7,6 +7,7 @@
 
 #include "equidem/assembly/lattices/hexagonal.hpp"
 #include "equidem/core/stopwatch.hpp"
+#include "equidem/core/threads.hpp"
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
 #include "equidem/statics/equilibrium.hpp"
 
@@ -44,8 +45,12 @@ SolveRates measure_solve_rates() {
   const std::vector<Support> supports{{.group = "left", .ux = 0, .uy = 0, .rotation = {}}};
   const LoadCase loads{{.group = "right", .force = {1, 0}}};
   const SolveEstimate estimate = estimate_solve(block, springs, supports);
+  const EquilibriumOptions options{.error_bound = true};
+  const int threads = thread_count();
+  set_thread_count(1);
   const double seconds =
-      least_seconds([&] { static_cast<void>(EquilibriumSolver(block, springs, supports).solve(loads)); });
+      least_seconds([&] { static_cast<void>(EquilibriumSolver(block, springs, supports, options).solve(loads)); });
+  set_thread_count(threads);
   SolveRates rates{.per_operation = seconds_per_operation()};
   rates.per_entry = std::max(0.0, seconds - estimate.operations * rates.per_operation) / estimate.factor_nonzeros;
   return rates;

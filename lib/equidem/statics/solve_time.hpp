@@ -13,10 +13,11 @@ struct SolveRates {
   double per_operation = 0;  ///< s a multiplication or addition of the factorization
 };
 
-/// Measured in some 30 ms: the solution of a block of 1700 discs, and a product of dense matrices.
+/// Measured in some 30 ms, with the number of threads set to 1 meanwhile: the solution of a block of 1700 discs, and a
+/// product of dense matrices.
 SolveRates measure_solve_rates();
 
-/// s of one factorization and the solution of one load case; mostly within a factor of two.
+/// s of one factorization and the solution of one load case with the bound of its error; mostly within a factor of two.
 double estimate_seconds(const SolveEstimate& estimate, const SolveRates& rates, int threads);
 
 }  // namespace equidem

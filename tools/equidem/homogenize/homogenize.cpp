@@ -105,7 +105,8 @@ int dry_run_homogenization(const CommonOptions& options, const Problem& problem)
                                           "about as large as this",
                                           names));
   results.set("factorizations", boundaries.size());
-  deliver(options, "dry_run", dry_run_results(problem, static_cast<double>(boundaries.size()), results), problem.times);
+  deliver(options, "dry_run", dry_run_results(problem, 2 * static_cast<double>(boundaries.size()), results),
+          problem.times);
   return 0;
 }
 
