@@ -45,7 +45,8 @@ SolveRates measure_solve_rates() {
   const std::vector<Support> supports{{.group = "left", .ux = 0, .uy = 0, .rotation = {}}};
   const LoadCase loads{{.group = "right", .force = {1, 0}}};
   const SolveEstimate estimate = estimate_solve(block, springs, supports);
-  const EquilibriumOptions options{.error_bound = true};
+  EquilibriumOptions options;
+  options.error_bound = true;
   const int threads = thread_count();
   set_thread_count(1);
   const double seconds =
