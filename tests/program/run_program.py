@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Usage, solve and sweep, as a user does: run_program.py PROGRAM SOURCE_FOLDER [unittest options]."""
+"""Usage and solve, as a user does: run_program.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import csv
 import math
 import os
@@ -49,19 +49,6 @@ class Usage(ProgramTest):
         self.check_error(equidem("solve", TENSION, "--treads", "2"), 2, "'--threads'")
         self.check_error(equidem("solve", TENSION, "--threads", "0"), 2, "--threads")
         self.check_error(equidem("solve", TENSION, "--set", "springs.kT"), 2, "springs.kT", "sets nothing")
-        self.check_error(equidem("sweep", TENSION, "--values", "1"), 2, "--key")
-        self.check_error(equidem("sweep", TENSION, "--key", "springs.kT"), 2, "--from")
-        self.check_error(equidem("sweep", TENSION, "--key", "springs.kT", "--from", "1"), 2, "--to")
-        self.check_error(equidem("sweep", TENSION, "--key", "springs.kTT", "--values", "1"), 2, "'kT'")
-        self.check_error(equidem("sweep", TENSION, "--key", "springs.kT", "--values", "nan"), 2, "nan")
-        for values in ("1,,2", ",", "1,", "", "1 2"):
-            self.check_error(equidem("sweep", TENSION, "--key", "ratio", "--values", values), 2, "--values", "finite",
-                             "Leave it out")
-        for option in ("--from", "--to"):
-            self.check_error(equidem("sweep", TENSION, "--key", "ratio", "--from", "0", "--to", "1", option, "nan"), 2,
-                             option)
-        self.check_error(equidem("sweep", TENSION, "--key", "ratio", "--from=-1e308", "--to", "1e308"), 2, "overflow")
-        self.check_error(equidem("sweep", TENSION, "--key", "ratio", "--values", "0", "--resume"), 2, "--out")
 
     def test_bad_input_is_exit_code_2_with_its_place(self):
         self.check_error(equidem("solve", self.folder / "absent.toml"), 2, "absent.toml", "no such file")
@@ -252,93 +239,6 @@ class Hostile(ProgramTest):
         self.assertIsNone(result["unstable_modes"])
         judged = parse_json(self.check_done(equidem("solve", TENSION, *given[:2], "--json", "-")).stdout)
         self.assertEqual(judged["status"], "unstable")
-
-
-class Sweep(ProgramTest):
-    def rows(self, out):
-        with open(out / "sweep.csv", newline="") as file:
-            return list(csv.DictReader(file))
-
-    def test_a_sweep_takes_no_verb(self):
-        self.check_error(equidem("sweep", TENSION, "--key", "ratio", "--values", "0.5", "--verb", "solve"), 2, "--verb",
-                         "Leave it out")
-
-    def test_the_curve_follows_theory(self):
-        out = self.folder / "out"
-        done = self.check_done(equidem("sweep", TENSION, "--key", "ratio", "--from", "0", "--to", "1", "--steps", "3",
-                                       "--out", out, "--json", "-"))
-        result = parse_json(done.stdout)
-        self.assertTrue(result["complete"])
-        self.assertEqual([point["value"] for point in result["points"]], [0, 0.5, 1])
-        for point in result["points"]:
-            self.assertEqual(point["status"], "solved")
-            self.assertLess(abs(point["poisson_ratio"] - (1 - point["value"]) / 4), 0.01)
-        self.assertEqual([row["ratio"] for row in self.rows(out)], ["0", "0.5", "1"])
-        for name in ("poisson_ratio.csv", "poisson_ratio.gp", "stiffness_ratio.csv", "case.toml", "result.json"):
-            self.assertTrue((out / name).exists(), name)
-
-    def test_the_title_of_the_curve_is_the_users_and_its_symbols_are_typeset(self):
-        for number, (options, title) in enumerate([(["--title", "My a_b {sweep}"], r"My a\_b \{sweep\}"),
-                                                   (["--set", 'title="Block of 50_000"'], r"Block of 50\_000"),
-                                                   (["--set", 'title=""'], "k_T/k_N varied")]):
-            out = self.folder / str(number)
-            self.check_done(equidem("sweep", TENSION, "--key", "ratio", "--values", "0,0.5", "--out", out, *options))
-            script = (out / "stiffness_ratio.gp").read_text(encoding="utf-8")
-            self.assertIn(f"set title '{title}'", script)
-            self.assertIn("set ylabel '2G/((1 - ν) k_N)'", script)
-
-    def test_a_point_equals_the_solve_of_its_value(self):
-        swept = parse_json(self.check_done(equidem("sweep", TENSION, "--key", "springs.kT", "--values", "0.25e9",
-                                                   "--json", "-")).stdout)
-        solved = parse_json(self.check_done(equidem("solve", TENSION, "--set", "springs.kT=0.25e9", "--json", "-")).stdout)
-        self.assertEqual(swept["points"][0]["poisson_ratio"], solved["poisson_ratio"])
-
-    def test_a_point_that_fails_stays_with_its_sentence(self):
-        done = self.check_done(equidem("sweep", TENSION, "--key", "springs.kN", "--values", "-1,1e9", "--json", "-"))
-        bad, good = parse_json(done.stdout)["points"]
-        self.assertEqual(bad["status"], "failed")
-        self.assertIn("out of range", bad["message"])
-        self.assertIsNone(bad["poisson_ratio"])
-        self.assertEqual(good["status"], "solved")
-
-    def test_when_all_points_fail_so_does_the_sweep(self):
-        done = equidem("sweep", TENSION, "--key", "springs.kN", "--values", "-1,-2")
-        self.assertEqual(done.returncode, 1)
-        self.assertIn("out of range", done.stderr)
-
-    def test_unstable_points_are_marked(self):
-        done = self.check_done(equidem("sweep", TENSION, "--key", "ratio", "--values", "-0.1,-0.35", "--json", "-"))
-        stable, unstable = parse_json(done.stdout)["points"]
-        self.assertEqual(stable["unstable_modes"], 0)
-        self.assertEqual(stable["status"], "solved")
-        self.assertGreater(unstable["unstable_modes"], 0)
-        self.assertEqual(unstable["status"], "unstable")
-
-    def test_the_first_interrupt_that_is_caught_ends_it_as_an_interrupted_one(self):
-        for milliseconds in range(0, 60, 3):
-            with self.subTest(milliseconds=milliseconds):
-                self.interrupt("sweep", TENSION, "--key", "springs.kT", "--from", 0, "--to", "1e9", "--steps", 1000000,
-                               after=1e-3 * milliseconds)
-
-    def test_interrupted_it_keeps_what_is_done_and_resume_completes_it(self):
-        out = self.folder / "out"
-        stdout, stderr = self.interrupt("sweep", TENSION, "--key", "springs.kT", "--from", 0, "--to", "1e9", "--steps", 1000000,
-                                        "--out", out, when=lambda: (out / "sweep.csv").exists())
-        self.assertIn("INCOMPLETE", stdout)
-        self.assertIn("--resume", stderr)
-        done = self.rows(out)
-        self.assertGreater(len(done), 0)
-        self.assertEqual(parse_json((out / "result.json").read_text())["status"], "interrupted")
-
-        values = [row["springs.kT"] for row in done] + ["0.9e9", "1e9"]
-        shorter = ["sweep", TENSION, "--key", "springs.kT", "--values", ",".join(values), "--out", out]
-        self.check_error(equidem(*shorter), 2, "exists already")
-        self.check_error(equidem(*shorter, "--resume", "--set", "springs.kN=2e9"), 2, "another case")
-        self.check_done(equidem(*shorter, "--resume"))
-        completed = self.rows(out)
-        self.assertEqual(completed[:len(done)], done)
-        self.assertEqual(len(completed), len(done) + 2)
-        self.assertTrue(parse_json((out / "result.json").read_text())["complete"])
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
+#include "equidem/output/quantities.hpp"
 
 #include "option_checks.hpp"
 
@@ -112,7 +113,27 @@ std::optional<FolderLock> lock_out(const CommonOptions& options) {
   return FolderLock(*options.out);
 }
 
+/// Where deliver hands over the results of a verb on this thread; null: it prints and writes them.
+static thread_local Delivery* collected = nullptr;
+
+Delivery collect(const std::function<void()>& verb) {
+  Delivery delivery;
+  collected = &delivery;
+  try {
+    verb();
+  } catch (...) {
+    collected = nullptr;
+    throw;
+  }
+  collected = nullptr;
+  return delivery;
+}
+
 void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times) {
+  if (collected != nullptr) {
+    *collected = {status, results, times};
+    return;
+  }
   Results all;
   if (status == "unstable") all.line("UNSTABLE", "any disturbance would grow: what follows is no state of rest");
   all.append(results);
@@ -126,7 +147,8 @@ void deliver(const CommonOptions& options, const std::string& status, const Resu
   Results seconds, object;
   for (const auto& [stage, time] : times.stages()) seconds.set(stage, time);
   object.set("status", status).set("report", report).set("times", seconds).set("version", library_version());
-  const std::string json = object.append(results).json();
+  object.append(results);
+  const std::string json = object.append(units_and_labels(object)).json();
   const bool to_stdout = options.json && *options.json == "-";
   if (to_stdout) {
     print(json);

@@ -92,6 +92,16 @@ void deliver(const CommonOptions& options, const std::string& status, const Resu
 void deliver(const CommonOptions& options, const std::string& status, Results results, StageTimes times,
              const std::function<void(Results&)>& write_files);
 
+/// Results as they are given to deliver.
+struct Delivery {
+  std::string status;
+  Results results;
+  StageTimes times;
+};
+/// Carry out a verb whose results are not printed and not written: deliver hands those of this thread over here.
+/// \throws Error as the verb does
+Delivery collect(const std::function<void()>& verb);
+
 /// case.toml in --out, if there is one, which reproduces the computation.
 /// \param resolved a Case or the document of another kind of case
 template <typename Resolved>

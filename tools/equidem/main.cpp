@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/assembly/case.hpp"
+#include "equidem/output/quantities.hpp"
 
 #include "verbs.hpp"
 
@@ -9,6 +10,7 @@ constexpr const char* footer = R"(Examples:
   equidem solve data/cases/abe1996_fig6.toml
   equidem solve data/cases/abe1996_fig6.toml --set springs.kT=0.3e9 --out result
   equidem sweep data/cases/abe1996_fig6.toml --key ratio --from 0 --to 1 --steps 11 --out curve
+  equidem sweep data/cases/packed_rock.toml --verb calibrate --key packing.grains --values 200,400 --seeds 1-3
   equidem homogenize data/cases/random_cell.toml
   equidem calibrate data/cases/calibrate_random.toml --springs springs.toml
   equidem stability data/cases/random_cell.toml --set assembly.discs=60 --out waves
@@ -17,6 +19,7 @@ constexpr const char* footer = R"(Examples:
   equidem pack data/cases/pack_jammed.toml --out jammed
   equidem study integrators --accuracy 1e-4
   equidem help case          every key of the case file; with --markdown as a page
+  equidem help result        numbers of result.json, their units and meanings
 
 The tables and figures of published papers are computed by the program equidem-papers.
 
@@ -33,7 +36,7 @@ int main(int argc, char** argv) {
       .usage = "VERB CASE.toml [OPTIONS]",
       .footer = footer,
       .verbs = verbs,
-      .topics = {{"case", describe_case_file, case_file_page}},
+      .topics = {{"case", describe_case_file, case_file_page}, {"result", describe_result}},
       .refusals = {{"--accuracy", "this verb takes no --accuracy", "it has no setting that could be chosen for one",
                     "solve, homogenize, run and study do; 'equidem study --list' shows what accuracy costs"},
                    {"reproduce", "equidem has no verb 'reproduce'", "papers have a program of their own",

@@ -2,7 +2,10 @@
 #include "problem.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <initializer_list>
+#include <string_view>
 
 #include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
@@ -88,13 +91,55 @@ void add_gaps(Results& results, const Assembly& assembly) {
                   percent(std::max(-gaps.smallest, 0.0)), percent(std::max(gaps.largest, 0.0))));
 }
 
+/// The tables that decide the assembly, as text: all but those that surely do not. Springs move bodies that fall.
+std::string deciding_tables(const Case& resolved) {
+  const auto& packing = resolved.assembly.packing;
+  const bool falls = packing && entry_of(packing->method).open_top;
+  TomlValue document = resolved.document;
+  std::erase_if(document.entries, [&](const TomlEntry& entry) {
+    const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
+      return std::ranges::find(names, entry.name) != names.end();
+    };
+    return is_one_of({"title", "effects", "solver", "homogenize", "ensemble", "run", "output"}) ||
+           (!falls && is_one_of({"springs", "material"}));
+  });
+  return to_toml(document, {});
+}
+
+std::atomic<SharedAssemblies*> shared_assemblies{nullptr};
+
 }  // namespace
 
-Problem problem_of(Case resolved, std::optional<Assembly> given, Purpose purpose) {
-  if (!given) require_memory_for(resolved, purpose);
+SharedAssemblies::SharedAssemblies() {
+  shared_assemblies = this;
+}
+
+SharedAssemblies::~SharedAssemblies() {
+  shared_assemblies = nullptr;
+}
+
+Assembly SharedAssemblies::operator()(const Case& resolved) {
+  const std::string tables = deciding_tables(resolved);
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = known_.find(tables); found != known_.end()) return found->second;
+  }
+  Assembly assembly = build_assembly(resolved);
+  const std::lock_guard lock(mutex_);
+  if (discs_ + assembly.size() <= most_discs && known_.emplace(tables, assembly).second) discs_ += assembly.size();
+  return assembly;
+}
+
+Assembly assembly_of(const Case& resolved) {
+  SharedAssemblies* const shared = shared_assemblies;
+  return shared != nullptr ? (*shared)(resolved) : build_assembly(resolved);
+}
+
+Problem problem_of(Case resolved, Purpose purpose) {
+  require_memory_for(resolved, purpose);
   StageTimes times;
   Stopwatch watch;
-  Assembly assembly = given ? std::move(*given) : build_assembly(resolved);
+  Assembly assembly = assembly_of(resolved);
   times.add("assembly", watch.lap());
   BuiltSprings springs = build_springs(resolved, assembly);
   times.add("springs", watch.lap());
@@ -105,12 +150,12 @@ bool acts(const Case& resolved) {
   return resolved.test || !resolved.supports.empty() || !resolved.load_cases.front().loads.empty();
 }
 
-Problem build_problem(Case resolved, std::optional<Assembly> given) {
+Problem build_problem(Case resolved) {
   if (!acts(resolved)) {
     bad_input_at(resolved.document.where(), "nothing pulls or holds the assembly", "it would stay as it is",
                  "Add [test], or [[support]] and [[load]]");
   }
-  Problem problem = problem_of(std::move(resolved), std::move(given));
+  Problem problem = problem_of(std::move(resolved));
   leave_out_loose(problem);
   problem.supports = problem.resolved.supports;
   problem.load_cases = problem.resolved.load_cases;

@@ -3,6 +3,9 @@
 /// A case made ready to be solved, and what is evaluated once it is.
 #pragma once
 
+#include <cstddef>
+#include <map>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,17 +51,39 @@ struct Problem {
 /// Use of an assembly; the memory is estimated by it before the assembly is built.
 enum class Purpose { factorize, step };
 
+/// While one exists, assembly_of builds each assembly once and keeps it for cases with the same one. At most one
+/// exists.
+class SharedAssemblies {
+ public:
+  SharedAssemblies();
+  ~SharedAssemblies();
+  SharedAssemblies(const SharedAssemblies&) = delete;
+  SharedAssemblies& operator=(const SharedAssemblies&) = delete;
+
+  /// \throws Error as build_assembly
+  Assembly operator()(const Case& resolved);
+
+ private:
+  static constexpr std::size_t most_discs = 1000000;  ///< of all that are kept
+
+  std::mutex mutex_;
+  std::map<std::string, Assembly> known_;  ///< by the tables of the case that decide it
+  std::size_t discs_ = 0;
+};
+
+/// The assembly of a case, built or taken from SharedAssemblies.
+/// \throws Error as build_assembly
+Assembly assembly_of(const Case& resolved);
+
 /// Assembly and springs of the case, without supports and loads.
-/// \param assembly to use instead of building it; empty: build
 /// \throws Error (bad_input) as build_assembly and build_springs; (computation_failed) where memory would not suffice
-Problem problem_of(Case resolved, std::optional<Assembly> assembly = {}, Purpose purpose = Purpose::factorize);
+Problem problem_of(Case resolved, Purpose purpose = Purpose::factorize);
 
 /// Whether the case has supports or loads, those of a tension test among them.
 bool acts(const Case& resolved);
 
-/// \param assembly to use instead of building it; empty: build
 /// \throws Error (bad_input) as build_assembly and build_springs do; neither [test] nor anything that acts
-Problem build_problem(Case resolved, std::optional<Assembly> assembly = {});
+Problem build_problem(Case resolved);
 
 /// One load case, solved and evaluated.
 struct SolvedCase {

@@ -169,4 +169,10 @@ std::string case_file_page() {
   return out;
 }
 
+std::optional<std::string> unit_of_case_key(std::string_view path) {
+  for (const Part& part : parts())
+    if (const casefile::KeySpec* key = casefile::known_key(part.spec, path)) return key->unit;
+  return std::nullopt;
+}
+
 }  // namespace equidem

@@ -15,6 +15,7 @@ namespace equidem {
 namespace {
 
 std::atomic<bool> progress_shown{true};
+std::atomic<int> existing{0};
 volatile std::sig_atomic_t stop_asked = 0;
 
 void ask_to_stop(int signal_number) {
@@ -34,15 +35,17 @@ void set_progress_shown(bool shown) {
   progress_shown = shown;
 }
 
-Progress::Progress(std::string task) : task_(std::move(task)), terminal_(isatty(STDERR_FILENO) != 0) {}
+Progress::Progress(std::string task)
+    : task_(std::move(task)), outermost_(existing++ == 0), terminal_(isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
+  --existing;
   if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
 }
 
 void Progress::update(double fraction) {
   stop_if_interrupted();
-  if (!progress_shown) return;
+  if (!progress_shown || !outermost_) return;
   const double elapsed = watch_.seconds();
   const Rhythm& rhythm = terminal_ ? on_terminal : elsewhere;
   if (elapsed < rhythm.first_line_after || (shown_ && elapsed - last_shown_ < rhythm.line_every)) return;

@@ -13,7 +13,7 @@ namespace equidem {
 void set_progress_shown(bool shown);
 
 /// Progress of a long computation on stderr: "factorizing 42 %, 7 s left". On a terminal one line, from the second
-/// second on; elsewhere a line after three seconds, then one a minute.
+/// second on; elsewhere a line after three seconds, then one a minute. While one exists, others show nothing.
 class Progress {
  public:
   explicit Progress(std::string task);
@@ -29,7 +29,7 @@ class Progress {
   std::string task_;
   Stopwatch watch_;
   double last_shown_ = 0;
-  bool terminal_;
+  bool outermost_, terminal_;
   bool shown_ = false;
 };
 

@@ -220,8 +220,12 @@ Results& Results::add(std::string key, std::string label, ResultValue value, std
   return *this;
 }
 
-Results& Results::set(std::string key, ResultValue value) {
-  parts_.push_back({.key = std::move(key), .value = std::move(value), .hidden = true});
+Results& Results::set(std::string key, ResultValue value, std::string unit, std::string label) {
+  parts_.push_back({.key = std::move(key),
+                    .label = std::move(label),
+                    .unit = std::move(unit),
+                    .value = std::move(value),
+                    .hidden = true});
   return *this;
 }
 
@@ -259,8 +263,10 @@ Results Results::under(const std::string& object) const {
 
 Results Results::hidden() const {
   Results values;
-  for (const Result& part : parts_)
-    if (!part.key.empty()) values.set(part.key, part.value);
+  for (const Result& part : parts_) {
+    if (part.key.empty()) continue;
+    part.hidden ? values.parts_.push_back(part) : void(values.set(part.key, part.value));
+  }
   return values;
 }
 

@@ -113,8 +113,8 @@ class Results {
  public:
   /// A value of the report and the JSON. \param key empty: of the report alone
   Results& add(std::string key, std::string label, ResultValue value, std::string unit = {}, Shown shown = {});
-  /// A value of the JSON alone.
-  Results& set(std::string key, ResultValue value);
+  /// A value of the JSON alone. \param label of a number; empty: that of quantities.hpp
+  Results& set(std::string key, ResultValue value, std::string unit = {}, std::string label = {});
   /// Begins a line of the report. \param name its first column; empty: the line continues the one above
   Results& line(std::string name, const std::string& text = {});
   /// Text of the report that follows on the line, as it is.

@@ -109,7 +109,7 @@ Problem problem_with_material(Case resolved) {
   }
   StageTimes times;
   Stopwatch watch;
-  Assembly assembly = build_assembly(resolved);
+  Assembly assembly = assembly_of(resolved);
   times.add("assembly", watch.lap());
   BuiltSprings unknown{ContactSprings(SpringConstants{1, 1}), {}, "not known yet"};
   return {std::move(resolved), std::move(assembly), std::move(unknown), {}, {}, {}, std::move(times)};

@@ -163,7 +163,7 @@ KeptStep kept_step(const std::filesystem::path& checkpoint) {
 }
 
 BondedRun::BondedRun(Case resolved, const std::optional<KeptStep>& kept)
-    : problem_(problem_of(with_run(std::move(resolved)), {}, Purpose::step)),
+    : problem_(problem_of(with_run(std::move(resolved)), Purpose::step)),
       scene_(build_scene(problem_.resolved, problem_.assembly, problem_.springs.springs)),
       step_(step_of(problem_, scene_, kept)),
       options_(simulation_options(problem_.resolved, step_.step)),

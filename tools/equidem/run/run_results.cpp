@@ -42,7 +42,7 @@ bool add_terms(Results& out, const char* lead, BodyFamily family, const EnergyLe
 void add_energies(Results& out, const RunJob& job, BodyFamily family, Body body, const EnergyLedger& l,
                   const RunRecord& record) {
   const double scale = scale_of(family, l, record);
-  out.append(energy_results(family, l, scale).under("energy"));
+  out.append(energy_results(family, body, l, scale).under("energy"));
   out.line("energy")
       .add("energy/kinetic", "kinetic", l.kinetic)
       .add("energy/elastic", "elastic", l.elastic())

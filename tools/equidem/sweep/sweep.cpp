@@ -1,356 +1,198 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// equidem sweep: solve over a range of one key.
+/// equidem sweep: a verb over values of keys and seeds.
 #include <algorithm>
-#include <array>
-#include <cmath>
+#include <cstddef>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include <CLI/CLI.hpp>
 
 #include "equidem/casefile/assembly/case.hpp"
+#include "equidem/casefile/grains/grain_case.hpp"
+#include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
-#include "equidem/core/progress.hpp"
-#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/plots/plot.hpp"
+#include "equidem/core/threads.hpp"
 
 #include "command.hpp"
 #include "option_checks.hpp"
-#include "problem.hpp"
-#include "sweep/sweep_table.hpp"
+#include "sweep/sweep_curves.hpp"
+#include "sweep/sweep_run.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
 namespace {
 
-struct SweepOptions {
-  CommonOptions common;
-  std::string key;
-  std::optional<double> from, to;
-  int steps = 11;
-  std::vector<std::string> values;   ///< "a,b,c"
-  std::string verb;                  ///< no longer taken
-  std::optional<std::string> title;  ///< of the curves
-  bool resume = false;
-};
+/// First line of the case that is written, which tells sweeps by different verbs apart.
+std::string heading_of(const Sweep& sweep) {
+  return fmt::format("# The case of a sweep by 'equidem {}'; what is varied stands at its end.\n", sweep.plan.verb);
+}
 
-std::vector<double> values_of(const SweepOptions& options) {
-  const bool range = options.from && options.to;
-  if (range == !options.values.empty() || options.from.has_value() != options.to.has_value())
-    bad_input(
-        options.values.empty() ? "the sweep is given no values" : "the sweep is given a list of values and a range",
-        "it takes either one", "Give --values a,b,c or --from A --to B --steps N");
-  std::vector<double> values;
-  for (const std::string& list : options.values) {
-    for (const std::string_view part : parts_of(list, ',')) {
-      const std::optional<double> value = number_from<double>(part);
-      if (!value || !std::isfinite(*value))
-        bad_input_at("--values",
-                     part.empty() ? fmt::format("a value is missing in '{}'", list)
-                                  : fmt::format("'{}' is among the values", part),
-                     "a sweep needs finite numbers", "Leave it out, or correct it");
-      values.push_back(*value);
+void check_verb(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Verb& verb : verbs)
+    if (verb.declare != declare_sweep && verb.declare != declare_study) names.emplace_back(verb.name);
+  if (std::ranges::find(names, name) != names.end()) return;
+  const bool exists = std::ranges::find(verbs, name, &Verb::name) != verbs.end();
+  bad_input_at("--verb",
+               exists ? fmt::format("a sweep cannot vary '{}'", name) : fmt::format("there is no verb '{}'", name),
+               exists ? "it has no case whose keys could be varied" : "a sweep varies the case of a verb",
+               fmt::format("Give one of {}", joined(names)));
+}
+
+/// The case as the verb reads it.
+/// \throws Error as the reader of the verb
+CaseDocument read_base(const std::string& verb, const CommonOptions& options) {
+  prepare(options);
+  const std::vector<std::string> overrides = overrides_of(options);
+  if (verb == "pack") return read_pack_case(options.case_file, overrides);
+  if (verb == "run" && describes_grains(casefile::read_document(options.case_file, options.set))) {
+    if (options.seed)
+      bad_input_at("--seeds", "nothing in a case of grains is random", "all points would be equal", "Leave it out");
+    return read_grain_case(options.case_file, options.set);
+  }
+  return read_case(options);
+}
+
+/// The keys exist, and the case has a seed where seeds are given.
+void check_keys(const SweepOptions& options, const SweepPlan& plan, const CaseDocument& base) {
+  for (const SweptKey& key : plan.keys) {
+    CommonOptions first = options.common;
+    if (key.name == SweepPlan::seed) {
+      first.seed = std::stoll(key.values.front());
+    } else if (key.name == "ratio") {
+      const TomlValue* const springs = base.document.find("springs");
+      if (springs == nullptr || !springs->is_table() || springs->find("kN") == nullptr)
+        bad_input("--key ratio needs springs", "it changes kT at the kN of the case file",
+                  "Give [springs] in place of [material]");
+      continue;
+    } else if (unit_of_case_key(key.name)) {
+      continue;
+    } else {
+      first.set.push_back(fmt::format("{}={}", key.name, key.values.front()));
     }
+    static_cast<void>(read_base(plan.verb, first));
   }
-  const int intervals = options.steps - 1;
-  for (int k = 0; range && k < options.steps; ++k) {
-    const double value =
-        intervals == 0 ? *options.from : (*options.from * (intervals - k) + *options.to * k) / intervals;
-    // The decimal number that is meant, 0.3 and not 0.30000000000000004; and a spring that is absent, not one
-    // that is almost absent.
-    const double rounding = 1e-13 * std::max(std::abs(*options.from), std::abs(*options.to));
-    values.push_back(std::abs(value) <= rounding ? 0 : std::stod(fmt::format("{:.12g}", value)));
-    if (!std::isfinite(values.back()))
-      bad_input("the values from --from to --to overflow", "a sweep needs finite numbers", "Give smaller ones");
-  }
-  return values;
 }
 
-/// The override that a value of the key means. "ratio" stands for kT/kN at the kN of the case.
-std::string override_of(const SweepOptions& options, const Case& base, double value) {
-  if (options.key != "ratio") {
-    const TomlValue& now = value_at(base.document, options.key);
-    const bool whole = now.type == TomlValue::Type::integer && value == std::floor(value) && std::abs(value) < 1e15;
-    return fmt::format("{}={}", options.key, whole ? fmt::format("{:.0f}", value) : toml_number(value));
-  }
-  return fmt::format("springs={{kN = {}, kT = {}, weighting = \"{}\"}}", toml_number(base.springs->kN),
-                     toml_number(value * base.springs->kN), to_string(base.weighting));
+/// "1, 2, 3", of many values the first ones and the last one.
+std::string shortened(const std::vector<std::string>& values) {
+  constexpr std::ptrdiff_t most = 20;
+  if (std::ssize(values) <= most) return joined(values);
+  return fmt::format("{}, ..., {} ({} values)", joined(std::vector(values.begin(), values.begin() + most)),
+                     values.back(), values.size());
 }
 
-/// Builds the assembly once where the key does not change it.
-class ProblemFactory {
- public:
-  explicit ProblemFactory(const SweepOptions& options)
-      : reusable_(std::ranges::none_of(std::array{"assembly.", "group.", "packing.", "settling."},
-                                       [&](const char* table) { return options.key.starts_with(table); })) {}
-
-  std::unique_ptr<Problem> operator()(Case resolved) {
-    std::optional<Assembly> given;
-    if (reusable_ && last_) given = *last_;
-    auto problem = std::make_unique<Problem>(build_problem(std::move(resolved), std::move(given)));
-    if (reusable_ && !last_ && problem->left_out.bodies.empty()) last_ = problem->assembly;
-    return problem;
-  }
-
- private:
-  bool reusable_;
-  std::optional<Assembly> last_;
-};
-
-std::unique_ptr<Problem> problem_of(const SweepOptions& options, const Case& base, double value,
-                                    ProblemFactory& build) {
-  CommonOptions common = options.common;
-  common.set.push_back(override_of(options, base, value));
-  return build(read_case(common));
-}
-
-SweepPoint compute(const SweepOptions& options, const Case& base, double value, ProblemFactory& build, Effects& effects,
-                   StageTimes& times) {
-  SweepPoint point;
-  point.value = value;
-  try {
-    const auto problem = problem_of(options, base, value, build);
-    if (problem->load_cases.size() > 1)
-      bad_input("the case has several load cases", "a sweep shows one", "Leave one [[load]] case in the file");
-    const EquilibriumSolver solver(problem->assembly, problem->springs.springs, problem->supports, problem->options());
-    const SolvedCase result = solve_case(*problem, solver, problem->load_cases.front());
-    effects = solver.effects();
-    times.add(problem->times);
-    times.add(result.equilibrium.times);
-    point.status = result.status();
-    point.energy = result.equilibrium.energy;
-    point.relative_residual = result.equilibrium.relative_residual;
-    point.negative_pivots = static_cast<double>(result.equilibrium.negative_pivots);
-    point.unstable_modes = static_cast<double>(result.equilibrium.unstable_modes);
-    if (result.tension) {
-      point.poisson_ratio = result.tension->poisson_ratio;
-      point.stiffness_ratio = result.tension->stiffness_ratio;
-    }
-    if (const auto theory = tension_theory(*problem)) {
-      point.theory_poisson_ratio = theory->poisson_ratio;
-      point.theory_stiffness_ratio = theory->stiffness_ratio;
-    }
-  } catch (const Error& error) {
-    if (error.kind() == ErrorKind::interrupted) throw;
-    point.status = "failed";
-    point.message = error.what();
-  }
-  return point;
-}
-
-constexpr const char* table_name = "sweep.csv";
-constexpr std::array curve_names{"poisson_ratio", "stiffness_ratio"};
-
-std::string axis_label(const std::string& key) {
-  return key == "ratio" ? "k_T/k_N" : literal(key);
-}
-
-/// The user's own, or what is varied.
-std::string title_of(const SweepOptions& options, const Case& base) {
-  if (options.title) return literal(*options.title);
-  return base.title.empty() ? axis_label(options.key) + " varied" : literal(base.title);
-}
-
-std::string plot_curves(const SweepOptions& options, const Case& base, const std::vector<SweepPoint>& points,
-                        bool overwrite) {
-  struct Curve {
-    const char* name;
-    const char* label;
-    double SweepPoint::*computed;
-    double SweepPoint::*theory;
-  };
-  const std::array curves{
-      Curve{curve_names[0], "Poisson's ratio ν (plane strain)", &SweepPoint::poisson_ratio,
-            &SweepPoint::theory_poisson_ratio},
-      Curve{curve_names[1], "2G/((1 - ν) k_N)", &SweepPoint::stiffness_ratio, &SweepPoint::theory_stiffness_ratio}};
-  std::vector<SweepPoint> ordered = points;
-  std::stable_sort(ordered.begin(), ordered.end(),
-                   [](const SweepPoint& a, const SweepPoint& b) { return a.value < b.value; });
-  std::string said;
-  for (const Curve& curve : curves) {
-    Series theory{.label = "theory of the lattice", .x = {}, .y = {}, .column = "theory"};
-    Series stable{.label = "computed",
-                  .x = {},
-                  .y = {},
-                  .style = SeriesStyle::points,
-                  .colour = PlotColour::blue,
-                  .column = "computed"};
-    Series unstable{.label = "computed, unstable or not judged",
-                    .x = {},
-                    .y = {},
-                    .style = SeriesStyle::points,
-                    .colour = PlotColour::vermilion,
-                    .filled = false,
-                    .column = "unstable"};
-    for (const SweepPoint& point : ordered) {
-      if (!std::isnan(point.*curve.theory)) {
-        theory.x.push_back(point.value);
-        theory.y.push_back(point.*curve.theory);
-      }
-      if (std::isnan(point.*curve.computed)) continue;
-      Series& series = point.unstable_modes != 0 ? unstable : stable;
-      series.x.push_back(point.value);
-      series.y.push_back(point.*curve.computed);
-    }
-    Plot plot{.title = title_of(options, base),
-              .x = {.label = axis_label(options.key)},
-              .y = {.label = curve.label},
-              .enhanced = true};
-    for (const Series* series : {&theory, &stable, &unstable})
-      if (!series->x.empty()) plot.series.push_back(*series);
-    if (stable.x.empty() && unstable.x.empty()) continue;
-    said += write_plot(*options.common.out, curve.name, plot, overwrite).message + "\n";
-  }
-  return said;
+/// The case with what is varied as comments, which are no part of what has to agree for --resume.
+std::string text_of_case(const Sweep& sweep) {
+  const SweepPlan& plan = sweep.plan;
+  std::string text = heading_of(sweep) + to_toml(sweep.base.document, *sweep.options.common.out);
+  text += fmt::format("\n# Varied {}:\n", plan.side_by_side ? "side by side" : "in all combinations");
+  for (const SweptKey& key : plan.keys) text += fmt::format("# {} = {}\n", key.name, shortened(key.values));
+  return text;
 }
 
 /// Points of an earlier run of the same sweep.
-std::vector<SweepPoint> points_to_keep(const SweepOptions& options, const Case& base) {
-  if (!options.resume) return {};
-  if (!options.common.out)
+std::vector<SweepPoint> points_to_keep(const Sweep& sweep) {
+  const auto& out = sweep.options.common.out;
+  if (!sweep.options.resume) return {};
+  if (!out)
     bad_input("--resume has nothing to continue", "the points done lie in the folder of --out", "Add --out DIR");
-  const auto table = *options.common.out / table_name;
+  const auto table = *out / Sweep::table_name;
   if (!std::filesystem::exists(table)) return {};
-  if (read_file(*options.common.out / "case.toml") != to_toml(base, *options.common.out)) {
-    bad_input_at((*options.common.out / "case.toml").string(), "the sweep there is of another case",
+  if (!read_file(*out / Sweep::case_name).starts_with(heading_of(sweep) + to_toml(sweep.base.document, *out))) {
+    bad_input_at((*out / Sweep::case_name).string(), "the sweep there is of another case",
                  "its points would not fit together",
                  "Choose another --out, or leave out --resume and pass --overwrite");
   }
-  return read_sweep_points(table, options.key);
+  return read_sweep_points(table, sweep.plan);
 }
 
-void check_outputs(const SweepOptions& options) {
-  CommonOptions common = options.common;
-  common.overwrite = common.overwrite || options.resume;
+void check_outputs(const Sweep& sweep) {
+  CommonOptions common = sweep.options.common;
+  common.overwrite = common.overwrite || sweep.options.resume;
   const OutputPlan plan(common);
-  for (const char* name : {table_name, "case.toml", "result.json"}) plan.expect(name);
-  for (const char* name : curve_names) plan.expect_plot(name);
-  OutputPlan(options.common).expect_json();
+  for (const char* name : {Sweep::table_name, Sweep::case_name, "result.json"}) plan.expect(name);
+  for (const std::string& name : curve_names(sweep.plan)) plan.expect_plot(name);
+  OutputPlan(sweep.options.common).expect_json();
 }
 
-/// The points of this run, then those of an earlier one that it has not come to.
-std::vector<SweepPoint> merged(std::vector<SweepPoint> points, const std::vector<SweepPoint>& kept) {
-  const std::size_t own = points.size();
-  for (const SweepPoint& point : kept) {
-    const auto same = [&](const SweepPoint& other) { return other.value == point.value; };
-    if (std::none_of(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(own), same)) points.push_back(point);
+Results results_of_keys(const SweepPlan& plan) {
+  std::vector<Results> keys;
+  for (const SweptKey& key : plan.keys) {
+    Results one;
+    one.set("key", key.name).set("unit", key.unit);
+    if (key.numeric()) {
+      std::vector<double> numbers;
+      for (const std::string& value : key.values) numbers.push_back(std::stod(value));
+      one.set("values", numbers, "", "values of the key, in its unit");
+    } else {
+      one.set("values", key.values);
+    }
+    keys.push_back(std::move(one));
   }
-  return points;
+  return Results().set("verb", plan.verb).set("key", plan.keys.front().name).set("keys", keys);
 }
 
-/// The key exists and the sweep can begin.
-void check_key(const SweepOptions& options, const Case& base, double first) {
-  if (options.key == "ratio") {
-    if (!base.springs)
-      bad_input("--key ratio needs springs", "it changes kT at the kN of the case file",
-                "Give [springs] in place of [material]");
-    return;
-  }
-  if (is_case_key(options.key)) return;
-  CommonOptions common = options.common;
-  common.set.push_back(fmt::format("{}={}", options.key, toml_number(first)));
-  static_cast<void>(read_case(common));
-}
-
-int dry_run(const SweepOptions& options, const Case& base, const std::vector<double>& values) {
-  const Problem problem = build_problem(base);
-  Results results;
-  results.block(
-      fmt::format("{} of {}, each about as large as this one:\n\n", counted(std::ssize(values), "point"), options.key));
-  results.append(dry_run_results(problem, static_cast<double>(values.size())))
-      .set("key", options.key)
-      .set("values", values);
-  deliver(options.common, "dry_run", results, problem.times);
+int dry_run(const Sweep& sweep) {
+  const SweepPlan& plan = sweep.plan;
+  const auto points = static_cast<double>(plan.size());
+  const Delivery first = sweep.run_of(plan.values_of(0), {"--dry-run"})();
+  Results results = results_of_keys(plan);
+  results.set("number_of_points", plan.size(), "", "number of points");
+  results.block(fmt::format("{} of {}, each about as large as this one:\n\n",
+                            counted(static_cast<long long>(plan.size()), "point"), plan.names()));
+  results.append(first.results);
+  for (const Result& part : first.results.parts())
+    if (const auto* seconds = std::get_if<double>(&part.value.value); seconds && part.key == "estimated_seconds")
+      results.line("sweep").add("", "about", points * *seconds / thread_count(), "s for all points", {.digits = 2});
+  deliver(sweep.options.common, "dry_run", results, first.times);
   return 0;
 }
 
-/// The state of a sweep at its end or where it was stopped.
-struct Progressed {
-  std::vector<SweepPoint> points;  ///< of this run
-  bool stopped = false;            ///< by the user, before the last value
-  Effects effects;                 ///< of the last point
-  StageTimes times;                ///< of all points
-};
-
-void write_points(const SweepOptions& options, const std::vector<SweepPoint>& points) {
-  write_samples(*options.common.out / table_name, sweep_table(options.key, points));
-}
-
-/// Compute the points that are not kept, and save the table every second: whatever ends the program, little is lost.
-Progressed compute_points(const SweepOptions& options, const Case& base, const std::vector<double>& values,
-                          const std::vector<SweepPoint>& kept) {
-  Progressed run;
-  ProblemFactory build(options);
-  Stopwatch since_saved;
-  try {
-    Progress progress(fmt::format("sweeping {}", options.key));
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      progress.update(static_cast<double>(k) / static_cast<double>(values.size()));
-      const auto done = std::find_if(kept.begin(), kept.end(), [&](const SweepPoint& point) {
-        return point.value == values[k] && point.status != "failed";
-      });
-      run.points.push_back(done != kept.end() ? *done
-                                              : compute(options, base, values[k], build, run.effects, run.times));
-      if (done != kept.end() && k + 1 == values.size()) {
-        const auto problem = problem_of(options, base, values[k], build);
-        run.effects = derive_effects(problem->assembly, problem->springs.springs, problem->resolved.rotation);
-      }
-      if (!options.common.out || since_saved.seconds() < 1) continue;
-      write_points(options, merged(run.points, kept));
-      since_saved.lap();
-    }
-  } catch (const Error& error) {
-    if (error.kind() != ErrorKind::interrupted) throw;
-    run.stopped = true;
-  }
-  return run;
-}
-
 int sweep(const SweepOptions& options) {
-  if (!options.verb.empty()) bad_input("'equidem sweep' takes no --verb", "a sweep solves", "Leave it out");
-  const std::vector<double> values = values_of(options);
-  const Case base = read_case(options.common);
-  check_key(options, base, values.front());
-  check_outputs(options);
-  if (options.common.dry_run) return dry_run(options, base, values);
+  check_verb(options.verb);
+  if (options.common.seed && !options.seeds.empty())
+    bad_input("--seed and --seeds exclude each other", "both say which seed a point has", "Leave one of them out");
+  const Sweep sweep{options, sweep_plan(options.verb, options.keys, options.seeds, options.side_by_side),
+                    read_base(options.verb, options.common)};
+  check_keys(options, sweep.plan, sweep.base);
+  check_outputs(sweep);
+  if (options.common.dry_run) return dry_run(sweep);
   const auto lock = lock_out(options.common);
-  const std::vector<SweepPoint> kept = points_to_keep(options, base);
-
+  SweepRun run(sweep, points_to_keep(sweep));
   const auto& folder = options.common.out;
-  if (folder) write_file(*folder / "case.toml", to_toml(base, *folder), true);
-  Progressed run = compute_points(options, base, values, kept);
-  const std::size_t done = run.points.size();
-  const std::vector<SweepPoint> points = merged(std::move(run.points), kept);
-  const auto failed = static_cast<std::size_t>(
-      std::count_if(points.begin(), points.end(), [](const SweepPoint& point) { return point.status == "failed"; }));
-  const bool all_failed = failed == points.size();
+  if (folder) write_file(*folder / Sweep::case_name, text_of_case(sweep), true);
+  run();
 
+  const std::vector<SweepPoint> points = run.points();
+  const auto failed = static_cast<std::size_t>(std::ranges::count_if(points, &SweepPoint::failed));
+  const bool all_failed = failed == points.size();
   Results results;
-  if (!base.title.empty()) results.block(base.title + "\n\n");
-  results.set("key", options.key).set("complete", !run.stopped).table("points", sweep_rows(options.key, points));
-  if (failed > 0) {
+  if (!sweep.base.title.empty()) results.block(sweep.base.title + "\n\n");
+  results.append(results_of_keys(sweep.plan)).set("complete", !run.stopped());
+  results.table("points", sweep_rows(sweep.plan, points));
+  if (failed > 0)
     results.block(
         fmt::format("{} failed, {} done\n", counted(static_cast<long long>(failed), "point"), points.size() - failed));
-  }
-  if (run.stopped) results.block(fmt::format("INCOMPLETE: stopped after {} of {} points\n", done, values.size()));
-  Results effects;
-  add_effects(effects, run.effects);
-  results.append(effects.hidden());
+  if (run.stopped())
+    results.block(fmt::format("INCOMPLETE: stopped after {} of {} points\n", run.done(), sweep.plan.size()));
+  StageTimes times;
+  times.add("points", run.seconds());
   deliver(options.common,
-          run.stopped  ? "interrupted"
-          : all_failed ? "failed"
-                       : "done",
-          std::move(results), run.times, [&](Results& out) {
+          run.stopped() ? "interrupted"
+          : all_failed  ? "failed"
+                        : "done",
+          std::move(results), std::move(times), [&](Results& out) {
             if (!folder) return;
-            write_points(options, points);
-            if (!run.stopped && base.test) out.block(plot_curves(options, base, points, true));
+            run.save();
+            if (!run.stopped())
+              out.block(write_curves(*folder, sweep.plan, points, options.title.value_or(sweep.base.title)));
           });
-  if (run.stopped) {
-    throw_stopped(options.common, fmt::format("{} of {} points are done", done, values.size()),
+  if (run.stopped()) {
+    throw_stopped(options.common, fmt::format("{} of {} points are done", run.done(), sweep.plan.size()),
                   "Run the same command with --resume to do the rest");
   }
   if (all_failed)
@@ -359,27 +201,83 @@ int sweep(const SweepOptions& options) {
   return 0;
 }
 
+/// The key that an option belongs to: the last one given before it, or the first one where none is.
+KeyOptions& current_key(SweepOptions& options) {
+  return options.keys.empty() ? options.keys.emplace_back() : options.keys.back();
+}
+
+void name_key(SweepOptions& options, const std::string& name) {
+  const bool unnamed = options.keys.size() == 1 && options.keys.front().name.empty();
+  (unnamed ? options.keys.front() : options.keys.emplace_back()).name = name;
+}
+
+/// Options that may be repeated, those of each key after it.
+void add_key_options(CLI::App& command, const std::shared_ptr<SweepOptions>& options) {
+  command
+      .add_option_function<std::string>(
+          "--key", [options](const std::string& name) { name_key(*options, name); },
+          "a key to vary, such as springs.kT or assembly.rows; ratio: kT/kN.\nSeveral, each followed by its values: "
+          "all "
+          "combinations")
+      ->trigger_on_parse()
+      ->type_name("KEY");
+  command
+      .add_option_function<double>(
+          "--from", [options](double from) { current_key(*options).from = from; }, "first value")
+      ->trigger_on_parse()
+      ->check(finite_number())
+      ->type_name("A");
+  command
+      .add_option_function<double>(
+          "--to", [options](double to) { current_key(*options).to = to; }, "last value")
+      ->trigger_on_parse()
+      ->check(finite_number())
+      ->type_name("B");
+  command
+      .add_option_function<int>(
+          "--steps", [options](int steps) { current_key(*options).steps = steps; },
+          "number of values from A to B; 11 where left out")
+      ->trigger_on_parse()
+      ->check(whole_number(1, 1000000))
+      ->type_name("N");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--values",
+          [options](const std::vector<std::string>& lists) {
+            std::vector<std::string>& values = current_key(*options).values;
+            values.insert(values.end(), lists.begin(), lists.end());
+          },
+          "the values themselves: numbers, words, true, false")
+      ->trigger_on_parse()
+      ->allow_extra_args(false)
+      ->type_name("A,B,C");
+}
+
 }  // namespace
 
 Run declare_sweep(CLI::App& command) {
   const auto options = std::make_shared<SweepOptions>();
   add_common_options(command, options->common);
-  command.add_option("--key", options->key, "the key to vary, such as springs.kT or assembly.rows; ratio: kT/kN")
-      ->required()
-      ->type_name("KEY");
-  command.add_option("--from", options->from, "first value")->check(finite_number())->type_name("A");
-  command.add_option("--to", options->to, "last value")->check(finite_number())->type_name("B");
-  command.add_option("--steps", options->steps, "number of values from A to B; 11 where left out")
-      ->check(whole_number(1, 1000000))
-      ->type_name("N");
-  command.add_option("--values", options->values, "the values themselves")->allow_extra_args(false)->type_name("A,B,C");
-  command.add_option("--verb", options->verb)->group("");
+  command
+      .add_option("--verb", options->verb,
+                  "what is done at each point: solve (where left out), homogenize, calibrate,\nstability, pack or run")
+      ->type_name("VERB");
+  add_key_options(command, options);
+  command.add_flag("--list", options->side_by_side, "keys take their values side by side, not in all combinations");
+  command.add_option("--seeds", options->seeds, "each point with each of these seeds: 1,2,3 or 1-5")
+      ->allow_extra_args(false)
+      ->type_name("S,T,...");
   command.add_option("--title", options->title, "title of the curves; left out: that of the case")->type_name("TEXT");
   command.add_flag("--resume", options->resume, "keep the points that lie in --out, compute the others");
   command.footer(
       "Examples:\n"
       "  equidem sweep data/cases/abe1996_fig6.toml --key ratio --from 0 --to 1 --steps 11 --out curve\n"
       "  equidem sweep data/cases/abe1996_fig6.toml --key assembly.rows --values 5,11,21,41\n"
+      "  equidem sweep data/cases/random_cell.toml --verb homogenize --key ratio --values 0,0.5,1 --seeds 1-5\n"
+      "  equidem sweep data/cases/abe1996_fig6.toml --list --key assembly.rows --values 11,21 --key assembly.columns\n"
+      "                --values 11,21\n"
+      "The table sweep.csv has a row for each point, the keys and all numbers of the verb's result, units in the "
+      "names.\n"
       "A point that fails stays in the table with its reason.\n"
       "Ctrl-C keeps what is done; --resume continues.");
   return [options] { return sweep(*options); };

@@ -2,82 +2,185 @@
 #include "sweep/sweep_table.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <optional>
+#include <iterator>
+#include <map>
+#include <utility>
+
+#include "equidem/core/table_file.hpp"
 
 namespace equidem {
 namespace {
 
-struct NumberColumn {
-  const char* name;
-  double SweepPoint::*member;
-  const char* label;  ///< in the report; empty: left out
-  const char* unit = "";
-  Shown shown = {.digits = 8};
-  bool of_tension = false;
+constexpr const char* number_name = "point";
+constexpr const char* label_of_number = "number of the point";
+
+constexpr MainQuantity all_main_quantities[] = {
+    {.verb = "solve",
+     .path = "poisson_ratio",
+     .heading = "nu",
+     .axis = "Poisson's ratio ν (plane strain)",
+     .theory = "theory/poisson_ratio"},
+    {.verb = "solve",
+     .path = "stiffness_ratio",
+     .heading = "2G/((1-nu)kN)",
+     .axis = "2G/((1 - ν) k_N)",
+     .theory = "theory/stiffness_ratio"},
+    {.verb = "solve", .path = "theory/poisson_ratio", .heading = "nu theory"},
+    {.verb = "solve", .path = "theory/stiffness_ratio", .heading = "2G/((1-nu)kN) theory"},
+    {.verb = "solve", .path = "energy", .heading = "energy"},
+    {.verb = "solve", .path = "relative_residual", .heading = "residual", .shown = Shown::power, .digits = 1},
+    {.verb = "solve", .path = "unstable_modes", .heading = "unstable"},
+    {.verb = "homogenize",
+     .path = "young_modulus/plane_strain",
+     .heading = "E strain",
+     .axis = "Young's modulus E (plane strain), Pa"},
+    {.verb = "homogenize",
+     .path = "poisson_ratio/plane_strain",
+     .heading = "nu strain",
+     .axis = "Poisson's ratio ν (plane strain)"},
+    {.verb = "homogenize", .path = "bulk_modulus_2d", .heading = "K"},
+    {.verb = "homogenize", .path = "shear_modulus", .heading = "G", .axis = "shear modulus G, Pa"},
+    {.verb = "homogenize", .path = "anisotropy", .heading = "anisotropy", .digits = 3},
+    {.verb = "homogenize",
+     .path = "ensemble/0/bulk_modulus_2d/mean",
+     .heading = "mean K",
+     .axis = "bulk modulus K, mean of the ensemble, Pa"},
+    {.verb = "homogenize",
+     .path = "ensemble/0/shear_modulus/mean",
+     .heading = "mean G",
+     .axis = "shear modulus G, mean of the ensemble, Pa"},
+    {.verb = "calibrate", .path = "kN", .heading = "kN", .axis = "k_N, Pa"},
+    {.verb = "calibrate", .path = "kT", .heading = "kT"},
+    {.verb = "calibrate", .path = "ratio", .heading = "kT/kN", .axis = "k_T/k_N"},
+    {.verb = "calibrate",
+     .path = "achieved/relative_error",
+     .heading = "relative error",
+     .shown = Shown::power,
+     .digits = 1},
+    {.verb = "stability", .path = "critical_ratio", .heading = "critical kT/kN", .axis = "critical k_T/k_N"},
+    {.verb = "stability", .path = "omega_max", .heading = "omega_max"},
+    {.verb = "stability", .path = "critical_time_step", .heading = "critical step", .axis = "critical time step, s"},
+    {.verb = "pack", .path = "solid_fraction", .heading = "solid fraction", .axis = "solid fraction"},
+    {.verb = "pack", .path = "void_ratio", .heading = "void ratio", .axis = "void ratio"},
+    {.verb = "pack", .path = "coordination_number", .heading = "z", .axis = "mean number of contacts"},
+    {.verb = "pack", .path = "rattlers", .heading = "rattlers"},
+    {.verb = "pack", .path = "bonds", .heading = "bonds"},
+    {.verb = "run", .path = "steps", .heading = "steps"},
+    {.verb = "run", .path = "time_step", .heading = "time step"},
+    {.verb = "run", .path = "energy/kinetic", .heading = "kinetic energy", .axis = "kinetic energy"},
+    {.verb = "run", .path = "energy/dissipated", .heading = "lost energy", .axis = "energy lost"},
+    {.verb = "run", .path = "energy/relative_error", .heading = "energy error", .shown = Shown::power, .digits = 1},
+    {.verb = "run", .path = "measures/void_ratio/after", .heading = "void ratio", .axis = "void ratio at the end"},
+    {.verb = "run",
+     .path = "relative_unbalanced_force",
+     .heading = "unbalanced force",
+     .shown = Shown::power,
+     .digits = 1},
 };
 
-constexpr std::array number_columns{
-    NumberColumn{.name = "poisson_ratio", .member = &SweepPoint::poisson_ratio, .label = "nu", .of_tension = true},
-    NumberColumn{.name = "stiffness_ratio",
-                 .member = &SweepPoint::stiffness_ratio,
-                 .label = "2G/((1-nu)kN)",
-                 .of_tension = true},
-    NumberColumn{.name = "theory_poisson_ratio",
-                 .member = &SweepPoint::theory_poisson_ratio,
-                 .label = "nu theory",
-                 .of_tension = true},
-    NumberColumn{.name = "theory_stiffness_ratio",
-                 .member = &SweepPoint::theory_stiffness_ratio,
-                 .label = "2G/((1-nu)kN) theory",
-                 .of_tension = true},
-    NumberColumn{.name = "energy", .member = &SweepPoint::energy, .label = "energy", .unit = "N"},
-    NumberColumn{.name = "relative_residual",
-                 .member = &SweepPoint::relative_residual,
-                 .label = "residual",
-                 .shown = {Shown::power, 1}},
-    NumberColumn{.name = "negative_pivots", .member = &SweepPoint::negative_pivots, .label = ""},
-    NumberColumn{.name = "unstable_modes", .member = &SweepPoint::unstable_modes, .label = "unstable"},
-};
+std::string key_column(const SweptKey& key) {
+  return column_name(key.name, key.unit.substr(0, key.unit.find_first_of(" ,;(")));
+}
+
+/// Names of all numbers: those of a point follow one another in its order.
+std::vector<std::string> columns_of_numbers(std::span<const SweepPoint> points) {
+  std::vector<std::string> names;
+  for (const SweepPoint& point : points) {
+    auto place = names.begin();
+    for (const ScalarNumber& number : point.numbers) {
+      const std::string name = column_name(number.path, number.unit);
+      const auto found = std::ranges::find(names, name);
+      place = std::next(found != names.end() ? found : names.insert(place, name));
+    }
+  }
+  return names;
+}
 
 }  // namespace
 
-Table sweep_table(const std::string& key, const std::vector<SweepPoint>& points) {
+const ScalarNumber* SweepPoint::find(std::string_view path) const {
+  const auto found = std::ranges::find(numbers, path, &ScalarNumber::path);
+  return found == numbers.end() ? nullptr : &*found;
+}
+
+double SweepPoint::at(std::string_view path) const {
+  const ScalarNumber* const found = find(path);
+  return found == nullptr ? unknown : number_from<double>(found->text).value_or(unknown);
+}
+
+std::vector<MainQuantity> main_quantities(const std::string& verb) {
+  std::vector<MainQuantity> found;
+  std::ranges::copy_if(all_main_quantities, std::back_inserter(found),
+                       [&](const MainQuantity& quantity) { return quantity.verb == verb; });
+  return found;
+}
+
+Table sweep_table(const SweepPlan& plan, std::span<const SweepPoint> points) {
   Table table;
-  table.add(key, points, &SweepPoint::value).add("status", points, &SweepPoint::status);
-  for (const NumberColumn& column : number_columns) {
-    table.add(column.name, points, [&](const SweepPoint& point) {
-      return std::isnan(point.*column.member) ? std::nullopt : std::optional(point.*column.member);
-    });
-  }
+  table.add(number_name, points, &SweepPoint::number);
+  for (std::size_t k = 0; k < plan.keys.size(); ++k)
+    table.add(key_column(plan.keys[k]), points, [k](const SweepPoint& point) { return point.values[k]; });
+  table.add("status", points, &SweepPoint::status);
+  std::map<std::string, std::vector<std::string>> cells;
+  const std::vector<std::string> names = columns_of_numbers(points);
+  for (const std::string& name : names) cells[name].resize(points.size());
+  for (std::size_t row = 0; row < points.size(); ++row)
+    for (const ScalarNumber& number : points[row].numbers)
+      cells[column_name(number.path, number.unit)][row] = number.text;
+  for (const std::string& name : names) table.add(name, std::move(cells[name]));
   return table.add("message", points, &SweepPoint::message);
 }
 
-std::vector<SweepPoint> read_sweep_points(const std::filesystem::path& path, const std::string& key) {
-  const StoredTable table(path, sweep_table(key, {}), "sweep",
+std::vector<SweepPoint> read_sweep_points(const std::filesystem::path& path, const SweepPlan& plan) {
+  const StoredTable table(path, {}, "sweep",
                           "Remove the row, and it is computed again; or choose another --out, or leave out --resume");
+  const std::vector<std::string>& columns = table.columns();
+  const std::size_t status = plan.keys.size() + 1, message = columns.size() - 2;
+  const std::vector<Table::Column> own = sweep_table(plan, {}).columns();
+  const auto is_own = [&](std::size_t column) { return columns[column] == own[column].name; };
+  bool all = columns.size() >= own.size() + 1 && columns[message] == own.back().name;
+  for (std::size_t column = 0; all && column <= status; ++column) all = is_own(column);
+  if (!all) table.refuse("its columns are those of another sweep, or of another table");
   std::vector<SweepPoint> points(table.rows());
   for (std::size_t row = 0; row < points.size(); ++row) {
     SweepPoint& point = points[row];
-    point.value = table.number(row, 0);
-    point.status = table.text(row, 1);
-    for (std::size_t c = 0; c < number_columns.size(); ++c) point.*number_columns[c].member = table.number(row, c + 2);
-    point.message = table.text(row, number_columns.size() + 2);
+    point.number = table.integer(row, 0, 1);
+    for (std::size_t k = 0; k < plan.keys.size(); ++k) point.values.push_back(table.text(row, k + 1));
+    point.status = table.text(row, status);
+    for (std::size_t column = status + 1; column < message; ++column) {
+      if (table.text(row, column).empty()) continue;
+      static_cast<void>(table.number(row, column));
+      point.numbers.push_back(number_of_column(columns[column]));
+      point.numbers.back().text = table.text(row, column);
+    }
+    point.message = table.text(row, message);
   }
   return points;
 }
 
-std::vector<Results> sweep_rows(const std::string& key, const std::vector<SweepPoint>& points) {
-  const bool tension = std::ranges::any_of(points, [](const SweepPoint& p) { return !std::isnan(p.poisson_ratio); });
+std::vector<Results> sweep_rows(const SweepPlan& plan, std::span<const SweepPoint> points) {
+  std::vector<std::pair<MainQuantity, std::string>> shown;  // with their units
+  for (const MainQuantity& quantity : main_quantities(plan.verb)) {
+    const auto known = std::ranges::find_if(points, [&](const SweepPoint& point) { return point.find(quantity.path); });
+    if (known != points.end()) shown.emplace_back(quantity, known->find(quantity.path)->unit);
+  }
   std::vector<Results> rows;
   for (const SweepPoint& point : points) {
     Results row;
-    row.add("value", key, point.value, "", {.digits = 8}).add("status", "status", point.status);
-    for (const NumberColumn& column : number_columns) {
-      const bool shown = *column.label != '\0' && (tension || !column.of_tension) && point.status != "failed";
-      shown ? row.add(column.name, column.label, point.*column.member, column.unit, column.shown)
-            : row.set(column.name, point.*column.member);
+    row.set(number_name, point.number, "", label_of_number);
+    for (std::size_t k = 0; k < plan.keys.size(); ++k) {
+      const SweptKey& key = plan.keys[k];
+      row.add("", key.name, SweptKey::shown(point.values[k]), key.unit, {.digits = 8});
+      row.set(key.name, SweptKey::shown(point.values[k]), key.unit, "key " + key.name);
+      if (k == 0) row.set("value", SweptKey::shown(point.values[k]), key.unit, "key " + key.name);
+    }
+    row.add("status", "status", point.status);
+    for (const auto& [quantity, unit] : shown)
+      if (!point.failed())
+        row.add("", quantity.heading, point.at(quantity.path), unit, {quantity.shown, quantity.digits});
+    for (const ScalarNumber& number : point.numbers) {
+      const auto meaning = meaning_of(number.path);
+      row.set(number.path, SweptKey::shown(number.text), number.unit, meaning ? meaning->label : "");
     }
     if (!point.message.empty()) row.set("message", point.message).note(point.message);
     rows.push_back(std::move(row));

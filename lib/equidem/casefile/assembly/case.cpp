@@ -263,10 +263,6 @@ std::string springs_file(const SpringConstants& springs, SpringWeighting weighti
   return out;
 }
 
-bool is_case_key(std::string_view path) {
-  return is_known_key(case_file().spec(), path);
-}
-
 Case read_case(const fs::path& path, std::span<const std::string> overrides) {
   return parse_case(read_file(path), path.string(), path.parent_path(), overrides);
 }

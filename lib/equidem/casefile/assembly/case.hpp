@@ -140,8 +140,9 @@ std::string describe_case_file();
 /// The help of the case file as a page in Markdown, docs/case_file.md.
 std::string case_file_page();
 
-/// Whether a path such as "springs.kT" or "load.0.moment" names a key of the case file.
-bool is_case_key(std::string_view path);
+/// The unit, "" for none, of the key of a case file of any kind that a path such as "springs.kT" or "load.0.moment"
+/// names; nothing where there is no such key.
+std::optional<std::string> unit_of_case_key(std::string_view path);
 
 /// The resolved case as TOML: every default written out, overrides applied. Reading it back gives the same case.
 /// \param folder of the new file: paths are written relative to it

@@ -138,8 +138,8 @@ struct Visitor {
 ///         does not hold
 void check_and_complete(TomlValue& root, const FileSpec& spec, const Visitor& visitor);
 
-/// Whether a path such as "springs.kT" or "load.0.moment" names a key of the file.
-bool is_known_key(const FileSpec& spec, std::string_view path);
+/// The key of the file that a path such as "springs.kT" or "load.0.moment" names; null where there is none.
+const KeySpec* known_key(const FileSpec& spec, std::string_view path);
 
 /// Text on keys, at most 100 columns wide: those at the top of the file, those of one table under its heading.
 std::string describe_keys(const FileSpec& spec, std::string_view table);

@@ -119,11 +119,12 @@ TomlValue read_document(const std::filesystem::path& path, std::span<const std::
   return parse_document(read_file(path), path.string(), overrides);
 }
 
-bool is_known_key(const FileSpec& spec, std::string_view path) {
+const KeySpec* known_key(const FileSpec& spec, std::string_view path) {
   std::string without_indices;
   for (const std::string& segment : segments_of(path))
     if (!number_from<std::size_t>(segment)) without_indices += (without_indices.empty() ? "" : ".") + segment;
-  return std::ranges::any_of(spec.keys, [&](const KeySpec& key) { return without_indices == key.path(); });
+  const auto found = std::ranges::find(spec.keys, without_indices, &KeySpec::path);
+  return found == spec.keys.end() ? nullptr : &*found;
 }
 
 }  // namespace equidem::casefile

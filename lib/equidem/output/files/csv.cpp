@@ -164,12 +164,14 @@ std::vector<std::vector<std::string>> csv_cells(const std::string& text) {
 
 namespace {
 
-/// Checksum of the first cells of a row.
-std::string checksum_of(const std::vector<std::string>& row, std::size_t cells) {
+/// Checksum of the first cells of a row and of the names of their columns.
+std::string checksum_of(const std::vector<std::string>& names, const std::vector<std::string>& row, std::size_t cells) {
   Checksum sum;
-  for (std::size_t k = 0; k < cells; ++k) {
-    sum.add(std::as_bytes(std::span(row[k])));
-    sum.add(std::uint64_t{row[k].size()});
+  for (const std::vector<std::string>* texts : {&names, &row}) {
+    for (std::size_t k = 0; k < cells; ++k) {
+      sum.add(std::as_bytes(std::span((*texts)[k])));
+      sum.add(std::uint64_t{(*texts)[k].size()});
+    }
   }
   return sum.text();
 }
@@ -177,9 +179,10 @@ std::string checksum_of(const std::vector<std::string>& row, std::size_t cells) 
 }  // namespace
 
 void write_samples(const std::filesystem::path& path, Table table) {
+  const std::vector<std::vector<std::string>> cells = csv_cells(table.csv());
   std::vector<std::string> checksums;
-  for (const std::vector<std::string>& row : csv_cells(table.csv())) checksums.push_back(checksum_of(row, row.size()));
-  checksums.erase(checksums.begin());  // of the columns
+  for (std::size_t row = 1; row < cells.size(); ++row)
+    checksums.push_back(checksum_of(cells.front(), cells[row], cells.front().size()));
   write_csv(path, table.add("checksum", std::move(checksums)), true);
 }
 
@@ -195,12 +198,13 @@ StoredTable::StoredTable(std::filesystem::path path, const Table& like, const st
     : path_(std::move(path)), remedy_(std::move(remedy)), cells_(csv_cells(read_file(path_))) {
   std::vector<std::string> columns = names_in(like.columns());
   columns.emplace_back("checksum");
-  if (cells_.empty() || cells_.front() != columns)
+  if (cells_.empty() || (columns.size() == 1 ? cells_.front().back() != columns.back() : cells_.front() != columns))
     refuse(fmt::format("its columns are those of another {}, or of another table", of));
+  columns = cells_.front();
   for (std::size_t row = 1; row < cells_.size(); ++row) {
     if (cells_[row].size() != columns.size())
       refuse(fmt::format("line {} has {}", row + 1, counted(std::ssize(cells_[row]), "cell")));
-    if (cells_[row].back() != checksum_of(cells_[row], columns.size() - 1))
+    if (cells_[row].back() != checksum_of(columns, cells_[row], columns.size() - 1))
       refuse(fmt::format("line {} was altered since it was written: its checksum is wrong", row + 1));
   }
 }

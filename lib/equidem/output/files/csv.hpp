@@ -83,20 +83,22 @@ std::optional<double> csv_number(const std::string& cell);
 /// The integer of a whole cell; nothing where it is none.
 std::optional<std::int64_t> csv_integer(const std::string& cell);
 
-/// Write a table of samples that a later computation can continue: with a last column "checksum" of each row.
+/// Write a table of samples that a later computation can continue: with a last column "checksum" of each row and of the
+/// names of the columns.
 /// \throws Error (bad_input) as write_file does
 void write_samples(const std::filesystem::path& path, Table table);
 
 /// The rows of a table of write_samples that an earlier computation wrote and that this one continues.
 class StoredTable {
  public:
-  /// \param like has the columns that are expected, without the checksum
+  /// \param like has the columns that are expected, without the checksum; without columns: any are accepted
   /// \param of what the samples are of: "sweep", "study"
   /// \param remedy of every error
   /// \throws Error (bad_input) where the columns are others, or a row was altered since it was written
   StoredTable(std::filesystem::path path, const Table& like, const std::string& of, std::string remedy);
 
   [[nodiscard]] std::size_t rows() const { return cells_.size() - 1; }
+  [[nodiscard]] const std::vector<std::string>& columns() const { return cells_.front(); }  ///< and the checksum
   [[nodiscard]] const std::string& text(std::size_t row, std::size_t column) const { return cells_[row + 1][column]; }
   /// NaN where the cell is empty.
   /// \throws Error (bad_input) where it is no number

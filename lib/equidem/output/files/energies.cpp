@@ -36,14 +36,19 @@ void write_energy_csv(const std::filesystem::path& path, std::span<const EnergyS
   write_file(path, text.text(), overwrite);
 }
 
-Results energy_results(BodyFamily family, const EnergyLedger& ledger, double scale) {
+Results energy_results(BodyFamily family, Body body, const EnergyLedger& ledger, double scale) {
+  const char* unit = body == Body::disc ? "J/m" : "J";
   Results energy;
-  for (const EnergyTerm& term : energy_terms(family)) energy.set(term.key, ledger.*term.value);
-  return energy.set("elastic", ledger.elastic())
-      .set("dissipated", ledger.lost())
-      .set("input", ledger.work())
-      .set("error", ledger.error())
-      .set("relative_error", scale > 0 ? ledger.error() / scale : 0.0);
+  for (const EnergyTerm& term : energy_terms(family)) {
+    const char* what = term.role == EnergyRole::lost ? "lost by " : term.role == EnergyRole::work ? "work of " : "";
+    energy.set(term.key, ledger.*term.value, unit, fmt::format("energy: {}{}", what, term.label));
+  }
+  return energy.set("elastic", ledger.elastic(), unit, "energy: elastic")
+      .set("dissipated", ledger.lost(), unit, "energy: lost in all")
+      .set("input", ledger.work(), unit, "energy: work done on the bodies")
+      .set("error", ledger.error(), unit, "energy: error of the balance")
+      .set("relative_error", scale > 0 ? ledger.error() / scale : 0.0, "",
+           "energy: error of the balance, relative to the largest term");
 }
 
 }  // namespace equidem

@@ -29,6 +29,6 @@ void write_energy_csv(const std::filesystem::path& path, std::span<const EnergyS
                       Body body, bool overwrite);
 
 /// Every term of the ledger, then elastic, dissipated, input, error, and relative_error, the error over `scale`.
-Results energy_results(BodyFamily family, const EnergyLedger& ledger, double scale);
+Results energy_results(BodyFamily family, Body body, const EnergyLedger& ledger, double scale);
 
 }  // namespace equidem

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/output/quantities.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "equidem/core/table_file.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/output/quantity_list.hpp"
+
+namespace equidem {
+namespace {
+
+const std::set<std::string>& unit_symbols() {
+  static const std::set<std::string> all = [] {
+    std::set<std::string> found;
+    for (const Quantity& quantity : quantities)
+      if (*quantity.unit != '\0') found.insert(quantity.unit);
+    return found;
+  }();
+  return all;
+}
+
+/// The symbol with which a unit of the report begins, "Pa" of "Pa for an entry"; empty where it is a phrase.
+std::string symbol_in(const std::string& unit) {
+  const std::string word = unit.substr(0, unit.find_first_of(" ,;("));
+  return unit_symbols().contains(word) ? word : "";
+}
+
+/// "Pa", "kg_per_m3", "per_s".
+std::string unit_in_names(std::string_view unit) {
+  std::string name(unit);
+  const auto replace = [&](std::string_view from, std::string_view to) {
+    for (std::size_t at = name.find(from); at != std::string::npos; at = name.find(from))
+      name.replace(at, from.size(), to);
+  };
+  if (name.starts_with("1/")) name.erase(0, 1);
+  replace("/", "_per_");
+  replace("²", "2");
+  replace("³", "3");
+  replace("°", "deg");
+  replace(" ", "_");
+  return name.starts_with('_') ? name.substr(1) : name;
+}
+
+std::string with_points(std::string_view path) {
+  std::string name(path);
+  std::ranges::replace(name, '/', '.');
+  return name;
+}
+
+using OnNumber = std::function<void(const Result& part, const std::string& path)>;
+
+/// Calls for every part that is a number, a vector or a matrix of numbers, or null.
+/// \param positions those of lists are in the paths
+void for_each_number(const Results& results, const std::string& prefix, bool positions, const OnNumber& call) {
+  for (const Result& part : results.parts()) {
+    if (part.key.empty()) continue;
+    const std::string path = prefix + part.key;
+    const auto& value = part.value.value;
+    if (const auto* one = std::get_if<std::shared_ptr<const Results>>(&value)) {
+      for_each_number(**one, path + "/", positions, call);
+    } else if (const auto* list = std::get_if<std::shared_ptr<const std::vector<Results>>>(&value)) {
+      for (std::size_t k = 0; k < (*list)->size(); ++k)
+        for_each_number((**list)[k], positions ? fmt::format("{}/{}/", path, k) : path + "/", positions, call);
+    } else if (!std::holds_alternative<bool>(value) && !std::holds_alternative<std::string>(value) &&
+               !std::holds_alternative<std::vector<std::string>>(value)) {
+      call(part, path);
+    }
+  }
+}
+
+/// A part that names its unit and meaning itself.
+bool explains_itself(const Result& part) {
+  return part.hidden && !part.label.empty();
+}
+
+/// The text of a finite single number.
+std::string finite_text(const ResultValue& value) {
+  if (const auto* whole = std::get_if<std::int64_t>(&value.value)) return fmt::format("{}", *whole);
+  const auto* number = std::get_if<double>(&value.value);
+  return number != nullptr && std::isfinite(*number) ? fmt::format("{}", *number) : "";
+}
+
+}  // namespace
+
+std::optional<NumberMeaning> meaning_of(std::string_view path) {
+  for (std::string_view rest = path;;) {
+    const Quantity* best = nullptr;
+    for (const Quantity& quantity : quantities) {
+      const std::string_view own = quantity.path;
+      if (!rest.starts_with(own) || (rest.size() > own.size() && rest[own.size()] != '/')) continue;
+      if (best == nullptr || own.size() > std::string_view(best->path).size()) best = &quantity;
+    }
+    if (best != nullptr) {
+      std::string label = best->label;
+      for (const std::string_view word : parts_of(rest.substr(std::string_view(best->path).size()), '/'))
+        if (!word.empty()) label += fmt::format(", {}", word);
+      std::ranges::replace(label, '_', ' ');
+      return NumberMeaning{best->unit, label, best->of_machine};
+    }
+    const std::size_t slash = rest.find('/');
+    if (slash == std::string_view::npos) return std::nullopt;
+    rest.remove_prefix(slash + 1);
+  }
+}
+
+Results units_and_labels(const Results& results) {
+  struct Entry {
+    std::string name = {}, unit = {}, label = {};
+    bool fixed = false;
+  };
+  std::vector<Entry> entries;
+  std::map<std::string, std::size_t> places;
+  for_each_number(results, "", false, [&](const Result& part, const std::string& path) {
+    const auto [place, is_new] = places.try_emplace(path, entries.size());
+    if (is_new) {
+      const auto meaning = meaning_of(path);
+      entries.push_back({.name = with_points(path)});
+      if (meaning) {
+        entries.back().unit = meaning->unit;
+        entries.back().label = meaning->label;
+      }
+    }
+    Entry& entry = entries[place->second];
+    if (entry.fixed) return;
+    if (explains_itself(part)) {
+      entry.unit = part.unit, entry.label = part.label, entry.fixed = true;
+    } else if (const std::string symbol = symbol_in(part.unit); !symbol.empty()) {
+      entry.unit = symbol, entry.fixed = true;
+    }
+  });
+  Results units, labels;
+  for (const Entry& entry : entries) {
+    if (entry.label.empty()) continue;
+    units.set(entry.name, entry.unit);
+    labels.set(entry.name, entry.label);
+  }
+  return Results().set("units", units).set("labels", labels);
+}
+
+std::vector<ScalarNumber> scalar_numbers(const Results& results) {
+  std::vector<ScalarNumber> numbers;
+  std::map<std::string, std::size_t> places;
+  for_each_number(results, "", true, [&](const Result& part, const std::string& path) {
+    const auto meaning = meaning_of(path);
+    if (meaning && meaning->of_machine) return;
+    const auto [place, is_new] = places.try_emplace(path, numbers.size());
+    if (is_new) numbers.push_back({path, explains_itself(part) || !meaning ? "" : meaning->unit, {}});
+    ScalarNumber& number = numbers[place->second];
+    number.text = finite_text(part.value);  // a later value replaces an earlier one
+    const std::string symbol = symbol_in(part.unit);
+    if (!symbol.empty()) number.unit = symbol;
+  });
+  std::erase_if(numbers, [](const ScalarNumber& number) { return number.text.empty(); });
+  return numbers;
+}
+
+std::string column_name(std::string_view path, std::string_view unit) {
+  const std::string end = unit_in_names(unit);
+  return with_points(path) + (end.empty() ? "" : "_") + end;
+}
+
+ScalarNumber number_of_column(std::string_view column) {
+  ScalarNumber number;
+  std::size_t longest = 0;
+  for (const std::string& symbol : unit_symbols()) {
+    const std::string end = "_" + unit_in_names(symbol);
+    if (!column.ends_with(end) || end.size() <= longest) continue;
+    longest = end.size();
+    number.unit = symbol;
+  }
+  number.path = column.substr(0, column.size() - longest);
+  std::ranges::replace(number.path, '.', '/');
+  return number;
+}
+
+std::string describe_result() {
+  std::string text =
+      "result.json, and the output of --json, is one object. Each number has its unit in the object \"units\" and its\n"
+      "meaning in the object \"labels\" under its own name: the keys that lead to it, joined by points, without the\n"
+      "positions in lists, as \"poisson_ratio.plane_strain\" or \"points.energy\". An empty unit is that of a count, "
+      "a\n"
+      "ratio or a strain. Columns of the table of 'equidem sweep' have the same names, with the unit at their end.\n"
+      "null stands for a number that is not known.\n\n"
+      "status     state of the result: solved, unstable, done, calibrated, ...\n"
+      "report     text that is printed without --json\n"
+      "version    of the program\n\n"
+      "Names of numbers, which may stand below those of other objects, units and meanings:\n\n";
+  for (const Quantity& quantity : quantities)
+    text += fmt::format("  {:<34} {:<8} {}\n", with_points(quantity.path), quantity.unit, quantity.label);
+  return text;
+}
+
+}  // namespace equidem

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verb_run.hpp"
+
+#include <algorithm>
+
+#include "verbs.hpp"
+
+namespace equidem {
+
+VerbRun::VerbRun(const std::string& verb, const std::filesystem::path& case_file,
+                 const std::vector<std::string>& overrides, const std::vector<std::string>& options) {
+  run_ = entry_named(verbs, verb, "verb").declare(command_);
+  std::vector<std::string> arguments{case_file.string()};
+  for (const std::string& assignment : overrides) arguments.insert(arguments.end(), {"--set", assignment});
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  std::ranges::reverse(arguments);
+  command_.parse(arguments);
+}
+
+}  // namespace equidem

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Verbs carried out within another one, as the command line would do it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "command.hpp"
+
+namespace equidem {
+
+/// One run of a verb, without files.
+class VerbRun {
+ public:
+  /// \param verb its name
+  /// \param overrides of keys of the case, as those of --set
+  /// \param options further ones of the command line
+  VerbRun(const std::string& verb, const std::filesystem::path& case_file, const std::vector<std::string>& overrides,
+          const std::vector<std::string>& options);
+
+  /// \throws Error as the verb does
+  [[nodiscard]] Delivery operator()() const { return collect(run_); }
+
+ private:
+  CLI::App command_;
+  std::function<void()> run_;
+};
+
+}  // namespace equidem
