@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <string>
 #include <tuple>
 
@@ -93,6 +94,7 @@ TEST_CASE("files_read_back_to_the_same_bits") {
                                   .points = PointProcess::uniform,
                                   .radii = {.smallest = 0.003, .largest = 0.007},
                                   .periodic = periodic});
+  if (!periodic) a.centres[0].x = -0.0;
   for (std::size_t k = 0; k < a.contacts.size(); ++k) {
     a.contact_kN.push_back(1e9 / (1.0 + static_cast<double>(k)));
     a.contact_kT.push_back(-1e-300 * static_cast<double>(k));
@@ -100,8 +102,10 @@ TEST_CASE("files_read_back_to_the_same_bits") {
   a.groups["chosen \"few\""] = {.discs = {3, 17}, .tributary_lengths = {}};
   a.groups["loaded"] = {.discs = {2, 5}, .tributary_lengths = {1e-3 / 3, 0.1}};
   if (GENERATE(true, false)) {  // bodies that are no discs, with contacts off the lines of centres
-    for (const double radius : a.radii)
-      a.sections.push_back({3.1 * radius * radius, 1.7 * radius * radius * radius * radius});
+    for (const double radius : a.radii) {
+      const double square = radius * radius;
+      a.sections.push_back({std::numbers::pi * square, 1.7 * square * square});
+    }
     for (Contact& contact : a.contacts) {
       const Vec2 l = a.branch(contact), n = (l + 0.1 * perpendicular(l)) / norm(l + 0.1 * perpendicular(l));
       contact.lever_i = dot(l, n) / 3, contact.lever_j = dot(l, n) - dot(l, n) / 3;
@@ -109,7 +113,6 @@ TEST_CASE("files_read_back_to_the_same_bits") {
       a.contact_arms.push_back({n, across / 7, across - across / 7});
     }
   }
-  if (!periodic) a.centres[0].x = -0.0;
   const TemporaryFolder folder;
 
   write_assembly(folder / "sub/a.json", a, false);
