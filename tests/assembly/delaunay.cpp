@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/assembly/delaunay.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -307,4 +308,32 @@ TEST_CASE("a_seed_gives_the_same_bits_for_every_number_of_threads") {
   CHECK(again == one);
   CHECK(three == one);
   CHECK(hash(delaunay_assembly(other)) != one);
+}
+
+TEST_CASE("a_triangulation_fills_the_box_asked_for_with_discs_of_the_radius_asked_for") {
+  const PointProcess points = any_process();
+  const bool periodic = GENERATE(true, false);
+  const Vec2 box{0.31, 0.11};
+  const RadiusDistribution radii{.smallest = 0.004, .largest = 0.006};
+  const Assembly a = delaunay_assembly(
+      {.discs = discs_that_fill(box, radii), .points = points, .radii = radii, .periodic = periodic, .box = box});
+  CAPTURE(static_cast<int>(points), periodic, a.size());
+  CHECK(a.area() == Approx(box.x * box.y).epsilon(1e-12));
+  if (periodic) CHECK(*a.period == box);
+  for (const Vec2 x : a.centres) {
+    CHECK((x.x >= 0 && x.x <= box.x));
+    CHECK((x.y >= 0 && x.y <= box.y));
+  }
+  const auto [smallest, largest] = std::ranges::minmax(a.radii);
+  CHECK((smallest >= radii.smallest && largest <= radii.largest));
+  // 2 sqrt3 a² for each of them, to the scatter of the point process.
+  CHECK(static_cast<double>(a.size()) == Approx(box.x * box.y / (2 * std::sqrt(3.0) * 0.005 * 0.005)).epsilon(0.05));
+}
+
+TEST_CASE("boxes_that_no_discs_fill_are_refused") {
+  const RadiusDistribution radii{.smallest = 0.005, .largest = 0.005};
+  CHECK_THROWS_AS(discs_that_fill({1e-4, 1e-4}, radii), Error);
+  CHECK_THROWS_AS(discs_that_fill({1e4, 1e4}, radii), Error);
+  CHECK_THROWS_AS(delaunay_assembly({.discs = 50, .box = Vec2{-0.1, -0.1}}), Error);
+  CHECK_THROWS_AS(delaunay_assembly({.discs = 50, .box = Vec2{10, 1e-3}}), Error);
 }

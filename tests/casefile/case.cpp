@@ -203,35 +203,14 @@ TEST_CASE("the_reference_page_is_what_the_program_says") {
   CHECK(written.size() == page.size());
 }
 
-TEST_CASE("a_springs_file_stands_in_for_the_springs") {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::temp_directory_path() / "equidem_test_springs_file";
-  fs::create_directories(folder);
-  const std::string text = changed(tension_case, "[springs]\nkN = 1.0e9\nkT = 0.5e9\n", "");
-  const std::string with_file = changed(text, "title ", "springs = \"springs.toml\"\ntitle ");
-  const auto sentence = [&]() -> std::string {
-    try {
-      static_cast<void>(parse_case(with_file, "a.toml", folder, {}));
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return {};
-  };
-
-  write_file(folder / "springs.toml",
-             "schema = \"equidem-springs/1\"\n[springs]\nkN = 2.0e9\nkT = 1.0e9\nweighting = \"voronoi\"\n", true);
-  const Case c = parse_case(with_file, "a.toml", folder, {});
-  REQUIRE(c.springs);
-  CHECK(c.springs->kN == 2e9);
-  CHECK(c.weighting == SpringWeighting::voronoi);
-  const Case repeated = parsed(to_toml(c, "."));
-  REQUIRE(repeated.springs);
-  CHECK(repeated.springs->kN == c.springs->kN);
-  CHECK(repeated.springs->kT == c.springs->kT);
-  CHECK(repeated.weighting == c.weighting);
-
-  write_file(folder / "springs.toml", "schema = \"equidem-springs/1\"\n[springs]\nkN = 2.0e9\nkTT = 1.0e9\n", true);
-  CHECK(sentence().find("springs.toml:4: springs.kTT: unknown key") != std::string::npos);
-  fs::remove_all(folder);
-  CHECK(sentence().find("a.toml:2: springs: cannot read") != std::string::npos);
+TEST_CASE("a_box_gives_a_triangulation_its_number_of_discs_and_reads_back") {
+  const std::string text = changed(load_case, "discs = 50\n", "box = [0.2, 0.1]\n");
+  const Case c = parsed(text);
+  CHECK(c.assembly.delaunay.box == Vec2{0.2, 0.1});
+  CHECK(c.assembly.delaunay.discs == 231);  // 0.02/(2 sqrt3 0.005²)
+  CHECK(c.assembly.delaunay.aspect == 2);
+  CHECK(parsed(to_toml(c, ".")).assembly.delaunay.discs == 231);
+  CHECK(error_of(text, {"assembly.discs=50"}).find("box and discs are both given") != std::string::npos);
+  CHECK(error_of(text, {"assembly.aspect=2"}).find("box and aspect are both given") != std::string::npos);
+  CHECK(error_of(text, {"assembly.box=[1e-4, 1e-4]"}).find("assembly.box: 0") != std::string::npos);
 }

@@ -90,38 +90,3 @@ TEST_CASE("spheres_have_a_density_of_their_own") {
   const Case given = parsed(text, {"assembly.body=sphere", "assembly.density=2500"});
   CHECK(disc_density(given, build_assembly(given)) == 2500.0);
 }
-
-TEST_CASE("a_springs_file_reads_back_bit_by_bit") {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::temp_directory_path() / "equidem_test_springs_file_round_trip";
-  const double kT = GENERATE(1.0 / 3.0 * 1e9, 0.0, -0.1, 5e-324, 1.7976931348623157e308);
-  const SpringWeighting weighting = GENERATE(SpringWeighting::uniform, SpringWeighting::contact_density,
-                                             SpringWeighting::local_contact_density, SpringWeighting::voronoi);
-  const SpringConstants springs{.kN = 1e9 + 1e-7, .kT = kT};
-  const std::string text = springs_file(springs, weighting, {}, "a \"title\" \\ äöü", "calibrated\n\nline\ttwo\x01");
-  CAPTURE(text);
-  write_file(folder / "springs.toml", text, true);
-  const Case c = parse_case(changed(changed(tension_case, "[springs]\nkN = 1.0e9\nkT = 0.5e9\n", ""), "title ",
-                                    "springs = \"springs.toml\"\ntitle "),
-                            "a.toml", folder, {});
-  fs::remove_all(folder);
-  REQUIRE(c.springs);
-  CHECK(c.springs->kN == springs.kN);
-  CHECK(c.springs->kT == springs.kT);
-  CHECK(c.weighting == weighting);
-}
-
-TEST_CASE("a_springs_file_carries_the_density_of_its_discs") {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::temp_directory_path() / "equidem_test_springs_file_density";
-  write_file(folder / "springs.toml", springs_file({1e9, 5e8}, SpringWeighting::uniform, 2738.0, "", ""), true);
-  const std::string text = changed(changed(tension_case, "[springs]\nkN = 1.0e9\nkT = 0.5e9\n", ""), "title ",
-                                   "springs = \"springs.toml\"\ntitle ");
-  const auto density = [&](const std::vector<std::string>& overrides) {
-    return parse_case(text, "a.toml", folder, overrides).assembly.density;
-  };
-  CHECK(density({}) == 2738.0);
-  CHECK(density({"assembly.density=2738.0"}) == 2738.0);
-  CHECK_THROWS_AS(density({"assembly.density=2700"}), Error);
-  fs::remove_all(folder);
-}

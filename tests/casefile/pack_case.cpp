@@ -213,6 +213,38 @@ TEST_CASE("the_bodies_of_a_packing_have_one_density") {
         std::string::npos);
 }
 
+TEST_CASE("the_density_of_a_continuum_gives_that_of_its_packed_discs") {
+  const std::string sides = GENERATE("walls", "periodic");
+  std::vector<std::string> overrides{
+      "springs=none", "material={shear_modulus = 1e9, poisson_ratio = 0.2, plane = \"strain\", density = 2300.0}",
+      "packing.sides=" + sides};
+  const Case whole = parse_case(rock, "rock.toml", "", overrides);
+  const double expected = *disc_density(whole, build_assembly(whole));
+  CAPTURE(sides, expected);
+  CHECK(expected > 2300 / 0.85);
+
+  const PackCase packed = parse_pack_case(rock, "rock.toml", "", overrides);
+  const Assembly network = network_of(pack(packed.packing), packed.network);
+  CHECK(body_density(packed, network) == expected);
+  const Case again = parse_case(to_toml(whole, "."), "echo.toml", "");
+  CHECK(disc_density(again, build_assembly(again)) == expected);
+
+  overrides.push_back("packing.density=2480");
+  const PackCase other = parse_pack_case(rock, "rock.toml", "", overrides);
+  CHECK_THROWS_WITH(body_density(other, network),
+                    Catch::Contains("material.density: density = 2300 kg/m³ contradicts"));
+  CHECK(body_density(parse_pack_case(rock, "rock.toml", ""), network) == SettlingOptions{}.density);
+}
+
+TEST_CASE("an_ensemble_of_packings_needs_no_number_of_grains_besides_its_sizes") {
+  const Case sampled = parse_case(rock, "rock.toml", "",
+                                  std::vector<std::string>{"packing.grains=none", "packing.sides=periodic",
+                                                           "ensemble={discs = [40, 80], samples = 3}"});
+  CHECK(sampled.assembly.random());
+  CHECK(sampled.assembly.periodic());
+  CHECK(sampled.assembly.packing->radii.size() == 40);
+}
+
 TEST_CASE("a_packing_that_no_assembly_names_is_refused_by_name") {
   const std::string error = refusal({"assembly=none"});
   CAPTURE(error);

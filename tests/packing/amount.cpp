@@ -62,3 +62,27 @@ TEST_CASE("errors_of_amounts_name_the_fault_of_amount") {
   falling.box.sides = PackingBox::Sides::periodic;
   CHECK(fault_of_amount(good, falling) == "sides");
 }
+
+TEST_CASE("a_packing_of_another_number_of_bodies_is_as_dense_in_a_box_of_the_same_shape") {
+  struct Given {
+    PackingAmount amount;
+    bool fraction_is_given;
+  };
+  const Given given = GENERATE(Given{{.grains = 50, .solid_fraction = 0.7}, true},
+                               Given{{.box = Vec2{0.3, 0.1}, .solid_fraction = 0.7}, true},
+                               Given{{.grains = 50, .box = Vec2{0.3, 0.1}}, false});
+  ScalablePacking packing{{}, given.amount, radii_of_amounts};
+  set_amount(packing.amount, packing.sizes, packing);
+  const ScalablePacking larger = resized(packing, 200, 7);
+
+  CHECK(larger.radii.size() == 200);
+  CHECK(larger.seed == 7);
+  CHECK(larger.box.size.x / larger.box.size.y == Approx(packing.box.size.x / packing.box.size.y).epsilon(1e-13));
+  if (given.fraction_is_given)
+    CHECK(solid_fraction(larger) == Approx(0.7).epsilon(1e-13));
+  else
+    CHECK(larger.box.area() / 200 == Approx(packing.box.area() / 50).epsilon(1e-13));
+  const ScalablePacking again = resized(larger, 200, 7);
+  CHECK(again.radii == larger.radii);
+  CHECK(again.box.size.x == Approx(larger.box.size.x).epsilon(1e-13));
+}

@@ -58,6 +58,55 @@ class Calibrate(program.ProgramTest):
         self.check_close(moduli["shear_modulus"], 1e9, 1e-10)
         self.check_close(moduli["poisson_ratio"]["plane_strain"], 0.2, 1e-10)
 
+    def test_one_springs_file_goes_through_all_verbs_with_its_density(self):
+        out = self.folder / "rock"
+        rock = self.calibrated(CASES / "packed_rock.toml", "--set", "packing.grains=120", "--out", out)
+        density = rock["density"]["discs"]
+
+        def case(name, text):
+            path = self.folder / f"{name}.toml"
+            path.write_text(f'schema = "equidem/1"\nsprings = "rock/springs.toml"\n{text}')
+            return path
+
+        def done(verb, *arguments):
+            return parse_json(self.check_done(equidem(verb, *arguments, "--json", "-")).stdout)
+
+        assembly = '[assembly]\nkind = "file"\npath = "rock/assembly.json"\n'
+        bonded = case("bonded", assembly)
+        self.check_close(done("homogenize", bonded)["young_modulus"]["plane_strain"], 20e9, 1e-9)
+        judged = done("stability", bonded)
+        self.assertFalse(judged["density_assumed"])
+        self.assertEqual(judged["density"], density)
+        step = done("run", case("moving", assembly + "[run]\nduration = 1e-6\ngravity = [0.0, -9.81]\n"))["time_step"]
+        self.assertLess(step, judged["critical_time_step"])
+
+        box = ('[packing]\ngrains = 120\nsolid_fraction = 0.82\ngap_tolerance = 0.05\nsides = "walls"\n'
+               '[packing.radii]\nsmallest = 0.5e-3\nlargest = 1e-3\n')
+        packed = self.folder / "packed"
+        self.assertEqual(done("pack", case("box", box), "--out", packed)["density"], {"discs": density})
+        pulled = '[test]\nkind = "uniaxial_tension"\nstress = 1e6\n'
+        own = f'[assembly]\nkind = "file"\npath = "packed/assembly.json"\n{pulled}'
+        for verb in ("solve", "homogenize", "stability", "run"):
+            with self.subTest(verb=verb):
+                both = case("both", own + ("[run]\nduration = 1e-6\n" if verb == "run" else ""))
+                self.check_error(equidem(verb, both), 2, "the case gives springs, and so does the assembly file",
+                                 "own_springs = false")
+        self.check_error(equidem("calibrate", self.without_springs(both)), 2, "own_springs = false")
+        alone = done("solve", case("alone", own.replace("[test]", "own_springs = false\n[test]")))
+        self.assertEqual(alone["kN"], rock["kN"])
+
+        floor = '[[wall]]\nname = "floor"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n'
+        falling = (f'[grains]\npath = "packed/grains.csv"\n[collisions]\nrestitution = 0.5\nfriction = 0.3\n{floor}'
+                   '[run]\nduration = 1e-6\ngravity = [0.0, -9.81]\n')
+        self.assertEqual(done("run", case("falling", falling))["status"], "done")
+
+    def without_springs(self, case):
+        """The case with a material in place of its springs."""
+        path = self.folder / "material.toml"
+        text = re.sub(r"springs = .*\n|\[test\][^\[]*|\[run\][^\[]*", "", case.read_text())
+        path.write_text(text + '[material]\nshear_modulus = 1e9\npoisson_ratio = 0.2\nplane = "strain"\n')
+        return path
+
     def test_weighting_is_part_of_the_springs_file(self):
         file = self.folder / "springs.toml"
         self.check_done(equidem("calibrate", RANDOM, "--set", "material.weighting=voronoi", "--springs", file))

@@ -10,6 +10,7 @@ import unittest
 from program import CASES, ProgramTest, equidem, parse_json
 
 ENSEMBLE = str(CASES / "ensemble.toml")
+ROCK = str(CASES / "packed_rock.toml")
 SMALL = ("--set", "ensemble.discs=[20, 60]", "--set", "ensemble.samples=6")
 
 
@@ -120,6 +121,51 @@ class Ensemble(ProgramTest):
         result = parse_json(self.run_small("--dry-run", "--json", "-").stdout)
         self.assertEqual(result["status"], "dry_run")
         self.assertEqual(result["unknowns"], [60, 180])
+
+
+class PackedCells(ProgramTest):
+    """Ensembles of packings: every cell is packed anew."""
+    SMALL = ("--set", "packing.grains=none", "--set", "ensemble={discs = [40, 80], samples = 4}")
+
+    def run_small(self, *options):
+        return self.check_done(equidem("homogenize", ROCK, *self.SMALL, *options))
+
+    def test_means_are_those_of_single_packings_of_the_same_seeds(self):
+        out = self.folder / "out"
+        result = parse_json(self.run_small("--out", out, "--json", "-").stdout)
+        self.assertEqual([size["mean_discs"] for size in result["ensemble"]], [40, 80])
+        self.assertGreater(result["ensemble"][0]["shear_modulus"]["standard_deviation"], 0)
+        samples = [row for row in rows(out / "samples.csv") if row["discs"] == "80"]
+        self.assertEqual([row["seed"] for row in samples], ["1", "2", "3", "4"])
+        for row in samples[1:3]:
+            single = parse_json(self.check_done(equidem(
+                "homogenize", ROCK, "--set", "packing.grains=80", "--seed", row["seed"], "--json", "-")).stdout)
+            self.assertAlmostEqual(single["shear_modulus"] / float(row["shear_modulus_Pa"]), 1, places=13)
+
+    def test_threads_change_no_bit_and_samples_are_continued(self):
+        texts = []
+        for threads in (1, 3):
+            out = self.folder / str(threads)
+            self.run_small("--threads", threads, "--out", out)
+            texts.append((out / "samples.csv").read_text())
+        self.assertEqual(*texts)
+        more = self.run_small("--set", "ensemble.samples=5", "--out", self.folder / "1", "--resume")
+        self.assertIn("5 cells", more.stdout)
+        self.assertTrue((self.folder / "1" / "samples.csv").read_text().startswith(texts[0].split("\n80,")[0]))
+
+    def test_an_accuracy_chooses_size_and_number_of_packings(self):
+        result = parse_json(self.check_done(equidem(
+            "homogenize", ROCK, "--accuracy", "0.1", "--json", "-")).stdout)
+        self.assertLess(result["accuracy"]["estimated"], 0.1)
+
+    def test_walls_and_sizes_that_cannot_be_packed_are_told(self):
+        self.check_error(equidem("homogenize", ROCK, *self.SMALL, "--set", "packing.sides=walls"), 2, "free boundaries",
+                         "packing.sides = \"periodic\"")
+        self.check_error(equidem("homogenize", ROCK, "--set", "packing.sides=walls", "--accuracy", "0.1"), 2,
+                         "packing.sides = \"periodic\"")
+        dense = equidem("homogenize", ROCK, *self.SMALL, "--set", "packing.solid_fraction=0.95")
+        self.assertEqual(dense.returncode, 1, dense.stderr)
+        self.assertIn("jam before they reach", dense.stderr)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ from program import CASES, ProgramTest, equidem, parse_json
 
 SOIL, JAMMED, GRADED, ELLIPSES, PAIRS = (
     CASES / f"pack_{name}.toml" for name in ("soil", "jammed", "graded", "ellipses", "pairs"))
+ROCK = CASES / "packed_rock.toml"
 FEW = ("--set", "packing.grains=60", "--set", "packing.box=[0.15, 1.0]")
 
 
@@ -53,6 +54,20 @@ class Files(PackTest):
         done = parse_json(self.check_done(
             equidem("calibrate", self.case_of(out / "assembly.json", wanted), "--json", "-")).stdout)
         self.assertAlmostEqual(done["achieved"]["shear_modulus"] / 1e8, 1, delta=1e-6)
+
+    def test_grains_have_the_density_of_the_discs_of_a_continuum(self):
+        few = ("--set", "packing.grains=100")
+        result, out = self.pack(ROCK, *few)
+        calibrated = parse_json(self.check_done(equidem("calibrate", ROCK, *few, "--json", "-")).stdout)
+        discs = calibrated["density"]["discs"]
+        self.assertAlmostEqual(discs, 2300 / 0.82, delta=1e-6)
+        self.assertEqual(result["density"], {"discs": discs, "continuum": 2300})
+        self.assertEqual({float(row["density_kg_per_m3"]) for row in rows_of(out / "grains.csv")}, {discs})
+        self.check_error(equidem("pack", ROCK, *few, "--set", "packing.density=2480"), 2, "material.density", "contradicts",
+                         "2033.6", "Remove one of the two")
+        default, _ = self.pack(JAMMED, "--set", "packing.grains=40", name="default")
+        self.assertEqual(default["density"], {"discs": 2480})
+        self.assertIn("the default", default["report"])
 
     def test_steps_and_time_of_falling_are_estimated_before_they_are_taken(self):
         for case, falling in ((SOIL, True), (PAIRS, True), (JAMMED, False)):
@@ -188,11 +203,23 @@ class CommandLine(PackTest):
         self.check_error(equidem("pack", JAMMED, "--set", "packing.method=grow"), 2, "growth")
         self.check_error(equidem("pack", JAMMED, "--set", "packing.solid_fraction=0.5"), 2, "Remove one")
         crowded = ("--set", "packing.solid_fraction=0.95", "--set", "packing.box=none", "--set", "packing.grains=30")
-        self.check_error(equidem("pack", JAMMED, *crowded), 1, "pack_jammed.toml", "packing.method", "jam")
+        self.check_error(equidem("pack", JAMMED, *crowded), 1, "packing.solid_fraction", "jam", "\"auto\"")
         self.check_error(equidem("pack", JAMMED, "--set", "packing.grains=20", "--set", "packing.region=[0.7, 0, 0.8, 1]"), 2,
                          "packing.region", "out of the periodic box")
         _, out = self.pack(JAMMED, "--set", "packing.grains=20")
         self.check_error(equidem("pack", JAMMED, "--out", out), 2, "exists")
+
+    def test_a_packing_that_is_impossible_in_its_box_is_told_before_it_is_tried(self):
+        for sides, box, words in (("periodic", "[0.03, 0.5]", ("packing.box", "two of them side by side", "0.0404 m or more")),
+                                  ("walls", "[0.015, 0.5]", ("packing.box", "does not fit in", "0.0202 m or more")),
+                                  ("walls", "[0.1, 0.1]", ("packing.box", "times the area of the box"))):
+            with self.subTest(sides=sides, box=box):
+                options = ("--set", f"packing.sides={sides}", "--set", f"packing.box={box}", "--set",
+                           "packing.solid_fraction=none")
+                self.check_error(equidem("pack", JAMMED, *options), 2, *words)
+                self.check_error(equidem("pack", JAMMED, *options, "--dry-run"), 2, *words)
+        equal = ("--set", "packing.radii.smallest=0.01", "--set", "packing.box=none", "--set", "packing.solid_fraction=0.92")
+        self.check_error(equidem("pack", JAMMED, *equal), 2, "packing.solid_fraction", "hexagonal lattice, 0.9069")
 
     def test_a_dry_run_packs_nothing(self):
         done = self.check_done(equidem("pack", SOIL, "--dry-run", "--out", self.folder / "none"))

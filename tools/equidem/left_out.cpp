@@ -73,6 +73,11 @@ void leave_out_loose(Problem& problem) {
   for (std::size_t disc = 0; disc < kept.size(); ++disc)
     if (!kept[disc]) problem.left_out.bodies.push_back(static_cast<std::int64_t>(disc));
   problem.left_out.sentences = std::move(network.sentences);
+  if (Case& resolved = problem.resolved; resolved.material && resolved.assembly.body == Body::disc) {
+    // The solid fraction, by which the density of the continuum gives that of the discs, is that of all of them.
+    resolved.assembly.density = disc_density(resolved, assembly);
+    resolved.material->given.density.reset();
+  }
   const std::set<std::string> sides = measured_sides(assembly);
   Assembly rest = std::move(network.part->assembly);
   std::erase_if(rest.groups, [&](const auto& group) { return sides.contains(group.first); });

@@ -87,7 +87,7 @@ void add_gaps(Results& results, const Assembly& assembly) {
   results.line("");
   results.note(
       fmt::format("contacts are bonds: their discs overlap by up to {} and are up to {} apart, of the sum of "
-                  "their radii. For bodies that collide, fill a box with 'equidem pack'.",
+                  "their radii. For bodies that collide take an assembly of kind = \"packing\".",
                   percent(std::max(-gaps.smallest, 0.0)), percent(std::max(gaps.largest, 0.0))));
 }
 

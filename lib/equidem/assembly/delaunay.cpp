@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -17,6 +18,10 @@
 
 namespace equidem {
 namespace {
+
+double aspect_of(const DelaunayOptions& options) {
+  return options.box ? options.box->x / options.box->y : options.aspect;
+}
 
 void check(const DelaunayOptions& options) {
   const std::int64_t least = options.periodic ? 1 : 3;
@@ -45,15 +50,17 @@ void check(const DelaunayOptions& options) {
     if (!measurable(radius))
       bad_input(fmt::format("the radius of a disc is {} m", radius), length_limits(), "Choose other units");
   }
-  if (!(options.aspect >= 1e-3 && options.aspect <= 1e3)) {
-    bad_input(fmt::format("aspect = {}", options.aspect), "width over height must lie in [0.001, 1000]", "Correct it");
-  }
+  const Vec2 box = options.box.value_or(Vec2{1, 1});
+  if (!measurable(box.x) || !measurable(box.y))
+    bad_input(fmt::format("the box is {} m wide and {} m high", box.x, box.y), length_limits(), "Correct it");
+  if (const double aspect = aspect_of(options); !(aspect >= 1e-3 && aspect <= 1e3))
+    bad_input(fmt::format("aspect = {}", aspect), "width over height must lie in [0.001, 1000]", "Correct it");
 }
 
 PointSet points_of(const DelaunayOptions& options, Random& random) {
   const PointOptions wanted = {.count = options.discs,
                                .spacing = options.radii.smallest + options.radii.largest,
-                               .aspect = options.aspect,
+                               .aspect = aspect_of(options),
                                .periodic = options.periodic};
   switch (options.points) {
     case PointProcess::poisson_disc:
@@ -64,6 +71,15 @@ PointSet points_of(const DelaunayOptions& options, Random& random) {
       break;
   }
   return uniform_points(wanted, random);
+}
+
+/// The points in a rectangle of that size.
+void stretch(PointSet& set, Vec2 extent, bool periodic) {
+  const auto last = [&](double length) { return periodic ? std::nextafter(length, 0.0) : length; };
+  for (Vec2& point : set.points)
+    point = {std::min(point.x * (extent.x / set.extent.x), last(extent.x)),
+             std::min(point.y * (extent.y / set.extent.y), last(extent.y))};
+  set.extent = extent;
 }
 
 /// Contacts at the midpoint of the branch as the assembly measures it; unequal discs keep the radical axis.
@@ -129,13 +145,23 @@ std::size_t drop_loose_discs(Assembly& assembly, const PowerCells& cells) {
 
 }  // namespace
 
+std::int64_t discs_that_fill(Vec2 box, const RadiusDistribution& radii) {
+  const double a = (radii.smallest + radii.largest) / 2;
+  const double discs = std::round(box.x * box.y / (2 * std::numbers::sqrt3 * a * a));
+  if (!(discs >= 1 && discs <= 1e9))
+    bad_input(fmt::format("{:.3g} discs would fill the box of {:.6g} m by {:.6g} m", discs, box.x, box.y),
+              "they are 1 to 1e9", "Change the box or the radius");
+  return static_cast<std::int64_t>(discs);
+}
+
 Assembly delaunay_assembly(const DelaunayOptions& options) {
   check(options);
   constexpr double bytes_per_disc = 350;  // measured at 10⁶ discs: the triangulation beside the assembly
   require_memory(bytes_per_disc * static_cast<double>(options.discs),
                  fmt::format("the triangulation of {} discs needs about", grouped(options.discs)));
   Random random(options.seed);
-  const PointSet set = points_of(options, random);
+  PointSet set = points_of(options, random);
+  if (options.box) stretch(set, *options.box, options.periodic);
   Assembly assembly;
   assembly.kind = "delaunay";
   assembly.centres.reserve(set.points.size());

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/assembly/point_process.hpp"
@@ -26,17 +27,24 @@ struct DelaunayOptions {
   RadiusDistribution radii = {};
   double aspect = 1;  ///< width over height of the rectangle, in [1e-3, 1e3]; perturbed_hexagonal comes near it
   bool periodic = false;
+  /// Width and height of the rectangle, m, instead of the aspect; the points are stretched to it, so that their spacing
+  /// follows from it and from the number of discs, and not from the radii.
+  std::optional<Vec2> box = {};
 };
 
-/// The mean spacing of neighbours is the mean diameter: the rectangle, from the origin to its upper right corner, has 2
-/// sqrt3 a² for each disc, a = (smallest + largest)/2. Contacts are the edges of the triangulation, each at the
-/// midpoint of its branch (equal radii) or at the radical axis, kept between the two centres; facet lengths are those
-/// of the Voronoi (power) cells, clipped to the rectangle where free. An edge whose facet is a single point or lies
-/// outside the rectangle is no contact. Discs that fewer than two contacts would hold are left out: one whose power
-/// cell its neighbours have taken, one in a corner with a single neighbour. Discs are numbered along a Hilbert curve.
-/// Groups of a free assembly: the discs whose cells touch a side or hold a corner, with the length of the side in their
-/// cell. Same options, same assembly, on every machine.
-/// \throws Error (bad_input) on options out of range
+/// The number of discs for which a box has 2 sqrt3 a² for each, a = (smallest + largest)/2, so that the mean spacing of
+/// neighbours is the mean diameter.
+/// \throws Error (bad_input) where it is not 1 to 1e9
+std::int64_t discs_that_fill(Vec2 box, const RadiusDistribution& radii);
+
+/// Without a box the mean spacing of neighbours is the mean diameter: the rectangle, from the origin to its upper right
+/// corner, has 2 sqrt3 a² for each disc, a = (smallest + largest)/2. Contacts are the edges of the triangulation, each
+/// at the midpoint of its branch (equal radii) or at the radical axis, kept between the two centres; facet lengths are
+/// those of the Voronoi (power) cells, clipped to the rectangle where free. An edge whose facet is a single point or
+/// lies outside the rectangle is no contact. Discs that fewer than two contacts would hold are left out: one whose
+/// power cell its neighbours have taken, one in a corner with a single neighbour. Discs are numbered along a Hilbert
+/// curve. Groups of a free assembly: the discs whose cells touch a side or hold a corner, with the length of the side
+/// in their cell. Same options, same assembly, on every machine. \throws Error (bad_input) on options out of range
 Assembly delaunay_assembly(const DelaunayOptions& options);
 
 /// Contacts, facets, cells and, where free, sides by (regular) triangulation of given discs; `assembly` brings

@@ -53,12 +53,26 @@ void set_amount(const PackingAmount& amount, const SizeDistribution& sizes, Pack
   }
   options.radii = draw_radii(sizes, count, random);
   if (!amount.box) {
-    const double side = std::sqrt(area_of(options.shape, options.radii) / *amount.solid_fraction);
-    options.box.size = {side, side};
+    const double area = area_of(options.shape, options.radii) / *amount.solid_fraction;
+    options.box.size = {std::sqrt(area * amount.aspect), std::sqrt(area / amount.aspect)};
   } else if (!amount.grains) {
     const double scale = std::sqrt(*amount.solid_fraction * options.box.area() / area_of(options.shape, options.radii));
     for (double& radius : options.radii) radius *= scale;
   }
+}
+
+ScalablePacking resized(ScalablePacking packing, std::int64_t grains, std::uint64_t seed) {
+  PackingAmount& amount = packing.amount;
+  if (amount.box && amount.grains) {
+    *amount.box *= std::sqrt(static_cast<double>(grains) / static_cast<double>(*amount.grains));
+  } else if (amount.box) {
+    amount.aspect = amount.box->x / amount.box->y;
+    amount.box.reset();
+  }
+  amount.grains = grains;
+  packing.seed = seed;
+  set_amount(amount, packing.sizes, packing);
+  return packing;
 }
 
 }  // namespace equidem

@@ -21,53 +21,57 @@ void check(const PackingOptions& options) {
   if (options.radii.empty()) bad_input("there are no bodies to pack", "the box would stay empty", "Give their number");
   const PackingBox& box = options.box;
   if (!is_positive(box.size.x) || (!falls && !is_positive(box.size.y))) {
-    bad_input(fmt::format("the box is {} m wide and {} m high", box.size.x, box.size.y), "it must have an area",
-              "Correct it");
+    bad_input_at("box", fmt::format("the box is {} m wide and {} m high", box.size.x, box.size.y),
+                 "it must have an area", "Correct it");
   }
   if (falls != (box.sides == PackingBox::Sides::open_top)) {
-    bad_input(falls ? "bodies fall into a closed box"
-                    : fmt::format("{} into a box with an open top", to_string(options.method)),
-              "what falls comes from above, the others need a box to fill",
-              falls ? "Open its top" : "Close the box, or make it periodic");
+    bad_input_at("sides",
+                 falls ? "bodies fall into a closed box"
+                       : fmt::format("{} into a box with an open top", to_string(options.method)),
+                 "what falls comes from above, the others need a box to fill",
+                 falls ? "Open its top" : "Close the box, or make it periodic");
   }
   double largest = 0;
   for (std::size_t k = 0; k < options.radii.size(); ++k) {
     if (!is_positive(options.radii[k])) {
-      bad_input(fmt::format("{} {} has the radius {} m", noun, k, options.radii[k]), "it must be positive and finite",
-                "Correct the sizes");
+      bad_input_at("radii", fmt::format("{} {} has the radius {} m", noun, k, options.radii[k]),
+                   "it must be positive and finite", "Correct the sizes");
     }
     largest = std::max(largest, options.radii[k]);
   }
-  // A body may not reach a second image of another one.
-  const double room = (falls ? box.size.x : std::min(box.size.x, box.size.y)) / (box.periodic() ? 2 : 1);
-  const double width = 2 * shape.reach * largest;
-  if (width > room) {
-    bad_input(fmt::format("the largest {} is {:.4g} m wide, the box {:.4g} m by {:.4g} m", noun, width, box.size.x,
-                          box.size.y),
-              box.periodic() ? "half a period must hold it" : "it does not fit in", "Make the box larger");
+  const double width = 2 * shape.reach * largest, least = box.periodic() ? 2 * width : width;
+  if (least > (falls ? box.size.x : std::min(box.size.x, box.size.y))) {
+    bad_input_at("box",
+                 fmt::format("the largest {} is {:.4g} m wide, the box {:.4g} m by {:.4g} m", noun, width, box.size.x,
+                             box.size.y),
+                 box.periodic() ? "a period holds two of them side by side, so that none meets two images of another"
+                                : "it does not fit in",
+                 fmt::format("Make {} {:.3g} m or more, or take smaller bodies", falls ? "the width" : "both sides",
+                             1.01 * least));
   }
   const double share = area_of(options.shape, options.radii) / box.area();
   if (!falls && !options.as_dense_as_possible && share >= 1) {
-    bad_input(fmt::format("the {}s have {:.3g} times the area of the box", noun, share), "they leave gaps between them",
-              "Make the box larger, or take fewer of them");
+    bad_input_at("box", fmt::format("the {}s have {:.3g} times the area of the box", noun, share),
+                 "they leave gaps between them", "Make the box larger, or take fewer of them");
   }
   // Discs of one size cover at most pi/sqrt(12) of a convex region (Thue; Fejes Tóth).
   const double densest = std::numbers::pi / std::sqrt(12.0);
   const bool equal = std::ranges::all_of(options.radii, [&](double radius) { return radius == largest; });
   if (!falls && !options.as_dense_as_possible && options.shape.is_disc() && equal && share > densest) {
-    bad_input(fmt::format("discs of one size would have a solid fraction of {:.4g}", share),
-              fmt::format("that of the hexagonal lattice, {:.4f}, is the largest", densest),
-              "Make the box larger, take fewer of them, or radii of several sizes");
+    bad_input_at("solid_fraction", fmt::format("discs of one size would have a solid fraction of {:.4g}", share),
+                 fmt::format("that of the hexagonal lattice, {:.4f}, is the largest", densest),
+                 "Make the box larger, take fewer of them, or radii of several sizes");
   }
   if (!(options.overlap > 0 && options.overlap <= 0.1)) {
-    bad_input(fmt::format("the overlap allowed is {} of the smaller radius", options.overlap),
-              "it must be above 0, which nothing reaches, and at most 0.1", "Correct it");
+    bad_input_at("overlap", fmt::format("the overlap allowed is {} of the smaller radius", options.overlap),
+                 "it must be above 0, which nothing reaches, and at most 0.1", "Correct it");
   }
   if (options.from_grid && options.method != PackingMethod::local_moves) {
     bad_input(fmt::format("from_grid with the method {}", to_string(options.method)),
               "only local moves start from places that are given", "Leave it out, or use local_moves");
   }
-  if (options.attempts < 1) bad_input(fmt::format("{} attempts", options.attempts), "one is needed", "Give 1 or more");
+  if (options.attempts < 1)
+    bad_input_at("attempts", fmt::format("{} attempts", options.attempts), "one is needed", "Give 1 or more");
 }
 
 void make_grains(const PackingShape& shape, const Bodies& bodies, double density, GrainPacking& packing) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "equidem/casefile/assembly/build.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
@@ -20,17 +21,24 @@ constexpr const char* statistics_name = "ensemble.csv";
 
 HomogenizeOptions options_of(const Case& resolved) {
   const auto& boundary = resolved.homogenize.boundary;
-  if (!boundary && !resolved.assembly.delaunay.periodic) {
+  if (!boundary && !resolved.assembly.periodic()) {
     bad_input_at(resolved.where("ensemble"), "the cells of the ensemble have free boundaries",
                  "their moduli lie between two answers, by displacements and by tractions at the boundary",
-                 "Set assembly.periodic = true, or choose homogenize.boundary");
+                 fmt::format("Set {}, or choose homogenize.boundary", joins_sides(resolved.assembly)));
   }
   return {.boundary = boundary.value_or(Boundary::periodic), .rotation = resolved.rotation, .solver = resolved.solver};
 }
 
 Assembly build_cell(Case resolved, std::int64_t discs, std::uint64_t seed) {
-  resolved.assembly.delaunay.discs = discs;
-  resolved.assembly.delaunay.seed = seed;
+  AssemblyCase& assembly = resolved.assembly;
+  if (assembly.packing) {
+    assembly.packing = casefile::with_place(resolved.where("packing"),
+                                            [&] { return resized(*std::move(assembly.packing), discs, seed); });
+  } else {
+    assembly.delaunay.box.reset();  // its shape is the aspect
+    assembly.delaunay.discs = discs;
+    assembly.delaunay.seed = seed;
+  }
   return build_assembly(resolved);
 }
 
@@ -92,6 +100,10 @@ int dry_run(const CommonOptions& options, const Case& resolved, const EnsemblePl
 
 }  // namespace
 
+const char* joins_sides(const AssemblyCase& assembly) {
+  return assembly.packing ? "packing.sides = \"periodic\"" : "assembly.periodic = true";
+}
+
 HomogenizedCell homogenize_cell(const Case& resolved, std::int64_t discs, std::uint64_t seed) {
   const Assembly cell = build_cell(resolved, discs, seed);
   return homogenize_cell(cell, build_springs(resolved, cell).springs, options_of(resolved));
@@ -110,9 +122,11 @@ Results cell_results(const Case& resolved, std::int64_t discs, std::uint64_t see
   Results results;
   if (!resolved.title.empty()) results.block(resolved.title + "\n\n");
   results.line("ensemble", plan);
+  const AssemblyCase& assembly = resolved.assembly;
+  const std::string made = assembly.packing ? fmt::format("method = \"{}\"", to_string(assembly.packing->method))
+                                            : fmt::format("points = \"{}\"", to_string(assembly.delaunay.points));
   results.line("cells",
-               fmt::format("{}, points = \"{}\", boundary = \"{}\"", first.kind,
-                           to_string(resolved.assembly.delaunay.points), to_string(options_of(resolved).boundary)));
+               fmt::format("{}, {}, boundary = \"{}\"", first.kind, made, to_string(options_of(resolved).boundary)));
   results.line("springs", springs.report + (resolved.material ? " (of the first cell)" : ""));
   add_effects(results, derive_effects(springs.springs, resolved.rotation));
   return results;
@@ -134,7 +148,7 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
   const EnsembleCase& asked = *resolved.ensemble;
   EnsembleResult result{
       .title = resolved.title, .plan = asked.plan, .accuracy = asked.accuracy, .samples = {}, .statistics = {}};
-  result.plan.first_seed = resolved.assembly.delaunay.seed;
+  result.plan.first_seed = resolved.assembly.seed();
   const EnsemblePlan& plan = result.plan;
   Results results = cell_results(resolved, plan.discs.front(), plan.first_seed, describe_plan(plan, asked.confidence));
   OutputPlan(options).expect_json();

@@ -28,6 +28,9 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
 
 // Shared by both.
 
+/// The key and value that make a random assembly periodic.
+const char* joins_sides(const AssemblyCase& assembly);
+
 /// Builds and homogenizes one cell.
 /// \throws Error as build_assembly and homogenize_cell
 HomogenizedCell homogenize_cell(const Case& resolved, std::int64_t discs, std::uint64_t seed);

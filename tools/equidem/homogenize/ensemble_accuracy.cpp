@@ -61,16 +61,16 @@ ReachedAccuracy reached_by(const AccurateEnsemble& sampled, const EnsembleAccura
 }  // namespace
 
 int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, double accuracy) {
-  if (!resolved.assembly.delaunay.periodic) {
+  if (!resolved.assembly.periodic()) {
     bad_input_at(resolved.where("assembly"), "--accuracy cannot be kept by samples with free boundaries",
                  "their moduli depend on the boundary far more than on the number of samples",
-                 "Set assembly.periodic = true");
+                 fmt::format("Set {}", joins_sides(resolved.assembly)));
   }
   check_ensemble_outputs(options);
   const auto lock = lock_out(options);
   const EnsembleAccuracy wanted{.accuracy = accuracy,
                                 .confidence = resolved.ensemble.value_or(EnsembleCase{}).confidence,
-                                .first_seed = resolved.assembly.delaunay.seed};
+                                .first_seed = resolved.assembly.seed()};
   Results results = cell_results(resolved, wanted.smallest, wanted.first_seed);
   const auto& folder = options.out;
   const auto save = [&](const std::vector<EnsembleSample>& done) {

@@ -114,7 +114,7 @@ int homogenize(const HomogenizeVerb& options) {
   const CommonOptions& common = options.common;
   Case resolved = read_case(common);
   refuse_dry_run_with_accuracy(common, options.accuracy.has_value());
-  if (options.accuracy && resolved.assembly.kind == AssemblyKind::delaunay) {
+  if (options.accuracy && resolved.assembly.random()) {
     if (options.resume)
       bad_input("--resume and --accuracy exclude each other", "what is sampled follows from the samples",
                 "Run it anew");

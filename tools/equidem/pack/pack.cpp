@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "equidem/assembly/files.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
@@ -31,16 +32,17 @@ void check_outputs(const CommonOptions& common, const PackCase& resolved) {
   if (resolved.picture) plan.expect("picture.png");
 }
 
-void write_files(const CommonOptions& common, const PackCase& resolved, const GrainPacking& packing) {
+/// \param density kg/m³, of the bodies
+void write_files(const CommonOptions& common, const PackCase& resolved, const GrainPacking& packing,
+                 const Assembly& network, double density) {
   const auto& folder = *common.out;
-  const SettlingOptions& settling = resolved.packing.settling;
   if (resolved.csv) {
     const std::vector<std::string> groups(packing.grains.size(), "grains");
-    const std::vector<double> densities(packing.grains.size(), settling.density);
+    const std::vector<double> densities(packing.grains.size(), density);
     write_grain_csv(folder / "grains.csv", {packing.grains, packing.clumps, groups, densities}, common.overwrite);
     if (!packing.bonds.empty()) write_bond_csv(folder / "bonds.csv", packing.bonds, {}, common.overwrite);
   }
-  write_assembly(folder / "assembly.json", network_of(packing, resolved.network), common.overwrite);
+  write_assembly(folder / "assembly.json", network, common.overwrite);
   if (!packing.box.periodic()) {
     const HeldNetwork held = held_network_of(packing, resolved.network);
     if (!held.bodies.empty()) write_assembly(folder / "assembly_with_walls.json", held.assembly, common.overwrite);
@@ -58,24 +60,17 @@ void write_files(const CommonOptions& common, const PackCase& resolved, const Gr
   }
 }
 
-/// Adds the line of the key to the errors of a task.
+/// Adds the line of the key at fault to the errors of a task. \param usual the key of an error that names none
 template <typename Task>
-auto located(const PackCase& resolved, const char* key, const Task& task) {
-  try {
-    return task();
-  } catch (const Error& error) {
-    if (error.kind() == ErrorKind::interrupted) throw;
-    const TomlValue& packing = *resolved.document.find("packing");
-    const TomlValue* value = packing.find(key);
-    throw error.at(value != nullptr ? fmt::format("{}: packing.{}", value->where(), key)
-                                    : fmt::format("{}: packing", packing.where()));
-  }
+auto located(const PackCase& resolved, const char* usual, const Task& task) {
+  return casefile::at_key(*resolved.document.find("packing"), "packing", task, usual);
 }
 
 int run(const CommonOptions& common) {
   prepare(common);
   const PackCase resolved = read_pack_case(common.case_file, overrides_of(common));
   check_outputs(common, resolved);
+  located(resolved, "method", [&] { check(resolved.packing); });
   if (common.dry_run) {
     const Results estimate = located(resolved, "method", [&] { return pack_estimate_results(resolved); });
     deliver(common, "dry_run",
@@ -87,14 +82,18 @@ int run(const CommonOptions& common) {
   Stopwatch watch;
   const GrainPacking packing = located(resolved, "method", [&] { return pack(resolved.packing); });
   times.add("packing", watch.lap());
+  const Assembly network = network_of(packing, resolved.network);
+  const double density = body_density(resolved, network);
+  times.add("network", watch.lap());
   const PackingMeasures measures = located(resolved, "region", [&] { return measure(packing, resolved.region); });
   times.add("measures", watch.lap());
   const RestConfirmation rest = confirm_rest(packing, resolved.packing.settling);
   times.add("statics", watch.lap());
-  deliver(common, "done", packing_results(resolved, packing, measures, rest), std::move(times), [&](Results&) {
-    if (common.out) write_files(common, resolved, packing);
-    write_case(common, resolved.document);
-  });
+  deliver(common, "done", packing_results(resolved, packing, network, density, measures, rest), std::move(times),
+          [&](Results&) {
+            if (common.out) write_files(common, resolved, packing, network, density);
+            write_case(common, resolved.document);
+          });
   return 0;
 }
 

@@ -51,17 +51,24 @@ void add_rest(Results& out, const GrainPacking& packing, const RestConfirmation&
 }
 
 /// The contacts of the assembly that is written, and those of other tolerances.
-void add_bonds(Results& out, const GrainPacking& packing, double gap_tolerance) {
-  const auto bonds = static_cast<std::int64_t>(network_of(packing, {.gap_tolerance = gap_tolerance}).contacts.size());
+void add_bonds(Results& out, const GrainPacking& packing, const Assembly& network) {
   out.line("bonds")
-      .add("bonds", "", bonds, "in the assembly", {Shown::count})
-      .note(fmt::format(", z = {:.3g}; ", 2 * static_cast<double>(bonds) / static_cast<double>(packing.size())))
-      .add("gap_tolerance", "gap_tolerance =", gap_tolerance);
+      .add("bonds", "", network.contacts.size(), "", {Shown::count})
+      .note(fmt::format(" in the assembly, z = {:.3g}; ", network.coordination_number()))
+      .add("gap_tolerance", "gap_tolerance =", *network.gap_tolerance);
   std::vector<std::string> others;
   for (const BondCount& count : bond_counts(packing))
     if (count.gap_tolerance > 0)
       others.push_back(fmt::format("{}: {} (z = {:.3g})", count.gap_tolerance, count.contacts, count.coordination));
   out.line("", "with other values of it: " + joined(others));
+}
+
+/// \param density kg/m³, of the bodies
+void add_density(Results& out, const PackCase& resolved, double density, const std::string& noun) {
+  out.line("density");
+  if (resolved.of_continuum) out.add("density/continuum", "", *resolved.of_continuum, "kg/m³ of the continuum");
+  out.add("density/discs", "", density, "kg/m³ of the " + noun + "s");
+  if (!resolved.of_continuum && !resolved.density) out.note(", the default, since the case gives none");
 }
 
 }  // namespace
@@ -103,8 +110,8 @@ Results pack_estimate_results(const PackCase& resolved) {
            {.digits = 2});
 }
 
-Results packing_results(const PackCase& resolved, const GrainPacking& packing, const PackingMeasures& measures,
-                        const RestConfirmation& rest) {
+Results packing_results(const PackCase& resolved, const GrainPacking& packing, const Assembly& network, double density,
+                        const PackingMeasures& measures, const RestConfirmation& rest) {
   const PackingOptions& options = resolved.packing;
   const std::string noun = noun_of(options.shape.kind);
   Results out = pack_case_results(resolved);
@@ -131,7 +138,8 @@ Results packing_results(const PackCase& resolved, const GrainPacking& packing, c
       .add("coordination_number_without_rattlers", "", measures.coordination_without_rattlers, "without", {.digits = 4})
       .note(" ")
       .add("rattlers", "", measures.rattlers, "rattler", {Shown::count});
-  add_bonds(out, packing, resolved.network.gap_tolerance);
+  add_bonds(out, packing, network);
+  add_density(out, resolved, density, noun);
   out.line("overlap").add("largest_overlap", "at most", measures.largest_overlap, "of the smaller radius",
                           {.digits = 3});
   if (!packing.contacts.empty()) add_rest(out, packing, rest, noun);

@@ -17,7 +17,9 @@ Results pack_case_results(const PackCase& resolved);
 Results pack_estimate_results(const PackCase& resolved);
 
 /// Report and JSON of the verb.
-Results packing_results(const PackCase& resolved, const GrainPacking& packing, const PackingMeasures& measures,
-                        const RestConfirmation& rest);
+/// \param network of the packing, as it is written
+/// \param density kg/m³, of the bodies
+Results packing_results(const PackCase& resolved, const GrainPacking& packing, const Assembly& network, double density,
+                        const PackingMeasures& measures, const RestConfirmation& rest);
 
 }  // namespace equidem

@@ -18,10 +18,11 @@
 namespace equidem {
 namespace {
 
-/// The density of the case, or 1.
-StabilityOptions options_of(const Case& resolved) {
+/// The density of the discs, or 1.
+StabilityOptions options_of(const Problem& problem) {
+  const Case& resolved = problem.resolved;
   return {.rotation = resolved.rotation,
-          .density = resolved.assembly.density.value_or(1),
+          .density = disc_density(resolved, problem.assembly).value_or(1),
           .body = resolved.assembly.body,
           .solver = resolved.solver};
 }
@@ -46,15 +47,17 @@ int dry_run_survey(const CommonOptions& options, const Problem& problem) {
   } else {
     results.note("none: the assembly is not periodic");
   }
-  const StabilityOptions judged = options_of(problem.resolved);
+  const StabilityOptions judged = options_of(problem);
+  const bool assumed = !disc_density(problem.resolved, assembly);
   const auto inertia = inertia_of(assembly, judged.density, judged.body);
   check_magnitudes(assembly, springs, inertia);
   results.line("time step")
       .add("element_bound_time_step", "", 2 / std::sqrt(element_bound(assembly, springs, inertia, effects.rotation)),
            "s is guaranteed to be stable (element bound)")
-      .note(problem.resolved.assembly.density ? "" : "; density 1 kg/m³ assumed");
-  results.set("density_assumed", !problem.resolved.assembly.density.has_value());
-  deliver(options, "dry_run", dry_run_results(problem, assembly.periodic() ? 50 : 15, results, AssemblyKeys::size), problem.times);
+      .note(assumed ? "; density 1 kg/m³ assumed" : "");
+  results.set("density_assumed", assumed);
+  deliver(options, "dry_run",
+          dry_run_results(problem, assembly.periodic() ? 50 : 15, results, AssemblyKeys::size), problem.times);
   return 0;
 }
 
@@ -68,7 +71,7 @@ int stability(const CommonOptions& options) {
   const Problem problem = acts(resolved) ? build_problem(std::move(resolved)) : problem_of(std::move(resolved));
   if (options.dry_run) return dry_run_survey(options, problem);
   const Stability result =
-      analyze_stability(problem.assembly, problem.springs.springs, problem.supports, options_of(problem.resolved));
+      analyze_stability(problem.assembly, problem.springs.springs, problem.supports, options_of(problem));
   StageTimes times = problem.times;
   times.add(result.times);
   deliver(options, result.status(), stability_results(problem, result), std::move(times), [&](Results&) {

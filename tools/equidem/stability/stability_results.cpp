@@ -134,7 +134,8 @@ void add_growth(Results& out, const Stability& s, bool periodic) {
            "keep, at any time step and any damping. Use such springs in statics only");
 }
 
-void add_time_step(Results& out, const Stability& s, const AssemblyCase& given) {
+/// \param density kg/m³, of the discs; none: 1 was assumed
+void add_time_step(Results& out, const Stability& s, std::optional<double> density, Body body) {
   const bool vibrates = s.highest.value > 0, grows = s.growth_rate() > 0;
   double omega = std::sqrt(s.highest.value);
   if (vibrates) {
@@ -185,12 +186,13 @@ void add_time_step(Results& out, const Stability& s, const AssemblyCase& given) 
   out.set("element_bound_time_step", 2 / std::sqrt(s.element_bound));
   out.set("critical_time_step", 2 / std::sqrt(s.highest.value));
   out.set("element_bound_omega_max", std::sqrt(s.element_bound));
-  out.set("density", given.density.value_or(1)).set("density_assumed", !given.density.has_value());
-  out.set("body", to_string(given.body));
-  if (!given.density) {
-    out.line("",
-             "DENSITY ASSUMED: 1 kg/m³, since assembly.density is not given. Times scale with its square root, "
-             "frequencies and speeds with the inverse");
+  out.set("density", density.value_or(1)).set("density_assumed", !density.has_value());
+  out.set("body", to_string(body));
+  if (!density) {
+    out.line(
+        "",
+        "DENSITY ASSUMED: 1 kg/m³, since the case gives none (assembly.density). Times scale with its square root, "
+        "frequencies and speeds with the inverse");
   }
 }
 
@@ -271,7 +273,7 @@ Results stability_results(const Problem& problem, const Stability& s) {
   add_inertia(out, s);
   add_critical(out, s);
   add_growth(out, s, periodic);
-  add_time_step(out, s, problem.resolved.assembly);
+  add_time_step(out, s, disc_density(problem.resolved, problem.assembly), problem.resolved.assembly.body);
   return out;
 }
 

@@ -21,14 +21,17 @@ namespace {
 
 using namespace casefile;
 
-Assembly generate(const AssemblyCase& wanted) {
+Assembly generate(const Case& resolved) {
+  const AssemblyCase& wanted = resolved.assembly;
   switch (wanted.kind) {
     case AssemblyKind::lattice:
       return wanted.arrangement->make(wanted.lattice);
     case AssemblyKind::delaunay:
       return delaunay_assembly(wanted.delaunay);
     case AssemblyKind::packing: {
-      Assembly assembly = network_of(pack(*wanted.packing), {.gap_tolerance = wanted.gap_tolerance});
+      const GrainPacking packing = at_key(
+          *resolved.document.find("packing"), "packing", [&] { return pack(*wanted.packing); }, "method");
+      Assembly assembly = network_of(packing, {.gap_tolerance = wanted.gap_tolerance});
       if (!assembly.contacts.empty()) measure_cells(assembly);
       return assembly;
     }
@@ -106,8 +109,8 @@ void add_test(const Case& resolved, const Assembly& assembly, Scene& scene) {
 Assembly build_assembly(const Case& resolved) {
   const AssemblyCase& wanted = resolved.assembly;
   const bool packed = wanted.kind == AssemblyKind::packing;
-  const char* source = wanted.kind == AssemblyKind::file ? "assembly.path" : packed ? "packing.method" : "assembly";
-  Assembly assembly = with_place(resolved.where(source), [&] { return generate(wanted); });
+  const char* source = wanted.kind == AssemblyKind::file ? "assembly.path" : "assembly";
+  Assembly assembly = with_place(resolved.where(source), [&] { return generate(resolved); });
   with_place(resolved.where(packed ? "packing.gap_tolerance" : "assembly.gap_tolerance"),
              [&] { check_found_contacts(assembly); });
   if (!wanted.own_springs) {

@@ -2,7 +2,6 @@
 #include "equidem/casefile/assembly/case.hpp"
 
 #include <algorithm>
-#include <sstream>
 
 #include "equidem/casefile/assembly/case_tables.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
@@ -61,17 +60,6 @@ std::vector<NamedLoads> load_cases_of(const std::vector<LoadTable>& tables) {
   return cases;
 }
 
-/// The table of a springs file takes the place of its name.
-void resolve_springs_file(TomlValue& root, const fs::path& folder) {
-  TomlValue* named = root.find("springs");
-  if (named == nullptr || named->type != TomlValue::Type::text) return;
-  const fs::path path = opened(named->text, folder);
-  TomlValue document = with_place(fmt::format("{}: springs", named->where()),
-                                  [&] { return parse_toml(read_file(path), path.string()); });
-  static_cast<void>(springs_file_format().read(document, folder));
-  *named = *document.find("springs");
-}
-
 /// Before keys are checked: of two tables that exclude each other neither misses a key.
 void check_one_source_of_springs(const TomlValue& root) {
   const TomlValue* material = root.find("material");
@@ -89,11 +77,10 @@ void check_contradictions(const TomlValue& root, const AssemblyCase& assembly) {
             "every contact has a normal spring kN and a tangential spring kT",
             "Add [springs] with kN and kT, or [material], or springs = \"FILE\"");
   }
-  if (const TomlValue* ensemble = root.find("ensemble");
-      ensemble != nullptr && assembly.kind != AssemblyKind::delaunay) {
+  if (const TomlValue* ensemble = root.find("ensemble"); ensemble != nullptr && !assembly.random()) {
     fail_at(*ensemble, "ensemble", "an ensemble needs random assemblies",
             fmt::format("kind = \"{}\" makes the same one every time", root.find("assembly")->find("kind")->text),
-            "Set kind = \"delaunay\", or remove [ensemble]");
+            "Set kind = \"delaunay\" or \"packing\", or remove [ensemble]");
   }
   const TomlValue* test = root.find("test");
   for (const char* other : {"support", "load"}) {
@@ -161,48 +148,29 @@ void complete_run(const TomlValue& root, CaseTables& tables) {
             "each says which dashpots stand at the contacts", "Set one of them to 0");
 }
 
-/// The density of the discs, from [assembly] or the springs.
-void complete_density(const TomlValue& root, CaseTables& tables) {
-  if (!tables.springs_density) return;
-  std::optional<double>& density = tables.assembly.density;
-  if (density && *density != *tables.springs_density)
-    fail_at(*root.find("springs")->find("density"), "springs.density",
-            fmt::format("it is {} kg/m³ here and {} kg/m³ in [assembly]", *tables.springs_density, *density),
-            "both are the density of the discs themselves", "Remove one of them");
-  density = tables.springs_density;
-}
-
-/// Density that the file states for the bodies of a packing; none: it leaves the default.
-std::optional<double> stated_packing_density(const TomlValue& root) {
-  const TomlValue* packing = root.find("packing");
-  const TomlValue* density = packing != nullptr && packing->is_table() ? packing->find("density") : nullptr;
-  return density != nullptr && density->is_number() ? std::optional(density->real) : std::nullopt;
-}
-
-/// The packing of an assembly that is one: its bodies have one density, its contacts the springs of the case.
-void complete_packing(TomlValue& root, std::optional<double> stated_density, CaseTables& tables) {
+/// The packing of an assembly that is one: its contacts have the springs of the case.
+void complete_packing(const TomlValue& root, CaseTables& tables) {
   AssemblyCase& assembly = tables.assembly;
   assembly.gap_tolerance = tables.packing_tables.gap_tolerance;
   assembly.region = tables.packing_tables.region;
-  PackingOptions options = packing_options(root, tables.packing_tables);
-  TomlValue& packing = *root.find("packing");
-  if (stated_density && assembly.density && *stated_density != *assembly.density)
-    fail_at(*packing.find("density"), "packing.density",
-            fmt::format("it is {} kg/m³ here and {} kg/m³ in [assembly]", *stated_density, *assembly.density),
-            "both are the density of the bodies themselves", "Remove one of them");
-  if (assembly.density) {
-    options.settling.density = *assembly.density;
-    TomlValue& shown = *packing.find("density");
-    shown.type = TomlValue::Type::real;
-    shown.real = *assembly.density;
-  }
-  if (stated_density) assembly.density = stated_density;
-  if (tables.springs) options.settling.springs = *tables.springs;
-  if (entry_of(options.method).open_top && !tables.springs)
-    fail_at(*packing.find("method"), "packing.method", "bodies fall, and the case gives no springs",
+  PackingAmount& amount = tables.packing_tables.amount;
+  if (tables.ensemble && !amount.grains && !amount.box) amount.grains = tables.ensemble->plan.discs.front();
+  ScalablePacking packing = packing_options(root, tables.packing_tables);
+  if (assembly.density) packing.settling.density = *assembly.density;
+  if (tables.springs) packing.settling.springs = *tables.springs;
+  if (entry_of(packing.method).open_top && !tables.springs)
+    fail_at(*root.find("packing")->find("method"), "packing.method", "bodies fall, and the case gives no springs",
             "they collide by kN and kT; [material] gives springs only for an assembly that is there",
             "Give [springs], or pack by growth");
-  assembly.packing = std::move(options);
+  assembly.packing = std::move(packing);
+}
+
+/// A triangulation in a box: the number of discs follows from their size.
+void complete_delaunay(const TomlValue& root, DelaunayOptions& options) {
+  if (!options.box) return;
+  options.discs =
+      with_key(*root.find("assembly"), "assembly", "box", [&] { return discs_that_fill(*options.box, options.radii); });
+  options.aspect = options.box->x / options.box->y;
 }
 
 }  // namespace
@@ -218,12 +186,19 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
                  "Use 'equidem pack', or add [assembly] with kind = \"packing\"");
   check_one_source_of_springs(root);
   resolve_springs_file(root, folder);
-  const std::optional<double> packing_density = stated_packing_density(root);
   CaseTables tables = case_file().read(root, folder);
 
-  complete_density(root, tables);
-  if (tables.assembly.kind == AssemblyKind::packing) complete_packing(root, packing_density, tables);
+  const std::optional<SpringsTable>& springs = tables.springs_table;
+  if (springs) {
+    tables.springs = springs->constants;
+    tables.weighting = springs->weighting;
+  }
+  tables.assembly.density = one_density(root, {{"assembly", tables.assembly.density},
+                                               {"springs", springs ? springs->density : std::nullopt},
+                                               {"packing", tables.packing_tables.density}});
   check_radii(*root.find("assembly"), tables.assembly.delaunay.radii);
+  if (tables.assembly.kind == AssemblyKind::packing) complete_packing(root, tables);
+  if (tables.assembly.kind == AssemblyKind::delaunay) complete_delaunay(root, tables.assembly.delaunay);
   check_contradictions(root, tables.assembly);
   if (tables.material)
     tables.material->moduli =
@@ -244,23 +219,6 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
 
 std::string to_toml(const Case& resolved, const fs::path& folder) {
   return to_toml(resolved.document, folder);
-}
-
-std::string springs_file(const SpringConstants& springs, SpringWeighting weighting, std::optional<double> density,
-                         const std::string& title, const std::string& comment) {
-  std::string out;
-  std::istringstream lines(comment);
-  for (std::string line; std::getline(lines, line);) {
-    // TOML allows no control characters in a comment.
-    for (char& c : line)
-      if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-    out += line.empty() ? "#\n" : fmt::format("# {}\n", line);
-  }
-  out += fmt::format("schema = \"{}\"\ntitle = {}\n\n[springs]\nkN = {}\nkT = {}\nweighting = {}\n",
-                     springs_file_format().spec().schema, toml_text(title), toml_number(springs.kN),
-                     toml_number(springs.kT), toml_text(to_string(weighting)));
-  if (density) out += fmt::format("density = {}\n", toml_number(*density));
-  return out;
 }
 
 Case read_case(const fs::path& path, std::span<const std::string> overrides) {

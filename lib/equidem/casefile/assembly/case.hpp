@@ -25,8 +25,8 @@
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/material/elastic_moduli.hpp"
 #include "equidem/material/inertia.hpp"
+#include "equidem/packing/amount.hpp"
 #include "equidem/packing/measures.hpp"
-#include "equidem/packing/packing.hpp"
 #include "equidem/statics/supports.hpp"
 
 namespace equidem {
@@ -39,13 +39,22 @@ struct AssemblyCase {
   const Lattice* arrangement = nullptr;  ///< the lattice, for the kind lattice; else null
   LatticeOptions lattice;
   DelaunayOptions delaunay;
-  std::optional<PackingOptions> packing;  ///< for the kind packing; else none
-  std::optional<Region> region;           ///< in which the packing is measured
-  double gap_tolerance = 0;               ///< of the contacts of a packing, or of a file that gives none
-  std::filesystem::path path;             ///< path resolved against the folder of the file
-  bool own_springs = true;                ///< use the springs of the file
-  std::optional<double> density;          ///< kg/m³, of the discs themselves
+  std::optional<ScalablePacking> packing;  ///< for the kind packing; else none
+  std::optional<Region> region;            ///< in which the packing is measured
+  double gap_tolerance = 0;                ///< of the contacts of a packing, or of a file that gives none
+  std::filesystem::path path;              ///< path resolved against the folder of the file
+  bool own_springs = true;                 ///< use the springs of the file
+  std::optional<double> density;           ///< kg/m³, of the discs themselves
   Body body = Body::disc;
+
+  /// Whether each seed makes another assembly.
+  [[nodiscard]] bool random() const { return kind == AssemblyKind::delaunay || kind == AssemblyKind::packing; }
+  /// Whether opposite sides are joined; false for a file, which is not read yet.
+  [[nodiscard]] bool periodic() const {
+    return kind == AssemblyKind::packing ? packing->box.periodic() : lattice.periodic || delaunay.periodic;
+  }
+  /// Seed of a random assembly.
+  [[nodiscard]] std::uint64_t seed() const { return packing ? packing->seed : delaunay.seed; }
 };
 
 /// [[group]]: discs listed, or those with their centre inside a box.
@@ -148,12 +157,5 @@ std::optional<std::string> unit_of_case_key(std::string_view path);
 /// The resolved case as TOML: every default written out, overrides applied. Reading it back gives the same case.
 /// \param folder of the new file: paths are written relative to it
 std::string to_toml(const Case& resolved, const std::filesystem::path& folder);
-
-/// A springs file, schema "equidem-springs/1", to which `springs = "FILE"` of a case file refers; it reads back to the
-/// same bits.
-/// \param comment lines for people at the top of the file, may be empty
-/// \param density kg/m³, of the discs; none: not written
-std::string springs_file(const SpringConstants& springs, SpringWeighting weighting, std::optional<double> density,
-                         const std::string& title, const std::string& comment);
 
 }  // namespace equidem

@@ -3,30 +3,12 @@
 
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/core/names.hpp"
+#include "equidem/core/text.hpp"
 
 namespace equidem::casefile {
 namespace {
 
 using Words = std::vector<std::string>;
-
-Key<CaseTables> weighting_key(const std::string& help) {
-  return key_in<CaseTables>("weighting", &Case::weighting, help);
-}
-
-template <class... Attributes>
-void bind_springs(File<CaseTables>& file, const Attributes&... attributes) {
-  file.table("springs", &CaseTables::springs, "the two springs of a contact", attributes...)
-      .keys({key("kN", &SpringConstants::kN, required, unit("Pa"), positive, "normal spring"),
-             key("kT", &SpringConstants::kT, required, unit("Pa"),
-                 "tangential spring; 0: none; negative: a static answer exists for small ones only")});
-  file.table("springs").keys(
-      {weighting_key("uniform: the same at every contact; contact_density: k/psi(theta), Abe (11), (21); "
-                     "local_contact_density: psi of "
-                     "the two discs of the contact alone; voronoi: k h/l, shared cell edge over centre distance"),
-       key("density", &CaseTables::springs_density, unit("kg/m³"), positive,
-           "density of the discs that these springs are for, as assembly.density; calibrate writes it into a springs "
-           "file")});
-}
 
 void bind_assembly(File<CaseTables>& file) {
   const Words lattices = names_in(all_lattices()), delaunay = {"delaunay"}, from_file = {"file"};
@@ -64,15 +46,22 @@ void bind_assembly(File<CaseTables>& file) {
                },
                unit("m"), positive, or_instead({"radii"}, "they say the size of the discs"), when("kind", made),
                "radius of every disc; delaunay: half the mean spacing of neighbours, or give [assembly.radii]"),
-           key("discs", &A::delaunay, &D::discs, from(3, 1e9), when("kind", delaunay),
-               "number wanted; the report says how many there are; not used with [ensemble]"),
+           key("discs", &A::delaunay, &D::discs, optional, from(3, 1e9), when("kind", delaunay),
+               not_beside({"box"}, "each says how many discs there are"),
+               fmt::format(
+                   "number wanted, {} if left out; the report says how many there are; not used with [ensemble]",
+                   D{}.discs)),
+           key("box", &A::delaunay, &D::box, unit("m"), when("kind", delaunay),
+               "width and height, from the origin; the number of discs follows from their mean radius a: one for each "
+               "2 sqrt3 a²"),
            key("points", &A::delaunay, &D::points, when("kind", delaunay),
                "poisson_disc: random but never close; perturbed_hexagonal: a lattice, disturbed; random: independent"),
            key("disorder", &A::delaunay, &D::disorder, range({.low = 0, .high = 0.5, .high_open = true}),
                when("points", {"perturbed_hexagonal"}), "largest shift of a point, in spacings"),
            key("seed", &A::delaunay, &D::seed, not_negative, when("kind", delaunay), "same seed, same assembly"),
-           key("aspect", &A::delaunay, &D::aspect, from(1e-3, 1e3), when("kind", delaunay),
-               "width over height of the rectangle"),
+           key("aspect", &A::delaunay, &D::aspect, optional, from(1e-3, 1e3), when("kind", delaunay),
+               not_beside({"box"}, "each says how wide the rectangle is"),
+               "width over height of the rectangle; left out: 1"),
            key_with<A, bool>(
                "periodic", [](A& a, const bool& joined) { a.lattice.periodic = a.delaunay.periodic = joined; },
                by_default(L{}.periodic), when("kind", made), "joined to itself left-right and top-bottom"),
@@ -118,7 +107,7 @@ void bind_material(File<CaseTables>& file) {
                "two-dimensional moduli are the same in both"),
            key("static_only", &T::static_only,
                "allow kT < 0 for larger Poisson's ratios: no dynamics with such springs")});
-  file.table("material").keys({weighting_key("as in [springs]")});
+  file.table("material").keys({key_in<CaseTables>("weighting", &Case::weighting, "as in [springs]")});
   file.table("effects", completed, "effects that may be switched off")
       .keys({key_in<CaseTables>("rotation", &Case::rotation, optional, choices({"free", "restrained"}),
                                 "rotation of the discs; left out: free where a tangential spring turns them")});
@@ -204,12 +193,13 @@ void bind_tasks(File<CaseTables>& file) {
            key("bounds", &BoundsOptions::bounds,
                "affine: those that need no solution; all: also by uniform displacements and tractions at the boundary; "
                "auto: all up to 20000 discs")});
-  file.table("ensemble", &CaseTables::ensemble, "many random samples (kind = delaunay): mean, scatter, the size needed")
+  file.table("ensemble", &CaseTables::ensemble,
+             "many random samples (kind = delaunay or packing): mean, scatter, the size needed")
       .keys(
           {key("discs", &EnsembleCase::plan, &EnsemblePlan::discs, from(3, 1e9),
-               "sizes of the samples, ascending; in place of assembly.discs"),
+               "sizes of the samples, ascending; in place of assembly.discs or packing.grains; a box keeps its shape"),
            key("samples", &EnsembleCase::plan, &EnsemblePlan::samples, from(2, 1e6),
-               "samples of each size, made from assembly.seed, seed + 1, ..."),
+               "samples of each size, made from the seed of the assembly, seed + 1, ..."),
            key("accuracy", &EnsembleCase::accuracy, between(0, 1),
                "wanted of the moduli, relative, such as 0.01: the report says which size reaches it"),
            key("confidence", &EnsembleCase::confidence, between(0.5, 1), "level of the intervals that are reported")});
@@ -240,23 +230,13 @@ std::vector<Key<OutputCase>> output_keys() {
 const File<CaseTables>& case_file() {
   static const File<CaseTables> file = [] {
     File<CaseTables> made(case_schema, "case file");
-    made.table("").keys(
-        {unbound_key<CaseTables>("springs", KeyType::path, "a springs file, instead of [springs] or [material]")});
+    bind_springs_file(made);
     bind_assembly(made);
-    bind_springs(made);
+    made.table("springs", &CaseTables::springs_table, "the two springs of a contact").keys(springs_keys());
     bind_material(made);
     bind_supports_and_loads(made);
     bind_run(made);
     bind_tasks(made);
-    return made;
-  }();
-  return file;
-}
-
-const File<CaseTables>& springs_file_format() {
-  static const File<CaseTables> file = [] {
-    File<CaseTables> made("equidem-springs/1", "springs file");
-    bind_springs(made, required);
     return made;
   }();
   return file;

@@ -10,6 +10,7 @@
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/motion_case.hpp"
 #include "equidem/casefile/packing/packing_tables.hpp"
+#include "equidem/casefile/springs_table.hpp"
 
 namespace equidem::casefile {
 
@@ -23,13 +24,11 @@ struct LoadTable {
 struct CaseTables : Case, MotionTables {
   std::vector<LoadTable> load_tables;
   PackingTables packing_tables;
-  std::optional<double> springs_density;  ///< kg/m³, of the discs that [springs] are for
+  std::optional<SpringsTable> springs_table;
 };
 
 /// The case file, schema "equidem/1".
 const File<CaseTables>& case_file();
-/// The springs file, schema "equidem-springs/1".
-const File<CaseTables>& springs_file_format();
 
 /// [output] of all case files.
 std::vector<Key<OutputCase>> output_keys();

@@ -37,15 +37,18 @@ auto with_key(const TomlValue& table, const std::string& path, const char* key, 
 
 /// The result of a step of the library: its Error, whose place may be the name of an option, gets the line of that key
 /// of the table, or of the table.
+/// \param usual the key of an Error without a place; empty: that of the table
 template <class Step>
-auto at_key(const TomlValue& table, const std::string& path, const Step& step) {
+auto at_key(const TomlValue& table, const std::string& path, const Step& step, const std::string& usual = {}) {
   try {
     return step();
   } catch (const Error& error) {
-    const TomlValue* key = error.where().empty() ? nullptr : table.find(error.where());
+    if (error.kind() == ErrorKind::interrupted) throw;
+    const std::string& option = error.where().empty() ? usual : error.where();
+    const TomlValue* key = option.empty() ? nullptr : table.find(option);
     throw Error(error.kind(), error.problem(), error.why(), error.remedy(),
                 key == nullptr ? fmt::format("{}: {}", table.where(), path)
-                               : fmt::format("{}: {}.{}", key->where(), path, error.where()));
+                               : fmt::format("{}: {}.{}", key->where(), path, option));
   }
 }
 

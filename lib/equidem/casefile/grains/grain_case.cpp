@@ -92,7 +92,10 @@ std::string GrainCase::where_grain(std::size_t grain) const {
 GrainCase parse_grain_case(std::string_view content, const std::string& name, const fs::path& folder,
                            std::span<const std::string> overrides) {
   TomlValue root = parse_document(content, name, overrides);
+  resolve_springs_file(root, folder);
   GrainTables tables = grain_file().read(root, folder);
+  tables.common.density = one_density(
+      root, {{"grains", tables.common.density}, {"springs", tables.springs ? tables.springs->density : std::nullopt}});
   const std::vector<std::string> groups = complete_bodies(root, tables);
   complete_bonds(root, tables);
   check_names_of_kinds(root, groups);

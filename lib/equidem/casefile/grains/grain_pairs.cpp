@@ -2,6 +2,7 @@
 /// \file
 /// [collisions], [collisions.walls] and [[collisions.pair]].
 #include <algorithm>
+#include <cmath>
 
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
@@ -147,6 +148,10 @@ void bind_collisions(File<GrainTables>& file) {
   file.table("collisions.pair", repeated_table,
              "contacts of two groups, or of a group and a wall, where they differ from that")
       .described(std::move(pair));
+  bind_springs_file(file);
+  file.table("springs", &T::springs,
+             "kN, kT of all contacts, those with walls too, instead of stiffness and tangential_ratio")
+      .keys(springs_keys());
 }
 
 namespace {
@@ -165,6 +170,41 @@ void check_one_density(const TomlValue& table, const GrainTables& tables) {
             fmt::format("the grains have densities from {} to {} kg/m³", least, most),
             "springs of wave speeds belong to one density",
             "Give one density, or stiffness and tangential_ratio for each pair");
+}
+
+/// kN and kT of [springs] as the stiffness and the tangential ratio of bodies and walls.
+void take_springs(const TomlValue& root, const GrainTables& tables, PairOptions& bodies) {
+  const TomlValue &collisions = *root.find("collisions"), &table = *root.find("springs");
+  const auto& [constants, weighting, density] = *tables.springs;
+  for (const char* key : {"stiffness", "dimensionless_stiffness", "contact_duration", "largest_overlap",
+                          "young_modulus", "shear_wave_speed", "tangential_ratio"})
+    if (const TomlValue* given = collisions.find(key))
+      fail_at(*given, fmt::format("collisions.{}", key), fmt::format("[springs] and {} are both given", key),
+              "each says how stiff a contact is", "Remove one of them");
+  if (tables.body == Body::sphere)
+    fail_at(table, "springs", "the grains are spheres", "kN and kT are springs of discs per metre of depth",
+            "Give stiffness in [collisions] instead, or set grains.body = \"disc\"");
+  if (!is_linear(describe(tables.options.law)))
+    fail_at(table, "springs", fmt::format("{} has no linear spring", to_string(tables.options.law)),
+            "kN and kT are linear springs",
+            fmt::format("Set collisions.law to one of {}, or give stiffness there", joined(laws_with(is_linear))));
+  if (weighting != SpringWeighting::uniform)
+    fail_at(*table.find("weighting"), "springs.weighting",
+            fmt::format("the springs differ from contact to contact: weighting = \"{}\"", to_string(weighting)),
+            "contacts of bodies that collide come and go, and all have the same springs",
+            "Calibrate with weighting = \"uniform\"");
+  if (constants.kT < 0)
+    fail_at(*table.find("kT"), "springs.kT", fmt::format("kT = {:.6g} Pa is negative", constants.kT),
+            "no motion of the discs is stable with it", "Give springs with kT of 0 or more");
+  const auto has_it = [&](double given) { return std::abs(given - *density) <= 1e-6 * *density; };
+  if (density && std::ranges::none_of(tables.densities, has_it))
+    fail_at(
+        *table.find("density"), "springs.density",
+        fmt::format("the springs are for discs of {:.9g} kg/m³, and no grain has that density: the first has {:.9g}",
+                    *density, tables.densities.front()),
+        "both are the density of the discs themselves", "Remove one of them");
+  bodies.stiffness = SpringStiffness{constants.kN};
+  if (!is_map(tables.options.law)) bodies.tangential_ratio = constants.ratio();
 }
 
 /// The error of set_kinds with the line and the key of its option: "walls.stiffness", "pairs.2.with".
@@ -209,6 +249,7 @@ void complete_collisions(const TomlValue& root, const std::vector<std::string>& 
     check_one_density(table, tables);
     options.bodies.stiffness = WaveSpeedStiffness{tables.densities.front(), *shear_wave_speed, *poisson_ratio};
   }
+  if (tables.springs) take_springs(root, tables, options.bodies);
   if (const TomlValue* differs = table.find("walls")) options.walls = with(options.bodies, *differs);
   const PairOptions& walls = options.walls ? *options.walls : options.bodies;
   for (const TomlValue& pair : repeated(table, "pair")) {

@@ -11,6 +11,7 @@
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/casefile/motion_case.hpp"
+#include "equidem/casefile/springs_table.hpp"
 
 namespace equidem::casefile {
 
@@ -58,6 +59,7 @@ struct GrainTables : GrainCase, MotionTables {
   CommonBodyTable common;
   std::vector<GrainTable> grain_tables;
   CollisionTable collisions;
+  std::optional<SpringsTable> springs;
   BondsTable bonds;
   std::optional<ShakingTable> shaking_table;
 };
@@ -76,7 +78,8 @@ std::vector<std::string> complete_bodies(const TomlValue& root, GrainTables& tab
 
 /// Set the kinds of grains and walls, and the contact properties of every two kinds.
 /// \param groups of each grain
-/// \throws Error (bad_input) with line and key as set_kinds; also: wave speeds with several densities
+/// \throws Error (bad_input) with line and key as set_kinds; also: wave speeds with several densities,
+///         [springs] beside a stiffness of [collisions], or that no grain has the density of
 void complete_collisions(const TomlValue& root, const std::vector<std::string>& groups, GrainTables& tables);
 
 /// The bonds of the file, then those of the case.

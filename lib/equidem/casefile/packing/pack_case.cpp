@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/packing/pack_case.hpp"
 
+#include "equidem/assembly/delaunay.hpp"
 #include "equidem/casefile/assembly/case.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/packing/packing_tables.hpp"
+#include "equidem/casefile/springs_table.hpp"
+#include "equidem/contact/material_springs.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/material/wave_speed_springs.hpp"
 
@@ -18,6 +22,8 @@ struct SpringsOrSpeeds {
   std::optional<double> kN, kT;            ///< Pa
   std::optional<double> shear_wave_speed;  ///< m/s
   std::optional<double> poisson_ratio;
+  SpringWeighting weighting = SpringWeighting::uniform;
+  std::optional<double> density;  ///< kg/m³
 };
 
 struct PackTables : PackCase {
@@ -36,7 +42,12 @@ void bind_springs_and_output(File<PackTables>& file) {
              key("shear_wave_speed", &S::shear_wave_speed, unit("m/s"), positive,
                  only_with({"poisson_ratio"}, how_stiff), "Vs: kT = pi/4 rho Vs², kN = pi/4 rho Vp²"),
              key("poisson_ratio", &S::poisson_ratio, between(-1, 0.5), only_with({"shear_wave_speed"}, how_stiff),
-                 "plane strain; with shear_wave_speed")});
+                 "plane strain; with shear_wave_speed"),
+             key("weighting", &S::weighting,
+                 "as in [springs] of an assembly; bodies fall on uniform ones, and of others the assembly that is "
+                 "written has none"),
+             key("density", &S::density, unit("kg/m³"), positive, "of the bodies, as packing.density")});
+  bind_springs_file(file);
   file.table("output", completed, "what is written with --out")
       .keys({key_in<PackTables>("csv", &PackCase::csv, "grains.csv, for [grains] path"),
              key_in<PackTables>("picture", &PackCase::picture)});
@@ -57,6 +68,10 @@ SpringConstants springs_of(const SpringsOrSpeeds& given, double density) {
   return springs_of_wave_speeds(density, wave_speeds_from_shear(*given.shear_wave_speed, *given.poisson_ratio));
 }
 
+std::optional<SpringConstants> unweighted(const std::optional<SpringConstants>& springs, SpringWeighting weighting) {
+  return weighting == SpringWeighting::uniform ? springs : std::nullopt;
+}
+
 /// The packing of a case whose [assembly] is one.
 PackCase packing_of(Case whole) {
   if (!whole.assembly.packing)
@@ -65,14 +80,26 @@ PackCase packing_of(Case whole) {
   PackCase result;
   static_cast<CaseDocument&>(result) = whole;
   result.packing = *whole.assembly.packing;
-  result.network = {.springs = whole.springs, .gap_tolerance = whole.assembly.gap_tolerance};
+  result.network = {.springs = unweighted(whole.springs, whole.weighting),
+                    .gap_tolerance = whole.assembly.gap_tolerance};
   result.region = whole.assembly.region;
+  result.density = whole.assembly.density;
+  if (whole.material) result.of_continuum = whole.material->given.density;
+  result.body = whole.assembly.body;
   result.csv = whole.output.csv;
   result.picture = whole.output.picture;
   return result;
 }
 
 }  // namespace
+
+double body_density(const PackCase& resolved, Assembly network) {
+  if (resolved.of_continuum && !network.periodic()) measure_cells(network);
+  return with_place(resolved.where("material.density"), [&] {
+    return disc_density(resolved.density, resolved.of_continuum, resolved.body, network)
+        .value_or(resolved.packing.settling.density);
+  });
+}
 
 const casefile::FileSpec& pack_file_spec() {
   return pack_file().spec();
@@ -82,12 +109,16 @@ PackCase parse_pack_case(std::string_view content, const std::string& name, cons
                          std::span<const std::string> overrides) {
   TomlValue root = parse_document(content, name, overrides);
   if (root.find("assembly") != nullptr) return packing_of(parse_case(content, name, folder, overrides));
+  resolve_springs_file(root, folder);
   PackTables tables = pack_file().read(root, folder);
   tables.packing = packing_options(root, tables.tables);
   tables.region = tables.tables.region;
+  tables.density = one_density(root, {{"springs", tables.springs.density}, {"packing", tables.tables.density}});
   SettlingOptions& settling = tables.packing.settling;
+  settling.density = tables.density.value_or(settling.density);
   settling.springs = springs_of(tables.springs, settling.density);
-  tables.network = {.springs = settling.springs, .gap_tolerance = tables.tables.gap_tolerance};
+  tables.network = {.springs = unweighted(settling.springs, tables.springs.weighting),
+                    .gap_tolerance = tables.tables.gap_tolerance};
   tables.document = std::move(root);
   return tables;
 }

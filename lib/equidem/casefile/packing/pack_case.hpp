@@ -11,6 +11,7 @@
 
 #include "equidem/casefile/engine/keys.hpp"
 #include "equidem/casefile/engine/toml.hpp"
+#include "equidem/material/inertia.hpp"
 #include "equidem/packing/measures.hpp"
 #include "equidem/packing/network.hpp"
 #include "equidem/packing/packing.hpp"
@@ -20,10 +21,18 @@ namespace equidem {
 /// A checked case: complete, in range and without contradiction.
 struct PackCase : CaseDocument {
   PackingOptions packing;
-  NetworkOptions network;        ///< of the assembly that is written
-  std::optional<Region> region;  ///< region of measurement
+  NetworkOptions network;              ///< of the assembly that is written; no springs where the case weights them
+  std::optional<Region> region;        ///< region of measurement
+  std::optional<double> density;       ///< kg/m³, of the bodies; none: see body_density
+  std::optional<double> of_continuum;  ///< kg/m³, of bodies and voids together
+  Body body = Body::disc;
   bool csv = true, picture = true;
 };
+
+/// The density of the bodies, kg/m³, as disc_density says; that of SettlingOptions where the case states none.
+/// \param network of the packing
+/// \throws Error (bad_input), with the line of the case file, as disc_density
+double body_density(const PackCase& resolved, Assembly network);
 
 /// The tables and keys of a case that fills a box.
 const casefile::FileSpec& pack_file_spec();

@@ -27,8 +27,9 @@ std::vector<Key<PackingTables>> packing_keys() {
       key("gap_tolerance", &T::gap_tolerance, from(0, 1),
           "bodies are bonded, in the assembly, where the gap between them is at most this share of the sum of their "
           "radii; 0: where they touch"),
-      key("density", &T::options, &O::settling, &SettlingOptions::density, unit("kg/m³"), positive,
-          "density of the bodies"),
+      key("density", &T::density, unit("kg/m³"), positive,
+          fmt::format("density of the bodies; left out: that of [assembly], [springs] or [material], else {}",
+                      SettlingOptions{}.density)),
       key("region", &T::region, unit("m"),
           "where void ratio and porosity are measured; left out: away from walls and surface")};
 }
@@ -92,15 +93,14 @@ static SizeDistribution sizes_of(const TomlValue& table, const PackingTables& gi
   return sizes;
 }
 
-PackingOptions packing_options(const TomlValue& root, const PackingTables& tables) {
+ScalablePacking packing_options(const TomlValue& root, const PackingTables& tables) {
   const TomlValue& packing = *root.find("packing");
-  PackingOptions options = tables.options;
+  ScalablePacking options{tables.options, tables.amount, sizes_of(*packing.find("radii"), tables)};
   const TomlValue* fraction = packing.find("solid_fraction");
   options.as_dense_as_possible = fraction != nullptr && !fraction->is_number();
   const bool open = tables.sides == PackingBox::Sides::walls && entry_of(options.method).open_top;
   options.box.sides = open ? PackingBox::Sides::open_top : tables.sides;
-  const SizeDistribution sizes = sizes_of(*packing.find("radii"), tables);
-  at_key(packing, "packing", [&] { set_amount(tables.amount, sizes, options); });
+  at_key(packing, "packing", [&] { set_amount(options.amount, options.sizes, options); });
   options.settling.relax_first = tables.start == PackingTables::Start::relax;
   return options;
 }

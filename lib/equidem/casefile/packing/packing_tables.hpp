@@ -17,7 +17,8 @@ namespace equidem::casefile {
 
 /// [packing], [packing.shape], [packing.radii] and [settling].
 struct PackingTables {
-  PackingOptions options;  ///< without radii and box
+  PackingOptions options;         ///< without radii and box
+  std::optional<double> density;  ///< kg/m³, of the bodies
   double gap_tolerance = 0;
   std::optional<Region> region;  ///< region of measurement
   PackingAmount amount;
@@ -63,6 +64,6 @@ void bind_packing(File<F>& file, PackingTables F::*tables, const Condition&... c
 /// The options with radii drawn and box completed.
 /// \param root document of the tables
 /// \throws Error (bad_input), with file, line and key
-PackingOptions packing_options(const TomlValue& root, const PackingTables& tables);
+ScalablePacking packing_options(const TomlValue& root, const PackingTables& tables);
 
 }  // namespace equidem::casefile

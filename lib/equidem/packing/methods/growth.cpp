@@ -102,12 +102,14 @@ double next_fraction(double fraction, double end) {
 }
 
 [[noreturn]] void refuse_jammed(const PackingOptions& options, double fraction, const PushingReport& report) {
-  computation_failed(
+  throw Error(
+      ErrorKind::computation_failed,
       fmt::format("the {}s jam before they reach a solid fraction of {:.4g}: there they overlap by {:.2g} of the mean "
                   "radius and no longer move apart",
                   noun_of(options.shape.kind), fraction, std::max(report.mean_overlap, report.largest_overlap)),
       "discs at random jam at 0.82 to 0.86, those of equal size at what is nearly a lattice",
-      "Ask for a smaller solid fraction, or for the densest one");
+      "Ask for a smaller solid fraction, or give grains and box with solid_fraction = \"auto\" for the densest",
+      "solid_fraction");
 }
 
 /// Radii larger by `spare` are pushed apart to overlaps of less than `spare`, so that the bodies themselves do not
@@ -143,14 +145,17 @@ void grow_to_jamming(const PackingOptions& options, Growth& growth) {
   }
   const PushingOptions exact{.overlap = 0.01 * options.overlap, .unbalanced = 1e-7, .most = 100000};
   double loose = 0;  // the largest fraction seen at which nothing overlaps
+  int loose_in_a_row = 0;
   for (int attempt = 0; attempt < 40; ++attempt) {
     report = growth.grow_to(fraction, exact);
     progress.update(0.99);
     if (report.apart) {
+      // Where bodies found a denser order, small steps would not come back to jamming: from the fifth on they double.
       loose = fraction;
-      fraction *= 1 + 2 * options.overlap;
+      fraction *= 1 + std::ldexp(2 * options.overlap, std::max(loose_in_a_row++ - 3, 0));
       continue;
     }
+    loose_in_a_row = 0;
     const double ratio = report.mean_overlap / options.overlap;
     if (report.balanced && ratio < 1.5 && ratio > 0.5) return;
     // Strain 2 d/D, area twice the strain: fraction falls by about mean overlap/radius.
