@@ -221,6 +221,14 @@ class CommandLine(PackTest):
         equal = ("--set", "packing.radii.smallest=0.01", "--set", "packing.box=none", "--set", "packing.solid_fraction=0.92")
         self.check_error(equidem("pack", JAMMED, *equal), 2, "packing.solid_fraction", "hexagonal lattice, 0.9069")
 
+    def test_a_dry_run_tells_the_time_of_every_method(self):
+        for case, options in ((JAMMED, ()), (SOIL, ("--set", "packing.grains=100")),
+                              (JAMMED, ("--set", "packing.method=rejection", "--set", "packing.solid_fraction=0.4",
+                                        "--set", "packing.box=none"))):
+            with self.subTest(options=options):
+                size = parse_json(self.check_done(equidem("pack", case, *options, "--dry-run", "--json", "-")).stdout)
+                self.assertGreater(size["estimated_seconds"], 0)
+
     def test_a_dry_run_packs_nothing(self):
         done = self.check_done(equidem("pack", SOIL, "--dry-run", "--out", self.folder / "none"))
         self.assertIn("3 000", done.stdout)

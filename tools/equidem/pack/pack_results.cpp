@@ -2,7 +2,11 @@
 #include "pack/pack_results.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
+#include "equidem/core/error.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/packing/network.hpp"
 
@@ -93,9 +97,34 @@ Results pack_case_results(const PackCase& resolved) {
   return out.line("springs").add("", "kN =", springs.kN, "Pa").add("", "kT =", springs.kT, "Pa");
 }
 
+/// s, from a packing of a few of the bodies in a box that is smaller by as much; none where that does not succeed.
+std::optional<double> sampled_seconds(const PackingOptions& options) {
+  constexpr std::size_t few = 500;
+  constexpr double growth_of_time = 1.2;  // power of the number of bodies; measured from 400 to 25,600 that grow
+  PackingOptions sample = options;
+  const std::size_t stride = std::max<std::size_t>(1, options.radii.size() / few);
+  sample.radii.clear();
+  for (std::size_t k = 0; k < options.radii.size(); k += stride) sample.radii.push_back(options.radii[k]);
+  const double share = static_cast<double>(sample.radii.size()) / static_cast<double>(options.radii.size());
+  sample.box.size = std::sqrt(share) * options.box.size;
+  try {
+    const Stopwatch watch;
+    static_cast<void>(pack(sample));
+    return watch.seconds() * std::pow(1 / share, growth_of_time);
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    return std::nullopt;
+  }
+}
+
 Results pack_estimate_results(const PackCase& resolved) {
   Results out;
-  if (resolved.packing.method != PackingMethod::falling) return out;
+  if (resolved.packing.method != PackingMethod::falling) {
+    const std::optional<double> seconds = sampled_seconds(resolved.packing);
+    if (!seconds) return out.line("time", "not known: a packing of some of these bodies did not succeed");
+    return out.line("time").add("estimated_seconds", "about", *seconds, "s, from a packing of some of these bodies",
+                                {.digits = 2});
+  }
   const SettlingEstimate estimate = estimate_falling(resolved.packing);
   return out.line("steps")
       .add("estimated_steps", "about", estimate.steps, "", {Shown::count})
