@@ -180,6 +180,7 @@ class Sweep(ProgramTest):
         self.check_error(equidem(*sweep, "--list", "--key", "ratio", "--values", "0,1", "--key", "assembly.rows", "--values",
                                  "9"), 2, "ratio takes 2 values and assembly.rows takes 1", "--list")
         self.check_error(equidem(*sweep, "--seeds", "1-3"), 2, "seed", "does not apply")
+        self.check_error(equidem(*sweep, "--key", "seed", "--values", "a"), 2, "'seed'", "--seeds")
         self.check_error(equidem(*sweep, "--seeds", "3-1"), 2, "--seeds", "3-1")
         self.check_error(equidem(*sweep, "--seeds", "1", "--seed", "1"), 2, "--seed and --seeds")
         self.check_error(equidem("sweep", CASES / "grains_cradle.toml", "--verb", "run", "--seeds", "1-3"), 2, "--seeds",
