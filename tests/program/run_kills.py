@@ -107,6 +107,8 @@ class Killing:
         are searched once more where a run goes on); of a study, whose tables hold measured times, the errors."""
         files = {}
         for path in sorted(out.iterdir()):
+            if path.is_dir() and path.name.startswith(".equidem."):  # the empty folder by which a killed program tried the place
+                continue
             files[path.name] = path.read_bytes()
             if path.name == "result.json":
                 files[path.name] = lasting(json.loads(files[path.name]))

@@ -141,7 +141,7 @@ class Sweep(ProgramTest):
 
     def test_resumed_after_a_kill_the_table_has_the_same_bytes(self):
         command = ["sweep", CASES / "packed_rock.toml", "--verb", "homogenize", *sets("packing.grains=300"), "--key",
-                   "packing.solid_fraction", "--values", "0.8,0.81", "--seeds", "1-12", "--quiet"]
+                   "packing.solid_fraction", "--values", "0.8,0.81", "--seeds", "1-25", "--quiet"]
         whole, out = self.folder / "whole", self.folder / "out"
         self.check_done(equidem(*command, "--out", whole))
         wanted = (whole / "sweep.csv").read_bytes()
@@ -150,9 +150,8 @@ class Sweep(ProgramTest):
                 time.sleep(0.01)
             running.send_signal(signal.SIGKILL)
         table = out / "sweep.csv"
-        if table.exists():
-            self.assertLessEqual(len(table.read_bytes()), len(wanted))
-        self.check_done(equidem(*command, "--out", out, "--resume" if table.exists() else "--overwrite"))
+        self.assertLess(len(rows(out)), 50)
+        self.check_done(equidem(*command, "--out", out, "--resume"))
         self.assertEqual(table.read_bytes(), wanted)
 
     def test_a_dry_run_tells_the_number_of_points_and_the_size_of_one(self):
