@@ -141,7 +141,7 @@ class Sweep(ProgramTest):
 
     def test_resumed_after_a_kill_the_table_has_the_same_bytes(self):
         command = ["sweep", CASES / "packed_rock.toml", "--verb", "homogenize", *sets("packing.grains=300"), "--key",
-                   "packing.solid_fraction", "--values", "0.8,0.81", "--seeds", "1-12", "--quiet"]
+                   "packing.solid_fraction", "--values", "0.8,0.81", "--seeds", "1-25", "--quiet"]
         whole, out = self.folder / "whole", self.folder / "out"
         self.check_done(equidem(*command, "--out", whole))
         wanted = (whole / "sweep.csv").read_bytes()
@@ -150,9 +150,8 @@ class Sweep(ProgramTest):
                 time.sleep(0.01)
             running.send_signal(signal.SIGKILL)
         table = out / "sweep.csv"
-        if table.exists():
-            self.assertLessEqual(len(table.read_bytes()), len(wanted))
-        self.check_done(equidem(*command, "--out", out, "--resume" if table.exists() else "--overwrite"))
+        self.assertLess(len(rows(out)), 50)
+        self.check_done(equidem(*command, "--out", out, "--resume"))
         self.assertEqual(table.read_bytes(), wanted)
 
     def test_a_dry_run_tells_the_number_of_points_and_the_size_of_one(self):
@@ -180,6 +179,7 @@ class Sweep(ProgramTest):
         self.check_error(equidem(*sweep, "--list", "--key", "ratio", "--values", "0,1", "--key", "assembly.rows", "--values",
                                  "9"), 2, "ratio takes 2 values and assembly.rows takes 1", "--list")
         self.check_error(equidem(*sweep, "--seeds", "1-3"), 2, "seed", "does not apply")
+        self.check_error(equidem(*sweep, "--key", "seed", "--values", "a"), 2, "'seed'", "--seeds")
         self.check_error(equidem(*sweep, "--seeds", "3-1"), 2, "--seeds", "3-1")
         self.check_error(equidem(*sweep, "--seeds", "1", "--seed", "1"), 2, "--seed and --seeds")
         self.check_error(equidem("sweep", CASES / "grains_cradle.toml", "--verb", "run", "--seeds", "1-3"), 2, "--seeds",

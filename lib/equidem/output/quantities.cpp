@@ -193,7 +193,7 @@ std::string describe_result() {
       "version    of the program\n\n"
       "Names of numbers, which may stand below those of other objects, units and meanings:\n\n";
   for (const Quantity& quantity : quantities)
-    text += fmt::format("  {:<34} {:<8} {}\n", with_points(quantity.path), quantity.unit, quantity.label);
+    text += fmt::format("  {:<36} {:<6} {}\n", with_points(quantity.path), quantity.unit, quantity.label);
   return text;
 }
 

@@ -266,7 +266,7 @@ Run declare_sweep(CLI::App& command) {
   command.add_flag("--list", options->side_by_side, "keys take their values side by side, not in all combinations");
   command.add_option("--seeds", options->seeds, "each point with each of these seeds: 1,2,3 or 1-5")
       ->allow_extra_args(false)
-      ->type_name("S,T,...");
+      ->type_name("S,T");
   command.add_option("--title", options->title, "title of the curves; left out: that of the case")->type_name("TEXT");
   command.add_flag("--resume", options->resume, "keep the points that lie in --out, compute the others");
   command.footer(

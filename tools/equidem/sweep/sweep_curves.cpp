@@ -28,8 +28,7 @@ std::string axis_label(const SweptKey& key) {
 
 /// Values of one quantity by the first key, of one value of the second.
 struct Curve {
-  std::map<double, double> theory;
-  std::map<double, std::vector<double>> stable, unstable;
+  std::map<double, std::vector<double>> theory, stable, unstable;
 };
 
 /// Curves by the value of the second key, in the order of its values; "" where there is none.
@@ -44,7 +43,7 @@ std::vector<std::pair<std::string, Curve>> curves_of(const SweepPlan& plan, std:
     const auto own = std::ranges::find(curves, several ? point.values[1] : "", &std::pair<std::string, Curve>::first);
     const auto x = number_from<double>(point.values[0]);
     if (own == curves.end() || !x) continue;
-    if (const double theory = point.at(quantity.theory); !std::isnan(theory)) own->second.theory[*x] = theory;
+    if (const double theory = point.at(quantity.theory); !std::isnan(theory)) own->second.theory[*x] = {theory};
     const double y = point.at(quantity.path);
     const bool stable = point.status != "unstable" && point.status != "unjudged" && point.status != "mechanism";
     if (!std::isnan(y)) (stable ? own->second.stable : own->second.unstable)[*x].push_back(y);
@@ -63,8 +62,17 @@ Series series_at(const std::map<double, std::vector<double>>& values, Series ser
   return series;
 }
 
-/// The series of one curve. \param which "springs.kT = 0", empty for the only one
-void add_series(Plot& plot, const Curve& curve, const std::string& which, const std::string& value, std::size_t number,
+/// The line of theory; without label and column of its own where there is one for all curves.
+void add_theory(Plot& plot, const Curve& curve, const std::string& which, const std::string& value, PlotColour colour) {
+  if (curve.theory.empty()) return;
+  plot.series.push_back(series_at(
+      curve.theory, {.label = which.empty() ? "theory of the lattice" : fmt::format("{}, theory of the lattice", which),
+                     .colour = colour,
+                     .column = value.empty() ? "theory" : fmt::format("theory_{}", value)}));
+}
+
+/// The computed points of one curve. \param which "springs.kT = 0", empty for the only one
+void add_points(Plot& plot, const Curve& curve, const std::string& which, const std::string& value, std::size_t number,
                 bool seeds) {
   const auto label = [&](const std::string& what) { return which.empty() ? what : fmt::format("{}, {}", which, what); };
   const auto column = [&](const char* name) { return value.empty() ? name : fmt::format("{}_{}", name, value); };
@@ -73,14 +81,6 @@ void add_series(Plot& plot, const Curve& curve, const std::string& which, const 
   };
   const PlotColour colour = curve_colours[number % curve_colours.size()];
   const Marker marker = curve_markers[number % curve_markers.size()];
-  Series theory{.label = label("theory of the lattice"),
-                .colour = which.empty() ? PlotColour::black : colour,
-                .column = column("theory")};
-  for (const auto& [x, y] : curve.theory) {
-    theory.x.push_back(x);
-    theory.y.push_back(y);
-  }
-  add(theory);
   const SeriesStyle alone = curve.theory.empty() ? SeriesStyle::line_with_points : SeriesStyle::points;
   if (seeds) {
     add(series_at(curve.stable, {.label = label("each seed"),
@@ -99,12 +99,13 @@ void add_series(Plot& plot, const Curve& curve, const std::string& which, const 
                                  .marker = marker,
                                  .column = column("computed")}));
   }
-  add(series_at(curve.unstable, {.label = label("computed, unstable or not judged"),
-                                 .style = SeriesStyle::points,
-                                 .colour = which.empty() ? PlotColour::vermilion : colour,
-                                 .marker = marker,
-                                 .filled = false,
-                                 .column = column("unstable")}));
+  add(series_at(curve.unstable,
+                {.label = label(which.empty() ? "computed, unstable or not judged" : "unstable or not judged"),
+                 .style = SeriesStyle::points,
+                 .colour = which.empty() ? PlotColour::vermilion : colour,
+                 .marker = marker,
+                 .filled = false,
+                 .column = column("unstable")}));
 }
 
 std::string plot_name_of(const MainQuantity& quantity) {
@@ -139,10 +140,14 @@ std::string write_curves(const std::filesystem::path& folder, const SweepPlan& p
               .y = {.label = quantity.axis},
               .enhanced = true};
     const auto curves = curves_of(plan, points, quantity);
+    const bool one_theory = std::ranges::all_of(
+        curves, [&](const auto& curve) { return curve.second.theory == curves.front().second.theory; });
+    if (one_theory) add_theory(plot, curves.front().second, "", "", PlotColour::black);
     for (std::size_t k = 0; k < curves.size(); ++k) {
       const auto& [value, curve] = curves[k];
       const std::string which = value.empty() ? "" : literal(fmt::format("{} = {}", plan.keys[1].name, value));
-      add_series(plot, curve, which, value, k, seeds);
+      if (!one_theory) add_theory(plot, curve, which, value, curve_colours[k % curve_colours.size()]);
+      add_points(plot, curve, which, value, k, seeds);
     }
     const bool any = std::ranges::any_of(points, [&](const SweepPoint& point) { return point.find(quantity.path); });
     if (any) written += write_plot(folder, plot_name_of(quantity), plot, true).message + "\n";

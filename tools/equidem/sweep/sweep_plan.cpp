@@ -61,6 +61,8 @@ std::vector<std::string> values_of_range(double from, double to, int steps) {
 
 SweptKey swept_key(const KeyOptions& given) {
   if (given.name.empty()) bad_input("values are given without a key", "they would vary nothing", "Add --key KEY");
+  if (given.name == SweepPlan::seed)
+    bad_input("'seed' is not a key of a case", "assemblies and packings have seeds of their own", "Use --seeds");
   const bool range = given.from && given.to;
   if (range == !given.values.empty() || given.from.has_value() != given.to.has_value()) {
     bad_input(given.values.empty() ? fmt::format("the key {} is given no values", given.name)

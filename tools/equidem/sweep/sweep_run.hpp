@@ -52,7 +52,7 @@ class SweepRun {
   SweepRun(const Sweep& sweep, std::vector<SweepPoint> kept);
 
   /// Computes what is missing: the first point on all threads, the others on one each, as many at a time as there are
-  /// threads and as fit into memory. Saves the table about every second.
+  /// threads and as fit into memory. Saves the table after the first one and then about every second.
   /// \throws Error as the writing of the table; those of points become part of them
   void operator()();
 
@@ -77,7 +77,7 @@ class SweepRun {
   std::mutex mutex_;                          ///< of what follows, and of points_
   Progress progress_;
   Stopwatch watch_, since_saved_;
-  double save_after_ = 1;  ///< s
+  double save_after_ = 0;  ///< s
   std::size_t computed_ = 0;
   bool stopped_ = false;
 };
