@@ -253,6 +253,9 @@ TEST_CASE("wrong_entries_are_named") {
        "a.json: contact 0, of discs 0 and 1, has kN = 0 Pa (a normal spring must be positive and finite). "
        "Correct it "
        "or remove the contact."},
+      {"springs", "[[1, 0], [1, 0]]",
+       "a.json: springs: 2 entries for 1 contact (there must be one for each). Take the springs of this assembly, or "
+       "remove them and give kN and kT in the case."},
       {"springs", "[[1, null]]", "a.json: springs[0]: null stands where a number is expected. Correct the entry."},
       {"cell", "[1]", "a.json: cell: 1 number stands where 2 are expected (an entry is [Lx, Ly]). Correct the entry."},
       {"cell", "[1, -1]",

@@ -192,12 +192,12 @@ TEST_CASE("an_assembly_that_is_a_packing_is_the_one_that_pack_writes") {
 TEST_CASE("a_gap_tolerance_that_bonds_nothing_or_too_much_is_refused_with_one_that_serves") {
   const std::string nothing = refusal({"packing.gap_tolerance=0", "packing.solid_fraction=0.4"});
   CAPTURE(nothing);
-  CHECK(nothing.find("gap_tolerance: no two of the 80 bodies are within a gap of 0") != std::string::npos);
+  CHECK(nothing.find("gap_tolerance = 0 joins none of the 80 bodies") != std::string::npos);
   CHECK(nothing.find("would find") != std::string::npos);
   const std::string too_much = refusal({"packing.gap_tolerance=0.9"});
   CAPTURE(too_much);
   CHECK(too_much.find("contacts cross") != std::string::npos);
-  CHECK(too_much.find("Smaller: gap_tolerance = ") != std::string::npos);
+  CHECK(too_much.find("Take a smaller one: gap_tolerance = ") != std::string::npos);
 }
 
 TEST_CASE("the_bodies_of_a_packing_have_one_density") {

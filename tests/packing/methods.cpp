@@ -3,6 +3,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/threads.hpp"
+#include "equidem/packing/amount.hpp"
 #include "equidem/packing/measures.hpp"
 
 #include "packing/packings.hpp"
@@ -109,6 +110,21 @@ TEST_CASE("discs_that_grow_without_end_jam_where_every_disc_held_has_the_contact
   CHECK(measures.coordination_without_rattlers < 4 + 8 * std::sqrt(options.overlap));
   // Radii keep their ratios.
   CHECK(packing.radii[7] / packing.radii[3] == Approx(options.radii[7] / options.radii[3]).epsilon(1e-13));
+}
+
+TEST_CASE("discs_that_rearrange_while_they_jam_are_jammed_at_any_overlap_asked_for") {
+  // After these rearranged, steps of twice the overlap would not come back to jamming in 40 attempts.
+  const std::uint64_t seed = GENERATE(47, 308, 312, 401, 425);
+  PackingOptions jammed;
+  jammed.box.sides = PackingBox::Sides::periodic;
+  jammed.as_dense_as_possible = true;
+  jammed.overlap = 1e-7;
+  const ScalablePacking packing{jammed, {.grains = 60, .box = Vec2{0.5, 0.5}}, {.smallest = 0.005, .largest = 0.01}};
+  const PackingMeasures measures = measure(pack(resized(packing, 60, seed)));
+  CAPTURE(seed, measures.solid_fraction, measures.largest_overlap);
+  CHECK(measures.solid_fraction > 0.8);
+  CHECK(measures.largest_overlap > 1e-7);
+  CHECK(measures.largest_overlap < 1e-5);
 }
 
 TEST_CASE("local_moves_from_a_grid_shake_discs_that_lie_free_there_and_part_those_that_overlap") {

@@ -80,7 +80,7 @@ class Calibrate(program.ProgramTest):
         step = done("run", case("moving", assembly + "[run]\nduration = 1e-6\ngravity = [0.0, -9.81]\n"))["time_step"]
         self.assertLess(step, judged["critical_time_step"])
 
-        box = ('[packing]\ngrains = 120\nsolid_fraction = 0.82\ngap_tolerance = 0.05\nsides = "walls"\n'
+        box = ('[packing]\ngrains = 120\nsolid_fraction = 0.75\ngap_tolerance = 0.2\nsides = "walls"\n'
                '[packing.radii]\nsmallest = 0.5e-3\nlargest = 1e-3\n')
         packed = self.folder / "packed"
         self.assertEqual(done("pack", case("box", box), "--out", packed)["density"], {"discs": density})

@@ -90,6 +90,11 @@ class Lattices(StabilityTest):
         self.check_relative(assumed["critical_time_step"] * math.sqrt(DENSITY), given["critical_time_step"], 1e-12)
         self.assertIn("DENSITY ASSUMED", assumed["report"])
 
+    def test_the_density_of_a_continuum_gives_that_of_the_discs(self):
+        rock = self.stability(CASES / "packed_rock.toml", "--set", "packing.grains=100")
+        self.assertIs(rock["density_assumed"], False)
+        self.check_relative(rock["density"], 2300 / 0.82, 1e-12)
+
 
 class OtherCases(StabilityTest):
     def test_free_edges_are_lost_before_the_lattice(self):

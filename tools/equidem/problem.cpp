@@ -85,10 +85,15 @@ void add_gaps(Results& results, const Assembly& assembly) {
   results.set("largest_overlap", std::max(-gaps.smallest, 0.0)).set("largest_gap", std::max(gaps.largest, 0.0));
   if (assembly.gap_tolerance || (gaps.smallest > -noticeable && gaps.largest < noticeable)) return;
   results.line("");
+  if (gaps.smallest > -noticeable) {
+    results.note(fmt::format("contacts are bonds: their discs are up to {} of the sum of the radii apart",
+                             percent(gaps.largest)));
+    return;
+  }
   results.note(
       fmt::format("contacts are bonds: their discs overlap by up to {} and are up to {} apart, of the sum of "
                   "their radii. For bodies that collide take an assembly of kind = \"packing\".",
-                  percent(std::max(-gaps.smallest, 0.0)), percent(std::max(gaps.largest, 0.0))));
+                  percent(-gaps.smallest), percent(std::max(gaps.largest, 0.0))));
 }
 
 /// The tables that decide the assembly, as text: all but those that surely do not. Springs move bodies that fall.

@@ -23,6 +23,11 @@ double aspect_of(const DelaunayOptions& options) {
   return options.box ? options.box->x / options.box->y : options.aspect;
 }
 
+void check_box(Vec2 box) {
+  if (!measurable(box.x) || !measurable(box.y))
+    bad_input(fmt::format("the box is {} m wide and {} m high", box.x, box.y), length_limits(), "Correct it");
+}
+
 void check(const DelaunayOptions& options) {
   const std::int64_t least = options.periodic ? 1 : 3;
   constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max() / 2;
@@ -50,9 +55,7 @@ void check(const DelaunayOptions& options) {
     if (!measurable(radius))
       bad_input(fmt::format("the radius of a disc is {} m", radius), length_limits(), "Choose other units");
   }
-  const Vec2 box = options.box.value_or(Vec2{1, 1});
-  if (!measurable(box.x) || !measurable(box.y))
-    bad_input(fmt::format("the box is {} m wide and {} m high", box.x, box.y), length_limits(), "Correct it");
+  if (options.box) check_box(*options.box);
   if (const double aspect = aspect_of(options); !(aspect >= 1e-3 && aspect <= 1e3))
     bad_input(fmt::format("aspect = {}", aspect), "width over height must lie in [0.001, 1000]", "Correct it");
 }
@@ -146,6 +149,7 @@ std::size_t drop_loose_discs(Assembly& assembly, const PowerCells& cells) {
 }  // namespace
 
 std::int64_t discs_that_fill(Vec2 box, const RadiusDistribution& radii) {
+  check_box(box);
   const double a = (radii.smallest + radii.largest) / 2;
   const double discs = std::round(box.x * box.y / (2 * std::numbers::sqrt3 * a * a));
   if (!(discs >= 1 && discs <= 1e9))

@@ -99,7 +99,9 @@ void check_list_per(const char* what, const Json& value, std::size_t count, cons
   check_list(value, entry);
   if (value.size() == count) return;
   bad_input_at(entry, fmt::format("{} for {}", counted(value.size(), "entry", "entries"), counted(count, what)),
-               "there must be one for each", "Correct the list or remove it");
+               "there must be one for each",
+               entry == "springs" ? "Take the springs of this assembly, or remove them and give kN and kT in the case"
+                                  : "Correct the list or remove it");
 }
 
 /// "key": one pair of numbers for each of `count`; take(k, first, second). Nothing where the file has no such key.

@@ -208,18 +208,19 @@ void check_found_contacts(const Assembly& assembly) {
   const double tolerance = *assembly.gap_tolerance, coordination = assembly.coordination_number();
   if (assembly.contacts.empty()) {
     const std::string larger = suggested_tolerance(bond_counts(assembly), tolerance);
-    bad_input(fmt::format("no two of the {} are within a gap of {} of the sum of their radii",
-                          counted(std::ssize(assembly.centres), "body", "bodies"), tolerance),
+    bad_input(fmt::format("gap_tolerance = {} joins none of the {}", tolerance,
+                          counted(std::ssize(assembly.centres), "body", "bodies")),
               "without contacts nothing resists a deformation",
-              larger.empty() ? "Pack them denser, or correct the radii" : "Larger: " + larger);
+              larger.empty() ? "Pack them denser, or correct the radii" : "Take a larger one: " + larger);
   }
   if (tolerance == 0 || coordination <= most) return;
   std::string smaller = "Take a smaller one";
   for (const BondCount& count : bond_counts(assembly))
     if (count.coordination <= most && count.gap_tolerance < tolerance)
-      smaller = fmt::format("Smaller: gap_tolerance = {} finds {} (z = {:.3g})", count.gap_tolerance,
+      smaller = fmt::format("Take a smaller one: gap_tolerance = {} finds {} (z = {:.3g})", count.gap_tolerance,
                             counted(count.contacts, "contact"), count.coordination);
-  bad_input(fmt::format("a gap tolerance of {} joins each body to {:.3g} others", tolerance, coordination),
+  bad_input(fmt::format("gap_tolerance = {} finds {}, {:.3g} of each body", tolerance,
+                        counted(std::ssize(assembly.contacts), "contact"), coordination),
             "above six contacts cross: they join bodies with others between them", smaller);
 }
 

@@ -41,13 +41,15 @@ void check(const PackingOptions& options) {
   }
   const double width = 2 * shape.reach * largest, least = box.periodic() ? 2 * width : width;
   if (least > (falls ? box.size.x : std::min(box.size.x, box.size.y))) {
-    bad_input_at("box",
-                 fmt::format("the largest {} is {:.4g} m wide, the box {:.4g} m by {:.4g} m", noun, width, box.size.x,
-                             box.size.y),
-                 box.periodic() ? "a period holds two of them side by side, so that none meets two images of another"
-                                : "it does not fit in",
-                 fmt::format("Make {} {:.3g} m or more, or take smaller bodies", falls ? "the width" : "both sides",
-                             1.01 * least));
+    bad_input_at(
+        "box",
+        fmt::format("the largest {} is {:.4g} m wide, the box {:.4g} m by {:.4g} m", noun, width, box.size.x,
+                    box.size.y),
+        box.periodic() ? "a period holds two of them side by side, so that none meets two images of another"
+                       : "it does not fit in",
+        fmt::format("Give {} {:.3g} m or more (a box that follows from the number of bodies: by more of them), or take "
+                    "smaller bodies",
+                    falls ? "the width" : "both sides", 1.01 * least));
   }
   const double share = area_of(options.shape, options.radii) / box.area();
   if (!falls && !options.as_dense_as_possible && share >= 1) {

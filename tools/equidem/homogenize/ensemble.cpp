@@ -42,6 +42,18 @@ Assembly build_cell(Case resolved, std::int64_t discs, std::uint64_t seed) {
   return build_assembly(resolved);
 }
 
+/// The first cell that can be packed.
+Assembly first_cell(const Case& resolved, std::int64_t discs, std::uint64_t seed) {
+  constexpr std::uint64_t most = 8;
+  for (std::uint64_t tried = 1;; ++tried) {
+    try {
+      return build_cell(resolved, discs, seed + tried - 1);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::computation_failed || tried == most) throw;
+    }
+  }
+}
+
 /// The case but for sizes and samples, of which more may be asked later.
 std::string continued_part(CommonOptions options, const std::filesystem::path& folder) {
   options.set.emplace_back("ensemble={discs = [3], samples = 2}");
@@ -85,7 +97,7 @@ std::string describe_plan(const EnsemblePlan& plan, double confidence) {
 }
 
 int dry_run(const CommonOptions& options, const Case& resolved, const EnsemblePlan& plan, Results results) {
-  const BuiltSprings springs = build_springs(resolved, build_cell(resolved, plan.discs.front(), plan.first_seed));
+  const BuiltSprings springs = build_springs(resolved, first_cell(resolved, plan.discs.front(), plan.first_seed));
   const int unknowns_per_disc = derive_effects(springs.springs, resolved.rotation).unknowns_per_disc();
   std::vector<std::int64_t> unknowns;
   for (const std::int64_t discs : plan.discs) {
@@ -117,7 +129,8 @@ void check_ensemble_outputs(const CommonOptions& options) {
 }
 
 Results cell_results(const Case& resolved, std::int64_t discs, std::uint64_t seed, const std::string& plan) {
-  const Assembly first = build_cell(resolved, discs, seed);
+  const std::string boundary = to_string(options_of(resolved).boundary);
+  const Assembly first = first_cell(resolved, discs, seed);
   const BuiltSprings springs = build_springs(resolved, first);
   Results results;
   if (!resolved.title.empty()) results.block(resolved.title + "\n\n");
@@ -125,8 +138,7 @@ Results cell_results(const Case& resolved, std::int64_t discs, std::uint64_t see
   const AssemblyCase& assembly = resolved.assembly;
   const std::string made = assembly.packing ? fmt::format("method = \"{}\"", to_string(assembly.packing->method))
                                             : fmt::format("points = \"{}\"", to_string(assembly.delaunay.points));
-  results.line("cells",
-               fmt::format("{}, {}, boundary = \"{}\"", first.kind, made, to_string(options_of(resolved).boundary)));
+  results.line("cells", fmt::format("{}, {}, boundary = \"{}\"", first.kind, made, boundary));
   results.line("springs", springs.report + (resolved.material ? " (of the first cell)" : ""));
   add_effects(results, derive_effects(springs.springs, resolved.rotation));
   return results;

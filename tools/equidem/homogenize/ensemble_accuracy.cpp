@@ -16,6 +16,9 @@
 namespace equidem {
 namespace {
 
+/// Fewer bodies jam earlier, so that many of their cells could not be packed.
+constexpr std::int64_t smallest_packing = 128;
+
 AccuracySetting setting_of(const EnsembleSetting& setting) {
   return {{"ensemble.discs", static_cast<double>(setting.discs)},
           {"ensemble.samples", static_cast<double>(setting.samples)}};
@@ -68,9 +71,10 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
   }
   check_ensemble_outputs(options);
   const auto lock = lock_out(options);
-  const EnsembleAccuracy wanted{.accuracy = accuracy,
-                                .confidence = resolved.ensemble.value_or(EnsembleCase{}).confidence,
-                                .first_seed = resolved.assembly.seed()};
+  EnsembleAccuracy wanted{.accuracy = accuracy,
+                          .confidence = resolved.ensemble.value_or(EnsembleCase{}).confidence,
+                          .first_seed = resolved.assembly.seed()};
+  if (resolved.assembly.packing) wanted.smallest = smallest_packing;
   Results results = cell_results(resolved, wanted.smallest, wanted.first_seed);
   const auto& folder = options.out;
   const auto save = [&](const std::vector<EnsembleSample>& done) {

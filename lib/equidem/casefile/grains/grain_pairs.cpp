@@ -175,7 +175,9 @@ void check_one_density(const TomlValue& table, const GrainTables& tables) {
 /// kN and kT of [springs] as the stiffness and the tangential ratio of bodies and walls.
 void take_springs(const TomlValue& root, const GrainTables& tables, PairOptions& bodies) {
   const TomlValue &collisions = *root.find("collisions"), &table = *root.find("springs");
-  const auto& [constants, weighting, density] = *tables.springs;
+  const SpringConstants& constants = tables.springs->constants;
+  const SpringWeighting weighting = tables.springs->weighting;
+  const std::optional<double> density = tables.springs->density;
   for (const char* key : {"stiffness", "dimensionless_stiffness", "contact_duration", "largest_overlap",
                           "young_modulus", "shear_wave_speed", "tangential_ratio"})
     if (const TomlValue* given = collisions.find(key))

@@ -107,7 +107,8 @@ double next_fraction(double fraction, double end) {
       fmt::format("the {}s jam before they reach a solid fraction of {:.4g}: there they overlap by {:.2g} of the mean "
                   "radius and no longer move apart",
                   noun_of(options.shape.kind), fraction, std::max(report.mean_overlap, report.largest_overlap)),
-      "discs at random jam at 0.82 to 0.86, those of equal size at what is nearly a lattice",
+      "discs at random jam at 0.82 to 0.86, few of them or between near walls at less, those of equal size at what is "
+      "nearly a lattice",
       "Ask for a smaller solid fraction, or give grains and box with solid_fraction = \"auto\" for the densest",
       "solid_fraction");
 }
