@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <sstream>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
@@ -109,16 +110,72 @@ TEST_CASE("logarithmic_axes_are_drawn") {
   CHECK(result.drawn);
 }
 
-TEST_CASE("data_of_a_plot_has_named_columns") {
-  Plot plot{.x = {.label = "kT / kN"},
-            .series = {{.label = "nu, theory", .x = {0, 1}, .y = {0.25, 0}},
-                       {.label = "other", .x = {0, 1}, .y = {1, NAN}, .column = "stable"},
-                       {.label = "", .x = {0, 0.5, 1}, .y = {1, 2, 3}},
-                       {.label = "nu theory", .x = {0, 1}, .y = {4, 5}}}};
+TEST_CASE("series_with_the_same_x_are_columns_of_one_table") {
+  const Plot plot{.x = {.label = "kT / kN"},
+                  .series = {{.label = "nu, theory", .x = {0, 1}, .y = {0.25, 0}},
+                             {.label = "other", .x = {0, 1}, .y = {1, NAN}, .column = "stable"},
+                             {.label = "", .x = {0, 1}, .y = {1, 2}},
+                             {.label = "nu theory", .x = {0, 1}, .y = {4, 5}}}};
   const PlotData data = plot_data(plot);
-  CHECK(data.csv == "kT_kN,nu_theory,stable,kT_kN_2,y,nu_theory_2\n0,0.25,1,0,1,4\n1,0,nan,0.5,2,5\n,,,1,3,\n");
+  CHECK(data.csv == "kT_kN,nu_theory,stable,y,nu_theory_2\n0,0.25,1,1,4\n1,0,nan,2,5\n");
   CHECK(data.places[3].x == "kT_kN");
-  CHECK(data.places[2].x == "kT_kN_2");
+  CHECK_FALSE(data.places[3].last);
+}
+
+TEST_CASE("series_with_different_x_have_a_row_for_each_point_and_no_cell_is_padded") {
+  const Plot plot{.x = {.label = "kT / kN"},
+                  .y = {.label = "nu"},
+                  .series = {{.label = "theory", .x = {0, 1}, .y = {0.25, NAN}},
+                             {.label = "none"},
+                             {.label = "", .x = {0, 0.5, 1}, .y = {1, 2, 3}, .low = {0, 1, 2}, .high = {2, 3, 4}},
+                             {.label = "theory", .x = {0}, .y = {4}}}};
+  const PlotData data = plot_data(plot);
+  CHECK(data.csv ==
+        "series,kT_kN,nu,low,high\ntheory,0,0.25,,\ntheory,1,nan,,\ny,0,1,0,2\ny,0.5,2,1,3\ny,1,3,2,4\n"
+        "theory_2,0,4,,\n");
+  CHECK((data.places[2].first == 2 && data.places[2].last == 4));
+  CHECK(data.places[1].first == 6);  // behind all rows
+  CHECK(data.places[0].low.empty());
+  CHECK(data.places[2].high == "high");
+}
+
+TEST_CASE("gnuplot_draws_each_series_from_its_own_rows") {
+  const TemporaryFolder folder;
+  const Plot plot{.series = {{.label = "a", .x = {0, 1, 2}, .y = {1, NAN, 3}},
+                             {.label = "b", .x = {5, 6}, .y = {7, 9}, .style = SeriesStyle::points},
+                             {.label = "c", .x = {8}, .y = {-4}, .style = SeriesStyle::points}}};
+  const PlotResult result = write_plot(folder.path(), "rows", plot, false);
+  if (gnuplot_is_missing(result)) return;
+  CAPTURE(result.message);
+  REQUIRE(result.drawn);
+  const PlotData data = plot_data(plot);
+  const PlotFrame frame = frame_of(plot);
+  std::string script = "set datafile separator comma\ndata = 'rows.csv'\nstride = 1\nmarker = 1\n";
+  for (std::size_t k = 0; k < plot.series.size(); ++k) {
+    const auto clauses = plot_clauses(plot, plot.series[k], data.places[k], frame, {}, "");
+    script += fmt::format("set table 'used{}.txt'\nplot {}\nunset table\n", k, clauses.front());
+  }
+  write_file(folder / "table.gp", script, false);
+  const GnuplotRun run = run_gnuplot(folder.path(), "table.gp");
+  CAPTURE(run.reason);
+  REQUIRE(run.succeeded);
+  for (std::size_t k = 0; k < plot.series.size(); ++k) {
+    std::istringstream lines(read_file(folder / fmt::format("used{}.txt", k)));
+    std::vector<double> x, y;
+    for (std::string line; std::getline(lines, line);) {
+      std::istringstream words(line);
+      double px = 0, py = 0;
+      if (words >> px >> py) x.push_back(px), y.push_back(py);
+    }
+    std::vector<double> wanted_x, wanted_y;
+    for (std::size_t point = 0; point < plot.series[k].x.size(); ++point) {
+      if (!std::isfinite(plot.series[k].y[point])) continue;
+      wanted_x.push_back(plot.series[k].x[point]), wanted_y.push_back(plot.series[k].y[point]);
+    }
+    CAPTURE(k, script);
+    CHECK(x == wanted_x);
+    CHECK(y == wanted_y);
+  }
 }
 
 TEST_CASE("error_bars_are_data_and_drawn") {

@@ -21,13 +21,13 @@ enum class PlotColour { black, orange, sky_blue, green, yellow, blue, vermilion,
 /// the markers of the earlier one are larger, so that both are seen.
 struct Series {
   std::string label = {};      ///< in the legend; empty: not in the legend
-  std::vector<double> x = {};  ///< one value per y; series with the same x share one column of the data file
+  std::vector<double> x = {};  ///< one value per y
   std::vector<double> y = {};
   SeriesStyle style = SeriesStyle::line;
   PlotColour colour = PlotColour::black;
   Marker marker = Marker::circle;
   bool filled = true;       ///< markers: filled, or open with a white face
-  std::string column = {};  ///< name of y in the data file; empty: made of the label
+  std::string column = {};  ///< its name in the data file; empty: made of the label
   /// Ends of an error bar at each point; empty: none. A bar with an end that is not finite is left out.
   std::vector<double> low = {}, high = {};
   std::size_t panel = 0;  ///< where the plot has panels
@@ -103,10 +103,10 @@ struct BarChart {
   std::vector<Bar> bars = {};
 };
 
-/// Write NAME.csv (the data), NAME.gp (the script; `gnuplot NAME.gp` in that folder draws again) and, by gnuplot,
-/// NAME.svg and NAME.png (900 x 650 pixels). If gnuplot is absent or fails, data and script are still written and the
-/// result states the reason. The legend stands below the plot. The SVG draws at most 15,000 points of lines, every
-/// n-th.
+/// Write NAME.csv (the data: plot_data of plot_script.hpp), NAME.gp (the script; `gnuplot NAME.gp` in that folder draws
+/// again) and, by gnuplot, NAME.svg and NAME.png (900 x 650 pixels). If gnuplot is absent or fails, data and script are
+/// still written and the result states the reason. The legend stands below the plot. The SVG draws at most 15,000
+/// points of lines, every n-th.
 /// \throws Error (bad_input) on a plot that cannot be drawn (x and y of different length, no finite point, a value not
 ///         positive on a logarithmic axis, an empty range, a name that is no plain file name), and as write_file does
 PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const Plot& plot, bool overwrite);

@@ -129,52 +129,94 @@ std::string all_panels(const std::string& name, const Plot& plot, const std::vec
              svg_stride(plot));
 }
 
-}  // namespace
-
-PlotData plot_data(const Plot& plot) {
-  PlotData data;
-  std::vector<std::string> names;
-  std::vector<const std::vector<double>*> columns;
-  const auto add = [&](const std::vector<double>& values, std::string name, const char* fallback) {
-    if (name.empty()) name = fallback;
-    std::string unique = name;
-    for (int k = 2; std::find(names.begin(), names.end(), unique) != names.end(); ++k) {
-      unique = fmt::format("{}_{}", name, k);
-    }
-    names.push_back(unique);
-    columns.push_back(&values);
+/// Names without repetition: "nu", "nu_2".
+class UniqueNames {
+ public:
+  std::string add(const std::string& name, const char* fallback) {
+    const std::string wanted = name.empty() ? fallback : name;
+    std::string unique = wanted;
+    for (int k = 2; std::ranges::find(names_, unique) != names_.end(); ++k) unique = fmt::format("{}_{}", wanted, k);
+    names_.push_back(unique);
     return unique;
-  };
-  for (std::size_t k = 0; k < plot.series.size(); ++k) {
-    const Series& series = plot.series[k];
-    PlotData::Place place;
-    for (std::size_t earlier = 0; earlier < k && place.x.empty(); ++earlier) {
-      if (plot.series[earlier].x == series.x) place.x = data.places[earlier].x;
-    }
-    if (place.x.empty()) place.x = add(series.x, column_name(plot.x.label), "x");
-    place.y = add(series.y, column_name(series.column.empty() ? series.label : series.column), "y");
-    if (!series.low.empty()) {
-      place.low = add(series.low, place.y + "_low", "low");
-      place.high = add(series.high, place.y + "_high", "high");
-    }
-    data.places.push_back(place);
   }
+  [[nodiscard]] const std::vector<std::string>& all() const { return names_; }
 
-  std::size_t rows = 0;
-  for (const auto* column : columns) rows = std::max(rows, column->size());
-  CsvText text(names, rows);
+ private:
+  std::vector<std::string> names_;
+};
+
+std::string series_name(const Series& series) {
+  return column_name(series.column.empty() ? series.label : series.column);
+}
+
+double finite_or_nan(double value) {
+  return std::isfinite(value) ? value : NAN;
+}
+
+/// A row for each x.
+PlotData wide_table(const Plot& plot) {
+  PlotData data;
+  UniqueNames names;
+  std::vector<const std::vector<double>*> columns;
+  const auto add = [&](const std::vector<double>& values, const std::string& name, const char* fallback) {
+    columns.push_back(&values);
+    return names.add(name, fallback);
+  };
+  for (const Series& series : plot.series) {
+    PlotData::Place& place = data.places.emplace_back();
+    place.x = columns.empty() ? add(series.x, column_name(plot.x.label), "x") : data.places.front().x;
+    place.y = add(series.y, series_name(series), "y");
+    if (series.low.empty()) continue;
+    place.low = add(series.low, place.y + "_low", "low");
+    place.high = add(series.high, place.y + "_high", "high");
+  }
+  const std::size_t rows = columns.empty() ? 0 : columns.front()->size();
+  CsvText text(names.all(), rows);
   for (std::size_t row = 0; row < rows; ++row) {
-    for (const auto* column : columns) {
-      if (row >= column->size()) {
-        text.empty_cell();
-      } else {
-        text.cell(std::isfinite((*column)[row]) ? (*column)[row] : NAN);
-      }
-    }
+    for (const auto* column : columns) text.cell(finite_or_nan((*column)[row]));
     text.end_row();
   }
   data.csv = text.text();
   return data;
+}
+
+/// A row for each point.
+PlotData tidy_table(const Plot& plot) {
+  PlotData data;
+  UniqueNames columns, names;
+  columns.add("series", "");
+  const std::string x = columns.add(column_name(plot.x.label), "x"), y = columns.add(column_name(plot.y.label), "y");
+  const bool bars = std::ranges::any_of(plot.series, [](const Series& series) { return !series.low.empty(); });
+  const std::string low = bars ? columns.add("low", "") : "", high = bars ? columns.add("high", "") : "";
+  std::size_t row = 0, total = 0;
+  for (const Series& series : plot.series) total += series.x.size();
+  CsvText text(columns.all(), total);
+  for (const Series& series : plot.series) {
+    const std::string name = names.add(series_name(series), "y");
+    const bool has_bars = !series.low.empty();
+    const std::size_t first = series.x.empty() ? total : row;  // behind all rows: no point
+    row += series.x.size();
+    data.places.push_back({x, y, has_bars ? low : "", has_bars ? high : "", first, series.x.empty() ? first : row - 1});
+    for (std::size_t k = 0; k < series.x.size(); ++k) {
+      text.cell(name);
+      text.cell(finite_or_nan(series.x[k]));
+      text.cell(finite_or_nan(series.y[k]));
+      for (const auto* end : {&series.low, &series.high}) {
+        if (has_bars) text.cell(finite_or_nan((*end)[k]));
+        if (bars && !has_bars) text.empty_cell();
+      }
+      text.end_row();
+    }
+  }
+  data.csv = text.text();
+  return data;
+}
+
+}  // namespace
+
+PlotData plot_data(const Plot& plot) {
+  const bool same_x = std::ranges::all_of(plot.series, [&](const Series& s) { return s.x == plot.series.front().x; });
+  return same_x ? wide_table(plot) : tidy_table(plot);
 }
 
 std::string plot_script(const std::string& name, const Plot& plot, const PlotData& data) {

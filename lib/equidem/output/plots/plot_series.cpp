@@ -176,7 +176,10 @@ bool has_points_outside(const Plot& plot, const Series& series, const PlotFrame&
 
 std::vector<std::string> plot_clauses(const Plot& plot, const Series& series, const PlotData::Place& place,
                                       const PlotFrame& frame, const SeriesLook& look, const std::string& plain) {
-  const std::string columns = fmt::format("data using \"{}\":\"{}\"", place.x, place.y), colour = hex(series.colour);
+  const std::string rows = place.last ? fmt::format("::{}::{}", place.first, *place.last) : "";
+  const std::string data = rows.empty() ? "data" : "data every " + rows;
+  const std::string columns = fmt::format("{} using \"{}\":\"{}\"", data, place.x, place.y);
+  const std::string colour = hex(series.colour);
   const std::string title = series.label.empty() ? "notitle" : "title " + gnuplot_string(series.label) + plain;
   const std::string size = fmt::format("{:g}*marker", look.marker_size);
   const std::string face = fmt::format("with points pt {} ps {}", point_type(series.marker, true), size);
@@ -185,12 +188,12 @@ std::vector<std::string> plot_clauses(const Plot& plot, const Series& series, co
   std::vector<std::string> clauses;
   if (!series.low.empty()) {
     clauses.push_back(
-        fmt::format("data using \"{}\":\"{}\":\"{}\":\"{}\" with yerrorbars pt -1 ps 0.6 lw 1.2 lc rgb '{}' notitle",
-                    place.x, place.y, place.low, place.high, colour));
+        fmt::format("{} using \"{}\":\"{}\":\"{}\":\"{}\" with yerrorbars pt -1 ps 0.6 lw 1.2 lc rgb '{}' notitle",
+                    data, place.x, place.y, place.low, place.high, colour));
   }
   if (series.style == SeriesStyle::line || series.style == SeriesStyle::dashed_line)
-    clauses.push_back(fmt::format("data every stride using \"{}\":\"{}\" with lines lw 1.8{} lc rgb '{}' {}", place.x,
-                                  place.y, dashes(look.dash), colour, title));
+    clauses.push_back(fmt::format("data every stride{} using \"{}\":\"{}\" with lines lw 1.8{} lc rgb '{}' {}", rows,
+                                  place.x, place.y, dashes(look.dash), colour, title));
   if (series.style == SeriesStyle::line_with_points) {
     clauses.push_back(fmt::format("{} with linespoints pt {} ps {} lw 1.6{} lc rgb '{}' {}", columns,
                                   point_type(series.marker, series.filled), size, dashes(look.dash), colour, title));
@@ -207,9 +210,9 @@ std::vector<std::string> plot_clauses(const Plot& plot, const Series& series, co
   if (!has_points_outside(plot, series, frame)) return clauses;
   const auto triangle = [&](const char* relation, double bound, double share, int type) {
     clauses.push_back(
-        fmt::format("data using \"{}\":(column(\"{}\") {} {} ? {} : NaN) with points pt {} ps 0.8*marker lw 1.4 lc rgb "
+        fmt::format("{} using \"{}\":(column(\"{}\") {} {} ? {} : NaN) with points pt {} ps 0.8*marker lw 1.4 lc rgb "
                     "'{}' notitle",
-                    place.x, place.y, relation, bound, value_at(share, plot.y, frame.y), type, colour));
+                    data, place.x, place.y, relation, bound, value_at(share, plot.y, frame.y), type, colour));
   };
   if (outside(series, frame.y, true)) triangle(">", frame.y.max, 0.982, series.filled ? 9 : 8);
   if (outside(series, frame.y, false)) triangle("<", frame.y.min, 0.018, series.filled ? 11 : 10);
