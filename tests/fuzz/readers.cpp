@@ -7,7 +7,6 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
-#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -17,7 +16,6 @@
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/casefile/study/study_case.hpp"
-#include "equidem/core/checksum.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/grains/scene/bond_file.hpp"
 #include "equidem/grains/scene/grain_file.hpp"
@@ -124,29 +122,24 @@ Reader reader_of_checkpoints(const fs::path& scratch) {
   });
 }
 
-/// Most of the changed headers get the checksum that belongs to them, so that their numbers are read.
-std::string with_checksum_of_header(std::string input) {
-  const std::size_t line = std::string_view(input).substr(0, 512).find("fnv1a ");
-  if (line == std::string::npos || input.size() < 512 || input.size() % 4 == 0) return input;
-  Checksum sum;
-  sum.add(std::as_bytes(std::span(input).first(line)));
-  return input.replace(line + 6, 16, sum.text());
-}
-
 Reader reader_of_frames(const fs::path& scratch) {
   const Assembly assembly = hexagonal_lattice({.columns = 2, .rows = 2});
   const std::vector<DiscMotion> still(assembly.size());
   FileMark mark;
   {
-    FrameWriter writer(scratch, "frames", assembly, {.expected = 3, .overwrite = true});
-    for (const std::int64_t step : {0, 5}) writer.append(step, 0.1 * static_cast<double>(step), still, still);
-    writer.sync();
+    FrameWriter writer(scratch, "frames", assembly, {.overwrite = true});
+    for (const std::int64_t step : {0, 5}) writer.append(step, 0.1 * static_cast<double>(step), still, still, {});
     mark = writer.mark();
   }
-  return {"frames (HDF5)", {read_file(scratch / "frames.h5")}, [=](const std::string& input) {
-            put(scratch / "frames.h5", with_checksum_of_header(input));
-            FrameWriter writer(scratch, "frames", assembly, {.expected = 3, .continue_from = mark});
-            writer.append(9, 1, still, still);
+  const auto copy = [=](const char* from, const char* to) {
+    fs::copy(scratch / from, scratch / to, fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+  };
+  copy("frames", "frames_kept");
+  return {"lists of frames (PVD)", {read_file(scratch / "frames.pvd")}, [=](const std::string& input) {
+            copy("frames_kept", "frames");
+            put(scratch / "frames.pvd", input);
+            FrameWriter writer(scratch, "frames", assembly, {.continue_from = mark});
+            writer.append(9, 1, still, still, {});
           }};
 }
 

@@ -193,7 +193,7 @@ TEST_CASE("a_checkpoint_holds_its_case_the_record_of_the_run_so_far_and_the_mark
     std::vector<FileMark> files;
     if (count > 1) {
       record.recorded = {{"throws", 3, {4, 7, 0.1}}, {"none", 2, {}}};
-      files = {{"history.csv", 123456789012, UINT64_MAX}, {"frames.h5", 0, 17}};
+      files = {{"history.csv", 123456789012, UINT64_MAX}, {"frames.pvd", 0, 17}};
     }
     for (std::int64_t k = 0; k < count; ++k) {
       record.energies.push_back({8 * k, 0.1 * static_cast<double>(k), ledger_at(k)});

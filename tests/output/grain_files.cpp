@@ -5,13 +5,14 @@
 
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/scene/bond_file.hpp"
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/energies.hpp"
 #include "equidem/output/files/frames.hpp"
 #include "equidem/output/files/growing_csv.hpp"
-#include "equidem/output/files/hdf5.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"
 
+#include "output/poly_data_reader.hpp"
 #include "output/runs.hpp"
 #include "output/states.hpp"
 #include "support/catch.hpp"
@@ -48,36 +49,44 @@ TEST_CASE("frames_of_travelling_bodies_hold_their_places") {
   }
   FileMark mark;
   {
-    FrameWriter writer(folder.path(), "frames", assembly, {.expected = 1, .travelling = true});
+    FrameWriter writer(folder.path(), "frames", assembly, {.travelling = true});
     for (std::int64_t step : {0, 4, 9})
-      writer.append(step, time_at(step), motions_at(step, 3), velocities_at(step, 3), step < 9);
+      writer.append(step, time_at(step), motions_at(step, 3), velocities_at(step, 3), {}, step < 9);
     mark = writer.mark();
     writer.finish();
   }
-  FrameWriter again(folder.path(), "frames", assembly, {.expected = 3, .travelling = true, .continue_from = mark});
-  CHECK(again.frames() == 2);
-  const Hdf5Layout layout = read_hdf5_layout(folder / "frames.h5", {"position", "angle", "velocity", "spin"});
-  CHECK(layout["position"].shape == std::vector<std::uint64_t>{3, 3, 3});
-  const OpenFile file(folder / "frames.h5", OpenFile::Mode::read);
-  std::vector<double> numbers(layout["position"].size());
-  file.read_at(layout["position"].offset, std::as_writable_bytes(std::span(numbers)));
-  const auto motions = motions_at(4, 3);
+  const auto frames = frames_of(folder / "frames.pvd");
+  REQUIRE(frames.size() == 3);
+  auto discs = arrays_of(frames[1].discs);
+  const auto motions = motions_at(4, 3), velocities = velocities_at(4, 3);
   for (std::size_t g = 0; g < 3; ++g) {
-    CHECK(numbers[9 + 3 * g] == motions[g].u.x);
-    CHECK(numbers[9 + 3 * g + 1] == motions[g].u.y);
+    CHECK(discs["Points"][3 * g] == motions[g].u.x);
+    CHECK(discs["Points"][3 * g + 1] == motions[g].u.y);
+    CHECK(discs["angle"][g] == motions[g].theta);
+    CHECK(discs["velocity"][3 * g] == velocities[g].u.x);
+    CHECK(discs["spin"][g] == velocities[g].theta);
   }
-  const std::string index = read_file(folder / "frames.xdmf2");
-  CHECK(index.find("GeometryType=\"XYZ\"") != std::string::npos);
-  CHECK(index.find("Name=\"angle\"") != std::string::npos);
-  CHECK(index.find("displacement") == std::string::npos);
-  // ParaView 5.11 treats frames as having the same points where their XML begins alike, and reports an error where it
-  // begins with an element.
-  const auto beginning = [&](int frame) {
-    const std::string start = "<Geometry GeometryType=\"XYZ\"><DataItem ItemType=\"HyperSlab\" Dimensions=\"3 3\">";
-    return index.find(fmt::format("{}<!--frame {}-->", start, frame));
-  };
-  CHECK(beginning(0) < beginning(1));
-  CHECK(beginning(1) != std::string::npos);
+  CHECK(discs.count("displacement") + discs.count("rotation") == 0);
+  const FrameWriter again(folder.path(), "frames", assembly, {.travelling = true, .continue_from = mark});
+  CHECK(again.frames() == 2);
+}
+
+TEST_CASE("a_table_of_bonds_is_read_back_to_the_same_bits") {
+  const TemporaryFolder folder;
+  const std::vector<GrainBond> bonds{{0, 3, 1.0 / 3, 1e-300, 0.1, 7e8 / 11, 2.0 / 7}, {5, 2, 0, 4, 0, 0, 0}};
+  const std::vector<BondDrift> drifts{{0, 3, 0.1, 0.2, 0.3}, {5, 2, 0, 0, 0}};
+  for (const bool drifted : {false, true}) {
+    write_bond_csv(folder / "bonds.csv", bonds, drifted ? drifts : std::vector<BondDrift>(), true);
+    const BondRows found = read_bonds(folder / "bonds.csv", {.normal_dashpot = 9, .rolling_dashpot = 9});
+    REQUIRE(found.bonds.size() == bonds.size());
+    for (std::size_t b = 0; b < bonds.size(); ++b) {
+      CHECK((found.bonds[b].i == bonds[b].i && found.bonds[b].j == bonds[b].j));
+      for (const BondProperty& property : bond_properties()) {
+        CAPTURE(b, property.name);
+        CHECK(found.bonds[b].*property.value == bonds[b].*property.value);
+      }
+    }
+  }
 }
 
 TEST_CASE("a_growing_table_goes_on_where_the_run_is") {

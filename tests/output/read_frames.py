@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""read_frames.py FOLDER NAME: read NAME.h5 with h5py, and through the index NAME.xdmf2, and compare every number with
-motion_STEP.csv, velocity_STEP.csv and contacts.csv, written by another writer from the same states. Exit 0: equal bit for
-bit; 77: the Python module h5py is missing."""
+"""read_frames.py FOLDER NAME: read the frames that NAME.pvd lists with VTK's own reader and compare every number with
+motion_STEP.csv, velocity_STEP.csv and contacts_STEP.csv, written by another writer from the same states. Exit 0: equal bit
+for bit; 77: the Python module of VTK is missing."""
 import csv
 import glob
 import os
@@ -10,8 +10,9 @@ import sys
 import xml.etree.ElementTree as xml
 
 try:
-    import h5py
     import numpy as np
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
@@ -35,89 +36,70 @@ def columns(data, *keys):
     return np.column_stack([data[key] for key in keys])
 
 
+def vectors(data, x, y):
+    return np.column_stack([data[x], data[y], np.zeros(len(data[x]))])
+
+
+def poly_data(file_name):
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(os.path.join(folder, file_name))
+    reader.Update()
+    if reader.GetErrorCode():
+        faults.append(f"{file_name}: error {reader.GetErrorCode()} of the reader")
+    return reader.GetOutput()
+
+
+def arrays_of(attributes):
+    return {attributes.GetArrayName(k): vtk_to_numpy(attributes.GetArray(k)) for k in range(attributes.GetNumberOfArrays())}
+
+
+entries = xml.parse(os.path.join(folder, f"{name}.pvd")).getroot().findall("Collection/DataSet")
+parts = [[entry for entry in entries if entry.get("part") == part] for part in "01"]
 steps = sorted(int(re.search(r"motion_(\d+)", path).group(1)) for path in glob.glob(os.path.join(folder, "motion_*.csv")))
-motions = [table(f"motion_{step}.csv") for step in steps]
-velocities = [table(f"velocity_{step}.csv") for step in steps]
-contacts = table("contacts.csv")
-centre, radius = columns(motions[0], "x_m", "y_m"), motions[0]["radius_m"]
-n = len(radius)
+compare("steps", [int(entry.get("file")[-13:-4]) for entry in parts[0]], steps)
+compare("frames with contacts", len(parts[1]), len(steps))
+for discs, network, step in zip(*parts, steps):
+    motion, velocity, contacts = (table(f"{what}_{step}.csv") for what in ("motion", "velocity", "contacts"))
+    n, m = len(motion["disc"]), len(contacts["i"])
+    time = float(discs.get("timestep"))
+    compare("time of the contacts", float(network.get("timestep")), time)
 
+    data = poly_data(discs.get("file"))
+    compare("TimeValue", vtk_to_numpy(data.GetFieldData().GetArray("TimeValue")), [time])
+    found = arrays_of(data.GetPointData())
+    wanted = {"radius": motion["radius_m"], "displacement": vectors(motion, "ux_m", "uy_m"),
+              "rotation": motion["rotation_rad"], "velocity": vectors(velocity, "ux_m", "uy_m"),
+              "spin": velocity["rotation_rad"]}
+    compare("arrays of discs", sorted(found), sorted(wanted))
+    for key, values in wanted.items():
+        compare(f"{key} {step}", found[key], values)
+    centre = vectors(motion, "x_m", "y_m")
+    compare("points", vtk_to_numpy(data.GetPoints().GetData()), centre)
+    compare("vertices", vtk_to_numpy(data.GetVerts().GetConnectivityArray()), np.arange(n))
 
-def vectors(data):
-    return np.column_stack([data["ux_m"], data["uy_m"], np.zeros(n)])
-
-
-def compare_frame(what, read, k):
-    compare(f"{what}displacement {k}", read("displacement"), vectors(motions[k]))
-    compare(f"{what}rotation {k}", read("rotation"), motions[k]["rotation_rad"])
-    compare(f"{what}velocity {k}", read("velocity"), vectors(velocities[k]))
-    compare(f"{what}spin {k}", read("spin"), velocities[k]["rotation_rad"])
-
-
-# By itself.
-file = h5py.File(os.path.join(folder, f"{name}.h5"), "r")
-compare("schema", file.attrs["schema"].decode(), "equidem-frames/1")
-compare("centres", file["discs/centre"][:], centre)
-compare("radii", file["discs/radius"][:], radius)
-compare("numbers", file["discs/number"][:], np.arange(n))
-compare("contacts", file["contacts/discs"][:], columns(contacts, "i", "j"))
-compare("shifts", file["contacts/shift"][:], columns(contacts, "shift_x", "shift_y"))
-compare("levers", file["contacts/lever"][:], columns(contacts, "lever_i_m", "lever_j_m"))
-count = int(file["frames"][0])
-compare("frames", count, len(steps))
-compare("steps", file["step"][:count], steps)
-compare("frames that are not there", np.isnan(file["time"][count:]).all(), True)
-compare("unit of displacement", file["displacement"].attrs["unit"].decode(), "m")
-for k in range(count):
-    compare_frame("", lambda key: file[key][k], k)
-periodic = "period" in file
-compare("period", periodic, bool(np.any(contacts["shift_x"]) or np.any(contacts["shift_y"])))
-if periodic:
-    i, j = (contacts[key].astype(int) for key in "ij")
-    branch = centre[j] + columns(contacts, "shift_x", "shift_y") * file["period"][:] - centre[i]
-    error = np.abs(branch - columns(contacts, "branch_x_m", "branch_y_m")).max()
-    if error > 1e-12 * np.abs(centre).max():
-        faults.append(f"the period leads {error} m past the branches")
-
-
-
-# Through the index: every array it names must be there, in the shape it says.
-def numbers(item):
-    shape = tuple(int(extent) for extent in item.get("Dimensions").split())
-    if item.get("ItemType") == "HyperSlab":
-        start, stride, size = (numbers(item[0])[row] for row in range(3))
-        source = numbers(item[1])
-        if np.any(stride != 1) or np.any(start + size > source.shape):
-            faults.append(f"a slab {start} {stride} {size} reaches out of {source.shape}")
-            return np.zeros(shape)
-        return source[tuple(slice(a, a + b) for a, b in zip(start, size))].reshape(shape)
-    if item.get("Format") == "XML":
-        return np.array([int(number) for number in item.text.split()]).reshape(shape)
-    file_name, path = item.text.strip().split(":")
-    compare("name of the file", file_name, f"{name}.h5")
-    data = file[path]
-    if item.get("NumberType") != {"f": "Float", "i": "Int"}[data.dtype.kind] or int(
-            item.get("Precision")) != data.dtype.itemsize:
-        faults.append(f"{path}: {data.dtype} is declared {item.get('NumberType')} {item.get('Precision')}")
-    if np.prod(shape) != data.size or (len(shape) == data.ndim and shape != data.shape):
-        faults.append(f"{path}: {data.shape} is declared {shape}")
-    return data[:].reshape(shape)
-
-
-collection = xml.parse(os.path.join(folder, f"{name}.xdmf2")).getroot().find("Domain/Grid")
-compare("kind of collection", collection.get("CollectionType"), "Temporal")
-grids = collection.findall("Grid")
-compare("frames of the index", len(grids), count)
-for k, grid in enumerate(grids):
-    compare(f"time {k}", float(grid.find("Time").get("Value")), file["time"][k])
-    compare(f"points {k}", numbers(grid.find("Geometry/DataItem")), centre)
-    compare(f"vertices {k}", numbers(grid.find("Topology/DataItem")), np.arange(n).reshape(n, 1))
-    compare(f"count {k}", int(grid.find("Topology").get("NumberOfElements")), n)
-    items = {a.get("Name"): numbers(a.find("DataItem")) for a in grid.findall("Attribute")}
-    compare(f"radii {k}", items["radius"], radius)
-    compare_frame("index: ", items.get, k)
+    data = poly_data(network.get("file"))
+    compare("number of lines", data.GetNumberOfLines(), m)
+    if m == 0:
+        continue
+    found = arrays_of(data.GetCellData())
+    for key, values in {"i": contacts["i"], "j": contacts["j"], "normal_force": contacts["normal_force_N_per_m"],
+                        "tangential_force": contacts["tangential_force_N_per_m"],
+                        "force": vectors(contacts, "force_x_N_per_m", "force_y_N_per_m")}.items():
+        compare(f"{key} {step}", found[key], values)
+    branch = columns(contacts, "branch_x_m", "branch_y_m")
+    normal = branch / np.hypot(*branch.T)[:, None]
+    start = centre[contacts["i"].astype(int), :2]
+    if np.abs(found["contact_point"][:, :2] - start - contacts["lever_i_m"][:, None] * normal).max() > 1e-15:
+        faults.append("contact_point is not at the lever of i")
+    ends = vtk_to_numpy(data.GetPoints().GetData())[vtk_to_numpy(data.GetLines().GetConnectivityArray())]
+    compare("starts", ends[0::2, :2], start)
+    if np.abs(ends[1::2, :2] - start - branch).max() > 1e-12 * np.abs(centre).max():
+        faults.append("lines do not end where the branches do")
+    bodies = columns(contacts, "i", "j").astype(int).ravel()
+    compare("displacement of the ends", arrays_of(data.GetPointData())["displacement"][
+        vtk_to_numpy(data.GetLines().GetConnectivityArray())], vectors(motion, "ux_m", "uy_m")[bodies])
 
 for fault in faults:
     print(fault)
-print(f"{n} discs, {count} frames: {len(faults)} faults")
+print(f"{len(steps)} frames: {len(faults)} faults")
 sys.exit(1 if faults else 0)

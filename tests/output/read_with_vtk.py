@@ -67,22 +67,26 @@ data = poly_data(f"{name}_contacts.vtp")
 compare("number of lines", data.GetNumberOfLines(), m)
 if m:
     i, j = contacts["i"].astype(int), contacts["j"].astype(int)
-    ends = vtk_to_numpy(data.GetPoints().GetData())
-    compare("line connectivity", vtk_to_numpy(data.GetLines().GetConnectivityArray()), np.arange(2 * m))
+    ends = vtk_to_numpy(data.GetLines().GetConnectivityArray())
     compare("line offsets", vtk_to_numpy(data.GetLines().GetOffsetsArray()), 2 * np.arange(m + 1))
-    compare("starts", ends[0::2, :2], np.column_stack([discs["x_m"][i], discs["y_m"][i]]))
+    place = vtk_to_numpy(data.GetPoints().GetData())[ends][:, :2]
+    start = np.column_stack([discs["x_m"][i], discs["y_m"][i]])
+    compare("starts", place[0::2], start)
     branch = np.column_stack([contacts["branch_x_m"], contacts["branch_y_m"]])
-    compare("ends", ends[1::2, :2], ends[0::2, :2] + branch)
+    if np.abs(place[1::2] - start - branch).max() > 1e-15 * np.abs(place).max():
+        faults.append("a line does not end where its branch does")
     cell = data.GetCellData()
     for key, column in {"i": "i", "j": "j", "normal_force": "normal_force_N_per_m",
                         "tangential_force": "tangential_force_N_per_m"}.items():
         compare(key, array(cell, key), contacts[column])
-    length = array(cell, "branch_length")
-    if not np.allclose(length, np.hypot(branch[:, 0], branch[:, 1]), rtol=1e-15, atol=0):
-        faults.append("branch_length is not the length of the branch")
-    compare("displacement of the ends", array(data.GetPointData(), "displacement"),
+    compare("force", array(cell, "force")[:, :2],
+            np.column_stack([contacts["force_x_N_per_m"], contacts["force_y_N_per_m"]]))
+    lever = array(cell, "contact_point")[:, :2] - start
+    if not np.allclose(np.hypot(*lever.T), contacts["lever_i_m"], rtol=1e-12, atol=0):
+        faults.append("contact_point does not lie at the lever of i")
+    compare("displacement of the ends", array(data.GetPointData(), "displacement")[ends],
             displacement[np.column_stack([i, j]).ravel()])
-    compare("radius of the ends", array(data.GetPointData(), "radius"), np.zeros(2 * m))
+    compare("radius of the ends", array(data.GetPointData(), "radius")[ends], np.zeros(2 * m))
 
 reader = vtkXMLMultiBlockDataReader()
 reader.SetFileName(os.path.join(folder, f"{name}.vtm"))

@@ -3,9 +3,16 @@
 import csv
 import json
 import math
+import unittest
+import xml.etree.ElementTree
 
-import h5py
 import numpy
+
+try:
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+except ImportError:
+    vtkXMLPolyDataReader = None
 
 from program import CASES, ProgramTest, equidem, parse_json
 
@@ -21,12 +28,56 @@ def table(path):
     return dict(zip(rows[0], numpy.array(rows[1:], dtype=float).T))
 
 
-def datasets(path):
-    found = {}
-    with h5py.File(path, "r") as file:
-        file.visititems(lambda name, item: found.update({name: item[()].tobytes()})
-                        if isinstance(item, h5py.Dataset) else None)
-    return found
+def files_of(out):
+    """Content of every file of a folder, by its path there."""
+    return {str(path.relative_to(out)): path.read_bytes() for path in sorted(out.rglob("*")) if path.is_file()}
+
+
+def frame_files(out):
+    return {name: content for name, content in files_of(out).items() if name.startswith("frames")}
+
+
+needs_vtk = unittest.skipIf(vtkXMLPolyDataReader is None, "the Python module of VTK (python3-vtk9) is missing")
+
+
+def poly_data(path):
+    """Arrays of a .vtp file by name, as VTK's own reader finds them; of points, lines and fields."""
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    if reader.GetErrorCode():
+        raise OSError(f"{path}: error {reader.GetErrorCode()} of VTK's reader")
+    data = reader.GetOutput()
+    arrays = {group.GetArrayName(k): vtk_to_numpy(group.GetArray(k))
+              for group in (data.GetPointData(), data.GetCellData(), data.GetFieldData())
+              for k in range(group.GetNumberOfArrays())}
+    return {**arrays, "points": vtk_to_numpy(data.GetPoints().GetData())}
+
+
+def frames_of(out, last=0):
+    """(time, step, discs, contacts) of each frame that frames.pvd lists, or of the last ones; contacts is None where they are
+    not written."""
+    frames = []
+    entries = list(xml.etree.ElementTree.parse(out / "frames.pvd").getroot().iter("DataSet"))
+    times = sorted({float(entry.get("timestep")) for entry in entries})[-last:]
+    for entry in entries:
+        if float(entry.get("timestep")) < times[0]:
+            continue
+        data = poly_data(out / entry.get("file"))
+        if entry.get("part") == "0":
+            frames.append([float(entry.get("timestep")), int(entry.get("file").split("_")[-1][:-4]), data, None])
+        else:
+            frames[-1][3] = data
+    return frames
+
+
+def sums_of_forces(contacts, bodies):
+    """Sum of the contact forces on each body, from the lines of a frame."""
+    sums = numpy.zeros((bodies, 3))
+    numpy.add.at(sums, contacts["i"], contacts["force"])
+    inside = contacts["j"] >= 0
+    numpy.add.at(sums, contacts["j"][inside], -contacts["force"][inside])
+    return sums[:, :2]
 
 
 class RunTest(ProgramTest):

@@ -10,7 +10,7 @@ import subprocess
 import time
 import unittest
 
-from motion import CORNER, SHAKE, RunTest
+from motion import CORNER, SHAKE, RunTest, files_of
 from program import CASES, PROGRAM, TENSION, ProgramTest, equidem, parse_json
 
 BOX, BALL = CASES / "grains_shaken.toml", CASES / "grains_between_walls.toml"
@@ -22,7 +22,7 @@ VARYING = ("report", "times", "particle_steps_per_second", "bytes_per_grain", "s
 
 def contents(folder):
     """Bytes of all files; of result.json what does not vary from run to run."""
-    files = {path.name: path.read_bytes() for path in folder.iterdir()}
+    files = files_of(folder)
     if "result.json" in files:
         result = parse_json(files["result.json"].decode())
         files["result.json"] = {key: value for key, value in result.items() if key not in VARYING}
@@ -47,23 +47,27 @@ def damages(content):
 
 class Damage(RunTest):
     def check_damaged(self, start, resume, believed, same=contents):
-        """Whatever is damaged after `start`, `resume` refuses it or ends as after no damage; files of `believed` are not read
-        back, and no damage to them is refused."""
+        """Whatever is damaged after `start`, `resume` refuses it or ends as after no damage; damage is refused in all files of
+        `believed`, or in the folder of that name, and in no others. Of each kind of frames one file is damaged."""
         good, expected, out = (self.folder / name for name in ("good", "expected", "out"))
         self.check_done(equidem(*start, "--out", good))
         shutil.copytree(good, expected)
         self.check_done(equidem(*resume, "--out", expected))
         wanted = same(expected)
         refused = {}
-        for path in sorted(good.iterdir()):
-            for damage, content in damages(path.read_bytes()):
-                with self.subTest(file=path.name, damage=damage):
+        files = [path for path in good.iterdir() if path.is_file()]
+        for kind in ("discs", "contacts"):
+            files += sorted(good.glob(f"frames/{kind}_*.vtp"))[1:2]
+        for path in sorted(path.relative_to(good) for path in files):
+            part = path.parts[0]
+            for damage, content in damages((good / path).read_bytes()):
+                with self.subTest(file=path, damage=damage):
                     shutil.rmtree(out, ignore_errors=True)
                     shutil.copytree(good, out)
-                    (out / path.name).unlink()
+                    (out / path).unlink()
                     if content is not None:
-                        (out / path.name).write_bytes(content)
-                    before = {file.name: file.read_bytes() for file in out.iterdir()}
+                        (out / path).write_bytes(content)
+                    before = files_of(out)
                     done = equidem(*resume, "--out", out)
                     if done.returncode == 0:
                         found = same(out)
@@ -71,9 +75,9 @@ class Damage(RunTest):
                         for name, value in wanted.items():
                             self.assertEqual(found[name], value, name)
                         continue
-                    self.check_error(done, 2, path.name)
-                    self.assertEqual({file.name: file.read_bytes() for file in out.iterdir()}, before)
-                    refused.setdefault(path.name, []).append(damage)
+                    self.check_error(done, 2, part)
+                    self.assertEqual(files_of(out), before)
+                    refused.setdefault(part, []).append(damage)
         self.assertEqual(set(refused), set(believed))
         return refused
 
@@ -81,7 +85,8 @@ class Damage(RunTest):
         case = ("run", BOX, "--threads", 1, "--quiet", *NO_PICTURE, *MEASURED, "--set", "output.probe_interval=4e-3")
         refused = self.check_damaged((*case, "--set", "run.duration=0.03"),
                                      (*case, "--set", "run.duration=0.045", "--resume"),
-                                     ("run.checkpoint.h5", "frames.h5", "history.csv", "measures.csv", "surface.csv"))
+                                     ("run.checkpoint.h5", "frames", "frames.pvd", "history.csv", "measures.csv",
+                                      "surface.csv"))
         for name in ("history.csv", "measures.csv", "surface.csv"):
             self.assertTrue(any("digit" in damage for damage in refused[name]), refused)
 
@@ -89,7 +94,7 @@ class Damage(RunTest):
         case = ("run", SHAKE, "--threads", 1, "--quiet", *NO_PICTURE, "--set", "output.vtk=false", "--set",
                 "run.step_rule=bound")
         self.check_damaged((*case, "--set", "run.duration=1.01e-3"), (*case, "--set", "run.duration=2e-3", "--resume"),
-                           ("run.checkpoint.h5", "frames.h5", "history.csv"))
+                           ("run.checkpoint.h5", "frames", "frames.pvd", "history.csv"))
 
     def test_of_a_sweep_all_that_counts_is_checked(self):
         case = ("sweep", TENSION, "--threads", 1, "--quiet", "--key", "ratio", "--set", "test=none", "--set",
@@ -173,7 +178,7 @@ class InUse(RunTest):
         running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         try:
             began = time.monotonic()
-            while not (out / "frames.h5").exists() and time.monotonic() - began < 60:
+            while not (out / "frames.pvd").exists() and time.monotonic() - began < 60:
                 time.sleep(0.01)
             for option in ("--resume", "--overwrite"):
                 done = equidem("run", CORNER, "--out", out, option)

@@ -106,8 +106,8 @@ class Killing:
         """Bytes of every file; of JSON what does not vary; of a checkpoint all arrays but the counters of work (the neighbours
         are searched once more where a run goes on); of a study, whose tables hold measured times, the errors."""
         files = {}
-        for path in sorted(out.iterdir()):
-            files[path.name] = path.read_bytes()
+        for path in sorted(path for path in out.rglob("*") if path.is_file()):
+            files[str(path.relative_to(out))] = path.read_bytes()
             if path.name == "result.json":
                 files[path.name] = lasting(json.loads(files[path.name]))
             elif path.name == "run.checkpoint.h5":

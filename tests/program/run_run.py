@@ -3,12 +3,12 @@
 """equidem run, as a user runs it: run_run.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import math
 import re
+import shutil
 import unittest
 
-import h5py
 import numpy
 
-from motion import CORNER, KN, MASS, PULSE, RADIUS, REST, SHAKE, RunTest, table
+from motion import CORNER, KN, MASS, PULSE, RADIUS, REST, SHAKE, RunTest, files_of, frame_files, frames_of, needs_vtk, poly_data, sums_of_forces, table
 from program import CASES, equidem
 
 
@@ -217,14 +217,14 @@ class Output(RunTest):
         self.assertEqual(self.run_case(PULSE, "--set", "run.duration=1e-300", "--out", out)["steps"], 1)
         self.assertEqual(list(table(out / "history.csv")["step"]), [0, 1])
 
+    @needs_vtk
     def test_frames_and_histories_follow_their_schedules(self):
         out = self.folder / "out"
         result = self.run_case(SHAKE, "--out", out)
         h = table(out / "history.csv")
-        with h5py.File(out / "frames.h5", "r") as file:
-            count = int(file["frames"][0])
-            times, steps = file["time"][:count], file["step"][:count]
-            moved, velocity = file["displacement"][count - 1], file["velocity"][count - 1]
+        frames = frames_of(out)
+        times, last = numpy.array([frame[0] for frame in frames]), frames[-1]
+        moved, velocity = last[2]["displacement"], last[2]["velocity"]
         for name, seen, interval in (("frames", times, 5e-4), ("history", h["time_s"], 2e-5)):
             with self.subTest(what=name):
                 self.assertEqual(seen[0], 0)
@@ -232,11 +232,53 @@ class Output(RunTest):
                 wanted = interval * numpy.arange(math.floor(result["time"] / interval) + 1)
                 self.assertEqual(len(seen), len(wanted) + (seen[-1] - wanted[-1] > result["time_step"] / 2))
                 self.assertLessEqual(numpy.abs(seen[:len(wanted)] - wanted).max(), 0.5001 * result["time_step"])
-        self.assertEqual(steps[-1], result["steps"])
+        self.assertEqual(last[1], result["steps"])
         discs = table(out / "discs.csv")
         self.assertTrue(numpy.array_equal(moved[:, 0], discs["ux_m"]))
         self.assertEqual(velocity.shape, (len(discs["ux_m"]), 3))
         self.assertEqual(h["kinetic_J_per_m"][-1], result["energy"]["kinetic"])
+
+    @needs_vtk
+    def test_contact_forces_in_frames_add_up_to_mass_times_acceleration(self):
+        discs = [(0, 0), (2 * RADIUS, 0), (RADIUS, math.sqrt(3) * RADIUS)]
+        for motion in ("small", "finite"):
+            with self.subTest(motion=motion):
+                case = self.write_case(discs, [[0, 1, 0, 0], [0, 2, 0, 0], [1, 2, 0, 0]], f"""
+[springs]
+kN = {KN}
+kT = {0.4 * KN}
+[run]
+duration = 2e-4
+motion = "{motion}"
+gravity = [0.0, -9.81]
+[[wall]]
+name = "floor"
+point = [0.0, {-0.99 * RADIUS}]
+normal = [0.1, 1.0]
+kN = {KN}
+[output]
+frame_interval = 1e-30
+""")
+                out = self.folder / motion
+                step = self.run_case(case, "--out", out, "--set", "output.picture=false")["time_step"]
+                frames = frames_of(out)
+                self.assertGreater(len(frames), 10)
+                pushed, u = 0, [discs["displacement"][:, :2] for _, _, discs, _ in frames]
+                for k in range(1, len(frames) - 1):
+                    contacts = frames[k][3]
+                    pushed += (contacts["j"] == -1).sum()
+                    found = sums_of_forces(contacts, 3) + MASS * numpy.array([0, -9.81])
+                    self.check_near(found, MASS * (u[k + 1] - 2 * u[k] + u[k - 1]) / step**2, 1e-7)
+                self.assertGreater(pushed, 0)
+                state = poly_data(out / "state_discs.vtp")
+                for name in ("displacement", "rotation", "radius"):
+                    self.assertTrue(numpy.array_equal(state[name], frames[-1][2][name]), name)
+                if motion == "small":
+                    state, last = poly_data(out / "state_contacts.vtp"), frames[-1][3]
+                    for name in ("force", "normal_force", "tangential_force", "contact_point"):
+                        self.assertTrue(numpy.array_equal(state[name], last[name][:3]), name)
+        self.run_case(case, "--out", self.folder / "bare", "--set", "output.frame_contacts=false")
+        self.assertEqual({name.split("_")[0] for name in frame_files(self.folder / "bare")}, {"frames.pvd", "frames/discs"})
 
     def test_an_interval_shorter_than_a_step_is_every_step(self):
         out = self.folder / "out"
@@ -254,16 +296,16 @@ class Output(RunTest):
         out = self.folder / "out"
         short = ("--out", out, "--set", "run.duration=1e-3")
         self.run_case(SHAKE, *short)
-        names = sorted(path.name for path in out.iterdir())
-        for kept in ("result.json", "discs.csv", "frames.h5", "history.csv", "run.checkpoint.h5"):
-            for path in out.iterdir():
-                path.unlink()
+        names = list(files_of(out))
+        for kept in ("result.json", "discs.csv", "frames.pvd", "history.csv", "run.checkpoint.h5"):
+            shutil.rmtree(out)
+            out.mkdir()
             (out / kept).write_text("mine")
             with self.subTest(file=kept):
                 self.check_error(equidem("run", SHAKE, *short), 2, kept, "exists already", "--overwrite")
                 self.assertEqual((out / kept).read_text(), "mine")
         self.run_case(SHAKE, *short, "--overwrite")
-        self.assertEqual(sorted(path.name for path in out.iterdir()), names)
+        self.assertEqual(list(files_of(out)), names)
 
     def test_the_echoed_case_repeats_the_run(self):
         out = self.folder / "out"

@@ -100,6 +100,7 @@ class Simulation final : public AnySimulation {
   [[nodiscard]] std::vector<DiscMotion> motions() const override;
   /// Velocities at the time of motions() (leapfrog: the mean of half a step before and after).
   [[nodiscard]] std::vector<DiscMotion> velocities() const override;
+  [[nodiscard]] std::vector<BodyContact> body_contacts() const override;
   /// Kinetic energy of velocities(), elastic energy of motions().
   [[nodiscard]] EnergyLedger energy() const override;
   [[nodiscard]] double bytes_per_body() const override;

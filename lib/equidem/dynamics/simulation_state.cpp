@@ -7,6 +7,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
+#include "equidem/dynamics/bonded_contacts.hpp"
 #include "equidem/dynamics/simulation_implementation.hpp"
 #include "equidem/dynamics/walls.hpp"
 
@@ -176,6 +177,11 @@ std::vector<DiscForce> Simulation::Implementation::forces_at(const std::vector<D
 
 std::vector<DiscForce> Simulation::unbalanced_forces(const std::vector<DiscMotion>& motions) const {
   return implementation_->forces_at(motions, true);
+}
+
+std::vector<BodyContact> Simulation::body_contacts() const {
+  const Implementation& s = *implementation_;
+  return bonded_contacts(s.scene, s.kind.motion, s.motions(), s.time_at(s.steps));
 }
 
 std::vector<DiscMotion> Simulation::velocities() const {

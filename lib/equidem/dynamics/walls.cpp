@@ -78,18 +78,27 @@ void check_discs(const Wall& wall, const Assembly& assembly) {
 
 }  // namespace
 
-WallPushes wall_pushes(const Scene& scene, const std::vector<DiscMotion>& motions, double time) {
-  WallPushes result;
-  if (!scene.walls.empty()) result.forces.resize(motions.size());
-  for (const Wall& wall : scene.walls) {
+std::vector<WallContact> wall_contacts(const Scene& scene, const std::vector<DiscMotion>& motions, double time) {
+  std::vector<WallContact> contacts;
+  for (std::size_t w = 0; w < scene.walls.size(); ++w) {
+    const Wall& wall = scene.walls[w];
     const double moved = wall.displacement_along_normal(time);
     for (std::size_t d = 0; d < motions.size(); ++d) {
       const Vec2 centre = scene.assembly.centres[d] + motions[d].u;
       const double gap = dot(wall.normal, centre - wall.point) - moved - scene.assembly.radii[d];
-      if (gap >= 0) continue;
-      result.forces[d] -= wall.kN * gap * wall.normal;
-      result.energy += 0.5 * wall.kN * gap * gap;
+      if (!(gap >= 0)) contacts.push_back({.wall = w, .disc = d, .gap = gap});
     }
+  }
+  return contacts;
+}
+
+WallPushes wall_pushes(const Scene& scene, const std::vector<DiscMotion>& motions, double time) {
+  WallPushes result;
+  if (!scene.walls.empty()) result.forces.resize(motions.size());
+  for (const auto& [w, disc, gap] : wall_contacts(scene, motions, time)) {
+    const Wall& wall = scene.walls[w];
+    result.forces[disc] -= wall.kN * gap * wall.normal;
+    result.energy += 0.5 * wall.kN * gap * gap;
   }
   return result;
 }

@@ -12,6 +12,13 @@
 
 namespace equidem {
 
+/// A disc that a wall pushes.
+struct WallContact {
+  std::size_t wall = 0, disc = 0;
+  double gap = 0;  ///< m, negative; the force on the disc is -kN gap along the normal of the wall
+};
+std::vector<WallContact> wall_contacts(const Scene& scene, const std::vector<DiscMotion>& motions, double time);
+
 /// Forces of walls on discs, and their elastic energy.
 struct WallPushes {
   std::vector<Vec2> forces;  ///< N/m, per disc; empty where there is no wall

@@ -253,6 +253,20 @@ std::vector<GrainContact> GrainSimulation::contacts() const {
   return contacts;
 }
 
+std::vector<BodyContact> GrainSimulation::body_contacts() const {
+  std::vector<BodyContact> result;
+  for (const GrainContact& c : contacts()) {
+    const Vec2 on_j = c.normal_force * c.normal + c.tangential_force * perpendicular(c.normal);
+    result.push_back({.i = c.i,
+                      .j = c.j,
+                      .arm = c.arm_i,
+                      .force = -on_j,
+                      .normal_force = c.normal_force,
+                      .tangential_force = c.tangential_force});
+  }
+  return result;
+}
+
 EnergyLedger GrainSimulation::energy() const {
   return implementation_->energy();
 }

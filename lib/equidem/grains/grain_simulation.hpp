@@ -71,6 +71,7 @@ class GrainSimulation final : public AnySimulation {
   [[nodiscard]] std::int64_t step() const override;
   [[nodiscard]] std::vector<DiscMotion> motions() const override;
   [[nodiscard]] std::vector<DiscMotion> velocities() const override;
+  [[nodiscard]] std::vector<BodyContact> body_contacts() const override;
   [[nodiscard]] EnergyLedger energy() const override;
   [[nodiscard]] double bytes_per_body() const override;
   /// Arrays: motions (n, 3): position, angle; velocities (n, 3): velocity, spin; contacts as the loop stores them;

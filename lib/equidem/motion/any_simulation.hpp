@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/motion/ledger.hpp"
@@ -30,6 +31,9 @@ class AnySimulation {
   /// Displacements and rotations of bonded discs, positions and angles of colliding bodies; m, rad.
   [[nodiscard]] virtual std::vector<DiscMotion> motions() const = 0;
   [[nodiscard]] virtual std::vector<DiscMotion> velocities() const = 0;  ///< m/s, rad/s
+  /// Contacts with their forces. Bonded discs: all bonds, then walls that push; forces of springs at motions(), without
+  /// dashpots. Colliding bodies: the contacts that were closed at the end of the last step, mean forces over it.
+  [[nodiscard]] virtual std::vector<BodyContact> body_contacts() const = 0;
   [[nodiscard]] virtual EnergyLedger energy() const = 0;
   /// Bytes of all arrays of the loop, per body.
   [[nodiscard]] virtual double bytes_per_body() const = 0;

@@ -8,11 +8,11 @@
 #include <utility>
 
 #include "equidem/casefile/assembly/build.hpp"
-#include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/checksum.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/dynamics/bonded_contacts.hpp"
 #include "equidem/dynamics/relaxation.hpp"
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/checkpoint.hpp"
@@ -133,13 +133,10 @@ Simulation simulation_of(const Problem& problem, const Scene& scene, const Simul
 }
 
 /// Contact forces of small motions, for pictures.
-std::vector<ContactForce> forces_of(const Problem& problem, const std::vector<DiscMotion>& motions) {
-  std::vector<ContactForce> forces(problem.assembly.contacts.size());
-  for (std::size_t c = 0; c < forces.size(); ++c) {
-    const Contact& contact = problem.assembly.contacts[c];
-    forces[c] = linear_spring_force(problem.springs.springs[c],
-                                    deformation(frame_of(problem.assembly, c), motions[contact.i], motions[contact.j]));
-  }
+std::vector<ContactForce> forces_of(const Scene& scene, const std::vector<DiscMotion>& motions) {
+  std::vector<ContactForce> forces;
+  for (const BodyContact& contact : bonded_contacts(scene, LoopKind::Motion::small, motions, 0))
+    if (contact.j >= 0) forces.push_back({contact.normal_force, contact.tangential_force});
   return forces;
 }
 
@@ -190,6 +187,7 @@ RunPlan BondedRun::plan() {
           .probe_interval = output.probe_interval,
           .checkpoint_interval = output.checkpoint_interval,
           .frame_discs = &problem_.assembly,
+          .frames = {.contacts = output.frame_contacts},
           .probes = build_probes(problem_.resolved, problem_.assembly),
           .watch = [this](const EnergyLedger& energy) { watch_.look(simulation_, energy); },
           .watch_between = true};
@@ -220,7 +218,7 @@ void BondedRun::write_state(const std::filesystem::path& folder, const std::vect
                             bool overwrite) const {
   const OutputCase& output = problem_.resolved.output;
   std::vector<ContactForce> forces;
-  if (run().motion == LoopKind::Motion::small) forces = forces_of(problem_, motions);
+  if (run().motion == LoopKind::Motion::small) forces = forces_of(scene_, motions);
   const AssemblyState state{
       .assembly = problem_.assembly, .motions = motions, .contact_forces = forces, .stresses = {}};
   if (output.csv) write_disc_csv(folder / "discs.csv", state, overwrite);

@@ -102,6 +102,7 @@ GrainRun::GrainRun(GrainCase resolved)
       simulation_(simulation_of(case_, step_.step)) {
   check_events(case_, step_.step);
   if (case_.measures) measures_.emplace(case_, simulation_);
+  frames_.contacts = case_.output.frame_contacts;
   frame_discs_ = discs_of_frames(case_.scene.grains, case_.scene.clumps, frames_);
 }
 

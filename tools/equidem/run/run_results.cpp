@@ -96,6 +96,15 @@ Results dry_run_results(RunJob& job) {
   Results out = job.scene();
   if (plan.steps == 0) return out.append(memory_results(job));
   out.append(step_results(job, plan));
+  if (plan.frame_interval) {
+    const double steps = static_cast<double>(plan.steps);
+    const double frames = 1 + std::floor(std::min(steps, steps * plan.time_step / *plan.frame_interval));
+    const double contacts = plan.frames.contacts ? static_cast<double>(job.simulation().body_contacts().size()) : 0;
+    const double each = bytes_of_frame(static_cast<double>(plan.frame_discs->size()), contacts, plan.frames);
+    out.line("frame files")
+        .add("frame_bytes", "", each, "a frame with the contacts of the start", {Shown::bytes})
+        .add("frames_bytes", "", frames * each, "in all", {Shown::bytes});
+  }
   return out.line("steps")
       .add("steps", "", plan.steps, "", {Shown::count})
       .add("estimated_seconds", "about", estimate_seconds(job.simulation(), plan), "s with these threads, output aside",

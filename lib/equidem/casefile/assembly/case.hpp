@@ -67,6 +67,7 @@ struct OutputCase {
   bool vtk = true;
   bool picture = true;
   std::optional<double> frame_interval;  ///< s, of a run
+  bool frame_contacts = true;            ///< in frames: contacts with their forces
   std::optional<double> probe_interval;  ///< s, of the histories of a run
   double checkpoint_interval = 60;       ///< s, wall-clock time
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The motion of an assembly over time: NAME.h5, and beside it NAME.xdmf2, the index that ParaView opens.
+/// The bodies of a run and the forces of their contacts over time: NAME.pvd, which ParaView opens as a series, and a
+/// folder NAME of VTK XML files, which any VTK opens one by one.
 #pragma once
 
 #include <cstdint>
@@ -8,21 +9,20 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/checksum.hpp"
 #include "equidem/output/files/checkpoint.hpp"
-#include "equidem/output/files/hdf5.hpp"
-#include "equidem/output/files/open_file.hpp"
 
 namespace equidem {
 
-/// A constant number of every disc: `discs/NAME` (n).
+/// A constant number of every disc.
 struct DiscNumbers {
   std::string name;  ///< of letters and '_'
-  std::string unit;  ///< empty: none
   std::vector<double> values;
 };
 
@@ -33,31 +33,32 @@ struct FramePart {
 };
 
 struct FrameOptions {
-  /// Frames to reserve space for, >= 1. If there are more, the file is copied into one of twice the size.
-  std::int64_t expected = 100;
   bool overwrite = false;  ///< files of that name
-  /// Travelling bodies: write positions and angles, as `position` and `angle`, in place of displacements and rotations;
-  /// ParaView shows the points at their positions.
+  /// Travelling bodies: points at their positions and an array `angle`, in place of points at the start with
+  /// displacement and rotation.
   bool travelling = false;
+  bool contacts = true;                        ///< write contacts
   std::optional<FileMark> continue_from = {};  ///< continue the files of an earlier run behind this mark
   std::vector<DiscNumbers> of_discs = {};      ///< beside the radius
   std::vector<FramePart> parts = {};           ///< of each disc; empty: every disc is a body
 };
 
-/// Writes frames. NAME.h5 (schema "equidem-frames/1"), n discs, m contacts, room for K frames, behind 512 bytes of text
-/// that name the places of the arrays for a run that goes on (the HDF5 library may crash on a damaged file):
-///   discs/centre (n, 2) and discs/radius (n), m; discs/number (n); what FrameOptions::of_discs adds; contacts/discs
-///   (m, 2), contacts/shift (m, 2), contacts/lever (m, 2), m; period (2), m, where there is one; frames (1): how many
-/// are finished; the arrays of the others are undefined, and their times are NaN; time (K), s; step (K); displacement
-///   (K, n, 3), m; rotation (K, n), rad; velocity (K, n, 3), m/s; spin (K, n), rad/s; the third component of vectors is
-/// zero, as ParaView requires 3-vectors. Killed at any moment the file opens and holds all finished frames. NAME.xdmf2
-/// is replaced at once by one that lists the new frame too; past 200 frames that is done once in every 200th part of
-/// them, and in finish().
+/// Bytes of a frame, about.
+double bytes_of_frame(double discs, double contacts, const FrameOptions& options);
+
+/// Writes frames, two files each, SI units, Float64:
+///   NAME/discs_STEP.vtp     a point for each disc: radius, what FrameOptions::of_discs adds, velocity, spin and
+///                           displacement, rotation, or angle
+///   NAME/contacts_STEP.vtp  contacts_text (vtk.hpp): a line for each contact, with its force
+/// The step has at least nine digits, and both files hold the time (PolyData::text). NAME.pvd lists the finished
+/// frames with their times. Every file is written to a temporary file and then renamed: killed at any moment, all that
+/// is listed is whole. Past 200 frames the list is written once in every 200th part of them, in sync() and in finish().
 class FrameWriter {
  public:
+  /// Removes the frames of an earlier run that are not continued.
   /// \param assembly must outlive the writer
   /// \throws Error (bad_input) where a file exists and neither `overwrite` nor `continue_from` is set, where it cannot
-  ///         be written, or if the file to continue does not contain the frames of the mark
+  ///         be written, or if the files to continue do not contain the frames of the mark: then no file is changed
   FrameWriter(const std::filesystem::path& folder, const std::string& name, const Assembly& assembly,
               const FrameOptions& options);
 
@@ -65,42 +66,40 @@ class FrameWriter {
   /// \param step greater than last_step()
   /// \param time s
   /// \param motions, velocities per body; m and rad, m/s and rad/s
+  /// \param contacts between those bodies, and with walls
   /// \param regular false: the frame is the last one, and a longer run has none at its step
   /// \throws Error (computation_failed) where the disk is full; earlier frames stay
   void append(std::int64_t step, double time, std::span<const DiscMotion> motions,
-              std::span<const DiscMotion> velocities, bool regular = true);
-  /// Sync all frames to disk, as required before a checkpoint refers to them.
-  void sync() { file_->sync(); }
-  /// Release the space of unused frames, and list all frames in NAME.xdmf2.
-  void finish();
+              std::span<const DiscMotion> velocities, std::span<const BodyContact> contacts, bool regular = true);
+  /// List all frames and sync them to disk, as required before a checkpoint refers to them.
+  void sync();
+  /// List all frames in NAME.pvd.
+  void finish() const { write_index(); }
 
-  /// Name, number and checksum of the frames without a last one that is not regular.
+  /// Name of the list, number and checksum of the frames without a last one that is not regular.
   [[nodiscard]] FileMark mark() const { return marked_; }
-  [[nodiscard]] std::int64_t frames() const { return static_cast<std::int64_t>(times_.size()); }
+  [[nodiscard]] std::int64_t frames() const { return static_cast<std::int64_t>(steps_.size()); }
   /// Step of the last frame; -1: none.
   [[nodiscard]] std::int64_t last_step() const { return steps_.empty() ? -1 : steps_.back(); }
 
  private:
-  void go_on(const FileMark& mark, std::int64_t expected);
-  void resize(std::int64_t room);
-  [[nodiscard]] Hdf5Layout layout_of(std::int64_t room) const;
-  void write_static(OpenFile& file, const Hdf5Layout& layout) const;
-  void write_field(const std::string& translation, const std::string& rotation, std::span<const DiscMotion> values);
-  void list_frame(std::size_t frame);
+  [[nodiscard]] std::string file_name(std::string_view what, std::int64_t step) const;
+  [[nodiscard]] std::vector<std::string> file_names(std::int64_t step) const;
+  [[nodiscard]] std::vector<std::filesystem::path> other_files() const;
+  void go_on(const FileMark& mark);
+  void write(const std::string& name, const std::string& text);
+  void list_frame(std::int64_t step, const std::string& time);
   void write_index() const;
 
-  std::filesystem::path path_, index_path_;
+  std::filesystem::path folder_;
+  std::string name_;
   const Assembly& assembly_;
-  bool travelling_;
-  std::vector<DiscNumbers> of_discs_;
-  std::vector<FramePart> parts_;
-  Hdf5Layout layout_;
-  std::optional<OpenFile> file_;
-  std::vector<double> times_;
+  FrameOptions options_;
   std::vector<std::int64_t> steps_;
-  Checksum sum_;       ///< of the discs, then of step, time and numbers of each frame
-  FileMark marked_;    ///< of the regular frames
-  std::string index_;  ///< of the finished frames, without head and tail
+  Checksum sum_;                                 ///< of the discs, then of list and files of each frame
+  FileMark marked_;                              ///< of the regular frames
+  std::string index_;                            ///< of the finished frames, without head and tail
+  std::vector<std::filesystem::path> unsynced_;  ///< written since the last sync()
 };
 
 }  // namespace equidem

@@ -27,14 +27,14 @@ Assembly discs_of_frames(std::span<const Grain> grains, std::span<const Clump> c
     }
   }
   if (any(GrainShape::ellipse)) {
-    options.of_discs.push_back({"short_half_axis", "m", start.radii});
+    options.of_discs.push_back({"short_half_axis", start.radii});
     DiscNumbers& axes = options.of_discs.back();
     for (std::size_t k = 0; k < options.parts.size(); ++k)
       if (const Grain& grain = grains[options.parts[k].body]; grain.shape() == GrainShape::ellipse)
         axes.values[k] = grain.short_half_axis;
   }
   if (any(GrainShape::clump)) {
-    options.of_discs.push_back({"body", "", {}});
+    options.of_discs.push_back({"body", {}});
     DiscNumbers& bodies = options.of_discs.back();
     for (const FramePart& part : options.parts) bodies.values.push_back(static_cast<double>(part.body));
   }

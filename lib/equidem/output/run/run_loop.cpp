@@ -84,12 +84,9 @@ class RunLoop {
                                     .continue_from = mark_of("history.csv")});
     }
     if (plan_.frame_interval) {
-      const double steps = static_cast<double>(plan_.steps);
-      const double count = std::min(steps, steps * plan_.time_step / *plan_.frame_interval);
       FrameOptions options = plan_.frames;
-      options.expected = static_cast<std::int64_t>(count) + 2;
       options.overwrite = files.overwrite;
-      options.continue_from = mark_of("frames.h5");
+      options.continue_from = mark_of("frames.pvd");
       frames_.emplace(*files.folder, "frames", *plan_.frame_discs, options);
     }
   }
@@ -154,7 +151,10 @@ class RunLoop {
       auto& places = result_.record.paths.emplace_back();
       for (const DiscMotion& motion : motions) places.push_back(motion.u);
     }
-    if (frame) frames_->append(step, time, motions, velocities, regular_frame);
+    if (frame) {
+      const auto contacts = plan_.frames.contacts ? simulation_.body_contacts() : std::vector<BodyContact>();
+      frames_->append(step, time, motions, velocities, contacts, regular_frame);
+    }
     if (row) history_->record(step, time, motions, velocities, ledger, regular_row);
   }
 

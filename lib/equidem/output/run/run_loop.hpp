@@ -38,7 +38,7 @@ struct RunPlan {
   std::optional<double> frame_interval = {}, probe_interval = {};  ///< s of the run; none: no frames, no history
   double checkpoint_interval = 60;                                 ///< s of wall-clock time
   const Assembly* frame_discs = nullptr;                           ///< discs of the frames at the start
-  FrameOptions frames = {};                                        ///< options of frames, except room and files
+  FrameOptions frames = {};                                        ///< options of frames, except files
   std::vector<Probe> probes = {};
   Body body = Body::disc;      ///< unit of energies
   std::int64_t samples = 200;  ///< of the energies, at least; at most twice as many
@@ -62,7 +62,7 @@ struct RunResult {
   RunRecord record;             ///< from the start of the run
 };
 
-/// Perform all steps. Writes frames.h5, history.csv and run.checkpoint.h5 on their schedules; progress on stderr. A
+/// Perform all steps. Writes frames.pvd, history.csv and run.checkpoint.h5 on their schedules; progress on stderr. A
 /// checkpoint is also written at an interrupt and when a step fails. A run that is resumed writes the same files as one
 /// that was never stopped.
 /// \throws Error as the writers, the watch, advance() and stop_if_interrupted; (bad_input) where a checkpoint lies past

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A contact with its force, as simulations tell it and files hold it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/frame.hpp"
+#include "equidem/core/vector.hpp"
+
+namespace equidem {
+
+/// A contact of two bodies, or of a body and a wall. Forces are per metre of depth, but for spheres: N/m or N.
+struct BodyContact {
+  std::int32_t i = 0;
+  std::int32_t j = 0;           ///< negative: wall ~j
+  Vec2 arm;                     ///< from the centre of i to the contact point, m
+  Vec2 shift = {};              ///< i touches the image of j at the place of j + shift, m; {}: no period between them
+  Vec2 force = {};              ///< on i; its negative acts on j
+  double normal_force = 0;      ///< bonded discs: tension positive; colliding bodies: compression positive
+  double tangential_force = 0;  ///< along s = (-n_y, n_x), n the normal from i; bonded: on i, colliding: on j
+};
+
+/// A contact of an assembly by its number, at the places of before the motion.
+inline BodyContact bonded_contact(const Assembly& assembly, std::size_t contact, const ContactForce& force) {
+  const Contact& c = assembly.contacts[contact];
+  const ContactFrame frame = frame_of(assembly, contact);
+  const Vec2 period = assembly.period.value_or(Vec2{});
+  return {.i = c.i,
+          .j = c.j,
+          .arm = arm_of_i(frame),
+          .shift = {c.shift_x * period.x, c.shift_y * period.y},
+          .force = force_on_i(frame, force),
+          .normal_force = force.normal,
+          .tangential_force = force.tangential};
+}
+
+}  // namespace equidem
