@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <string>
 #include <tuple>
 
@@ -65,6 +66,16 @@ void require_same(const Assembly& a, const Assembly& b) {
     CHECK(std::tie(p.i, p.j, p.shift_x, p.shift_y) == std::tie(q.i, q.j, q.shift_x, q.shift_y));
     CHECK(std::tie(p.lever_i, p.lever_j) == std::tie(q.lever_i, q.lever_j));
   }
+  REQUIRE(a.box.has_value() == b.box.has_value());
+  if (a.box) CHECK((a.box->low == b.box->low && a.box->high == b.box->high));
+  REQUIRE(a.contact_arms.size() == b.contact_arms.size());
+  for (std::size_t k = 0; k < a.contact_arms.size(); ++k) {
+    const ContactArms &p = a.contact_arms[k], &q = b.contact_arms[k];
+    CHECK((p.normal == q.normal && p.offset_i == q.offset_i && p.offset_j == q.offset_j));
+  }
+  REQUIRE(a.sections.size() == b.sections.size());
+  for (std::size_t d = 0; d < a.sections.size(); ++d)
+    CHECK((a.sections[d].area == b.sections[d].area && a.sections[d].polar_moment == b.sections[d].polar_moment));
   CHECK(a.contact_kN == b.contact_kN);
   CHECK(a.contact_kT == b.contact_kT);
   REQUIRE(a.groups.size() == b.groups.size());
@@ -83,12 +94,25 @@ TEST_CASE("files_read_back_to_the_same_bits") {
                                   .points = PointProcess::uniform,
                                   .radii = {.smallest = 0.003, .largest = 0.007},
                                   .periodic = periodic});
+  if (!periodic) a.centres[0].x = -0.0;
   for (std::size_t k = 0; k < a.contacts.size(); ++k) {
     a.contact_kN.push_back(1e9 / (1.0 + static_cast<double>(k)));
     a.contact_kT.push_back(-1e-300 * static_cast<double>(k));
   }
   a.groups["chosen \"few\""] = {.discs = {3, 17}, .tributary_lengths = {}};
-  if (!periodic) a.centres[0].x = -0.0;
+  a.groups["loaded"] = {.discs = {2, 5}, .tributary_lengths = {1e-3 / 3, 0.1}};
+  if (GENERATE(true, false)) {  // bodies that are no discs, with contacts off the lines of centres
+    for (const double radius : a.radii) {
+      const double square = radius * radius;
+      a.sections.push_back({std::numbers::pi * square, 1.7 * square * square});
+    }
+    for (Contact& contact : a.contacts) {
+      const Vec2 l = a.branch(contact), n = (l + 0.1 * perpendicular(l)) / norm(l + 0.1 * perpendicular(l));
+      contact.lever_i = dot(l, n) / 3, contact.lever_j = dot(l, n) - dot(l, n) / 3;
+      const double across = dot(l, perpendicular(n));
+      a.contact_arms.push_back({n, across / 7, across - across / 7});
+    }
+  }
   const TemporaryFolder folder;
 
   write_assembly(folder / "sub/a.json", a, false);
