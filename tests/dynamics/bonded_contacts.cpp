@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/dynamics/bonded_contacts.hpp"
-
 #include <cmath>
 #include <vector>
 

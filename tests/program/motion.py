@@ -54,10 +54,15 @@ def poly_data(path):
     return {**arrays, "points": vtk_to_numpy(data.GetPoints().GetData())}
 
 
-def frames_of(out):
-    """(time, step, discs, contacts) of each frame that frames.pvd lists; contacts is None where they are not written."""
+def frames_of(out, last=0):
+    """(time, step, discs, contacts) of each frame that frames.pvd lists, or of the last ones; contacts is None where they are
+    not written."""
     frames = []
-    for entry in xml.etree.ElementTree.parse(out / "frames.pvd").getroot().iter("DataSet"):
+    entries = list(xml.etree.ElementTree.parse(out / "frames.pvd").getroot().iter("DataSet"))
+    times = sorted({float(entry.get("timestep")) for entry in entries})[-last:]
+    for entry in entries:
+        if float(entry.get("timestep")) < times[0]:
+            continue
         data = poly_data(out / entry.get("file"))
         if entry.get("part") == "0":
             frames.append([float(entry.get("timestep")), int(entry.get("file").split("_")[-1][:-4]), data, None])

@@ -64,8 +64,8 @@ class Page(RunTest):
             '[run]\nduration = 1.0e-3\n'))
         self.assertEqual(result["grains"], 4)
         self.run_verb("pack", self.case(
-            f'[packing]\ngrains = 20\nmethod = "rejection"\nbox = [0.1, 0.1]\ndistribution = "sieve_curve"\n'
-            f'sieve_curve = "{self.example("sieves.csv")}"\n'))
+            '[springs]\nkN = 1.0e8\nkT = 5.0e7\n[packing]\ngrains = 20\nmethod = "rejection"\nbox = [0.1, 0.1]\n[packing.radii]\n'
+            f'distribution = "sieve_curve"\npath = "{self.example("sieves.csv")}"\n'))
 
     def run_verb(self, verb, case, *options):
         return parse_json(self.check_done(equidem(verb, case, "--threads", 1, "--json", "-", *options)).stdout)
@@ -136,7 +136,8 @@ class ReadBack(RunTest):
     @needs_vtk
     def test_what_pack_and_run_write_is_where_a_run_starts(self):
         for pack, options in (("pack_ellipses", ("--set", "packing.grains=40")),
-                              ("pack_pairs", ("--set", "packing.grains=40"))):
+                              ("pack_pairs", ("--set", "packing.grains=40", "--set",
+                                               "packing.shape.kind=bonded_pair"))):
             with self.subTest(case=pack):
                 first, second, third = (self.folder / f"{pack}_{k}" for k in "123")
                 self.check_done(equidem("pack", CASES / f"{pack}.toml", "--out", first, *options, *NO_PICTURE))

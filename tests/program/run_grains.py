@@ -122,9 +122,9 @@ class Files(GrainTest):
     @needs_vtk
     def test_contact_forces_in_frames_add_up_to_mass_times_acceleration(self):
         out = self.folder / "out"
-        result = self.run_case(PISTON, "--out", out, "--set", "run.duration=0.06", "--set", "output.picture=false",
+        result = self.run_case(PISTON, "--out", out, "--set", "run.duration=0.35", "--set", "output.picture=false",
                                "--set", "output.frame_interval=1e-30")
-        frames, grains = frames_of(out), rows_of(out / "grains.csv")
+        frames, grains = frames_of(out, 200), rows_of(out / "grains.csv")
         mass = numpy.array([math.pi * float(g["density_kg_per_m3"]) * float(g["radius_m"]) ** 2 for g in grains])[:, None]
         compared = 0
         partners = [{k: sorted((i, j) for i, j in zip(c["i"], c["j"]) if k in (i, j)) for k in range(len(grains))}

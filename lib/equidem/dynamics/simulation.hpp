@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/frame.hpp"
@@ -78,6 +79,11 @@ struct Scene : AnyScene {
   std::vector<TimedLoad> loads = {};
   std::vector<InitialVelocity> velocities = {};
 };
+
+/// All bonds in the order of the assembly, then the walls that push, with the forces of their springs on discs
+/// displaced by `motions`; arms and shifts are those of the start.
+std::vector<BodyContact> bonded_contacts(const Scene& scene, LoopKind::Motion motion,
+                                         const std::vector<DiscMotion>& motions, double time);
 
 /// Resultant force and moment on a disc.
 struct DiscForce {

@@ -103,7 +103,7 @@ Results dry_run_results(RunJob& job) {
     const double each = bytes_of_frame(static_cast<double>(plan.frame_discs->size()), contacts, plan.frames);
     out.line("frame files")
         .add("frame_bytes", "", each, "a frame with the contacts of the start", {Shown::bytes})
-        .add("frames_bytes", "", frames * each, "in all", {Shown::bytes});
+        .add("all_frames_bytes", "", frames * each, "in all", {Shown::bytes});
   }
   return out.line("steps")
       .add("steps", "", plan.steps, "", {Shown::count})

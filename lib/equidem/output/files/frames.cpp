@@ -141,9 +141,7 @@ void FrameWriter::append(std::int64_t step, double time, std::span<const DiscMot
 void FrameWriter::sync() {
   write_index();
   unsynced_.push_back(folder_ / (name_ + ".pvd"));
-  for (const auto& path : unsynced_) OpenFile(path, OpenFile::Mode::update).sync();
-  sync_folder_of(unsynced_.back());
-  sync_folder_of(folder_ / name_ / "frame");
+  sync_files(unsynced_);
   unsynced_.clear();
 }
 
@@ -202,7 +200,8 @@ void FrameWriter::go_on(const FileMark& mark) {
     rest.remove_prefix(index_.size() - before);
   }
   if (sum_.value() != mark.checksum)
-    cannot_add_frames(path, "its files were altered since they were written, or the discs or frame_contacts are others");
+    cannot_add_frames(path,
+                      "its files were altered since they were written, or the discs or frame_contacts are others");
   marked_ = mark;
 }
 

@@ -49,8 +49,6 @@ Handle number_type(Hdf5Number number, std::uint64_t length) {
       return {H5Tcopy(H5T_NATIVE_DOUBLE), H5Tclose};
     case Hdf5Number::int64:
       return {H5Tcopy(H5T_NATIVE_INT64), H5Tclose};
-    case Hdf5Number::int32:
-      return {H5Tcopy(H5T_NATIVE_INT32), H5Tclose};
     case Hdf5Number::text:
       break;
   }
@@ -84,7 +82,6 @@ std::optional<std::uint64_t> create_array(hid_t file, const Hdf5Array& array) {
   H5Pset_obj_track_times(creation, false);
   const Handle data(H5Dcreate2(file, array.name.c_str(), type, space, links, creation, H5P_DEFAULT), H5Dclose);
   if (data.failed()) return std::nullopt;
-  if (!array.unit.empty() && !write_attribute(data, "unit", array.unit)) return std::nullopt;
   if (array.bytes() == 0) return 0;
   const haddr_t offset = H5Dget_offset(data);
   if (offset == HADDR_UNDEF) return std::nullopt;
@@ -124,7 +121,6 @@ std::map<std::string, std::string> read_text_attributes(hid_t file) {
 std::optional<Hdf5Number> number_of(hid_t type) {
   if (H5Tequal(type, H5T_NATIVE_DOUBLE) > 0) return Hdf5Number::float64;
   if (H5Tequal(type, H5T_NATIVE_INT64) > 0) return Hdf5Number::int64;
-  if (H5Tequal(type, H5T_NATIVE_INT32) > 0) return Hdf5Number::int32;
   if (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0) return Hdf5Number::text;
   return std::nullopt;
 }
@@ -158,14 +154,7 @@ std::uint64_t Hdf5Array::size() const {
 }
 
 std::uint64_t Hdf5Array::bytes() const {
-  switch (number) {
-    case Hdf5Number::text:
-      return size();
-    case Hdf5Number::int32:
-      return 4 * size();
-    default:
-      return 8 * size();
-  }
+  return number == Hdf5Number::text ? size() : 8 * size();
 }
 
 const Hdf5Array& Hdf5Layout::operator[](const std::string& name) const {

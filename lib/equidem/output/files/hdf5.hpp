@@ -14,14 +14,13 @@
 
 namespace equidem {
 
-enum class Hdf5Number { float64, int64, int32, text };
+enum class Hdf5Number { float64, int64, text };
 
 /// An array of an HDF5 file, in the byte order of this machine, rows together.
 struct Hdf5Array {
-  std::string name;  ///< "discs/radius"
+  std::string name;  ///< "energies"
   Hdf5Number number = Hdf5Number::float64;
   std::vector<std::uint64_t> shape;  ///< text: its one length in bytes
-  std::string unit = {};             ///< kept as the attribute "unit" where not empty
   std::uint64_t offset = 0;          ///< offset of its first byte in the file
 
   [[nodiscard]] std::uint64_t size() const;  ///< numbers

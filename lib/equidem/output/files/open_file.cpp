@@ -83,6 +83,10 @@ void OpenFile::sync() {
   if (fsync(descriptor_) != 0) cannot_write(path_, std::strerror(errno));
 }
 
+void OpenFile::sync_file_system() {
+  if (syncfs(descriptor_) != 0) cannot_write(path_, std::strerror(errno));
+}
+
 Replacement::Replacement(std::filesystem::path path) : path_(std::move(path)), part_(path_.string() + ".part") {}
 
 Replacement::~Replacement() {
@@ -100,6 +104,15 @@ void Replacement::commit() {
 void sync_folder_of(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   OpenFile(folder, OpenFile::Mode::read).sync();
+}
+
+void sync_files(const std::vector<std::filesystem::path>& paths) {
+  constexpr std::size_t few = 4;
+  if (paths.size() > few) return OpenFile(paths.back(), OpenFile::Mode::read).sync_file_system();
+  for (const auto& path : paths) {
+    OpenFile(path, OpenFile::Mode::read).sync();
+    sync_folder_of(path);
+  }
 }
 
 }  // namespace equidem

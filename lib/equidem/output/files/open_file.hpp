@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <vector>
 
 namespace equidem {
 
@@ -36,6 +37,8 @@ class OpenFile {
   void truncate(std::uint64_t bytes);
   /// Sync all written data to disk.
   void sync();
+  /// Sync the whole file system.
+  void sync_file_system();
 
  private:
   std::filesystem::path path_;
@@ -62,5 +65,8 @@ class Replacement {
 
 /// Sync the entries of the folder of `path` to disk.
 void sync_folder_of(const std::filesystem::path& path);
+/// Sync many files of one file system to disk, with one call for all that was written to it; each alone takes about
+/// 10 ms.
+void sync_files(const std::vector<std::filesystem::path>& paths);
 
 }  // namespace equidem
