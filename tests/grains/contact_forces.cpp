@@ -25,7 +25,7 @@ Partners partners_of(const std::vector<BodyContact>& contacts, std::size_t bodie
 
 }  // namespace
 
-// A contact that ended within the step is not told, but it pushed: only bodies that kept their contacts are compared.
+// A contact that ended within the step is not listed, but it pushed: only bodies that kept their contacts are compared.
 TEST_CASE("contact_forces_of_a_step_add_up_to_what_it_changed") {
   const bool shapes = GENERATE(false, true);
   const NormalLaw law = GENERATE(NormalLaw::exact_flow, NormalLaw::linear_dashpot, NormalLaw::hertz_dashpot);

@@ -142,7 +142,7 @@ TEST_CASE("contacts_that_come_and_go_are_lines_from_centre_to_centre_or_wall") {
   CHECK(network.count("displacement") == 0);
 }
 
-TEST_CASE("frames_are_as_large_as_is_said") {
+TEST_CASE("the_estimated_size_of_a_frame_is_its_size") {
   const Assembly assembly = hexagonal_lattice({.columns = 60, .rows = 50});
   for (const bool with_contacts : {true, false}) {
     const TemporaryFolder folder;
@@ -152,9 +152,9 @@ TEST_CASE("frames_are_as_large_as_is_said") {
     double bytes = 0;
     for (const auto& file : std::filesystem::directory_iterator(folder / "run"))
       bytes += static_cast<double>(file.file_size());
-    const double told =
+    const double estimated =
         bytes_of_frame(static_cast<double>(assembly.size()), static_cast<double>(assembly.contacts.size()), options);
-    CHECK(bytes == Approx(told).epsilon(0.02));
+    CHECK(bytes == Approx(estimated).epsilon(0.02));
     CHECK(files_in(folder / "run") == (with_contacts ? 2 : 1));
   }
 }

@@ -132,7 +132,7 @@ class Files(GrainTest):
         for before, after, had, have in zip(frames, frames[1:], partners, partners[1:]):
             change = mass * (after[2]["velocity"] - before[2]["velocity"])[:, :2] / result["time_step"]
             error = numpy.abs(sums_of_forces(after[3], len(grains)) + mass * [0, -9.81] - change).max(axis=1)
-            same = [k for k in had if had[k] and had[k] == have[k]]  # a contact that ended within the step is not told
+            same = [k for k in had if had[k] and had[k] == have[k]]  # a contact that ended within the step is not listed
             compared += len(same)
             self.assertLess(error[same].max(initial=0), 1e-8 * 9.81 * mass.max())
         self.assertGreater(compared, 1000)

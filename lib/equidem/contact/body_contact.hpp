@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A contact with its force, as simulations tell it and files hold it.
+/// A contact with its force: a result of simulations, written to files.
 #pragma once
 
 #include <cstddef>

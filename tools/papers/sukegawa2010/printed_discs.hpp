@@ -41,7 +41,7 @@ class PrintedDiscs final : public AnySimulation {
   [[nodiscard]] std::int64_t step() const override { return step_; }
   [[nodiscard]] std::vector<DiscMotion> motions() const override;
   [[nodiscard]] std::vector<DiscMotion> velocities() const override;
-  [[nodiscard]] std::vector<BodyContact> body_contacts() const override { return {}; }  ///< not told: see contacts()
+  [[nodiscard]] std::vector<BodyContact> body_contacts() const override { return {}; }  ///< none: see contacts()
   [[nodiscard]] EnergyLedger energy() const override;                                   ///< kinetic and potential alone
   [[nodiscard]] double bytes_per_body() const override;
   [[nodiscard]] SavedState save() const override;
