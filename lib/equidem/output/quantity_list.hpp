@@ -150,7 +150,7 @@ inline constexpr Quantity quantities[] = {
     {"time_step_ratio", "", "time step over the critical one"},
     {"estimated_seconds", "s", "estimated wall-clock time", true},
     {"frame_bytes", "B", "size of a frame, about"},
-    {"frames_bytes", "B", "size of all frames, about"},
+    {"all_frames_bytes", "B", "size of all frames, about"},
     {"particle_steps_per_second", "1/s", "steps of one body per second of wall-clock time", true},
     {"bytes_per_disc", "B", "memory of the loop for each disc", true},
     {"bytes_per_grain", "B", "memory of the loop for each body", true},
