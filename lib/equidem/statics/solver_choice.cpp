@@ -15,6 +15,7 @@
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
 #include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
+#include "equidem/linear/multigrid/multigrid_solver.hpp"
 #include "equidem/statics/motion_description.hpp"
 
 namespace equidem {
@@ -124,11 +125,12 @@ std::unique_ptr<Factorization> judged(std::unique_ptr<Factorization> factor, con
 
 std::unique_ptr<Factorization> by_back_end(SolverMethod method, const System& system, Mechanisms mechanisms) {
   const BackEnd& back_end = entry_of(method).back_end;
-  if (back_end.factorize == nullptr) return multifrontal(system, mechanisms);
   if (back_end.definite_only && system.springs.any_negative()) {
     bad_input(fmt::format("method '{}' cannot solve this case", to_string(method)),
               "some kT is negative, and the method needs a positive definite matrix", "Use method = \"auto\"");
   }
+  if (back_end.iterative) return multigrid_solver(system.k, system.springs, system.unknowns);
+  if (back_end.factorize == nullptr) return multifrontal(system, mechanisms);
   return judged(back_end.factorize(system.k, system.unknowns, *system.symbolic), system, mechanisms);
 }
 
@@ -158,6 +160,14 @@ SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& u
   return result;
 }
 
+SolveEstimate estimate_iterations(const Assembly& assembly, const DegreesOfFreedom& unknowns) {
+  SolveEstimate result;
+  result.unknowns = unknowns.unknowns;
+  result.peak_bytes =
+      bytes_of_multigrid(static_cast<double>(assembly.size()), static_cast<double>(assembly.contacts.size()));
+  return result;
+}
+
 void check_memory(const SolveEstimate& estimate, double memory_limit) {
   // OpenBLAS maps one for each thread that calls it, and tries for ever where the limit of the process forbids it.
   constexpr double blas_buffer = 128.0 * (1 << 20);
@@ -173,7 +183,7 @@ std::unique_ptr<Factorization> factorize(const System& system, const SolverOptio
                                          StageTimes& times) {
   const Stopwatch watch;
   std::unique_ptr<Factorization> factor = by_back_end(options.method, system, mechanisms);
-  times.add("factorize", watch.seconds());
+  times.add(entry_of(options.method).back_end.iterative ? "grids" : "factorize", watch.seconds());
   return factor;
 }
 
