@@ -13,6 +13,8 @@
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
+#include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
+#include "equidem/linear/rigid_growth.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 
 #include "support/assemblies.hpp"
@@ -89,7 +91,7 @@ TEST_CASE("multigrid_agrees_with_elimination_on_every_kind_of_assembly") {
     const auto solver = system.multigrid({.direct_below = 0});
     const double off = difference(system.solved(*solver, load), system.solved(*system.elimination(), load));
     CAPTURE(scene.name, off, solver->report().iterations);
-    CHECK(off < 1e-6);
+    CHECK(off < 3e-5);
   }
 }
 
@@ -102,7 +104,7 @@ TEST_CASE("iterations_stay_flat_from_1e3_to_1e5_discs") {
     }
     CAPTURE(random, iterations);
     CHECK(*std::max_element(iterations.begin(), iterations.end()) <= iterations[0] + 3);
-    CHECK(iterations.back() <= 13);
+    CHECK(iterations.back() <= 11);
   }
 }
 
@@ -125,12 +127,12 @@ TEST_CASE("a_wrong_coarse_operator_costs_only_iterations") {
   const std::vector<double> load = random_vector(system.unknowns.held.size(), 6);
   const std::vector<double> wanted = system.solved(*system.elimination(), load);
   const auto right = system.multigrid();
-  CHECK(difference(system.solved(*right, load), wanted) < 1e-6);
+  CHECK(difference(system.solved(*right, load), wanted) < 3e-5);
   for (const double factor : {0.2, 5.0}) {
     const auto wrong = system.multigrid({.coarse_factor = factor});
     const double off = difference(system.solved(*wrong, load), wanted);
     CAPTURE(factor, off, right->report().iterations, wrong->report().iterations);
-    CHECK(off < 1e-6);
+    CHECK(off < 3e-5);
     CHECK(wrong->report().iterations > right->report().iterations);
   }
 }
@@ -143,7 +145,27 @@ TEST_CASE("spacing_and_smoothing_change_iterations_but_not_the_answer") {
   for (const multigrid::CycleOptions& options :
        {multigrid::CycleOptions{.spacing = 1}, {.spacing = 6}, {.degree = 1, .range = 3}, {.degree = 5, .range = 20}}) {
     CAPTURE(options.spacing, options.degree);
-    CHECK(difference(system.solved(*system.multigrid(options), load), wanted) < 1e-6);
+    CHECK(difference(system.solved(*system.multigrid(options), load), wanted) < 3e-5);
+  }
+}
+
+TEST_CASE("networks_that_grow_rigid_have_no_motions_without_energy_but_rigid_ones") {
+  for (const AssemblyKind& kind : assembly_kinds()) {
+    for (const double ratio : {0.5, 0.0}) {
+      const ContactSprings springs({1e9, ratio * 1e9});
+      const ContactGraph graph(kind.assembly);
+      const int per_disc = derive_effects(kind.assembly, springs, Rotation::from_scene).unknowns_per_disc();
+      const bool rigid = grows_rigid(kind.assembly, graph, springs, per_disc);
+      const DegreesOfFreedom unknowns = all_free(kind.assembly, per_disc);
+      const StiffnessMatrix matrix = assemble_stiffness(kind.assembly, graph, springs, unknowns);
+      const auto factor = multifrontal_ldlt(
+          std::make_shared<const SymbolicFactor>(analyze(dissect(kind.assembly, graph), graph, per_disc)),
+          {matrix, kind.assembly, graph});
+      CAPTURE(kind.name, ratio, per_disc, rigid);
+      if (rigid) CHECK(factor->report().zero_pivots <= (kind.assembly.periodic() ? 2 : 3));  // fewer: round-off
+      if (kind.name.find("hexagonal") == 0) CHECK(rigid);
+      if (kind.name.find("square") == 0) CHECK(!rigid);
+    }
   }
 }
 
@@ -176,7 +198,7 @@ TEST_CASE("springs_of_all_sizes_are_refused_or_solved") {
       off = difference(system.solved(*system.multigrid(), load), system.solved(*system.elimination(), load));
     });
     CAPTURE(decades, refusal.message, off);
-    CHECK((refusal.message.empty() ? off < 1e-5 : refusal.says("method = \"multifrontal\"")));
+    CHECK((refusal.message.empty() ? off < 1e-4 : refusal.says("method = \"multifrontal\"")));
     if (decades == 1) CHECK(refusal.message.empty());
   }
 }

@@ -20,6 +20,7 @@ struct SymbolicFactor;
 struct BackEnd {
   bool definite_only = false;  ///< needs a positive definite matrix: refuses kT < 0
   bool iterative = false;      ///< multigrid_solver: no order of elimination, no factor; mechanisms are refused
+  double good_enough = 1e-15;  ///< relative residual at which refinement ends
   double memory_factor = 1;    ///< estimated peak memory, over that of the multifrontal factorization
   /// Null: our multifrontal factorizations, which also name mechanisms. Others return null where they meet a zero or
   /// (definite_only) negative pivot; K is then factorized by ours.
@@ -57,7 +58,7 @@ struct EnumNames<SolverMethod> {
       {SolverMethod::multigrid,
        "multigrid",
        "conjugate gradients with a multigrid cycle, for large assemblies with kT >= 0",
-       {.definite_only = true, .iterative = true}},
+       {.definite_only = true, .iterative = true, .good_enough = 1e-12}},
   };
 };
 

@@ -99,7 +99,7 @@ struct StiffnessSolver::Refinement {
 
   /// Add the correction by the factorization, and replace it by the new residual.
   void correct(std::span<double> x, int pass) {
-    constexpr double good_enough = 1e-15;
+    const double good_enough = entry_of(solver.options_.method).back_end.good_enough;
     constexpr double slow = 0.05;  // share of the error that a pass leaves
     for (std::size_t k = 0; k < x.size(); ++k) {
       if (solver.unknowns_.held[k] != 0) x[k] = 0;

@@ -7,6 +7,7 @@
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/multigrid/conjugate_gradients.hpp"
+#include "equidem/linear/rigid_growth.hpp"
 
 namespace equidem {
 namespace {
@@ -20,7 +21,7 @@ class MultigridSolver final : public Factorization {
         cycle_(std::make_unique<multigrid::Cycle>(matrix, springs, unknowns, options)) {
     report_.name = "conjugate gradients with multigrid";
     report_.bytes = cycle_->bytes();
-    probe();
+    if (!grows_rigid(matrix.assembly, matrix.graph, springs, unknowns.per_disc)) probe();
   }
 
   void solve(std::span<double> x, int right_hand_sides) const override {
