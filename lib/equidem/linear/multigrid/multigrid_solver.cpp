@@ -83,9 +83,10 @@ std::unique_ptr<Factorization> multigrid_solver(const MatrixOnGraph& matrix, con
 }
 
 double bytes_of_multigrid(double discs, double contacts) {
-  // K in double and in float, the latter with both triangles; a seventh more on the grids; ten vectors in double and
-  // four in float.
-  return discs * (72 + 80 + 240 + 64 + 120) + contacts * (72 + 80 + 8);
+  // Per disc the diagonal of K in double, that of K and its inverse in float, 250 bytes on the grids (whose cells have
+  // matrices of their own while they are set up), four vectors in float and twenty in double; per contact K in double,
+  // in float with both triangles, and its force.
+  return discs * (72 + 72 + 250 + 64 + 480) + contacts * (72 + 80 + 16);
 }
 
 }  // namespace equidem
