@@ -172,11 +172,11 @@ void check_memory(const SolveEstimate& estimate, double memory_limit) {
   // OpenBLAS maps one for each thread that calls it, and tries for ever where the limit of the process forbids it.
   constexpr double blas_buffer = 128.0 * (1 << 20);
   require_address_space(estimate.peak_bytes + blas_buffer * thread_count(),
-                        fmt::format("the factorization of {} unknowns on {} needs about", grouped(estimate.unknowns),
+                        fmt::format("solving for {} unknowns on {} needs about", grouped(estimate.unknowns),
                                     counted(thread_count(), "thread")));
-  require_memory(
-      estimate.peak_bytes, fmt::format("the factorization of {} unknowns needs about", grouped(estimate.unknowns)),
-      "Use fewer discs, restrain rotation, raise the limit, or take a machine with more memory", memory_limit);
+  require_memory(estimate.peak_bytes, fmt::format("solving for {} unknowns needs about", grouped(estimate.unknowns)),
+                 "Use fewer discs, restrain rotation, raise the limit, or take a machine with more memory",
+                 memory_limit);
 }
 
 std::unique_ptr<Factorization> factorize(const System& system, const SolverOptions& options, Mechanisms mechanisms,

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 
 #include "equidem/contact/frame.hpp"
 #include "equidem/contact/linear_spring.hpp"

@@ -35,7 +35,7 @@ class Cycle {
   /// z := an approximation of K^-1 r (over discs x block components; 0 where held), times a constant.
   void apply(std::span<const double> r, std::span<double> z);
   [[nodiscard]] double bytes() const;
-  [[nodiscard]] std::size_t grids() const { return levels_.size() - 1; }
+  [[nodiscard]] std::int64_t grids() const { return static_cast<std::int64_t>(levels_.size()) - 1; }
 
  private:
   struct Level {

@@ -19,7 +19,7 @@ class MultigridSolver final : public Factorization {
       : matrix_(matrix),
         unknowns_(unknowns),
         cycle_(std::make_unique<multigrid::Cycle>(matrix, springs, unknowns, options)) {
-    report_.name = "conjugate gradients with multigrid";
+    report_.name = "conjugate gradients with multigrid on " + counted(cycle_->grids(), "grid");
     report_.bytes = cycle_->bytes();
     if (!grows_rigid(matrix.assembly, matrix.graph, springs, unknowns.per_disc)) probe();
   }
@@ -63,7 +63,7 @@ class MultigridSolver final : public Factorization {
       case multigrid::IterationOutcome::singular:
         break;
     }
-    computation_failed("method 'multigrid' met a motion that costs no energy", "it cannot tell which",
+    computation_failed("method 'multigrid' met a motion that costs no energy", "iterations do not show which",
                        "Use method = \"multifrontal\", which names the motion");
   }
 

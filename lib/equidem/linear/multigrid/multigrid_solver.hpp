@@ -15,9 +15,9 @@ namespace equidem {
 
 /// Each solve brings the residual down to 3e-7 of what it was; refinement brings the rest. Everything that is given
 /// must outlive the result, whose solve one thread may call at a time.
-/// \throws Error (computation_failed) where the network is not known to be rigid (grows_rigid) and iterations on a rough
-///         load, or later those of a solve, do not converge or meet a motion without stiffness; it names the method
-///         that serves
+/// \throws Error (computation_failed), with the method that serves, where the network is not known to be rigid
+///         (grows_rigid) and iterations on a rough load, or later those of a solve, do not converge or meet a motion
+///         without stiffness
 std::unique_ptr<Factorization> multigrid_solver(const MatrixOnGraph& matrix, const ContactSprings& springs,
                                                 const DegreesOfFreedom& unknowns,
                                                 const multigrid::CycleOptions& options = {});

@@ -2,7 +2,6 @@
 #include "equidem/linear/multigrid/transfer.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "equidem/core/threads.hpp"
 
