@@ -181,6 +181,34 @@ TEST_CASE("multigrid_refuses_motions_without_stiffness_that_no_load_drives") {
   CHECK(refusal.says("method = \"multifrontal\""));
 }
 
+TEST_CASE("pieces_far_apart_leave_the_grids_small") {
+  Assembly assembly = hexagonal_lattice({.columns = 15, .rows = 15});
+  const auto discs = static_cast<std::int32_t>(assembly.size());
+  const std::vector<Contact> contacts = assembly.contacts;
+  for (std::int32_t d = 0; d < discs; ++d) {
+    assembly.centres.push_back(assembly.centres[d] + Vec2{2e4, 1e4});
+    assembly.radii.push_back(assembly.radii[d]);
+  }
+  for (Contact c : contacts) {
+    c.i += discs;
+    c.j += discs;
+    assembly.contacts.push_back(c);
+  }
+  std::vector<std::int32_t>& left = assembly.groups["left"].discs;
+  for (std::size_t k = 0, held = left.size(); k < held; ++k) left.push_back(left[k] + discs);
+  const Network network(assembly, half_tangential, left_held);
+  const std::vector<double> load = random_vector(network.unknowns.held.size(), 9);
+  double off = 0, bytes = 0;
+  const Refusal refusal = refusal_of([&] {
+    const auto solver = network.multigrid();
+    bytes = solver->report().bytes;
+    off = difference(network.solved(*solver, load), network.solved(*network.elimination(), load));
+  });
+  CAPTURE(refusal.message, off, bytes);
+  CHECK((refusal.message.empty() ? off < 1e-4 : refusal.says("method = \"multifrontal\"")));
+  CHECK(bytes < 5e6);
+}
+
 TEST_CASE("springs_of_all_sizes_are_refused_or_solved") {
   const Assembly assembly = hexagonal_lattice({.columns = 30, .rows = 30});
   for (const int decades : {1, 2, 4, 10}) {

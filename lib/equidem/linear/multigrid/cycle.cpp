@@ -17,14 +17,19 @@ constexpr std::size_t discs_per_task = 1 << 13;
 Grid grid_over(const Assembly& assembly, double a, double spacing) {
   double sum = 0;
   for (const Contact& contact : assembly.contacts) sum += norm(assembly.branch(contact));
-  const double h = spacing * sum / static_cast<double>(assembly.contacts.size()) / a;
-  if (assembly.period) return {divide(0, assembly.period->x / a, h, true), divide(0, assembly.period->y / a, h, true)};
-  Vec2 low = assembly.centres.front(), high = low;
+  const bool periodic = assembly.periodic();
+  Vec2 low = periodic ? Vec2{} : assembly.centres.front(), high = periodic ? *assembly.period : low;
   for (const Vec2 x : assembly.centres) {
+    if (periodic) break;
     low = {std::min(low.x, x.x), std::min(low.y, x.y)};
     high = {std::max(high.x, x.x), std::max(high.y, x.y)};
   }
-  return {divide(low.x / a, (high.x - low.x) / a, h, false), divide(low.y / a, (high.y - low.y) / a, h, false)};
+  const Vec2 extent = (1 / a) * (high - low);
+  const auto discs = static_cast<double>(assembly.size());
+  // Pieces far apart: no more cells than discs.
+  const double h = std::max({spacing * sum / static_cast<double>(assembly.contacts.size()) / a,
+                             std::sqrt(extent.x) * std::sqrt(extent.y / discs), extent.x / discs, extent.y / discs});
+  return {divide(low.x / a, extent.x, h, periodic), divide(low.y / a, extent.y, h, periodic)};
 }
 
 /// The block of a disc or a contact over `unit`, filled up with zeros, which held components have as well.
