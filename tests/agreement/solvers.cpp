@@ -52,5 +52,9 @@ TEST_CASE("all_solvers_find_the_same_state_of_rest") {
     CHECK(to_cholmod < 1e-10);
     CHECK(supernodal.solver != ours.solver);
     CHECK(supernodal.energy == Approx(ours.energy).epsilon(1e-10));
+    const Equilibrium iterated = solved(scene, SolverMethod::multigrid);
+    const double to_multigrid = difference(scene.assembly(), ours, iterated);
+    CAPTURE(to_multigrid);
+    CHECK(to_multigrid < 1e-10);
   }
 }

@@ -185,14 +185,14 @@ TEST_CASE("mechanisms_are_refused_whatever_the_solver_and_the_sign_of_kT") {
 }
 
 TEST_CASE("solver_methods_have_names_and_refuse_what_they_cannot_do") {
-  for (const SolverMethod method :
-       {SolverMethod::automatic, SolverMethod::multifrontal, SolverMethod::cholmod, SolverMethod::umfpack}) {
+  for (const SolverMethod method : {SolverMethod::automatic, SolverMethod::multifrontal, SolverMethod::cholmod,
+                                    SolverMethod::umfpack, SolverMethod::multigrid}) {
     CHECK(enum_from<SolverMethod>(to_string(method)) == method);
   }
   const Refusal unknown = refusal_of([] { static_cast<void>(enum_from<SolverMethod>("lapack")); });
   CAPTURE(unknown.message);
   CHECK(unknown.says("unknown solver method 'lapack'"));
-  CHECK(unknown.says("\"auto\", \"multifrontal\", \"cholmod\" or \"umfpack\""));
+  CHECK(unknown.says("\"auto\", \"multifrontal\", \"cholmod\", \"umfpack\" or \"multigrid\""));
   EquilibriumOptions options;
   options.solver.method = SolverMethod::cholmod;
   check_refused(small_block(), {1e9, -1e8}, left_held, {}, {"'cholmod'", "negative", "method = \"auto\""}, options);

@@ -68,6 +68,7 @@ struct EffectiveStiffness {
   std::int64_t unstable_modes = 0;
   std::int64_t unstable_strains = 0;  ///< negative eigenvalues of `stiffness`
   std::string solver;
+  std::int64_t iterations = 0;  ///< of all load cases and of the error bound, where the method is iterative
   double factor_bytes = 0;
   StageTimes times;
   /// Motion of every disc for unit strain xx, yy, xy beside the uniform strain, m; discs removed stand still. Empty for

@@ -23,6 +23,7 @@ struct FactorReport {
   std::int64_t smallest_component = -1;  ///< the component (disc * block + k) it belongs to
   std::int64_t delayed_pivots = 0;       ///< eliminated later than planned, for stability
   std::int64_t zero_pivots = 0;          ///< unknowns that nothing holds: the dimension of the null space found
+  std::int64_t iterations = 0;           ///< done by all solves; 0 where the method is direct
 };
 
 /// A factorized matrix. Vectors hold discs x block components, in the order of discs, held components included.

@@ -15,10 +15,12 @@ struct DegreesOfFreedom;
 struct MatrixOnGraph;
 struct SymbolicFactor;
 
-/// A factorization that statics can choose. A back end is one file that defines its `factorize`, and its lines in
+/// A solver that statics can choose. A back end is one file that defines its `factorize`, and its lines in
 /// SolverMethod and the list below.
 struct BackEnd {
   bool definite_only = false;  ///< needs a positive definite matrix: refuses kT < 0
+  bool iterative = false;      ///< multigrid_solver: no order of elimination, no factor; mechanisms are refused
+  double good_enough = 1e-15;  ///< relative residual at which refinement ends
   double memory_factor = 1;    ///< estimated peak memory, over that of the multifrontal factorization
   /// Null: our multifrontal factorizations, which also name mechanisms. Others return null where they meet a zero or
   /// (definite_only) negative pivot; K is then factorized by ours.
@@ -31,7 +33,7 @@ std::unique_ptr<Factorization> factorize_by_cholmod(const MatrixOnGraph&, const 
 std::unique_ptr<Factorization> factorize_by_umfpack(const MatrixOnGraph&, const DegreesOfFreedom&,
                                                     const SymbolicFactor&);
 
-enum class SolverMethod { automatic, multifrontal, cholmod, umfpack };
+enum class SolverMethod { automatic, multifrontal, cholmod, umfpack, multigrid };
 
 template <>
 struct EnumNames<SolverMethod> {
@@ -53,6 +55,10 @@ struct EnumNames<SolverMethod> {
        "umfpack",
        "SuiteSparse's unsymmetric LU in its own order",
        {.memory_factor = 4, .factorize = factorize_by_umfpack}},
+      {SolverMethod::multigrid,
+       "multigrid",
+       "conjugate gradients with a multigrid cycle, for large assemblies with kT >= 0",
+       {.definite_only = true, .iterative = true, .good_enough = 1e-12}},
   };
 };
 

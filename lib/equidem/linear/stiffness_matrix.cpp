@@ -61,6 +61,30 @@ void assemble(const Assembly& assembly, const ContactGraph& graph, const Contact
   });
 }
 
+template <int B>
+void multiply_row(const StiffnessMatrix& matrix, const Assembly& assembly, const ContactGraph& graph, std::size_t d,
+                  std::span<const double> x, std::span<double> y) {
+  double sum[B] = {};
+  const double* diagonal = matrix.diagonal_block(d);
+  for (int r = 0; r < B; ++r) {
+    for (int c = 0; c < B; ++c) sum[r] += diagonal[r * B + c] * x[d * B + c];
+  }
+  for (const auto& edge : graph.of(d)) {
+    const double* k = matrix.coupling_block(edge.contact);
+    const double* there = &x[static_cast<std::size_t>(edge.other) * B];
+    if (static_cast<std::size_t>(assembly.contacts[edge.contact].i) == d) {
+      for (int r = 0; r < B; ++r) {
+        for (int c = 0; c < B; ++c) sum[r] += k[r * B + c] * there[c];
+      }
+    } else {
+      for (int c = 0; c < B; ++c) {
+        for (int r = 0; r < B; ++r) sum[r] += k[c * B + r] * there[c];
+      }
+    }
+  }
+  std::copy(sum, sum + B, &y[d * B]);
+}
+
 }  // namespace
 
 double held_stiffness(const StiffnessMatrix& matrix, const DegreesOfFreedom& unknowns) {
@@ -73,20 +97,12 @@ double held_stiffness(const StiffnessMatrix& matrix, const DegreesOfFreedom& unk
 
 void multiply(const StiffnessMatrix& matrix, const Assembly& assembly, const ContactGraph& graph,
               std::span<const double> x, std::span<double> y) {
-  const int b = matrix.block;
   parallel_ranges(graph.size(), discs_at_once, [&](std::size_t begin, std::size_t end) {
     for (std::size_t d = begin; d < end; ++d) {
-      const double* diagonal = matrix.diagonal_block(d);
-      for (int r = 0; r < b; ++r) {
-        double sum = 0;
-        for (int c = 0; c < b; ++c) sum += diagonal[r * b + c] * x[d * b + c];
-        for (const auto& edge : graph.of(d)) {
-          const double* k = matrix.coupling_block(edge.contact);
-          const bool first = static_cast<std::size_t>(assembly.contacts[edge.contact].i) == d;
-          const double* there = &x[static_cast<std::size_t>(edge.other) * b];
-          for (int c = 0; c < b; ++c) sum += (first ? k[r * b + c] : k[c * b + r]) * there[c];
-        }
-        y[d * b + r] = sum;
+      if (matrix.block == 3) {
+        multiply_row<3>(matrix, assembly, graph, d, x, y);
+      } else {
+        multiply_row<2>(matrix, assembly, graph, d, x, y);
       }
     }
   });

@@ -117,10 +117,12 @@ Equilibrium EquilibriumSolver::Implementation::solve(const LoadCase& loads) cons
   check_inert_loads(assembly, unknowns, given.force);
   check_mechanisms(given, result);
   given.prescribed = unknowns.prescribed;
+  const std::int64_t iterations_before = solver.factor().report().iterations;
   Solution solution = std::move(solver.solve({&given, 1}, result.times).front());
   Stopwatch watch;
   result.relative_residual = solution.relative_residual();
   result.refinements = solution.refinements;
+  result.iterations = solver.factor().report().iterations - iterations_before;
   if (solution.scale > 0) result.rounded_residual = solver.rounded_residual(given, solution.motion) / solution.scale;
   result.times.add("refine", watch.lap());
   result.contact_forces.resize(assembly.contacts.size());
@@ -238,12 +240,14 @@ SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& spr
   const ContactGraph graph(assembly);
   const Effects effects = derive_effects(assembly, springs, options.rotation);
   const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, supports);
+  if (entry_of(options.solver.method).back_end.iterative) return estimate_iterations(assembly, unknowns);
   return estimate(analyze(dissect(assembly, graph), graph, unknowns.per_disc), unknowns, springs.any_negative());
 }
 
 std::string Equilibrium::report() const {
-  std::string text = fmt::format("{} unknowns, {}, {:.3g} entries in L ({})\n", unknowns, solver, factor_nonzeros,
-                                 readable_bytes(factor_bytes));
+  std::string text = fmt::format("{} unknowns, {}, ", unknowns, solver);
+  text += iterations > 0 ? counted(iterations, "iteration") : fmt::format("{:.3g} entries in L", factor_nonzeros);
+  text += fmt::format(" ({})\n", readable_bytes(factor_bytes));
   text += fmt::format("relative residual {:.1e} after {}, {:.1e} for the motions rounded to double\n",
                       relative_residual, counted(refinements, "refinement"), rounded_residual);
   if (condition > 0)

@@ -37,6 +37,7 @@ struct Equilibrium {
   double relative_residual = 0;
   double rounded_residual = 0;  ///< the same for `motions`, which are u rounded to doubles
   int refinements = 0;          ///< steps of iterative refinement done
+  std::int64_t iterations = 0;  ///< of all passes together, where the method is iterative
   /// |K| |K^-1|, estimated (2-norm of the inverse by inverse iteration from the solution), and the bound on the
   /// relative error of `motions` (2-norm) that follows from it, the residual and the rounding of normals, with a margin
   /// of 10; 0 unless asked for.

@@ -15,6 +15,7 @@
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
 #include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
+#include "equidem/linear/multigrid/multigrid_solver.hpp"
 #include "equidem/statics/motion_description.hpp"
 
 namespace equidem {
@@ -124,11 +125,12 @@ std::unique_ptr<Factorization> judged(std::unique_ptr<Factorization> factor, con
 
 std::unique_ptr<Factorization> by_back_end(SolverMethod method, const System& system, Mechanisms mechanisms) {
   const BackEnd& back_end = entry_of(method).back_end;
-  if (back_end.factorize == nullptr) return multifrontal(system, mechanisms);
   if (back_end.definite_only && system.springs.any_negative()) {
     bad_input(fmt::format("method '{}' cannot solve this case", to_string(method)),
               "some kT is negative, and the method needs a positive definite matrix", "Use method = \"auto\"");
   }
+  if (back_end.iterative) return multigrid_solver(system.k, system.springs, system.unknowns);
+  if (back_end.factorize == nullptr) return multifrontal(system, mechanisms);
   return judged(back_end.factorize(system.k, system.unknowns, *system.symbolic), system, mechanisms);
 }
 
@@ -158,22 +160,30 @@ SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& u
   return result;
 }
 
+SolveEstimate estimate_iterations(const Assembly& assembly, const DegreesOfFreedom& unknowns) {
+  SolveEstimate result;
+  result.unknowns = unknowns.unknowns;
+  result.peak_bytes =
+      bytes_of_multigrid(static_cast<double>(assembly.size()), static_cast<double>(assembly.contacts.size()));
+  return result;
+}
+
 void check_memory(const SolveEstimate& estimate, double memory_limit) {
   // OpenBLAS maps one for each thread that calls it, and tries for ever where the limit of the process forbids it.
   constexpr double blas_buffer = 128.0 * (1 << 20);
   require_address_space(estimate.peak_bytes + blas_buffer * thread_count(),
-                        fmt::format("the factorization of {} unknowns on {} needs about", grouped(estimate.unknowns),
+                        fmt::format("solving for {} unknowns on {} needs about", grouped(estimate.unknowns),
                                     counted(thread_count(), "thread")));
-  require_memory(
-      estimate.peak_bytes, fmt::format("the factorization of {} unknowns needs about", grouped(estimate.unknowns)),
-      "Use fewer discs, restrain rotation, raise the limit, or take a machine with more memory", memory_limit);
+  require_memory(estimate.peak_bytes, fmt::format("solving for {} unknowns needs about", grouped(estimate.unknowns)),
+                 "Use fewer discs, restrain rotation, raise the limit, or take a machine with more memory",
+                 memory_limit);
 }
 
 std::unique_ptr<Factorization> factorize(const System& system, const SolverOptions& options, Mechanisms mechanisms,
                                          StageTimes& times) {
   const Stopwatch watch;
   std::unique_ptr<Factorization> factor = by_back_end(options.method, system, mechanisms);
-  times.add("factorize", watch.seconds());
+  times.add(entry_of(options.method).back_end.iterative ? "grids" : "factorize", watch.seconds());
   return factor;
 }
 

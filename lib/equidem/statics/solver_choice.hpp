@@ -20,10 +20,12 @@ struct System {
   const MatrixOnGraph& k;
   const ContactSprings& springs;
   const DegreesOfFreedom& unknowns;
-  std::shared_ptr<const SymbolicFactor> symbolic;
+  std::shared_ptr<const SymbolicFactor> symbolic;  ///< null for iterative methods
 };
 
 SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns, bool indefinite);
+/// Of an iterative method.
+SolveEstimate estimate_iterations(const Assembly& assembly, const DegreesOfFreedom& unknowns);
 
 /// \throws Error (computation_failed) where the estimated peak exceeds `memory_limit` bytes, or what the machine has
 ///         where it is 0

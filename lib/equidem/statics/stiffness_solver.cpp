@@ -23,12 +23,17 @@ StiffnessSolver::StiffnessSolver(const Assembly& assembly, const ContactSprings&
       unknowns_(std::move(unknowns)),
       options_(options) {
   Stopwatch watch;
-  DissectionTree tree = dissect(assembly, graph_);
-  times.add("order", watch.lap());
-  auto symbolic = std::make_shared<const SymbolicFactor>(analyze(std::move(tree), graph_, unknowns_.per_disc));
-  times.add("analyze", watch.lap());
-  SolveEstimate size = estimate(*symbolic, unknowns_, springs.any_negative());
-  size.peak_bytes *= entry_of(options.method).back_end.memory_factor;
+  const BackEnd& back_end = entry_of(options.method).back_end;
+  std::shared_ptr<const SymbolicFactor> symbolic;
+  if (!back_end.iterative) {
+    DissectionTree tree = dissect(assembly, graph_);
+    times.add("order", watch.lap());
+    symbolic = std::make_shared<const SymbolicFactor>(analyze(std::move(tree), graph_, unknowns_.per_disc));
+    times.add("analyze", watch.lap());
+  }
+  SolveEstimate size =
+      symbolic ? estimate(*symbolic, unknowns_, springs.any_negative()) : estimate_iterations(assembly, unknowns_);
+  size.peak_bytes *= back_end.memory_factor;
   check_memory(size, options.memory_limit);
   watch.lap();
   matrix_ = assemble_stiffness(assembly, graph_, springs, unknowns_);
@@ -94,7 +99,7 @@ struct StiffnessSolver::Refinement {
 
   /// Add the correction by the factorization, and replace it by the new residual.
   void correct(std::span<double> x, int pass) {
-    constexpr double good_enough = 1e-15;
+    const double good_enough = entry_of(solver.options_.method).back_end.good_enough;
     constexpr double slow = 0.05;  // share of the error that a pass leaves
     for (std::size_t k = 0; k < x.size(); ++k) {
       if (solver.unknowns_.held[k] != 0) x[k] = 0;

@@ -59,6 +59,8 @@ class StiffnessSolver {
   ///         (bad_input) naming a mechanism, unless mechanisms are held
   StiffnessSolver(const Assembly& assembly, const ContactSprings& springs, ContactGraph graph,
                   DegreesOfFreedom unknowns, const SolverOptions& options, Mechanisms mechanisms, StageTimes& times);
+  StiffnessSolver(const StiffnessSolver&) = delete;  // the factorization may refer to members
+  StiffnessSolver& operator=(const StiffnessSolver&) = delete;
 
   /// \param times gets "solve" and "refine"
   /// \throws Error (computation_failed) where the residual shows that K is too near to singular, or numbers overflow

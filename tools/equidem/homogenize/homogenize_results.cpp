@@ -257,7 +257,9 @@ Results homogenized_results(const Problem& problem, const BoundedStiffness& h,
   if (r.effects.restrained && r.boundary != Boundary::traction) add_restrained(out, r);
   out.set("stress_asymmetry", r.stress_asymmetry);
   out.block("\n").line("unknowns").add("unknowns", "", r.unknowns, "", {Shown::count});
-  return out.add("solver", "solver", r.solver).add("factor_bytes", "factor", r.factor_bytes, "", {Shown::bytes});
+  out.add("solver", "solver", r.solver);
+  if (r.iterations > 0) out.add("iterations", "", r.iterations, "iteration", {Shown::count});
+  return out.add("factor_bytes", r.iterations > 0 ? "grids" : "factor", r.factor_bytes, "", {Shown::bytes});
 }
 
 }  // namespace equidem

@@ -20,6 +20,7 @@ std::string stability(const Problem& problem, const Equilibrium& result) {
         "equilibrium is no state of rest",
         counted(result.unstable_modes, "negative pivot"));
   }
+  if (result.negative_pivots < 0) return "stable: no spring is negative";
   if (result.negative_pivots == 0) return "stable: no negative pivot";
   return fmt::format("stable: {}, one for each rotation{}", counted(result.negative_pivots, "negative pivot"),
                      problem.springs.springs.any_negative() ? " (kT < 0; static-only)" : "");
@@ -119,10 +120,13 @@ void add_deformation(Results& out, const Problem& problem, const SolvedCase& res
 Results solver_results(const Problem& problem, const Equilibrium& e) {
   Results out;
   out.line("unknowns").add("unknowns", "", e.unknowns, "", {Shown::count});
-  out.line("solver")
-      .add("solver", "", e.solver)
-      .add("factor_nonzeros", "", e.factor_nonzeros, "entries in the factor", {.digits = 3})
-      .add("factor_bytes", "", e.factor_bytes, "", {Shown::bytes});
+  out.line("solver").add("solver", "", e.solver);
+  if (e.iterations > 0) {
+    out.add("iterations", "", e.iterations, "iteration", {Shown::count}).set("factor_nonzeros", e.factor_nonzeros);
+  } else {
+    out.add("factor_nonzeros", "", e.factor_nonzeros, "entries in the factor", {.digits = 3});
+  }
+  out.add("factor_bytes", "", e.factor_bytes, "", {Shown::bytes});
   if (e.mechanisms > 0) {
     out.line("mechanisms")
         .add("mechanisms", "", e.mechanisms, "motion", {Shown::count})

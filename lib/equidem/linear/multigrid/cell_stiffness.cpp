@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/linear/multigrid/cell_stiffness.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "equidem/contact/frame.hpp"
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/threads.hpp"
+
+namespace equidem::multigrid {
+namespace {
+
+constexpr std::size_t cells_at_once = 1 << 7;
+constexpr std::size_t contacts_at_once = 1 << 13;
+constexpr std::size_t nodes_at_once = 1 << 10;
+constexpr int cell_unknowns = 12;  // unknowns of a cell
+
+using CellVector = std::array<double, cell_unknowns>;
+
+/// The middle of a contact, over a.
+Vec2 midpoint(const Assembly& assembly, const Contact& contact, double a) {
+  return (1 / a) * (assembly.centres[contact.i] + 0.5 * assembly.branch(contact));
+}
+
+/// derivative += that of a deformation by the unknowns of the cell, from that by the motion of one disc.
+void add_derivative(const Shape& shape, const std::array<double, 3>& of_disc, bool rotations, CellVector& derivative) {
+  const auto [x, y, turn] = of_disc;
+  for (int k = 0; k < 4; ++k) {
+    const double weight = shape.weight[k];
+    const Vec2 arm = shape.arm[k];
+    derivative[3 * k] += weight * x;
+    derivative[3 * k + 1] += weight * y;
+    if (rotations) derivative[3 * k + 2] += weight * (turn + arm.x * y - arm.y * x);
+  }
+}
+
+void add_square(double k, const CellVector& v, double* matrix) {
+  for (int r = 0; r < cell_unknowns; ++r) {
+    const double factor = k * v[r];
+    for (int c = 0; c < cell_unknowns; ++c) matrix[r * cell_unknowns + c] += factor * v[c];
+  }
+}
+
+void add_contact(const Grid& grid, const Assembly& assembly, std::size_t c, SpringConstants k,
+                 const DegreesOfFreedom& unknowns, double* matrix) {
+  const Contact& contact = assembly.contacts[c];
+  const double a = unknowns.rotation_scale;
+  const Place middle = grid.host(grid.place(midpoint(assembly, contact, a)));
+  const Vec2 half = (0.5 / a) * assembly.branch(contact);
+  const double s = half.x / grid.spacing().x, t = half.y / grid.spacing().y;
+  DeformationGradient g = deformation_gradient(frame_of(assembly, c), a);
+  const auto b = static_cast<std::size_t>(unknowns.per_disc);
+  for (std::size_t e = 0; e < 3; ++e) {
+    if (e >= b || unknowns.held[contact.i * b + e] != 0) g.normal_i[e] = g.tangential_i[e] = 0;
+    if (e >= b || unknowns.held[contact.j * b + e] != 0) g.normal_j[e] = g.tangential_j[e] = 0;
+  }
+  CellVector normal{}, tangential{};
+  const Shape of_i = grid.shape({middle.cell, middle.s - s, middle.t - t});
+  add_derivative(of_i, g.normal_i, b == 3, normal);
+  add_derivative(of_i, g.tangential_i, b == 3, tangential);
+  const Shape of_j = grid.shape({middle.cell, middle.s + s, middle.t + t});
+  add_derivative(of_j, g.normal_j, b == 3, normal);
+  add_derivative(of_j, g.tangential_j, b == 3, tangential);
+  add_square(k.kN, normal, matrix);
+  if (k.kT != 0) add_square(k.kT, tangential, matrix);
+}
+
+/// The motion of a node by the unknowns of a coarser cell: 3 x 12.
+using NodeMotion = std::array<CellVector, 3>;
+
+NodeMotion motion_of_node(const Shape& shape) {
+  NodeMotion motion{};
+  for (int k = 0; k < 4; ++k) {
+    for (int e = 0; e < 3; ++e) motion[e][3 * k + e] = shape.weight[k];
+    motion[0][3 * k + 2] = -shape.weight[k] * shape.arm[k].y;
+    motion[1][3 * k + 2] = shape.weight[k] * shape.arm[k].x;
+  }
+  return motion;
+}
+
+/// matrix += T^T K T with T the motion of the nodes of the finer cell.
+void add_transformed(const double* cell, const std::array<NodeMotion, 4>& motion, double* matrix) {
+  double product[cell_unknowns * cell_unknowns] = {};  // K T
+  for (int r = 0; r < cell_unknowns; ++r) {
+    for (int k = 0; k < cell_unknowns; ++k) {
+      const double entry = cell[r * cell_unknowns + k];
+      for (int c = 0; c < cell_unknowns; ++c) product[r * cell_unknowns + c] += entry * motion[k / 3][k % 3][c];
+    }
+  }
+  for (int k = 0; k < cell_unknowns; ++k) {
+    for (int r = 0; r < cell_unknowns; ++r) {
+      const double entry = motion[k / 3][k % 3][r];
+      if (entry == 0) continue;
+      for (int c = 0; c < cell_unknowns; ++c) matrix[r * cell_unknowns + c] += entry * product[k * cell_unknowns + c];
+    }
+  }
+}
+
+/// The blocks of a row: what is added under one column.
+struct Row {
+  std::array<std::int32_t, 16> columns{};
+  std::array<Block, 16> blocks{};
+  int entries = 0;
+
+  Row(const Transfer& numbering, const CellStiffness& cells, std::size_t node) {
+    add(static_cast<std::int32_t>(node), nullptr);
+    for (const std::int32_t place : numbering.adjacent(node)) {
+      if (place < 0) continue;
+      const double* rows =
+          &cells[static_cast<std::size_t>(place / 4) * cell_unknowns * cell_unknowns + place % 4 * 3 * cell_unknowns];
+      const auto& corners = numbering.corners(place / 4);
+      for (int k = 0; k < 4; ++k) {
+        if (corners[k] >= 0) add(corners[k], rows + 3 * k);
+      }
+    }
+  }
+
+ private:
+  void add(std::int32_t column, const double* block) {
+    int e = 0;
+    while (e < entries && columns[e] != column) ++e;
+    if (e == entries) columns[entries++] = column;
+    for (int k = 0; block != nullptr && k < 9; ++k) blocks[e][k] += block[k / 3 * cell_unknowns + k % 3];
+  }
+};
+
+}  // namespace
+
+CellStiffness stiffness_of_contacts(const Grid& grid, const Assembly& assembly, const ContactSprings& springs,
+                                    const DegreesOfFreedom& unknowns, double unit) {
+  std::vector<std::int32_t> cell(assembly.contacts.size());
+  parallel_ranges(cell.size(), contacts_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const Vec2 middle = midpoint(assembly, assembly.contacts[c], unknowns.rotation_scale);
+      cell[c] = grid.host(grid.place(middle)).cell;
+    }
+  });
+  const Buckets contacts = sort_into_buckets(cell, grid.cells());
+  CellStiffness result(grid.cells() * cell_unknowns * cell_unknowns);
+  parallel_ranges(grid.cells(), cells_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      double sum[cell_unknowns * cell_unknowns] = {};
+      for (const std::int32_t c : contacts.of(k)) {
+        const SpringConstants spring = springs[c];
+        add_contact(grid, assembly, c, {spring.kN / unit, spring.kT / unit}, unknowns, sum);
+      }
+      std::copy(sum, sum + cell_unknowns * cell_unknowns, &result[k * cell_unknowns * cell_unknowns]);
+    }
+  });
+  return result;
+}
+
+CellStiffness stiffness_on_coarser(const Grid& coarse, const Grid& fine, const CellStiffness& cells) {
+  const auto middle_of = [&](std::size_t cell) {
+    return coarse.host(coarse.place(fine.position(fine.nodes_of(cell)[0]) + 0.5 * fine.spacing()));
+  };
+  std::vector<std::int32_t> parent(fine.cells());
+  for (std::size_t k = 0; k < parent.size(); ++k) parent[k] = middle_of(k).cell;
+  const Buckets children = sort_into_buckets(parent, coarse.cells());
+  CellStiffness result(coarse.cells() * cell_unknowns * cell_unknowns);
+  parallel_ranges(coarse.cells(), cells_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      double sum[cell_unknowns * cell_unknowns] = {};
+      for (const std::int32_t child : children.of(k)) {
+        const Place middle = middle_of(child);
+        std::array<NodeMotion, 4> motion;
+        for (int corner = 0; corner < 4; ++corner) {  // a quarter of the coarse spacing from the middle
+          motion[corner] = motion_of_node(
+              coarse.shape({middle.cell, middle.s + 0.5 * (corner % 2) - 0.25, middle.t + 0.5 * (corner / 2) - 0.25}));
+        }
+        add_transformed(&cells[static_cast<std::size_t>(child) * cell_unknowns * cell_unknowns], motion, sum);
+      }
+      std::copy(sum, sum + cell_unknowns * cell_unknowns, &result[k * cell_unknowns * cell_unknowns]);
+    }
+  });
+  return result;
+}
+
+BlockMatrix assemble_cells(const Transfer& numbering, const CellStiffness& cells) {
+  BlockMatrix matrix;
+  const std::size_t n = numbering.unknowns();
+  matrix.first.assign(n + 1, 0);
+  parallel_ranges(n, nodes_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t node = begin; node < end; ++node) matrix.first[node + 1] = Row(numbering, cells, node).entries;
+  });
+  for (std::size_t node = 0; node < n; ++node) matrix.first[node + 1] += matrix.first[node];
+  matrix.resize();
+  parallel_ranges(n, nodes_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t node = begin; node < end; ++node) {
+      const Row row(numbering, cells, node);
+      for (int e = 0; e < row.entries; ++e) matrix.set(matrix.first[node] + e, row.columns[e], row.blocks[e]);
+      matrix.set_inverse(node, row.blocks[0]);
+    }
+  });
+  return matrix;
+}
+
+}  // namespace equidem::multigrid

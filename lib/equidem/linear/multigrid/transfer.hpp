@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Motions and forces between the points of one level and the nodes of the grid above it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "equidem/linear/multigrid/block_matrix.hpp"
+#include "equidem/linear/multigrid/grid.hpp"
+
+namespace equidem::multigrid {
+
+/// Points are sorted by their host cell, so that a cell reads one run of them and four nodes.
+class Transfer {
+ public:
+  /// \param grid must outlive this object
+  /// \param places of the points
+  Transfer(const Grid& grid, std::span<const Place> places);
+  /// The point that stands k-th on the finer level.
+  [[nodiscard]] const std::vector<std::int32_t>& order() const { return points_.items; }
+  /// Number the nodes that are kept.
+  /// \param order of the kept nodes, as indices among them
+  void number_nodes(std::span<const std::int32_t> order);
+  [[nodiscard]] std::size_t unknowns() const { return adjacent_.size(); }
+  /// The nodes of a cell by their numbers; -1: not kept.
+  [[nodiscard]] const std::array<std::int32_t, 4>& corners(std::size_t cell) const { return corners_[cell]; }
+  /// 4 cell + corner for each of the (at most) four cells around a node; -1: none.
+  [[nodiscard]] const std::array<std::int32_t, 4>& adjacent(std::size_t node) const { return adjacent_[node]; }
+
+  /// Forces on the nodes, of the same work as those on the points.
+  /// \param cells scratch
+  void restrict_forces(const QuadVector& points, QuadVector& nodes, QuadVector& cells) const;
+  /// points += the motions that the nodes give them.
+  void add_motions(const QuadVector& nodes, QuadVector& points) const;
+  [[nodiscard]] double bytes() const;
+
+ private:
+  struct Inside {
+    float s, t;
+  };
+  template <typename Visit>
+  void visit_corners(std::size_t cell, std::int32_t point, const Visit& visit) const;
+
+  const Grid& grid_;
+  Buckets points_;              // by host cell
+  std::vector<Inside> inside_;  // per point, sorted
+  std::vector<std::array<std::int32_t, 4>> corners_, adjacent_;
+};
+
+/// The unknown nodes in the order in which they are found along the longer side of the grid, as Transfer::number_nodes
+/// takes them: factors of matrices on the grid are then narrow.
+std::vector<std::int32_t> order_along(const Grid& grid);
+
+/// What each node stands for: the sum of its functions over points of a given mass.
+std::vector<double> node_masses(const Grid& grid, std::span<const Place> places, std::span<const double> masses);
+
+}  // namespace equidem::multigrid

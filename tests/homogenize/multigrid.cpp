@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Moduli by method = "multigrid" are those of elimination.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "equidem/homogenize/effective_stiffness.hpp"
+
+#include "homogenize/samples.hpp"
+#include "homogenize/tensors.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace samples;
+
+namespace {
+
+EffectiveStiffness stiffness_by(SolverMethod method, const Assembly& assembly, const ContactSprings& springs,
+                                Boundary boundary, Rotation rotation) {
+  HomogenizeOptions options{.boundary = boundary, .rotation = rotation, .solver = {}};
+  options.solver.method = method;
+  return effective_stiffness(assembly, springs, options);
+}
+
+Assembly random_cell(bool periodic) {
+  return delaunay_assembly(
+      {.discs = 700, .seed = 8, .radii = {.smallest = 0.004, .largest = 0.006}, .periodic = periodic});
+}
+
+}  // namespace
+
+TEST_CASE("multigrid_finds_the_moduli_of_elimination") {
+  for (const Boundary boundary : {Boundary::periodic, Boundary::displacement, Boundary::traction}) {
+    const bool periodic = boundary == Boundary::periodic;
+    for (const Sample& sample :
+         {Sample{"random", random_cell(periodic)},
+          Sample{"hexagonal", hexagonal_lattice({.columns = 22, .rows = 20, .periodic = periodic})}}) {
+      for (const Rotation rotation : {Rotation::free, Rotation::restrained}) {
+        for (const double ratio : {0.4, 0.0}) {
+          if (ratio == 0 && rotation == Rotation::restrained) continue;
+          const ContactSprings springs({1e9, ratio * 1e9});
+          const auto by = [&](SolverMethod method) {
+            return stiffness_by(method, sample.assembly, springs, boundary, rotation);
+          };
+          const EffectiveStiffness direct = by(SolverMethod::multifrontal), ours = by(SolverMethod::multigrid);
+          const double off = relative_difference(ours.stiffness, direct.stiffness);
+          CAPTURE(sample.name, to_string(boundary), ratio, rotation == Rotation::free, off, ours.iterations,
+                  ours.condition, direct.condition);
+          CHECK(off < 1e-10);
+          CHECK(off * largest_entry(direct.stiffness) < ours.error_bound + direct.error_bound);
+          CHECK(ours.relative_residual <= 1e-12);
+          CHECK(ours.negative_pivots == -1);
+          CHECK(ours.unstable_modes == 0);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("multigrid_homogenizes_scattered_springs") {
+  const Assembly cell = random_cell(true);
+  Random random(5);
+  std::vector<SpringConstants> each(cell.contacts.size());
+  for (SpringConstants& k : each) {
+    k.kN = std::pow(10.0, random.uniform(8, 10));
+    k.kT = 0.3 * k.kN;
+  }
+  const ContactSprings springs(each);
+  const auto by = [&](SolverMethod method) {
+    return stiffness_by(method, cell, springs, Boundary::periodic, Rotation::free);
+  };
+  CHECK(relative_difference(by(SolverMethod::multigrid).stiffness, by(SolverMethod::multifrontal).stiffness) < 1e-10);
+}

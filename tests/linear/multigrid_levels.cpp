@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The parts of the multigrid cycle, each against what it stands for.
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <vector>
+
+#include "equidem/assembly/delaunay.hpp"
+#include "equidem/assembly/lattices.hpp"
+#include "equidem/core/random.hpp"
+#include "equidem/linear/multigrid/cell_stiffness.hpp"
+#include "equidem/linear/multigrid/envelope_cholesky.hpp"
+#include "equidem/linear/multigrid/transfer.hpp"
+
+#include "support/catch.hpp"
+#include "support/fields.hpp"
+
+using namespace equidem;
+using namespace equidem::multigrid;
+using namespace equidem::test;
+
+namespace {
+
+constexpr float rounding = 1e-5F;
+
+/// (u_x, u_y, a theta) at a point, lengths over a.
+using Motion = std::function<std::array<double, 3>(Vec2)>;
+
+std::vector<Motion> rigid_motions() {
+  return {[](Vec2) {
+            return std::array{1.0, 0.0, 0.0};
+          },
+          [](Vec2) {
+            return std::array{0.0, 1.0, 0.0};
+          },
+          [](Vec2 x) {
+            return std::array{-0.1 * x.y, 0.1 * x.x, 0.1};
+          }};
+}
+/// Pure bending along x and along y.
+std::vector<Motion> bendings() {
+  return {[](Vec2 x) {
+            return std::array{-0.01 * x.x * x.y, 0.005 * x.x * x.x, 0.01 * x.x};
+          },
+          [](Vec2 x) {
+            return std::array{-0.005 * x.y * x.y, 0.01 * x.x * x.y, 0.01 * x.y};
+          }};
+}
+
+Quad as_quad(const std::array<double, 3>& m) {
+  return Quad{static_cast<float>(m[0]), static_cast<float>(m[1]), static_cast<float>(m[2]), 0};
+}
+
+QuadVector on_nodes(const Grid& grid, const Motion& motion) {
+  QuadVector nodes;
+  for (std::size_t node = 0; node < grid.nodes(); ++node) {
+    if (grid.kept(node)) nodes.push_back(as_quad(motion(grid.position(node))));
+  }
+  return nodes;
+}
+
+void number_in_place(Transfer& transfer, const Grid& grid) {
+  std::vector<std::int32_t> order;
+  for (std::size_t node = 0; node < grid.nodes(); ++node) {
+    if (grid.kept(node)) order.push_back(static_cast<std::int32_t>(order.size()));
+  }
+  transfer.number_nodes(order);
+}
+
+Grid plain_grid() {
+  return {{.low = -3, .spacing = 2, .cells = 6}, {.low = 1, .spacing = 1.5, .cells = 5}};
+}
+
+std::vector<Vec2> random_points(std::size_t count) {
+  Random random(3);
+  std::vector<Vec2> points(count);
+  for (Vec2& x : points) x = {random.uniform(-3, 9), random.uniform(1, 8.5)};
+  return points;
+}
+
+/// Largest difference of the motion that nodes give to the points from the motion itself.
+double largest_miss(const Grid& grid, const std::vector<Vec2>& points, const Motion& motion) {
+  std::vector<Place> places;
+  for (const Vec2 x : points) places.push_back(grid.place(x));
+  Transfer transfer(grid, places);
+  number_in_place(transfer, grid);
+  QuadVector moved(points.size(), Quad{});
+  transfer.add_motions(on_nodes(grid, motion), moved);
+  double miss = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto wanted = motion(points[transfer.order()[k]]);
+    for (int e = 0; e < 3; ++e) miss = std::max(miss, std::abs(moved[k][e] - wanted[e]));
+  }
+  return miss;
+}
+
+double twice_energy(const BlockMatrix& matrix, const QuadVector& x) {
+  QuadVector zero(x.size(), Quad{}), force(x.size());
+  residual(matrix, zero, x, force);
+  double sum = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    for (int e = 0; e < 3; ++e) sum -= static_cast<double>(x[k][e]) * force[k][e];
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("nodes_give_points_rigid_motions_and_pure_bending_exactly") {
+  Grid grid = plain_grid();
+  const std::vector<Vec2> points = random_points(300);
+  grid.keep_nodes(std::vector<double>(grid.nodes(), 1.0));
+  for (const Motion& motion : rigid_motions()) CHECK(largest_miss(grid, points, motion) < rounding);
+  for (const Motion& motion : bendings()) CHECK(largest_miss(grid, points, motion) < rounding);
+}
+
+TEST_CASE("without_some_nodes_the_functions_around_are_continued") {
+  Grid grid = plain_grid();
+  std::vector<double> mass(grid.nodes(), 1.0);
+  mass[0] = mass[20] = mass[grid.nodes() - 1] = 0.01;
+  grid.keep_nodes(mass);
+  const std::vector<Vec2> points = random_points(300);
+  for (const Motion& motion : rigid_motions()) CHECK(largest_miss(grid, points, motion) < rounding);
+  for (const Motion& motion : bendings()) CHECK(largest_miss(grid, points, motion) < rounding);
+}
+
+TEST_CASE("where_no_cell_is_complete_rigid_motions_stay_exact") {
+  Grid grid = plain_grid();
+  std::vector<double> mass(grid.nodes());
+  for (std::size_t node = 0; node < mass.size(); ++node) mass[node] = node % 2 == 0 ? 1 : 0;
+  grid.keep_nodes(mass);
+  for (const Motion& motion : rigid_motions()) CHECK(largest_miss(grid, random_points(300), motion) < rounding);
+}
+
+TEST_CASE("forces_on_nodes_do_the_work_of_those_on_points") {
+  for (const bool periodic : {false, true}) {
+    Grid grid({.low = -3, .spacing = 2, .cells = 6, .periodic = periodic},
+              {.low = 1, .spacing = 1.5, .cells = 5, .periodic = periodic});
+    std::vector<double> mass(grid.nodes(), 1.0);
+    mass[8] = 0;
+    grid.keep_nodes(mass);
+    std::vector<Place> places;
+    for (const Vec2 x : random_points(200)) places.push_back(grid.place(x));
+    Transfer transfer(grid, places);
+    number_in_place(transfer, grid);
+    Random random(4);
+    const auto random_quads = [&](std::size_t count) {
+      QuadVector x(count);
+      const auto number = [&] { return static_cast<float>(random.uniform(-1, 1)); };
+      for (Quad& q : x) q = Quad{number(), number(), number(), 0};
+      return x;
+    };
+    const auto work = [](const QuadVector& x, const QuadVector& y) {
+      double sum = 0;
+      for (std::size_t k = 0; k < x.size(); ++k) {
+        for (int e = 0; e < 3; ++e) sum += static_cast<double>(x[k][e]) * y[k][e];
+      }
+      return sum;
+    };
+    const QuadVector forces = random_quads(places.size()), motions = random_quads(transfer.unknowns());
+    QuadVector on_points(places.size(), Quad{}), nodes(transfer.unknowns()), scratch;
+    transfer.add_motions(motions, on_points);
+    transfer.restrict_forces(forces, nodes, scratch);
+    CHECK(work(motions, nodes) == Approx(work(on_points, forces)).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("cells_store_the_energy_of_uniform_strain_and_none_of_rigid_motions") {
+  const Assembly assembly = delaunay_assembly({.discs = 400, .radii = {.smallest = 0.004, .largest = 0.006}});
+  const double a = assembly.mean_radius();
+  const ContactSprings springs({2e9, 0.7e9});
+  const ContactGraph graph(assembly);
+  const DegreesOfFreedom unknowns = all_free(assembly, 3);
+  const StiffnessMatrix k = assemble_stiffness(assembly, graph, springs, unknowns);
+  const Motion strain = [](Vec2 x) { return std::array{0.02 * x.x - 0.03 * x.y, 0.01 * x.x + 0.05 * x.y, 0.04}; };
+  std::vector<double> u, force(3 * assembly.size());
+  for (const Vec2 x : assembly.centres) {
+    for (const double component : strain((1 / a) * x)) u.push_back(component);
+  }
+  multiply(k, assembly, graph, u, force);
+  const double wanted = product(u, force) / 2e9;
+
+  Vec2 high;
+  for (const Vec2 x : assembly.centres) high = {std::max(high.x, x.x / a), std::max(high.y, x.y / a)};
+  Grid fine({.low = 0, .spacing = high.x / 8, .cells = 8}, {.low = 0, .spacing = high.y / 8, .cells = 8});
+  Grid coarse = fine.coarser();
+  fine.keep_nodes(std::vector<double>(fine.nodes(), 1.0));
+  coarse.keep_nodes(std::vector<double>(coarse.nodes(), 1.0));
+  const CellStiffness cells = stiffness_of_contacts(fine, assembly, springs, unknowns, 2e9);
+  const CellStiffness coarser = stiffness_on_coarser(coarse, fine, cells);
+  for (const auto& [grid, stiffness] : {std::pair{&fine, &cells}, std::pair{&coarse, &coarser}}) {
+    Transfer numbering(*grid, {});
+    number_in_place(numbering, *grid);
+    const BlockMatrix matrix = assemble_cells(numbering, *stiffness);
+    CHECK(twice_energy(matrix, on_nodes(*grid, strain)) == Approx(wanted).epsilon(1e-4));
+    for (const Motion& motion : rigid_motions()) {
+      CHECK(std::abs(twice_energy(matrix, on_nodes(*grid, motion))) < 1e-5 * wanted);
+    }
+  }
+}
+
+TEST_CASE("envelope_cholesky_solves_and_holds_what_has_no_stiffness") {
+  constexpr std::size_t rows = 12;
+  BlockMatrix matrix;
+  Block soft{}, coupling{};
+  for (int e = 0; e < 3; ++e) {
+    soft[4 * e] = e == 1 ? 0 : 2.5;  // the second component of every row has no stiffness
+    coupling[4 * e] = e == 1 ? 0 : -1;
+  }
+  matrix.first.push_back(0);
+  for (std::size_t row = 0; row < rows; ++row) matrix.first.push_back(matrix.first.back() + 3);
+  matrix.resize();
+  for (std::size_t row = 0; row < rows; ++row) {
+    matrix.set(matrix.first[row], row, soft);
+    matrix.set(matrix.first[row] + 1, (row + 1) % rows, coupling);  // a ring
+    matrix.set(matrix.first[row] + 2, (row + rows - 1) % rows, coupling);
+    matrix.set_inverse(row, soft);
+  }
+  QuadVector b(rows), x(rows), left(rows);
+  for (std::size_t row = 0; row < rows; ++row) b[row] = Quad{static_cast<float>(row), 0, 1, 0};
+  EnvelopeCholesky(matrix).solve(b, x);
+  residual(matrix, b, x, left);
+  for (std::size_t row = 0; row < rows; ++row) {
+    CHECK(x[row][1] == 0);
+    for (int e = 0; e < 3; ++e) CHECK(std::abs(left[row][e]) < rounding);
+  }
+}
+
+TEST_CASE("inverse_of_a_block_leaves_out_dependent_components") {
+  const Block regular{4, 1, 0.5, 1, 3, 0.2, 0.5, 0.2, 2}, inverse = inverse_or_zero(regular);
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) {
+      double sum = 0;
+      for (int e = 0; e < 3; ++e) sum += regular[3 * r + e] * inverse[3 * e + c];
+      CHECK(sum == Approx(r == c ? 1 : 0).margin(1e-14));
+    }
+  }
+  const Block dependent = inverse_or_zero({4, 2, 0, 2, 1, 0, 0, 0, 0});  // the second row is half of the first
+  CHECK(dependent == Block{0.25});
+}
