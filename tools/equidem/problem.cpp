@@ -248,9 +248,12 @@ namespace {
 Results estimate_results(const SolveEstimate& e, double solutions) {
   Results results;
   results.line("unknowns").add("unknowns", "", e.unknowns, "", {Shown::count});
-  results.line("memory")
-      .add("peak_bytes", "", e.peak_bytes, "at the peak", {Shown::bytes})
-      .add("factor_bytes", "", e.factor_bytes, "of it for the factor", {Shown::bytes})
+  results.line("memory").add("peak_bytes", "", e.peak_bytes, "at the peak", {Shown::bytes});
+  if (e.factor_nonzeros == 0 && e.unknowns > 0) {
+    results.line("time", "not predicted: the number of iterations is not known beforehand");
+    return results.block("nothing was solved (--dry-run)\n");
+  }
+  results.add("factor_bytes", "", e.factor_bytes, "of it for the factor", {Shown::bytes})
       .add("factor_nonzeros", "", e.factor_nonzeros, "entries in the factor", {.digits = 3});
   results.line("work").add("operations", "", e.operations, "multiplications and additions to factorize", {.digits = 3});
   const double seconds = solutions * estimate_seconds(e, measure_solve_rates(), thread_count());

@@ -56,8 +56,8 @@ int dry_run_survey(const CommonOptions& options, const Problem& problem) {
            "s is guaranteed to be stable (element bound)")
       .note(assumed ? "; density 1 kg/m³ assumed" : "");
   results.set("density_assumed", assumed);
-  deliver(options, "dry_run",
-          dry_run_results(problem, assembly.periodic() ? 50 : 15, results, AssemblyKeys::size), problem.times);
+  deliver(options, "dry_run", dry_run_results(problem, assembly.periodic() ? 50 : 15, results, AssemblyKeys::size),
+          problem.times);
   return 0;
 }
 
