@@ -67,7 +67,8 @@ SweptKey swept_key(const KeyOptions& given) {
   if (range == !given.values.empty() || given.from.has_value() != given.to.has_value()) {
     bad_input(given.values.empty() ? fmt::format("the key {} is given no values", given.name)
                                    : fmt::format("the key {} is given a list of values and a range", given.name),
-              "it takes either one", "Give --values a,b,c or --from A --to B --steps N");
+              given.values.empty() ? "nothing would vary" : "a key takes one of the two",
+              "Give --values a,b,c or --from A --to B --steps N");
   }
   SweptKey key{.name = given.name, .unit = unit_of_case_key(given.name).value_or(""), .values = {}};
   if (range) key.values = values_of_range(*given.from, *given.to, given.steps);
