@@ -8,6 +8,8 @@
 #include <CGAL/Regular_triangulation_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
+#include "equidem/core/progress.hpp"
+
 namespace equidem {
 namespace {
 
@@ -22,10 +24,14 @@ using RegularFace = CGAL::Regular_triangulation_face_base_2<Kernel>;
 using Regular = CGAL::Regular_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<RegularVertex, RegularFace>>;
 
 /// Insert point after point, each search starting where the last one ended.
+/// \throws Error of kind interrupted where the user asked to stop
 template <typename Triangulation, typename PointOf>
 void insert(Triangulation& triangulation, std::span<const std::int32_t> order, const PointOf& point_of) {
+  constexpr std::size_t between_looks = 8192;
   typename Triangulation::Face_handle near;
+  std::size_t inserted = 0;
   for (const std::int32_t k : order) {
+    if (++inserted % between_looks == 0) stop_if_interrupted();
     const auto vertex = triangulation.insert(point_of(k), near);
     vertex->info() = k;
     near = vertex->face();
