@@ -115,6 +115,13 @@ probe_interval = {length / speed / 400}
     def test_only_a_length_is_a_wavelength(self):
         case, _ = self.case_of((1e-3, 0.0), probe="wavelength = 0.0")
         self.check_error(equidem("run", case), 2, "wavelength", "> 0")
+        case, _ = self.case_of((1e-3, 0.0), probe="wavelength = 5.0")
+        self.check_error(equidem("run", case), 2, "probe.0.wavelength", "does not stand in a periodic cell", "width or the height")
+
+    def test_a_wave_without_an_interval_of_its_probe_says_so(self):
+        case, _ = self.case_of((1e-3, 0.0))
+        report = self.run_case(case, "--set", "output.probe_interval=none")["report"]
+        self.assertRegex(report, r"wave west +not measured: \[output\] has no probe_interval")
 
 
 class Motion(RunTest):

@@ -245,7 +245,8 @@ Results problem_results(const Problem& problem, const Effects& effects, Assembly
 
 namespace {
 
-Results estimate_results(const SolveEstimate& e, double solutions) {
+/// \param before s of what the dry run has done already: the assembly
+Results estimate_results(const SolveEstimate& e, double solutions, double before) {
   Results results;
   results.line("unknowns").add("unknowns", "", e.unknowns, "", {Shown::count});
   results.line("memory").add("peak_bytes", "", e.peak_bytes, "at the peak", {Shown::bytes});
@@ -256,7 +257,7 @@ Results estimate_results(const SolveEstimate& e, double solutions) {
   results.add("factor_bytes", "", e.factor_bytes, "of it for the factor", {Shown::bytes})
       .add("factor_nonzeros", "", e.factor_nonzeros, "entries in the factor", {.digits = 3});
   results.line("work").add("operations", "", e.operations, "multiplications and additions to factorize", {.digits = 3});
-  const double seconds = solutions * estimate_seconds(e, measure_solve_rates(), thread_count());
+  const double seconds = before + solutions * estimate_seconds(e, measure_solve_rates(), thread_count());
   results.line("time").add("estimated_seconds", "about", seconds, "s with these threads, mostly within a factor of two",
                            {.digits = 2});
   return results.block("nothing was solved (--dry-run)\n");
@@ -268,7 +269,9 @@ Results dry_run_results(const Problem& problem, double solutions, const Results&
   const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
   const SolveEstimate estimate =
       estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options());
-  return problem_results(problem, effects, keys).append(further).append(estimate_results(estimate, solutions));
+  return problem_results(problem, effects, keys)
+      .append(further)
+      .append(estimate_results(estimate, solutions, problem.times.total()));
 }
 
 Results moduli_results(const EffectiveModuli& m, const std::string& name, bool of_solid) {

@@ -94,9 +94,7 @@ std::string text_of_springs(const Case& resolved, const Assembly& assembly, cons
 
 int dry_run_calibration(const CommonOptions& options, const Problem& problem) {
   Results results;
-  results.line("factorizations",
-               "six or fewer of this size, some thirty where nu does not fall throughout with kT/kN, and one more to "
-               "judge the mean field");
+  results.line("factorizations", "about eight of this size, some thirty where nu does not fall throughout with kT/kN");
   deliver(options, "dry_run", dry_run_results(problem, 8, results, AssemblyKeys::size), problem.times);
   return 0;
 }

@@ -123,6 +123,21 @@ void sort_keys(TomlValue& value) {
   for (TomlValue& item : value.items) sort_keys(item);
 }
 
+/// Waves that stand in a periodic cell are as long as the cell, or a whole fraction of it.
+void check_wavelengths(const Problem& problem, const std::vector<Probe>& probes) {
+  if (!problem.assembly.periodic()) return;
+  const Vec2 cell = *problem.assembly.period;
+  const double longest = std::max(cell.x, cell.y) * (1 + 1e-6);
+  for (std::size_t k = 0; k < probes.size(); ++k) {
+    if (!probes[k].wavelength || *probes[k].wavelength <= longest) continue;
+    bad_input_at(problem.resolved.where(fmt::format("probe.{}.wavelength", k)),
+                 fmt::format("a wave of {:.6g} m does not stand in a periodic cell of {:.6g} m by {:.6g} m",
+                             *probes[k].wavelength, cell.x, cell.y),
+                 "what repeats with the cell is at most as long as the cell",
+                 "Give the width or the height of the cell");
+  }
+}
+
 Simulation simulation_of(const Problem& problem, const Scene& scene, const SimulationOptions& options) {
   try {
     return {scene, options};
@@ -168,6 +183,7 @@ BondedRun::BondedRun(Case resolved, const std::optional<KeptStep>& kept)
       waves_(simulation_, probes_),
       watch_(scene_, options_, {.growth = 100, .critical_step = step_.critical, .growth_rate = step_.growth_rate}) {
   if (!goes_to_rest()) check_events(problem_.resolved, step_);
+  check_wavelengths(problem_, probes_);
 }
 
 std::int64_t BondedRun::steps() const {

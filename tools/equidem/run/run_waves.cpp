@@ -66,8 +66,9 @@ Results StandingWaves::results() const {
     const auto period = wave.oscillation.period();
     out.line("wave " + wave.probe.name).set(key + "wavelength", *wave.probe.wavelength);
     if (!period) {
-      out.note(
-          "not measured: the velocity passes through zero fewer than two times in this run; give a longer duration");
+      out.note(last_step_ < 1 ? "not measured: [output] has no probe_interval"
+                              : "not measured: the velocity passes through zero fewer than two times in this run; give "
+                                "a longer duration, or start the wave with velocities of both signs");
       out.set(key + "period", nullptr).set(key + "speed", nullptr);
       continue;
     }
