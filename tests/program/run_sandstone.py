@@ -41,6 +41,15 @@ class Sandstone(ProgramTest):
         self.assertRegex(test["report"], r"left out +\d+ rattlers? \(disc \d+")
         self.assertLess(test["relative_residual"], 1e-14)
 
+    def test_a_free_packing_stands_its_test_whatever_its_seed(self):
+        self.check_done(equidem("calibrate", self.cases / "rock.toml", "--out", self.cases / "rock"))
+        small = ("--set", "packing.box=[0.04, 0.04]", "--set", "packing.solid_fraction=0.82")
+        for seed in range(1, 9):
+            with self.subTest(seed=seed):
+                test = self.result_of("solve", "tension.toml", *small, "--set", f"packing.seed={seed}")
+                self.assertLess(test["relative_residual"], 1e-14)
+                self.assertAlmostEqual(test["fitted_young_modulus"] / YOUNG, 1, delta=0.4)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -313,3 +313,20 @@ TEST_CASE("loose_bodies_are_those_that_no_contact_holds_in_place") {
   // A contact with kT joins a disc that cannot turn firmly.
   CHECK(left(0.5, Rotation::restrained) == std::vector<std::int32_t>{0, 1, 2, 3, 4, 8, 9});
 }
+
+TEST_CASE("a_bent_bridge_of_two_discs_is_loose_and_a_straight_one_carries") {
+  // Between the corners 0 and 1 of two held pairs the bridge 2, 3: bent by `rise` it rolls under a load, straight it
+  // carries a force along itself.
+  const auto left = [](double rise, Rotation rotation) {
+    const Assembly a =
+        discs_at({{0, 0}, {3, 0}, {1, rise}, {2, rise}, {-1, 0}, {4, 0}},
+                 {{.i = 0, .j = 2}, {.i = 2, .j = 3}, {.i = 1, .j = 3}, {.i = 0, .j = 4}, {.i = 1, .j = 5}});
+    const ContactSprings springs(SpringConstants{1, 0.5});
+    const std::vector<std::uint8_t> held{1, 1, 0, 0, 1, 1};
+    const auto found = load_bearing_network(a, springs, derive_effects(springs, rotation), held, LeaveOut::loose);
+    return found.part ? found.part->discs : std::vector<std::int32_t>{0, 1, 2, 3, 4, 5};
+  };
+  CHECK(left(0.2, Rotation::free) == std::vector<std::int32_t>{0, 1, 4, 5});
+  CHECK(left(0, Rotation::free) == std::vector<std::int32_t>{0, 1, 2, 3, 4, 5});
+  CHECK(left(0.2, Rotation::restrained) == std::vector<std::int32_t>{0, 1, 2, 3, 4, 5});
+}

@@ -31,27 +31,28 @@ std::set<std::string> measured_sides(const Assembly& assembly) {
   return names;
 }
 
-/// 1 for the bodies with a support or load of their own; on a measured side for those with two contacts or more.
+/// 1 for the bodies with a support or load of their own; on a measured side for those with two contacts or more where
+/// it is supported, with three where it is loaded, since fewer may roll.
 std::vector<std::uint8_t> held_by_the_case(const Problem& problem) {
   const Assembly& assembly = problem.assembly;
   std::vector<int> contacts(assembly.size(), 0);
   for (const Contact& c : assembly.contacts)
     ++contacts[static_cast<std::size_t>(c.i)], ++contacts[static_cast<std::size_t>(c.j)];
   // Cells are measured only where a side could matter.
-  const bool dangling = std::ranges::any_of(contacts, [](int count) { return count < 2; });
+  const bool dangling = std::ranges::any_of(contacts, [](int count) { return count <= 2; });
   const std::set<std::string> sides = dangling ? measured_sides(assembly) : std::set<std::string>{};
   std::vector<std::uint8_t> held(assembly.size(), 0);
-  const auto hold = [&](const std::string& name) {
+  const auto hold = [&](const std::string& name, int enough) {
     const auto found = assembly.groups.find(name);
     if (found == assembly.groups.end()) return;
     for (const std::int32_t disc : found->second.discs) {
       const auto k = static_cast<std::size_t>(disc);
-      if (contacts[k] > 1 || !sides.contains(name)) held[k] = 1;
+      if (contacts[k] >= enough || !sides.contains(name)) held[k] = 1;
     }
   };
-  for (const Support& support : problem.resolved.supports) hold(support.group);
+  for (const Support& support : problem.resolved.supports) hold(support.group, 2);
   for (const NamedLoads& loads : problem.resolved.load_cases)
-    for (const Load& load : loads.loads) hold(load.group);
+    for (const Load& load : loads.loads) hold(load.group, 3);
   return held;
 }
 

@@ -10,7 +10,9 @@
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/contact_graph.hpp"
+#include "equidem/statics/contact_points.hpp"
 #include "equidem/statics/motion_description.hpp"
+#include "equidem/statics/period_span.hpp"
 
 namespace equidem {
 namespace {
@@ -18,26 +20,6 @@ namespace {
 constexpr double round_off = 1e-9;  ///< sine of an angle, share of a length: less counts as zero
 
 enum class Fate : std::uint8_t { left, rattler, dangling, floating };
-
-/// Multiples of the period.
-struct Shift {
-  std::int32_t x = 0;
-  std::int32_t y = 0;
-
-  [[nodiscard]] bool zero() const { return x == 0 && y == 0; }
-};
-
-/// Number of directions that the windings found so far span.
-struct Span {
-  Shift first;
-  int rank = 0;
-
-  void add(Shift winding) {
-    if (rank == 0) first = winding;
-    const std::int64_t area = std::int64_t{first.x} * winding.y - std::int64_t{first.y} * winding.x;
-    rank = std::max(rank, area != 0 ? 2 : 1);
-  }
-};
 
 /// Whether the centres of a rigid group may turn with its discs: no slip where levers add up to their branch.
 bool turns_rigidly(const Assembly& assembly, const ContactSprings& springs, const Effects& effects) {
@@ -75,7 +57,7 @@ class Pruning {
 
   LoadBearingNetwork prune() {
     do walk();
-    while (leave_out_single_discs());
+    while (leave_out_single_discs() || (only_loose_ && leave_out_chains()));
     LoadBearingNetwork network;
     network.pieces = pieces_;
     network.spanned = assembly_.periodic() ? span_.rank : 2;
@@ -175,6 +157,33 @@ class Pruning {
       visit(disc);
     }
     return any;
+  }
+
+  /// The other contact of a disc that has two left.
+  [[nodiscard]] std::size_t other_contact(std::size_t disc, std::int32_t known) const {
+    std::int32_t found = known;
+    for (const auto& edge : graph_.of(disc))
+      if (left(edge.other) && edge.contact != known) found = edge.contact;
+    return static_cast<std::size_t>(found);
+  }
+
+  /// Leave out neighbours that have two contacts each, unless their three points of contact lie in line: the moments
+  /// of both vanish only for a force along both chords. Loads would roll them on one another.
+  bool leave_out_chains() {
+    if (!rotation_) return false;
+    const auto in_chain = [&](std::size_t disc) { return left(disc) && contacts_left_[disc] == 2 && !is_held(disc); };
+    std::vector<std::size_t> chained;
+    for (std::size_t disc = 0; disc < assembly_.size(); ++disc) {
+      if (!in_chain(disc)) continue;
+      for (const auto& edge : graph_.of(disc)) {
+        const auto other = static_cast<std::size_t>(edge.other);
+        if (other == disc || !in_chain(other)) continue;
+        const std::size_t mine = other_contact(disc, edge.contact), theirs = other_contact(other, edge.contact);
+        if (!points_in_line(assembly_, {mine, static_cast<std::size_t>(edge.contact), theirs})) chained.push_back(disc);
+      }
+    }
+    for (const std::size_t disc : chained) leave_out(disc, Fate::dangling);
+    return !chained.empty();
   }
 
   /// A disc in the order in which a depth-first walk meets them; those that it meets through this one follow it in one

@@ -57,8 +57,8 @@ struct LoadBearingNetwork {
 enum class LeaveOut {
   unloaded,  ///< all that carries no force, as above
   /// only those that no contact holds in place under loads: rattlers, floating pieces, and what a single contact
-  /// joins to the rest that lets it turn or slide (rotation is free, or its kT = 0). Motions of all others are
-  /// determined.
+  /// joins to the rest that lets it turn or slide (rotation is free, or its kT = 0), and, where rotation is free,
+  /// neighbours with two contacts each that are not in line. Motions of most others are determined.
   loose,
 };
 
