@@ -26,7 +26,7 @@ struct SpringsFolder {
   explicit SpringsFolder(const std::string& springs) {
     write_file(folder / "springs.toml", "schema = \"equidem-springs/1\"\n[springs]\n" + springs, true);
   }
-  /// What a reader of cases makes of a case; the sentence of its error.
+  /// Reads a case and returns the sentence of its error.
   template <class Read>
   std::string refusal(const Read& read) const {
     try {

@@ -8,7 +8,8 @@ import unittest
 
 import numpy
 
-from motion import CORNER, KN, MASS, PULSE, RADIUS, REST, SHAKE, RunTest, files_of, frame_files, frames_of, needs_vtk, poly_data, sums_of_forces, table
+from motion import (CORNER, KN, MASS, PULSE, RADIUS, REST, SHAKE, RunTest, files_of, frame_files, frames_of, needs_vtk,
+                    poly_data, sums_of_forces, table)
 from program import CASES, equidem
 
 

@@ -48,7 +48,7 @@ class Sandstone(ProgramTest):
             with self.subTest(seed=seed):
                 test = self.result_of("solve", "tension.toml", *small, "--set", f"packing.seed={seed}")
                 self.assertLess(test["relative_residual"], 1e-14)
-                self.assertAlmostEqual(test["fitted_young_modulus"] / YOUNG, 1, delta=0.4)
+                self.assertAlmostEqual(test["fitted_young_modulus"] / YOUNG, 1, delta=0.2)  # free edges: softer
 
 
 if __name__ == "__main__":

@@ -43,7 +43,7 @@ std::string column_name(std::string_view path, std::string_view unit);
 /// The number whose column_name this is, without its text.
 ScalarNumber number_of_column(std::string_view column);
 
-/// What result.json holds, and the list of all meanings, as text.
+/// Describes result.json and lists all meanings, as text.
 std::string describe_result();
 
 }  // namespace equidem

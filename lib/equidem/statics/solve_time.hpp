@@ -7,7 +7,7 @@
 
 namespace equidem {
 
-/// What this machine takes, on one thread.
+/// Rates of this machine on one thread.
 struct SolveRates {
   double per_entry = 0;      ///< s an entry of the factor: ordering, assembly, memory, solution, refinement
   double per_operation = 0;  ///< s a multiplication or addition of the factorization

@@ -24,7 +24,7 @@ struct System {
 };
 
 SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns, bool indefinite);
-/// Of an iterative method.
+/// Estimates the cost of an iterative method.
 SolveEstimate estimate_iterations(const Assembly& assembly, const DegreesOfFreedom& unknowns);
 
 /// \throws Error (computation_failed) where the estimated peak exceeds `memory_limit` bytes, or what the machine has

@@ -22,7 +22,7 @@ using CellStiffness = LargeVector<double>;
 /// \param unit Pa, by which springs are divided
 CellStiffness stiffness_of_contacts(const Grid& grid, const Assembly& assembly, const ContactSprings& springs,
                                     const DegreesOfFreedom& unknowns, double unit);
-/// The same energies with the nodes of `fine` moved by the functions of the cells of `coarse`.
+/// Projects the energies of the cells of a fine grid: its nodes are moved by the functions of the cells of `coarse`.
 CellStiffness stiffness_on_coarser(const Grid& coarse, const Grid& fine, const CellStiffness& cells);
 
 /// The matrix on the numbered nodes of the grid.

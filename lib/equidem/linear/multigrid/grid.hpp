@@ -72,7 +72,7 @@ class Grid {
 
   /// The cell that contains a point (over a); points beyond a free side belong to the cells along it.
   [[nodiscard]] Place place(Vec2 point) const;
-  /// The same point in the cell whose functions move it: its own where that is full, else the nearest full one around
+  /// Places a point in the cell whose functions move it: its own where that is full, else the nearest full one around
   /// it, else its own.
   [[nodiscard]] Place host(const Place& place) const;
   /// Bilinear functions where the cell is full, continued beyond it; else those of the kept nodes, scaled to add up to

@@ -54,7 +54,7 @@ class Transfer {
 /// takes them: factors of matrices on the grid are then narrow.
 std::vector<std::int32_t> order_along(const Grid& grid);
 
-/// What each node stands for: the sum of its functions over points of a given mass.
+/// Computes the weight of each node: the sum of its functions over points of a given mass.
 std::vector<double> node_masses(const Grid& grid, std::span<const Place> places, std::span<const double> masses);
 
 }  // namespace equidem::multigrid

@@ -31,7 +31,7 @@ std::vector<double> coordinates_of(const std::vector<Vec2>& points) {
   return numbers;
 }
 
-/// What stands between two texts; empty where they are absent.
+/// Finds the text between two others; empty where they are absent.
 std::string_view between(std::string_view text, std::string_view begin, std::string_view end) {
   const std::size_t at = text.find(begin);
   if (at == std::string_view::npos) return {};
