@@ -69,6 +69,10 @@ void number_in_place(Transfer& transfer, const Grid& grid) {
   transfer.number_nodes(order);
 }
 
+void add_motions(const Transfer& transfer, const QuadVector& nodes, QuadVector& points) {
+  for (std::size_t chunk = 0; chunk < transfer.chunks(); ++chunk) transfer.add_motions(chunk, nodes, points.data());
+}
+
 Grid plain_grid() {
   return {{.low = -3, .spacing = 2, .cells = 6}, {.low = 1, .spacing = 1.5, .cells = 5}};
 }
@@ -87,7 +91,7 @@ double largest_miss(const Grid& grid, const std::vector<Vec2>& points, const Mot
   Transfer transfer(grid, places);
   number_in_place(transfer, grid);
   QuadVector moved(points.size(), Quad{});
-  transfer.add_motions(on_nodes(grid, motion), moved);
+  add_motions(transfer, on_nodes(grid, motion), moved);
   double miss = 0;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const auto wanted = motion(points[transfer.order()[k]]);
@@ -160,9 +164,12 @@ TEST_CASE("forces_on_nodes_do_the_work_of_those_on_points") {
       return sum;
     };
     const QuadVector forces = random_quads(places.size()), motions = random_quads(transfer.unknowns());
-    QuadVector on_points(places.size(), Quad{}), nodes(transfer.unknowns()), scratch;
-    transfer.add_motions(motions, on_points);
-    transfer.restrict_forces(forces, nodes, scratch);
+    QuadVector on_points(places.size(), Quad{}), nodes(transfer.unknowns()), corners(4 * transfer.cells());
+    add_motions(transfer, motions, on_points);
+    for (std::size_t chunk = 0; chunk < transfer.chunks(); ++chunk) {
+      transfer.restrict_chunk(chunk, forces.data(), corners);
+    }
+    transfer.add_up_corners(corners, nodes);
     CHECK(work(motions, nodes) == Approx(work(on_points, forces)).epsilon(1e-5));
   }
 }

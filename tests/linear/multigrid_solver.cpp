@@ -43,7 +43,7 @@ struct Network {
         matrix(assemble_stiffness(discs, graph, k, unknowns)) {}
 
   [[nodiscard]] std::unique_ptr<Factorization> multigrid(const multigrid::CycleOptions& options = {}) const {
-    return multigrid_solver({matrix, assembly, graph}, springs, unknowns, options);
+    return multigrid_solver({assembly, graph, springs, unknowns}, options);
   }
   [[nodiscard]] std::unique_ptr<Factorization> elimination() const {
     return multifrontal_cholesky(

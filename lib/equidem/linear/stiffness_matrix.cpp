@@ -2,6 +2,8 @@
 #include "equidem/linear/stiffness_matrix.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/threads.hpp"
@@ -11,43 +13,63 @@ namespace {
 
 constexpr std::size_t discs_at_once = 1 << 12;
 
-/// The blocks of a disc and of the contacts that name it first: every block is written once, by one thread.
-template <int B>
-void assemble_disc(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
-                   const DegreesOfFreedom& unknowns, double held_stiffness, std::size_t d, StiffnessMatrix& matrix) {
+/// Visit the blocks of a row of discs: visit(edge, coupling) for every contact of disc d with the block K_ij (i = d
+/// where the contact names d first; of a contact of a disc with its own image a block of zeros). \returns K_dd
+template <int B, typename Visit>
+std::array<double, B * B> visit_row(const SpringNetwork& network, double held_stiffness, std::size_t d,
+                                    const Visit& visit) {
+  const auto& [assembly, graph, springs, unknowns] = network;
   const auto held = [&](std::size_t disc, int k) { return unknowns.held[disc * B + k] != 0; };
-  double diagonal[B * B] = {};
+  std::array<double, B * B> diagonal{};
   for (const auto& edge : graph.of(d)) {
     const Contact& contact = assembly.contacts[edge.contact];
     const SpringConstants k = springs[edge.contact];
     DeformationGradient g =
         deformation_gradient(frame_of(assembly, static_cast<std::size_t>(edge.contact)), unknowns.rotation_scale);
+    std::array<double, B * B> coupling{};
     if (contact.i == contact.j) {  // both ends move alike
       for (int r = 0; r < 3; ++r) {
         g.normal_i[r] += g.normal_j[r];
         g.tangential_i[r] += g.tangential_j[r];
       }
-    } else if (static_cast<std::size_t>(contact.j) == d) {
-      add_linear_spring_tangent<B>(k, g.normal_j, g.normal_j, g.tangential_j, g.tangential_j, diagonal);
-      continue;
+    } else {
+      add_linear_spring_tangent<B>(k, g.normal_i, g.normal_j, g.tangential_i, g.tangential_j, coupling.data());
     }
-    add_linear_spring_tangent<B>(k, g.normal_i, g.normal_i, g.tangential_i, g.tangential_i, diagonal);
-    double coupling[B * B] = {};
-    if (contact.i != contact.j)
-      add_linear_spring_tangent<B>(k, g.normal_i, g.normal_j, g.tangential_i, g.tangential_j, coupling);
+    const bool first = static_cast<std::size_t>(contact.i) == d;
+    const auto &normal = first ? g.normal_i : g.normal_j, &tangential = first ? g.tangential_i : g.tangential_j;
+    add_linear_spring_tangent<B>(k, normal, normal, tangential, tangential, diagonal.data());
     for (int r = 0; r < B; ++r) {
       for (int c = 0; c < B; ++c) {
         if (held(contact.i, r) || held(contact.j, c)) coupling[r * B + c] = 0;
       }
     }
-    std::copy(coupling, coupling + B * B, &matrix.coupling[static_cast<std::size_t>(edge.contact) * B * B]);
+    visit(edge, coupling);
   }
   for (int k = 0; k < B; ++k) {
     if (!held(d, k)) continue;
     for (int r = 0; r < B; ++r) diagonal[r * B + k] = diagonal[k * B + r] = 0;
     diagonal[k * B + k] = held_stiffness;
   }
-  std::copy(diagonal, diagonal + B * B, &matrix.diagonal[d * B * B]);
+  return diagonal;
+}
+
+/// The blocks of a disc and of the contacts that name it first: every block is written once, by one thread.
+template <int B>
+void assemble_disc(const SpringNetwork& network, double held_stiffness, std::size_t d, StiffnessMatrix& matrix) {
+  const auto diagonal = visit_row<B>(network, held_stiffness, d, [&](const auto& edge, const auto& coupling) {
+    if (static_cast<std::size_t>(network.assembly.contacts[edge.contact].i) != d) return;
+    std::copy(coupling.begin(), coupling.end(), &matrix.coupling[static_cast<std::size_t>(edge.contact) * B * B]);
+  });
+  std::copy(diagonal.begin(), diagonal.end(), &matrix.diagonal[d * B * B]);
+}
+
+template <int B>
+void add_row_sums(const SpringNetwork& network, double held_stiffness, std::size_t d, double* sums) {
+  const auto diagonal = visit_row<B>(network, held_stiffness, d, [&](const auto& edge, const auto& coupling) {
+    const bool first = static_cast<std::size_t>(network.assembly.contacts[edge.contact].i) == d;
+    for (int e = 0; e < B * B; ++e) sums[first ? e / B : e % B] += std::abs(coupling[e]);
+  });
+  for (int e = 0; e < B * B; ++e) sums[e / B] += std::abs(diagonal[e]);
 }
 
 template <int B>
@@ -56,7 +78,7 @@ void assemble(const Assembly& assembly, const ContactGraph& graph, const Contact
   const double held_stiffness = springs.largest();
   parallel_ranges(assembly.size(), discs_at_once, [&](std::size_t begin, std::size_t end) {
     for (std::size_t d = begin; d < end; ++d) {
-      assemble_disc<B>(assembly, graph, springs, unknowns, held_stiffness, d, matrix);
+      assemble_disc<B>({assembly, graph, springs, unknowns}, held_stiffness, d, matrix);
     }
   });
 }
@@ -168,6 +190,22 @@ StiffnessMatrix assemble_stiffness(const Assembly& assembly, const ContactGraph&
     assemble<2>(assembly, graph, springs, unknowns, matrix);
   }
   return matrix;
+}
+
+std::vector<double> row_sums(const SpringNetwork& network) {
+  const auto b = static_cast<std::size_t>(network.unknowns.per_disc);
+  const double held_stiffness = network.springs.largest();
+  std::vector<double> sums(network.assembly.size() * b, 0.0);
+  parallel_ranges(network.assembly.size(), discs_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t d = begin; d < end; ++d) {
+      if (b == 3) {
+        add_row_sums<3>(network, held_stiffness, d, &sums[3 * d]);
+      } else {
+        add_row_sums<2>(network, held_stiffness, d, &sums[2 * d]);
+      }
+    }
+  });
+  return sums;
 }
 
 }  // namespace equidem

@@ -12,6 +12,7 @@
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/degrees_of_freedom.hpp"
 #include "equidem/linear/large_buffer.hpp"
+#include "equidem/linear/spring_network.hpp"
 
 namespace equidem {
 
@@ -59,5 +60,8 @@ CompressedColumns compress(const StiffnessMatrix& matrix, const Assembly& assemb
 /// stretch and slip. Rows and columns of held components are those of a unit matrix times the largest spring.
 StiffnessMatrix assemble_stiffness(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
                                    const DegreesOfFreedom& unknowns);
+
+/// sum_j |K_ij| of every row, Pa, without K itself.
+std::vector<double> row_sums(const SpringNetwork& network);
 
 }  // namespace equidem

@@ -10,6 +10,7 @@
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/linear/contact_graph.hpp"
+#include "equidem/linear/spring_network.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 
 namespace equidem {
@@ -24,14 +25,6 @@ struct PreciseMotion {
   explicit PreciseMotion(std::size_t components) : high(components, 0.0), low(components, 0.0) {}
   /// Add a correction, keeping the digits that a sum in one double would lose.
   void add(std::span<const double> correction);
-};
-
-/// Discs, contacts, springs and unknowns, as forces are evaluated on them.
-struct SpringNetwork {
-  const Assembly& assembly;
-  const ContactGraph& graph;
-  const ContactSprings& springs;
-  const DegreesOfFreedom& unknowns;
 };
 
 /// Stretch and slip of every contact: those of the motion, from differences in extended precision, and those imposed.

@@ -129,7 +129,9 @@ std::unique_ptr<Factorization> by_back_end(SolverMethod method, const System& sy
     bad_input(fmt::format("method '{}' cannot solve this case", to_string(method)),
               "some kT is negative, and the method needs a positive definite matrix", "Use method = \"auto\"");
   }
-  if (back_end.iterative) return multigrid_solver(system.k, system.springs, system.unknowns);
+  if (back_end.iterative) {
+    return multigrid_solver({system.k.assembly, system.k.graph, system.springs, system.unknowns});
+  }
   if (back_end.factorize == nullptr) return multifrontal(system, mechanisms);
   return judged(back_end.factorize(system.k, system.unknowns, *system.symbolic), system, mechanisms);
 }

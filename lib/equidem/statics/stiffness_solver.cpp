@@ -36,8 +36,10 @@ StiffnessSolver::StiffnessSolver(const Assembly& assembly, const ContactSprings&
   size.peak_bytes *= back_end.memory_factor;
   check_memory(size, options.memory_limit);
   watch.lap();
-  matrix_ = assemble_stiffness(assembly, graph_, springs, unknowns_);
-  times.add("assemble", watch.lap());
+  if (!back_end.iterative) {
+    matrix_ = assemble_stiffness(assembly, graph_, springs, unknowns_);
+    times.add("assemble", watch.lap());
+  }
   const MatrixOnGraph k{matrix_, assembly, graph_};
   const System system{k, springs, unknowns_, std::move(symbolic)};
   factor_ = factorize(system, options, mechanisms, times);
@@ -335,20 +337,7 @@ double StiffnessSolver::rounding_work(const RightHandSide& given, const PreciseM
 }
 
 std::vector<double> StiffnessSolver::row_sums() const {
-  const auto b = static_cast<std::size_t>(matrix_.block);
-  std::vector<double> sum(unknowns_.held.size(), 0.0);
-  for (std::size_t d = 0; d < assembly_.size(); ++d) {
-    for (std::size_t e = 0; e < b * b; ++e) sum[d * b + e / b] += std::abs(matrix_.diagonal_block(d)[e]);
-  }
-  for (std::size_t c = 0; c < assembly_.contacts.size(); ++c) {
-    const Contact& contact = assembly_.contacts[c];
-    for (std::size_t e = 0; e < b * b; ++e) {
-      const double entry = std::abs(matrix_.coupling_block(c)[e]);
-      sum[contact.i * b + e / b] += entry;
-      sum[contact.j * b + e % b] += entry;
-    }
-  }
-  return sum;
+  return equidem::row_sums({assembly_, graph_, springs_, unknowns_});
 }
 
 double StiffnessSolver::norm() const {

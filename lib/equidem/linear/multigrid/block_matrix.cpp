@@ -30,19 +30,6 @@ Quad residual_of_row(const BlockMatrix& a, std::size_t row, const Quad* b, const
   return sum;
 }
 
-/// step := keep step + add D^-1 (b - A x), next := x + step.
-void advance(const BlockMatrix& a, const QuadVector& b, const QuadVector& x, float keep, float add, QuadVector& step,
-             QuadVector& next) {
-  parallel_ranges(a.rows(), rows_at_once, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) {
-      Quad d = add * times(&a.inverse[9 * row], residual_of_row(a, row, b.data(), x.data()));
-      if (keep != 0) d += keep * step[row];
-      step[row] = d;
-      next[row] = x[row] + d;
-    }
-  });
-}
-
 }  // namespace
 
 Block inverse_or_zero(const Block& block) {
@@ -105,15 +92,34 @@ double BlockMatrix::bytes() const {
          4.0 * static_cast<double>(blocks.size() + inverse.size());
 }
 
-void residual(const BlockMatrix& a, const QuadVector& b, const QuadVector& x, QuadVector& r) {
-  parallel_ranges(a.rows(), rows_at_once, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) r[row] = residual_of_row(a, row, b.data(), x.data());
-  });
+RowRange BlockMatrix::reach(RowRange rows) const {
+  RowRange result = rows;
+  for (std::int64_t e = first[rows.begin]; e < first[rows.end]; ++e) {
+    const auto column = static_cast<std::size_t>(columns[e]);
+    result = {std::min(result.begin, column), std::max(result.end, column + 1)};
+  }
+  return result;
+}
+
+void BlockMatrix::start(RowRange rows, float factor, const Quad* b, Quad* x) const {
+  for (std::size_t row = rows.begin; row < rows.end; ++row) x[row] = factor * times(&inverse[9 * row], b[row]);
+}
+
+void BlockMatrix::advance(RowRange rows, const ChebyshevStep& step, const Quad* b, const Quad* x, Quad* next) const {
+  for (std::size_t row = rows.begin; row < rows.end; ++row) {
+    Quad change = step.add * times(&inverse[9 * row], residual_of_row(*this, row, b, x));
+    if (step.keep != 0) change += step.keep * (step.from_zero ? x[row] : x[row] - next[row]);
+    next[row] = x[row] + change;
+  }
+}
+
+void BlockMatrix::residual(RowRange rows, const Quad* b, const Quad* x, Quad* r) const {
+  for (std::size_t row = rows.begin; row < rows.end; ++row) r[row] = residual_of_row(*this, row, b, x);
 }
 
 double largest_eigenvalue(const BlockMatrix& a, int iterations) {
   const std::size_t n = a.rows();
-  QuadVector zero(n), x(n), step(n), next(n);
+  QuadVector zero(n), x(n), product(n);
   Random random(1);
   for (std::size_t row = 0; row < n; ++row) {
     const auto number = [&] { return static_cast<float>(random.uniform() - 0.5); };
@@ -122,41 +128,24 @@ double largest_eigenvalue(const BlockMatrix& a, int iterations) {
   }
   double value = 0;
   for (int k = 0; k < iterations; ++k) {
-    advance(a, zero, x, 0, -1, step, next);  // step = D^-1 A x
+    parallel_ranges(n, rows_at_once, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t row = begin; row < end; ++row) {
+        product[row] = times(&a.inverse[9 * row], residual_of_row(a, row, zero.data(), x.data()));
+      }
+    });
     double before = 0, after = 0;
     for (std::size_t row = 0; row < n; ++row) {
       for (int c = 0; c < 3; ++c) {
         before += static_cast<double>(x[row][c]) * x[row][c];
-        after += static_cast<double>(step[row][c]) * step[row][c];
+        after += static_cast<double>(product[row][c]) * product[row][c];
       }
     }
     if (!(before > 0 && after > 0)) return value;
     value = std::sqrt(after / before);
     const auto scale = static_cast<float>(1 / std::sqrt(after));
-    for (std::size_t row = 0; row < n; ++row) x[row] = scale * step[row];
+    for (std::size_t row = 0; row < n; ++row) x[row] = scale * product[row];
   }
   return value;
-}
-
-void Smoother::apply(const BlockMatrix& a, const QuadVector& b, QuadVector& x, QuadVector& step, QuadVector& next,
-                     bool from_zero) const {
-  const double middle = 0.5 * (largest + largest / range), half = 0.5 * (largest - largest / range);
-  double rho = half / middle;
-  const auto first = static_cast<float>(1 / middle);
-  if (from_zero) {
-    parallel_ranges(a.rows(), rows_at_once, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t row = begin; row < end; ++row) x[row] = step[row] = first * times(&a.inverse[9 * row], b[row]);
-    });
-  } else {
-    advance(a, b, x, 0, first, step, next);
-    std::swap(x, next);
-  }
-  for (int k = 1; k < degree; ++k) {
-    const double following = 1 / (2 * middle / half - rho);
-    advance(a, b, x, static_cast<float>(following * rho), static_cast<float>(2 * following / half), step, next);
-    std::swap(x, next);
-    rho = following;
-  }
 }
 
 }  // namespace equidem::multigrid

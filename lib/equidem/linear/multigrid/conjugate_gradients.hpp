@@ -3,8 +3,12 @@
 /// Preconditioned conjugate gradients in double precision.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <span>
+
+#include "equidem/core/progress.hpp"
 
 namespace equidem::multigrid {
 
@@ -28,10 +32,61 @@ struct IterationReport {
   double residual = 0;  ///< |r| over |b| as the recurrence gives it
 };
 
-/// x := K^-1 b by conjugate gradients (Hestenes & Stiefel 1952), M an approximate inverse of K. The step in the
-/// direction is that of Polak & Ribiere, which tolerates the rounding of M in single precision (Notay 2000).
-/// \param x b on entry
+/// Products of a vector z with r and with q.
+struct Dots {
+  double rz = 0, qz = 0;
+};
+
+/// Conjugate gradients (Hestenes & Stiefel 1952) for K x = b from x = 0. The step in the direction is that of Polak &
+/// Ribiere, which tolerates the rounding of M, an approximate inverse of K in single precision (Notay 2000).
+///
+/// `Vectors` holds x = 0, r = b, p, q and z, and has
+///   double size()             |r|
+///   Dots precondition()       z = M r; returns r.z and q.z
+///   void turn(double f)       p = z + f p
+///   double multiply()         q = K p; returns p.q
+///   double advance(double f)  x += f p, r -= f q; returns |r|
 /// \throws Error of kind interrupted where the user asked to stop
+template <class Vectors>
+IterationReport iterate(Vectors& vectors, const IterationOptions& options) {
+  IterationReport report;
+  const double size = vectors.size();
+  if (size == 0) return report;
+  report.residual = 1;
+  double rz = vectors.precondition().rz;
+  vectors.turn(0);
+  const double first_rz = rz;
+  double inverse_size = rz;  // p.M^-1 p
+  double largest_quotient = 0;
+  Progress progress("iterating");
+  while (report.iterations < options.max_iterations) {
+    const double pq = vectors.multiply();
+    constexpr double no_stiffness = 1e-11;
+    const double quotient = pq / inverse_size;  // of Rayleigh for M K
+    largest_quotient = std::max(largest_quotient, quotient);
+    if (!(rz > 0 && quotient > no_stiffness * largest_quotient)) {
+      report.outcome = IterationOutcome::singular;
+      return report;
+    }
+    const double alpha = rz / pq;
+    report.residual = vectors.advance(alpha) / size;
+    ++report.iterations;
+    const auto next = vectors.precondition();
+    if (report.residual <= options.tolerance && next.rz <= options.tolerance * options.tolerance * first_rz) {
+      return report;
+    }
+    progress.update(std::clamp(std::log(report.residual) / std::log(options.tolerance), 0.0, 1.0));
+    const double beta = std::max(0.0, -alpha * next.qz / rz);
+    vectors.turn(beta);
+    inverse_size = next.rz + beta * beta * inverse_size;
+    rz = next.rz;
+  }
+  report.outcome = IterationOutcome::stalled;
+  return report;
+}
+
+/// x := K^-1 b by `iterate`.
+/// \param x b on entry
 IterationReport conjugate_gradients(const Product& multiply_by_k, const Product& multiply_by_m, std::span<double> x,
                                     const IterationOptions& options = {});
 

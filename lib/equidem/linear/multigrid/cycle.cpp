@@ -8,11 +8,10 @@
 
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/multigrid/cell_stiffness.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
 
 namespace equidem::multigrid {
 namespace {
-
-constexpr std::size_t discs_per_task = 1 << 13;
 
 Grid grid_over(const Assembly& assembly, double a, double spacing) {
   double sum = 0;
@@ -32,44 +31,36 @@ Grid grid_over(const Assembly& assembly, double a, double spacing) {
   return {divide(low.x / a, extent.x, h, periodic), divide(low.y / a, extent.y, h, periodic)};
 }
 
-/// The block of a disc or a contact over `unit`, filled up with zeros, which held components have as well.
-Block scaled_block(const double* block, int b, double unit, bool transposed) {
-  Block result{};
-  for (int r = 0; r < b; ++r) {
-    for (int c = 0; c < b; ++c) result[3 * r + c] = (transposed ? block[c * b + r] : block[r * b + c]) / unit;
-  }
-  return result;
-}
-
-BlockMatrix matrix_of_discs(const MatrixOnGraph& k, const DegreesOfFreedom& unknowns,
-                            const std::vector<std::int32_t>& order, double unit) {
-  const std::size_t n = order.size();
-  const int b = k.matrix.block;
-  std::vector<std::int32_t> row_of(n);
+/// The matrix of few discs, for elimination.
+BlockMatrix matrix_of(const SpringNetwork& network, double unit) {
+  const auto& [assembly, graph, springs, unknowns] = network;
+  const StiffnessMatrix k = assemble_stiffness(assembly, graph, springs, unknowns);
+  const int b = k.block;
+  const auto scaled = [&](const double* block, bool transposed) {
+    Block result{};
+    for (int r = 0; r < b; ++r) {
+      for (int c = 0; c < b; ++c) result[3 * r + c] = (transposed ? block[c * b + r] : block[r * b + c]) / unit;
+    }
+    return result;
+  };
   BlockMatrix result;
-  result.first.assign(n + 1, 0);
-  for (std::size_t row = 0; row < n; ++row) {
-    row_of[order[row]] = static_cast<std::int32_t>(row);
-    result.first[row + 1] = result.first[row] + 1 + static_cast<std::int64_t>(k.graph.of(order[row]).size());
+  result.first.push_back(0);
+  for (std::size_t d = 0; d < graph.size(); ++d) {
+    result.first.push_back(result.first.back() + 1 + static_cast<std::int64_t>(graph.of(d).size()));
   }
   result.resize();
-  parallel_ranges(n, discs_per_task, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) {
-      const std::int32_t disc = order[row];
-      std::int64_t entry = result.first[row];
-      Block diagonal = scaled_block(k.matrix.diagonal_block(disc), b, unit, false);
-      for (int e = 0; e < b; ++e) {
-        if (unknowns.held[static_cast<std::size_t>(disc) * b + e] != 0) diagonal[4 * e] = 0;
-      }
-      result.set(entry++, row, diagonal);
-      result.set_inverse(row, diagonal);
-      for (const auto& edge : k.graph.of(disc)) {
-        const bool transposed = k.assembly.contacts[edge.contact].i != disc;
-        result.set(entry++, row_of[edge.other],
-                   scaled_block(k.matrix.coupling_block(edge.contact), b, unit, transposed));
-      }
+  for (std::size_t d = 0; d < graph.size(); ++d) {
+    std::int64_t entry = result.first[d];
+    Block diagonal = scaled(k.diagonal_block(d), false);
+    for (int e = 0; e < b; ++e) {
+      if (unknowns.held[d * static_cast<std::size_t>(b) + static_cast<std::size_t>(e)] != 0) diagonal[4 * e] = 0;
     }
-  });
+    result.set(entry++, d, diagonal);
+    for (const auto& edge : graph.of(d)) {
+      const bool transposed = static_cast<std::size_t>(assembly.contacts[edge.contact].i) != d;
+      result.set(entry++, static_cast<std::size_t>(edge.other), scaled(k.coupling_block(edge.contact), transposed));
+    }
+  }
   return result;
 }
 
@@ -81,44 +72,57 @@ std::vector<std::int32_t> numbers_up_to(std::size_t n) {
 
 }  // namespace
 
-Cycle::Cycle(const MatrixOnGraph& k, const ContactSprings& springs, const DegreesOfFreedom& unknowns,
-             const CycleOptions& options)
-    : unknowns_(unknowns) {
-  const double unit = springs.largest();
+Cycle::Cycle(const SpringNetwork& network, const CycleOptions& options) : unit_(network.springs.largest()) {
+  const std::size_t discs = network.assembly.size();
   levels_.emplace_back();
-  if (k.assembly.size() < static_cast<std::size_t>(options.direct_below)) {
-    order_ = numbers_up_to(k.assembly.size());
+  if (discs < static_cast<std::size_t>(options.direct_below)) {
+    order_ = numbers_up_to(discs);
+    coarsest_ = EnvelopeCholesky(matrix_of(network, unit_));
+    const std::vector<std::int32_t> one_chunk{0, static_cast<std::int32_t>(discs)};
+    add_discs(network, one_chunk);
   } else {
-    build_grids(k, springs, options);
-    order_ = levels_[0].transfer->order();
+    build_grids(network, options);
   }
-  levels_[0].matrix = matrix_of_discs(k, unknowns, order_, unit);
-  // (q_i + q_j)² <= 2 q_i² + 2 q_j² in the energy of every contact: no eigenvalue of D^-1 K exceeds 2.
-  levels_[0].smoother = {.degree = options.degree, .largest = 2, .range = options.range};
-  for (Level& level : levels_) {
-    const std::size_t n = level.matrix.rows();
-    for (QuadVector* vector : {&level.b, &level.x, &level.step, &level.next}) vector->resize(n);
-    std::fill(level.x.begin(), level.x.end(), Quad{});
+  for (std::size_t number = 0; number < levels_.size(); ++number) {
+    Level& level = levels_[number];
+    const std::size_t n = level.matrix->rows();
+    for (QuadVector* vector : {&level.b, &level.x}) vector->assign(n, Quad{});
+    if (number + 1 == levels_.size()) break;
+    level.other.assign(n, Quad{});
+    level.cells.resize(4 * level.transfer->cells());
+    level.wavefront = Wavefront(level.transfer->first_points(), *level.matrix);
+    level.before = chebyshev_steps(options.degree, level.largest, options.range, true);
+    level.after = chebyshev_steps(options.degree, level.largest, options.range, false);
   }
-  coarsest_ = EnvelopeCholesky(levels_.back().matrix);
 }
 
-void Cycle::build_grids(const MatrixOnGraph& k, const ContactSprings& springs, const CycleOptions& options) {
-  const double a = unknowns_.rotation_scale;
-  const auto b = static_cast<std::size_t>(k.matrix.block);
-  auto grid = std::make_unique<Grid>(grid_over(k.assembly, a, options.spacing));
-  std::vector<Place> places(k.assembly.size());
+void Cycle::add_discs(const SpringNetwork& network, std::span<const std::int32_t> first_row) {
+  auto discs = std::make_unique<ContactRows>(network, order_, first_row, unit_);
+  discs_ = discs.get();
+  levels_[0].matrix = std::move(discs);
+  // (q_i + q_j)² <= 2 q_i² + 2 q_j² in the energy of every contact: no eigenvalue of D^-1 K exceeds 2.
+  levels_[0].largest = 2;
+}
+
+void Cycle::build_grids(const SpringNetwork& network, const CycleOptions& options) {
+  const auto& [assembly, graph, springs, unknowns] = network;
+  const double a = unknowns.rotation_scale;
+  const auto b = static_cast<std::size_t>(unknowns.per_disc);
+  auto grid = std::make_unique<Grid>(grid_over(assembly, a, options.spacing));
+  std::vector<Place> places(assembly.size());
   std::vector<double> masses(places.size());
   for (std::size_t d = 0; d < places.size(); ++d) {
-    places[d] = grid->place((1 / a) * k.assembly.centres[d]);
-    const auto held = unknowns_.held.begin() + static_cast<std::ptrdiff_t>(d * b);
+    places[d] = grid->place((1 / a) * assembly.centres[d]);
+    const auto held = unknowns.held.begin() + static_cast<std::ptrdiff_t>(d * b);
     masses[d] = std::all_of(held, held + 2, [](std::uint8_t h) { return h != 0; }) ? 0 : 1;
   }
   masses = node_masses(*grid, places, masses);
   grid->keep_nodes(masses);
-  CellStiffness cells = stiffness_of_contacts(*grid, k.assembly, springs, unknowns_, springs.largest());
+  CellStiffness cells = stiffness_of_contacts(*grid, assembly, springs, unknowns, unit_);
   for (double& entry : cells) entry *= options.coarse_factor;
   auto transfer = std::make_unique<Transfer>(*grid, places);
+  order_ = transfer->order();
+  add_discs(network, transfer->first_points());
   while (transfer) {
     Level& level = levels_.back();
     level.grid = std::exchange(grid, nullptr);
@@ -140,12 +144,12 @@ void Cycle::build_grids(const MatrixOnGraph& k, const ContactSprings& springs, c
       coarser_cells = stiffness_on_coarser(*grid, here, cells);
     }
     level.transfer->number_nodes(transfer ? transfer->order() : order_along(here));
-    BlockMatrix matrix = assemble_cells(*level.transfer, cells);
+    auto matrix = std::make_unique<BlockMatrix>(assemble_cells(*level.transfer, cells));
     constexpr int iterations = 10;
     constexpr double margin = 1.1;  // power iteration approaches from below
-    const double largest = margin * largest_eigenvalue(matrix, iterations);
-    levels_.push_back({.matrix = std::move(matrix),
-                       .smoother = {.degree = options.degree, .largest = largest, .range = options.range}});
+    if (!transfer) coarsest_ = EnvelopeCholesky(*matrix);
+    const double largest = transfer ? margin * largest_eigenvalue(*matrix, iterations) : 0;
+    levels_.push_back({.matrix = std::move(matrix), .largest = largest});
     cells = std::move(coarser_cells);
   }
 }
@@ -157,45 +161,54 @@ void Cycle::correct(std::size_t number) {
     return;
   }
   Level& above = levels_[number + 1];
-  level.smoother.apply(level.matrix, level.b, level.x, level.step, level.next, true);
-  residual(level.matrix, level.b, level.x, level.next);
-  level.transfer->restrict_forces(level.next, above.b, level.cells);
+  const int degree = static_cast<int>(level.before.size());
+  Quad* const vectors[] = {level.x.data(), level.other.data()};  // step s writes into vectors[s % 2]
+  level.wavefront.run(degree + 1, [&](int step, std::size_t chunk) {
+    const RowRange rows = level.wavefront.rows(chunk);
+    Quad *const from = vectors[(step + 1) % 2], *const to = vectors[step % 2];
+    if (step == 0) {
+      level.matrix->start(rows, level.before[0].add, level.b.data(), to);
+    } else if (step < degree) {
+      level.matrix->advance(rows, level.before[step], level.b.data(), from, to);
+    } else {
+      level.matrix->residual(rows, level.b.data(), from, to);
+      level.transfer->restrict_chunk(chunk, to, level.cells);
+    }
+  });
+  level.transfer->add_up_corners(level.cells, above.b);
   correct(number + 1);
-  level.transfer->add_motions(above.x, level.x);
-  level.smoother.apply(level.matrix, level.b, level.x, level.step, level.next, false);
+  if (degree % 2 == 0) std::swap(level.x, level.other);
+  Quad* const following[] = {level.x.data(), level.other.data()};
+  level.wavefront.run(degree + 1, [&](int step, std::size_t chunk) {
+    Quad *const from = following[(step + 1) % 2], *const to = following[step % 2];
+    const RowRange rows = level.wavefront.rows(chunk);
+    if (step == 0) {
+      level.transfer->add_motions(chunk, above.x, to);
+      level.matrix->hold(rows, to);
+    } else {
+      level.matrix->advance(rows, level.after[step - 1], level.b.data(), from, to);
+    }
+  });
+  if (degree % 2 == 1) std::swap(level.x, level.other);
 }
 
-void Cycle::apply(std::span<const double> r, std::span<double> z) {
-  double largest = 0;
-  for (const double value : r) largest = std::max(largest, std::abs(value));
-  if (largest == 0) largest = 1;
-  const auto b = static_cast<std::size_t>(unknowns_.per_disc);
-  Level& discs = levels_[0];
-  parallel_ranges(order_.size(), discs_per_task, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) {
-      const std::size_t first = static_cast<std::size_t>(order_[row]) * b;
-      Quad force{};
-      for (std::size_t e = 0; e < b; ++e) {
-        if (unknowns_.held[first + e] == 0) force[e] = static_cast<float>(r[first + e] / largest);
-      }
-      discs.b[row] = force;
-    }
-  });
+const Quad* Cycle::solve() {
   correct(0);
-  parallel_ranges(order_.size(), discs_per_task, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) {
-      const std::size_t first = static_cast<std::size_t>(order_[row]) * b;
-      for (std::size_t e = 0; e < b; ++e) {
-        z[first + e] = unknowns_.held[first + e] == 0 ? largest * discs.x[row][e] : 0;
-      }
-    }
-  });
+  return levels_[0].x.data();
+}
+
+double Cycle::multiply(const double* p, double* q) const {
+  const Wavefront& wavefront = levels_[0].wavefront;
+  if (wavefront.chunks() == 0) return discs_->multiply({0, discs_->rows()}, p, q);
+  std::vector<double> sums(wavefront.chunks());
+  parallel_tasks(sums.size(), [&](std::size_t chunk, int) { sums[chunk] = discs_->multiply(wavefront.rows(chunk), p, q); });
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
 double Cycle::bytes() const {
   double sum = coarsest_.bytes() + 4.0 * static_cast<double>(order_.size());
   for (const Level& level : levels_) {
-    sum += level.matrix.bytes() + 16.0 * static_cast<double>(4 * level.x.size() + level.cells.capacity());
+    sum += level.matrix->bytes() + 16.0 * static_cast<double>(3 * level.x.size() + level.cells.size());
     if (level.transfer) sum += level.transfer->bytes();
   }
   return sum;

@@ -8,12 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "equidem/contact/contact_springs.hpp"
-#include "equidem/linear/multigrid/block_matrix.hpp"
+#include "equidem/linear/multigrid/contact_rows.hpp"
 #include "equidem/linear/multigrid/envelope_cholesky.hpp"
 #include "equidem/linear/multigrid/grid.hpp"
 #include "equidem/linear/multigrid/transfer.hpp"
-#include "equidem/linear/stiffness_matrix.hpp"
+#include "equidem/linear/multigrid/wavefront.hpp"
+#include "equidem/linear/spring_network.hpp"
 
 namespace equidem::multigrid {
 
@@ -30,27 +30,39 @@ struct CycleOptions {
 /// but for rounding, the same bits for every number of threads.
 class Cycle {
  public:
-  Cycle(const MatrixOnGraph& k, const ContactSprings& springs, const DegreesOfFreedom& unknowns,
-        const CycleOptions& options);
-  /// z := an approximation of K^-1 r (over discs x block components; 0 where held), times a constant.
-  void apply(std::span<const double> r, std::span<double> z);
+  Cycle(const SpringNetwork& network, const CycleOptions& options);
+  /// The disc of each row.
+  [[nodiscard]] const std::vector<std::int32_t>& order() const { return order_; }
+  /// Where the right-hand side is written, by rows; 0 where held.
+  [[nodiscard]] Quad* right_hand_side() { return levels_[0].b.data(); }
+  /// \returns an approximation of K^-1 times the right-hand side and the unit of stiffness, by rows; valid until the
+  ///          next call
+  const Quad* solve();
+  /// q = K p over the unit of stiffness in double precision, rows x 3; returns p.q.
+  /// \param p 0 where held; has one number more behind the last row
+  double multiply(const double* p, double* q) const;
+  [[nodiscard]] double unit() const { return unit_; }
   [[nodiscard]] double bytes() const;
   [[nodiscard]] std::int64_t grids() const { return static_cast<std::int64_t>(levels_.size()) - 1; }
 
  private:
   struct Level {
-    BlockMatrix matrix;
-    Smoother smoother;
+    std::unique_ptr<SmoothedMatrix> matrix;
+    double largest = 2;  // eigenvalue of D^-1 A
     std::unique_ptr<Grid> grid = nullptr;          // above; none on the coarsest level
     std::unique_ptr<Transfer> transfer = nullptr;  // to that grid
-    QuadVector b{}, x{}, step{}, next{}, cells{};
+    Wavefront wavefront{};                         // over the chunks of the transfer
+    std::vector<ChebyshevStep> before{}, after{};  // the coarse correction
+    QuadVector b{}, x{}, other{}, cells{};
   };
-  void build_grids(const MatrixOnGraph& k, const ContactSprings& springs, const CycleOptions& options);
+  void build_grids(const SpringNetwork& network, const CycleOptions& options);
+  void add_discs(const SpringNetwork& network, std::span<const std::int32_t> first_row);
   void correct(std::size_t level);
 
-  const DegreesOfFreedom& unknowns_;
-  std::vector<std::int32_t> order_;  // the disc of each row
+  double unit_;
+  std::vector<std::int32_t> order_;
   std::vector<Level> levels_;
+  const ContactRows* discs_ = nullptr;  // matrix of the first level
   EnvelopeCholesky coarsest_;
 };
 

@@ -80,6 +80,21 @@ void Grid::keep_nodes(std::span<const double> mass) {
   }
 }
 
+std::vector<std::int32_t> Grid::cell_order() const {
+  const GridAxis& along = wide() ? x_ : y_;
+  const int width = wide() ? y_.cells : x_.cells;
+  std::vector<std::int32_t> order;
+  order.reserve(cells());
+  for (int k = 0; k < along.cells; ++k) {
+    const int from_end = along.cells - 1 - k / 2;
+    const int line = !along.periodic ? k : k % 2 == 0 ? k / 2 : from_end;
+    for (int across = 0; across < width; ++across) {
+      order.push_back(wide() ? line + x_.cells * across : across + x_.cells * line);
+    }
+  }
+  return order;
+}
+
 std::array<std::size_t, 4> Grid::nodes_of(std::size_t cell) const {
   const std::size_t columns = x_.nodes(), rows = y_.nodes();
   const std::size_t x = cell % x_.cells, y = cell / x_.cells;

@@ -63,6 +63,9 @@ class Grid {
   [[nodiscard]] bool kept(std::size_t node) const { return kept_[node] != 0; }
   /// Whether the four nodes of a cell are kept.
   [[nodiscard]] bool full(std::size_t cell) const { return full_[cell] != 0; }
+  /// All cells, line by line across the longer side; where that is periodic, from its two ends in turn, so that the
+  /// neighbours of a line are never more than two lines away.
+  [[nodiscard]] std::vector<std::int32_t> cell_order() const;
   [[nodiscard]] std::array<std::size_t, 4> nodes_of(std::size_t cell) const;
   [[nodiscard]] Vec2 position(std::size_t node) const;
   [[nodiscard]] Vec2 spacing() const { return {x_.spacing, y_.spacing}; }

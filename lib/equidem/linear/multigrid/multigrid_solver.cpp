@@ -1,27 +1,135 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/linear/multigrid/multigrid_solver.hpp"
 
+#include <array>
 #include <cassert>
+#include <cmath>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
 #include "equidem/linear/multigrid/conjugate_gradients.hpp"
+#include "equidem/linear/multigrid/vector_sums.hpp"
 #include "equidem/linear/rigid_growth.hpp"
 
 namespace equidem {
 namespace {
 
+constexpr std::size_t rows_at_once = 1 << 12;
+
+/// The vectors of conjugate gradients by rows of three, and the cycle, which takes r over its size.
+class CycleVectors {
+ public:
+  /// \param load over discs x block components
+  CycleVectors(multigrid::Cycle& cycle, const DegreesOfFreedom& unknowns, std::span<const double> load)
+      : cycle_(cycle), unknowns_(unknowns) {
+    const std::size_t n = 3 * cycle.order().size();
+    for (LargeVector<double>* vector : {&x_, &r_, &p_, &q_}) vector->assign(n + 1, 0.0);
+    const auto b = static_cast<std::size_t>(unknowns.per_disc);
+    size_ = std::sqrt(sum_over_rows([&](std::size_t row) {
+      double square = 0;
+      for (std::size_t e = 0; e < b; ++e) {
+        const std::size_t component = static_cast<std::size_t>(cycle_.order()[row]) * b + e;
+        if (unknowns_.held[component] != 0) continue;
+        r_[3 * row + e] = load[component] / cycle_.unit();
+        square += r_[3 * row + e] * r_[3 * row + e];
+      }
+      return square;
+    }));
+    if (!(size_ > 0)) return;
+    const double over = 1 / size_;
+    parallel_ranges(rows(), rows_at_once, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t row = begin; row < end; ++row) give_to_cycle(row, over);
+    });
+    scale_ = size_;
+  }
+
+  [[nodiscard]] double size() const { return size_; }
+
+  multigrid::Dots precondition() {
+    z_ = cycle_.solve();
+    const auto sums = multigrid::sums_over<2>(rows(), rows_at_once, [&](std::size_t begin, std::size_t end) {
+      double rz = 0, qz = 0;
+      for (std::size_t row = begin; row < end; ++row) {
+        for (std::size_t e = 0; e < 3; ++e) {
+          const double z = z_[row][e];
+          rz += r_[3 * row + e] * z;
+          qz += q_[3 * row + e] * z;
+        }
+      }
+      return std::array{rz, qz};
+    });
+    return {scale_ * sums[0], scale_ * sums[1]};
+  }
+
+  void turn(double factor) {
+    parallel_ranges(rows(), rows_at_once, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t row = begin; row < end; ++row) {
+        for (std::size_t e = 0; e < 3; ++e) p_[3 * row + e] = scale_ * z_[row][e] + factor * p_[3 * row + e];
+      }
+    });
+  }
+
+  double multiply() { return cycle_.multiply(p_.data(), q_.data()); }
+
+  double advance(double factor) {
+    const double over = 1 / size_;  // the size before does as well
+    scale_ = size_;
+    size_ = std::sqrt(sum_over_rows([&](std::size_t row) {
+      double square = 0;
+      for (std::size_t e = 0; e < 3; ++e) {
+        const std::size_t k = 3 * row + e;
+        x_[k] += factor * p_[k];
+        r_[k] -= factor * q_[k];
+        square += r_[k] * r_[k];
+      }
+      give_to_cycle(row, over);
+      return square;
+    }));
+    return size_;
+  }
+
+  /// \param x over discs x block components
+  void hand_out(std::span<double> x) const {
+    const auto b = static_cast<std::size_t>(unknowns_.per_disc);
+    parallel_ranges(rows(), rows_at_once, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t row = begin; row < end; ++row) {
+        for (std::size_t e = 0; e < b; ++e) x[static_cast<std::size_t>(cycle_.order()[row]) * b + e] = x_[3 * row + e];
+      }
+    });
+  }
+
+ private:
+  [[nodiscard]] std::size_t rows() const { return cycle_.order().size(); }
+  void give_to_cycle(std::size_t row, double factor) {
+    const auto number = [&](std::size_t e) { return static_cast<float>(factor * r_[3 * row + e]); };
+    cycle_.right_hand_side()[row] = multigrid::Quad{number(0), number(1), number(2), 0};
+  }
+  template <typename Function>
+  [[nodiscard]] double sum_over_rows(const Function& f) const {
+    return multigrid::sums_over<1>(rows(), rows_at_once, [&](std::size_t begin, std::size_t end) {
+      double sum = 0;
+      for (std::size_t row = begin; row < end; ++row) sum += f(row);
+      return std::array{sum};
+    })[0];
+  }
+
+  multigrid::Cycle& cycle_;
+  const DegreesOfFreedom& unknowns_;
+  LargeVector<double> x_, r_, p_, q_;  // rows x 3, and one number for loads of vectors behind the last row
+  const multigrid::Quad* z_ = nullptr;
+  double size_ = 0;   // |r|
+  double scale_ = 1;  // of z
+};
+
 class MultigridSolver final : public Factorization {
  public:
-  MultigridSolver(const MatrixOnGraph& matrix, const ContactSprings& springs, const DegreesOfFreedom& unknowns,
-                  const multigrid::CycleOptions& options)
-      : matrix_(matrix),
-        unknowns_(unknowns),
-        cycle_(std::make_unique<multigrid::Cycle>(matrix, springs, unknowns, options)) {
+  MultigridSolver(const SpringNetwork& network, const multigrid::CycleOptions& options)
+      : unknowns_(network.unknowns), cycle_(std::make_unique<multigrid::Cycle>(network, options)) {
     report_.name = "conjugate gradients with multigrid on " + counted(cycle_->grids(), "grid");
     report_.bytes = cycle_->bytes();
-    if (!grows_rigid(matrix.assembly, matrix.graph, springs, unknowns.per_disc)) probe();
+    if (!grows_rigid(network.assembly, network.graph, network.springs, network.unknowns.per_disc)) probe();
   }
 
   void solve(std::span<double> x, int right_hand_sides) const override {
@@ -44,16 +152,11 @@ class MultigridSolver final : public Factorization {
   }
 
   int solve_one(std::span<double> x, const multigrid::IterationOptions& options) const {
-    for (std::size_t k = 0; k < x.size(); ++k) {
-      if (unknowns_.held[k] != 0) x[k] = 0;
-    }
-    const auto report = multigrid::conjugate_gradients(
-        [&](std::span<const double> v, std::span<double> kv) {
-          multiply(matrix_.matrix, matrix_.assembly, matrix_.graph, v, kv);
-        },
-        [&](std::span<const double> v, std::span<double> mv) { cycle_->apply(v, mv); }, x, options);
+    CycleVectors vectors(*cycle_, unknowns_, x);
+    const auto report = multigrid::iterate(vectors, options);
     switch (report.outcome) {
       case multigrid::IterationOutcome::converged:
+        vectors.hand_out(x);
         return report.iterations;
       case multigrid::IterationOutcome::stalled:
         computation_failed(fmt::format("method 'multigrid' leaves a residual of {:.1e} after {}", report.residual,
@@ -67,7 +170,6 @@ class MultigridSolver final : public Factorization {
                        "Use method = \"multifrontal\", which names the motion");
   }
 
-  MatrixOnGraph matrix_;
   const DegreesOfFreedom& unknowns_;
   std::unique_ptr<multigrid::Cycle> cycle_;
   mutable FactorReport report_;
@@ -75,18 +177,15 @@ class MultigridSolver final : public Factorization {
 
 }  // namespace
 
-std::unique_ptr<Factorization> multigrid_solver(const MatrixOnGraph& matrix, const ContactSprings& springs,
-                                                const DegreesOfFreedom& unknowns,
-                                                const multigrid::CycleOptions& options) {
-  assert(!springs.any_negative());
-  return std::make_unique<MultigridSolver>(matrix, springs, unknowns, options);
+std::unique_ptr<Factorization> multigrid_solver(const SpringNetwork& network, const multigrid::CycleOptions& options) {
+  assert(!network.springs.any_negative());
+  return std::make_unique<MultigridSolver>(network, options);
 }
 
 double bytes_of_multigrid(double discs, double contacts) {
-  // Per disc the diagonal of K in double, that of K and its inverse in float, 250 bytes on the grids (whose cells have
-  // matrices of their own while they are set up), four vectors in float and twenty in double; per contact K in double,
-  // in float with both triangles, and its force.
-  return discs * (72 + 72 + 250 + 64 + 480) + contacts * (72 + 80 + 16);
+  // Per disc two inverse blocks in float, 110 bytes on the grids, three vectors in float, twenty in double; per contact
+  // both its slots, of which random assemblies fill four in five, and its force.
+  return discs * (24 + 110 + 48 + 480) + contacts * (2 * 1.25 * 20 + 16);
 }
 
 }  // namespace equidem

@@ -6,10 +6,9 @@
 
 #include <memory>
 
-#include "equidem/contact/contact_springs.hpp"
 #include "equidem/linear/factorization.hpp"
 #include "equidem/linear/multigrid/cycle.hpp"
-#include "equidem/linear/stiffness_matrix.hpp"
+#include "equidem/linear/spring_network.hpp"
 
 namespace equidem {
 
@@ -18,11 +17,10 @@ namespace equidem {
 /// \throws Error (computation_failed), with the method that serves, where the network is not known to be rigid
 ///         (grows_rigid) and iterations on a rough load, or later those of a solve, do not converge or meet a motion
 ///         without stiffness
-std::unique_ptr<Factorization> multigrid_solver(const MatrixOnGraph& matrix, const ContactSprings& springs,
-                                                const DegreesOfFreedom& unknowns,
+std::unique_ptr<Factorization> multigrid_solver(const SpringNetwork& network,
                                                 const multigrid::CycleOptions& options = {});
 
-/// Estimate of the bytes that it takes beside the assembly, K included.
+/// Estimate of the bytes that it takes beside the assembly.
 double bytes_of_multigrid(double discs, double contacts);
 
 }  // namespace equidem

@@ -2,30 +2,61 @@
 #include "equidem/linear/multigrid/transfer.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "equidem/core/threads.hpp"
 
 namespace equidem::multigrid {
 namespace {
 
-constexpr std::size_t cells_per_task = 1 << 9;
 constexpr std::size_t points_per_task = 1 << 13;
+constexpr std::int32_t points_per_chunk = 1 << 10;
+
+/// The motion of a point is sum w_k (U_k + a theta_k turn_k) over the corners k.
+struct Corner {
+  float weight;
+  Quad turn;
+};
+
+std::array<Corner, 4> corners_at(const Grid& grid, std::int32_t cell, float s, float t) {
+  const Shape shape = grid.shape({cell, s, t});
+  std::array<Corner, 4> corners;
+  for (std::size_t k = 0; k < 4; ++k) {
+    corners[k] = {static_cast<float>(shape.weight[k]),
+                  Quad{-static_cast<float>(shape.arm[k].y), static_cast<float>(shape.arm[k].x), 0, 0}};
+  }
+  return corners;
+}
 
 }  // namespace
 
-Transfer::Transfer(const Grid& grid, std::span<const Place> places) : grid_(grid) {
+Transfer::Transfer(const Grid& grid, std::span<const Place> places) : grid_(grid), cells_(grid.cell_order()) {
+  std::vector<std::int32_t> position(cells_.size());
+  for (std::size_t k = 0; k < cells_.size(); ++k) position[cells_[k]] = static_cast<std::int32_t>(k);
   std::vector<std::int32_t> cell(places.size());
   std::vector<Inside> inside(places.size());
   parallel_ranges(places.size(), points_per_task, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const Place host = grid.host(places[k]);
-      cell[k] = host.cell;
+      cell[k] = position[host.cell];
       inside[k] = {static_cast<float>(host.s), static_cast<float>(host.t)};
     }
   });
   points_ = sort_into_buckets(cell, grid.cells());
   inside_.resize(places.size());
   for (std::size_t k = 0; k < places.size(); ++k) inside_[k] = inside[points_.items[k]];
+  chunks_.push_back(0);
+  for (std::size_t k = 0; k < cells_.size(); ++k) {
+    if (points_.first[k + 1] - points_.first[chunks_.back()] >= points_per_chunk || k + 1 == cells_.size()) {
+      chunks_.push_back(static_cast<std::int32_t>(k + 1));
+    }
+  }
+}
+
+std::vector<std::int32_t> Transfer::first_points() const {
+  std::vector<std::int32_t> result;
+  for (const std::int32_t cell : chunks_) result.push_back(points_.first[cell]);
+  return result;
 }
 
 void Transfer::number_nodes(std::span<const std::int32_t> order) {
@@ -48,41 +79,40 @@ void Transfer::number_nodes(std::span<const std::int32_t> order) {
   }
 }
 
-/// visit(corner, weight, turn): the motion of the point is weight (U + w turn).
-template <typename Visit>
-void Transfer::visit_corners(std::size_t cell, std::int32_t point, const Visit& visit) const {
-  const auto [s, t] = inside_[point];
-  if (!grid_.full(cell)) {
-    const Shape shape = grid_.shape({static_cast<std::int32_t>(cell), s, t});
-    for (int k = 0; k < 4; ++k) {
-      visit(k, static_cast<float>(shape.weight[k]),
-            Quad{-static_cast<float>(shape.arm[k].y), static_cast<float>(shape.arm[k].x), 0, 0});
-    }
-    return;
-  }
+// In a complete cell the parts of the linked interpolation sum up, with e.g. w = theta, to
+//   u_x = bilinear(U_x) - h_y/2 t (1 - t) (w_below - w_above),   u_y = bilinear(U_y) + h_x/2 s (1 - s) (w_left - w_right)
+// with w linear along each side.
+
+void Transfer::restrict_chunk(std::size_t chunk, const Quad* points, QuadVector& cells) const {
   const auto half_x = 0.5F * static_cast<float>(grid_.spacing().x),
              half_y = 0.5F * static_cast<float>(grid_.spacing().y);
-  const float left = half_x * s, right = half_x * (s - 1), below = half_y * t, above = half_y * (t - 1);
-  visit(0, (1 - s) * (1 - t), Quad{-below, left, 0, 0});
-  visit(1, s * (1 - t), Quad{-below, right, 0, 0});
-  visit(2, (1 - s) * t, Quad{-above, left, 0, 0});
-  visit(3, s * t, Quad{-above, right, 0, 0});
+  for (std::int32_t k = chunks_[chunk]; k < chunks_[chunk + 1]; ++k) {
+    const std::int32_t cell = cells_[k];
+    Quad sum[4] = {};
+    const bool full = grid_.full(cell);
+    for (std::int32_t point = points_.first[k]; point < points_.first[k + 1]; ++point) {
+      const auto [s, t] = inside_[point];
+      const Quad force = points[point];
+      if (full) {
+        const float across = half_y * t * (1 - t) * force[0], along = half_x * s * (1 - s) * force[1];
+        const Quad below = (1 - t) * force, above = t * force;
+        sum[0] += (1 - s) * below + Quad{0, 0, (1 - t) * along - (1 - s) * across, 0};
+        sum[1] += s * below + Quad{0, 0, -(1 - t) * along - s * across, 0};
+        sum[2] += (1 - s) * above + Quad{0, 0, t * along + (1 - s) * across, 0};
+        sum[3] += s * above + Quad{0, 0, s * across - t * along, 0};
+        continue;
+      }
+      const auto corners = corners_at(grid_, cell, s, t);
+      for (std::size_t e = 0; e < 4; ++e) {
+        const auto& [weight, turn] = corners[e];
+        sum[e] += weight * (force + Quad{0, 0, force[0] * turn[0] + force[1] * turn[1], 0});
+      }
+    }
+    std::copy(sum, sum + 4, &cells[4 * static_cast<std::size_t>(cell)]);
+  }
 }
 
-void Transfer::restrict_forces(const QuadVector& points, QuadVector& nodes, QuadVector& cells) const {
-  cells.resize(4 * corners_.size());
-  parallel_ranges(corners_.size(), cells_per_task, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t cell = begin; cell < end; ++cell) {
-      Quad sum[4] = {};
-      for (std::int32_t point = points_.first[cell]; point < points_.first[cell + 1]; ++point) {
-        const Quad force = points[point];
-        visit_corners(cell, point, [&](int k, float weight, Quad turn) {
-          sum[k] += weight * (force + Quad{0, 0, force[0] * turn[0] + force[1] * turn[1], 0});
-        });
-      }
-      std::copy(sum, sum + 4, &cells[4 * cell]);
-    }
-  });
+void Transfer::add_up_corners(const QuadVector& cells, QuadVector& nodes) const {
   parallel_ranges(adjacent_.size(), points_per_task, [&](std::size_t begin, std::size_t end) {
     for (std::size_t node = begin; node < end; ++node) {
       Quad sum{};
@@ -94,23 +124,34 @@ void Transfer::restrict_forces(const QuadVector& points, QuadVector& nodes, Quad
   });
 }
 
-void Transfer::add_motions(const QuadVector& nodes, QuadVector& points) const {
-  parallel_ranges(corners_.size(), cells_per_task, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t cell = begin; cell < end; ++cell) {
-      Quad motion[4];
-      for (int k = 0; k < 4; ++k) motion[k] = corners_[cell][k] >= 0 ? nodes[corners_[cell][k]] : Quad{};
-      for (std::int32_t point = points_.first[cell]; point < points_.first[cell + 1]; ++point) {
-        Quad sum = points[point];
-        visit_corners(cell, point,
-                      [&](int k, float weight, Quad turn) { sum += weight * (motion[k] + motion[k][2] * turn); });
-        points[point] = sum;
+void Transfer::add_motions(std::size_t chunk, const QuadVector& nodes, Quad* points) const {
+  const auto half_x = 0.5F * static_cast<float>(grid_.spacing().x),
+             half_y = 0.5F * static_cast<float>(grid_.spacing().y);
+  for (std::int32_t k = chunks_[chunk]; k < chunks_[chunk + 1]; ++k) {
+    const std::int32_t cell = cells_[k];
+    Quad motion[4];
+    for (int e = 0; e < 4; ++e) motion[e] = corners_[cell][e] >= 0 ? nodes[corners_[cell][e]] : Quad{};
+    const bool full = grid_.full(cell);
+    for (std::int32_t point = points_.first[k]; point < points_.first[k + 1]; ++point) {
+      const auto [s, t] = inside_[point];
+      if (full) {
+        const Quad below = motion[0] + s * (motion[1] - motion[0]), above = motion[2] + s * (motion[3] - motion[2]);
+        const float left = motion[0][2] + t * (motion[2][2] - motion[0][2]);
+        const float right = motion[1][2] + t * (motion[3][2] - motion[1][2]);
+        points[point] += below + t * (above - below) + Quad{half_y * t * (1 - t) * (above[2] - below[2]),
+                                                            half_x * s * (1 - s) * (left - right), 0, 0};
+        continue;
+      }
+      const auto corners = corners_at(grid_, cell, s, t);
+      for (std::size_t e = 0; e < 4; ++e) {
+        points[point] += corners[e].weight * (motion[e] + motion[e][2] * corners[e].turn);
       }
     }
-  });
+  }
 }
 
 double Transfer::bytes() const {
-  return 12.0 * static_cast<double>(points_.items.size()) + 84.0 * static_cast<double>(corners_.size()) +
+  return 12.0 * static_cast<double>(points_.items.size()) + 24.0 * static_cast<double>(corners_.size()) +
          16.0 * static_cast<double>(adjacent_.size());
 }
 

@@ -13,7 +13,8 @@
 
 namespace equidem::multigrid {
 
-/// Points are sorted by their host cell, so that a cell reads one run of them and four nodes.
+/// Points are sorted by their host cell, so that a cell reads one run of them and four nodes. Cells follow one another
+/// along the shorter side of the grid (Grid::cell_order), so that neighbours are not far apart in memory.
 class Transfer {
  public:
   /// \param grid must outlive this object
@@ -21,6 +22,8 @@ class Transfer {
   Transfer(const Grid& grid, std::span<const Place> places);
   /// The point that stands k-th on the finer level.
   [[nodiscard]] const std::vector<std::int32_t>& order() const { return points_.items; }
+  /// The points in chunks of whole cells: the first point of each chunk, and their number at the end.
+  [[nodiscard]] std::vector<std::int32_t> first_points() const;
   /// Number the nodes that are kept.
   /// \param order of the kept nodes, as indices among them
   void number_nodes(std::span<const std::int32_t> order);
@@ -30,23 +33,27 @@ class Transfer {
   /// 4 cell + corner for each of the (at most) four cells around a node; -1: none.
   [[nodiscard]] const std::array<std::int32_t, 4>& adjacent(std::size_t node) const { return adjacent_[node]; }
 
-  /// Forces on the nodes, of the same work as those on the points.
-  /// \param cells scratch
-  void restrict_forces(const QuadVector& points, QuadVector& nodes, QuadVector& cells) const;
-  /// points += the motions that the nodes give them.
-  void add_motions(const QuadVector& nodes, QuadVector& points) const;
+  /// Forces on the nodes, of the same work as those on the points: first on the corners of the cells of each chunk, then
+  /// on the nodes.
+  /// \param cells corners of each cell
+  void restrict_chunk(std::size_t chunk, const Quad* points, QuadVector& cells) const;
+  void add_up_corners(const QuadVector& cells, QuadVector& nodes) const;
+  /// points += the motions that the nodes give those of the chunk.
+  void add_motions(std::size_t chunk, const QuadVector& nodes, Quad* points) const;
+  [[nodiscard]] std::size_t chunks() const { return chunks_.size() - 1; }
+  [[nodiscard]] std::size_t cells() const { return cells_.size(); }
   [[nodiscard]] double bytes() const;
 
  private:
   struct Inside {
     float s, t;
   };
-  template <typename Visit>
-  void visit_corners(std::size_t cell, std::int32_t point, const Visit& visit) const;
 
   const Grid& grid_;
-  Buckets points_;              // by host cell
-  std::vector<Inside> inside_;  // per point, sorted
+  std::vector<std::int32_t> cells_;   // in the order in which they follow one another
+  Buckets points_;                    // by host cell, in that order
+  std::vector<std::int32_t> chunks_;  // first place in cells_ of each, and their number at the end
+  std::vector<Inside> inside_;        // per point, sorted
   std::vector<std::array<std::int32_t, 4>> corners_, adjacent_;
 };
 
