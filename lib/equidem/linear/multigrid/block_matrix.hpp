@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "equidem/linear/large_buffer.hpp"
-#include "equidem/linear/multigrid/smoothed_matrix.hpp"
 
 namespace equidem::multigrid {
 
@@ -18,26 +17,18 @@ using Block = std::array<double, 9>;  ///< 3 x 3, row-major
 /// them have rows and columns of zeros instead: relaxation leaves them alone.
 Block inverse_or_zero(const Block& block);
 
-/// A symmetric matrix by rows.
-struct BlockMatrix final : SmoothedMatrix {
+/// A symmetric matrix by rows. Components that are no unknowns have rows and columns of zeros.
+struct BlockMatrix {
   std::vector<std::int64_t> first;    ///< rows + 1
   LargeVector<std::int32_t> columns;  ///< per entry
   LargeVector<float> blocks;          ///< per entry 3 x 3, column-major, and one number beyond the last
   LargeVector<float> inverse;         ///< per row, of the diagonal block, likewise: inverse_or_zero
 
-  [[nodiscard]] std::size_t rows() const override { return first.size() - 1; }
-  [[nodiscard]] RowRange reach(RowRange rows) const override;
-  void start(RowRange rows, float factor, const Quad* b, Quad* x) const override;
-  void advance(RowRange rows, const ChebyshevStep& step, const Quad* b, const Quad* x, Quad* next) const override;
-  void residual(RowRange rows, const Quad* b, const Quad* x, Quad* r) const override;
+  [[nodiscard]] std::size_t rows() const { return first.size() - 1; }
   /// Make room for the entries that `first` announces.
   void resize();
   void set(std::int64_t entry, std::size_t column, const Block& block);
   void set_inverse(std::size_t row, const Block& diagonal);
-  [[nodiscard]] double bytes() const override;
 };
-
-/// The largest eigenvalue of D^-1 A, D the diagonal blocks, by power iteration: a few per cent too small.
-double largest_eigenvalue(const BlockMatrix& a, int iterations);
 
 }  // namespace equidem::multigrid

@@ -7,6 +7,7 @@
 #include "equidem/contact/frame.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/threads.hpp"
+#include "equidem/linear/multigrid/kernels/grid_kernel.hpp"
 
 namespace equidem::multigrid {
 namespace {
@@ -35,13 +36,6 @@ void add_derivative(const Shape& shape, const std::array<double, 3>& of_disc, bo
   }
 }
 
-void add_square(double k, const CellVector& v, double* matrix) {
-  for (int r = 0; r < cell_unknowns; ++r) {
-    const double factor = k * v[r];
-    for (int c = 0; c < cell_unknowns; ++c) matrix[r * cell_unknowns + c] += factor * v[c];
-  }
-}
-
 void add_contact(const Grid& grid, const Assembly& assembly, std::size_t c, SpringConstants k,
                  const DegreesOfFreedom& unknowns, double* matrix) {
   const Contact& contact = assembly.contacts[c];
@@ -62,8 +56,9 @@ void add_contact(const Grid& grid, const Assembly& assembly, std::size_t c, Spri
   const Shape of_j = grid.shape({middle.cell, middle.s + s, middle.t + t});
   add_derivative(of_j, g.normal_j, b == 3, normal);
   add_derivative(of_j, g.tangential_j, b == 3, tangential);
-  add_square(k.kN, normal, matrix);
-  if (k.kT != 0) add_square(k.kT, tangential, matrix);
+  const auto add_square = grid_functions().add_square;
+  add_square(k.kN, normal.data(), matrix);
+  if (k.kT != 0) add_square(k.kT, tangential.data(), matrix);
 }
 
 /// The motion of a node by the unknowns of a coarser cell: 3 x 12.

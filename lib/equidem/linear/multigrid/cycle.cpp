@@ -74,34 +74,23 @@ std::vector<std::int32_t> numbers_up_to(std::size_t n) {
 
 Cycle::Cycle(const SpringNetwork& network, const CycleOptions& options) : unit_(network.springs.largest()) {
   const std::size_t discs = network.assembly.size();
-  levels_.emplace_back();
   if (discs < static_cast<std::size_t>(options.direct_below)) {
     order_ = numbers_up_to(discs);
     coarsest_ = EnvelopeCholesky(matrix_of(network, unit_));
-    const std::vector<std::int32_t> one_chunk{0, static_cast<std::int32_t>(discs)};
-    add_discs(network, one_chunk);
+    const std::int32_t one_chunk[] = {0, static_cast<std::int32_t>(discs)};
+    levels_.emplace_back();
+    levels_[0].matrix = std::make_unique<GroupedRows>(network, order_, one_chunk, unit_);
+    levels_[0].rows = discs;
   } else {
     build_grids(network, options);
   }
-  for (std::size_t number = 0; number < levels_.size(); ++number) {
-    Level& level = levels_[number];
-    const std::size_t n = level.matrix->rows();
-    for (QuadVector* vector : {&level.b, &level.x}) vector->assign(n, Quad{});
-    if (number + 1 == levels_.size()) break;
-    level.other.assign(n, Quad{});
+  for (Level& level : levels_) {
+    for (QuadVector* vector : {&level.b, &level.x}) vector->assign(level.rows, Quad{});
+    if (!level.transfer) break;
+    level.other.assign(level.rows, Quad{});
     level.cells.resize(4 * level.transfer->cells());
     level.wavefront = Wavefront(level.transfer->first_points(), *level.matrix);
-    level.before = chebyshev_steps(options.degree, level.largest, options.range, true);
-    level.after = chebyshev_steps(options.degree, level.largest, options.range, false);
   }
-}
-
-void Cycle::add_discs(const SpringNetwork& network, std::span<const std::int32_t> first_row) {
-  auto discs = std::make_unique<ContactRows>(network, order_, first_row, unit_);
-  discs_ = discs.get();
-  levels_[0].matrix = std::move(discs);
-  // (q_i + q_j)² <= 2 q_i² + 2 q_j² in the energy of every contact: no eigenvalue of D^-1 K exceeds 2.
-  levels_[0].largest = 2;
 }
 
 void Cycle::build_grids(const SpringNetwork& network, const CycleOptions& options) {
@@ -122,11 +111,17 @@ void Cycle::build_grids(const SpringNetwork& network, const CycleOptions& option
   for (double& entry : cells) entry *= options.coarse_factor;
   auto transfer = std::make_unique<Transfer>(*grid, places);
   order_ = transfer->order();
-  add_discs(network, transfer->first_points());
+  // (q_i + q_j)² <= 2 q_i² + 2 q_j² in the energy of every contact: no eigenvalue of D^-1 K exceeds 2.
+  double largest = 2;
+  auto matrix = std::make_unique<GroupedRows>(network, order_, transfer->first_points(), unit_);
   while (transfer) {
-    Level& level = levels_.back();
+    Level& level = levels_.emplace_back();
+    level.rows = matrix->rows();
+    level.matrix = std::move(matrix);
     level.grid = std::exchange(grid, nullptr);
     level.transfer = std::exchange(transfer, nullptr);
+    level.before = chebyshev_steps(options.degree, largest, options.range, true);
+    level.after = chebyshev_steps(options.degree, largest, options.range, false);
     const Grid& here = *level.grid;
     CellStiffness coarser_cells;
     if (here.divisible()) {
@@ -144,13 +139,17 @@ void Cycle::build_grids(const SpringNetwork& network, const CycleOptions& option
       coarser_cells = stiffness_on_coarser(*grid, here, cells);
     }
     level.transfer->number_nodes(transfer ? transfer->order() : order_along(here));
-    auto matrix = std::make_unique<BlockMatrix>(assemble_cells(*level.transfer, cells));
-    constexpr int iterations = 10;
-    constexpr double margin = 1.1;  // power iteration approaches from below
-    if (!transfer) coarsest_ = EnvelopeCholesky(*matrix);
-    const double largest = transfer ? margin * largest_eigenvalue(*matrix, iterations) : 0;
-    levels_.push_back({.matrix = std::move(matrix), .largest = largest});
+    const BlockMatrix of_nodes = assemble_cells(*level.transfer, cells);
     cells = std::move(coarser_cells);
+    if (transfer) {
+      constexpr int iterations = 10;
+      constexpr double margin = 1.1;  // power iteration approaches from below
+      matrix = std::make_unique<GroupedRows>(of_nodes, transfer->first_points());
+      largest = margin * largest_eigenvalue(*matrix, iterations);
+    } else {
+      coarsest_ = EnvelopeCholesky(of_nodes);
+      levels_.emplace_back().rows = of_nodes.rows();
+    }
   }
 }
 
@@ -199,16 +198,17 @@ const Quad* Cycle::solve() {
 
 double Cycle::multiply(const double* p, double* q) const {
   const Wavefront& wavefront = levels_[0].wavefront;
-  if (wavefront.chunks() == 0) return discs_->multiply({0, discs_->rows()}, p, q);
+  if (wavefront.chunks() == 0) return levels_[0].matrix->multiply({0, levels_[0].matrix->rows()}, p, q);
   std::vector<double> sums(wavefront.chunks());
-  parallel_tasks(sums.size(), [&](std::size_t chunk, int) { sums[chunk] = discs_->multiply(wavefront.rows(chunk), p, q); });
+  parallel_tasks(sums.size(), [&](std::size_t chunk, int) { sums[chunk] = levels_[0].matrix->multiply(wavefront.rows(chunk), p, q); });
   return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
 double Cycle::bytes() const {
   double sum = coarsest_.bytes() + 4.0 * static_cast<double>(order_.size());
   for (const Level& level : levels_) {
-    sum += level.matrix->bytes() + 16.0 * static_cast<double>(3 * level.x.size() + level.cells.size());
+    if (level.matrix) sum += level.matrix->bytes();
+    sum += 16.0 * static_cast<double>(3 * level.x.size() + level.cells.size());
     if (level.transfer) sum += level.transfer->bytes();
   }
   return sum;

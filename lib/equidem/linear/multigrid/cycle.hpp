@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "equidem/linear/multigrid/contact_rows.hpp"
+#include "equidem/linear/multigrid/grouped_rows.hpp"
 #include "equidem/linear/multigrid/envelope_cholesky.hpp"
 #include "equidem/linear/multigrid/grid.hpp"
 #include "equidem/linear/multigrid/transfer.hpp"
@@ -18,9 +18,9 @@
 namespace equidem::multigrid {
 
 struct CycleOptions {
-  double spacing = 2.5;    ///< of the nodes of the first grid, mean distances of discs in contact, > 0
-  int degree = 3;          ///< products with the matrix before and after each coarse correction, >= 1
-  double range = 8;        ///< largest over smallest eigenvalue that smoothing covers, > 1
+  double spacing = 3;    ///< of the nodes of the first grid, mean distances of discs in contact, > 0
+  int degree = 5;          ///< products with the matrix before and after each coarse correction, >= 1
+  double range = 15;       ///< largest over smallest eigenvalue that smoothing covers, > 1
   int direct_below = 200;  ///< discs that are solved for without a grid
   double coarse_factor =
       1;  ///< by which the matrix of the first grid is multiplied: only tests of a wrong one change it
@@ -47,22 +47,20 @@ class Cycle {
 
  private:
   struct Level {
-    std::unique_ptr<SmoothedMatrix> matrix;
-    double largest = 2;  // eigenvalue of D^-1 A
+    std::unique_ptr<GroupedRows> matrix = nullptr;  // none on the coarsest level but the first
     std::unique_ptr<Grid> grid = nullptr;          // above; none on the coarsest level
     std::unique_ptr<Transfer> transfer = nullptr;  // to that grid
     Wavefront wavefront{};                         // over the chunks of the transfer
     std::vector<ChebyshevStep> before{}, after{};  // the coarse correction
+    std::size_t rows = 0;
     QuadVector b{}, x{}, other{}, cells{};
   };
   void build_grids(const SpringNetwork& network, const CycleOptions& options);
-  void add_discs(const SpringNetwork& network, std::span<const std::int32_t> first_row);
   void correct(std::size_t level);
 
   double unit_;
   std::vector<std::int32_t> order_;
   std::vector<Level> levels_;
-  const ContactRows* discs_ = nullptr;  // matrix of the first level
   EnvelopeCholesky coarsest_;
 };
 

@@ -18,8 +18,8 @@ struct Corner {
   Quad turn;
 };
 
-std::array<Corner, 4> corners_at(const Grid& grid, std::int32_t cell, float s, float t) {
-  const Shape shape = grid.shape({cell, s, t});
+std::array<Corner, 4> corners_at(const Grid& grid, std::int32_t cell, Inside point) {
+  const Shape shape = grid.shape({cell, point.s, point.t});
   std::array<Corner, 4> corners;
   for (std::size_t k = 0; k < 4; ++k) {
     corners[k] = {static_cast<float>(shape.weight[k]),
@@ -79,36 +79,33 @@ void Transfer::number_nodes(std::span<const std::int32_t> order) {
   }
 }
 
-// In a complete cell the parts of the linked interpolation sum up, with e.g. w = theta, to
-//   u_x = bilinear(U_x) - h_y/2 t (1 - t) (w_below - w_above),   u_y = bilinear(U_y) + h_x/2 s (1 - s) (w_left - w_right)
-// with w linear along each side.
+PointsOfCell Transfer::points_of(std::size_t place) const {
+  const auto first = static_cast<std::size_t>(points_.first[place]);
+  return {.inside = inside_.data() + first,
+          .count = static_cast<std::size_t>(points_.first[place + 1]) - first,
+          .half_x = 0.5F * static_cast<float>(grid_.spacing().x),
+          .half_y = 0.5F * static_cast<float>(grid_.spacing().y)};
+}
 
 void Transfer::restrict_chunk(std::size_t chunk, const Quad* points, QuadVector& cells) const {
-  const auto half_x = 0.5F * static_cast<float>(grid_.spacing().x),
-             half_y = 0.5F * static_cast<float>(grid_.spacing().y);
   for (std::int32_t k = chunks_[chunk]; k < chunks_[chunk + 1]; ++k) {
     const std::int32_t cell = cells_[k];
-    Quad sum[4] = {};
-    const bool full = grid_.full(cell);
-    for (std::int32_t point = points_.first[k]; point < points_.first[k + 1]; ++point) {
-      const auto [s, t] = inside_[point];
-      const Quad force = points[point];
-      if (full) {
-        const float across = half_y * t * (1 - t) * force[0], along = half_x * s * (1 - s) * force[1];
-        const Quad below = (1 - t) * force, above = t * force;
-        sum[0] += (1 - s) * below + Quad{0, 0, (1 - t) * along - (1 - s) * across, 0};
-        sum[1] += s * below + Quad{0, 0, -(1 - t) * along - s * across, 0};
-        sum[2] += (1 - s) * above + Quad{0, 0, t * along + (1 - s) * across, 0};
-        sum[3] += s * above + Quad{0, 0, s * across - t * along, 0};
-        continue;
-      }
-      const auto corners = corners_at(grid_, cell, s, t);
+    const PointsOfCell here = points_of(k);
+    const Quad* forces = points + points_.first[k];
+    Quad* corners = &cells[4 * static_cast<std::size_t>(cell)];
+    if (grid_.full(cell)) {
+      grid_functions().restrict_cell(here, forces, corners);
+      continue;
+    }
+    std::fill(corners, corners + 4, Quad{});
+    for (std::size_t point = 0; point < here.count; ++point) {
+      const Quad force = forces[point];
+      const auto shares = corners_at(grid_, cell, here.inside[point]);
       for (std::size_t e = 0; e < 4; ++e) {
-        const auto& [weight, turn] = corners[e];
-        sum[e] += weight * (force + Quad{0, 0, force[0] * turn[0] + force[1] * turn[1], 0});
+        const auto& [weight, turn] = shares[e];
+        corners[e] += weight * (force + Quad{0, 0, force[0] * turn[0] + force[1] * turn[1], 0});
       }
     }
-    std::copy(sum, sum + 4, &cells[4 * static_cast<std::size_t>(cell)]);
   }
 }
 
@@ -125,26 +122,20 @@ void Transfer::add_up_corners(const QuadVector& cells, QuadVector& nodes) const 
 }
 
 void Transfer::add_motions(std::size_t chunk, const QuadVector& nodes, Quad* points) const {
-  const auto half_x = 0.5F * static_cast<float>(grid_.spacing().x),
-             half_y = 0.5F * static_cast<float>(grid_.spacing().y);
   for (std::int32_t k = chunks_[chunk]; k < chunks_[chunk + 1]; ++k) {
     const std::int32_t cell = cells_[k];
-    Quad motion[4];
-    for (int e = 0; e < 4; ++e) motion[e] = corners_[cell][e] >= 0 ? nodes[corners_[cell][e]] : Quad{};
-    const bool full = grid_.full(cell);
-    for (std::int32_t point = points_.first[k]; point < points_.first[k + 1]; ++point) {
-      const auto [s, t] = inside_[point];
-      if (full) {
-        const Quad below = motion[0] + s * (motion[1] - motion[0]), above = motion[2] + s * (motion[3] - motion[2]);
-        const float left = motion[0][2] + t * (motion[2][2] - motion[0][2]);
-        const float right = motion[1][2] + t * (motion[3][2] - motion[1][2]);
-        points[point] += below + t * (above - below) + Quad{half_y * t * (1 - t) * (above[2] - below[2]),
-                                                            half_x * s * (1 - s) * (left - right), 0, 0};
-        continue;
-      }
-      const auto corners = corners_at(grid_, cell, s, t);
+    const PointsOfCell here = points_of(k);
+    Quad* motions = points + points_.first[k];
+    Quad corners[4];
+    for (int e = 0; e < 4; ++e) corners[e] = corners_[cell][e] >= 0 ? nodes[corners_[cell][e]] : Quad{};
+    if (grid_.full(cell)) {
+      grid_functions().move_points(here, corners, motions);
+      continue;
+    }
+    for (std::size_t point = 0; point < here.count; ++point) {
+      const auto shares = corners_at(grid_, cell, here.inside[point]);
       for (std::size_t e = 0; e < 4; ++e) {
-        points[point] += corners[e].weight * (motion[e] + motion[e][2] * corners[e].turn);
+        motions[point] += shares[e].weight * (corners[e] + corners[e][2] * shares[e].turn);
       }
     }
   }

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "equidem/linear/multigrid/block_matrix.hpp"
 #include "equidem/linear/multigrid/grid.hpp"
+#include "equidem/linear/multigrid/kernels/grid_kernel.hpp"
 
 namespace equidem::multigrid {
 
@@ -45,9 +45,7 @@ class Transfer {
   [[nodiscard]] double bytes() const;
 
  private:
-  struct Inside {
-    float s, t;
-  };
+  [[nodiscard]] PointsOfCell points_of(std::size_t place) const;
 
   const Grid& grid_;
   std::vector<std::int32_t> cells_;   // in the order in which they follow one another

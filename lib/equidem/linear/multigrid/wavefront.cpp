@@ -9,7 +9,7 @@
 
 namespace equidem::multigrid {
 
-Wavefront::Wavefront(std::vector<std::int32_t> first_row, const SmoothedMatrix& matrix)
+Wavefront::Wavefront(std::vector<std::int32_t> first_row, const GroupedRows& matrix)
     : first_row_(std::move(first_row)), neighbours_(first_row_.size() - 1) {
   const auto chunk_of = [&](std::size_t row) {
     const auto after = std::upper_bound(first_row_.begin(), first_row_.end(), static_cast<std::int32_t>(row));

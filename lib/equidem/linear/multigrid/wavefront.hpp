@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include "equidem/linear/multigrid/smoothed_matrix.hpp"
+#include "equidem/linear/multigrid/grouped_rows.hpp"
 
 namespace equidem::multigrid {
 
@@ -19,7 +19,7 @@ class Wavefront {
  public:
   Wavefront() = default;
   /// \param first_row of each chunk, and their number at the end
-  Wavefront(std::vector<std::int32_t> first_row, const SmoothedMatrix& matrix);
+  Wavefront(std::vector<std::int32_t> first_row, const GroupedRows& matrix);
 
   [[nodiscard]] std::size_t chunks() const { return neighbours_.size(); }
   [[nodiscard]] RowRange rows(std::size_t chunk) const {

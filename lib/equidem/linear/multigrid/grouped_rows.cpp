@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/linear/multigrid/contact_rows.hpp"
+#include "equidem/linear/multigrid/grouped_rows.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/random.hpp"
 #include "equidem/core/threads.hpp"
-#include "equidem/linear/multigrid/kernels/contact_kernel.hpp"
+#include "equidem/linear/multigrid/kernels/row_kernel.hpp"
+#include "equidem/linear/multigrid/vector_sums.hpp"
 
 namespace equidem::multigrid {
 namespace {
@@ -32,7 +36,7 @@ void add_square(double k, const std::array<double, 3>& g, Block& block) {
 
 }  // namespace
 
-ContactRows::ContactRows(const SpringNetwork& network, std::span<const std::int32_t> order,
+GroupedRows::GroupedRows(const SpringNetwork& network, std::span<const std::int32_t> order,
                          std::span<const std::int32_t> first_row, double unit)
     : kind_{.rotation = network.unknowns.per_disc == 3,
             .offsets = network.unknowns.per_disc == 3 && any_offset(network.assembly),
@@ -43,34 +47,62 @@ ContactRows::ContactRows(const SpringNetwork& network, std::span<const std::int3
     kN_ = static_cast<float>(k.kN / unit);
     kT_ = static_cast<float>(k.kT / unit);
   }
-  lay_out(network, order, first_row);
+  const auto b = static_cast<std::ptrdiff_t>(network.unknowns.per_disc);
+  lay_out(
+      first_row, [&](std::size_t row) { return slots_of(network.graph, static_cast<std::size_t>(order[row])); },
+      [&](std::size_t row) {
+        const auto held = network.unknowns.held.begin() + b * order[row];
+        return std::any_of(held, held + b, [](std::uint8_t h) { return h != 0; });
+      });
   std::vector<std::int32_t> row_of(order.size());
   for (std::size_t row = 0; row < order.size(); ++row) row_of[order[row]] = static_cast<std::int32_t>(row);
-  parallel_ranges(first_row_.size() - 1, groups_at_once, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(free_.size(), groups_at_once, [&](std::size_t begin, std::size_t end) {
     for (std::size_t group = begin; group < end; ++group) fill(network, order, row_of, group, unit);
   });
 }
 
-void ContactRows::lay_out(const SpringNetwork& network, std::span<const std::int32_t> order,
-                          std::span<const std::int32_t> first_row) {
-  const auto b = static_cast<std::size_t>(network.unknowns.per_disc);
-  const auto& held = network.unknowns.held;
+GroupedRows::GroupedRows(const BlockMatrix& matrix, std::span<const std::int32_t> first_row)
+    : kind_{.blocks = true}, functions_(&row_functions(kind_)) {
+  lay_out(
+      first_row,
+      [&](std::size_t row) { return static_cast<std::size_t>(matrix.first[row + 1] - matrix.first[row]); },
+      [](std::size_t) { return false; });
+  parallel_ranges(free_.size(), groups_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t number = begin; number < end; ++number) {
+      clear(number);
+      const Group here = group(number);
+      for (std::size_t lane = 0; lane < here.rows; ++lane) {
+        const std::size_t row = here.first_row + lane;
+        auto slot = static_cast<std::size_t>(first_slot_[number]);
+        for (std::int64_t e = matrix.first[row]; e < matrix.first[row + 1]; ++e, ++slot) {
+          other_[slot * lanes + lane] = matrix.columns[e];
+          for (std::size_t k = 0; k < 9; ++k) {
+            geometry_[(slot * 9 + k) * lanes + lane] = matrix.blocks[9 * e + 3 * (k % 3) + k / 3];
+          }
+        }
+        set_inverse(number, lane, [&](std::size_t k) { return matrix.inverse[9 * row + k]; });
+      }
+    }
+  });
+}
+
+template <typename Slots, typename Held>
+void GroupedRows::lay_out(std::span<const std::int32_t> first_row, const Slots& slots_of, const Held& any_held) {
   first_row_.push_back(0);
   first_slot_.push_back(0);
   for (std::size_t chunk = 0; chunk + 1 < first_row.size(); ++chunk) {
     for (std::int32_t row = first_row[chunk]; row < first_row[chunk + 1];) {
       const std::int32_t end = std::min<std::int32_t>(row + static_cast<std::int32_t>(lanes), first_row[chunk + 1]);
       std::size_t slots = 0;
-      bool any_held = false;
+      bool held = false;
       for (; row < end; ++row) {
-        const auto disc = static_cast<std::size_t>(order[row]);
-        slots = std::max(slots, slots_of(network.graph, disc));
-        for (std::size_t e = 0; e < b; ++e) any_held = any_held || held[disc * b + e] != 0;
+        slots = std::max(slots, slots_of(static_cast<std::size_t>(row)));
+        held = held || any_held(static_cast<std::size_t>(row));
       }
       first_row_.push_back(row);
       first_slot_.push_back(first_slot_.back() + static_cast<std::int64_t>(slots));
-      free_.push_back(any_held ? static_cast<std::int32_t>(masks_.size() / (3 * lanes)) : -1);
-      if (any_held) masks_.resize(masks_.size() + 3 * lanes, 1.0F);
+      free_.push_back(held ? static_cast<std::int32_t>(masks_.size() / (3 * lanes)) : -1);
+      if (held) masks_.resize(masks_.size() + 3 * lanes, 1.0F);
     }
   }
   const auto slots = static_cast<std::size_t>(first_slot_.back());
@@ -79,19 +111,29 @@ void ContactRows::lay_out(const SpringNetwork& network, std::span<const std::int
   inverse_.resize(free_.size() * 6 * lanes);
 }
 
-void ContactRows::fill(const SpringNetwork& network, std::span<const std::int32_t> order,
+void GroupedRows::clear(std::size_t number) {
+  const auto slot = static_cast<std::ptrdiff_t>(first_slot_[number] * static_cast<std::int64_t>(lanes));
+  const std::size_t entries = static_cast<std::size_t>(first_slot_[number + 1] - first_slot_[number]) * lanes;
+  std::fill_n(other_.begin() + slot, entries, first_row_[number]);
+  std::fill_n(geometry_.begin() + slot * kind_.fields(), entries * static_cast<std::size_t>(kind_.fields()), 0.0F);
+  std::fill_n(inverse_.begin() + static_cast<std::ptrdiff_t>(number * 6 * lanes), 6 * lanes, 0.0F);
+}
+
+template <typename Entry>
+void GroupedRows::set_inverse(std::size_t number, std::size_t lane, const Entry& entry) {
+  constexpr std::size_t lower[] = {0, 3, 4, 6, 7, 8};
+  for (std::size_t e = 0; e < 6; ++e) {
+    inverse_[(number * 6 + e) * lanes + lane] = static_cast<float>(entry(lower[e]));
+  }
+}
+
+void GroupedRows::fill(const SpringNetwork& network, std::span<const std::int32_t> order,
                        const std::vector<std::int32_t>& row_of, std::size_t group, double unit) {
   const auto b = static_cast<std::size_t>(network.unknowns.per_disc);
-  const auto fields = static_cast<std::size_t>(kind_.fields());
-  const auto first_slot = static_cast<std::size_t>(first_slot_[group]), end = static_cast<std::size_t>(first_slot_[group + 1]);
+  const auto first_slot = static_cast<std::size_t>(first_slot_[group]);
   const auto first_row = static_cast<std::size_t>(first_row_[group]);
   const std::size_t rows = static_cast<std::size_t>(first_row_[group + 1]) - first_row;
-  std::fill(&other_[first_slot * lanes], &other_[first_slot * lanes] + (end - first_slot) * lanes,
-            static_cast<std::int32_t>(first_row));
-  std::fill_n(geometry_.begin() + static_cast<std::ptrdiff_t>(first_slot * lanes * fields),
-              (end - first_slot) * lanes * fields, 0.0F);
-  float* inverse = &inverse_[group * 6 * lanes];
-  std::fill(inverse, inverse + 6 * lanes, 0.0F);
+  clear(group);
   for (std::size_t lane = 0; lane < rows; ++lane) {
     const auto disc = static_cast<std::size_t>(order[first_row + lane]);
     std::size_t slot = first_slot;
@@ -123,12 +165,11 @@ void ContactRows::fill(const SpringNetwork& network, std::span<const std::int32_
       for (std::size_t f = 0; f < 3; ++f) diagonal[3 * e + f] = diagonal[3 * f + e] = 0;
     }
     const Block of_disc = inverse_or_zero(diagonal);
-    constexpr int lower[] = {0, 3, 4, 6, 7, 8};
-    for (std::size_t e = 0; e < 6; ++e) inverse[e * lanes + lane] = static_cast<float>(of_disc[lower[e]]);
+    set_inverse(group, lane, [&](std::size_t e) { return of_disc[e]; });
   }
 }
 
-void ContactRows::fill_slot(const SpringNetwork& network, std::size_t contact, bool from_i, std::size_t slot,
+void GroupedRows::fill_slot(const SpringNetwork& network, std::size_t contact, bool from_i, std::size_t slot,
                             std::size_t lane, double unit) {
   const ContactFrame frame = frame_of(network.assembly, contact);
   const double a = network.unknowns.rotation_scale;
@@ -153,7 +194,7 @@ void ContactRows::fill_slot(const SpringNetwork& network, std::size_t contact, b
   }
 }
 
-ContactRows::Groups ContactRows::groups_of(RowRange rows) const {
+GroupedRows::Groups GroupedRows::groups_of(RowRange rows) const {
   const auto at = [&](std::size_t row) {
     return static_cast<std::size_t>(
         std::lower_bound(first_row_.begin(), first_row_.end(), static_cast<std::int32_t>(row)) - first_row_.begin());
@@ -161,7 +202,7 @@ ContactRows::Groups ContactRows::groups_of(RowRange rows) const {
   return {at(rows.begin), at(rows.end)};
 }
 
-RowRange ContactRows::reach(RowRange rows) const {
+RowRange GroupedRows::reach(RowRange rows) const {
   const auto [first, last] = groups_of(rows);
   RowRange result = rows;
   for (auto k = static_cast<std::size_t>(first_slot_[first]) * lanes;
@@ -172,17 +213,17 @@ RowRange ContactRows::reach(RowRange rows) const {
   return result;
 }
 
-void ContactRows::start(RowRange rows, float factor, const Quad* b, Quad* x) const {
+void GroupedRows::start(RowRange rows, float factor, const Quad* b, Quad* x) const {
   const auto [first, last] = groups_of(rows);
   functions_->start(*this, first, last, factor, b, x);
 }
 
-void ContactRows::advance(RowRange rows, const ChebyshevStep& step, const Quad* b, const Quad* x, Quad* next) const {
+void GroupedRows::advance(RowRange rows, const ChebyshevStep& step, const Quad* b, const Quad* x, Quad* next) const {
   const auto [first, last] = groups_of(rows);
   functions_->advance(*this, first, last, step, b, x, next);
 }
 
-void ContactRows::hold(RowRange rows, Quad* x) const {
+void GroupedRows::hold(RowRange rows, Quad* x) const {
   const auto [first, last] = groups_of(rows);
   for (std::size_t number = first; number < last; ++number) {
     const Group here = group(number);
@@ -194,19 +235,57 @@ void ContactRows::hold(RowRange rows, Quad* x) const {
   }
 }
 
-void ContactRows::residual(RowRange rows, const Quad* b, const Quad* x, Quad* r) const {
+void GroupedRows::residual(RowRange rows, const Quad* b, const Quad* x, Quad* r) const {
   const auto [first, last] = groups_of(rows);
   functions_->residual(*this, first, last, b, x, r);
 }
 
-double ContactRows::multiply(RowRange rows, const double* p, double* q) const {
+double GroupedRows::multiply(RowRange rows, const double* p, double* q) const {
   const auto [first, last] = groups_of(rows);
   return functions_->multiply(*this, first, last, p, q);
 }
 
-double ContactRows::bytes() const {
+double GroupedRows::bytes() const {
   return 4.0 * static_cast<double>(other_.size() + geometry_.size() + inverse_.size() + masks_.size()) +
          16.0 * static_cast<double>(free_.size());
+}
+
+void residual(const GroupedRows& a, const QuadVector& b, const QuadVector& x, QuadVector& r) {
+  parallel_ranges(a.groups(), groups_at_once, [&](std::size_t first, std::size_t last) {
+    a.residual(a.rows_of(first, last), b.data(), x.data(), r.data());
+  });
+}
+
+double largest_eigenvalue(const GroupedRows& a, int iterations) {
+  const std::size_t n = a.rows();
+  QuadVector zero(n, Quad{}), x(n), product(n);
+  Random random(1);
+  for (Quad& row : x) {
+    const auto number = [&] { return static_cast<float>(random.uniform() - 0.5); };
+    row = Quad{number(), number(), number(), 0};
+  }
+  constexpr ChebyshevStep subtract{.add = -1};
+  double value = 0;
+  for (int k = 0; k < iterations; ++k) {
+    const auto [before, after] = sums_over<2>(a.groups(), groups_at_once, [&](std::size_t first, std::size_t last) {
+      const RowRange rows = a.rows_of(first, last);
+      a.advance(rows, subtract, zero.data(), x.data(), product.data());  // x + D^-1 A x
+      std::array<double, 2> squares{};
+      for (std::size_t row = rows.begin; row < rows.end; ++row) {
+        product[row] -= x[row];
+        for (int c = 0; c < 3; ++c) {
+          squares[0] += static_cast<double>(x[row][c]) * x[row][c];
+          squares[1] += static_cast<double>(product[row][c]) * product[row][c];
+        }
+      }
+      return squares;
+    });
+    if (!(before > 0 && after > 0)) return value;
+    value = std::sqrt(after / before);
+    const auto scale = static_cast<float>(1 / std::sqrt(after));
+    for (std::size_t row = 0; row < n; ++row) x[row] = scale * product[row];
+  }
+  return value;
 }
 
 }  // namespace equidem::multigrid

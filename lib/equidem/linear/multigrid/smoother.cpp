@@ -1,16 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/linear/multigrid/smoothed_matrix.hpp"
-
-#include "equidem/core/threads.hpp"
+#include "equidem/linear/multigrid/smoother.hpp"
 
 namespace equidem::multigrid {
-
-void residual(const SmoothedMatrix& a, const QuadVector& b, const QuadVector& x, QuadVector& r) {
-  constexpr std::size_t rows_at_once = 1 << 12;
-  parallel_ranges(a.rows(), rows_at_once, [&](std::size_t begin, std::size_t end) {
-    a.residual({begin, end}, b.data(), x.data(), r.data());
-  });
-}
 
 std::vector<ChebyshevStep> chebyshev_steps(int degree, double largest, double range, bool from_zero) {
   const double middle = 0.5 * (largest + largest / range), half = 0.5 * (largest - largest / range);

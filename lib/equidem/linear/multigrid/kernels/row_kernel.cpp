@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/linear/multigrid/kernels/contact_kernel.hpp"
+#include "equidem/linear/multigrid/kernels/row_kernel.hpp"
 
 #include <array>
 #include <cstdint>
@@ -11,7 +11,7 @@
 namespace equidem::multigrid {
 namespace {
 
-constexpr int lanes = ContactRows::lanes;
+constexpr int lanes = GroupedRows::lanes;
 
 using Singles = float __attribute__((vector_size(32)));
 using Doubles = double __attribute__((vector_size(32)));
@@ -66,7 +66,7 @@ EQUIDEM_INLINE void gather(const double* motion, const std::int32_t* row, Motion
 template <int Count>
 struct OwnRows {
   std::int32_t row[Count];
-  EQUIDEM_INLINE OwnRows(const ContactRows::Group& group, int first_lane) {
+  EQUIDEM_INLINE OwnRows(const GroupedRows::Group& group, int first_lane) {
     for (int k = 0; k < Count; ++k) {
       const std::size_t lane = static_cast<std::size_t>(first_lane + k);
       row[k] = static_cast<std::int32_t>(group.first_row + (lane < group.rows ? lane : 0));
@@ -76,7 +76,7 @@ struct OwnRows {
 
 /// f = K motion on the rows of a group, or of the half of it that begins at `first_lane`.
 template <RowKind kind, class Lanes, class Number>
-EQUIDEM_INLINE void internal_force(const ContactRows& rows, const ContactRows::Group& group, int first_lane,
+EQUIDEM_INLINE void internal_force(const GroupedRows& rows, const GroupedRows::Group& group, int first_lane,
                                    const Number* motion, const Motions<Lanes>& own, Motions<Lanes>& force) {
   const Lanes zero{};
   Lanes fx = zero, fy = zero, moment = zero;
@@ -86,6 +86,14 @@ EQUIDEM_INLINE void internal_force(const ContactRows& rows, const ContactRows::G
   for (std::size_t slot = 0; slot < group.slots; ++slot, other += lanes, geometry += kind.fields() * lanes) {
     Motions<Lanes> there;
     gather(motion, other, there);
+    if constexpr (kind.blocks) {
+      Lanes entry[9];
+      for (int k = 0; k < 9; ++k) load(geometry + k * lanes, entry[k]);
+      fx += entry[0] * there.x + entry[1] * there.y + entry[2] * there.turn;
+      fy += entry[3] * there.x + entry[4] * there.y + entry[5] * there.turn;
+      moment += entry[6] * there.x + entry[7] * there.y + entry[8] * there.turn;
+      continue;
+    }
     Lanes nx, ny;
     load(geometry, nx);
     load(geometry + lanes, ny);
@@ -129,7 +137,7 @@ EQUIDEM_INLINE void multiply_by_inverse(const float* inverse, const Motions<Sing
   to = {xx * f.x + xy * f.y + xt * f.turn, xy * f.x + yy * f.y + yt * f.turn, xt * f.x + yt * f.y + tt * f.turn};
 }
 
-EQUIDEM_INLINE void store(const Motions<Singles>& from, const ContactRows::Group& group, Quad* to) {
+EQUIDEM_INLINE void store(const Motions<Singles>& from, const GroupedRows::Group& group, Quad* to) {
   const Singles zero{};
   const Singles xy_low = __builtin_shufflevector(from.x, from.y, 0, 8, 1, 9, 4, 12, 5, 13);
   const Singles xy_high = __builtin_shufflevector(from.x, from.y, 2, 10, 3, 11, 6, 14, 7, 15);
@@ -163,10 +171,10 @@ EQUIDEM_INLINE void store(const Motions<Doubles>& from, std::size_t first_row, s
 
 template <RowKind kind>
 struct Loops {
-  static EQUIDEM_INLINE void start(const ContactRows& rows, std::size_t first, std::size_t last, float factor,
+  static EQUIDEM_INLINE void start(const GroupedRows& rows, std::size_t first, std::size_t last, float factor,
                                    const Quad* b, Quad* x) {
     for (std::size_t g = first; g < last; ++g) {
-      const ContactRows::Group group = rows.group(g);
+      const GroupedRows::Group group = rows.group(g);
       const OwnRows<lanes> own(group, 0);
       Motions<Singles> force, motion;
       gather(b, own.row, force);
@@ -176,10 +184,10 @@ struct Loops {
     }
   }
 
-  static EQUIDEM_INLINE void advance(const ContactRows& rows, std::size_t first, std::size_t last,
+  static EQUIDEM_INLINE void advance(const GroupedRows& rows, std::size_t first, std::size_t last,
                                      const ChebyshevStep& step, const Quad* b, const Quad* x, Quad* next) {
     for (std::size_t g = first; g < last; ++g) {
-      const ContactRows::Group group = rows.group(g);
+      const GroupedRows::Group group = rows.group(g);
       const OwnRows<lanes> own(group, 0);
       Motions<Singles> here, given, force, change;
       gather(x, own.row, here);
@@ -200,10 +208,10 @@ struct Loops {
     }
   }
 
-  static EQUIDEM_INLINE void residual(const ContactRows& rows, std::size_t first, std::size_t last, const Quad* b,
+  static EQUIDEM_INLINE void residual(const GroupedRows& rows, std::size_t first, std::size_t last, const Quad* b,
                                       const Quad* x, Quad* r) {
     for (std::size_t g = first; g < last; ++g) {
-      const ContactRows::Group group = rows.group(g);
+      const GroupedRows::Group group = rows.group(g);
       const OwnRows<lanes> own(group, 0);
       Motions<Singles> here, given, force;
       gather(x, own.row, here);
@@ -221,11 +229,11 @@ struct Loops {
     }
   }
 
-  static EQUIDEM_INLINE double multiply(const ContactRows& rows, std::size_t first, std::size_t last, const double* p,
+  static EQUIDEM_INLINE double multiply(const GroupedRows& rows, std::size_t first, std::size_t last, const double* p,
                                         double* q) {
     double sum = 0;
     for (std::size_t g = first; g < last; ++g) {
-      const ContactRows::Group group = rows.group(g);
+      const GroupedRows::Group group = rows.group(g);
       for (int half = 0; half < lanes && static_cast<std::size_t>(half) < group.rows; half += 4) {
         const OwnRows<4> own(group, half);
         Motions<Doubles> here, force;
@@ -248,26 +256,31 @@ struct Loops {
   }
 };
 
-constexpr RowKind kinds[] = {{false, false, false}, {false, false, true}, {true, false, false},
-                             {true, false, true},   {true, true, false},  {true, true, true}};
+constexpr RowKind kinds[] = {{.blocks = true},
+                             {},
+                             {.own_springs = true},
+                             {.rotation = true},
+                             {.rotation = true, .own_springs = true},
+                             {.rotation = true, .offsets = true},
+                             {.rotation = true, .offsets = true, .own_springs = true}};
 
 /// The loops compiled for vectors of one width.
 #define EQUIDEM_LOOPS(name, attributes)                                                                                \
   template <RowKind kind>                                                                                              \
   struct name {                                                                                                        \
-    attributes static void start(const ContactRows& rows, std::size_t first, std::size_t last, float factor,           \
+    attributes static void start(const GroupedRows& rows, std::size_t first, std::size_t last, float factor,           \
                                  const Quad* b, Quad* x) {                                                             \
       Loops<kind>::start(rows, first, last, factor, b, x);                                                             \
     }                                                                                                                  \
-    attributes static void advance(const ContactRows& rows, std::size_t first, std::size_t last,                       \
+    attributes static void advance(const GroupedRows& rows, std::size_t first, std::size_t last,                       \
                                    const ChebyshevStep& step, const Quad* b, const Quad* x, Quad* next) {              \
       Loops<kind>::advance(rows, first, last, step, b, x, next);                                                       \
     }                                                                                                                  \
-    attributes static void residual(const ContactRows& rows, std::size_t first, std::size_t last, const Quad* b,       \
+    attributes static void residual(const GroupedRows& rows, std::size_t first, std::size_t last, const Quad* b,       \
                                     const Quad* x, Quad* r) {                                                          \
       Loops<kind>::residual(rows, first, last, b, x, r);                                                               \
     }                                                                                                                  \
-    attributes static double multiply(const ContactRows& rows, std::size_t first, std::size_t last, const double* p,   \
+    attributes static double multiply(const GroupedRows& rows, std::size_t first, std::size_t last, const double* p,   \
                                       double* q) {                                                                     \
       return Loops<kind>::multiply(rows, first, last, p, q);                                                           \
     }                                                                                                                  \

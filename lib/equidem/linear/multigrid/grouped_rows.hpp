@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The stiffness matrix of an assembly as products with it read it: by discs, from the deformation of each contact.
+/// Symmetric matrices as products with them read them: rows in groups whose members are lanes of a vector.
 ///
-/// Every row sums the forces of its contacts, f_i = sum kN dn g + kT ds h, with the derivatives g of stretch and h of
-/// slip in single precision. As stretch and slip come from differences of motions, rounding of g and h changes the
-/// energy of every motion by a factor near 1, whatever the condition of the matrix.
+/// The matrix of the discs is not stored. Each of its rows sums the forces of its contacts, f_i = sum kN dn g + kT ds h,
+/// with the derivatives g of stretch and h of slip in single precision. As stretch and slip come from differences of
+/// motions, rounding of g and h changes the energy of every motion by a factor near 1, whatever the condition of the
+/// matrix.
 #pragma once
 
 #include <array>
@@ -15,43 +16,58 @@
 
 #include "equidem/linear/large_buffer.hpp"
 #include "equidem/linear/multigrid/block_matrix.hpp"
+#include "equidem/linear/multigrid/smoother.hpp"
 #include "equidem/linear/spring_network.hpp"
 
 namespace equidem::multigrid {
 
-/// Components of the contact law that the rows of an assembly need.
+/// What a slot of a row holds: a block, or a contact and the components of the contact law that the assembly needs.
 struct RowKind {
-  bool rotation = true;      ///< discs turn
+  bool blocks = false;
+  bool rotation = false;     ///< discs turn
   bool offsets = false;      ///< contacts lie off the lines of centres
   bool own_springs = false;  ///< springs differ from contact to contact
 
-  /// Numbers of a slot and lane: the normal, levers, offsets, springs.
+  /// Numbers of a slot and lane: the block by rows; or the normal, levers, offsets, springs.
   [[nodiscard]] constexpr int fields() const {
+    if (blocks) return 9;
     return 2 + (rotation ? 2 : 0) + (offsets ? 2 : 0) + (own_springs ? 2 : 0);
   }
   bool operator==(const RowKind&) const = default;
 };
 
-/// Rows in groups of up to `lanes`, which are lanes of a vector. A group has as many slots as its longest row has
-/// contacts; lanes without a contact there have springs of zero.
-class ContactRows final : public SmoothedMatrix {
+/// A group has as many slots as its longest row has entries; lanes without an entry there have zeros.
+class GroupedRows {
  public:
   static constexpr std::size_t lanes = 8;
 
+  /// The stiffness matrix of discs.
   /// \param order the disc of each row
   /// \param first_row of each chunk, and their number at the end: no group crosses from one chunk into the next
   /// \param unit Pa, by which stiffnesses are divided
-  ContactRows(const SpringNetwork& network, std::span<const std::int32_t> order,
+  GroupedRows(const SpringNetwork& network, std::span<const std::int32_t> order,
               std::span<const std::int32_t> first_row, double unit);
+  GroupedRows(const BlockMatrix& matrix, std::span<const std::int32_t> first_row);
 
-  [[nodiscard]] std::size_t rows() const override { return static_cast<std::size_t>(first_row_.back()); }
-  [[nodiscard]] RowRange reach(RowRange rows) const override;
-  void start(RowRange rows, float factor, const Quad* b, Quad* x) const override;
-  void advance(RowRange rows, const ChebyshevStep& step, const Quad* b, const Quad* x, Quad* next) const override;
-  void hold(RowRange rows, Quad* x) const override;
-  void residual(RowRange rows, const Quad* b, const Quad* x, Quad* r) const override;
-  [[nodiscard]] double bytes() const override;
-  /// q = K p over the unit in double precision, rows x 3; returns p.q over these rows.
+  [[nodiscard]] std::size_t rows() const { return static_cast<std::size_t>(first_row_.back()); }
+  [[nodiscard]] std::size_t groups() const { return free_.size(); }
+  [[nodiscard]] RowRange rows_of(std::size_t first_group, std::size_t last_group) const {
+    return {static_cast<std::size_t>(first_row_[first_group]), static_cast<std::size_t>(first_row_[last_group])};
+  }
+
+  // The following write the rows of a range of whole groups.
+
+  /// The smallest range that holds the columns of these rows and the rows themselves.
+  [[nodiscard]] RowRange reach(RowRange rows) const;
+  /// x = factor D^-1 b, D the diagonal blocks.
+  void start(RowRange rows, float factor, const Quad* b, Quad* x) const;
+  void advance(RowRange rows, const ChebyshevStep& step, const Quad* b, const Quad* x, Quad* next) const;
+  /// x = 0 where it is held.
+  void hold(RowRange rows, Quad* x) const;
+  /// r = b - A x.
+  void residual(RowRange rows, const Quad* b, const Quad* x, Quad* r) const;
+  [[nodiscard]] double bytes() const;
+  /// q = A p in double precision, rows x 3; returns p.q over these rows.
   /// \param p has one number more behind the last row
   double multiply(RowRange rows, const double* p, double* q) const;
 
@@ -83,8 +99,11 @@ class ContactRows final : public SmoothedMatrix {
     std::size_t first, last;
   };
   [[nodiscard]] Groups groups_of(RowRange rows) const;
-  void lay_out(const SpringNetwork& network, std::span<const std::int32_t> order,
-               std::span<const std::int32_t> first_row);
+  template <typename Slots, typename Held>
+  void lay_out(std::span<const std::int32_t> first_row, const Slots& slots_of, const Held& any_held);
+  void clear(std::size_t group);
+  template <typename Entry>
+  void set_inverse(std::size_t group, std::size_t lane, const Entry& entry);
   void fill(const SpringNetwork& network, std::span<const std::int32_t> order,
             const std::vector<std::int32_t>& row_of, std::size_t group, double unit);
   void fill_slot(const SpringNetwork& network, std::size_t contact, bool from_i, std::size_t slot, std::size_t lane,
@@ -100,5 +119,11 @@ class ContactRows final : public SmoothedMatrix {
   std::vector<float> masks_;
   const struct RowFunctions* functions_;
 };
+
+/// r = b - A x over all rows.
+void residual(const GroupedRows& a, const QuadVector& b, const QuadVector& x, QuadVector& r);
+
+/// The largest eigenvalue of D^-1 A, D the diagonal blocks, by power iteration: a few per cent too small.
+double largest_eigenvalue(const GroupedRows& a, int iterations);
 
 }  // namespace equidem::multigrid

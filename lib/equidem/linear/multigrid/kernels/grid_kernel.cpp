@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/linear/multigrid/kernels/grid_kernel.hpp"
+
+#include <cstring>
+
+#define EQUIDEM_INLINE inline __attribute__((always_inline))
+
+namespace equidem::multigrid {
+namespace {
+
+struct Loops {
+  static EQUIDEM_INLINE void restrict_cell(const PointsOfCell& points, const Quad* forces, Quad* corners) {
+    Quad sums[4] = {};
+    for (std::size_t k = 0; k < points.count; ++k) {
+      const auto [s, t] = points.inside[k];
+      const Quad force = forces[k];
+      const float across = points.half_y * t * (1 - t) * force[0], along = points.half_x * s * (1 - s) * force[1];
+      sums[0] += (1 - t) * ((1 - s) * force) + Quad{0, 0, (1 - t) * along - (1 - s) * across, 0};
+      sums[1] += (1 - t) * (s * force) + Quad{0, 0, -(1 - t) * along - s * across, 0};
+      sums[2] += t * ((1 - s) * force) + Quad{0, 0, t * along + (1 - s) * across, 0};
+      sums[3] += t * (s * force) + Quad{0, 0, s * across - t * along, 0};
+    }
+    std::memcpy(corners, sums, sizeof sums);
+  }
+
+  static EQUIDEM_INLINE void move_points(const PointsOfCell& points, const Quad* corners, Quad* motions) {
+    const Quad u = corners[0], along_x = corners[1] - u, along_y = corners[2] - u;
+    const Quad twist = corners[3] - corners[1] - along_y;
+    for (std::size_t k = 0; k < points.count; ++k) {
+      const auto [s, t] = points.inside[k];
+      const Quad linked{points.half_y * t * (1 - t) * (along_y[2] + s * twist[2]),
+                        -points.half_x * s * (1 - s) * (along_x[2] + t * twist[2]), 0, 0};
+      motions[k] += u + s * along_x + t * (along_y + s * twist) + linked;
+    }
+  }
+
+  static EQUIDEM_INLINE void add_square(double k, const double* v, double* matrix) {
+    using Four = double __attribute__((vector_size(32)));
+    for (int part = 0; part < 12; part += 4) {
+      Four columns;
+      std::memcpy(&columns, v + part, sizeof columns);
+      columns *= k;
+      for (int r = 0; r < 12; ++r) {
+        Four row;
+        std::memcpy(&row, matrix + 12 * r + part, sizeof row);
+        row += v[r] * columns;
+        std::memcpy(matrix + 12 * r + part, &row, sizeof row);
+      }
+    }
+  }
+};
+
+/// The loops compiled for vectors of one width.
+#define EQUIDEM_LOOPS(name, attributes)                                                                              \
+  struct name {                                                                                                      \
+    attributes static void restrict_cell(const PointsOfCell& points, const Quad* force, Quad* corners) {             \
+      Loops::restrict_cell(points, force, corners);                                                                  \
+    }                                                                                                                \
+    attributes static void move_points(const PointsOfCell& points, const Quad* corners, Quad* motion) {              \
+      Loops::move_points(points, corners, motion);                                                                   \
+    }                                                                                                                \
+    attributes static void add_square(double k, const double* v, double* matrix) { Loops::add_square(k, v, matrix); } \
+    static constexpr GridFunctions all = {&restrict_cell, &move_points, &add_square};   \
+  }
+
+EQUIDEM_LOOPS(PlainLoops, );
+#if defined(__x86_64__)
+EQUIDEM_LOOPS(WideLoops, __attribute__((target("avx2,fma"))));
+#endif
+
+}  // namespace
+
+const GridFunctions& grid_functions() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return WideLoops::all;
+#endif
+  return PlainLoops::all;
+}
+
+}  // namespace equidem::multigrid
