@@ -177,16 +177,10 @@ Problem build_problem(Case resolved) {
 }
 
 SolvedCase solve_case(const Problem& problem, const EquilibriumSolver& solver, const NamedLoads& loads) {
-  SolvedCase result{.name = loads.name,
-                    .equilibrium = solver.solve(loads.loads),
-                    .stresses = {},
-                    .stress = {},
-                    .moment_per_area = 0,
-                    .tension = {}};
+  SolvedCase result{
+      .name = loads.name, .equilibrium = solver.solve(loads.loads), .stress = {}, .moment_per_area = 0, .tension = {}};
   const Equilibrium& equilibrium = result.equilibrium;
   if (!problem.assembly.cell_areas.empty()) {
-    if (cells_hold_area(problem.assembly))
-      result.stresses = disc_stresses(problem.assembly, equilibrium.contact_forces);
     result.stress = macroscopic_stress(problem.assembly, equilibrium.contact_forces);
     result.moment_per_area = outer_moment(problem.assembly, loads.loads, equilibrium) / problem.assembly.area();
   }

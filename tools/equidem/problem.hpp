@@ -89,7 +89,6 @@ Problem build_problem(Case resolved);
 struct SolvedCase {
   std::string name;  ///< name of the load case, may be empty
   Equilibrium equilibrium;
-  std::vector<Tensor2> stresses;  ///< Pa, per disc; empty where cells are unknown or one is empty
   std::optional<Tensor2> stress;  ///< Pa, of the assembly, not made symmetric
   /// Pa: all moments that act on discs from outside (restrained rotation, supports, loads) over the area. It equals
   /// the asymmetry of the stress, xy - yx (Abe 1996, eq. 55).

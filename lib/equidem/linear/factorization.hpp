@@ -36,6 +36,8 @@ class Factorization {
 
   /// x := K^-1 x for right-hand sides stored one after another.
   virtual void solve(std::span<double> x, int right_hand_sides) const = 0;
+  /// x := K^-1 x to a few per cent, where that is cheaper.
+  virtual void solve_roughly(std::span<double> x) const { solve(x, 1); }
   /// The motion of least resistance that the factorization came across, not normalized: L^-T e for the unit vector e
   /// of the smallest pivot. Where K is singular it is a mechanism. Empty where the method does not determine it.
   [[nodiscard]] virtual std::vector<double> softest_motion() const { return {}; }

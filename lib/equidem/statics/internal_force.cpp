@@ -55,14 +55,17 @@ void contact_forces_of(const Assembly& assembly, const ContactSprings& springs, 
   });
 }
 
+ContactDeformation deformation_of(const SpringNetwork& network, const PreciseMotion& motion,
+                                  std::span<const ContactDeformation> imposed, std::size_t contact) {
+  const auto d = evaluate(network.assembly.contacts[contact], frame_of(network.assembly, contact), network.unknowns,
+                          motion, imposed.empty() ? ContactDeformation{} : imposed[contact]);
+  return {static_cast<double>(d.normal), static_cast<double>(d.tangential)};
+}
+
 void deformations_of(const SpringNetwork& network, const PreciseMotion& motion,
                      std::span<const ContactDeformation> imposed, std::span<ContactDeformation> deformations) {
   parallel_ranges(network.assembly.contacts.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      const auto d = evaluate(network.assembly.contacts[c], frame_of(network.assembly, c), network.unknowns, motion,
-                              imposed.empty() ? ContactDeformation{} : imposed[c]);
-      deformations[c] = {static_cast<double>(d.normal), static_cast<double>(d.tangential)};
-    }
+    for (std::size_t c = begin; c < end; ++c) deformations[c] = deformation_of(network, motion, imposed, c);
   });
 }
 

@@ -27,8 +27,12 @@ struct PreciseMotion {
   void add(std::span<const double> correction);
 };
 
-/// Stretch and slip of every contact: those of the motion, from differences in extended precision, and those imposed.
+/// Stretch and slip of a contact: those of the motion, from differences in extended precision, and those imposed.
 /// \param imposed per contact, or empty
+ContactDeformation deformation_of(const SpringNetwork& network, const PreciseMotion& motion,
+                                  std::span<const ContactDeformation> imposed, std::size_t contact);
+
+/// The same of every contact.
 void deformations_of(const SpringNetwork& network, const PreciseMotion& motion,
                      std::span<const ContactDeformation> imposed, std::span<ContactDeformation> deformations);
 

@@ -2,12 +2,14 @@
 #include "equidem/statics/stiffness_solver.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/motion_description.hpp"
@@ -110,7 +112,7 @@ struct StiffnessSolver::Refinement {
     const bool scaled = pass > 0 && step > slow * last_step && scale_to_least_energy(x);
     last_step = step;
     ++corrections;
-    previous = solution.motion;
+    if (pass > 0) previous = solution.motion;
     solution.motion.add(x);
     const double before = solution.residual;
     const double now = evaluate(x);
@@ -273,7 +275,7 @@ SoftestMotion StiffnessSolver::iterate_inverse(std::span<const double> start, st
   if (!(make_unit() > 0)) return result;
   for (int pass = 0; pass < 2; ++pass) {
     multiply_by_scale();
-    factor_->solve(x, 1);
+    factor_->solve_roughly(x);
     multiply_by_scale();
     result.inverse_norm = std::max(result.inverse_norm, make_unit());
   }
@@ -317,23 +319,28 @@ double normal_rounding(const Assembly& assembly, const Contact& contact) {
 double StiffnessSolver::rounding_work(const RightHandSide& given, const PreciseMotion& motion,
                                       std::span<const double> v) const {
   constexpr double rounding = 0x1.0p-52;
+  const auto b = static_cast<std::size_t>(unknowns_.per_disc);
+  const SpringNetwork network{assembly_, graph_, springs_, unknowns_};
   PreciseMotion other(v.size());
   std::copy(v.begin(), v.end(), other.high.begin());
-  const std::vector<ContactDeformation> of_u = deformations(given, motion), of_v = deformations({}, other);
-  const auto b = static_cast<std::size_t>(unknowns_.per_disc);
-  double work = 0;
-  for (std::size_t c = 0; c < of_u.size(); ++c) {
-    const Contact& contact = assembly_.contacts[c];
-    const std::size_t i = contact.i * b, j = contact.j * b;
-    const auto distance = [&](const std::vector<double>& x) { return std::hypot(x[j] - x[i], x[j + 1] - x[i + 1]); };
-    const auto force = [&](const ContactDeformation& d) {
-      const auto f = linear_spring_force(springs_[c], d);
-      return std::abs(f.normal) + std::abs(f.tangential);
-    };
-    work += rounding * normal_rounding(assembly_, contact) *
-            (distance(motion.high) * force(of_v[c]) + distance(other.high) * force(of_u[c]));
-  }
-  return work;
+  constexpr std::size_t contacts_at_once = 1 << 13;
+  return sums_over<1>(assembly_.contacts.size(), contacts_at_once, [&](std::size_t begin, std::size_t end) {
+    double work = 0;
+    for (std::size_t c = begin; c < end; ++c) {
+      const Contact& contact = assembly_.contacts[c];
+      const std::size_t i = contact.i * b, j = contact.j * b;
+      const auto distance = [&](std::span<const double> x) {
+        return equidem::norm(Vec2{x[j] - x[i], x[j + 1] - x[i + 1]});
+      };
+      const auto force = [&](const PreciseMotion& m, std::span<const ContactDeformation> imposed) {
+        const auto f = linear_spring_force(springs_[c], deformation_of(network, m, imposed, c));
+        return std::abs(f.normal) + std::abs(f.tangential);
+      };
+      work += rounding * normal_rounding(assembly_, contact) *
+              (distance(motion.high) * force(other, {}) + distance(v) * force(motion, given.imposed));
+    }
+    return std::array{work};
+  })[0];
 }
 
 std::vector<double> StiffnessSolver::row_sums() const {

@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "equidem/core/text.hpp"
+#include "equidem/homogenize/stress.hpp"
 
 #include "command.hpp"
 #include "problem.hpp"
@@ -34,10 +35,12 @@ void check_outputs(const CommonOptions& options, const Case& resolved) {
 void write_outputs(const CommonOptions& options, const Problem& problem, const LoadCase& loads,
                    const SolvedCase& result) {
   const OutputCase& wanted = problem.resolved.output;
+  std::vector<Tensor2> stresses;
+  if (cells_hold_area(problem.assembly)) stresses = disc_stresses(problem.assembly, result.equilibrium.contact_forces);
   const AssemblyState state{.assembly = problem.assembly,
                             .motions = result.equilibrium.motions,
                             .contact_forces = result.equilibrium.contact_forces,
-                            .stresses = result.stresses};
+                            .stresses = stresses};
   write_state(options, wanted, suffix_of(result.name), state);
   PictureOptions picture{.title = problem.resolved.title};
   picture.loads = drawn_loads(problem.assembly, loads);
@@ -63,9 +66,13 @@ bool solve_once(const CommonOptions& options, const Problem& problem, const std:
                 BlockSearch* search) {
   EquilibriumOptions solver_options = problem.options();
   solver_options.error_bound = true;
-  const EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, solver_options);
   std::vector<SolvedCase> results;
-  for (const NamedLoads& loads : problem.load_cases) results.push_back(solve_case(problem, solver, loads));
+  Effects effects;
+  {  // the factorization is not needed beyond the load cases
+    const EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, solver_options);
+    for (const NamedLoads& loads : problem.load_cases) results.push_back(solve_case(problem, solver, loads));
+    effects = solver.effects();
+  }
 
   StageTimes times = problem.times;
   for (const SolvedCase& result : results) {
@@ -81,7 +88,7 @@ bool solve_once(const CommonOptions& options, const Problem& problem, const std:
   } else if (accuracy) {
     reached = bound_of(results, *accuracy, times.total());
   }
-  Results all = solve_results(problem, solver.effects(), results);
+  Results all = solve_results(problem, effects, results);
   if (reached) all.append(accuracy_results(*reached));
   deliver(options, results.front().status(), std::move(all), std::move(times), [&](Results&) {
     if (!options.out) return;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "equidem/core/text.hpp"
+#include "equidem/homogenize/stress.hpp"
 
 namespace equidem {
 namespace {
@@ -26,13 +27,13 @@ std::string stability(const Problem& problem, const Equilibrium& result) {
                      problem.springs.springs.any_negative() ? " (kT < 0; static-only)" : "");
 }
 
-void add_stress(Results& out, const SolvedCase& result) {
+void add_stress(Results& out, const Problem& problem, const SolvedCase& result) {
   out.line("stress");
   if (!result.stress) {
     out.note("not known: the assembly has no cell areas");
     return;
   }
-  if (result.stresses.empty()) {
+  if (!cells_hold_area(problem.assembly)) {
     out.note("discs: not known, because the power cell of at least one disc has no area");
     out.line("");
   }
@@ -162,7 +163,7 @@ Results load_case_results(const Problem& problem, const SolvedCase& result, bool
     out.line("", "WARNING: K is nearly singular; do not trust more digits than the residual leaves");
   add_deformation(out, problem, result);
   out.line("energy").add("energy", "", e.energy, "N (J per m of depth, per m)");
-  add_stress(out, result);
+  add_stress(out, problem, result);
   if (result.tension) add_tension(out, problem, result);
   return out;
 }

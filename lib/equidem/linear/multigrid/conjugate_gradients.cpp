@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/linear/multigrid/conjugate_gradients.hpp"
 
+#include "equidem/core/ordered_sums.hpp"
 #include "equidem/linear/large_buffer.hpp"
-#include "equidem/linear/multigrid/vector_sums.hpp"
 
 namespace equidem::multigrid {
 namespace {

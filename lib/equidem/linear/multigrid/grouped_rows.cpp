@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/multigrid/kernels/row_kernel.hpp"
-#include "equidem/linear/multigrid/vector_sums.hpp"
 
 namespace equidem::multigrid {
 namespace {
@@ -64,8 +64,7 @@ GroupedRows::GroupedRows(const SpringNetwork& network, std::span<const std::int3
 GroupedRows::GroupedRows(const BlockMatrix& matrix, std::span<const std::int32_t> first_row)
     : kind_{.blocks = true}, functions_(&row_functions(kind_)) {
   lay_out(
-      first_row,
-      [&](std::size_t row) { return static_cast<std::size_t>(matrix.first[row + 1] - matrix.first[row]); },
+      first_row, [&](std::size_t row) { return static_cast<std::size_t>(matrix.first[row + 1] - matrix.first[row]); },
       [](std::size_t) { return false; });
   parallel_ranges(free_.size(), groups_at_once, [&](std::size_t begin, std::size_t end) {
     for (std::size_t number = begin; number < end; ++number) {

@@ -9,7 +9,7 @@
 
 #include "equidem/core/threads.hpp"
 
-namespace equidem::multigrid {
+namespace equidem {
 
 /// The sums of f(begin, end), an array of numbers, over pieces of the range.
 template <std::size_t Numbers, typename Function>
@@ -23,4 +23,4 @@ std::array<double, Numbers> sums_over(std::size_t count, std::size_t at_once, co
   return sums;
 }
 
-}  // namespace equidem::multigrid
+}  // namespace equidem
