@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/assembly/case.hpp"
+#include "equidem/core/memory.hpp"
 #include "equidem/output/quantities.hpp"
 
 #include "verbs.hpp"
@@ -29,6 +30,7 @@ Exit codes: 0 done; 1 the computation failed, and the message says why; 2 bad in
 
 int main(int argc, char** argv) {
   using namespace equidem;
+  return_freed_memory();
   const Program program{
       .name = "equidem",
       .description = "equidem: the exact equilibrium of assemblies of discs, and the continuum they stand for",

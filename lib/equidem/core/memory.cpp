@@ -5,6 +5,9 @@
 #include <fstream>
 #include <limits>
 
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 #include <sys/resource.h>
 
 #include "equidem/core/error.hpp"
@@ -32,6 +35,12 @@ double bytes_of_process(const std::string& what) {
 }
 
 }  // namespace
+
+void return_freed_memory() {
+#if defined(__GLIBC__)
+  mallopt(M_MMAP_THRESHOLD, 1 << 22);
+#endif
+}
 
 double available_address_space() {
   rlimit limit{};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/statics/equilibrium.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -116,7 +117,8 @@ Equilibrium EquilibriumSolver::Implementation::solve(const LoadCase& loads) cons
   given.force = assemble_loads(assembly, unknowns, loads);
   check_inert_loads(assembly, unknowns, given.force);
   check_mechanisms(given, result);
-  given.prescribed = unknowns.prescribed;
+  const auto moves = [](double u) { return u != 0; };
+  if (std::any_of(unknowns.prescribed.begin(), unknowns.prescribed.end(), moves)) given.prescribed = unknowns.prescribed;
   const std::int64_t iterations_before = solver.factor().report().iterations;
   Solution solution = std::move(solver.solve({&given, 1}, result.times).front());
   Stopwatch watch;
@@ -125,14 +127,13 @@ Equilibrium EquilibriumSolver::Implementation::solve(const LoadCase& loads) cons
   result.iterations = solver.factor().report().iterations - iterations_before;
   if (solution.scale > 0) result.rounded_residual = solver.rounded_residual(given, solution.motion) / solution.scale;
   result.times.add("refine", watch.lap());
-  result.contact_forces.resize(assembly.contacts.size());
-  contact_forces_of(assembly, springs, unknowns, solution.motion, result.contact_forces);
-  describe_state(given.force, solution.motion, result);
   if (options.error_bound) {
-    watch.lap();
     bound_error(given, solution, result);
     result.times.add("error bound", watch.lap());
   }
+  result.contact_forces.resize(assembly.contacts.size());
+  contact_forces_of(assembly, springs, unknowns, solution.motion, result.contact_forces);
+  describe_state(given.force, solution.motion, result);
   const FactorReport& report = solver.factor().report();
   result.solver = report.name;
   result.negative_pivots = report.negative_pivots;

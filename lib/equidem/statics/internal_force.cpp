@@ -17,13 +17,16 @@ DeformationOf<Extended> evaluate(const Contact& contact, const ContactFrame& fra
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
   const std::size_t i = contact.i * b, j = contact.j * b;
   const auto difference = [&](std::size_t c) {
-    return (static_cast<Extended>(motion.high[j + c]) - motion.high[i + c]) +
-           (static_cast<Extended>(motion.low[j + c]) - motion.low[i + c]);
+    const Extended high = static_cast<Extended>(motion.high[j + c]) - motion.high[i + c];
+    return motion.low.empty() ? high : high + (static_cast<Extended>(motion.low[j + c]) - motion.low[i + c]);
+  };
+  const auto rotation_of = [&](std::size_t disc) {
+    const Extended high = motion.high[disc + 2];
+    return motion.low.empty() ? high : high + motion.low[disc + 2];
   };
   Extended turn = 0, opening = 0;
   if (b == 3) {
-    const Extended turn_i = static_cast<Extended>(motion.high[i + 2]) + motion.low[i + 2];
-    const Extended turn_j = static_cast<Extended>(motion.high[j + 2]) + motion.low[j + 2];
+    const Extended turn_i = rotation_of(i), turn_j = rotation_of(j);
     turn = (frame.lever_i * turn_i + frame.lever_j * turn_j) / unknowns.rotation_scale;
     if (frame.offset_i != 0 || frame.offset_j != 0)
       opening = (frame.offset_i * turn_i + frame.offset_j * turn_j) / unknowns.rotation_scale;

@@ -20,7 +20,7 @@ namespace equidem {
 /// residual with it.
 struct PreciseMotion {
   std::vector<double> high;
-  std::vector<double> low;
+  std::vector<double> low;  ///< empty: 0
 
   explicit PreciseMotion(std::size_t components) : high(components, 0.0), low(components, 0.0) {}
   /// Add a correction, keeping the digits that a sum in one double would lose.

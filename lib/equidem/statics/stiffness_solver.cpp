@@ -121,6 +121,7 @@ struct StiffnessSolver::Refinement {
       done = true;
       return;
     }
+    previous = PreciseMotion(0);
     solution.residual = now;
     solution.refinements = pass;
     done = now <= good_enough * solution.scale || (pass > 0 && !scaled && now > 0.5 * before);
@@ -223,7 +224,6 @@ std::vector<Solution> StiffnessSolver::solve(std::span<const RightHandSide> case
 double StiffnessSolver::rounded_residual(const RightHandSide& given, const PreciseMotion& motion) const {
   PreciseMotion rounded(0);
   rounded.high = motion.high;
-  rounded.low.assign(motion.high.size(), 0.0);
   std::vector<double> residual(motion.high.size());
   evaluate_residual(given, rounded, residual);
   return norm_of_free(residual);
@@ -241,7 +241,7 @@ double StiffnessSolver::twice_energy(std::span<const double> x) const {
 }
 
 SoftestMotion StiffnessSolver::softest_motion(std::span<const double> start) const {
-  return iterate_inverse(start, std::vector<double>(unknowns_.held.size(), 1.0));
+  return iterate_inverse(start, {});
 }
 
 double StiffnessSolver::scaled_inverse_norm(std::span<const double> start) const {
@@ -251,13 +251,13 @@ double StiffnessSolver::scaled_inverse_norm(std::span<const double> start) const
 }
 
 SoftestMotion StiffnessSolver::iterate_inverse(std::span<const double> start, std::vector<double> scale) const {
-  for (std::size_t k = 0; k < scale.size(); ++k) {
-    if (unknowns_.held[k] != 0) scale[k] = 0;
-  }
+  const auto scale_of = [&](std::size_t k) {
+    return unknowns_.held[k] != 0 ? 0.0 : scale.empty() ? 1.0 : scale[k];
+  };
   std::vector<double> x(start.begin(), start.end());
-  x.resize(scale.size());
+  x.resize(unknowns_.held.size());
   const auto multiply_by_scale = [&] {
-    for (std::size_t k = 0; k < x.size(); ++k) x[k] *= scale[k];
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] *= scale_of(k);
   };
   multiply_by_scale();
   if (norm_of_free(x) == 0) {
@@ -279,7 +279,7 @@ SoftestMotion StiffnessSolver::iterate_inverse(std::span<const double> start, st
     multiply_by_scale();
     result.inverse_norm = std::max(result.inverse_norm, make_unit());
   }
-  for (std::size_t k = 0; k < x.size(); ++k) x[k] = scale[k] > 0 ? x[k] / scale[k] : 0;
+  for (std::size_t k = 0; k < x.size(); ++k) x[k] = scale_of(k) > 0 ? x[k] / scale_of(k) : 0;
   // Round-off of the factor may make the motion stiffer than it is.
   const double stiffness = springs_.any_negative() ? 0 : twice_energy(x);
   if (stiffness > 0) result.inverse_norm = std::max(result.inverse_norm, 1 / stiffness);
@@ -321,8 +321,8 @@ double StiffnessSolver::rounding_work(const RightHandSide& given, const PreciseM
   constexpr double rounding = 0x1.0p-52;
   const auto b = static_cast<std::size_t>(unknowns_.per_disc);
   const SpringNetwork network{assembly_, graph_, springs_, unknowns_};
-  PreciseMotion other(v.size());
-  std::copy(v.begin(), v.end(), other.high.begin());
+  PreciseMotion other(0);
+  other.high.assign(v.begin(), v.end());
   constexpr std::size_t contacts_at_once = 1 << 13;
   return sums_over<1>(assembly_.contacts.size(), contacts_at_once, [&](std::size_t begin, std::size_t end) {
     double work = 0;

@@ -99,7 +99,8 @@ class StiffnessSolver {
  private:
   struct Refinement;
   void judge_inertia(const System& system);
-  /// Inverse iteration for |S K^-1 S|, S = diag(scale): the motion is S^-1 x for the unit vector x that it ends with.
+  /// Inverse iteration for |S K^-1 S|, S = diag(scale), the unit matrix where `scale` is empty: the motion is S^-1 x for
+  /// the unit vector x that it ends with.
   [[nodiscard]] SoftestMotion iterate_inverse(std::span<const double> start, std::vector<double> scale) const;
   void evaluate_residual(const RightHandSide& given, const PreciseMotion& motion, std::span<double> residual) const;
   /// sum_j |K_ij| of every row, Pa.
