@@ -29,34 +29,40 @@ void free_large(void* memory) {
   std::free(memory);
 }
 
-LargeBuffer BufferPool::take(std::size_t doubles) {
+template <typename Real>
+LargeVector<Real> BufferPool<Real>::take(std::size_t numbers) {
   constexpr std::size_t small = 1 << 14;  // the allocator of the system reuses these well enough
-  if (doubles < small) return LargeBuffer(doubles);
+  if (numbers < small) return Buffer(numbers);
   // Sizes in steps of an eighth, so that a buffer fits again.
-  const std::size_t step = std::bit_floor(doubles) / 8;
-  const std::size_t size = (doubles + step - 1) / step * step;
+  const std::size_t step = std::bit_floor(numbers) / 8;
+  const std::size_t size = (numbers + step - 1) / step * step;
   {
     const std::lock_guard lock(mutex_);
     const auto found = idle_.lower_bound(size);
     if (found != idle_.end() && found->first <= 2 * size) {
-      LargeBuffer buffer = std::move(found->second);
+      Buffer buffer = std::move(found->second);
       idle_.erase(found);
       return buffer;
     }
   }
-  return LargeBuffer(size);
+  return Buffer(size);
 }
 
-void BufferPool::give_back(LargeBuffer&& buffer) {
-  LargeBuffer taken = std::move(buffer);
+template <typename Real>
+void BufferPool<Real>::give_back(Buffer&& buffer) {
+  Buffer taken = std::move(buffer);
   if (taken.size() == 0) return;
   const std::lock_guard lock(mutex_);
   idle_.emplace(taken.size(), std::move(taken));
 }
 
-void BufferPool::clear() {
+template <typename Real>
+void BufferPool<Real>::clear() {
   const std::lock_guard lock(mutex_);
   idle_.clear();
 }
+
+template class BufferPool<float>;
+template class BufferPool<double>;
 
 }  // namespace equidem

@@ -37,25 +37,26 @@ struct UntouchedAllocator {
   bool operator==(const UntouchedAllocator&) const = default;
 };
 
-/// A vector whose resize leaves new elements uninitialized.
+/// A vector whose resize leaves new elements uninitialized, on huge pages where the system has them: the first touch of
+/// small pages would cost a good part of a factorization.
 template <typename T>
 using LargeVector = std::vector<T, UntouchedAllocator<T>>;
-/// Uninitialized doubles on huge pages where the system has them: the first touch of small pages would cost a good part
-/// of a factorization.
-using LargeBuffer = LargeVector<double>;
 
 /// Buffers that come and go, kept for reuse: fresh memory is slow to touch. Safe to use from several threads.
+/// There for float and double.
+template <typename Real>
 class BufferPool {
  public:
-  /// At least that many doubles, uninitialized.
-  LargeBuffer take(std::size_t doubles);
-  void give_back(LargeBuffer&& buffer);
+  using Buffer = LargeVector<Real>;
+  /// At least that many numbers, uninitialized.
+  Buffer take(std::size_t numbers);
+  void give_back(Buffer&& buffer);
   /// Free what is idle.
   void clear();
 
  private:
   std::mutex mutex_;
-  std::multimap<std::size_t, LargeBuffer> idle_;  // by size
+  std::multimap<std::size_t, Buffer> idle_;  // by size
 };
 
 }  // namespace equidem

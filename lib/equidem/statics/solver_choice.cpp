@@ -151,7 +151,7 @@ SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& u
   SolveEstimate result;
   result.unknowns = unknowns.unknowns;
   result.factor_nonzeros = symbolic.nonzeros;
-  result.factor_bytes = symbolic.factor_bytes();
+  result.factor_bytes = sizeof(double) * symbolic.panel_entries();
   result.operations = symbolic.operations;
   // Beside the factor: update matrices on their way up, about two of the largest front and a tenth of the
   // factor; L D L^T works in whole fronts and keeps the names of its rows.
