@@ -12,10 +12,12 @@
 
 namespace equidem {
 
-/// Uninitialized memory, on huge pages where it is large and the system has them.
+/// Uninitialized memory. Where it is large it comes from the system, on huge pages if there are any, and goes back to
+/// it when freed: kept by the allocator, it would lie beside the next array of gigabytes.
 /// \throws Error (computation_failed) where there is not enough
 void* allocate_large(std::size_t bytes);
-void free_large(void* memory);
+/// \param bytes as allocated
+void free_large(void* memory, std::size_t bytes);
 
 /// Memory of a LargeVector. Its pages are first touched by the threads that fill it.
 template <typename T>
@@ -25,7 +27,7 @@ struct UntouchedAllocator {
   template <typename U>
   explicit UntouchedAllocator(const UntouchedAllocator<U>&) {}
   T* allocate(std::size_t count) { return static_cast<T*>(allocate_large(count * sizeof(T))); }
-  void deallocate(T* memory, std::size_t) { free_large(memory); }
+  void deallocate(T* memory, std::size_t count) { free_large(memory, count * sizeof(T)); }
   template <typename U>
   void construct(U* place) {
     ::new (static_cast<void*>(place)) U;  // no value: a resize leaves numbers as they are

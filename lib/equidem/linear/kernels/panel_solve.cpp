@@ -61,7 +61,10 @@ EQUIDEM_INLINE void eliminate(const Panel<Real>& panel, std::size_t p, Real* w) 
   std::size_t r = p + N;
   for (; r + width<Real> <= ld; r += width<Real>) {
     Vector<Real> l[N];
-    for (std::size_t j = 0; j < N; ++j) l[j] = load(a + j * ld + r);
+    for (std::size_t j = 0; j < N; ++j) {
+      l[j] = load(a + j * ld + r);
+      __builtin_prefetch(a + (j + 2 * N) * ld + r);
+    }
     for (std::size_t c = 0; c < C; ++c) {
       Vector<Real> v = load(w + c * ld + r);
       for (std::size_t j = 0; j < N; ++j) v -= l[j] * y[c][j];
@@ -84,7 +87,10 @@ EQUIDEM_INLINE void substitute(const Panel<Real>& panel, std::size_t p, Real* w)
   std::size_t r = p + N;
   for (; r + width<Real> <= ld; r += width<Real>) {
     Vector<Real> l[N];
-    for (std::size_t j = 0; j < N; ++j) l[j] = load(a + j * ld + r);
+    for (std::size_t j = 0; j < N; ++j) {
+      l[j] = load(a + j * ld + r);
+      __builtin_prefetch(a + j * ld + r - 2 * N * ld);
+    }
     for (std::size_t c = 0; c < C; ++c) {
       const Vector<Real> v = load(w + c * ld + r);
       for (std::size_t j = 0; j < N; ++j) sums[c][j] += l[j] * v;

@@ -7,23 +7,31 @@
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
 
 namespace equidem {
-namespace {
+
+namespace front_tiles {
 
 constexpr std::size_t tile = 256;
-constexpr std::size_t tiled_from = 768;  // rows of a front from which tiles pay
 
 struct Tile {
   std::size_t row, column, rows, columns;
 };
 
 /// Tiles of the lower triangle of an n x n matrix, row by row.
-std::vector<Tile> lower_tiles(std::size_t n) {
+inline std::vector<Tile> lower_tiles(std::size_t n) {
   std::vector<Tile> tiles;
   for (std::size_t r = 0; r < n; r += tile) {
     for (std::size_t c = 0; c <= r; c += tile) tiles.push_back({r, c, std::min(tile, n - r), std::min(tile, n - c)});
   }
   return tiles;
 }
+
+}  // namespace front_tiles
+
+using front_tiles::Tile, front_tiles::tile, front_tiles::lower_tiles;
+
+namespace {
+
+constexpr std::size_t tiled_from = 768;  // rows of a front from which tiles pay
 
 template <typename Real>
 int factorize_front_in_tiles(std::size_t k, std::size_t m, Real* panel, Real* update) {

@@ -31,6 +31,12 @@ struct PivotWatch {
   }
 };
 
+/// Zeros on and below the diagonal of the first columns of a matrix; nothing reads the others.
+template <typename Real>
+void clear_lower(std::size_t columns, std::size_t rows, Real* values) {
+  for (std::size_t c = 0; c < columns; ++c) std::fill_n(values + c * rows + c, rows - c, Real{0});
+}
+
 template <typename Real>
 class Cholesky final : public Factorization {
  public:
@@ -47,6 +53,7 @@ class Cholesky final : public Factorization {
     }
     panels_ = LargeVector<Real>(size);
     report_.name = single ? "multifrontal Cholesky in single precision" : "multifrontal Cholesky";
+    report_.single_precision = single;
     report_.nonzeros = symbolic_->nonzeros;
     report_.bytes = static_cast<double>(size) * sizeof(Real);
     report_.negative_pivots = 0;
@@ -66,8 +73,8 @@ class Cholesky final : public Factorization {
              [&](std::size_t t, Real* update, const std::vector<typename Sweep::Child>& children) {
                const std::size_t pivots = symbolic_->pivots(t), updates = symbolic_->updates(t), ld = pivots + updates;
                Real* panel = panels_.data() + offset_[t];
-               std::fill_n(panel, pivots * ld, Real{0});
-               std::fill_n(update, updates * updates, Real{0});
+               clear_lower(pivots, ld, panel);
+               clear_lower(updates, updates, update);
                add_matrix_columns<Real>(*symbolic_, k, t, scale_, panel, ld);
                thread_local std::vector<RowRun> runs;
                for (const auto& child : children) {

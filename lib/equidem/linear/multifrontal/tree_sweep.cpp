@@ -10,7 +10,7 @@
 #include "equidem/linear/large_buffer.hpp"
 
 namespace equidem {
-namespace {
+namespace tree_sweep {
 
 /// Values of nodes in postorder: those of the children of the next node are always on top.
 template <typename Real>
@@ -41,7 +41,7 @@ class ValueStack {
   std::size_t top_ = 0;
 };
 
-}  // namespace
+}  // namespace tree_sweep
 
 template <typename Real>
 TreeSweep<Real>::TreeSweep(const SymbolicFactor& symbolic, const std::function<double(std::size_t)>& work)
@@ -75,13 +75,13 @@ void TreeSweep<Real>::up(const Size& size, const Visit& visit, const std::functi
       }
     }
   }
-  std::vector<std::unique_ptr<ValueStack<Real>>> stacks(thread_count());
+  std::vector<std::unique_ptr<tree_sweep::ValueStack<Real>>> stacks(thread_count());
   std::mutex report_mutex;
   double unreported = 0;
 
   const auto visit_subtree = [&](std::int32_t root, int worker) {
-    if (!stacks[worker]) stacks[worker] = std::make_unique<ValueStack<Real>>(capacity);
-    ValueStack<Real>& stack = *stacks[worker];
+    if (!stacks[worker]) stacks[worker] = std::make_unique<tree_sweep::ValueStack<Real>>(capacity);
+    tree_sweep::ValueStack<Real>& stack = *stacks[worker];
     stack.clear();
     std::vector<Child> children;
     double done = 0;
