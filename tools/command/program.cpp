@@ -182,10 +182,14 @@ void end_interrupted(int) {
   _exit(static_cast<int>(ErrorKind::interrupted));
 }
 
+// Only what stands in .preinit_array runs before libraries start; sanitizers are not ready there.
+#define EQUIDEM_UNCHECKED __attribute__((no_sanitize("address"), no_sanitize("thread"), no_sanitize("undefined")))
+
+constexpr const char* blas_threads = "OPENBLAS_NUM_THREADS";
+char one_blas_thread[] = "OPENBLAS_NUM_THREADS=1";
+
 /// OpenBLAS 0.3.29 maps its buffers when it is loaded, and tries for ever where the limit of the process forbids it.
-/// Only what stands in .preinit_array runs earlier; sanitizers are not ready there.
-__attribute__((no_sanitize("address"), no_sanitize("thread"), no_sanitize("undefined"))) void
-require_address_space_to_start(int, char**, char**) {
+EQUIDEM_UNCHECKED void require_address_space_to_start() {
   constexpr rlim_t least = rlim_t{400} << 20;
   constexpr std::string_view sentence =
       "equidem: the address space is limited to less than 420 MB (the libraries of linear algebra need as much to "
@@ -195,18 +199,41 @@ require_address_space_to_start(int, char**, char**) {
   if (write(STDERR_FILENO, sentence.data(), sentence.size()) < 0) _exit(2);
   _exit(1);
 }
+
+EQUIDEM_UNCHECKED bool begins_with(const char* text, const char* start) {
+  for (; *start != '\0'; ++text, ++start) {
+    if (*text != *start) return false;
+  }
+  return true;
+}
+
+/// Puts the setting into the place of "_", in which shells name the program and which nothing here reads. The
+/// environment has no room for another variable before the C library has started.
+EQUIDEM_UNCHECKED void ask_for_one_blas_thread(char** environment) {
+  char** last_program = nullptr;
+  for (char** variable = environment; *variable != nullptr; ++variable) {
+    if (begins_with(*variable, "OPENBLAS_NUM_THREADS=")) return;
+    if (begins_with(*variable, "_=")) last_program = variable;
+  }
+  if (last_program != nullptr) *last_program = one_blas_thread;
+}
+
+EQUIDEM_UNCHECKED void before_libraries_start(int, char**, char** environment) {
+  require_address_space_to_start();
+  ask_for_one_blas_thread(environment);
+}
 using AtStart = void (*)(int, char**, char**);
-__attribute__((section(".preinit_array"), used)) const AtStart before_libraries = require_address_space_to_start;
+__attribute__((section(".preinit_array"), used)) const AtStart before_libraries = before_libraries_start;
 
 /// OpenBLAS starts threads when it is loaded, before main, and they spin beside ours, although every call here runs on
-/// one thread. Only its environment can prevent that: where the user leaves it unset, set it and start again. Handlers
-/// of signals end with the old program, held signals do not: in between they wait for catch_interrupts.
+/// one thread. Only its environment can prevent that: where the user leaves it unset and no place was found for it,
+/// set it and start again. Handlers of signals end with the old program, held signals do not: in between they wait for
+/// catch_interrupts.
 void start_without_blas_threads(char** argv) {
-  constexpr const char* variable = "OPENBLAS_NUM_THREADS";
-  if (std::getenv(variable) != nullptr) return;
+  if (std::getenv(blas_threads) != nullptr) return;
   hold_back_interrupts(true);
   for (const int signal : interrupts) std::signal(signal, end_interrupted);  // in the threads of OpenBLAS
-  if (setenv(variable, "1", 0) != 0) return;
+  if (setenv(blas_threads, "1", 0) != 0) return;
   execv("/proc/self/exe", argv);  // returns only where that is not possible: then the program is merely slower
 }
 

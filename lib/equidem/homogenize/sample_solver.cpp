@@ -132,7 +132,7 @@ void SampleSolver::factorize(const std::vector<std::uint8_t>& held, bool hold_tr
   result.unknowns = solver_->unknowns().unknowns;
   result.negative_pivots = report.negative_pivots;
   result.unstable_modes = solver_->unstable_modes();
-  result.solver = report.name;
+  result.solver = solver_->solver_name();
   result.factor_bytes = report.bytes;
 }
 
@@ -189,6 +189,8 @@ std::vector<Solution> SampleSolver::solve(std::span<const RightHandSide> cases, 
   }
   constexpr double safety = 10;  // the norm of the inverse is estimated from below
   energy_error_ = safety * residual * residual * result.condition;
+  result.solver = solver_->solver_name();
+  result.factor_bytes = solver_->factor().report().bytes;
   result.iterations = solver_->factor().report().iterations;
   result.times.add("error bound", watch.lap());
   return solutions;

@@ -12,10 +12,12 @@
 
 namespace equidem {
 
-/// Uninitialized memory, on huge pages where it is large and the system has them.
+/// Uninitialized memory. Where it is large it comes from the system, on huge pages if there are any, and goes back to
+/// it when freed: kept by the allocator, it would lie beside the next array of gigabytes.
 /// \throws Error (computation_failed) where there is not enough
 void* allocate_large(std::size_t bytes);
-void free_large(void* memory);
+/// \param bytes as allocated
+void free_large(void* memory, std::size_t bytes);
 
 /// Memory of a LargeVector. Its pages are first touched by the threads that fill it.
 template <typename T>
@@ -25,7 +27,7 @@ struct UntouchedAllocator {
   template <typename U>
   explicit UntouchedAllocator(const UntouchedAllocator<U>&) {}
   T* allocate(std::size_t count) { return static_cast<T*>(allocate_large(count * sizeof(T))); }
-  void deallocate(T* memory, std::size_t) { free_large(memory); }
+  void deallocate(T* memory, std::size_t count) { free_large(memory, count * sizeof(T)); }
   template <typename U>
   void construct(U* place) {
     ::new (static_cast<void*>(place)) U;  // no value: a resize leaves numbers as they are
@@ -37,25 +39,26 @@ struct UntouchedAllocator {
   bool operator==(const UntouchedAllocator&) const = default;
 };
 
-/// A vector whose resize leaves new elements uninitialized.
+/// A vector whose resize leaves new elements uninitialized, on huge pages where the system has them: the first touch of
+/// small pages would cost a good part of a factorization.
 template <typename T>
 using LargeVector = std::vector<T, UntouchedAllocator<T>>;
-/// Uninitialized doubles on huge pages where the system has them: the first touch of small pages would cost a good part
-/// of a factorization.
-using LargeBuffer = LargeVector<double>;
 
 /// Buffers that come and go, kept for reuse: fresh memory is slow to touch. Safe to use from several threads.
+/// There for float and double.
+template <typename Real>
 class BufferPool {
  public:
-  /// At least that many doubles, uninitialized.
-  LargeBuffer take(std::size_t doubles);
-  void give_back(LargeBuffer&& buffer);
+  using Buffer = LargeVector<Real>;
+  /// At least that many numbers, uninitialized.
+  Buffer take(std::size_t numbers);
+  void give_back(Buffer&& buffer);
   /// Free what is idle.
   void clear();
 
  private:
   std::mutex mutex_;
-  std::multimap<std::size_t, LargeBuffer> idle_;  // by size
+  std::multimap<std::size_t, Buffer> idle_;  // by size
 };
 
 }  // namespace equidem

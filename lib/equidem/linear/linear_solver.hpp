@@ -62,9 +62,14 @@ struct EnumNames<SolverMethod> {
   };
 };
 
+/// Precision of the multifrontal Cholesky factor. Solutions have that of double precision with either.
+enum class FactorPrecision { automatic, single_precision, double_precision };
+
 struct SolverOptions {
   SolverMethod method = SolverMethod::automatic;
-  int max_refinements = 4;  ///< steps of iterative refinement, >= 0
+  FactorPrecision precision = FactorPrecision::automatic;  ///< single for large factors, as far as the condition allows
+  int max_refinements =
+      4;  ///< steps of iterative refinement, >= 0; eight times as many with a factor in single precision
   double memory_limit = 0;  ///< bytes that factor and factorization may take; 0: what the machine has free
 };
 

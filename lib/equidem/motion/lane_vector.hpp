@@ -27,7 +27,7 @@ struct LaneAllocator {
     return static_cast<T*>(::operator new (bytes, std::align_val_t{cache_line}));
   }
   void deallocate(T* memory, std::size_t count) {
-    if (count * sizeof(T) >= large) return free_large(memory);
+    if (count * sizeof(T) >= large) return free_large(memory, count * sizeof(T));
     ::operator delete (memory, std::align_val_t{cache_line});
   }
   bool operator==(const LaneAllocator&) const = default;

@@ -8,6 +8,7 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/statics/factor_precision.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/rigidity.hpp"
@@ -135,7 +136,7 @@ Equilibrium EquilibriumSolver::Implementation::solve(const LoadCase& loads) cons
   contact_forces_of(assembly, springs, unknowns, solution.motion, result.contact_forces);
   describe_state(given.force, solution.motion, result);
   const FactorReport& report = solver.factor().report();
-  result.solver = report.name;
+  result.solver = solver.solver_name();
   result.negative_pivots = report.negative_pivots;
   result.unstable_modes = solver.unstable_modes();
   result.pivot_growth = report.growth;
@@ -242,7 +243,9 @@ SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& spr
   const Effects effects = derive_effects(assembly, springs, options.rotation);
   const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, supports);
   if (entry_of(options.solver.method).back_end.iterative) return estimate_iterations(assembly, unknowns);
-  return estimate(analyze(dissect(assembly, graph), graph, unknowns.per_disc), unknowns, springs.any_negative());
+  const SymbolicFactor symbolic = analyze(dissect(assembly, graph), graph, unknowns.per_disc);
+  return estimate(symbolic, unknowns, springs.any_negative(),
+                  tries_single_precision(options.solver, springs, symbolic));
 }
 
 std::string Equilibrium::report() const {

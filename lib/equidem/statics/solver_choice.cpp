@@ -149,15 +149,16 @@ void check(const SolverOptions& options) {
   }
 }
 
-SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns, bool indefinite) {
+SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns, bool indefinite, bool single) {
   SolveEstimate result;
   result.unknowns = unknowns.unknowns;
   result.factor_nonzeros = symbolic.nonzeros;
-  result.factor_bytes = symbolic.factor_bytes();
+  const double bytes = single ? sizeof(float) : sizeof(double);
+  result.factor_bytes = bytes * symbolic.panel_entries();
   result.operations = symbolic.operations;
   // Beside the factor: update matrices on their way up, about two of the largest front and a tenth of the
   // factor; L D L^T works in whole fronts and keeps the names of its rows.
-  const double front = 8 * symbolic.largest_front * symbolic.largest_front;
+  const double front = bytes * symbolic.largest_front * symbolic.largest_front;
   result.peak_bytes = (indefinite ? 1.25 : 1.1) * result.factor_bytes + (indefinite ? 3 : 2) * front;
   return result;
 }

@@ -23,7 +23,9 @@ struct System {
   std::shared_ptr<const SymbolicFactor> symbolic;  ///< null for iterative methods
 };
 
-SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns, bool indefinite);
+/// \param single whether the factor consists of floats
+SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns, bool indefinite,
+                       bool single = false);
 /// Estimates the cost of an iterative method.
 SolveEstimate estimate_iterations(const Assembly& assembly, const DegreesOfFreedom& unknowns);
 

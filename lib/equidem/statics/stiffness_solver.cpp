@@ -8,11 +8,13 @@
 #include <utility>
 
 #include "equidem/contact/linear_spring.hpp"
-#include "equidem/core/error.hpp"
 #include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/linear/rigid_growth.hpp"
+#include "equidem/statics/factor_precision.hpp"
 #include "equidem/statics/motion_description.hpp"
+#include "equidem/statics/refinement.hpp"
 
 namespace equidem {
 
@@ -23,18 +25,20 @@ StiffnessSolver::StiffnessSolver(const Assembly& assembly, const ContactSprings&
       springs_(springs),
       graph_(std::move(graph)),
       unknowns_(std::move(unknowns)),
-      options_(options) {
+      options_(options),
+      mechanisms_(mechanisms),
+      on_graph_{matrix_, assembly_, graph_} {
   Stopwatch watch;
   const BackEnd& back_end = entry_of(options.method).back_end;
-  std::shared_ptr<const SymbolicFactor> symbolic;
   if (!back_end.iterative) {
     DissectionTree tree = dissect(assembly, graph_);
     times.add("order", watch.lap());
-    symbolic = std::make_shared<const SymbolicFactor>(analyze(std::move(tree), graph_, unknowns_.per_disc));
+    symbolic_ = std::make_shared<const SymbolicFactor>(analyze(std::move(tree), graph_, unknowns_.per_disc));
     times.add("analyze", watch.lap());
   }
-  SolveEstimate size =
-      symbolic ? estimate(*symbolic, unknowns_, springs.any_negative()) : estimate_iterations(assembly, unknowns_);
+  const bool single = symbolic_ && tries_single_precision(options, springs, *symbolic_);
+  SolveEstimate size = symbolic_ ? estimate(*symbolic_, unknowns_, springs.any_negative(), single)
+                                 : estimate_iterations(assembly, unknowns_);
   size.peak_bytes *= back_end.memory_factor;
   check_memory(size, options.memory_limit);
   watch.lap();
@@ -42,22 +46,60 @@ StiffnessSolver::StiffnessSolver(const Assembly& assembly, const ContactSprings&
     matrix_ = assemble_stiffness(assembly, graph_, springs, unknowns_);
     times.add("assemble", watch.lap());
   }
-  const MatrixOnGraph k{matrix_, assembly, graph_};
-  const System system{k, springs, unknowns_, std::move(symbolic)};
-  factor_ = factorize(system, options, mechanisms, times);
+  if (single) {
+    std::string reason;
+    factor_ = factorize_in_single_precision(system(), reason);
+    times.add("factorize", watch.lap());
+    if (factor_ && !grows_rigid(assembly, graph_, springs, unknowns_.per_disc) && !stands_probe(times)) {
+      reason = "a motion resists much less than others";
+      factor_.reset();
+    }
+    times.add("probe", watch.lap());
+    if (!factor_) factorize_in_double(std::move(reason), times);
+  } else {
+    factor_ = factorize(system(), options, mechanisms, times);
+  }
   watch.lap();
-  judge_inertia(system);
+  judge_inertia();
   times.add("inertia", watch.lap());
 }
 
-void StiffnessSolver::judge_inertia(const System& system) {
+System StiffnessSolver::system() const {
+  return {on_graph_, springs_, unknowns_, symbolic_};
+}
+
+void StiffnessSolver::factorize_in_double(std::string reason, StageTimes& times) const {
+  why_double_ = std::move(reason);
+  factor_.reset();
+  check_memory(estimate(*symbolic_, unknowns_, springs_.any_negative()), options_.memory_limit);
+  factor_ = factorize(system(), options_, mechanisms_, times);
+}
+
+bool StiffnessSolver::stands_probe(StageTimes& times) const {
+  constexpr double tolerance = 1e-6;  // below the share of one motion in the rough load of 1e11 unknowns
+  const auto b = static_cast<std::size_t>(matrix_.block);
+  Random random(1);
+  RightHandSide rough;
+  rough.force.resize(unknowns_.held.size());
+  for (std::size_t k = 0; k < rough.force.size(); ++k) {
+    rough.force[k] = (random.uniform() - 0.5) * std::sqrt(matrix_.diagonal_block(k / b)[k % b * (b + 1)]);
+  }
+  return refine({&rough, 1}, tolerance, nullptr, times);
+}
+
+std::string StiffnessSolver::solver_name() const {
+  const std::string& name = factor_->report().name;
+  return why_double_.empty() ? name : fmt::format("{} in double precision, since {}", name, why_double_);
+}
+
+void StiffnessSolver::judge_inertia() {
   const std::int64_t negative = factor_->report().negative_pivots;
   if (!springs_.any_negative()) {
     unstable_modes_ = 0;
   } else if (negative < 0) {
     unstable_modes_ = -1;
   } else {
-    const std::int64_t of_rotations = negative_rotations(system);
+    const std::int64_t of_rotations = negative_rotations(system());
     unstable_modes_ = of_rotations < 0 ? -1 : negative - of_rotations;
   }
 }
@@ -75,134 +117,23 @@ void StiffnessSolver::evaluate_residual(const RightHandSide& given, const Precis
   residual_force({assembly_, graph_, springs_, unknowns_}, motion, given.imposed, given.force, residual);
 }
 
-/// Refinement of one right-hand side: K d = f - f_int(u), u := u + d, until the residual no longer falls. The first
-/// pass is the solution itself; the residual comes from the contact law, the motion is kept to twice the digits.
-/// Round-off of the factor hides the softest motions first, of which a correction then brings only a part, and always
-/// the same one: where corrections shrink slowly, each is scaled to the least energy, u := u + (d.r / d.K d) d, which
-/// brings all of one such motion.
-struct StiffnessSolver::Refinement {
-  const StiffnessSolver& solver;
-  const RightHandSide& given;
-  Solution solution;
-  PreciseMotion previous{0};
-  bool done = false;
-  int corrections = 0;
-  double last_step = 0;  ///< size of the last correction, m
-
-  Refinement(const StiffnessSolver& solver_in, const RightHandSide& given_in, std::span<double> residual)
-      : solver(solver_in), given(given_in) {
-    const auto& unknowns = solver.unknowns_;
-    solution.motion = PreciseMotion(unknowns.held.size());
-    for (std::size_t k = 0; k < given.prescribed.size(); ++k) {
-      if (unknowns.held[k] != 0) solution.motion.high[k] = given.prescribed[k];
-    }
-    solution.residual = evaluate(residual);
-    solution.scale = std::max(solution.residual, imposed_force());
-    done = solution.residual == 0;
-  }
-
-  /// Add the correction by the factorization, and replace it by the new residual.
-  void correct(std::span<double> x, int pass) {
-    const double good_enough = entry_of(solver.options_.method).back_end.good_enough;
-    constexpr double slow = 0.05;  // share of the error that a pass leaves
-    for (std::size_t k = 0; k < x.size(); ++k) {
-      if (solver.unknowns_.held[k] != 0) x[k] = 0;
-    }
-    const double step = solver.norm_of_free(x);
-    const bool scaled = pass > 0 && step > slow * last_step && scale_to_least_energy(x);
-    last_step = step;
-    ++corrections;
-    if (pass > 0) previous = solution.motion;
-    solution.motion.add(x);
-    const double before = solution.residual;
-    const double now = evaluate(x);
-    if (pass > 0 && !scaled && !(now < before)) {  // no better: keep the previous motion
-      solution.motion = std::move(previous);
-      done = true;
-      return;
-    }
-    previous = PreciseMotion(0);
-    solution.residual = now;
-    solution.refinements = pass;
-    done = now <= good_enough * solution.scale || (pass > 0 && !scaled && now > 0.5 * before);
-  }
-
-  Solution finish() {
-    constexpr double worthless = 1e-3;
-    const double relative = solution.relative_residual();
-    if (!std::isfinite(relative)) {
-      bad_input("the numbers of this case overflow a double", fmt::format("the residual comes out as {}", relative),
-                "Check the units of sizes, springs and loads");
-    }
-    if (!(relative <= worthless)) {
-      computation_failed(fmt::format("the solution leaves a relative residual of {:.1e}", relative), too_soft, remedy);
-    }
-    const double size = std::hypot(norm_of(solution.motion.high), imposed_length());
-    if (corrections > 1 && relative > 0 && !(last_step <= worthless * size)) {
-      computation_failed(fmt::format("the last of {} refinements still changed the motions by {:.1e} of their size",
-                                     corrections - 1, last_step / size),
-                         too_soft, remedy);
-    }
-    return std::move(solution);
-  }
-
- private:
-  static constexpr const char* too_soft = "the stiffness matrix is too close to singular for the digits of a double";
-  static constexpr const char* remedy =
-      "Hold a slender assembly in more places, make springs less different in size, or use fewer "
-      "discs";
-
-  double evaluate(std::span<double> residual) const {
-    solver.evaluate_residual(given, solution.motion, residual);
-    return solver.norm_of_free(residual);
-  }
-
-  /// x := (x.r / x.K x) x, the multiple of x at which the energy is stationary; false where there is none.
-  bool scale_to_least_energy(std::span<double> x) const {
-    std::vector<double> residual(x.size());
-    evaluate(residual);
-    long double work = 0;
-    for (std::size_t k = 0; k < x.size(); ++k) work += static_cast<long double>(x[k]) * residual[k];
-    const double factor = static_cast<double>(work) / solver.twice_energy(x);
-    constexpr double most = 100;  // more: the motions of the factor are not those of K
-    if (!(factor > 0 && factor < most)) return false;
-    for (double& value : x) value *= factor;
-    return true;
-  }
-
-  static double norm_of(const std::vector<double>& x) {
-    double sum = 0;
-    for (const double value : x) sum += value * value;
-    return std::sqrt(sum);
-  }
-
-  [[nodiscard]] double imposed_length() const {
-    double sum = 0;
-    for (const ContactDeformation& d : given.imposed) sum += d.normal * d.normal + d.tangential * d.tangential;
-    return std::sqrt(sum);
-  }
-
-  /// Size of the forces that imposed deformations cause, before they cancel on each disc.
-  [[nodiscard]] double imposed_force() const {
-    double sum = 0;
-    for (std::size_t c = 0; c < given.imposed.size(); ++c) {
-      const ContactForce f = linear_spring_force(solver.springs_[c], given.imposed[c]);
-      sum += f.normal * f.normal + f.tangential * f.tangential;
-    }
-    return std::sqrt(2 * sum);
-  }
-};
-
-std::vector<Solution> StiffnessSolver::solve(std::span<const RightHandSide> cases, StageTimes& times) const {
+bool StiffnessSolver::refine(std::span<const RightHandSide> cases, double good_enough, std::vector<Solution>* solutions,
+                             StageTimes& times) const {
+  constexpr int steps_for_one = 8;  // of conjugate gradients with a factor in single precision
+  const bool single = factor_->report().single_precision;
   const std::size_t n = unknowns_.held.size();
   std::vector<double> x(n * cases.size());
   std::vector<Refinement> all;
   all.reserve(cases.size());
-  for (std::size_t k = 0; k < cases.size(); ++k) all.emplace_back(*this, cases[k], std::span(x).subspan(k * n, n));
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    all.emplace_back(*this, cases[k], std::span(x).subspan(k * n, n), good_enough);
+  }
   Stopwatch watch;
-  for (int pass = 0; pass <= options_.max_refinements; ++pass) {
+  const int most = options_.max_refinements * (single ? steps_for_one : 1);
+  for (int pass = 0; pass <= most; ++pass) {
     std::vector<Refinement*> open;  // their residuals stand one after another at the front of x
     for (std::size_t k = 0; k < all.size(); ++k) {
+      if (all[k].failed) return false;
       if (all[k].done) continue;
       if (k != open.size()) std::copy_n(x.begin() + k * n, n, x.begin() + open.size() * n);
       open.push_back(&all[k]);
@@ -216,8 +147,20 @@ std::vector<Solution> StiffnessSolver::solve(std::span<const RightHandSide> case
     }
     times.add(pass == 0 ? "solve" : "refine", watch.lap());
   }
+  if (single && std::any_of(all.begin(), all.end(), [](const Refinement& one) { return !one.done || one.failed; })) {
+    return false;
+  }
+  for (std::size_t k = 0; solutions != nullptr && k < all.size(); ++k) solutions->push_back(all[k].finish());
+  return true;
+}
+
+std::vector<Solution> StiffnessSolver::solve(std::span<const RightHandSide> cases, StageTimes& times) const {
+  const double good_enough = entry_of(options_.method).back_end.good_enough;
   std::vector<Solution> solutions;
-  for (Refinement& one : all) solutions.push_back(one.finish());
+  if (!refine(cases, good_enough, &solutions, times)) {
+    factorize_in_double("refinement did not converge", times);
+    refine(cases, good_enough, &solutions, times);
+  }
   return solutions;
 }
 

@@ -62,6 +62,8 @@ class StiffnessSolver {
   StiffnessSolver(const StiffnessSolver&) = delete;  // the factorization may refer to members
   StiffnessSolver& operator=(const StiffnessSolver&) = delete;
 
+  /// One thread at a time may call it: where a factor in single precision turns out too rough for these right-hand
+  /// sides, K is factorized in double precision.
   /// \param times gets "solve" and "refine"
   /// \throws Error (computation_failed) where the residual shows that K is too near to singular, or numbers overflow
   [[nodiscard]] std::vector<Solution> solve(std::span<const RightHandSide> cases, StageTimes& times) const;
@@ -93,12 +95,22 @@ class StiffnessSolver {
   [[nodiscard]] const ContactGraph& graph() const { return graph_; }
   [[nodiscard]] const DegreesOfFreedom& unknowns() const { return unknowns_; }
   [[nodiscard]] const Factorization& factor() const { return *factor_; }
+  /// Name of the factorization, with the reason for double precision where single precision did not serve.
+  [[nodiscard]] std::string solver_name() const;
   /// Negative eigenvalues beyond those that rotations bring by themselves where kT < 0; -1: not known.
   [[nodiscard]] std::int64_t unstable_modes() const { return unstable_modes_; }
 
  private:
   struct Refinement;
-  void judge_inertia(const System& system);
+  /// Solves with the factor at hand; false where it is too rough.
+  /// \param solutions may be null
+  bool refine(std::span<const RightHandSide> cases, double good_enough, std::vector<Solution>* solutions,
+              StageTimes& times) const;
+  void factorize_in_double(std::string reason, StageTimes& times) const;
+  /// Whether the factor in single precision resists a rough load, which works on every motion, as K does.
+  [[nodiscard]] bool stands_probe(StageTimes& times) const;
+  [[nodiscard]] System system() const;
+  void judge_inertia();
   /// Inverse iteration for |S K^-1 S|, S = diag(scale), the unit matrix where `scale` is empty: the motion is S^-1 x for
   /// the unit vector x that it ends with.
   [[nodiscard]] SoftestMotion iterate_inverse(std::span<const double> start, std::vector<double> scale) const;
@@ -113,8 +125,12 @@ class StiffnessSolver {
   ContactGraph graph_;
   DegreesOfFreedom unknowns_;
   SolverOptions options_;
+  Mechanisms mechanisms_;
   StiffnessMatrix matrix_;
-  std::unique_ptr<Factorization> factor_;
+  MatrixOnGraph on_graph_;
+  std::shared_ptr<const SymbolicFactor> symbolic_;
+  mutable std::unique_ptr<Factorization> factor_;
+  mutable std::string why_double_;  // where single precision was tried and did not serve
   std::int64_t unstable_modes_ = 0;
 };
 

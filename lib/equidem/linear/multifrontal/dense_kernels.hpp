@@ -12,27 +12,37 @@ namespace equidem::dense {
 /// Keep BLAS from starting threads of its own; every user of these kernels calls it once.
 void use_one_thread_per_call();
 
+/// The following are there for float and double.
 /// A = L L^T in the lower triangle of the n x n matrix a. Returns 0, or the 1-based index of the first pivot that is
 /// not positive.
-int cholesky(std::size_t n, double* a, std::size_t lda);
+template <typename Real>
+int cholesky(std::size_t n, Real* a, std::size_t lda);
 /// B := B L^-T with L the lower triangle n x n, B of m rows.
-void solve_right_transposed(std::size_t m, std::size_t n, const double* l, std::size_t ldl, double* b, std::size_t ldb);
+template <typename Real>
+void solve_right_transposed(std::size_t m, std::size_t n, const Real* l, std::size_t ldl, Real* b, std::size_t ldb);
 /// Lower triangle of C (n x n) -= A A^T, A of k columns.
-void subtract_square(std::size_t n, std::size_t k, const double* a, std::size_t lda, double* c, std::size_t ldc);
+template <typename Real>
+void subtract_square(std::size_t n, std::size_t k, const Real* a, std::size_t lda, Real* c, std::size_t ldc);
 /// C (m x n) -= A B^T, A of m rows and B of n rows, both of k columns.
-void subtract_product_transposed(std::size_t m, std::size_t n, std::size_t k, const double* a, std::size_t lda,
-                                 const double* b, std::size_t ldb, double* c, std::size_t ldc);
+template <typename Real>
+void subtract_product_transposed(std::size_t m, std::size_t n, std::size_t k, const Real* a, std::size_t lda,
+                                 const Real* b, std::size_t ldb, Real* c, std::size_t ldc);
 /// C (m x n) -= A B with A (m x k), B (k x n).
-void subtract_product(std::size_t m, std::size_t n, std::size_t k, const double* a, std::size_t lda, const double* b,
-                      std::size_t ldb, double* c, std::size_t ldc);
+template <typename Real>
+void subtract_product(std::size_t m, std::size_t n, std::size_t k, const Real* a, std::size_t lda, const Real* b,
+                      std::size_t ldb, Real* c, std::size_t ldc);
 /// C (m x n) -= A^T B with A (k x m), B (k x n).
-void subtract_transposed_product(std::size_t m, std::size_t n, std::size_t k, const double* a, std::size_t lda,
-                                 const double* b, std::size_t ldb, double* c, std::size_t ldc);
+template <typename Real>
+void subtract_transposed_product(std::size_t m, std::size_t n, std::size_t k, const Real* a, std::size_t lda,
+                                 const Real* b, std::size_t ldb, Real* c, std::size_t ldc);
 /// X := L^-1 X, or L^-T X, for n x columns right-hand sides; `unit`: the diagonal of L is taken as 1.
-void solve_lower(std::size_t n, std::size_t columns, const double* l, std::size_t ldl, double* x, std::size_t ldx,
+template <typename Real>
+void solve_lower(std::size_t n, std::size_t columns, const Real* l, std::size_t ldl, Real* x, std::size_t ldx,
                  bool unit = false);
-void solve_lower_transposed(std::size_t n, std::size_t columns, const double* l, std::size_t ldl, double* x,
+template <typename Real>
+void solve_lower_transposed(std::size_t n, std::size_t columns, const Real* l, std::size_t ldl, Real* x,
                             std::size_t ldx, bool unit = false);
+
 /// Eigenvalues, ascending, of the symmetric or Hermitian matrix in the lower triangle of a (n x n), which is lost: a
 /// holds orthonormal eigenvectors in its columns where `vectors` is set. Returns 0, or a positive number where
 /// they do not converge.

@@ -183,7 +183,7 @@ class Elimination {
         with_d[p * m + r] = value;
       }
     }
-    subtract_in_tiles(m, done_, {&at(c, 0), n_}, {with_d.data(), m}, {&at(c, c), n_});
+    subtract_in_tiles<double>(m, done_, {&at(c, 0), n_}, {with_d.data(), m}, {&at(c, c), n_});
   }
 
   IndefiniteFront& front_;

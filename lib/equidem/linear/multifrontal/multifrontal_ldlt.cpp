@@ -21,7 +21,7 @@ namespace {
 struct FrontFactor {
   FrontPivots pivots;
   std::vector<std::int64_t> ids;  ///< unknowns (in elimination order): pivots first, then delayed ones, then later rows
-  LargeBuffer lower;              ///< ids.size() x pivots.count, column-major
+  LargeVector<double> lower;      ///< ids.size() x pivots.count, column-major
   std::size_t delayed = 0;
 };
 
@@ -47,12 +47,12 @@ class Ldlt final : public Factorization {
     const std::size_t n = unknowns();
     for (int c = 0; c < right_hand_sides; ++c) {
       const std::span<double> column = x.subspan(c * n, n);
-      permute_to_elimination(*symbolic_, column, y);
+      permute_to_elimination<double>(*symbolic_, column, y);
       scale(y);
       forward(y);
       backward(y);
       scale(y);
-      permute_from_elimination(*symbolic_, y, column);
+      permute_from_elimination<double>(*symbolic_, y, column);
     }
   }
 
@@ -68,27 +68,27 @@ class Ldlt final : public Factorization {
     if (unknown >= 0) y[unknown] = 1;
     backward(y);
     scale(y);
-    permute_from_elimination(*symbolic_, y, x);
+    permute_from_elimination<double>(*symbolic_, y, x);
     return x;
   }
 
   [[nodiscard]] std::size_t unknowns() const { return symbolic_->position.size() * symbolic_->block; }
 
   void factorize(const MatrixOnGraph& k) {
-    std::vector<LargeBuffer> updates(fronts_.size());  // Schur complements that wait for their parents
+    std::vector<LargeVector<double>> updates(fronts_.size());  // Schur complements that wait for their parents
     Progress progress("factorizing");
     double done = 0;
-    TreeSweep sweep(*symbolic_, [&](std::size_t t) { return symbolic_->front_operations(t) + 1000; });
+    TreeSweep<double> sweep(*symbolic_, [&](std::size_t t) { return symbolic_->front_operations(t) + 1000; });
     sweep.up([](std::size_t) { return std::size_t{0}; },
-             [&](std::size_t t, double*, const std::vector<TreeSweep::Child>& children) {
+             [&](std::size_t t, double*, const std::vector<TreeSweep<double>::Child>& children) {
                factorize_front_of(t, k, children, updates);
              },
              [&](double work) { progress.update(done += work); });
     pool_.clear();
   }
 
-  void factorize_front_of(std::size_t t, const MatrixOnGraph& k, const std::vector<TreeSweep::Child>& children,
-                          std::vector<LargeBuffer>& updates) {
+  void factorize_front_of(std::size_t t, const MatrixOnGraph& k, const std::vector<TreeSweep<double>::Child>& children,
+                          std::vector<LargeVector<double>>& updates) {
     const auto b = static_cast<std::int64_t>(symbolic_->block);
     const auto& node = symbolic_->tree.nodes[t];
     IndefiniteFront front;
@@ -105,12 +105,12 @@ class Ldlt final : public Factorization {
     }
     front.size = front.ids.size();
     const std::size_t n = front.size;
-    LargeBuffer values = pool_.take(n * n);
+    LargeVector<double> values = pool_.take(n * n);
     front.values = values.data();
     std::fill(front.values, front.values + n * n, 0.0);
 
     // Columns of K count rows as if nothing had been delayed: the delayed ones are skipped over.
-    add_matrix_columns(*symbolic_, k, t, front.values, n);
+    add_matrix_columns(*symbolic_, k, t, {}, front.values, n);
     scale_columns(front, own, front.candidates - own);
     make_room(front, own, front.candidates - own);
     auto& index = index_of_unknown(unknowns());
@@ -175,7 +175,7 @@ class Ldlt final : public Factorization {
     }
   }
 
-  void add_child(std::size_t child, const LargeBuffer& update, const std::vector<std::int32_t>& index,
+  void add_child(std::size_t child, const LargeVector<double>& update, const std::vector<std::int32_t>& index,
                  IndefiniteFront& front) const {
     const FrontFactor& f = fronts_[child];
     const std::size_t m = f.ids.size() - f.pivots.count;
@@ -189,10 +189,10 @@ class Ldlt final : public Factorization {
     }
   }
 
-  void keep(const IndefiniteFront& front, FrontFactor& factor, LargeBuffer& update) {
+  void keep(const IndefiniteFront& front, FrontFactor& factor, LargeVector<double>& update) {
     const std::size_t n = front.size, k = factor.pivots.count, m = n - k;
     factor.ids = front.ids;
-    factor.lower = LargeBuffer(n * k);
+    factor.lower = LargeVector<double>(n * k);
     std::copy(front.values, front.values + n * k, factor.lower.data());
     update = pool_.take(m * m);
     for (std::size_t c = 0; c < m; ++c) {
@@ -239,9 +239,9 @@ class Ldlt final : public Factorization {
 
   void forward(std::vector<double>& y) const {
     std::vector<std::vector<double>> handed(fronts_.size());
-    TreeSweep sweep(*symbolic_, [&](std::size_t t) { return solve_work(t); });
+    TreeSweep<double> sweep(*symbolic_, [&](std::size_t t) { return solve_work(t); });
     sweep.up([](std::size_t) { return std::size_t{0}; },
-             [&](std::size_t t, double*, const std::vector<TreeSweep::Child>& children) {
+             [&](std::size_t t, double*, const std::vector<TreeSweep<double>::Child>& children) {
                const FrontFactor& f = fronts_[t];
                const std::size_t n = f.ids.size(), k = f.pivots.count;
                std::vector<double> x(n, 0.0);
@@ -289,7 +289,7 @@ class Ldlt final : public Factorization {
   }
 
   void backward(std::vector<double>& y) const {
-    TreeSweep sweep(*symbolic_, [&](std::size_t t) { return solve_work(t); });
+    TreeSweep<double> sweep(*symbolic_, [&](std::size_t t) { return solve_work(t); });
     sweep.down([&](std::size_t t) {
       const FrontFactor& f = fronts_[t];
       const std::size_t n = f.ids.size(), k = f.pivots.count;
@@ -312,7 +312,7 @@ class Ldlt final : public Factorization {
   IndefiniteOptions options_;
   std::vector<double> scale_;  // of each unknown, in elimination order
   std::vector<FrontFactor> fronts_;
-  BufferPool pool_;                 // empty but during factorization
+  BufferPool<double> pool_;         // empty but during factorization
   std::int64_t softest_ = -1;       // unknown of the smallest pivot, in elimination order
   std::vector<std::int64_t> null_;  // unknowns that no front could eliminate
   FactorReport report_;

@@ -10,13 +10,14 @@
 #include "equidem/linear/large_buffer.hpp"
 
 namespace equidem {
-namespace {
+namespace tree_sweep {
 
 /// Values of nodes in postorder: those of the children of the next node are always on top.
+template <typename Real>
 class ValueStack {
  public:
   explicit ValueStack(std::size_t capacity) : memory_(capacity) {}
-  double* push(std::size_t size) {
+  Real* push(std::size_t size) {
     starts_.push_back(top_);
     top_ += size;
     return memory_.data() + starts_.back();
@@ -31,18 +32,19 @@ class ValueStack {
     top_ = to + size;
   }
   /// Entry `depth` below the top one.
-  const double* below_top(std::size_t depth) const { return memory_.data() + starts_[starts_.size() - 1 - depth]; }
+  const Real* below_top(std::size_t depth) const { return memory_.data() + starts_[starts_.size() - 1 - depth]; }
   void clear() { top_ = 0, starts_.clear(); }
 
  private:
-  LargeBuffer memory_;
+  LargeVector<Real> memory_;
   std::vector<std::size_t> starts_;
   std::size_t top_ = 0;
 };
 
-}  // namespace
+}  // namespace tree_sweep
 
-TreeSweep::TreeSweep(const SymbolicFactor& symbolic, const std::function<double(std::size_t)>& work)
+template <typename Real>
+TreeSweep<Real>::TreeSweep(const SymbolicFactor& symbolic, const std::function<double(std::size_t)>& work)
     : symbolic_(symbolic), work_(symbolic.fronts()), children_(symbolic.fronts()) {
   for (std::size_t t = 0; t < work_.size(); ++t) {
     work_[t] = work(t);
@@ -52,12 +54,13 @@ TreeSweep::TreeSweep(const SymbolicFactor& symbolic, const std::function<double(
   schedule_ = schedule_tree(symbolic.tree, work_);
 }
 
-void TreeSweep::up(const Size& size, const Visit& visit, const std::function<void(double)>& report) const {
+template <typename Real>
+void TreeSweep<Real>::up(const Size& size, const Visit& visit, const std::function<void(double)>& report) const {
   const auto& nodes = symbolic_.tree.nodes;
   const double total = std::accumulate(work_.begin(), work_.end(), 0.0);
   // Updates passed on by the subtree roots and the nodes above them.
-  std::vector<LargeBuffer> handed(nodes.size());
-  BufferPool pool;
+  std::vector<LargeVector<Real>> handed(nodes.size());
+  BufferPool<Real> pool;
   // Largest height of the stack over all subtrees.
   std::size_t capacity = 0;
   std::vector<std::size_t> sizes(nodes.size());
@@ -72,13 +75,13 @@ void TreeSweep::up(const Size& size, const Visit& visit, const std::function<voi
       }
     }
   }
-  std::vector<std::unique_ptr<ValueStack>> stacks(thread_count());
+  std::vector<std::unique_ptr<tree_sweep::ValueStack<Real>>> stacks(thread_count());
   std::mutex report_mutex;
   double unreported = 0;
 
   const auto visit_subtree = [&](std::int32_t root, int worker) {
-    if (!stacks[worker]) stacks[worker] = std::make_unique<ValueStack>(capacity);
-    ValueStack& stack = *stacks[worker];
+    if (!stacks[worker]) stacks[worker] = std::make_unique<tree_sweep::ValueStack<Real>>(capacity);
+    tree_sweep::ValueStack<Real>& stack = *stacks[worker];
     stack.clear();
     std::vector<Child> children;
     double done = 0;
@@ -86,7 +89,7 @@ void TreeSweep::up(const Size& size, const Visit& visit, const std::function<voi
       const std::size_t count = children_[t].size();
       const bool is_root = t == root;
       if (is_root) handed[root] = pool.take(sizes[root]);
-      double* values = is_root ? handed[root].data() : stack.push(sizes[t]);
+      Real* values = is_root ? handed[root].data() : stack.push(sizes[t]);
       children.clear();
       for (std::size_t c = 0; c < count; ++c) {
         children.push_back({static_cast<std::size_t>(children_[t][c]), stack.below_top(count - c - (is_root ? 1 : 0))});
@@ -124,7 +127,8 @@ void TreeSweep::up(const Size& size, const Visit& visit, const std::function<voi
   }
 }
 
-void TreeSweep::down(const std::function<void(std::size_t)>& visit) const {
+template <typename Real>
+void TreeSweep<Real>::down(const std::function<void(std::size_t)>& visit) const {
   for (auto wave = schedule_.waves.rbegin(); wave != schedule_.waves.rend(); ++wave) {
     std::for_each(wave->above.rbegin(), wave->above.rend(), visit);
     parallel_tasks(wave->subtrees.size(), [&](std::size_t s, int) {
@@ -133,5 +137,8 @@ void TreeSweep::down(const std::function<void(std::size_t)>& visit) const {
     });
   }
 }
+
+template class TreeSweep<float>;
+template class TreeSweep<double>;
 
 }  // namespace equidem

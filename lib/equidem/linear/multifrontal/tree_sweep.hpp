@@ -12,21 +12,23 @@
 
 namespace equidem {
 
-/// Visits every front, children before parents or parents before children; subtrees run on separate threads.
+/// Visits every front, children before parents or parents before children; subtrees run on separate threads. Updates
+/// consist of floats or of doubles.
+template <typename Real>
 class TreeSweep {
  public:
   /// The update that a child passes to its parent.
   struct Child {
     std::size_t node;
-    const double* values;
+    const Real* values;
   };
   using Size = std::function<std::size_t(std::size_t node)>;
-  using Visit = std::function<void(std::size_t node, double* values, const std::vector<Child>& children)>;
+  using Visit = std::function<void(std::size_t node, Real* values, const std::vector<Child>& children)>;
 
   /// \param work of a front, in any unit, to share it out
   TreeSweep(const SymbolicFactor& symbolic, const std::function<double(std::size_t node)>& work);
 
-  /// Children first. `visit` fills `values`, of size(node) doubles, from those of the children, in ascending order of
+  /// Children first. `visit` fills `values`, of size(node) numbers, from those of the children, in ascending order of
   /// node; the children's are then freed. Within a subtree they live on one stack.
   /// \param report is called by the calling thread, from time to time, with the share of the work done since the last
   ///         call

@@ -39,13 +39,13 @@ double SymbolicFactor::front_operations(std::size_t t) const {
   return sum_of_squares(n) - sum_of_squares(m);
 }
 
-double SymbolicFactor::factor_bytes() const {
-  double bytes = 0;
+double SymbolicFactor::panel_entries() const {
+  double entries = 0;
   for (std::size_t t = 0; t < fronts(); ++t) {
     const auto k = static_cast<double>(pivots(t));
-    bytes += 8 * k * (k + static_cast<double>(updates(t)));
+    entries += k * (k + static_cast<double>(updates(t)));
   }
-  return bytes;
+  return entries;
 }
 
 SymbolicFactor analyze(DissectionTree tree, const ContactGraph& graph, int block) {
@@ -102,20 +102,6 @@ void match_rows(const SymbolicFactor& symbolic, std::size_t child, std::vector<R
     } else {
       runs.push_back({static_cast<std::int32_t>(k), at, 1});
     }
-  }
-}
-
-void permute_to_elimination(const SymbolicFactor& symbolic, std::span<const double> x, std::span<double> y) {
-  const int b = symbolic.block;
-  for (std::size_t p = 0; p < symbolic.position.size(); ++p) {
-    for (int r = 0; r < b; ++r) y[p * b + r] = x[static_cast<std::size_t>(symbolic.tree.order[p]) * b + r];
-  }
-}
-
-void permute_from_elimination(const SymbolicFactor& symbolic, std::span<const double> y, std::span<double> x) {
-  const int b = symbolic.block;
-  for (std::size_t p = 0; p < symbolic.position.size(); ++p) {
-    for (int r = 0; r < b; ++r) x[static_cast<std::size_t>(symbolic.tree.order[p]) * b + r] = y[p * b + r];
   }
 }
 

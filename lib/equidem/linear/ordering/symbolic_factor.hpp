@@ -32,8 +32,8 @@ struct SymbolicFactor {
   [[nodiscard]] std::size_t updates(std::size_t t) const { return block * rows[t].size(); }
   /// Multiplications and additions of front t.
   [[nodiscard]] double front_operations(std::size_t t) const;
-  /// Bytes of the factor's panels.
-  [[nodiscard]] double factor_bytes() const;
+  /// Numbers in the factor's panels.
+  [[nodiscard]] double panel_entries() const;
 };
 
 SymbolicFactor analyze(DissectionTree tree, const ContactGraph& graph, int block);
@@ -49,7 +49,22 @@ struct RowRun {
 void match_rows(const SymbolicFactor& symbolic, std::size_t child, std::vector<RowRun>& runs);
 
 /// A vector of discs x block components, from the order of discs to the order of elimination and back.
-void permute_to_elimination(const SymbolicFactor& symbolic, std::span<const double> x, std::span<double> y);
-void permute_from_elimination(const SymbolicFactor& symbolic, std::span<const double> y, std::span<double> x);
+/// The order of elimination may have floats or doubles.
+template <typename Real>
+void permute_to_elimination(const SymbolicFactor& symbolic, std::span<const double> x, std::span<Real> y) {
+  const int b = symbolic.block;
+  for (std::size_t p = 0; p < symbolic.position.size(); ++p) {
+    for (int r = 0; r < b; ++r) {
+      y[p * b + r] = static_cast<Real>(x[static_cast<std::size_t>(symbolic.tree.order[p]) * b + r]);
+    }
+  }
+}
+template <typename Real>
+void permute_from_elimination(const SymbolicFactor& symbolic, std::span<const Real> y, std::span<double> x) {
+  const int b = symbolic.block;
+  for (std::size_t p = 0; p < symbolic.position.size(); ++p) {
+    for (int r = 0; r < b; ++r) x[static_cast<std::size_t>(symbolic.tree.order[p]) * b + r] = y[p * b + r];
+  }
+}
 
 }  // namespace equidem

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/statics/refinement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+double norm_of(std::span<const double> x) {
+  double sum = 0;
+  for (const double value : x) sum += value * value;
+  return std::sqrt(sum);
+}
+
+double product_of(std::span<const double> x, std::span<const double> y) {
+  double sum = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) sum += x[k] * y[k];
+  return sum;
+}
+
+}  // namespace
+
+StiffnessSolver::Refinement::Refinement(const StiffnessSolver& solver_in, const RightHandSide& given_in,
+                                        std::span<double> residual, double good_enough_in)
+    : solver(solver_in),
+      given(given_in),
+      conjugate(solver_in.factor_->report().single_precision),
+      good_enough(good_enough_in) {
+  const auto& unknowns = solver.unknowns_;
+  solution.motion = PreciseMotion(unknowns.held.size());
+  for (std::size_t k = 0; k < given.prescribed.size(); ++k) {
+    if (unknowns.held[k] != 0) solution.motion.high[k] = given.prescribed[k];
+  }
+  solution.residual = replaced_ = evaluate(residual);
+  solution.scale = std::max(solution.residual, imposed_force());
+  done = solution.residual == 0;
+  if (!conjugate || done) return;
+  residual_.assign(residual.begin(), residual.end());
+  direction_.resize(residual.size());
+  resistance_.resize(residual.size());
+}
+
+void StiffnessSolver::Refinement::correct(std::span<double> x, int pass) {
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (solver.unknowns_.held[k] != 0) x[k] = 0;
+  }
+  ++corrections_;
+  if (conjugate) {
+    add_conjugate_step(x, pass);
+  } else {
+    add_correction(x, pass);
+  }
+}
+
+void StiffnessSolver::Refinement::add_correction(std::span<double> x, int pass) {
+  constexpr double slow = 0.05;  // share of the error that a pass leaves
+  const double step = solver.norm_of_free(x);
+  const bool scaled = pass > 0 && step > slow * last_step_ && scale_to_least_energy(x);
+  last_step_ = step;
+  if (pass > 0) previous_ = solution.motion;
+  solution.motion.add(x);
+  const double before = solution.residual;
+  const double now = evaluate(x);
+  if (pass > 0 && !scaled && !(now < before)) {  // no better: keep the previous motion
+    solution.motion = std::move(previous_);
+    done = true;
+    return;
+  }
+  previous_ = PreciseMotion(0);
+  solution.residual = now;
+  solution.refinements = pass;
+  done = now <= good_enough * solution.scale || (pass > 0 && !scaled && now > 0.5 * before);
+}
+
+void StiffnessSolver::Refinement::add_conjugate_step(std::span<double> x, int pass) {
+  constexpr double digits_of_recurrence = 1e-9;  // K p in double has relative rounding of 1e-12 to 1e-10
+  const double rz = product_of(residual_, x);
+  // r - r_before = -alpha K p of the last step.
+  const double turn = pass == 0 ? 0 : std::max(0.0, -last_alpha_ * product_of(x, resistance_) / squared_residual_);
+  for (std::size_t k = 0; k < x.size(); ++k) direction_[k] = x[k] + turn * direction_[k];
+  multiply(solver.matrix_, solver.assembly_, solver.graph_, direction_, resistance_);
+  const double alpha = product_of(residual_, direction_) / product_of(direction_, resistance_);
+  if (!(rz > 0 && alpha > 0 && std::isfinite(alpha))) {
+    done = failed = true;
+    return;
+  }
+  last_alpha_ = alpha;
+  squared_residual_ = rz;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    x[k] = alpha * direction_[k];
+    residual_[k] -= alpha * resistance_[k];
+  }
+  last_step_ = norm_of(x);
+  solution.motion.add(x);
+  solution.refinements = pass;
+  // One pass of elimination in double precision mostly ends far below good_enough.
+  const double wanted = 0.05 * good_enough * solution.scale;
+  double now = solver.norm_of_free(residual_);
+  if (now <= std::max(digits_of_recurrence * replaced_, wanted)) {
+    now = evaluate(residual_);
+    const bool stalls = now > 0.5 * replaced_;
+    done = stalls || now <= wanted;
+    failed = stalls && now > good_enough * solution.scale;
+    replaced_ = now;
+  }
+  solution.residual = now;
+  std::copy(residual_.begin(), residual_.end(), x.begin());
+}
+
+Solution StiffnessSolver::Refinement::finish() {
+  constexpr const char* too_soft = "the stiffness matrix is too close to singular for the digits of a double";
+  constexpr const char* remedy =
+      "Hold a slender assembly in more places, make springs less different in size, or use fewer discs";
+  constexpr double worthless = 1e-3;
+  const double relative = solution.relative_residual();
+  if (!std::isfinite(relative)) {
+    bad_input("the numbers of this case overflow a double", fmt::format("the residual comes out as {}", relative),
+              "Check the units of sizes, springs and loads");
+  }
+  if (!(relative <= worthless)) {
+    computation_failed(fmt::format("the solution leaves a relative residual of {:.1e}", relative), too_soft, remedy);
+  }
+  const double size = std::hypot(norm_of(solution.motion.high), imposed_length());
+  if (corrections_ > 1 && relative > 0 && !(last_step_ <= worthless * size)) {
+    computation_failed(fmt::format("the last of {} refinements still changed the motions by {:.1e} of their size",
+                                   corrections_ - 1, last_step_ / size),
+                       too_soft, remedy);
+  }
+  return std::move(solution);
+}
+
+double StiffnessSolver::Refinement::evaluate(std::span<double> residual) const {
+  solver.evaluate_residual(given, solution.motion, residual);
+  return solver.norm_of_free(residual);
+}
+
+/// x := (x.r / x.K x) x, the multiple of x at which the energy is stationary; false where there is none.
+bool StiffnessSolver::Refinement::scale_to_least_energy(std::span<double> x) const {
+  std::vector<double> residual(x.size());
+  evaluate(residual);
+  long double work = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) work += static_cast<long double>(x[k]) * residual[k];
+  const double factor = static_cast<double>(work) / solver.twice_energy(x);
+  constexpr double most = 100;  // more: the motions of the factor are not those of K
+  if (!(factor > 0 && factor < most)) return false;
+  for (double& value : x) value *= factor;
+  return true;
+}
+
+double StiffnessSolver::Refinement::imposed_length() const {
+  double sum = 0;
+  for (const ContactDeformation& d : given.imposed) sum += d.normal * d.normal + d.tangential * d.tangential;
+  return std::sqrt(sum);
+}
+
+/// Size of the forces that imposed deformations cause, before they cancel on each disc.
+double StiffnessSolver::Refinement::imposed_force() const {
+  double sum = 0;
+  for (std::size_t c = 0; c < given.imposed.size(); ++c) {
+    const ContactForce f = linear_spring_force(solver.springs_[c], given.imposed[c]);
+    sum += f.normal * f.normal + f.tangential * f.tangential;
+  }
+  return std::sqrt(2 * sum);
+}
+
+}  // namespace equidem

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Iterative refinement of one right-hand side against the contact law.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "equidem/statics/stiffness_solver.hpp"
+
+namespace equidem {
+
+/// K d = f - f_int(u), u := u + d, until the residual no longer falls. The first pass is the solution itself; the
+/// residual comes from the contact law, the motion is kept to twice the digits.
+///
+/// Round-off of a factor in double precision hides the softest motions first, of which a correction then brings only a
+/// part, and always the same one: where corrections shrink slowly, each is scaled to the least energy,
+/// u := u + (d.r / d.K d) d, which brings all of one such motion.
+///
+/// With a factor in single precision, corrections are the steps of preconditioned conjugate gradients, with the
+/// direction of Polak & Ribiere (Notay 2000). In between, the residual follows from r := r - alpha K p; it is replaced
+/// by that of the contact law (van der Vorst & Ye 2000) where it has fallen by so much that the rounding of K p in
+/// double counts, and at the end.
+struct StiffnessSolver::Refinement {
+  const StiffnessSolver& solver;
+  const RightHandSide& given;
+  bool conjugate;  ///< the factor is in single precision
+  double good_enough;
+  Solution solution;
+  bool done = false;
+  bool failed = false;  ///< conjugate gradients do not converge: the factor is too rough
+
+  /// \param residual becomes f - f_int of the start, in which held components move and no other
+  Refinement(const StiffnessSolver& solver, const RightHandSide& given, std::span<double> residual, double good_enough);
+
+  /// Adds the correction x, which a pass with the factor made of the residual, and replaces x by the new residual.
+  void correct(std::span<double> x, int pass);
+
+  /// \throws Error where the solution is worth nothing
+  Solution finish();
+
+ private:
+  void add_correction(std::span<double> x, int pass);
+  void add_conjugate_step(std::span<double> x, int pass);
+  double evaluate(std::span<double> residual) const;
+  bool scale_to_least_energy(std::span<double> x) const;
+  [[nodiscard]] double imposed_length() const;
+  [[nodiscard]] double imposed_force() const;
+
+  PreciseMotion previous_{0};
+  int corrections_ = 0;
+  double last_step_ = 0;            // size of the last correction, m
+  std::vector<double> residual_;    // of conjugate gradients
+  std::vector<double> direction_;   // p
+  std::vector<double> resistance_;  // K p
+  double last_alpha_ = 0;           // u := u + alpha p
+  double squared_residual_ = 0;     // r.M r of the last step
+  double replaced_ = 0;             // size of the residual when the contact law was last evaluated
+};
+
+}  // namespace equidem
