@@ -3,7 +3,6 @@
 /// The parts of the multigrid cycle, each against what it stands for.
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -16,7 +15,6 @@
 #include "equidem/linear/multigrid/envelope_cholesky.hpp"
 #include "equidem/linear/multigrid/grouped_rows.hpp"
 #include "equidem/linear/multigrid/transfer.hpp"
-#include "equidem/linear/multigrid/wavefront.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
 
 #include "support/catch.hpp"
@@ -256,45 +254,4 @@ TEST_CASE("inverse_of_a_block_leaves_out_dependent_components") {
   }
   const Block dependent = inverse_or_zero({4, 2, 0, 2, 1, 0, 0, 0, 0});  // the second row is half of the first
   CHECK(dependent == Block{0.25});
-}
-
-TEST_CASE("a_wavefront_takes_every_step_once_after_the_steps_that_it_reads") {
-  constexpr std::size_t rows = 4000;
-  constexpr int steps = 5;
-  for (const std::size_t farthest : {1, 30}) {  // rows that a row reads on either side
-    for (const int threads : {1, 3}) {
-      const ThreadsFor only(threads);
-      BlockMatrix matrix;
-      matrix.first.push_back(0);
-      for (std::size_t row = 0; row < rows; ++row) matrix.first.push_back(matrix.first.back() + 3);
-      matrix.resize();
-      for (std::size_t row = 0; row < rows; ++row) {
-        matrix.set(matrix.first[row], row, {});
-        matrix.set(matrix.first[row] + 1, std::min(row + farthest, rows - 1), {});
-        matrix.set(matrix.first[row] + 2, row - std::min(row, farthest), {});
-        matrix.set_inverse(row, {});
-      }
-      std::vector<std::int32_t> first_row;
-      for (std::int32_t row = 0; row < static_cast<std::int32_t>(rows); row += 9) first_row.push_back(row);
-      first_row.push_back(rows);
-      const GroupedRows grouped(matrix, first_row);
-      const Wavefront wavefront(first_row, grouped);
-      std::vector<std::atomic<int>> taken(rows);
-      std::atomic<int> wrong = 0;
-      wavefront.run(steps, [&](int step, std::size_t chunk) {
-        const RowRange here = wavefront.rows(chunk);
-        if (taken[here.begin] != step) ++wrong;
-        if (step > 0) {
-          for (const std::size_t other : {here.begin - std::min(here.begin, farthest),
-                                          std::min(here.end - 1 + farthest, rows - 1)}) {
-            if (taken[other] < step || taken[other] > step + 1) ++wrong;
-          }
-        }
-        for (std::size_t row = here.begin; row < here.end; ++row) ++taken[row];
-      });
-      CAPTURE(farthest, threads);
-      CHECK(wrong == 0);
-      CHECK(std::all_of(taken.begin(), taken.end(), [](const auto& t) { return t == steps; }));
-    }
-  }
 }

@@ -117,7 +117,9 @@ void SampleSolver::factorize(const std::vector<std::uint8_t>& held, bool hold_tr
   const std::int64_t free_unknowns = unknowns.unknowns;
   held_motions_ = hold_free_motions(assembly(), graph, springs(), unknowns);
   result.times.add("network", watch.lap());
-  solver_.emplace(assembly(), springs(), std::move(graph), std::move(unknowns), options_.solver, Mechanisms::hold,
+  SolverOptions solver = options_.solver;
+  solver.right_hand_sides = 3;  // mean strains
+  solver_.emplace(assembly(), springs(), std::move(graph), std::move(unknowns), solver, Mechanisms::hold,
                   result.times);
   const FactorReport& report = solver_->factor().report();
   result.motions = zero_energy_modes(assembly(), *solver_, held_motions_,

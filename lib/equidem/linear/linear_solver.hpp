@@ -45,7 +45,7 @@ struct EnumNames<SolverMethod> {
   };
   static constexpr const char* what = "solver method";
   static constexpr Entry list[] = {
-      {SolverMethod::automatic, "auto", "multifrontal", {}},
+      {SolverMethod::automatic, "auto", "multigrid where it is estimated to be faster, else multifrontal", {}},
       {SolverMethod::multifrontal, "multifrontal", "ours: Cholesky where no spring is negative, else L D L^T", {}},
       {SolverMethod::cholmod,
        "cholmod",
@@ -62,6 +62,9 @@ struct EnumNames<SolverMethod> {
   };
 };
 
+/// Iterations after which an iterative method gives up, >= 1.
+inline constexpr int most_iterations = 250;
+
 /// Precision of the multifrontal Cholesky factor. Solutions have that of double precision with either.
 enum class FactorPrecision { automatic, single_precision, double_precision };
 
@@ -70,7 +73,8 @@ struct SolverOptions {
   FactorPrecision precision = FactorPrecision::automatic;  ///< single for large factors, as far as the condition allows
   int max_refinements =
       4;  ///< steps of iterative refinement, >= 0; eight times as many with a factor in single precision
-  double memory_limit = 0;  ///< bytes that factor and factorization may take; 0: what the machine has free
+  double memory_limit = 0;   ///< bytes that factor and factorization may take; 0: what the machine has free
+  int right_hand_sides = 1;  ///< that will be solved for, about: "auto" depends on it
 };
 
 /// \throws Error (bad_input) on a negative number of refinements or a memory limit that is negative or no number

@@ -130,7 +130,8 @@ std::unique_ptr<Factorization> by_back_end(SolverMethod method, const System& sy
               "some kT is negative, and the method needs a positive definite matrix", "Use method = \"auto\"");
   }
   if (back_end.iterative) {
-    return multigrid_solver({system.k.assembly, system.k.graph, system.springs, system.unknowns});
+    return multigrid_solver({system.k.assembly, system.k.graph, system.springs, system.unknowns}, {},
+                            system.max_iterations);
   }
   if (back_end.factorize == nullptr) return multifrontal(system, mechanisms);
   return judged(back_end.factorize(system.k, system.unknowns, *system.symbolic), system, mechanisms);
@@ -182,11 +183,11 @@ void check_memory(const SolveEstimate& estimate, double memory_limit) {
                  memory_limit);
 }
 
-std::unique_ptr<Factorization> factorize(const System& system, const SolverOptions& options, Mechanisms mechanisms,
+std::unique_ptr<Factorization> factorize(const System& system, SolverMethod method, Mechanisms mechanisms,
                                          StageTimes& times) {
   const Stopwatch watch;
-  std::unique_ptr<Factorization> factor = by_back_end(options.method, system, mechanisms);
-  times.add(entry_of(options.method).back_end.iterative ? "grids" : "factorize", watch.seconds());
+  std::unique_ptr<Factorization> factor = by_back_end(method, system, mechanisms);
+  times.add(entry_of(method).back_end.iterative ? "grids" : "factorize", watch.seconds());
   return factor;
 }
 

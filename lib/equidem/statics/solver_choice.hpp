@@ -21,6 +21,7 @@ struct System {
   const ContactSprings& springs;
   const DegreesOfFreedom& unknowns;
   std::shared_ptr<const SymbolicFactor> symbolic;  ///< null for iterative methods
+  int max_iterations = most_iterations;            ///< after which an iterative method gives up
 };
 
 /// \param single whether the factor consists of floats
@@ -37,7 +38,7 @@ void check_memory(const SolveEstimate& estimate, double memory_limit);
 /// factorization that breaks down, or whose softest motion costs no energy, means a mechanism.
 /// \throws Error (bad_input) naming the mechanism; (computation_failed) where the chosen method cannot factorize K, or
 ///         an apparent mechanism is none
-std::unique_ptr<Factorization> factorize(const System& system, const SolverOptions& options, Mechanisms mechanisms,
+std::unique_ptr<Factorization> factorize(const System& system, SolverMethod method, Mechanisms mechanisms,
                                          StageTimes& times);
 
 /// Negative eigenvalues that the rotations bring by themselves: those of the rotational block of K (Haynsworth: the

@@ -8,11 +8,13 @@
 #include <utility>
 
 #include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/error.hpp"
 #include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/rigid_growth.hpp"
 #include "equidem/statics/factor_precision.hpp"
+#include "equidem/statics/method_choice.hpp"
 #include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/refinement.hpp"
 
@@ -28,51 +30,80 @@ StiffnessSolver::StiffnessSolver(const Assembly& assembly, const ContactSprings&
       options_(options),
       mechanisms_(mechanisms),
       on_graph_{matrix_, assembly_, graph_} {
-  Stopwatch watch;
-  const BackEnd& back_end = entry_of(options.method).back_end;
-  if (!back_end.iterative) {
-    DissectionTree tree = dissect(assembly, graph_);
-    times.add("order", watch.lap());
-    symbolic_ = std::make_shared<const SymbolicFactor>(analyze(std::move(tree), graph_, unknowns_.per_disc));
-    times.add("analyze", watch.lap());
-  }
-  const bool single = symbolic_ && tries_single_precision(options, springs, *symbolic_);
-  SolveEstimate size = symbolic_ ? estimate(*symbolic_, unknowns_, springs.any_negative(), single)
-                                 : estimate_iterations(assembly, unknowns_);
-  size.peak_bytes *= back_end.memory_factor;
-  check_memory(size, options.memory_limit);
-  watch.lap();
-  if (!back_end.iterative) {
-    matrix_ = assemble_stiffness(assembly, graph_, springs, unknowns_);
-    times.add("assemble", watch.lap());
-  }
-  if (single) {
-    std::string reason;
-    factor_ = factorize_in_single_precision(system(), reason);
-    times.add("factorize", watch.lap());
-    if (factor_ && !grows_rigid(assembly, graph_, springs, unknowns_.per_disc) && !stands_probe(times)) {
-      reason = "a motion resists much less than others";
-      factor_.reset();
-    }
-    times.add("probe", watch.lap());
-    if (!factor_) factorize_in_double(std::move(reason), times);
+  const MethodChoice choice =
+      options.method == SolverMethod::automatic && options.precision == FactorPrecision::automatic
+          ? choose_method({assembly_, graph_, springs_, unknowns_}, options_)
+          : MethodChoice{.method = options.method, .reason = {}};
+  why_method_ = choice.reason;
+  if (!entry_of(choice.method).back_end.iterative) {
+    eliminate(choice.method, times);
+  } else if (options.method == choice.method) {
+    iterate(choice.method, times);
   } else {
-    factor_ = factorize(system(), options, mechanisms, times);
+    try {
+      iterate(choice.method, times);
+    } catch (const Error& error) {
+      eliminate_instead(error, times);
+    }
   }
-  watch.lap();
+  const Stopwatch watch;
   judge_inertia();
-  times.add("inertia", watch.lap());
+  times.add("inertia", watch.seconds());
+}
+
+void StiffnessSolver::iterate(SolverMethod method, StageTimes& times) const {
+  method_ = method;
+  check_memory(estimate_iterations(assembly_, unknowns_), options_.memory_limit);
+  factor_ = factorize(system(), method, mechanisms_, times);
+}
+
+void StiffnessSolver::eliminate_instead(const Error& error, StageTimes& times) const {
+  if (error.kind() != ErrorKind::computation_failed) throw;
+  why_method_ = error.problem();
+  factor_.reset();
+  eliminate(SolverMethod::multifrontal, times);
+}
+
+void StiffnessSolver::eliminate(SolverMethod method, StageTimes& times) const {
+  method_ = method;
+  Stopwatch watch;
+  DissectionTree tree = dissect(assembly_, graph_);
+  times.add("order", watch.lap());
+  symbolic_ = std::make_shared<const SymbolicFactor>(analyze(std::move(tree), graph_, unknowns_.per_disc));
+  times.add("analyze", watch.lap());
+  const bool single = tries_single_precision(options_, springs_, *symbolic_);
+  SolveEstimate size = estimate(*symbolic_, unknowns_, springs_.any_negative(), single);
+  size.peak_bytes *= entry_of(method).back_end.memory_factor;
+  check_memory(size, options_.memory_limit);
+  watch.lap();
+  matrix_ = assemble_stiffness(assembly_, graph_, springs_, unknowns_);
+  times.add("assemble", watch.lap());
+  if (!single) {
+    factor_ = factorize(system(), method, mechanisms_, times);
+    return;
+  }
+  std::string reason;
+  factor_ = factorize_in_single_precision(system(), reason);
+  times.add("factorize", watch.lap());
+  if (factor_ && !grows_rigid(assembly_, graph_, springs_, unknowns_.per_disc) && !stands_probe(times)) {
+    reason = "a motion resists much less than others";
+    factor_.reset();
+  }
+  times.add("probe", watch.lap());
+  if (!factor_) factorize_in_double(std::move(reason), times);
 }
 
 System StiffnessSolver::system() const {
-  return {on_graph_, springs_, unknowns_, symbolic_};
+  constexpr int given_up = 60;  // by "auto": elimination takes no longer
+  return {on_graph_, springs_, unknowns_, symbolic_,
+          options_.method == SolverMethod::automatic ? given_up : most_iterations};
 }
 
 void StiffnessSolver::factorize_in_double(std::string reason, StageTimes& times) const {
   why_double_ = std::move(reason);
   factor_.reset();
   check_memory(estimate(*symbolic_, unknowns_, springs_.any_negative()), options_.memory_limit);
-  factor_ = factorize(system(), options_, mechanisms_, times);
+  factor_ = factorize(system(), method_, mechanisms_, times);
 }
 
 bool StiffnessSolver::stands_probe(StageTimes& times) const {
@@ -88,8 +119,10 @@ bool StiffnessSolver::stands_probe(StageTimes& times) const {
 }
 
 std::string StiffnessSolver::solver_name() const {
-  const std::string& name = factor_->report().name;
-  return why_double_.empty() ? name : fmt::format("{} in double precision, since {}", name, why_double_);
+  std::string name = factor_->report().name;
+  if (!why_double_.empty()) name += " in double precision, since " + why_double_;
+  if (!why_method_.empty()) name += fmt::format(" ({})", why_method_);
+  return name;
 }
 
 void StiffnessSolver::judge_inertia() {
@@ -155,12 +188,19 @@ bool StiffnessSolver::refine(std::span<const RightHandSide> cases, double good_e
 }
 
 std::vector<Solution> StiffnessSolver::solve(std::span<const RightHandSide> cases, StageTimes& times) const {
-  const double good_enough = entry_of(options_.method).back_end.good_enough;
+  const auto attempt = [&](std::vector<Solution>& solutions) {
+    return refine(cases, entry_of(method_).back_end.good_enough, &solutions, times);
+  };
   std::vector<Solution> solutions;
-  if (!refine(cases, good_enough, &solutions, times)) {
+  try {
+    if (attempt(solutions)) return solutions;
     factorize_in_double("refinement did not converge", times);
-    refine(cases, good_enough, &solutions, times);
+  } catch (const Error& error) {
+    if (method_ == options_.method || !entry_of(method_).back_end.iterative) throw;
+    eliminate_instead(error, times);
   }
+  solutions.clear();
+  attempt(solutions);
   return solutions;
 }
 
@@ -194,9 +234,7 @@ double StiffnessSolver::scaled_inverse_norm(std::span<const double> start) const
 }
 
 SoftestMotion StiffnessSolver::iterate_inverse(std::span<const double> start, std::vector<double> scale) const {
-  const auto scale_of = [&](std::size_t k) {
-    return unknowns_.held[k] != 0 ? 0.0 : scale.empty() ? 1.0 : scale[k];
-  };
+  const auto scale_of = [&](std::size_t k) { return unknowns_.held[k] != 0 ? 0.0 : scale.empty() ? 1.0 : scale[k]; };
   std::vector<double> x(start.begin(), start.end());
   x.resize(unknowns_.held.size());
   const auto multiply_by_scale = [&] {

@@ -11,6 +11,7 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/frame.hpp"
+#include "equidem/core/error.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/factorization.hpp"
@@ -95,7 +96,8 @@ class StiffnessSolver {
   [[nodiscard]] const ContactGraph& graph() const { return graph_; }
   [[nodiscard]] const DegreesOfFreedom& unknowns() const { return unknowns_; }
   [[nodiscard]] const Factorization& factor() const { return *factor_; }
-  /// Name of the factorization, with the reason for double precision where single precision did not serve.
+  /// Name of the method, with the reason for double precision where single precision did not serve, and for the choice
+  /// of "auto" between elimination and iterations.
   [[nodiscard]] std::string solver_name() const;
   /// Negative eigenvalues beyond those that rotations bring by themselves where kT < 0; -1: not known.
   [[nodiscard]] std::int64_t unstable_modes() const { return unstable_modes_; }
@@ -106,13 +108,17 @@ class StiffnessSolver {
   /// \param solutions may be null
   bool refine(std::span<const RightHandSide> cases, double good_enough, std::vector<Solution>* solutions,
               StageTimes& times) const;
+  void iterate(SolverMethod method, StageTimes& times) const;
+  void eliminate(SolverMethod method, StageTimes& times) const;
+  /// Where iterations that "auto" chose failed. \throws the error itself where it is no failed computation
+  void eliminate_instead(const Error& error, StageTimes& times) const;
   void factorize_in_double(std::string reason, StageTimes& times) const;
   /// Whether the factor in single precision resists a rough load, which works on every motion, as K does.
   [[nodiscard]] bool stands_probe(StageTimes& times) const;
   [[nodiscard]] System system() const;
   void judge_inertia();
-  /// Inverse iteration for |S K^-1 S|, S = diag(scale), the unit matrix where `scale` is empty: the motion is S^-1 x for
-  /// the unit vector x that it ends with.
+  /// Inverse iteration for |S K^-1 S|, S = diag(scale), the unit matrix where `scale` is empty: the motion is S^-1 x
+  /// for the unit vector x that it ends with.
   [[nodiscard]] SoftestMotion iterate_inverse(std::span<const double> start, std::vector<double> scale) const;
   void evaluate_residual(const RightHandSide& given, const PreciseMotion& motion, std::span<double> residual) const;
   /// sum_j |K_ij| of every row, Pa.
@@ -126,9 +132,11 @@ class StiffnessSolver {
   DegreesOfFreedom unknowns_;
   SolverOptions options_;
   Mechanisms mechanisms_;
-  StiffnessMatrix matrix_;
+  mutable StiffnessMatrix matrix_;  // empty where iterations do without it
   MatrixOnGraph on_graph_;
-  std::shared_ptr<const SymbolicFactor> symbolic_;
+  mutable std::shared_ptr<const SymbolicFactor> symbolic_;
+  mutable SolverMethod method_ = SolverMethod::multifrontal;
+  mutable std::string why_method_;  // where "auto" weighed the methods
   mutable std::unique_ptr<Factorization> factor_;
   mutable std::string why_double_;  // where single precision was tried and did not serve
   std::int64_t unstable_modes_ = 0;

@@ -66,6 +66,7 @@ bool solve_once(const CommonOptions& options, const Problem& problem, const std:
                 BlockSearch* search) {
   EquilibriumOptions solver_options = problem.options();
   solver_options.error_bound = true;
+  solver_options.solver.right_hand_sides = static_cast<int>(problem.load_cases.size());
   std::vector<SolvedCase> results;
   Effects effects;
   {  // the factorization is not needed beyond the load cases

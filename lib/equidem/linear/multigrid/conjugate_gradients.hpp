@@ -9,6 +9,7 @@
 #include <span>
 
 #include "equidem/core/progress.hpp"
+#include "equidem/linear/linear_solver.hpp"
 
 namespace equidem::multigrid {
 
@@ -16,8 +17,8 @@ namespace equidem::multigrid {
 using Product = std::function<void(std::span<const double> x, std::span<double> y)>;
 
 struct IterationOptions {
-  double tolerance = 3e-7;   ///< of |r| over |b|, and of the energy norm of the error as r.M r shows it
-  int max_iterations = 250;  ///< >= 1
+  double tolerance = 3e-7;               ///< of |r| over |b|, and of the energy norm of the error as r.M r shows it
+  int max_iterations = most_iterations;  ///< >= 1
 };
 
 enum class IterationOutcome {

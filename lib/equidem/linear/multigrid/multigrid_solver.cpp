@@ -125,8 +125,10 @@ class CycleVectors {
 
 class MultigridSolver final : public Factorization {
  public:
-  MultigridSolver(const SpringNetwork& network, const multigrid::CycleOptions& options)
-      : unknowns_(network.unknowns), cycle_(std::make_unique<multigrid::Cycle>(network, options)) {
+  MultigridSolver(const SpringNetwork& network, const multigrid::CycleOptions& options, int max_iterations)
+      : unknowns_(network.unknowns),
+        max_iterations_(max_iterations),
+        cycle_(std::make_unique<multigrid::Cycle>(network, options)) {
     report_.name = "conjugate gradients with multigrid on " + counted(cycle_->grids(), "grid");
     report_.bytes = cycle_->bytes();
     if (!grows_rigid(network.assembly, network.graph, network.springs, network.unknowns.per_disc)) probe();
@@ -135,10 +137,10 @@ class MultigridSolver final : public Factorization {
   void solve(std::span<double> x, int right_hand_sides) const override {
     const std::size_t n = unknowns_.held.size();
     for (std::size_t k = 0; k < static_cast<std::size_t>(right_hand_sides); ++k) {
-      report_.iterations += solve_one(x.subspan(k * n, n), {});
+      report_.iterations += solve_one(x.subspan(k * n, n), multigrid::IterationOptions{}.tolerance);
     }
   }
-  void solve_roughly(std::span<double> x) const override { static_cast<void>(solve_one(x, {.tolerance = 0.03})); }
+  void solve_roughly(std::span<double> x) const override { static_cast<void>(solve_one(x, 0.03)); }
   [[nodiscard]] const FactorReport& report() const override { return report_; }
 
  private:
@@ -149,12 +151,12 @@ class MultigridSolver final : public Factorization {
     Random random(1);
     std::vector<double> load(unknowns_.held.size());
     for (double& f : load) f = random.uniform() - 0.5;
-    static_cast<void>(solve_one(load, {.tolerance = tolerance}));
+    static_cast<void>(solve_one(load, tolerance));
   }
 
-  int solve_one(std::span<double> x, const multigrid::IterationOptions& options) const {
+  int solve_one(std::span<double> x, double tolerance) const {
     CycleVectors vectors(*cycle_, unknowns_, x);
-    const auto report = multigrid::iterate(vectors, options);
+    const auto report = multigrid::iterate(vectors, {.tolerance = tolerance, .max_iterations = max_iterations_});
     switch (report.outcome) {
       case multigrid::IterationOutcome::converged:
         vectors.hand_out(x);
@@ -172,15 +174,17 @@ class MultigridSolver final : public Factorization {
   }
 
   const DegreesOfFreedom& unknowns_;
+  int max_iterations_;
   std::unique_ptr<multigrid::Cycle> cycle_;
   mutable FactorReport report_;
 };
 
 }  // namespace
 
-std::unique_ptr<Factorization> multigrid_solver(const SpringNetwork& network, const multigrid::CycleOptions& options) {
+std::unique_ptr<Factorization> multigrid_solver(const SpringNetwork& network, const multigrid::CycleOptions& options,
+                                                int max_iterations) {
   assert(!network.springs.any_negative());
-  return std::make_unique<MultigridSolver>(network, options);
+  return std::make_unique<MultigridSolver>(network, options, max_iterations);
 }
 
 double bytes_of_multigrid(double discs, double contacts) {

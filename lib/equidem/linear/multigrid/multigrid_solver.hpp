@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "equidem/linear/factorization.hpp"
+#include "equidem/linear/linear_solver.hpp"
 #include "equidem/linear/multigrid/cycle.hpp"
 #include "equidem/linear/spring_network.hpp"
 
@@ -18,7 +19,8 @@ namespace equidem {
 ///         (grows_rigid) and iterations on a rough load, or later those of a solve, do not converge or meet a motion
 ///         without stiffness
 std::unique_ptr<Factorization> multigrid_solver(const SpringNetwork& network,
-                                                const multigrid::CycleOptions& options = {});
+                                                const multigrid::CycleOptions& options = {},
+                                                int max_iterations = most_iterations);
 
 /// Estimate of the bytes that it takes beside the assembly.
 double bytes_of_multigrid(double discs, double contacts);
