@@ -121,6 +121,8 @@ class Ensemble(ProgramTest):
         result = parse_json(self.run_small("--dry-run", "--json", "-").stdout)
         self.assertEqual(result["status"], "dry_run")
         self.assertEqual(result["unknowns"], [60, 180])
+        self.assertGreater(result["estimated_seconds"], 0)
+        self.assertIn("from one cell of 20, 60 discs", result["report"])
 
 
 class PackedCells(ProgramTest):

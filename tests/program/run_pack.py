@@ -224,7 +224,8 @@ class CommandLine(PackTest):
     def test_a_dry_run_tells_the_time_of_every_method(self):
         for case, options in ((JAMMED, ()), (SOIL, ("--set", "packing.grains=100")),
                               (JAMMED, ("--set", "packing.method=rejection", "--set", "packing.solid_fraction=0.4",
-                                        "--set", "packing.box=none"))):
+                                        "--set", "packing.box=none")),
+                              (CASES / "sandstone" / "rock.toml", ())):
             with self.subTest(options=options):
                 size = parse_json(self.check_done(equidem("pack", case, *options, "--dry-run", "--json", "-")).stdout)
                 self.assertGreater(size["estimated_seconds"], 0)

@@ -313,6 +313,15 @@ frame_interval = 1e-30
         first = self.run_case(CORNER, "--out", out)
         self.assertEqual(self.run_case(out / "case.toml")["energy"], first["energy"])
 
+    def test_a_dry_run_of_a_relaxation_tells_its_steps_within_a_factor_of_two(self):
+        for options in ((), ("--set", "run.motion=finite"), ("--set", "assembly.rows=9", "--set", "run.until_rest=1e-6")):
+            with self.subTest(options=options):
+                expected = self.run_case(REST, "--dry-run", *options)
+                steps = self.run_case(REST, *options)["steps"]
+                self.assertGreater(expected["estimated_seconds"], 0)
+                self.assertLess(0.5, expected["estimated_steps"] / steps)
+                self.assertLess(expected["estimated_steps"] / steps, 2)
+
     def test_dry_run_states_the_work_and_makes_no_file(self):
         out = self.folder / "out"
         size = self.run_case(SHAKE, "--dry-run", "--out", out)

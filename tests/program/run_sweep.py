@@ -159,6 +159,7 @@ class Sweep(ProgramTest):
                             "--dry-run")
         self.assertEqual(result["number_of_points"], 6)
         self.assertIn("6 points of ratio, assembly.rows", result["report"])
+        self.assertGreater(result["estimated_seconds_of_sweep"], result["estimated_seconds"])
         self.assertGreater(result["unknowns"], 100)
 
     def test_bad_input_is_one_error(self):

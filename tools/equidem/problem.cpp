@@ -15,6 +15,7 @@
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/material/spring_relations.hpp"
 #include "equidem/statics/solve_time.hpp"
+#include "equidem/statics/solver_choice.hpp"
 
 #include "left_out.hpp"
 
@@ -245,17 +246,30 @@ Results problem_results(const Problem& problem, const Effects& effects, Assembly
 
 namespace {
 
+/// Says whether the computation would be refused. \param memory_limit bytes; 0: what is available
+void add_memory_check(Results& results, const SolveEstimate& estimate, double memory_limit) {
+  try {
+    check_memory(estimate, memory_limit);
+    results.set("refusal", nullptr);
+  } catch (const Error& error) {
+    results.set("refusal", error.what()).line("", fmt::format("The computation would be refused: {}", error.what()));
+  }
+}
+
 /// \param before s of what the dry run has done already: the assembly
-Results estimate_results(const SolveEstimate& e, double solutions, double before) {
+/// \param memory_limit bytes; 0: what is available
+Results estimate_results(const SolveEstimate& e, double solutions, double before, double memory_limit) {
   Results results;
   results.line("unknowns").add("unknowns", "", e.unknowns, "", {Shown::count});
   results.line("memory").add("peak_bytes", "", e.peak_bytes, "at the peak", {Shown::bytes});
   if (e.factor_nonzeros == 0 && e.unknowns > 0) {
+    add_memory_check(results, e, memory_limit);
     results.line("time", "not predicted: the number of iterations is not known beforehand");
     return results.block("nothing was solved (--dry-run)\n");
   }
   results.add("factor_bytes", "", e.factor_bytes, "of it for the factor", {Shown::bytes})
       .add("factor_nonzeros", "", e.factor_nonzeros, "entries in the factor", {.digits = 3});
+  add_memory_check(results, e, memory_limit);
   results.line("work").add("operations", "", e.operations, "multiplications and additions to factorize", {.digits = 3});
   const double seconds = before + solutions * estimate_seconds(e, measure_solve_rates(), thread_count());
   results.line("time").add("estimated_seconds", "about", seconds, "s with these threads, mostly within a factor of two",
@@ -271,7 +285,7 @@ Results dry_run_results(const Problem& problem, double solutions, const Results&
       estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options());
   return problem_results(problem, effects, keys)
       .append(further)
-      .append(estimate_results(estimate, solutions, problem.times.total()));
+      .append(estimate_results(estimate, solutions, problem.times.total(), problem.resolved.solver.memory_limit));
 }
 
 Results moduli_results(const EffectiveModuli& m, const std::string& name, bool of_solid) {

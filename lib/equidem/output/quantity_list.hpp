@@ -149,6 +149,8 @@ inline constexpr Quantity quantities[] = {
     {"time_step", "s", "time step"},
     {"time_step_ratio", "", "time step over the critical one"},
     {"estimated_seconds", "s", "estimated wall-clock time", true},
+    {"number_of_settings", "", "number of settings of a study"},
+    {"estimated_seconds_of_sweep", "s", "estimated wall-clock time of all points", true},
     {"frame_bytes", "B", "size of a frame, about"},
     {"all_frames_bytes", "B", "size of all frames, about"},
     {"particle_steps_per_second", "1/s", "steps of one body per second of wall-clock time", true},

@@ -2,6 +2,7 @@
 #include "homogenize/ensemble.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
 
 #include "homogenize/ensemble_report.hpp"
 #include "homogenize/ensemble_table.hpp"
@@ -96,6 +98,44 @@ std::string describe_plan(const EnsemblePlan& plan, double confidence) {
                      plan.first_seed + static_cast<std::uint64_t>(plan.samples) - 1, 100 * confidence);
 }
 
+struct EnsembleTime {
+  double seconds = 0;
+  std::vector<std::int64_t> measured = {};  ///< discs of the cells that were made for it
+};
+
+/// From a cell of each size, small ones first, until they have taken a second; the time of larger ones grows with a
+/// power of the discs.
+EnsembleTime time_of(const Case& resolved, const EnsemblePlan& plan) {
+  constexpr double enough = 1;   // s
+  constexpr double power = 1.3;  // of the discs; measured between 1.1 and 1.4 of triangulations and packings that grow
+  const int threads = thread_count();
+  EnsembleTime result;
+  double spent = 0, each = 0;
+  std::int64_t before = 0;
+  for (const std::int64_t discs : plan.discs) {
+    const int at_once = cells_at_once(discs);
+    if (spent < enough) {
+      set_thread_count(at_once > 1 ? 1 : threads);
+      const Stopwatch watch;
+      try {
+        static_cast<void>(homogenize_cell(resolved, discs, plan.first_seed));
+      } catch (const Error& error) {
+        set_thread_count(threads);
+        if (error.kind() != ErrorKind::computation_failed) throw;
+      }
+      set_thread_count(threads);
+      each = watch.seconds();
+      spent += each;
+      result.measured.push_back(discs);
+    } else {
+      each *= std::pow(static_cast<double>(discs) / static_cast<double>(before), power);
+    }
+    before = discs;
+    result.seconds += each * std::ceil(static_cast<double>(plan.samples) / at_once);
+  }
+  return result;
+}
+
 int dry_run(const CommonOptions& options, const Case& resolved, const EnsemblePlan& plan, Results results) {
   const BuiltSprings springs = build_springs(resolved, first_cell(resolved, plan.discs.front(), plan.first_seed));
   const int unknowns_per_disc = derive_effects(springs.springs, resolved.rotation).unknowns_per_disc();
@@ -104,7 +144,11 @@ int dry_run(const CommonOptions& options, const Case& resolved, const EnsemblePl
     unknowns.push_back(discs * unknowns_per_disc);
     results.line("unknowns", fmt::format("about {} in each cell of {} discs", unknowns.back(), discs));
   }
-  results.block("nothing was solved (--dry-run)\n");
+  const EnsembleTime time = time_of(resolved, plan);
+  results.line("time")
+      .add("estimated_seconds", "about", time.seconds, "s with these threads", {.digits = 2})
+      .note(fmt::format(", from one cell of {} discs", fmt::join(time.measured, ", ")));
+  results.block("the other cells were not solved (--dry-run)\n");
   results.set("samples", plan.samples).set("discs", plan.discs).set("unknowns", unknowns);
   deliver(options, "dry_run", results, {});
   return 0;

@@ -12,7 +12,6 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/dynamics/relaxation.hpp"
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/checkpoint.hpp"
 #include "equidem/output/files/vtk.hpp"
@@ -261,10 +260,22 @@ void BondedRun::write_files(const std::filesystem::path& folder, const RunResult
   write_energy_plot(folder, "energy", problem_.resolved.title, Body::disc, result.record.energies, curves, overwrite);
 }
 
+RelaxationOptions BondedRun::relaxation_options() const {
+  return {.motion = run().motion, .rotation = problem_.resolved.rotation, .tolerance = *run().until_rest};
+}
+
+Results BondedRun::estimate_of_relaxation() const {
+  const RelaxationEstimate estimate = estimate_relaxation(scene_, relaxation_options());
+  return Results()
+      .line("steps")
+      .add("estimated_steps", "about", static_cast<std::int64_t>(estimate.steps), "", {Shown::count})
+      .note(" of conjugate gradients, several times as many where bodies hang on few contacts; ")
+      .add("estimated_seconds", "about", estimate.seconds, "s", {.digits = 2});
+}
+
 Results BondedRun::relax(StageTimes& times) {
   Stopwatch watch;
-  Relaxation rest = equidem::relax(
-      scene_, {.motion = run().motion, .rotation = problem_.resolved.rotation, .tolerance = *run().until_rest});
+  Relaxation rest = equidem::relax(scene_, relaxation_options());
   times.add("relaxation", watch.lap());
   at_rest_ = std::move(rest.motions);
   return scene()

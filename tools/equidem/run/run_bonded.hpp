@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "equidem/dynamics/relaxation.hpp"
 #include "equidem/dynamics/simulation.hpp"
 #include "equidem/dynamics/time_step.hpp"
 #include "equidem/dynamics/watch.hpp"
@@ -57,12 +58,14 @@ class BondedRun final : public RunJob {
   [[nodiscard]] Results advice(const Balance& balance) const override;
   void write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const override;
   [[nodiscard]] bool goes_to_rest() const override { return run().until_rest.has_value(); }
+  [[nodiscard]] Results estimate_of_relaxation() const override;
   Results relax(StageTimes& times) override;
 
  private:
   /// The case text in a checkpoint: all data that affect the motion, including files that it names, without how long it
   /// lasts and what is written.
   [[nodiscard]] std::string fingerprint() const;
+  [[nodiscard]] RelaxationOptions relaxation_options() const;
   void write_state(const std::filesystem::path& folder, const std::vector<DiscMotion>& motions, bool overwrite) const;
 
   Problem problem_;

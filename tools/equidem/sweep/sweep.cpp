@@ -2,8 +2,10 @@
 /// \file
 /// equidem sweep: a verb over values of keys and seeds.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -13,11 +15,13 @@
 #include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 
 #include "command.hpp"
 #include "option_checks.hpp"
+#include "problem.hpp"
 #include "sweep/sweep_curves.hpp"
 #include "sweep/sweep_run.hpp"
 #include "verbs.hpp"
@@ -136,18 +140,68 @@ Results results_of_keys(const SweepPlan& plan) {
   return Results().set("verb", plan.verb).set("key", plan.keys.front().name).set("keys", keys);
 }
 
+/// The number of this name among results; none where it is not there.
+std::optional<double> number_in(const Results& results, const std::string& key) {
+  for (const Result& part : results.parts())
+    if (const auto* number = std::get_if<double>(&part.value.value); number != nullptr && part.key == key)
+      return *number;
+  return std::nullopt;
+}
+
+struct SweepTime {
+  double seconds = 0;
+  std::size_t points = 0;  ///< of which it was estimated
+  std::size_t failed = 0;  ///< of them
+  std::string failure;     ///< the first reason
+};
+
+/// From dry runs of some points on one thread each, as most points of a sweep are computed.
+SweepTime time_of(const Sweep& sweep) {
+  constexpr std::size_t most = 6;
+  constexpr double enough = 3;  // s
+  const std::size_t size = sweep.plan.size(), asked = std::min(size, most);
+  const int threads = thread_count();
+  SweepTime result;
+  const Stopwatch watch;
+  double sum = 0;
+  for (std::size_t k = 0; k < asked && (k == 0 || watch.seconds() < enough); ++k) {
+    const std::size_t point = asked == 1 ? 0 : k * (size - 1) / (asked - 1);
+    try {
+      const Delivery delivery = sweep.run_of(sweep.plan.values_of(point), {"--dry-run", "--threads", "1"})();
+      if (const auto seconds = number_in(delivery.results, "estimated_seconds")) {
+        sum += *seconds;
+        ++result.points;
+      }
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::interrupted) throw;
+      if (result.failed++ == 0) result.failure = error.what();
+    }
+  }
+  set_thread_count(threads);
+  const double at_once = std::min(static_cast<double>(threads), static_cast<double>(size));
+  if (result.points > 0)
+    result.seconds = sum / static_cast<double>(result.points) * std::ceil(static_cast<double>(size) / at_once);
+  return result;
+}
+
 int dry_run(const Sweep& sweep) {
   const SweepPlan& plan = sweep.plan;
-  const auto points = static_cast<double>(plan.size());
-  const Delivery first = sweep.run_of(plan.values_of(0), {"--dry-run"})();
+  const SharedAssemblies shared;
   Results results = results_of_keys(plan);
   results.set("number_of_points", plan.size(), "", "number of points");
-  results.block(fmt::format("{} of {}, each about as large as this one:\n\n",
-                            counted(static_cast<long long>(plan.size()), "point"), plan.names()));
-  results.append(first.results);
-  for (const Result& part : first.results.parts())
-    if (const auto* seconds = std::get_if<double>(&part.value.value); seconds && part.key == "estimated_seconds")
-      results.line("sweep").add("", "about", points * *seconds / thread_count(), "s for all points", {.digits = 2});
+  results.block(
+      fmt::format("{} of {}; the first one:\n\n", counted(static_cast<long long>(plan.size()), "point"), plan.names()));
+  const Delivery first = sweep.run_of(plan.values_of(0), {"--dry-run"})();
+  results.append(first.results).line("sweep");
+  const SweepTime time = time_of(sweep);
+  if (time.points > 0) {
+    results.add("estimated_seconds_of_sweep", "about", time.seconds, "s for all points", {.digits = 2})
+        .note(fmt::format(", from {} of them", time.points));
+  } else {
+    results.note("the time of its points is not predicted");
+  }
+  if (time.failed > 0)
+    results.note(fmt::format("; {} of those asked cannot be computed: {}", time.failed, time.failure));
   deliver(sweep.options.common, "dry_run", results, first.times);
   return 0;
 }
