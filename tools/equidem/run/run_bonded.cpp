@@ -12,6 +12,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/checkpoint.hpp"
 #include "equidem/output/files/vtk.hpp"
@@ -19,6 +20,7 @@
 
 #include "run/run_case_text.hpp"
 #include "run/run_results.hpp"
+#include "solve/solve_results.hpp"
 
 namespace equidem {
 namespace {
@@ -278,11 +280,37 @@ Results BondedRun::relax(StageTimes& times) {
   Relaxation rest = equidem::relax(scene_, relaxation_options());
   times.add("relaxation", watch.lap());
   at_rest_ = std::move(rest.motions);
-  return scene()
-      .line("rest", rest.report())
-      .set("steps", rest.steps)
-      .set("force_evaluations", rest.evaluations)
-      .set("relative_unbalanced_force", rest.relative_unbalanced);
+  Results out = scene()
+                    .line("rest", rest.report())
+                    .set("steps", rest.steps)
+                    .set("force_evaluations", rest.evaluations)
+                    .set("relative_unbalanced_force", rest.relative_unbalanced);
+  if (const std::optional<TensionTest>& test = problem_.resolved.test) {
+    problem_.tension = tension_setup(problem_.assembly, *test);
+    Equilibrium reached;
+    reached.motions = at_rest_;
+    out.append(tension_results(
+        problem_, evaluate_tension(problem_.assembly, problem_.springs.springs, *test, *problem_.tension, reached)));
+  }
+  return out;
+}
+
+std::optional<WaveStiffness> BondedRun::stiffness_of_waves() const {
+  constexpr std::size_t most_discs = 200000;  // more take longer to homogenize than most runs
+  const Assembly& assembly = problem_.assembly;
+  if (waves_.empty() || !assembly.periodic() || assembly.size() > most_discs || simulation_.effects().restrained)
+    return std::nullopt;
+  double mass = 0;
+  for (const Inertia& inertia : scene_.inertia) mass += inertia.mass;
+  try {
+    const EffectiveStiffness effective =
+        effective_stiffness(assembly, problem_.springs.springs,
+                            {.rotation = problem_.resolved.rotation, .solver = problem_.resolved.solver});
+    return WaveStiffness{effective.stiffness, mass / assembly.area()};
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    return std::nullopt;
+  }
 }
 
 }  // namespace equidem

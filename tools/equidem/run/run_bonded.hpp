@@ -54,7 +54,7 @@ class BondedRun final : public RunJob {
   [[nodiscard]] StageTimes times() const override { return problem_.times; }
   [[nodiscard]] Results scene() const override;
   [[nodiscard]] Results step() const override;
-  [[nodiscard]] Results events() const override { return waves_.results(); }
+  [[nodiscard]] Results events() const override { return waves_.results(stiffness_of_waves()); }
   [[nodiscard]] Results advice(const Balance& balance) const override;
   void write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const override;
   [[nodiscard]] bool goes_to_rest() const override { return run().until_rest.has_value(); }
@@ -66,6 +66,8 @@ class BondedRun final : public RunJob {
   /// lasts and what is written.
   [[nodiscard]] std::string fingerprint() const;
   [[nodiscard]] RelaxationOptions relaxation_options() const;
+  /// None without waves, and where the cell has no stiffness or is too large to be homogenized beside a run.
+  [[nodiscard]] std::optional<WaveStiffness> stiffness_of_waves() const;
   void write_state(const std::filesystem::path& folder, const std::vector<DiscMotion>& motions, bool overwrite) const;
 
   Problem problem_;

@@ -12,4 +12,8 @@ namespace equidem {
 /// Assembly, solver, and of each load case residual, energy, stress and, of the tension test, the moduli beside theory.
 Results solve_results(const Problem& problem, const Effects& effects, std::span<const SolvedCase> results);
 
+/// Strains, Poisson's ratio and Young's modulus of a tension test beside the theory of the lattice.
+/// \param problem with its tension test
+Results tension_results(const Problem& problem, const TensionResult& result);
+
 }  // namespace equidem

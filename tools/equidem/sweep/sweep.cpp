@@ -6,7 +6,10 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -15,6 +18,7 @@
 #include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/names.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
@@ -60,10 +64,20 @@ CaseDocument read_base(const std::string& verb, const CommonOptions& options) {
   return read_case(options);
 }
 
+/// A key that no case has but whose last part is nearly "ratio".
+void refuse_misspelt_ratio(const SweptKey& key) {
+  const std::string last = key.name.substr(key.name.rfind('.') + 1);
+  const std::vector<std::string> ratio{"ratio"};
+  if (unit_of_case_key(key.name) || !nearest(last, ratio)) return;
+  bad_input_at("--key", fmt::format("there is no key '{}'", key.name), "kT/kN at the kN of the case has the name ratio",
+               "Write --key ratio");
+}
+
 /// The keys exist, and the case has a seed where seeds are given.
 void check_keys(const SweepOptions& options, const SweepPlan& plan, const CaseDocument& base) {
   for (const SweptKey& key : plan.keys) {
     CommonOptions first = options.common;
+    if (key.name != "ratio") refuse_misspelt_ratio(key);
     if (key.name == SweepPlan::seed) {
       first.seed = std::stoll(key.values.front());
     } else if (key.name == "ratio") {
@@ -206,12 +220,48 @@ int dry_run(const Sweep& sweep) {
   return 0;
 }
 
+/// Probes of a run that measure a standing wave.
+std::vector<std::string> names_of_waves(const TomlValue& document) {
+  std::vector<std::string> names;
+  const TomlValue* const probes = document.find("probe");
+  if (probes == nullptr || !probes->is_array()) return names;
+  for (const TomlValue& probe : probes->items)
+    if (const TomlValue* const name = probe.find("name"); name != nullptr && probe.find("wavelength") != nullptr)
+      names.push_back(name->text);
+  return names;
+}
+
+/// The number of points that failed, and why, below the table; points with the same reason together.
+void add_failures(Results& results, std::span<const SweepPoint> points, std::size_t failed) {
+  constexpr std::size_t most = 5, most_numbers = 10;
+  std::vector<std::pair<std::string, std::vector<std::string>>> reasons;
+  for (const SweepPoint& point : points) {
+    if (!point.failed()) continue;
+    auto known = std::ranges::find(reasons, point.message, &std::pair<std::string, std::vector<std::string>>::first);
+    if (known == reasons.end()) known = reasons.insert(reasons.end(), {point.message, {}});
+    known->second.push_back(fmt::format("{}", point.number));
+  }
+  results.line("failed",
+               fmt::format("{}; {} done", counted(static_cast<long long>(failed), "point"), points.size() - failed));
+  for (std::size_t k = 0; k < std::min(reasons.size(), most); ++k) {
+    auto& [reason, numbers] = reasons[k];
+    const bool one = numbers.size() == 1, many = numbers.size() > most_numbers;
+    if (many) numbers.resize(most_numbers);
+    results.line("",
+                 fmt::format("{} {}{}: {}", one ? "point" : "points", joined(numbers), many ? ", ..." : "", reason));
+  }
+  if (reasons.size() > most)
+    results.line(
+        "", fmt::format("{} other reasons are in the column message of {}", reasons.size() - most, Sweep::table_name));
+}
+
 int sweep(const SweepOptions& options) {
   check_verb(options.verb);
   if (options.common.seed && !options.seeds.empty())
     bad_input("--seed and --seeds exclude each other", "both say which seed a point has", "Leave one of them out");
-  const Sweep sweep{options, sweep_plan(options.verb, options.keys, options.seeds, options.side_by_side),
-                    read_base(options.verb, options.common)};
+  Sweep sweep{options, sweep_plan(options.verb, options.keys, options.seeds, options.side_by_side),
+              read_base(options.verb, options.common)};
+  sweep.plan.waves = names_of_waves(sweep.base.document);
   check_keys(options, sweep.plan, sweep.base);
   check_outputs(sweep);
   if (options.common.dry_run) return dry_run(sweep);
@@ -228,9 +278,7 @@ int sweep(const SweepOptions& options) {
   if (!sweep.base.title.empty()) results.block(sweep.base.title + "\n\n");
   results.append(results_of_keys(sweep.plan)).set("complete", !run.stopped());
   results.table("points", sweep_rows(sweep.plan, points));
-  if (failed > 0)
-    results.block(
-        fmt::format("{} failed, {} done\n", counted(static_cast<long long>(failed), "point"), points.size() - failed));
+  if (failed > 0) add_failures(results, points, failed);
   if (run.stopped())
     results.block(fmt::format("INCOMPLETE: stopped after {} of {} points\n", run.done(), sweep.plan.size()));
   StageTimes times;
@@ -332,7 +380,7 @@ Run declare_sweep(CLI::App& command) {
       "                --values 11,21\n"
       "The table sweep.csv has a row for each point, the keys and all numbers of the verb's result, units in the "
       "names.\n"
-      "A point that fails stays in the table with its reason.\n"
+      "A point that fails stays in the table with its reason, and the exit code is 0; it is 1 where all fail.\n"
       "Ctrl-C keeps what is done; --resume continues.");
   return [options] { return sweep(*options); };
 }
