@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "equidem/assembly/touching.hpp"
+#include "equidem/assembly/voids.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
@@ -204,6 +205,18 @@ std::optional<TensionTheory> tension_theory(const Problem& problem) {
   return lattice->tension(problem.springs.constants->ratio());
 }
 
+void add_largest_void(Results& results, const Assembly& assembly) {
+  const std::optional<EmptyCircle> found = largest_void(assembly);
+  if (!found) return;
+  const double relative = found->radius / assembly.mean_radius();
+  results.line("largest void")
+      .add("largest_void/radius", "radius", found->radius, "m", {.digits = 3})
+      .add("largest_void/over_mean_radius", "", relative, "of the mean radius", {.digits = 3})
+      .note(fmt::format(", at ({:.4g}, {:.4g}) m", found->centre.x, found->centre.y));
+  results.set("largest_void/centre", found->centre);
+  if (relative > 1) results.line("", "a hole that would hold another disc: moduli and speeds of such packings scatter");
+}
+
 ResultValue known(std::int64_t count) {
   return count < 0 ? ResultValue(nullptr) : ResultValue(count);
 }
@@ -235,6 +248,9 @@ Results problem_results(const Problem& problem, const Effects& effects, Assembly
                  "outlines of the bodies are not known.");
   }
   add_found_contacts(results, a);
+  constexpr std::size_t most_discs = 200000;  // beyond them the void costs as much as the solution
+  if (problem.resolved.assembly.kind == AssemblyKind::packing && a.sections.empty() && a.size() <= most_discs)
+    add_largest_void(results, a);
   add_gaps(results, a);
   add_left_out(results, problem.left_out);
   results.line("springs", problem.springs.report);

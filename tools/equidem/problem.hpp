@@ -122,6 +122,9 @@ enum class AssemblyKeys {
 /// Title, assembly, springs, effects.
 Results problem_results(const Problem& problem, const Effects& effects, AssemblyKeys keys = AssemblyKeys::all);
 
+/// The largest circle that no disc reaches into; nothing where there is none.
+void add_largest_void(Results& results, const Assembly& assembly);
+
 /// The problem, further results, size, memory and work of a factorization, and the time of all, for --dry-run.
 /// \param solutions factorizations with the solution of a load case each
 Results dry_run_results(const Problem& problem, double solutions, const Results& further = {},

@@ -53,6 +53,27 @@ void add_rest(Results& out, const GrainPacking& packing, const RestConfirmation&
       .add("largest_bond_slip", "surfaces slipped by", bonds.slip.largest, "at most", {.digits = 2});
 }
 
+/// Contacts of bodies that touch, and bodies that fewer hold than they need.
+void add_contacts(Results& out, const PackingMeasures& measures, const std::string& noun) {
+  if (measures.contacts == 0) {
+    out.line("contacts", fmt::format("no two {}s touch; bonds join them across gaps", noun));
+    if (measures.wall_contacts > 0) out.add("", "", measures.wall_contacts, "touch a wall", {Shown::number});
+    out.set("contacts", 0)
+        .set("wall_contacts", measures.wall_contacts)
+        .set("coordination_number", measures.coordination);
+    out.set("coordination_number_without_rattlers", 0.0).set("rattlers", measures.rattlers);
+    return;
+  }
+  out.line("contacts")
+      .add("contacts", "", measures.contacts, "of " + noun + "s", {Shown::number})
+      .add("wall_contacts", "", measures.wall_contacts, "with walls")
+      .note("; ")
+      .add("coordination_number", "", measures.coordination, "of each", {.digits = 4})
+      .add("coordination_number_without_rattlers", "", measures.coordination_without_rattlers, "without", {.digits = 4})
+      .note(" ")
+      .add("rattlers", "", measures.rattlers, "rattler", {Shown::count});
+}
+
 /// The contacts of the assembly that is written, and those of other tolerances.
 void add_bonds(Results& out, const GrainPacking& packing, const Assembly& network) {
   out.line("bonds")
@@ -71,7 +92,9 @@ void add_density(Results& out, const PackCase& resolved, double density, const s
   out.line("density");
   if (resolved.of_continuum) out.add("density/continuum", "", *resolved.of_continuum, "kg/m³ of the continuum");
   out.add("density/discs", "", density, "kg/m³ of the " + noun + "s");
-  if (!resolved.of_continuum && !resolved.density) out.note(", the default, since the case gives none");
+  if (!resolved.of_continuum && !resolved.density)
+    out.note(resolved.has_density() ? ", the default, since the case gives none: the bodies fell with it"
+                                    : ", the default, since the case gives none; grains.csv has no density");
 }
 
 }  // namespace
@@ -188,14 +211,9 @@ Results packing_results(const PackCase& resolved, const GrainPacking& packing, c
   out.line("", fmt::format("measured from ({:.4g}, {:.4g}) to ({:.4g}, {:.4g}) m", region.low.x, region.low.y,
                            region.high.x, region.high.y));
   out.set("region", std::vector<double>{region.low.x, region.low.y, region.high.x, region.high.y});
-  out.line("contacts")
-      .add("contacts", "", measures.contacts, "of " + noun + "s", {Shown::number})
-      .add("wall_contacts", "", measures.wall_contacts, "with walls")
-      .note("; ")
-      .add("coordination_number", "", measures.coordination, "of each", {.digits = 4})
-      .add("coordination_number_without_rattlers", "", measures.coordination_without_rattlers, "without", {.digits = 4})
-      .note(" ")
-      .add("rattlers", "", measures.rattlers, "rattler", {Shown::count});
+  add_contacts(out, measures, noun);
+  if (std::ranges::all_of(packing.grains, [](const Grain& grain) { return grain.shape() == GrainShape::disc; }))
+    add_largest_void(out, network);
   add_bonds(out, packing, network);
   add_density(out, resolved, density, noun);
   out.line("overlap").add("largest_overlap", "at most", measures.largest_overlap, "of the smaller radius",
