@@ -83,6 +83,18 @@ class Files(PackTest):
                                                   "material=none", "--set", "springs={kN=1e9, kT=5e8}", "--json", "-")).stdout)
         self.assertEqual(cell["largest_void"], loose["largest_void"])
 
+    def test_lengths_that_may_be_in_mm_are_questioned(self):
+        rock = CASES / "sandstone" / "rock.toml"
+        self.check_error(equidem("pack", rock, "--set", "packing.box=[100, 100]"), 2, "5.17e+09 bodies of 0.00144 m",
+                         "the box may be in mm")
+        sieves = self.folder / "sieves.csv"
+        sieves.write_text("diameter_m,passing\n1.0,0\n2.0,1\n")
+        coarse = ("--set", f'packing.radii.path="{sieves}"')
+        self.check_error(equidem("pack", rock, *coarse), 2, "less than one body", "the radii or sieves may be in mm")
+        self.check_error(equidem("pack", rock, *coarse, "--set", "packing.grains=9", "--set", "packing.solid_fraction=none"), 2,
+                         "radii or sieves may be in mm")
+        self.check_error(equidem("pack", rock, "--set", "packing.box=[0.003, 0.1]"), 2, "both sides at least 0.00402 m")
+
     def run_of_grains(self, folder, springs=""):
         case = self.folder / "grains.toml"
         case.write_text(f'schema = "equidem/1"\n{springs}[grains]\npath = "{folder}/grains.csv"\n[collisions]\n'
@@ -248,8 +260,8 @@ class CommandLine(PackTest):
         self.check_error(equidem("pack", JAMMED, "--out", out), 2, "exists")
 
     def test_a_packing_that_is_impossible_in_its_box_is_told_before_it_is_tried(self):
-        for sides, box, words in (("periodic", "[0.03, 0.5]", ("packing.box", "two of them side by side", "0.0404 m or more")),
-                                  ("walls", "[0.015, 0.5]", ("packing.box", "does not fit in", "0.0202 m or more")),
+        for sides, box, words in (("periodic", "[0.03, 0.5]", ("packing.box", "two of them side by side", "at least 0.0404 m")),
+                                  ("walls", "[0.015, 0.5]", ("packing.box", "does not fit in", "at least 0.0202 m")),
                                   ("walls", "[0.1, 0.1]", ("packing.box", "times the area of the box"))):
             with self.subTest(sides=sides, box=box):
                 options = ("--set", f"packing.sides={sides}", "--set", f"packing.box={box}", "--set",

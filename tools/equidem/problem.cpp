@@ -98,6 +98,16 @@ void add_gaps(Results& results, const Assembly& assembly) {
                   percent(-gaps.smallest), percent(std::max(gaps.largest, 0.0))));
 }
 
+/// Questions springs that are softer than any solid, 1e4 Pa being a gel. Assemblies of large discs may have no units.
+void question_springs(Results& results, const Assembly& assembly, const ContactSprings& springs) {
+  constexpr double soft = 1e4, large = 0.1;  // Pa, m
+  const double largest = springs.largest();
+  if (!(largest > 0 && largest < soft && assembly.mean_radius() < large)) return;
+  results.line("", fmt::format("springs of {:.3g} Pa between discs of {:.3g} m are softer than any solid: moduli or "
+                               "springs may be in MPa or GPa where Pa are meant",
+                               largest, assembly.mean_radius()));
+}
+
 /// The tables that decide the assembly, as text: all but those that surely do not. Springs move bodies that fall.
 std::string deciding_tables(const Case& resolved) {
   const auto& packing = resolved.assembly.packing;
@@ -254,6 +264,7 @@ Results problem_results(const Problem& problem, const Effects& effects, Assembly
   add_gaps(results, a);
   add_left_out(results, problem.left_out);
   results.line("springs", problem.springs.report);
+  question_springs(results, a, problem.springs.springs);
   if (problem.springs.constants && keys == AssemblyKeys::all)
     results.set("kN", problem.springs.constants->kN).set("kT", problem.springs.constants->kT);
   add_effects(results, effects);

@@ -147,10 +147,11 @@ Simulation simulation_of(const Problem& problem, const Scene& scene, const Simul
   }
 }
 
-/// Contact forces of small motions, for pictures.
-std::vector<ContactForce> forces_of(const Scene& scene, const std::vector<DiscMotion>& motions) {
+/// Forces of the contacts between discs.
+std::vector<ContactForce> forces_of(const Scene& scene, LoopKind::Motion motion,
+                                    const std::vector<DiscMotion>& motions) {
   std::vector<ContactForce> forces;
-  for (const BodyContact& contact : bonded_contacts(scene, LoopKind::Motion::small, motions, 0))
+  for (const BodyContact& contact : bonded_contacts(scene, motion, motions, 0))
     if (contact.j >= 0) forces.push_back({contact.normal_force, contact.tangential_force});
   return forces;
 }
@@ -237,7 +238,7 @@ void BondedRun::write_state(const std::filesystem::path& folder, const std::vect
                             bool overwrite) const {
   const OutputCase& output = problem_.resolved.output;
   std::vector<ContactForce> forces;
-  if (run().motion == LoopKind::Motion::small) forces = forces_of(scene_, motions);
+  if (run().motion == LoopKind::Motion::small) forces = forces_of(scene_, LoopKind::Motion::small, motions);
   const AssemblyState state{
       .assembly = problem_.assembly, .motions = motions, .contact_forces = forces, .stresses = {}};
   if (output.csv) write_disc_csv(folder / "discs.csv", state, overwrite);
@@ -285,6 +286,7 @@ Results BondedRun::relax(StageTimes& times) {
                     .set("steps", rest.steps)
                     .set("force_evaluations", rest.evaluations)
                     .set("relative_unbalanced_force", rest.relative_unbalanced);
+  add_deformation(out, problem_, forces_of(scene_, run().motion, at_rest_), run().motion == LoopKind::Motion::small);
   if (const std::optional<TensionTest>& test = problem_.resolved.test) {
     problem_.tension = tension_setup(problem_.assembly, *test);
     Equilibrium reached;
@@ -292,6 +294,13 @@ Results BondedRun::relax(StageTimes& times) {
     out.append(tension_results(
         problem_, evaluate_tension(problem_.assembly, problem_.springs.springs, *test, *problem_.tension, reached)));
   }
+  return out;
+}
+
+Results BondedRun::events() const {
+  Results out = waves_.results(stiffness_of_waves());
+  add_deformation(out, problem_, forces_of(scene_, run().motion, simulation_.motions()),
+                  run().motion == LoopKind::Motion::small);
   return out;
 }
 

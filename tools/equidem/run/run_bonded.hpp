@@ -54,7 +54,7 @@ class BondedRun final : public RunJob {
   [[nodiscard]] StageTimes times() const override { return problem_.times; }
   [[nodiscard]] Results scene() const override;
   [[nodiscard]] Results step() const override;
-  [[nodiscard]] Results events() const override { return waves_.results(stiffness_of_waves()); }
+  [[nodiscard]] Results events() const override;
   [[nodiscard]] Results advice(const Balance& balance) const override;
   void write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const override;
   [[nodiscard]] bool goes_to_rest() const override { return run().until_rest.has_value(); }

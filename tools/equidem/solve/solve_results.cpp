@@ -52,30 +52,6 @@ void add_stress(Results& out, const SolvedCase& result) {
       .add("moment_per_area", "", result.moment_per_area, "N m per m²");
 }
 
-/// How much contacts deform, relative to the sum of their radii: forces over kN. Small motions are assumed.
-void add_deformation(Results& out, const Problem& problem, const SolvedCase& result) {
-  constexpr double large = 0.05, doubtful = 1e-9;
-  const Assembly& assembly = problem.assembly;
-  double most = 0, largest_radius = 0;
-  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
-    const Contact& contact = assembly.contacts[c];
-    const double kN = problem.springs.springs[c].kN;
-    if (kN == 0) continue;
-    const double radii = assembly.radii[contact.i] + assembly.radii[contact.j];
-    most = std::max(most, std::abs(result.equilibrium.contact_forces[c].normal / kN) / radii);
-  }
-  for (const double radius : assembly.radii) largest_radius = std::max(largest_radius, radius);
-  out.line("deformation")
-      .add("largest_deformation", "contacts change by at most", most, "of the sum of their radii", {.digits = 3});
-  if (most > large) {
-    out.note(": much, for the motions are taken as small");
-  } else if (most > 0 && most < doubtful) {
-    out.note(fmt::format(
-        ": very little. Radii (up to {:.3g} m), springs (Pa) and loads (N/m, Pa) may be in other units than meant",
-        largest_radius));
-  }
-}
-
 /// The factorization, which all load cases share.
 Results solver_results(const Problem& problem, const Equilibrium& e) {
   Results out;
@@ -120,7 +96,7 @@ Results load_case_results(const Problem& problem, const SolvedCase& result, bool
   constexpr double doubtful = 1e-10;
   if (e.relative_residual > doubtful)
     out.line("", "WARNING: K is nearly singular; do not trust more digits than the residual leaves");
-  add_deformation(out, problem, result);
+  add_deformation(out, problem, e.contact_forces);
   out.line("energy").add("energy", "", e.energy, "N (J per m of depth, per m)");
   add_stress(out, result);
   if (result.tension) out.append(tension_results(problem, *result.tension));
@@ -128,6 +104,29 @@ Results load_case_results(const Problem& problem, const SolvedCase& result, bool
 }
 
 }  // namespace
+
+void add_deformation(Results& out, const Problem& problem, std::span<const ContactForce> forces, bool small_motions) {
+  constexpr double large = 0.05, doubtful = 1e-9;
+  const Assembly& assembly = problem.assembly;
+  double most = 0, largest_radius = 0;
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    const Contact& contact = assembly.contacts[c];
+    const double kN = problem.springs.springs[c].kN;
+    if (kN == 0) continue;
+    const double radii = assembly.radii[contact.i] + assembly.radii[contact.j];
+    most = std::max(most, std::abs(forces[c].normal / kN) / radii);
+  }
+  for (const double radius : assembly.radii) largest_radius = std::max(largest_radius, radius);
+  out.line("deformation")
+      .add("largest_deformation", "contacts change by at most", most, "of the sum of their radii", {.digits = 3});
+  if (most > large && small_motions) {
+    out.note(": much, for the motions are taken as small");
+  } else if (most > 0 && most < doubtful) {
+    out.note(fmt::format(
+        ": very little. Radii (up to {:.3g} m), springs (Pa) and loads (N/m, Pa) may be in other units than meant",
+        largest_radius));
+  }
+}
 
 Results tension_results(const Problem& problem, const TensionResult& t) {
   Results out;
