@@ -49,20 +49,6 @@ ExpectedSize expected_size(const AssemblyCase& assembly) {
   return {};
 }
 
-/// Refuses before anything is built what surely does not fit. The factor of N discs, w across the narrow side, has
-/// about c N log2(w) bytes, with c = 520 on a hexagonal lattice and 660 on Delaunay networks of 10⁵ to 10⁶ discs; half
-/// of what two unknowns a disc need is taken.
-void require_memory_for(const Case& resolved, Purpose purpose) {
-  const ExpectedSize size = expected_size(resolved.assembly);
-  if (size.discs < 1) return;
-  constexpr double factor = 100, loop = 450;  // bytes a disc
-  const double beside = purpose == Purpose::factorize ? factor * std::log2(std::max(size.narrow_side, 1.0)) : loop;
-  require_memory(
-      bytes_of_network(size.discs) + size.discs * beside,
-      fmt::format("{} of {} discs needs at least", purpose == Purpose::factorize ? "the factor of a network" : "a run",
-                  grouped(static_cast<std::int64_t>(size.discs))));
-}
-
 void add_left_out(Results& results, const LeftOut& left_out) {
   if (left_out.bodies.empty()) return;
   results.line("left out", joined(left_out.sentences, "; "));
@@ -150,6 +136,19 @@ Assembly SharedAssemblies::operator()(const Case& resolved) {
 Assembly assembly_of(const Case& resolved) {
   SharedAssemblies* const shared = shared_assemblies;
   return shared != nullptr ? (*shared)(resolved) : build_assembly(resolved);
+}
+
+void require_memory_for(const Case& resolved, Purpose purpose) {
+  // The factor of N discs, w across the narrow side, has about c N log2(w) bytes, with c = 520 on a hexagonal lattice
+  // and 660 on Delaunay networks of 10⁵ to 10⁶ discs; half of what two unknowns a disc need is taken.
+  const ExpectedSize size = expected_size(resolved.assembly);
+  if (size.discs < 1) return;
+  constexpr double factor = 100, loop = 450;  // bytes a disc
+  const double beside = purpose == Purpose::factorize ? factor * std::log2(std::max(size.narrow_side, 1.0)) : loop;
+  require_memory(
+      bytes_of_network(size.discs) + size.discs * beside,
+      fmt::format("{} of {} discs needs at least", purpose == Purpose::factorize ? "the factor of a network" : "a run",
+                  grouped(static_cast<std::int64_t>(size.discs))));
 }
 
 Problem problem_of(Case resolved, Purpose purpose) {

@@ -79,6 +79,10 @@ Assembly assembly_of(const Case& resolved);
 /// \throws Error (bad_input) as build_assembly and build_springs; (computation_failed) where memory would not suffice
 Problem problem_of(Case resolved, Purpose purpose = Purpose::factorize);
 
+/// Refuses before anything is built what surely does not fit; nothing where the size of the assembly is not known yet.
+/// \throws Error (computation_failed)
+void require_memory_for(const Case& resolved, Purpose purpose);
+
 /// Whether the case has supports or loads, those of a tension test among them.
 bool acts(const Case& resolved);
 

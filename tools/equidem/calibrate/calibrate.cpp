@@ -125,6 +125,7 @@ Problem problem_with_material(Case resolved) {
                  "calibration looks for the springs that stand for it",
                  "Replace the springs by [material] with the moduli wanted");
   }
+  require_memory_for(resolved, Purpose::factorize);
   StageTimes times;
   Stopwatch watch;
   Assembly assembly = assembly_of(resolved);

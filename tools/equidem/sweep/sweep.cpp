@@ -198,15 +198,29 @@ SweepTime time_of(const Sweep& sweep) {
   return result;
 }
 
+/// The dry run of the first of some points that can be computed, with its number; none where no one of them can.
+std::optional<std::pair<std::size_t, Delivery>> first_dry_run(const Sweep& sweep) {
+  constexpr std::size_t most = 20;
+  for (std::size_t point = 0; point < std::min(sweep.plan.size(), most); ++point) {
+    try {
+      return std::pair(point, sweep.run_of(sweep.plan.values_of(point), {"--dry-run"})());
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::interrupted) throw;
+    }
+  }
+  return std::nullopt;
+}
+
 int dry_run(const Sweep& sweep) {
   const SweepPlan& plan = sweep.plan;
   const SharedAssemblies shared;
   Results results = results_of_keys(plan);
   results.set("number_of_points", plan.size(), "", "number of points");
-  results.block(
-      fmt::format("{} of {}; the first one:\n\n", counted(static_cast<long long>(plan.size()), "point"), plan.names()));
-  const Delivery first = sweep.run_of(plan.values_of(0), {"--dry-run"})();
-  results.append(first.results).line("sweep");
+  const auto first = first_dry_run(sweep);
+  results.block(fmt::format("{} of {}{}\n\n", counted(static_cast<long long>(plan.size()), "point"), plan.names(),
+                            first ? fmt::format("; point {}:", first->first + 1) : ""));
+  if (first) results.append(first->second.results);
+  results.line("sweep");
   const SweepTime time = time_of(sweep);
   if (time.points > 0) {
     results.add("estimated_seconds_of_sweep", "about", time.seconds, "s for all points", {.digits = 2})
@@ -216,7 +230,7 @@ int dry_run(const Sweep& sweep) {
   }
   if (time.failed > 0)
     results.note(fmt::format("; {} of those asked cannot be computed: {}", time.failed, time.failure));
-  deliver(sweep.options.common, "dry_run", results, first.times);
+  deliver(sweep.options.common, "dry_run", results, first ? first->second.times : StageTimes{});
   return 0;
 }
 
