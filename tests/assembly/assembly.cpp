@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "equidem/assembly/lattices.hpp"
+#include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
 
 #include "support/catch.hpp"
@@ -173,4 +174,11 @@ TEST_CASE("gaps_at_contacts_are_those_of_the_discs") {
   CHECK(gaps_at_contacts(three).smallest == Approx(-0.2));  // 4/(1 + 4) - 1
   three.sections.resize(3);
   CHECK(gaps_at_contacts(three).largest == 0);
+}
+
+TEST_CASE("contacts_are_added_by_a_larger_tolerance_where_one_found_them") {
+  Assembly found;
+  CHECK(how_to_add_contacts(found) == "add contacts");
+  found.gap_tolerance = 0.05;
+  CHECK(how_to_add_contacts(found) == "add contacts by a gap_tolerance above 0.05");
 }

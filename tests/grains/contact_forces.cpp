@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "grains/bonded_scenes.hpp"
 #include "grains/shapes.hpp"
 #include "support/catch.hpp"
 #include "support/fields.hpp"
@@ -73,4 +74,41 @@ TEST_CASE("contact_forces_of_a_step_add_up_to_what_it_changed") {
   CHECK(worst <= 1e-9 * largest);
   // exact_flow: the force acts along the mean normal of the step, the levers are those at its start.
   CHECK(worst_moment <= (law == NormalLaw::exact_flow ? 2e-3 : 1e-9) * largest);
+}
+
+TEST_CASE("forces_of_bonds_are_contacts_and_add_up_to_what_a_step_changed") {
+  const double dt = 1e-4;
+  GrainBond like = all_of_a_bond;
+  like.rolling_dashpot = GENERATE(0.0, 0.1);
+  const GrainScene scene = chain_scene(NormalLaw::linear_dashpot, 8, like);
+  GrainSimulation simulation(scene, options_of(NormalLaw::linear_dashpot, dt));
+  simulation.advance(1000);
+  const std::vector<Grain> before = simulation.grains();
+  simulation.advance(1);
+  const std::vector<Grain> after = simulation.grains();
+  std::vector<Vec2> sums(before.size());
+  std::vector<double> moments(before.size());
+  std::size_t bonds = 0;
+  for (const BodyContact& c : simulation.body_contacts()) {
+    const auto i = static_cast<std::size_t>(c.i), j = static_cast<std::size_t>(c.j);
+    bonds += j == i + 1 ? 1 : 0;
+    const Vec2 normal = (after[j].position - after[i].position) / norm(after[j].position - after[i].position);
+    CHECK(norm(c.normal_force * normal + c.tangential_force * perpendicular(normal) + c.force) < 1e-12 * norm(c.force));
+    sums[i] += c.force;
+    sums[j] -= c.force;
+    moments[i] += cross(c.arm, c.force);
+    moments[j] -= cross(after[i].position + c.arm - after[j].position, c.force);
+  }
+  CHECK(bonds == scene.bonds.size());
+  double worst = 0, worst_moment = 0, largest = 0;
+  for (std::size_t g = 0; g < before.size(); ++g) {
+    const Vec2 push = before[g].inertia.mass / dt * (after[g].velocity - before[g].velocity);
+    largest = std::max(largest, norm(push));
+    worst = std::max(worst, norm(push - sums[g]));
+    worst_moment =
+        std::max(worst_moment, std::abs(before[g].inertia.moment * (after[g].spin - before[g].spin) / dt - moments[g]));
+  }
+  CAPTURE(largest, worst, worst_moment);
+  CHECK(worst < 1e-3 * largest);  // springs and directions are those after the step
+  if (like.rolling_dashpot == 0) CHECK(worst_moment < 1e-3 * largest);
 }

@@ -4,32 +4,16 @@ motion_STEP.csv, velocity_STEP.csv and contacts_STEP.csv, written by another wri
 for bit; 77: the Python module of VTK is missing."""
 import csv
 import glob
-import os
 import re
-import sys
 import xml.etree.ElementTree as xml
 
-try:
-    import numpy as np
-    from vtkmodules.util.numpy_support import vtk_to_numpy
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
-except ImportError as missing:
-    print(f"skipped: {missing}")
-    sys.exit(77)
-
-folder, name = sys.argv[1:]
-faults = []
+from vtk_check import compare, end, faults, name, np, path_of, poly_data, vtk_to_numpy
 
 
 def table(file_name):
-    with open(os.path.join(folder, file_name), newline="") as file:
+    with open(path_of(file_name), newline="") as file:
         rows = list(csv.reader(file))
     return {key: np.array([float(row[c]) for row in rows[1:]]) for c, key in enumerate(rows[0])}
-
-
-def compare(what, found, wanted):
-    if np.shape(found) != np.shape(wanted) or not np.array_equal(found, wanted):
-        faults.append(f"{what}: {found} is not {wanted}")
 
 
 def columns(data, *keys):
@@ -40,22 +24,13 @@ def vectors(data, x, y):
     return np.column_stack([data[x], data[y], np.zeros(len(data[x]))])
 
 
-def poly_data(file_name):
-    reader = vtkXMLPolyDataReader()
-    reader.SetFileName(os.path.join(folder, file_name))
-    reader.Update()
-    if reader.GetErrorCode():
-        faults.append(f"{file_name}: error {reader.GetErrorCode()} of the reader")
-    return reader.GetOutput()
-
-
 def arrays_of(attributes):
     return {attributes.GetArrayName(k): vtk_to_numpy(attributes.GetArray(k)) for k in range(attributes.GetNumberOfArrays())}
 
 
-entries = xml.parse(os.path.join(folder, f"{name}.pvd")).getroot().findall("Collection/DataSet")
+entries = xml.parse(path_of(f"{name}.pvd")).getroot().findall("Collection/DataSet")
 parts = [[entry for entry in entries if entry.get("part") == part] for part in "01"]
-steps = sorted(int(re.search(r"motion_(\d+)", path).group(1)) for path in glob.glob(os.path.join(folder, "motion_*.csv")))
+steps = sorted(int(re.search(r"motion_(\d+)", path).group(1)) for path in glob.glob(path_of("motion_*.csv")))
 compare("steps", [int(entry.get("file")[-13:-4]) for entry in parts[0]], steps)
 compare("frames with contacts", len(parts[1]), len(steps))
 for discs, network, step in zip(*parts, steps):
@@ -99,7 +74,4 @@ for discs, network, step in zip(*parts, steps):
     compare("displacement of the ends", arrays_of(data.GetPointData())["displacement"][
         vtk_to_numpy(data.GetLines().GetConnectivityArray())], vectors(motion, "ux_m", "uy_m")[bodies])
 
-for fault in faults:
-    print(fault)
-print(f"{len(steps)} frames: {len(faults)} faults")
-sys.exit(1 if faults else 0)
+end(f"{len(steps)} frames")

@@ -3,39 +3,14 @@
 number with discs.csv and contacts.csv, written by another writer from the same state. Exit 0: equal bit for bit; 77: the
 Python module of VTK is missing."""
 import csv
-import os
-import sys
 
-try:
-    import numpy as np
-    from vtkmodules.util.numpy_support import vtk_to_numpy
-    from vtkmodules.vtkIOXML import vtkXMLMultiBlockDataReader, vtkXMLPolyDataReader
-except ImportError as missing:
-    print(f"skipped: {missing}")
-    sys.exit(77)
-
-folder, name = sys.argv[1:]
-faults = []
+from vtk_check import compare, end, faults, name, np, path_of, poly_data, vtk_to_numpy, vtkXMLMultiBlockDataReader
 
 
 def table(file_name):
-    with open(os.path.join(folder, file_name), newline="") as file:
+    with open(path_of(file_name), newline="") as file:
         rows = list(csv.DictReader(file))
     return {key: np.array([float(row[key]) for row in rows]) for key in rows[0]} if rows else {}
-
-
-def poly_data(file_name):
-    reader = vtkXMLPolyDataReader()
-    reader.SetFileName(os.path.join(folder, file_name))
-    reader.Update()
-    if reader.GetErrorCode():
-        faults.append(f"{file_name}: error {reader.GetErrorCode()} of the reader")
-    return reader.GetOutput()
-
-
-def compare(what, found, wanted):
-    if not np.array_equal(found, wanted):
-        faults.append(f"{what}: {found} is not {wanted}")
 
 
 def array(data, key):
@@ -89,14 +64,11 @@ if m:
     compare("radius of the ends", array(data.GetPointData(), "radius")[ends], np.zeros(2 * m))
 
 reader = vtkXMLMultiBlockDataReader()
-reader.SetFileName(os.path.join(folder, f"{name}.vtm"))
+reader.SetFileName(path_of(f"{name}.vtm"))
 reader.Update()
 blocks = reader.GetOutput()
 compare("blocks", blocks.GetNumberOfBlocks(), 2)
 compare("points of the disc block", blocks.GetBlock(0).GetNumberOfPoints(), n)
 compare("lines of the contact block", blocks.GetBlock(1).GetNumberOfLines() if m else 0, m)
 
-for fault in faults:
-    print(fault)
-print(f"{n} discs, {m} contacts: {len(faults)} faults")
-sys.exit(1 if faults else 0)
+end(f"{n} discs, {m} contacts")

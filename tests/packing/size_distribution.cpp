@@ -96,6 +96,20 @@ TEST_CASE("sieve_curves_are_read_and_what_is_none_is_refused") {
   std::filesystem::remove(path);
 }
 
+TEST_CASE("a_sieve_curve_that_descends_or_is_in_percent_is_told_so") {
+  const auto problem_of = [](std::vector<Sieve> sieves) -> std::string {
+    try {
+      check(SizeDistribution{.kind = SizeDistribution::Kind::sieve_curve, .sieves = std::move(sieves)});
+    } catch (const Error& error) {
+      return error.problem();
+    }
+    return {};
+  };
+  CHECK(problem_of({{0.002, 1}, {0.0015, 0.4}, {0.001, 0}}) == "the sieve curve descends");
+  CHECK(problem_of({{0.001, 0}, {0.0015, 40}, {0.002, 100}}) == "the sieve curve runs to 100");
+  CHECK(problem_of({{0.001, 0}, {0.0015, 0.4}, {0.002, 1}}).empty());
+}
+
 TEST_CASE("sizes_out_of_range_are_refused") {
   CHECK_THROWS_AS(check(SizeDistribution{.smallest = 0, .largest = 1}), Error);
   CHECK_THROWS_AS(check(SizeDistribution{.smallest = 2, .largest = 1}), Error);

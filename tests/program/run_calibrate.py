@@ -225,6 +225,12 @@ class Calibrate(program.ProgramTest):
         self.check_error(equidem("calibrate", LATTICE, "--set", "material.poisson_ratio=0.33333333334"), 2,
                          "static_only = true")
 
+    def test_moduli_softer_than_any_solid_are_questioned(self):
+        soft = ("--set", "assembly.discs=100", "--set", "material.shear_modulus=55")
+        self.assertIn("softer than any solid", self.calibrated(RANDOM, *soft)["report"])
+        for stiff in ((*soft[:2], "--dry-run"), (*soft, "--set", "assembly.radius=1.0")):
+            self.assertNotIn("softer than any solid", self.calibrated(RANDOM, *stiff)["report"])
+
     def test_dry_run_and_quiet(self):
         size = self.calibrated(RANDOM, "--dry-run")
         names = re.findall(r"^(\S.{14})", size["report"], re.MULTILINE)

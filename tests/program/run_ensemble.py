@@ -19,7 +19,19 @@ def rows(path):
         return list(csv.DictReader(file))
 
 
-class Ensemble(ProgramTest):
+class EnsembleTest(ProgramTest):
+    def check_threads(self):
+        """The samples of one thread, which have the bytes of those of three."""
+        texts = []
+        for threads in (1, 3):
+            out = self.folder / str(threads)
+            self.run_small("--threads", threads, "--out", out)
+            texts.append((out / "samples.csv").read_text())
+        self.assertEqual(*texts)
+        return texts[0]
+
+
+class Ensemble(EnsembleTest):
     def run_small(self, *options):
         return self.check_done(equidem("homogenize", ENSEMBLE, *SMALL, *options))
 
@@ -59,12 +71,7 @@ class Ensemble(ProgramTest):
         self.assertAlmostEqual(sampled["shear_modulus"]["mean"] / statistics.mean(values), 1, places=13)
 
     def test_threads_change_no_bit(self):
-        texts = []
-        for threads in (1, 3):
-            out = self.folder / str(threads)
-            self.run_small("--threads", threads, "--out", out)
-            texts.append((out / "samples.csv").read_text())
-        self.assertEqual(*texts)
+        self.check_threads()
 
     def test_springs_h_over_l_with_kT_equal_to_kN_need_no_size(self):
         report = self.run_small("--set", "springs.weighting=voronoi", "--set", "springs.kT=1e9", "--set",
@@ -121,9 +128,14 @@ class Ensemble(ProgramTest):
         result = parse_json(self.run_small("--dry-run", "--json", "-").stdout)
         self.assertEqual(result["status"], "dry_run")
         self.assertEqual(result["unknowns"], [60, 180])
+        self.assertGreater(result["estimated_seconds"], 0)
+        self.assertIn("from one cell of 20, 60 discs", result["report"])
+        large = self.run_small("--set", "ensemble.discs=[30, 1000000000]", "--dry-run").stdout
+        self.assertIn("would be refused: the factor of a network of 1 000 000 000 discs needs", large)
+        self.assertIn("from one cell of 30 discs", large)
 
 
-class PackedCells(ProgramTest):
+class PackedCells(EnsembleTest):
     """Ensembles of packings: every cell is packed anew."""
     SMALL = ("--set", "packing.grains=none", "--set", "ensemble={discs = [40, 80], samples = 4}")
 
@@ -143,15 +155,10 @@ class PackedCells(ProgramTest):
             self.assertAlmostEqual(single["shear_modulus"] / float(row["shear_modulus_Pa"]), 1, places=13)
 
     def test_threads_change_no_bit_and_samples_are_continued(self):
-        texts = []
-        for threads in (1, 3):
-            out = self.folder / str(threads)
-            self.run_small("--threads", threads, "--out", out)
-            texts.append((out / "samples.csv").read_text())
-        self.assertEqual(*texts)
+        text = self.check_threads()
         more = self.run_small("--set", "ensemble.samples=5", "--out", self.folder / "1", "--resume")
         self.assertIn("5 cells", more.stdout)
-        self.assertTrue((self.folder / "1" / "samples.csv").read_text().startswith(texts[0].split("\n80,")[0]))
+        self.assertTrue((self.folder / "1" / "samples.csv").read_text().startswith(text.split("\n80,")[0]))
 
     def test_an_accuracy_chooses_size_and_number_of_packings(self):
         result = parse_json(self.check_done(equidem(

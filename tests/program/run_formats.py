@@ -143,7 +143,7 @@ class ReadBack(RunTest):
                 self.check_done(equidem("pack", CASES / f"{pack}.toml", "--out", first, *options, *NO_PICTURE))
                 bonds = "[bonds]\npath = \"{}/bonds.csv\"\n" if (first / "bonds.csv").exists() else ""
                 for source, out in ((first, second), (second, third)):
-                    case = self.write(f"{out.name}.toml", f'[grains]\npath = "{source}/grains.csv"\n{bonds.format(source)}'
+                    case = self.write(f"{out.name}.toml", f'[grains]\npath = "{source}/grains.csv"\ndensity = 2500.0\n{bonds.format(source)}'
                                       '[collisions]\nrestitution = 0.5\nstiffness = 1.0e6\nlaw = "linear_dashpot"\n'
                                       '[run]\nduration = 1.0e-5\ntime_step = 1.0e-6\n[output]\nframe_interval = 5.0e-6\n')
                     self.check_done(equidem("run", case, "--out", out, *NO_PICTURE))

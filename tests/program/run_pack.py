@@ -69,6 +69,56 @@ class Files(PackTest):
         self.assertEqual(default["density"], {"discs": 2480})
         self.assertIn("the default", default["report"])
 
+    def test_a_packing_below_jamming_tells_its_largest_void_and_no_contacts(self):
+        rock = CASES / "sandstone" / "rock.toml"
+        small = ("--set", "packing.box=[0.02, 0.02]")
+        dense, loose = (parse_json(self.check_done(equidem("pack", rock, *small, "--set", f"packing.solid_fraction={fraction}",
+                                                           "--json", "-")).stdout) for fraction in (0.82, 0.72))
+        self.assertGreater(loose["largest_void"]["over_mean_radius"], dense["largest_void"]["over_mean_radius"])
+        self.assertIn("would hold another disc", loose["report"])
+        self.assertEqual((loose["contacts"], loose["rattlers"]), (0, loose["grains"]))
+        self.assertIn("no two discs touch; bonds join them across gaps", loose["report"])
+        self.assertNotIn("rattlers", loose["report"])
+        cell = parse_json(self.check_done(equidem("homogenize", rock, *small, "--set", "packing.solid_fraction=0.72", "--set",
+                                                  "material=none", "--set", "springs={kN=1e9, kT=5e8}", "--json", "-")).stdout)
+        self.assertEqual(cell["largest_void"], loose["largest_void"])
+
+    def test_lengths_that_may_be_in_mm_are_questioned(self):
+        rock = CASES / "sandstone" / "rock.toml"
+        self.check_error(equidem("pack", rock, "--set", "packing.box=[100, 100]"), 2, "5.17e+09 bodies of 0.00144 m",
+                         "the box may be in mm")
+        sieves = self.folder / "sieves.csv"
+        sieves.write_text("diameter_m,passing\n1.0,0\n2.0,1\n")
+        coarse = ("--set", f'packing.radii.path="{sieves}"')
+        self.check_error(equidem("pack", rock, *coarse), 2, "less than one body", "the radii or sieves may be in mm")
+        self.check_error(equidem("pack", rock, *coarse, "--set", "packing.grains=9", "--set", "packing.solid_fraction=none"), 2,
+                         "radii or sieves may be in mm")
+        self.check_error(equidem("pack", rock, "--set", "packing.box=[0.003, 0.1]"), 2, "both sides at least 0.00402 m")
+
+    def run_of_grains(self, folder, springs=""):
+        case = self.folder / "grains.toml"
+        case.write_text(f'schema = "equidem/1"\n{springs}[grains]\npath = "{folder}/grains.csv"\n[collisions]\n'
+                        f'restitution = 0.5\n{"" if springs else "stiffness = 1.0e8"}\n[run]\nduration = 1.0e-6\n')
+        return case
+
+    def test_grains_without_density_or_with_another_than_the_springs_are_refused(self):
+        few = ("--set", "packing.grains=60", "--set", "packing.sides=walls", "--set", "packing.solid_fraction=0.7")
+        _, out = self.pack(JAMMED, *few, "--set", "packing.box=none")
+        self.assertNotIn("density_kg_per_m3", rows_of(out / "grains.csv")[0])
+        case = self.run_of_grains(out)
+        self.check_error(equidem("run", case), 2, "the density of the grains is missing", "[grains]")
+        self.check_done(equidem("run", case, "--set", "grains.density=2500"))
+        springs = "[springs]\nkN = 1.0e8\nkT = 5.0e7\ndensity = 2600.0\n"
+        self.check_done(equidem("run", self.run_of_grains(out, springs)))
+        _, other = self.pack(JAMMED, *few, "--set", "packing.box=none", "--set", "packing.density=2500", name="other")
+        self.check_error(equidem("run", self.run_of_grains(other, springs)), 2, "springs.density", "2600 kg/m³ here",
+                         "2500 kg/m³ at", "grains.csv:2")
+
+    def test_a_periodic_packing_is_no_start_of_a_run(self):
+        _, out = self.pack(JAMMED, "--set", "packing.grains=40")
+        self.check_error(equidem("run", self.run_of_grains(out), "--set", "grains.density=2500"), 2, "periodic cell",
+                         'sides = "walls"')
+
     def test_steps_and_time_of_falling_are_estimated_before_they_are_taken(self):
         for case, falling in ((SOIL, True), (PAIRS, True), (JAMMED, False)):
             with self.subTest(case=case.name):
@@ -210,8 +260,8 @@ class CommandLine(PackTest):
         self.check_error(equidem("pack", JAMMED, "--out", out), 2, "exists")
 
     def test_a_packing_that_is_impossible_in_its_box_is_told_before_it_is_tried(self):
-        for sides, box, words in (("periodic", "[0.03, 0.5]", ("packing.box", "two of them side by side", "0.0404 m or more")),
-                                  ("walls", "[0.015, 0.5]", ("packing.box", "does not fit in", "0.0202 m or more")),
+        for sides, box, words in (("periodic", "[0.03, 0.5]", ("packing.box", "two of them side by side", "at least 0.0404 m")),
+                                  ("walls", "[0.015, 0.5]", ("packing.box", "does not fit in", "at least 0.0202 m")),
                                   ("walls", "[0.1, 0.1]", ("packing.box", "times the area of the box"))):
             with self.subTest(sides=sides, box=box):
                 options = ("--set", f"packing.sides={sides}", "--set", f"packing.box={box}", "--set",
@@ -224,7 +274,8 @@ class CommandLine(PackTest):
     def test_a_dry_run_tells_the_time_of_every_method(self):
         for case, options in ((JAMMED, ()), (SOIL, ("--set", "packing.grains=100")),
                               (JAMMED, ("--set", "packing.method=rejection", "--set", "packing.solid_fraction=0.4",
-                                        "--set", "packing.box=none"))):
+                                        "--set", "packing.box=none")),
+                              (CASES / "sandstone" / "rock.toml", ())):
             with self.subTest(options=options):
                 size = parse_json(self.check_done(equidem("pack", case, *options, "--dry-run", "--json", "-")).stdout)
                 self.assertGreater(size["estimated_seconds"], 0)

@@ -177,6 +177,14 @@ class Solve(ProgramTest):
                 self.assertGreater(size["estimated_seconds"], 0)
                 self.assertIn("with these threads", size["report"])
 
+    def test_a_dry_run_says_where_the_memory_does_not_suffice(self):
+        limited = ("--set", "solver.memory_limit=1e5", "--dry-run")
+        size = parse_json(self.check_done(equidem("solve", TENSION, *limited, "--json", "-")).stdout)
+        self.assertIn("would be refused", size["report"])
+        self.assertIn("memory_limit", size["refusal"])
+        self.check_error(equidem("solve", TENSION, *limited[:2]), 1, "are allowed by memory_limit")
+        self.assertIsNone(parse_json(self.check_done(equidem("solve", TENSION, "--dry-run", "--json", "-")).stdout)["refusal"])
+
     def test_a_table_or_an_assembly_in_place_of_a_case_is_recognised(self):
         self.check_error(equidem("solve", CASES / "pack_graded.csv"), 2, "this is a CSV table, not a case file")
         self.check_error(equidem("solve", CASES / "truss.json"), 2, "this is JSON, not a case file", '[assembly]')

@@ -313,6 +313,31 @@ frame_interval = 1e-30
         first = self.run_case(CORNER, "--out", out)
         self.assertEqual(self.run_case(out / "case.toml")["energy"], first["energy"])
 
+    def test_a_dry_run_of_a_relaxation_tells_its_steps_within_a_factor_of_two(self):
+        for options in ((), ("--set", "run.motion=finite"), ("--set", "assembly.rows=9", "--set", "run.until_rest=1e-6")):
+            with self.subTest(options=options):
+                expected = self.run_case(REST, "--dry-run", *options)
+                steps = self.run_case(REST, *options)["steps"]
+                self.assertGreater(expected["estimated_seconds"], 0)
+                self.assertLess(0.5, expected["estimated_steps"] / steps)
+                self.assertLess(expected["estimated_steps"] / steps, 2)
+
+    def test_contacts_that_hardly_deform_are_questioned(self):
+        for options in ((REST,), (PULSE, "--set", "run.duration=1e-4")):
+            report = self.run_case(*options)["report"]
+            self.assertIn("contacts change by at most", report)
+            self.assertNotIn("other units", report)
+        self.assertIn("other units", self.run_case(REST, "--set", "assembly.radius=5.0", "--set", "test.stress=1.0")["report"])
+
+    def test_a_run_that_is_interrupted_names_the_way_to_go_on(self):
+        long = ("run", PULSE, "--set", "run.duration=1000", "--set", "output.frame_interval=none", "--set",
+                "output.probe_interval=none")
+        self.assertIn("With --out DIR", self.interrupt(*long, after=0.3)[1])
+        out = self.folder / "out"
+        stderr = self.interrupt(*long, "--out", out, when=lambda: (out / "run.checkpoint.h5").exists() or out.exists(),
+                                after=0.5)[1]
+        self.assertRegex(stderr, r"\d+ of \d+ steps are done\)\. Run the same command with --resume")
+
     def test_dry_run_states_the_work_and_makes_no_file(self):
         out = self.folder / "out"
         size = self.run_case(SHAKE, "--dry-run", "--out", out)

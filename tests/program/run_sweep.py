@@ -159,6 +159,11 @@ class Sweep(ProgramTest):
                             "--dry-run")
         self.assertEqual(result["number_of_points"], 6)
         self.assertIn("6 points of ratio, assembly.rows", result["report"])
+        self.assertGreater(result["estimated_seconds_of_sweep"], result["estimated_seconds"])
+        failing = self.sweep(TENSION, "--key", "springs.kN", "--values", "-1,1e9", "--dry-run")
+        self.assertIn("2 points of springs.kN; point 2:", failing["report"])
+        self.assertIn("1 of those asked cannot be computed", failing["report"])
+        self.assertGreater(failing["estimated_seconds_of_sweep"], 0)
         self.assertGreater(result["unknowns"], 100)
 
     def test_bad_input_is_one_error(self):
@@ -228,6 +233,44 @@ class Sweep(ProgramTest):
         self.assertIn("out of range", bad["message"])
         self.assertNotIn("poisson_ratio", bad)
         self.assertEqual(good["status"], "solved")
+
+    def test_reasons_of_failures_stand_below_the_table_once_each(self):
+        done = self.check_done(equidem("sweep", CASES / "random_cell.toml", "--verb", "homogenize", *sets("assembly.discs=60"),
+                                       "--key", "springs.kN", "--values", "-1,1e9", "--seeds", "1-3"))
+        lines = done.stdout.splitlines()
+        self.assertEqual([line.split() for line in lines if "failed" in line],
+                         [["-1", "1", "failed"], ["-1", "2", "failed"], ["-1", "3", "failed"],
+                          ["failed", "3", "points;", "3", "done"]])
+        self.assertEqual(done.stdout.count("is out of range"), 1)
+        self.assertIn("points 1, 2, 3: --set springs.kN=-1", done.stdout)
+        self.assertLess(max(map(len, lines)), 115)
+
+    def test_one_value_makes_no_curve(self):
+        out = self.folder / "out"
+        self.sweep(TENSION, "--key", "ratio", "--values", "0.5", "--out", out)
+        self.sweep(TENSION, "--key", "springs.kN", "--values", "1e9,-1", "--out", self.folder / "other")
+        self.assertEqual([*out.glob("*.gp"), *(self.folder / "other").glob("*.gp")], [])
+        self.assertTrue((out / "sweep.csv").exists())
+
+    def test_a_run_shows_what_it_measures(self):
+        out = self.folder / "out"
+        rest = equidem("sweep", CASES / "run_tension.toml", "--verb", "run", "--key", "ratio", "--values", "0,0.5", "--out", out)
+        self.assertIn("E strain, Pa", self.check_done(rest).stdout)
+        self.assertTrue((out / "plane_strain_young_modulus.gp").exists())
+        solved = parse_json(self.check_done(equidem("solve", CASES / "run_tension.toml", "--json", "-")).stdout)
+        self.assertAlmostEqual(float(rows(out)[1]["plane_strain.young_modulus_Pa"]) / solved["plane_strain"]["young_modulus"],
+                               1, delta=1e-9)
+
+    def test_a_key_that_does_not_exist_is_answered_with_the_nearest(self):
+        sweep = ("sweep", CASES / "packed_rock.toml", "--verb", "homogenize", "--values", "0.1", "--key")
+        self.check_error(equidem(*sweep, "gap_tolerance"), 2, "Write packing.gap_tolerance.")
+        self.check_error(equidem(*sweep, "gap_tolerence"), 2, "Did you mean packing.gap_tolerance?")
+        self.check_error(equidem(*sweep, "ratoi"), 2, "--key ratio")
+        springs = self.folder / "springs.toml"
+        springs.write_text('schema = "equidem-springs/1"\n[springs]\nkN = 1e9\nkT = 2e8\n')
+        done = equidem("sweep", TENSION, *sets(f"springs='{springs}'"), "--key", "springs.kN", "--values", "1e9,2e9")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("varies kT/kN by --key ratio", done.stderr)
 
     def test_when_all_points_fail_so_does_the_sweep(self):
         done = equidem("sweep", TENSION, "--key", "springs.kN", "--values", "-1,-2")

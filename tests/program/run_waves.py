@@ -54,6 +54,8 @@ probe_interval = {length / speed / 400}
                 wave = self.run_case(case)["waves"]["west"]
                 self.assertEqual(wave["passages"], 6)
                 self.assertAlmostEqual(wave["speed"] / speed, 1, delta=1.5e-3)  # 2e-4 by the dispersion of its length
+                self.assertAlmostEqual(wave["theory"]["pressure" if velocity[0] else "shear"] / speed, 1, places=9)
+                self.assertAlmostEqual(wave["speed_over_theory"] * speed / wave["speed"], 1, places=9)
 
     def test_a_wave_that_is_resumed_has_the_same_speed(self):
         case, _ = self.case_of((1e-3, 0.0))

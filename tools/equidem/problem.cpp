@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "equidem/assembly/touching.hpp"
+#include "equidem/assembly/voids.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
@@ -15,6 +16,7 @@
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/material/spring_relations.hpp"
 #include "equidem/statics/solve_time.hpp"
+#include "equidem/statics/solver_choice.hpp"
 
 #include "left_out.hpp"
 
@@ -45,20 +47,6 @@ ExpectedSize expected_size(const AssemblyCase& assembly) {
       return {};
   }
   return {};
-}
-
-/// Refuses before anything is built what surely does not fit. The factor of N discs, w across the narrow side, has
-/// about c N log2(w) bytes, with c = 520 on a hexagonal lattice and 660 on Delaunay networks of 10⁵ to 10⁶ discs; half
-/// of what two unknowns a disc need is taken.
-void require_memory_for(const Case& resolved, Purpose purpose) {
-  const ExpectedSize size = expected_size(resolved.assembly);
-  if (size.discs < 1) return;
-  constexpr double factor = 100, loop = 450;  // bytes a disc
-  const double beside = purpose == Purpose::factorize ? factor * std::log2(std::max(size.narrow_side, 1.0)) : loop;
-  require_memory(
-      bytes_of_network(size.discs) + size.discs * beside,
-      fmt::format("{} of {} discs needs at least", purpose == Purpose::factorize ? "the factor of a network" : "a run",
-                  grouped(static_cast<std::int64_t>(size.discs))));
 }
 
 void add_left_out(Results& results, const LeftOut& left_out) {
@@ -94,6 +82,16 @@ void add_gaps(Results& results, const Assembly& assembly) {
       fmt::format("contacts are bonds: their discs overlap by up to {} and are up to {} apart, of the sum of "
                   "their radii. For bodies that collide take an assembly of kind = \"packing\".",
                   percent(-gaps.smallest), percent(std::max(gaps.largest, 0.0))));
+}
+
+/// Questions springs that are softer than any solid, 1e4 Pa being a gel. Assemblies of large discs may have no units.
+void question_springs(Results& results, const Assembly& assembly, const ContactSprings& springs) {
+  constexpr double soft = 1e4, large = 0.1;  // Pa, m
+  const double largest = springs.largest();
+  if (!(largest > 0 && largest < soft && assembly.mean_radius() < large)) return;
+  results.line("", fmt::format("springs of {:.3g} Pa between discs of {:.3g} m are softer than any solid: moduli or "
+                               "springs may be in MPa or GPa where Pa are meant",
+                               largest, assembly.mean_radius()));
 }
 
 /// The tables that decide the assembly, as text: all but those that surely do not. Springs move bodies that fall.
@@ -138,6 +136,19 @@ Assembly SharedAssemblies::operator()(const Case& resolved) {
 Assembly assembly_of(const Case& resolved) {
   SharedAssemblies* const shared = shared_assemblies;
   return shared != nullptr ? (*shared)(resolved) : build_assembly(resolved);
+}
+
+void require_memory_for(const Case& resolved, Purpose purpose) {
+  // The factor of N discs, w across the narrow side, has about c N log2(w) bytes, with c = 520 on a hexagonal lattice
+  // and 660 on Delaunay networks of 10⁵ to 10⁶ discs; half of what two unknowns a disc need is taken.
+  const ExpectedSize size = expected_size(resolved.assembly);
+  if (size.discs < 1) return;
+  constexpr double factor = 100, loop = 450;  // bytes a disc
+  const double beside = purpose == Purpose::factorize ? factor * std::log2(std::max(size.narrow_side, 1.0)) : loop;
+  require_memory(
+      bytes_of_network(size.discs) + size.discs * beside,
+      fmt::format("{} of {} discs needs at least", purpose == Purpose::factorize ? "the factor of a network" : "a run",
+                  grouped(static_cast<std::int64_t>(size.discs))));
 }
 
 Problem problem_of(Case resolved, Purpose purpose) {
@@ -197,6 +208,18 @@ std::optional<TensionTheory> tension_theory(const Problem& problem) {
   return lattice->tension(problem.springs.constants->ratio());
 }
 
+void add_largest_void(Results& results, const Assembly& assembly) {
+  const std::optional<EmptyCircle> found = largest_void(assembly);
+  if (!found) return;
+  const double relative = found->radius / assembly.mean_radius();
+  results.line("largest void")
+      .add("largest_void/radius", "radius", found->radius, "m", {.digits = 3})
+      .add("largest_void/over_mean_radius", "", relative, "of the mean radius", {.digits = 3})
+      .note(fmt::format(", at ({:.4g}, {:.4g}) m", found->centre.x, found->centre.y));
+  results.set("largest_void/centre", found->centre);
+  if (relative > 1) results.line("", "a hole that would hold another disc: moduli and speeds of such packings scatter");
+}
+
 ResultValue known(std::int64_t count) {
   return count < 0 ? ResultValue(nullptr) : ResultValue(count);
 }
@@ -228,9 +251,13 @@ Results problem_results(const Problem& problem, const Effects& effects, Assembly
                  "outlines of the bodies are not known.");
   }
   add_found_contacts(results, a);
+  constexpr std::size_t most_discs = 200000;  // beyond them the void costs as much as the solution
+  if (problem.resolved.assembly.kind == AssemblyKind::packing && a.sections.empty() && a.size() <= most_discs)
+    add_largest_void(results, a);
   add_gaps(results, a);
   add_left_out(results, problem.left_out);
   results.line("springs", problem.springs.report);
+  question_springs(results, a, problem.springs.springs);
   if (problem.springs.constants && keys == AssemblyKeys::all)
     results.set("kN", problem.springs.constants->kN).set("kT", problem.springs.constants->kT);
   add_effects(results, effects);
@@ -239,17 +266,30 @@ Results problem_results(const Problem& problem, const Effects& effects, Assembly
 
 namespace {
 
+/// Says whether the computation would be refused. \param memory_limit bytes; 0: what is available
+void add_memory_check(Results& results, const SolveEstimate& estimate, double memory_limit) {
+  try {
+    check_memory(estimate, memory_limit);
+    results.set("refusal", nullptr);
+  } catch (const Error& error) {
+    results.set("refusal", error.what()).line("", fmt::format("The computation would be refused: {}", error.what()));
+  }
+}
+
 /// \param before s of what the dry run has done already: the assembly
-Results estimate_results(const SolveEstimate& e, double solutions, double before) {
+/// \param memory_limit bytes; 0: what is available
+Results estimate_results(const SolveEstimate& e, double solutions, double before, double memory_limit) {
   Results results;
   results.line("unknowns").add("unknowns", "", e.unknowns, "", {Shown::count});
   results.line("memory").add("peak_bytes", "", e.peak_bytes, "at the peak", {Shown::bytes});
   if (e.factor_nonzeros == 0 && e.unknowns > 0) {
+    add_memory_check(results, e, memory_limit);
     results.line("time", "not predicted: the number of iterations is not known beforehand");
     return results.block("nothing was solved (--dry-run)\n");
   }
   results.add("factor_bytes", "", e.factor_bytes, "of it for the factor", {Shown::bytes})
       .add("factor_nonzeros", "", e.factor_nonzeros, "entries in the factor", {.digits = 3});
+  add_memory_check(results, e, memory_limit);
   results.line("work").add("operations", "", e.operations, "multiplications and additions to factorize", {.digits = 3});
   const double seconds = before + solutions * estimate_seconds(e, measure_solve_rates(), thread_count());
   results.line("time").add("estimated_seconds", "about", seconds, "s with these threads, mostly within a factor of two",
@@ -265,7 +305,7 @@ Results dry_run_results(const Problem& problem, double solutions, const Results&
       estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options());
   return problem_results(problem, effects, keys)
       .append(further)
-      .append(estimate_results(estimate, solutions, problem.times.total()));
+      .append(estimate_results(estimate, solutions, problem.times.total(), problem.resolved.solver.memory_limit));
 }
 
 Results moduli_results(const EffectiveModuli& m, const std::string& name, bool of_solid) {

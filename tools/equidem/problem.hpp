@@ -79,6 +79,10 @@ Assembly assembly_of(const Case& resolved);
 /// \throws Error (bad_input) as build_assembly and build_springs; (computation_failed) where memory would not suffice
 Problem problem_of(Case resolved, Purpose purpose = Purpose::factorize);
 
+/// Refuses before anything is built what surely does not fit; nothing where the size of the assembly is not known yet.
+/// \throws Error (computation_failed)
+void require_memory_for(const Case& resolved, Purpose purpose);
+
 /// Whether the case has supports or loads, those of a tension test among them.
 bool acts(const Case& resolved);
 
@@ -120,6 +124,9 @@ enum class AssemblyKeys {
 };
 /// Title, assembly, springs, effects.
 Results problem_results(const Problem& problem, const Effects& effects, AssemblyKeys keys = AssemblyKeys::all);
+
+/// The largest circle that no disc reaches into; nothing where there is none.
+void add_largest_void(Results& results, const Assembly& assembly);
 
 /// The problem, further results, size, memory and work of a factorization, and the time of all, for --dry-run.
 /// \param solutions factorizations with the solution of a load case each

@@ -201,6 +201,11 @@ std::string suggested_tolerance(std::span<const BondCount> counts, double tolera
                      counted(best->contacts, "contact"), best->coordination);
 }
 
+std::string how_to_add_contacts(const Assembly& assembly) {
+  if (!assembly.gap_tolerance) return "add contacts";
+  return fmt::format("add contacts by a gap_tolerance above {:g}", *assembly.gap_tolerance);
+}
+
 void check_found_contacts(const Assembly& assembly) {
   if (!assembly.gap_tolerance) return;
   // The edges of a triangulation of many points in the plane: six of each.

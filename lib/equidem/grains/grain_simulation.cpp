@@ -264,6 +264,8 @@ std::vector<BodyContact> GrainSimulation::body_contacts() const {
                       .normal_force = c.normal_force,
                       .tangential_force = c.tangential_force});
   }
+  const std::vector<BodyContact> bonds = contacts_of_bonds(implementation_->system);
+  result.insert(result.end(), bonds.begin(), bonds.end());
   return result;
 }
 

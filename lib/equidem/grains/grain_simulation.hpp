@@ -71,6 +71,7 @@ class GrainSimulation final : public AnySimulation {
   [[nodiscard]] std::int64_t step() const override;
   [[nodiscard]] std::vector<DiscMotion> motions() const override;
   [[nodiscard]] std::vector<DiscMotion> velocities() const override;
+  /// Contacts of the last step, then bonds (contacts_of_bonds), each ordered by (i, j).
   [[nodiscard]] std::vector<BodyContact> body_contacts() const override;
   [[nodiscard]] EnergyLedger energy() const override;
   [[nodiscard]] double bytes_per_body() const override;

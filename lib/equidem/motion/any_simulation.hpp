@@ -32,7 +32,8 @@ class AnySimulation {
   [[nodiscard]] virtual std::vector<DiscMotion> motions() const = 0;
   [[nodiscard]] virtual std::vector<DiscMotion> velocities() const = 0;  ///< m/s, rad/s
   /// Contacts with their forces. Bonded discs: all bonds, then walls that push; forces of springs at motions(), without
-  /// dashpots. Colliding bodies: the contacts that were closed at the end of the last step, mean forces over it.
+  /// dashpots. Colliding bodies: the contacts that were closed at the end of the last step, mean forces over it; then
+  /// bonds.
   [[nodiscard]] virtual std::vector<BodyContact> body_contacts() const = 0;
   [[nodiscard]] virtual EnergyLedger energy() const = 0;
   /// Bytes of all arrays of the loop, per body.

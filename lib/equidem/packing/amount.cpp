@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
@@ -11,6 +12,26 @@
 
 namespace equidem {
 namespace {
+
+/// Those of grains and box that are not given.
+std::vector<std::string> missing_amounts(const PackingAmount& amount) {
+  std::vector<std::string> missing;
+  if (!amount.grains) missing.emplace_back("grains");
+  if (!amount.box) missing.emplace_back("box");
+  return missing;
+}
+
+/// Says that sizes and box do not fit together, and that one of them is probably in mm.
+[[noreturn]] void refuse_number(double wanted, Vec2 box, double diameter) {
+  constexpr double few = 1, many = 1e7;
+  const std::string number = wanted < few ? "less than one body" : fmt::format("{:.3g} bodies", wanted);
+  bad_input_at("box",
+               fmt::format("{} of {:.3g} m in diameter would fill the box of {:.4g} m by {:.4g} m", number, diameter,
+                           box.x, box.y),
+               fmt::format("they are {} to {}", few, many),
+               fmt::format("Change the box or the radii: all lengths are in m, and {} may be in mm",
+                           wanted < few ? "the radii or sieves" : "the box"));
+}
 
 void check(const PackingAmount& amount, const PackingOptions& options) {
   const bool falls = entry_of(options.method).open_top, dense = options.as_dense_as_possible;
@@ -28,6 +49,11 @@ void check(const PackingAmount& amount, const PackingOptions& options) {
   if (given > 2)
     bad_input("grains, box and solid_fraction are all given",
               falls || dense ? "grains and box give the amount" : "two of them give the third", "Remove one of them");
+  if (given < 2 && dense)
+    bad_input_at("solid_fraction",
+                 fmt::format("solid_fraction = \"auto\" without {}", listed(missing_amounts(amount), " and ")),
+                 "as dense as the method gets is no amount: grains and box give it",
+                 "Add them, or give solid_fraction a number");
   if (given < 2)
     bad_input("the amount to pack is missing",
               falls || dense ? "grains and box give it" : "two of grains, box and solid_fraction give it",
@@ -47,8 +73,7 @@ void set_amount(const PackingAmount& amount, const SizeDistribution& sizes, Pack
     const double mean_area = unit_body_of(options.shape).area * moments_of(sizes).mean_square;
     const double wanted = std::round(*amount.solid_fraction * options.box.area() / mean_area);
     if (!(wanted >= 1 && wanted <= 1e7))
-      bad_input_at("box", fmt::format("{:.3g} bodies would fill the box", wanted), "they are 1 to 1e7",
-                   "Change the box or the radii");
+      refuse_number(wanted, options.box.size, 2 * std::sqrt(moments_of(sizes).mean_square));
     count = static_cast<std::int64_t>(wanted);
   }
   options.radii = draw_radii(sizes, count, random);

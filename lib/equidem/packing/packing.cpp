@@ -14,6 +14,25 @@
 
 namespace equidem {
 
+/// \param width of the widest body, m \param least m, that a side of the box needs
+[[noreturn]] static void refuse_narrow_box(const PackingOptions& options, const std::string& noun, double width,
+                                           double least) {
+  constexpr double margin = 1.01, other_unit = 10;  // of the needed side, since radii are drawn; over the side
+  const PackingBox& box = options.box;
+  const bool open = box.sides == PackingBox::Sides::open_top;
+  const double side = open ? box.size.x : std::min(box.size.x, box.size.y);
+  bad_input_at(
+      "box",
+      fmt::format("the largest {} is {:.4g} m wide, the box {:.4g} m by {:.4g} m", noun, width, box.size.x, box.size.y),
+      box.periodic() ? "a period holds two of them side by side, so that none meets two images of another"
+                     : "it does not fit in",
+      width > other_unit * side
+          ? std::string("Give all lengths in m: radii or sieves may be in mm")
+          : fmt::format("Make {} at least {:.3g} m, by more bodies where the box follows from their number; or take "
+                        "smaller bodies",
+                        open ? "the width" : "both sides", margin * least));
+}
+
 void check(const PackingOptions& options) {
   const bool falls = entry_of(options.method).open_top;
   const UnitBody shape = unit_body_of(options.shape);
@@ -41,15 +60,7 @@ void check(const PackingOptions& options) {
   }
   const double width = 2 * shape.reach * largest, least = box.periodic() ? 2 * width : width;
   if (least > (falls ? box.size.x : std::min(box.size.x, box.size.y))) {
-    bad_input_at(
-        "box",
-        fmt::format("the largest {} is {:.4g} m wide, the box {:.4g} m by {:.4g} m", noun, width, box.size.x,
-                    box.size.y),
-        box.periodic() ? "a period holds two of them side by side, so that none meets two images of another"
-                       : "it does not fit in",
-        fmt::format("Give {} {:.3g} m or more (a box that follows from the number of bodies: by more of them), or take "
-                    "smaller bodies",
-                    falls ? "the width" : "both sides", 1.01 * least));
+    refuse_narrow_box(options, noun, width, least);
   }
   const double share = area_of(options.shape, options.radii) / box.area();
   if (!falls && !options.as_dense_as_possible && share >= 1) {

@@ -113,6 +113,14 @@ void check(const SizeDistribution& sizes) {
       break;
   }
   const auto& sieves = sizes.sieves;
+  if (sieves.size() >= 2 && sieves.front().passing > sieves.back().passing) {
+    bad_input("the sieve curve descends", "it begins with the smallest diameter, which nothing passes",
+              "Write its rows in the opposite order");
+  }
+  if (sieves.size() >= 2 && sieves.front().passing == 0 && sieves.back().passing == 100) {
+    bad_input("the sieve curve runs to 100", "what passes is a share of the mass, from 0 to 1, not in %",
+              "Divide it by 100");
+  }
   if (sieves.size() < 2 || sieves.front().passing != 0 || sieves.back().passing != 1) {
     bad_input("the sieve curve does not run from 0 to 1", "all of the mass lies between its first and last diameter",
               "Begin with a share of 0 and end with 1");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "equidem/assembly/touching.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
@@ -155,9 +156,10 @@ void EquilibriumSolver::Implementation::check_mechanisms(const RightHandSide& gi
   };
   if (result.mechanisms > 0) result.first_mechanism = description(0);
   if (result.mechanisms > most) {
-    bad_input(fmt::format("the assembly is floppy: it has {} mechanisms", result.mechanisms),
-              fmt::format("it can move at no cost: {}", result.first_mechanism),
-              "Add contacts, or give the contacts tangential springs (kT > 0)");
+    bad_input(
+        fmt::format("the assembly is floppy: it has {} mechanisms", result.mechanisms),
+        fmt::format("it can move at no cost: {}", result.first_mechanism),
+        fmt::format("To hold it {}, or give the contacts tangential springs (kT > 0)", how_to_add_contacts(assembly)));
   }
   for (std::int64_t k = 0; k < result.mechanisms; ++k) {
     const std::vector<double> motion = solver.factor().null_motion(k);
@@ -168,7 +170,8 @@ void EquilibriumSolver::Implementation::check_mechanisms(const RightHandSide& gi
     }
     if (std::abs(work) <= negligible * size) continue;
     bad_input("a load drives a mechanism", fmt::format("it moves the assembly at no cost: {}", description(k)),
-              "Hold that motion by a support, add contacts, or take the load off those discs");
+              fmt::format("Hold that motion by a support, {}, or take the load off those discs",
+                          how_to_add_contacts(assembly)));
   }
 }
 

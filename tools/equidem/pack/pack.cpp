@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <optional>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -32,14 +33,16 @@ void check_outputs(const CommonOptions& common, const PackCase& resolved) {
   if (resolved.picture) plan.expect("picture.png");
 }
 
-/// \param density kg/m³, of the bodies
+/// \param density kg/m³, of the bodies; not written where the case leaves it open
 void write_files(const CommonOptions& common, const PackCase& resolved, const GrainPacking& packing,
                  const Assembly& network, double density) {
   const auto& folder = *common.out;
   if (resolved.csv) {
     const std::vector<std::string> groups(packing.grains.size(), "grains");
-    const std::vector<double> densities(packing.grains.size(), density);
-    write_grain_csv(folder / "grains.csv", {packing.grains, packing.clumps, groups, densities}, common.overwrite);
+    const std::vector<double> densities(resolved.has_density() ? packing.grains.size() : 0, density);
+    const auto period = packing.box.periodic() ? std::optional(packing.box.size) : std::nullopt;
+    write_grain_csv(folder / "grains.csv", {packing.grains, packing.clumps, groups, densities, period},
+                    common.overwrite);
     if (!packing.bonds.empty()) write_bond_csv(folder / "bonds.csv", packing.bonds, {}, common.overwrite);
   }
   write_assembly(folder / "assembly.json", network, common.overwrite);

@@ -8,6 +8,7 @@
 #include "equidem/casefile/engine/keys.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
 
 #include "command.hpp"
 #include "run/run_accuracy.hpp"
@@ -39,8 +40,16 @@ void check_outputs(const RunVerb& options, const RunJob& job) {
 bool step_through(const RunVerb& options, RunJob& job, StepSearch* search = nullptr) {
   const CommonOptions& common = options.common;
   const RunPlan plan = job.plan();
-  const RunResult result = run_through(job.simulation(), plan,
-                                       {.folder = common.out, .overwrite = common.overwrite, .resume = options.resume});
+  const RunResult result = [&] {
+    try {
+      return run_through(job.simulation(), plan,
+                         {.folder = common.out, .overwrite = common.overwrite, .resume = options.resume});
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::interrupted) throw;
+      throw_stopped(common, fmt::format("{} of {} steps are done", job.simulation().step(), plan.steps),
+                    "Run the same command with --resume to do the rest");
+    }
+  }();
   if (search != nullptr && !search->accepts(StepSearch::values_of(job.simulation().motions()), result.seconds))
     return false;
   StageTimes times = job.times();

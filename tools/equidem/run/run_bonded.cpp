@@ -12,7 +12,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/dynamics/relaxation.hpp"
+#include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/checkpoint.hpp"
 #include "equidem/output/files/vtk.hpp"
@@ -20,6 +20,7 @@
 
 #include "run/run_case_text.hpp"
 #include "run/run_results.hpp"
+#include "solve/solve_results.hpp"
 
 namespace equidem {
 namespace {
@@ -146,10 +147,11 @@ Simulation simulation_of(const Problem& problem, const Scene& scene, const Simul
   }
 }
 
-/// Contact forces of small motions, for pictures.
-std::vector<ContactForce> forces_of(const Scene& scene, const std::vector<DiscMotion>& motions) {
+/// Forces of the contacts between discs.
+std::vector<ContactForce> forces_of(const Scene& scene, LoopKind::Motion motion,
+                                    const std::vector<DiscMotion>& motions) {
   std::vector<ContactForce> forces;
-  for (const BodyContact& contact : bonded_contacts(scene, LoopKind::Motion::small, motions, 0))
+  for (const BodyContact& contact : bonded_contacts(scene, motion, motions, 0))
     if (contact.j >= 0) forces.push_back({contact.normal_force, contact.tangential_force});
   return forces;
 }
@@ -236,7 +238,7 @@ void BondedRun::write_state(const std::filesystem::path& folder, const std::vect
                             bool overwrite) const {
   const OutputCase& output = problem_.resolved.output;
   std::vector<ContactForce> forces;
-  if (run().motion == LoopKind::Motion::small) forces = forces_of(scene_, motions);
+  if (run().motion == LoopKind::Motion::small) forces = forces_of(scene_, LoopKind::Motion::small, motions);
   const AssemblyState state{
       .assembly = problem_.assembly, .motions = motions, .contact_forces = forces, .stresses = {}};
   if (output.csv) write_disc_csv(folder / "discs.csv", state, overwrite);
@@ -261,17 +263,63 @@ void BondedRun::write_files(const std::filesystem::path& folder, const RunResult
   write_energy_plot(folder, "energy", problem_.resolved.title, Body::disc, result.record.energies, curves, overwrite);
 }
 
+RelaxationOptions BondedRun::relaxation_options() const {
+  return {.motion = run().motion, .rotation = problem_.resolved.rotation, .tolerance = *run().until_rest};
+}
+
+Results BondedRun::estimate_of_relaxation() const {
+  const RelaxationEstimate estimate = estimate_relaxation(scene_, relaxation_options());
+  return Results()
+      .line("steps")
+      .add("estimated_steps", "about", static_cast<std::int64_t>(estimate.steps), "", {Shown::count})
+      .note(" of conjugate gradients, several times as many where bodies hang on few contacts; ")
+      .add("estimated_seconds", "about", estimate.seconds, "s", {.digits = 2});
+}
+
 Results BondedRun::relax(StageTimes& times) {
   Stopwatch watch;
-  Relaxation rest = equidem::relax(
-      scene_, {.motion = run().motion, .rotation = problem_.resolved.rotation, .tolerance = *run().until_rest});
+  Relaxation rest = equidem::relax(scene_, relaxation_options());
   times.add("relaxation", watch.lap());
   at_rest_ = std::move(rest.motions);
-  return scene()
-      .line("rest", rest.report())
-      .set("steps", rest.steps)
-      .set("force_evaluations", rest.evaluations)
-      .set("relative_unbalanced_force", rest.relative_unbalanced);
+  Results out = scene()
+                    .line("rest", rest.report())
+                    .set("steps", rest.steps)
+                    .set("force_evaluations", rest.evaluations)
+                    .set("relative_unbalanced_force", rest.relative_unbalanced);
+  add_deformation(out, problem_, forces_of(scene_, run().motion, at_rest_), run().motion == LoopKind::Motion::small);
+  if (const std::optional<TensionTest>& test = problem_.resolved.test) {
+    problem_.tension = tension_setup(problem_.assembly, *test);
+    Equilibrium reached;
+    reached.motions = at_rest_;
+    out.append(tension_results(
+        problem_, evaluate_tension(problem_.assembly, problem_.springs.springs, *test, *problem_.tension, reached)));
+  }
+  return out;
+}
+
+Results BondedRun::events() const {
+  Results out = waves_.results(stiffness_of_waves());
+  add_deformation(out, problem_, forces_of(scene_, run().motion, simulation_.motions()),
+                  run().motion == LoopKind::Motion::small);
+  return out;
+}
+
+std::optional<WaveStiffness> BondedRun::stiffness_of_waves() const {
+  constexpr std::size_t most_discs = 200000;  // more take longer to homogenize than most runs
+  const Assembly& assembly = problem_.assembly;
+  if (waves_.empty() || !assembly.periodic() || assembly.size() > most_discs || simulation_.effects().restrained)
+    return std::nullopt;
+  double mass = 0;
+  for (const Inertia& inertia : scene_.inertia) mass += inertia.mass;
+  try {
+    const EffectiveStiffness effective =
+        effective_stiffness(assembly, problem_.springs.springs,
+                            {.rotation = problem_.resolved.rotation, .solver = problem_.resolved.solver});
+    return WaveStiffness{effective.stiffness, mass / assembly.area()};
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    return std::nullopt;
+  }
 }
 
 }  // namespace equidem

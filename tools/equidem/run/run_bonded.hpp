@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "equidem/dynamics/relaxation.hpp"
 #include "equidem/dynamics/simulation.hpp"
 #include "equidem/dynamics/time_step.hpp"
 #include "equidem/dynamics/watch.hpp"
@@ -53,16 +54,20 @@ class BondedRun final : public RunJob {
   [[nodiscard]] StageTimes times() const override { return problem_.times; }
   [[nodiscard]] Results scene() const override;
   [[nodiscard]] Results step() const override;
-  [[nodiscard]] Results events() const override { return waves_.results(); }
+  [[nodiscard]] Results events() const override;
   [[nodiscard]] Results advice(const Balance& balance) const override;
   void write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const override;
   [[nodiscard]] bool goes_to_rest() const override { return run().until_rest.has_value(); }
+  [[nodiscard]] Results estimate_of_relaxation() const override;
   Results relax(StageTimes& times) override;
 
  private:
   /// The case text in a checkpoint: all data that affect the motion, including files that it names, without how long it
   /// lasts and what is written.
   [[nodiscard]] std::string fingerprint() const;
+  [[nodiscard]] RelaxationOptions relaxation_options() const;
+  /// None without waves, and where the cell has no stiffness or is too large to be homogenized beside a run.
+  [[nodiscard]] std::optional<WaveStiffness> stiffness_of_waves() const;
   void write_state(const std::filesystem::path& folder, const std::vector<DiscMotion>& motions, bool overwrite) const;
 
   Problem problem_;

@@ -46,6 +46,8 @@ class RunJob {
 
   /// Whether the case asks for relaxation in place of steps.
   [[nodiscard]] virtual bool goes_to_rest() const { return false; }
+  /// The steps and the time that relax() is expected to take.
+  [[nodiscard]] virtual Results estimate_of_relaxation() const { return {}; }
   /// Relax the scene to rest, the state that write_files() then writes.
   virtual Results relax(StageTimes& /*times*/) { return {}; }
 };

@@ -94,7 +94,7 @@ Results step_results(RunJob& job, const RunPlan& plan) {
 Results dry_run_results(RunJob& job) {
   const RunPlan plan = job.plan();
   Results out = job.scene();
-  if (plan.steps == 0) return out.append(memory_results(job));
+  if (job.goes_to_rest()) return out.append(memory_results(job)).append(job.estimate_of_relaxation());
   out.append(step_results(job, plan));
   if (plan.frame_interval) {
     const double steps = static_cast<double>(plan.steps);

@@ -17,6 +17,23 @@ Vec2 mean_velocity(const std::vector<DiscMotion>& velocities, const std::vector<
   return sum / static_cast<double>(bodies.size());
 }
 
+/// Speeds of the plane waves along x and y whose bodies move along a component, beside a measured one. The stiffness is
+/// that of long waves: c² = C_11/rho of the P wave along x, C_22/rho along y, C_33/rho of S waves.
+void add_theory(Results& out, const std::string& key, double speed, bool along_x, const WaveStiffness& wave) {
+  const double stiffness = wave.stiffness[along_x ? 0 : 1][along_x ? 0 : 1];
+  const double pressure = std::sqrt(stiffness / wave.density), shear = std::sqrt(wave.stiffness[2][2] / wave.density);
+  if (!(pressure > 0 && shear >= 0)) return;
+  const bool is_pressure = std::abs(speed - pressure) <= std::abs(speed - shear);
+  const double theory = is_pressure ? pressure : shear;
+  out.line("")
+      .note("long waves by the stiffness of the cell: ")
+      .add(key + "theory/pressure", fmt::format("Vp along {} =", along_x ? 'x' : 'y'), pressure, "m/s")
+      .add(key + "theory/shear", "Vs =", shear, "m/s")
+      .note("; ")
+      .add(key + "speed_over_theory", "measured", speed / theory, is_pressure ? "of Vp" : "of Vs");
+  out.set(key + "theory/speed", theory);
+}
+
 }  // namespace
 
 StandingWaves::StandingWaves(const AnySimulation& simulation, const std::vector<Probe>& probes)
@@ -59,7 +76,7 @@ void StandingWaves::save(Checkpoint& checkpoint) {
   checkpoint.record.recorded.push_back(std::move(saved));
 }
 
-Results StandingWaves::results() const {
+Results StandingWaves::results(const std::optional<WaveStiffness>& stiffness) const {
   Results out;
   for (const Wave& wave : waves_) {
     const std::string key = fmt::format("waves/{}/", wave.probe.name);
@@ -81,6 +98,7 @@ Results StandingWaves::results() const {
              {Shown::percent, 2})
         .note(")");
     out.set(key + "passages", wave.oscillation.passages());
+    if (stiffness) add_theory(out, key, *wave.probe.wavelength / *period, wave.component == Component::x, *stiffness);
   }
   return out;
 }

@@ -6,14 +6,22 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
+#include "equidem/core/matrix.hpp"
 #include "equidem/motion/oscillation.hpp"
 #include "equidem/motion/probe.hpp"
 #include "equidem/output/results.hpp"
 #include "equidem/output/run/run_loop.hpp"
 
 namespace equidem {
+
+/// The continuum that a periodic cell stands for.
+struct WaveStiffness {
+  Matrix3 stiffness{};  ///< Pa, Voigt
+  double density = 0;   ///< kg/m³, of the continuum
+};
 
 class StandingWaves final : public RunRecorder {
  public:
@@ -22,7 +30,8 @@ class StandingWaves final : public RunRecorder {
 
   [[nodiscard]] bool empty() const { return waves_.empty(); }
   /// For each wave the period and the speed, wavelength over period; why not, where it did not oscillate.
-  [[nodiscard]] Results results() const;
+  /// \param stiffness of the cell, for the speeds of theory beside the measured ones; may be none
+  [[nodiscard]] Results results(const std::optional<WaveStiffness>& stiffness) const;
 
   void open(const std::filesystem::path& folder, bool overwrite, const Checkpoint* from) override;
   [[nodiscard]] std::int64_t last_step() const override { return last_step_; }

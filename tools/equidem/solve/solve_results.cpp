@@ -53,70 +53,6 @@ void add_stress(Results& out, const Problem& problem, const SolvedCase& result) 
       .add("moment_per_area", "", result.moment_per_area, "N m per m²");
 }
 
-void add_tension(Results& out, const Problem& problem, const SolvedCase& result) {
-  const TensionResult& t = *result.tension;
-  const TensionSetup& setup = *problem.tension;
-  const auto theory = tension_theory(problem);
-  const TomlValue& test = *problem.resolved.document.find("test");
-  const auto discs = [](const StrainGauge& gauge) { return std::vector<std::int64_t>{gauge.first, gauge.second}; };
-  out.line("tension test")
-      .add("", "s11 =", t.stress.xx, "Pa")
-      .add("height", "height", setup.height, "m")
-      .note(fmt::format(", gauge \"{}\": discs {}-{} along x, {}-{} along y", test.find("gauge")->text,
-                        setup.horizontal.first, setup.horizontal.second, setup.vertical.first, setup.vertical.second));
-  out.set("gauge/placement", to_string(problem.resolved.test->gauge));
-  out.set("gauge/horizontal", discs(setup.horizontal)).set("gauge/vertical", discs(setup.vertical));
-  out.set("strain", t.strain).set("stress", t.stress).set("displacement_gradient", t.fitted_gradient);
-  out.line("  strain")
-      .add("", "e11 =", t.strain.xx, "", {.digits = 9})
-      .add("", "e22 =", t.strain.yy, "", {.digits = 9});
-  const auto compare = [&](const std::string& key, const std::string& name, double value, double expected) {
-    out.line("  " + name).add(key, "", value, "", {.digits = 9});
-    if (!theory) return;
-    out.add("theory/" + key, "theory", expected, "", {.digits = 9})
-        .add("", "difference", value - expected, "", {Shown::power, 2});
-  };
-  compare("poisson_ratio", "nu, (35)", t.poisson_ratio, theory ? theory->poisson_ratio : 0);
-  compare("stiffness_ratio", "2G/((1-nu)kN)", t.stiffness_ratio, theory ? theory->stiffness_ratio : 0);
-  // e11 = s11/E in plane stress, (1 - nu²) s11/E in plane strain
-  const double nu = t.poisson_ratio, fitted = t.fitted_poisson_ratio, young = t.stress.xx / t.strain.xx;
-  out.line("  plane strain")
-      .add("plane_strain/poisson_ratio", "nu =", nu, "", {.digits = 9})
-      .add("plane_strain/young_modulus", "E =", (1 - nu * nu) * young, "Pa", {.digits = 9});
-  out.line("  plane stress")
-      .add("plane_stress/poisson_ratio", "nu =", nu / (1 - nu), "", {.digits = 9})
-      .add("plane_stress/young_modulus", "E =", young, "Pa", {.digits = 9});
-  out.line("  whole field")
-      .add("fitted_poisson_ratio", "nu =", t.fitted_poisson_ratio, "", {.digits = 9})
-      .add("fitted_young_modulus", "E =", (1 - fitted * fitted) * t.stress.xx / t.fitted_gradient.xx, "Pa",
-           {.digits = 9})
-      .note(" in plane strain, fitted to the inner half of the block");
-}
-
-/// How much contacts deform, relative to the sum of their radii: forces over kN. Small motions are assumed.
-void add_deformation(Results& out, const Problem& problem, const SolvedCase& result) {
-  constexpr double large = 0.05, doubtful = 1e-9;
-  const Assembly& assembly = problem.assembly;
-  double most = 0, largest_radius = 0;
-  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
-    const Contact& contact = assembly.contacts[c];
-    const double kN = problem.springs.springs[c].kN;
-    if (kN == 0) continue;
-    const double radii = assembly.radii[contact.i] + assembly.radii[contact.j];
-    most = std::max(most, std::abs(result.equilibrium.contact_forces[c].normal / kN) / radii);
-  }
-  for (const double radius : assembly.radii) largest_radius = std::max(largest_radius, radius);
-  out.line("deformation")
-      .add("largest_deformation", "contacts change by at most", most, "of the sum of their radii", {.digits = 3});
-  if (most > large) {
-    out.note(": much, for the motions are taken as small");
-  } else if (most > 0 && most < doubtful) {
-    out.note(fmt::format(
-        ": very little. Radii (up to {:.3g} m), springs (Pa) and loads (N/m, Pa) may be in other units than meant",
-        largest_radius));
-  }
-}
-
 /// The factorization, which all load cases share.
 Results solver_results(const Problem& problem, const Equilibrium& e) {
   Results out;
@@ -161,14 +97,78 @@ Results load_case_results(const Problem& problem, const SolvedCase& result, bool
   constexpr double doubtful = 1e-10;
   if (e.relative_residual > doubtful)
     out.line("", "WARNING: K is nearly singular; do not trust more digits than the residual leaves");
-  add_deformation(out, problem, result);
+  add_deformation(out, problem, e.contact_forces);
   out.line("energy").add("energy", "", e.energy, "N (J per m of depth, per m)");
   add_stress(out, problem, result);
-  if (result.tension) add_tension(out, problem, result);
+  if (result.tension) out.append(tension_results(problem, *result.tension));
   return out;
 }
 
 }  // namespace
+
+void add_deformation(Results& out, const Problem& problem, std::span<const ContactForce> forces, bool small_motions) {
+  constexpr double large = 0.05, doubtful = 1e-9;
+  const Assembly& assembly = problem.assembly;
+  double most = 0, largest_radius = 0;
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    const Contact& contact = assembly.contacts[c];
+    const double kN = problem.springs.springs[c].kN;
+    if (kN == 0) continue;
+    const double radii = assembly.radii[contact.i] + assembly.radii[contact.j];
+    most = std::max(most, std::abs(forces[c].normal / kN) / radii);
+  }
+  for (const double radius : assembly.radii) largest_radius = std::max(largest_radius, radius);
+  out.line("deformation")
+      .add("largest_deformation", "contacts change by at most", most, "of the sum of their radii", {.digits = 3});
+  if (most > large && small_motions) {
+    out.note(": much, for the motions are taken as small");
+  } else if (most > 0 && most < doubtful) {
+    out.note(fmt::format(
+        ": very little. Radii (up to {:.3g} m), springs (Pa) and loads (N/m, Pa) may be in other units than meant",
+        largest_radius));
+  }
+}
+
+Results tension_results(const Problem& problem, const TensionResult& t) {
+  Results out;
+  const TensionSetup& setup = *problem.tension;
+  const auto theory = tension_theory(problem);
+  const TomlValue& test = *problem.resolved.document.find("test");
+  const auto discs = [](const StrainGauge& gauge) { return std::vector<std::int64_t>{gauge.first, gauge.second}; };
+  out.line("tension test")
+      .add("", "s11 =", t.stress.xx, "Pa")
+      .add("height", "height", setup.height, "m")
+      .note(fmt::format(", gauge \"{}\": discs {}-{} along x, {}-{} along y", test.find("gauge")->text,
+                        setup.horizontal.first, setup.horizontal.second, setup.vertical.first, setup.vertical.second));
+  out.set("gauge/placement", to_string(problem.resolved.test->gauge));
+  out.set("gauge/horizontal", discs(setup.horizontal)).set("gauge/vertical", discs(setup.vertical));
+  out.set("strain", t.strain).set("stress", t.stress).set("displacement_gradient", t.fitted_gradient);
+  out.line("  strain")
+      .add("", "e11 =", t.strain.xx, "", {.digits = 9})
+      .add("", "e22 =", t.strain.yy, "", {.digits = 9});
+  const auto compare = [&](const std::string& key, const std::string& name, double value, double expected) {
+    out.line("  " + name).add(key, "", value, "", {.digits = 9});
+    if (!theory) return;
+    out.add("theory/" + key, "theory", expected, "", {.digits = 9})
+        .add("", "difference", value - expected, "", {Shown::power, 2});
+  };
+  compare("poisson_ratio", "nu, (35)", t.poisson_ratio, theory ? theory->poisson_ratio : 0);
+  compare("stiffness_ratio", "2G/((1-nu)kN)", t.stiffness_ratio, theory ? theory->stiffness_ratio : 0);
+  // e11 = s11/E in plane stress, (1 - nu²) s11/E in plane strain
+  const double nu = t.poisson_ratio, fitted = t.fitted_poisson_ratio, young = t.stress.xx / t.strain.xx;
+  out.line("  plane strain")
+      .add("plane_strain/poisson_ratio", "nu =", nu, "", {.digits = 9})
+      .add("plane_strain/young_modulus", "E =", (1 - nu * nu) * young, "Pa", {.digits = 9});
+  out.line("  plane stress")
+      .add("plane_stress/poisson_ratio", "nu =", nu / (1 - nu), "", {.digits = 9})
+      .add("plane_stress/young_modulus", "E =", young, "Pa", {.digits = 9});
+  out.line("  whole field")
+      .add("fitted_poisson_ratio", "nu =", t.fitted_poisson_ratio, "", {.digits = 9})
+      .add("fitted_young_modulus", "E =", (1 - fitted * fitted) * t.stress.xx / t.fitted_gradient.xx, "Pa",
+           {.digits = 9})
+      .note(" in plane strain, fitted to the inner half of the block");
+  return out;
+}
 
 Results solve_results(const Problem& problem, const Effects& effects, std::span<const SolvedCase> results) {
   Results out = problem_results(problem, effects);

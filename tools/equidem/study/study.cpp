@@ -16,6 +16,7 @@
 #include "equidem/output/files/csv.hpp"
 #include "equidem/study/built_in.hpp"
 #include "equidem/study/run_study.hpp"
+#include "equidem/study/study_time.hpp"
 
 #include "command.hpp"
 #include "option_checks.hpp"
@@ -160,6 +161,23 @@ void refuse_unreached(const StudyReport& report) {
     computation_failed("this study has no errors", "it measures time alone", "Leave out --accuracy");
 }
 
+int dry_run_study(const StudyVerb& verb, const Study& study) {
+  const StudyEstimate estimate = estimate_study(study, verb.options);
+  Results results;
+  results.set("study", study.name).set("title", study.title).block(study.title + "\n\n");
+  results.line("settings")
+      .add("number_of_settings", "", study.tasks.size())
+      .note(fmt::format(", of which {} were carried out once for the time below", estimate.timed));
+  results.line("rounds", fmt::format("{} and one to warm up, about {} each; then more, until all medians are trusted "
+                                     "to {:g} % or --budget {:g} s is spent",
+                                     verb.options.least_rounds, readable_seconds(estimate.round),
+                                     100 * verb.options.time_error, verb.options.budget));
+  results.line("time").add("estimated_seconds", "about", estimate.least, "s", {.digits = 2});
+  if (estimate.most > 1.2 * estimate.least) results.note(fmt::format(" to {:.2g} s", estimate.most));
+  deliver(verb.common, "dry_run", results, {});
+  return 0;
+}
+
 int run_verb(const StudyVerb& verb) {
   if (verb.list) {
     print(list_of_studies());
@@ -171,6 +189,7 @@ int run_verb(const StudyVerb& verb) {
   set_progress_shown(!verb.common.quiet);
   const Study study =
       is_file(verb.what) ? study_of_file(verb.what, verb.common) : built_in_study(verb.what, verb.quick);
+  if (verb.common.dry_run) return dry_run_study(verb, study);
   const Machine machine = this_machine();
   const std::string identity =
       study.checksum(fmt::format("{} seed {} threads {}", machine.text(), verb.options.seed, thread_count()));
@@ -228,6 +247,7 @@ Run declare_study(CLI::App& command) {
   const auto verb = std::make_shared<StudyVerb>();
   command.add_option("STUDY", verb->what, "a built-in study, or a study file (.toml)")->type_name("NAME|FILE");
   add_result_options(command, verb->common);
+  command.add_flag("--dry-run", verb->common.dry_run, "say how long the study takes, from some of its settings");
   command.get_option("--threads")->description("threads; left out: one, so that times are those of one processor");
   command.add_flag("--list", verb->list, "list the built-in studies");
   command.add_flag("--quick", verb->quick, "built-in studies: fewer and smaller settings");

@@ -2,9 +2,14 @@
 /// \file
 /// equidem sweep: a verb over values of keys and seeds.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <memory>
+#include <optional>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -13,11 +18,14 @@
 #include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/names.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 
 #include "command.hpp"
 #include "option_checks.hpp"
+#include "problem.hpp"
 #include "sweep/sweep_curves.hpp"
 #include "sweep/sweep_run.hpp"
 #include "verbs.hpp"
@@ -56,10 +64,20 @@ CaseDocument read_base(const std::string& verb, const CommonOptions& options) {
   return read_case(options);
 }
 
+/// A key that no case has but whose last part is nearly "ratio".
+void refuse_misspelt_ratio(const SweptKey& key) {
+  const std::string last = key.name.substr(key.name.rfind('.') + 1);
+  const std::vector<std::string> ratio{"ratio"};
+  if (unit_of_case_key(key.name) || !nearest(last, ratio)) return;
+  bad_input_at("--key", fmt::format("there is no key '{}'", key.name), "kT/kN at the kN of the case has the name ratio",
+               "Write --key ratio");
+}
+
 /// The keys exist, and the case has a seed where seeds are given.
 void check_keys(const SweepOptions& options, const SweepPlan& plan, const CaseDocument& base) {
   for (const SweptKey& key : plan.keys) {
     CommonOptions first = options.common;
+    if (key.name != "ratio") refuse_misspelt_ratio(key);
     if (key.name == SweepPlan::seed) {
       first.seed = std::stoll(key.values.front());
     } else if (key.name == "ratio") {
@@ -136,28 +154,128 @@ Results results_of_keys(const SweepPlan& plan) {
   return Results().set("verb", plan.verb).set("key", plan.keys.front().name).set("keys", keys);
 }
 
+/// The number of this name among results; none where it is not there.
+std::optional<double> number_in(const Results& results, const std::string& key) {
+  for (const Result& part : results.parts())
+    if (const auto* number = std::get_if<double>(&part.value.value); number != nullptr && part.key == key)
+      return *number;
+  return std::nullopt;
+}
+
+struct SweepTime {
+  double seconds = 0;
+  std::size_t points = 0;  ///< of which it was estimated
+  std::size_t failed = 0;  ///< of them
+  std::string failure;     ///< the first reason
+};
+
+/// From dry runs of some points on one thread each, as most points of a sweep are computed.
+SweepTime time_of(const Sweep& sweep) {
+  constexpr std::size_t most = 6;
+  constexpr double enough = 3;  // s
+  const std::size_t size = sweep.plan.size(), asked = std::min(size, most);
+  const int threads = thread_count();
+  SweepTime result;
+  const Stopwatch watch;
+  double sum = 0;
+  for (std::size_t k = 0; k < asked && (k == 0 || watch.seconds() < enough); ++k) {
+    const std::size_t point = asked == 1 ? 0 : k * (size - 1) / (asked - 1);
+    try {
+      const Delivery delivery = sweep.run_of(sweep.plan.values_of(point), {"--dry-run", "--threads", "1"})();
+      if (const auto seconds = number_in(delivery.results, "estimated_seconds")) {
+        sum += *seconds;
+        ++result.points;
+      }
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::interrupted) throw;
+      if (result.failed++ == 0) result.failure = error.what();
+    }
+  }
+  set_thread_count(threads);
+  const double at_once = std::min(static_cast<double>(threads), static_cast<double>(size));
+  if (result.points > 0)
+    result.seconds = sum / static_cast<double>(result.points) * std::ceil(static_cast<double>(size) / at_once);
+  return result;
+}
+
+/// The dry run of the first of some points that can be computed, with its number; none where no one of them can.
+std::optional<std::pair<std::size_t, Delivery>> first_dry_run(const Sweep& sweep) {
+  constexpr std::size_t most = 20;
+  for (std::size_t point = 0; point < std::min(sweep.plan.size(), most); ++point) {
+    try {
+      return std::pair(point, sweep.run_of(sweep.plan.values_of(point), {"--dry-run"})());
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::interrupted) throw;
+    }
+  }
+  return std::nullopt;
+}
+
 int dry_run(const Sweep& sweep) {
   const SweepPlan& plan = sweep.plan;
-  const auto points = static_cast<double>(plan.size());
-  const Delivery first = sweep.run_of(plan.values_of(0), {"--dry-run"})();
+  const SharedAssemblies shared;
   Results results = results_of_keys(plan);
   results.set("number_of_points", plan.size(), "", "number of points");
-  results.block(fmt::format("{} of {}, each about as large as this one:\n\n",
-                            counted(static_cast<long long>(plan.size()), "point"), plan.names()));
-  results.append(first.results);
-  for (const Result& part : first.results.parts())
-    if (const auto* seconds = std::get_if<double>(&part.value.value); seconds && part.key == "estimated_seconds")
-      results.line("sweep").add("", "about", points * *seconds / thread_count(), "s for all points", {.digits = 2});
-  deliver(sweep.options.common, "dry_run", results, first.times);
+  const auto first = first_dry_run(sweep);
+  results.block(fmt::format("{} of {}{}\n\n", counted(static_cast<long long>(plan.size()), "point"), plan.names(),
+                            first ? fmt::format("; point {}:", first->first + 1) : ""));
+  if (first) results.append(first->second.results);
+  results.line("sweep");
+  const SweepTime time = time_of(sweep);
+  if (time.points > 0) {
+    results.add("estimated_seconds_of_sweep", "about", time.seconds, "s for all points", {.digits = 2})
+        .note(fmt::format(", from {} of them", time.points));
+  } else {
+    results.note("the time of its points is not predicted");
+  }
+  if (time.failed > 0)
+    results.note(fmt::format("; {} of those asked cannot be computed: {}", time.failed, time.failure));
+  deliver(sweep.options.common, "dry_run", results, first ? first->second.times : StageTimes{});
   return 0;
+}
+
+/// Probes of a run that measure a standing wave.
+std::vector<std::string> names_of_waves(const TomlValue& document) {
+  std::vector<std::string> names;
+  const TomlValue* const probes = document.find("probe");
+  if (probes == nullptr || !probes->is_array()) return names;
+  for (const TomlValue& probe : probes->items)
+    if (const TomlValue* const name = probe.find("name"); name != nullptr && probe.find("wavelength") != nullptr)
+      names.push_back(name->text);
+  return names;
+}
+
+/// The number of points that failed, and why, below the table; points with the same reason together.
+void add_failures(Results& results, std::span<const SweepPoint> points, std::size_t failed) {
+  constexpr std::size_t most = 5, most_numbers = 10;
+  std::vector<std::pair<std::string, std::vector<std::string>>> reasons;
+  for (const SweepPoint& point : points) {
+    if (!point.failed()) continue;
+    auto known = std::ranges::find(reasons, point.message, &std::pair<std::string, std::vector<std::string>>::first);
+    if (known == reasons.end()) known = reasons.insert(reasons.end(), {point.message, {}});
+    known->second.push_back(fmt::format("{}", point.number));
+  }
+  results.line("failed",
+               fmt::format("{}; {} done", counted(static_cast<long long>(failed), "point"), points.size() - failed));
+  for (std::size_t k = 0; k < std::min(reasons.size(), most); ++k) {
+    auto& [reason, numbers] = reasons[k];
+    const bool one = numbers.size() == 1, many = numbers.size() > most_numbers;
+    if (many) numbers.resize(most_numbers);
+    results.line("",
+                 fmt::format("{} {}{}: {}", one ? "point" : "points", joined(numbers), many ? ", ..." : "", reason));
+  }
+  if (reasons.size() > most)
+    results.line(
+        "", fmt::format("{} other reasons are in the column message of {}", reasons.size() - most, Sweep::table_name));
 }
 
 int sweep(const SweepOptions& options) {
   check_verb(options.verb);
   if (options.common.seed && !options.seeds.empty())
     bad_input("--seed and --seeds exclude each other", "both say which seed a point has", "Leave one of them out");
-  const Sweep sweep{options, sweep_plan(options.verb, options.keys, options.seeds, options.side_by_side),
-                    read_base(options.verb, options.common)};
+  Sweep sweep{options, sweep_plan(options.verb, options.keys, options.seeds, options.side_by_side),
+              read_base(options.verb, options.common)};
+  sweep.plan.waves = names_of_waves(sweep.base.document);
   check_keys(options, sweep.plan, sweep.base);
   check_outputs(sweep);
   if (options.common.dry_run) return dry_run(sweep);
@@ -174,9 +292,7 @@ int sweep(const SweepOptions& options) {
   if (!sweep.base.title.empty()) results.block(sweep.base.title + "\n\n");
   results.append(results_of_keys(sweep.plan)).set("complete", !run.stopped());
   results.table("points", sweep_rows(sweep.plan, points));
-  if (failed > 0)
-    results.block(
-        fmt::format("{} failed, {} done\n", counted(static_cast<long long>(failed), "point"), points.size() - failed));
+  if (failed > 0) add_failures(results, points, failed);
   if (run.stopped())
     results.block(fmt::format("INCOMPLETE: stopped after {} of {} points\n", run.done(), sweep.plan.size()));
   StageTimes times;
@@ -278,7 +394,7 @@ Run declare_sweep(CLI::App& command) {
       "                --values 11,21\n"
       "The table sweep.csv has a row for each point, the keys and all numbers of the verb's result, units in the "
       "names.\n"
-      "A point that fails stays in the table with its reason.\n"
+      "A point that fails stays in the table with its reason, and the exit code is 0; it is 1 where all fail.\n"
       "Ctrl-C keeps what is done; --resume continues.");
   return [options] { return sweep(*options); };
 }

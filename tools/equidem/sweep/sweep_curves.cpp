@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
@@ -65,10 +66,10 @@ Series series_at(const std::map<double, std::vector<double>>& values, Series ser
 /// The line of theory; without label and column of its own where there is one for all curves.
 void add_theory(Plot& plot, const Curve& curve, const std::string& which, const std::string& value, PlotColour colour) {
   if (curve.theory.empty()) return;
-  plot.series.push_back(series_at(
-      curve.theory, {.label = which.empty() ? "theory of the lattice" : fmt::format("{}, theory of the lattice", which),
-                     .colour = colour,
-                     .column = value.empty() ? "theory" : fmt::format("theory_{}", value)}));
+  plot.series.push_back(
+      series_at(curve.theory, {.label = which.empty() ? "theory" : fmt::format("{}, theory", which),
+                               .colour = colour,
+                               .column = value.empty() ? "theory" : fmt::format("theory_{}", value)}));
 }
 
 /// The computed points of one curve. \param which "springs.kT = 0", empty for the only one
@@ -117,9 +118,17 @@ std::string plot_name_of(const MainQuantity& quantity) {
 std::vector<MainQuantity> drawn(const SweepPlan& plan) {
   const bool curves =
       plan.keys_of_case() > 0 && plan.keys.front().numeric() && (plan.side_by_side || plan.keys_of_case() <= 2);
-  std::vector<MainQuantity> quantities = curves ? main_quantities(plan.verb) : std::vector<MainQuantity>{};
-  std::erase_if(quantities, [](const MainQuantity& quantity) { return *quantity.axis == '\0'; });
+  std::vector<MainQuantity> quantities = curves ? main_quantities(plan) : std::vector<MainQuantity>{};
+  std::erase_if(quantities, [](const MainQuantity& quantity) { return quantity.axis.empty(); });
   return quantities;
+}
+
+/// Whether the quantity is known at two values of the first key: one point makes no curve.
+bool has_curve(std::span<const SweepPoint> points, const MainQuantity& quantity) {
+  std::set<std::string> values;
+  for (const SweepPoint& point : points)
+    if (point.find(quantity.path) != nullptr) values.insert(point.values[0]);
+  return values.size() > 1;
 }
 
 }  // namespace
@@ -149,8 +158,7 @@ std::string write_curves(const std::filesystem::path& folder, const SweepPlan& p
       if (!one_theory) add_theory(plot, curve, which, value, curve_colours[k % curve_colours.size()]);
       add_points(plot, curve, which, value, k, seeds);
     }
-    const bool any = std::ranges::any_of(points, [&](const SweepPoint& point) { return point.find(quantity.path); });
-    if (any) written += write_plot(folder, plot_name_of(quantity), plot, true).message + "\n";
+    if (has_curve(points, quantity)) written += write_plot(folder, plot_name_of(quantity), plot, true).message + "\n";
   }
   return written;
 }

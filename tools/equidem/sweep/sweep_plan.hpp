@@ -42,6 +42,7 @@ struct SweepPlan {
   std::string verb;
   std::vector<SweptKey> keys;
   bool side_by_side = false;
+  std::vector<std::string> waves = {};  ///< probes of a run whose standing waves are measured
 
   [[nodiscard]] std::size_t size() const;
   /// One value for each key.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "equidem/core/table_file.hpp"
+#include "equidem/output/plots/plot.hpp"
 
 namespace equidem {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 constexpr const char* number_name = "point";
 constexpr const char* label_of_number = "number of the point";
 
-constexpr MainQuantity all_main_quantities[] = {
+const MainQuantity all_main_quantities[] = {
     {.verb = "solve",
      .path = "poisson_ratio",
      .heading = "nu",
@@ -27,6 +28,10 @@ constexpr MainQuantity all_main_quantities[] = {
      .theory = "theory/stiffness_ratio"},
     {.verb = "solve", .path = "theory/poisson_ratio", .heading = "nu theory"},
     {.verb = "solve", .path = "theory/stiffness_ratio", .heading = "2G/((1-nu)kN) theory"},
+    {.verb = "solve",
+     .path = "plane_strain/young_modulus",
+     .heading = "E strain",
+     .axis = "Young's modulus E (plane strain), Pa"},
     {.verb = "solve", .path = "energy", .heading = "energy"},
     {.verb = "solve", .path = "relative_residual", .heading = "residual", .shown = Shown::power, .digits = 1},
     {.verb = "solve", .path = "unstable_modes", .heading = "unstable"},
@@ -65,6 +70,23 @@ constexpr MainQuantity all_main_quantities[] = {
     {.verb = "pack", .path = "coordination_number", .heading = "z", .axis = "mean number of contacts"},
     {.verb = "pack", .path = "rattlers", .heading = "rattlers"},
     {.verb = "pack", .path = "bonds", .heading = "bonds"},
+    {.verb = "run",
+     .path = "waves/*/speed",
+     .heading = "speed of *",
+     .axis = "speed of wave *, m/s",
+     .theory = "waves/*/theory/speed"},
+    {.verb = "run",
+     .path = "waves/*/speed_over_theory",
+     .heading = "over theory",
+     .axis = "speed of wave * over that of theory"},
+    {.verb = "run",
+     .path = "plane_strain/young_modulus",
+     .heading = "E strain",
+     .axis = "Young's modulus E (plane strain), Pa"},
+    {.verb = "run",
+     .path = "plane_strain/poisson_ratio",
+     .heading = "nu strain",
+     .axis = "Poisson's ratio ν (plane strain)"},
     {.verb = "run", .path = "steps", .heading = "steps"},
     {.verb = "run", .path = "time_step", .heading = "time step"},
     {.verb = "run", .path = "energy/kinetic", .heading = "kinetic energy", .axis = "kinetic energy"},
@@ -108,10 +130,22 @@ double SweepPoint::at(std::string_view path) const {
   return found == nullptr ? unknown : number_from<double>(found->text).value_or(unknown);
 }
 
-std::vector<MainQuantity> main_quantities(const std::string& verb) {
+std::vector<MainQuantity> main_quantities(const SweepPlan& plan) {
   std::vector<MainQuantity> found;
-  std::ranges::copy_if(all_main_quantities, std::back_inserter(found),
-                       [&](const MainQuantity& quantity) { return quantity.verb == verb; });
+  for (const MainQuantity& quantity : all_main_quantities) {
+    if (quantity.verb != plan.verb) continue;
+    if (quantity.path.find('*') == std::string::npos) {
+      found.push_back(quantity);
+      continue;
+    }
+    for (const std::string& wave : plan.waves) {
+      MainQuantity own = quantity;
+      for (std::string* text : {&own.path, &own.heading, &own.axis, &own.theory})
+        if (const std::size_t at = text->find('*'); at != std::string::npos)
+          text->replace(at, 1, text == &own.axis ? literal(wave) : wave);
+      found.push_back(std::move(own));
+    }
+  }
   return found;
 }
 
@@ -160,7 +194,7 @@ std::vector<SweepPoint> read_sweep_points(const std::filesystem::path& path, con
 
 std::vector<Results> sweep_rows(const SweepPlan& plan, std::span<const SweepPoint> points) {
   std::vector<std::pair<MainQuantity, std::string>> shown;  // with their units
-  for (const MainQuantity& quantity : main_quantities(plan.verb)) {
+  for (const MainQuantity& quantity : main_quantities(plan)) {
     const auto known = std::ranges::find_if(points, [&](const SweepPoint& point) { return point.find(quantity.path); });
     if (known != points.end()) shown.emplace_back(quantity, known->find(quantity.path)->unit);
   }
@@ -182,7 +216,7 @@ std::vector<Results> sweep_rows(const SweepPlan& plan, std::span<const SweepPoin
       const auto meaning = meaning_of(number.path);
       row.set(number.path, SweptKey::shown(number.text), number.unit, meaning ? meaning->label : "");
     }
-    if (!point.message.empty()) row.set("message", point.message).note(point.message);
+    if (!point.message.empty()) row.set("message", point.message);
     rows.push_back(std::move(row));
   }
   return rows;

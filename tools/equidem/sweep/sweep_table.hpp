@@ -38,15 +38,15 @@ struct SweepPoint {
 
 /// A main quantity of a verb: a column of the report, and the curves.
 struct MainQuantity {
-  const char* verb;
-  const char* path;
-  const char* heading;      ///< in the report
-  const char* axis = "";    ///< label of the curve; empty: not drawn
-  const char* theory = "";  ///< path of the number that theory gives
+  std::string verb;
+  std::string path;         ///< '*': the name of a wave
+  std::string heading;      ///< in the report
+  std::string axis = "";    ///< label of the curve; empty: not drawn
+  std::string theory = "";  ///< path of the number that theory gives
   Shown::As shown = Shown::As::number;
   int digits = 8;
 };
-std::vector<MainQuantity> main_quantities(const std::string& verb);
+std::vector<MainQuantity> main_quantities(const SweepPlan& plan);
 
 /// One row a point: point, the keys, status, every number that some point has, message; units are in the names.
 Table sweep_table(const SweepPlan& plan, std::span<const SweepPoint> points);

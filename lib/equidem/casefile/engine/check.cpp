@@ -108,6 +108,42 @@ class Checker {
     return names;
   }
 
+  /// Keys that are wanted, of tables that the document has where there are some, else of all.
+  template <class Wanted>
+  [[nodiscard]] std::vector<const KeySpec*> keys_elsewhere(const Wanted& wanted) const {
+    std::vector<const KeySpec*> present, all;
+    for (const KeySpec& key : spec_.keys) {
+      if (!wanted(key)) continue;
+      all.push_back(&key);
+      const TomlValue* const table = key.table.empty() ? &root_ : root_.find(key.table);
+      if (table != nullptr && table->is_table() && applies(key.table, *table, key)) present.push_back(&key);
+    }
+    return present.empty() ? all : present;
+  }
+
+  [[nodiscard]] std::vector<std::string> names_of_all_keys() const {
+    std::vector<std::string> names;
+    for (const KeySpec& key : spec_.keys) names.push_back(key.name);
+    return names;
+  }
+
+  static std::string listed_paths(const std::vector<const KeySpec*>& keys) {
+    std::vector<std::string> paths;
+    for (const KeySpec* key : keys) paths.push_back(key->path());
+    return listed(paths, " or ");
+  }
+
+  /// \param by_option whether the key was set on the command line
+  [[nodiscard]] std::string place_of(const std::vector<const KeySpec*>& keys, bool by_option) const {
+    if (by_option) return "Write " + listed_paths(keys);
+    std::vector<std::string> headings;
+    for (const KeySpec* key : keys) {
+      if (key->table.empty()) return "It belongs at the top of the file, before the first [table]";
+      headings.push_back(spec_.table(key->table)->heading());
+    }
+    return "It belongs to " + listed(headings, " or ");
+  }
+
   [[noreturn]] void fail_unknown(const std::string& path, const TomlValue& table, const std::string& name,
                                  const TomlValue& value) const {
     for (const KeySpec& key : spec_.keys)
@@ -116,12 +152,14 @@ class Checker {
                 "a key has one name for all kinds of bodies", fmt::format("Write {} instead", key.name));
     const std::vector<std::string> here = names_below(path, table);
     std::string remedy = fmt::format("Known here: {}", joined(here));
-    const auto elsewhere = std::ranges::find(spec_.keys, name, &KeySpec::name);
+    const std::vector<const KeySpec*> elsewhere = keys_elsewhere([&](const KeySpec& key) { return key.name == name; });
     if (const auto meant = nearest(name, here)) {
       remedy = fmt::format("Did you mean '{}'?", *meant);
-    } else if (elsewhere != spec_.keys.end()) {
-      remedy = elsewhere->table.empty() ? "It belongs at the top of the file, before the first [table]"
-                                        : "It belongs to " + spec_.table(elsewhere->table)->heading();
+    } else if (!elsewhere.empty()) {
+      remedy = place_of(elsewhere, value.line == 0);
+    } else if (const auto similar = nearest(name, names_of_all_keys())) {
+      const auto paths = keys_elsewhere([&](const KeySpec& key) { return key.name == *similar; });
+      remedy = fmt::format("Did you mean {}?", listed_paths(paths));
     }
     const bool as_table = value.is_table() || is_list_of_tables(value);
     fail_at(value, key_path(path, name), as_table ? "unknown table" : "unknown key",

@@ -90,8 +90,13 @@ void apply_override(TomlValue& root, const std::string& assignment, const std::s
     const std::string& segment = segments[k];
     if (given == "none" && k + 1 == segments.size()) return remove(*at, segment, *source);
     if (!at->is_array() && !at->is_table()) {
+      const bool of_file = at->type == TomlValue::Type::text && at->text.ends_with(".toml");
       bad_input_at(*source, fmt::format("there is nothing below '{}'", segments[k - 1]),
-                   fmt::format("in the case file it is {}", at->shown()), "Set the key itself, or change the file");
+                   fmt::format("in the case file it is {}", at->shown()),
+                   of_file ? fmt::format("Change the value in that file, or write [{}] with its keys in the case in "
+                                         "place of the name of the file; a sweep varies kT/kN by --key ratio",
+                                         segments[k - 1])
+                           : "Set the key itself, or change the file");
     }
     TomlValue* next = at->find(segment);
     if (next == nullptr && at->is_array()) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// [grains] and [[grain]].
+#include <cmath>
+
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/grains/scene/grain_file.hpp"
@@ -34,6 +36,22 @@ void add_grain(const TomlValue& table, const GrainTable& read, std::optional<dou
   bodies.groups.push_back(read.group);
 }
 
+/// Springs that were made for discs of one density belong to those discs.
+void check_density_of_springs(const TomlValue& root, const GrainTables& tables, const GrainRows& file) {
+  constexpr double tolerance = 1e-6;
+  const std::optional<double> stated = tables.springs ? tables.springs->density : std::nullopt;
+  if (!stated) return;
+  for (std::size_t k = 0; k < file.densities.size(); ++k) {
+    const double own = file.densities[k];
+    if (std::abs(own - *stated) <= tolerance * *stated) continue;
+    fail_at(*root.find("springs")->find("density"), "springs.density",
+            fmt::format("it is {:.9g} kg/m³ here and {:.9g} kg/m³ at {}:{}", *stated, own, tables.grain_file,
+                        file.lines[k]),
+            "both are the density of the discs themselves",
+            "Pack with these springs, which carry it, or take the column of densities out of the file of grains");
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> complete_bodies(const TomlValue& root, GrainTables& tables) {
@@ -44,6 +62,7 @@ std::vector<std::string> complete_bodies(const TomlValue& root, GrainTables& tab
     bodies = with_key(*root.find("grains"), "grains", "path",
                       [&] { return read_grains(*common.path, common.density, shapes); });
     tables.grain_file = common.path->string();
+    check_density_of_springs(root, tables, bodies);
   }
   for (std::size_t k = 0; k < tables.grain_tables.size(); ++k)
     add_grain(repeated(root, "grain")[k], tables.grain_tables[k], common.density, shapes, bodies);

@@ -13,6 +13,7 @@
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/packing/measures.hpp"
+#include "equidem/packing/methods.hpp"
 #include "equidem/packing/network.hpp"
 #include "equidem/packing/packing.hpp"
 
@@ -27,6 +28,9 @@ struct PackCase : CaseDocument {
   std::optional<double> of_continuum;  ///< kg/m³, of bodies and voids together
   Body body = Body::disc;
   bool csv = true, picture = true;
+
+  /// Whether the bodies that are written have a density: the case gives it, or they fell with the default.
+  [[nodiscard]] bool has_density() const { return density || of_continuum || entry_of(packing.method).open_top; }
 };
 
 /// The density of the bodies, kg/m³, as disc_density says; that of SettlingOptions where the case states none.

@@ -234,6 +234,32 @@ double elastic_of_bonds(const GrainSystem& system) {
   return sum;
 }
 
+std::vector<BodyContact> contacts_of_bonds(const GrainSystem& system) {
+  std::vector<BodyContact> result;
+  for (const TiedPair& bond : system.bonds.tied) {
+    const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
+    const ContactFrame frame =
+        frame_of(system.bodies.motions[j].position - system.bodies.motions[i].position, bond.share);
+    const BondModes impulse = last_impulse(system, bond);
+    Vec2 on_i = -1 / system.dt() * (impulse.normal * frame.normal + impulse.tangential * frame.tangent());
+    if (bond.has_springs()) {
+      const BondForces<double> springs = bond_forces(bond.springs, motion_of(system, bond));
+      on_i += {springs.x, springs.y};
+    }
+    const bool same = system.bodies.grain_of[i] < system.bodies.grain_of[j];
+    const auto first = static_cast<std::int32_t>(system.bodies.grain_of[same ? i : j]),
+               second = static_cast<std::int32_t>(system.bodies.grain_of[same ? j : i]);
+    result.push_back({.i = first,
+                      .j = second,
+                      .arm = same ? frame.lever_i * frame.normal : -frame.lever_j * frame.normal,
+                      .force = same ? on_i : -on_i,
+                      .normal_force = -dot(on_i, frame.normal),
+                      .tangential_force = -dot(on_i, frame.tangent())});
+  }
+  std::ranges::sort(result, {}, [](const BodyContact& c) { return std::pair(c.i, c.j); });
+  return result;
+}
+
 double bond_step_limit(const GrainScene& scene, GrainOptions::BondStep bond_step) {
   std::vector<Rates> of_grain(scene.grains.size());
   Rates largest;

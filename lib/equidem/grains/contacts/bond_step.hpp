@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/finite_bond.hpp"
 #include "equidem/contact/viscous_bond.hpp"
 #include "equidem/grains/grain_simulation.hpp"
@@ -57,6 +58,10 @@ void count_opening_kick(GrainSystem& system);
 
 /// Energy of the springs of bonds, J.
 double elastic_of_bonds(const GrainSystem& system);
+
+/// The bonds as contacts in the order of (i, j): springs stretched as they are now, dashpots by their mean force over
+/// the last step. Moments of rolling dashpots are left out.
+std::vector<BodyContact> contacts_of_bonds(const GrainSystem& system);
 
 /// Longest stable step, s; infinite if there is no limit. M^-1 C and M^-1 K are bounded by the sum over the bonds of
 /// each disc of the largest rate of each bond: exact for pairs of discs and for long chains of equal discs, otherwise

@@ -22,6 +22,9 @@ constexpr std::array<const char*, columns> names = {"x",    "y",     "radius",  
 /// Columns that a run also writes, ignored by this reader.
 constexpr std::array ignored = {"grain", "mass_kg", "mass_kg_per_m"};
 
+/// The columns of a packing that is periodic.
+constexpr std::array period = {"period_x_m", "period_y_m"};
+
 /// Columns as written by a run.
 constexpr std::array<const char*, columns> with_units = {"x_m",
                                                          "y_m",
@@ -94,6 +97,10 @@ class GrainFile {
     at_.fill(width_);
     for (std::size_t c = 0; c < width_; ++c) {
       if (std::find(ignored.begin(), ignored.end(), cells[c]) != ignored.end()) continue;
+      if (std::find(period.begin(), period.end(), cells[c]) != period.end())
+        file_.fail(fmt::format("the column '{}' says that these bodies were packed in a periodic cell", cells[c]),
+                   "bodies that collide have no period: those at its sides would lose their neighbours",
+                   "Pack them with sides = \"walls\"; or delete the columns of the period to let them go as they lie");
       const std::size_t column = column_of(cells[c]);
       if (column == columns) {
         const std::size_t bare = column_of(cells[c].substr(0, cells[c].find('_')));

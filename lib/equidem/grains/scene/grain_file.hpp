@@ -27,8 +27,8 @@ struct GrainRows {
 /// \param density kg/m³, of bodies in a file without that column; none: the column is needed
 /// \param shapes in which distinct clumps are kept
 /// \throws Error (bad_input) with file and line: no row of names, columns that are unknown, missing, in another unit or
-///         there twice, cells that are no numbers, a density that is missing or not positive, a group that is called
-///         "walls", shapes as GrainShapes
+///         there twice, the period of a packing, cells that are no numbers, a density that is missing or not positive,
+///         a group that is called "walls", shapes as GrainShapes
 GrainRows read_grains(const std::filesystem::path& path, std::optional<double> density, GrainShapes& shapes);
 
 }  // namespace equidem

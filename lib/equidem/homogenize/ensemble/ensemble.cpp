@@ -47,6 +47,10 @@ HomogenizedCell homogenize_cell(const Assembly& cell, const ContactSprings& spri
   return {static_cast<std::int64_t>(cell.size()), effective_moduli(effective.stiffness)};
 }
 
+int cells_at_once(std::int64_t discs) {
+  return discs >= large_cell ? 1 : thread_count();
+}
+
 EnsembleSamples sample_ensemble(const EnsemblePlan& plan, const CellSampler& sampler,
                                 const std::vector<EnsembleSample>& kept,
                                 const std::function<void(const std::vector<EnsembleSample>&)>& save) {
@@ -57,7 +61,7 @@ EnsembleSamples sample_ensemble(const EnsemblePlan& plan, const CellSampler& sam
   Stopwatch since_saved;
   for (const std::int64_t discs : plan.discs) {
     Progress progress(fmt::format("{} of {}:", counted(plan.samples, "cell"), counted(discs, "disc")));
-    const int at_once = discs >= large_cell ? 1 : thread_count();
+    const int at_once = cells_at_once(discs);
     for (int begin = 0; begin < plan.samples && !result.stopped; begin += at_once) {
       const int count = std::min(at_once, plan.samples - begin);
       std::vector<std::optional<EnsembleSample>> cells(static_cast<std::size_t>(count));

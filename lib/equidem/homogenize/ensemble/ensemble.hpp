@@ -48,6 +48,9 @@ struct EnsembleSamples {
   bool stopped = false;                 ///< by the user, before the last one
 };
 
+/// Number of cells of a size that are sampled at the same time, each by one thread; 1: by all threads.
+int cells_at_once(std::int64_t discs);
+
 /// Sample the cells of a plan. Small cells are done several at a time, each by one thread; large ones one by one: the
 /// bits are the same. A cell that the sampler refuses is kept with its reason; an interruption ends the
 /// sampling and keeps the cells that are done.

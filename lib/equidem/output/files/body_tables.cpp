@@ -68,7 +68,8 @@ void write_contact_csv(const std::filesystem::path& path, const AssemblyState& s
 
 void write_grain_csv(const std::filesystem::path& path, const GrainRows& rows, bool overwrite) {
   const std::span<const Grain> grains = rows.grains;
-  assert(rows.groups.size() == grains.size() && rows.densities.size() == grains.size());
+  assert(rows.groups.size() == grains.size());
+  assert(rows.densities.empty() || rows.densities.size() == grains.size());
   const auto any = [&](GrainShape shape) { return std::ranges::find(grains, shape, &Grain::shape) != grains.end(); };
   Table table;
   table.add("grain", grains, [&](const Grain& grain) { return &grain - grains.data(); });
@@ -84,7 +85,11 @@ void write_grain_csv(const std::filesystem::path& path, const GrainRows& rows, b
   table.add("vx_m_per_s", grains, [](const Grain& g) { return g.velocity.x; });
   table.add("vy_m_per_s", grains, [](const Grain& g) { return g.velocity.y; });
   table.add("spin_rad_per_s", grains, &Grain::spin).add("angle_rad", grains, &Grain::angle);
-  table.add("density_kg_per_m3", rows.densities, std::identity());
+  if (!rows.densities.empty()) table.add("density_kg_per_m3", rows.densities, std::identity());
+  if (rows.period) {
+    table.add("period_x_m", grains, [&](const Grain&) { return rows.period->x; });
+    table.add("period_y_m", grains, [&](const Grain&) { return rows.period->y; });
+  }
   if (any(GrainShape::clump)) {
     table.add("discs_m", grains, [&](const Grain& g) {
       return g.clump >= 0 ? discs_in_a_cell(rows.clumps[static_cast<std::size_t>(g.clump)]) : std::string();
