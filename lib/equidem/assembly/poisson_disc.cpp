@@ -90,39 +90,41 @@ class Adsorption {
   void throw_darts(std::vector<Square>& squares, int level, Random& random) {
     for (int round = 0; round < 6 && !squares.empty(); ++round) {
       stop_if_interrupted();
-      std::vector<Throw> throws((squares.size() + 7) / 8);
-      for (Throw& one : throws) {
+      throws_.resize((squares.size() + 7) / 8);
+      for (Throw& one : throws_) {
         one.square = random.below(squares.size());
         one.place.x = random.uniform();
         one.place.y = random.uniform();
       }
-      accept(sorted_by_block(throws, squares, level));
+      sort_by_block(squares, level);
+      accept(sorted_);
       erase_taken(squares, level);
     }
   }
 
-  /// The darts of the throws, block by block (stable counting sort); `first_of_row_` then has the number of the first
-  /// dart of every row of blocks.
-  std::vector<Dart> sorted_by_block(const std::vector<Throw>& throws, const std::vector<Square>& squares, int level) {
+  /// Set `sorted_`, the darts of the throws, block by block (stable counting sort), and `first_of_row_`, the number of
+  /// the first dart of every row of blocks.
+  void sort_by_block(const std::vector<Square>& squares, int level) {
     const double part = 1.0 / static_cast<double>(1U << level);
     const std::int64_t blocks_in_row = (columns_ + block_width - 1) / block_width;
     const std::int64_t block_rows = (rows_ + block_width - 1) / block_width;
     const auto blocks = static_cast<std::size_t>(block_rows * blocks_in_row);
-    const std::size_t tasks = std::clamp<std::size_t>(throws.size() / piece, 1, 32);
-    const auto first_throw = [&](std::size_t task) { return throws.size() * task / tasks; };
-    std::vector<Dart> darts(throws.size()), sorted(throws.size());
-    std::vector<std::uint32_t> block(throws.size());
+    const std::size_t tasks = std::clamp<std::size_t>(throws_.size() / piece, 1, 32);
+    const auto first_throw = [&](std::size_t task) { return throws_.size() * task / tasks; };
+    darts_.resize(throws_.size());
+    sorted_.resize(throws_.size());
+    const auto block = [&](const Dart& dart) {
+      return static_cast<std::size_t>(dart.row / block_width * blocks_in_row + dart.column / block_width);
+    };
     std::vector<std::size_t> place(tasks * blocks, 0);  // of the next dart of each task in each block
     parallel_tasks(tasks, [&](std::size_t task, int) {
       for (std::size_t k = first_throw(task); k < first_throw(task + 1); ++k) {
-        const auto [x, y] = squares[throws[k].square];
-        const Vec2 at = throws[k].place;
-        darts[k] = {.point = {(x + at.x) * part * size_.x, (y + at.y) * part * size_.y},
-                    .column = static_cast<std::int32_t>(x >> level),
-                    .row = static_cast<std::int32_t>(y >> level)};
-        block[k] =
-            static_cast<std::uint32_t>(darts[k].row / block_width * blocks_in_row + darts[k].column / block_width);
-        ++place[task * blocks + block[k]];
+        const auto [x, y] = squares[throws_[k].square];
+        const Vec2 at = throws_[k].place;
+        darts_[k] = {.point = {(x + at.x) * part * size_.x, (y + at.y) * part * size_.y},
+                     .column = static_cast<std::int32_t>(x >> level),
+                     .row = static_cast<std::int32_t>(y >> level)};
+        ++place[task * blocks + block(darts_[k])];
       }
     });
     first_of_row_.clear();
@@ -134,9 +136,8 @@ class Adsorption {
     first_of_row_.push_back(next);
     parallel_tasks(tasks, [&](std::size_t task, int) {
       for (std::size_t k = first_throw(task); k < first_throw(task + 1); ++k)
-        sorted[place[task * blocks + block[k]]++] = darts[k];
+        sorted_[place[task * blocks + block(darts_[k])]++] = darts_[k];
     });
-    return sorted;
   }
 
   /// Add the darts that hit free places, as if one after the other. Bands of block rows are worked on at the same time:
@@ -243,14 +244,15 @@ class Adsorption {
             static_cast<std::int64_t>(std::floor((x + reach) / size))};
   }
 
-  /// Call body(base square, shift of its image) for the base squares in these columns and rows until it returns true.
+  /// Call body(base square, shift of its image) for the base squares in these columns, row by row until it returns
+  /// true.
   template <typename Body>
   bool any_square_near(Range columns, Range rows, const Body& body) const {
     if (columns.first >= 0 && columns.last < columns_ && rows.first >= 0 && rows.last < rows_) {
       for (std::int64_t y = rows.first; y <= rows.last; ++y) {
-        for (std::int64_t x = columns.first; x <= columns.last; ++x) {
-          if (body(index(x, y), Vec2{})) return true;
-        }
+        bool found = false;
+        for (std::int64_t x = columns.first; x <= columns.last; ++x) found |= body(index(x, y), Vec2{});
+        if (found) return true;
       }
       return false;
     }
@@ -293,7 +295,7 @@ class Adsorption {
       quarters[task].reserve(2 * piece);
       for (std::size_t k = task * piece; k < end; ++k) {
         const std::int64_t column = squares[k].x >> level, row = squares[k].y >> level;
-        if (std::exchange(near_to, index(column, row)) != near_to) near = points_near(column, row, level);
+        if (std::exchange(near_to, index(column, row)) != near_to) find_near(column, row, level, near);
         add_quarters(squares[k], level, near, quarters[task]);
       }
     });
@@ -305,32 +307,39 @@ class Adsorption {
     return result;
   }
 
-  /// The points that can cover a quarter of a square of this level in a base square.
-  [[nodiscard]] std::vector<Vec2> points_near(std::int64_t column, std::int64_t row, int level) const {
+  /// Set `near` to the points that can cover a quarter of a square of this level in a base square.
+  void find_near(std::int64_t column, std::int64_t row, int level, std::vector<Vec2>& near) const {
     const double inset = 0.5 / static_cast<double>(1U << level);  // of the centre of the outermost square
     const auto range = [&](std::int64_t base, double size) {
       const auto first = static_cast<double>(base);
       return Range{around((first + inset) * size, size).first, around((first + 1 - inset) * size, size).last};
     };
-    std::vector<Vec2> near;
-    any_square_near(range(column, size_.x), range(row, size_.y), [&](std::size_t square, Vec2 shift) {
-      if (points_[square].x != nothing) near.push_back(points_[square] + shift);
+    const Range columns = range(column, size_.x), rows = range(row, size_.y);
+    near.resize(static_cast<std::size_t>((columns.last - columns.first + 1) * (rows.last - rows.first + 1)));
+    std::size_t count = 0;
+    any_square_near(columns, rows, [&](std::size_t square, Vec2 shift) {
+      near[count] = points_[square] + shift;
+      count += points_[square].x != nothing ? 1 : 0;
       return false;
     });
-    return near;
+    near.resize(count);
   }
 
   void add_quarters(const Square& square, int level, const std::vector<Vec2>& near,
                     std::vector<Square>& quarters) const {
     const Vec2 half = 0.5 / static_cast<double>(2U << level) * size_;
+    const auto centre = [](std::uint32_t quarter, double half_size) { return (2.0 * quarter + 1) * half_size; };
+    const double left = centre(2 * square.x, half.x), right = centre(2 * square.x + 1, half.x);
+    const double lower = centre(2 * square.y, half.y), upper = centre(2 * square.y + 1, half.y);
+    const auto squared = [](double x) { return x * x; };
+    unsigned covered = 0;  // without branches, of which half would be mispredicted
+    for (const Vec2 point : near) {
+      const double x[] = {squared(std::abs(point.x - left) + half.x), squared(std::abs(point.x - right) + half.x)};
+      const double y[] = {squared(std::abs(point.y - lower) + half.y), squared(std::abs(point.y - upper) + half.y)};
+      for (unsigned k = 0; k < 4; ++k) covered |= (x[k & 1U] + y[k >> 1U] < squared_distance_ ? 1U : 0U) << k;
+    }
     for (std::uint32_t k = 0; k < 4; ++k) {
-      const Square quarter = {2 * square.x + (k & 1U), 2 * square.y + (k >> 1U)};
-      const Vec2 centre = {(2.0 * quarter.x + 1) * half.x, (2.0 * quarter.y + 1) * half.y};
-      const bool covered = std::any_of(near.begin(), near.end(), [&](Vec2 point) {
-        const Vec2 furthest = {std::abs(point.x - centre.x) + half.x, std::abs(point.y - centre.y) + half.y};
-        return dot(furthest, furthest) < squared_distance_;
-      });
-      if (!covered) quarters.push_back(quarter);
+      if ((covered >> k & 1U) == 0) quarters.push_back({2 * square.x + (k & 1U), 2 * square.y + (k >> 1U)});
     }
   }
 
@@ -343,6 +352,8 @@ class Adsorption {
   Vec2 size_;                 ///< of a base square
   std::vector<Vec2> points_;  ///< of each base square
   std::vector<Vec2> found_;
+  std::vector<Throw> throws_;
+  std::vector<Dart> darts_, sorted_;
   std::vector<std::size_t> first_of_row_;
   std::vector<std::int32_t> open_in_;    ///< per base square: the last open dart in it
   std::vector<std::int32_t> next_open_;  ///< per dart: the open dart before it in the same base square
