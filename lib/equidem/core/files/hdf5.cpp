@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/output/files/hdf5.hpp"
+#include "equidem/core/files/hdf5.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <utility>
 
 #include <hdf5.h>
 
 #include "equidem/core/error.hpp"
+#include "equidem/core/files/open_file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -47,6 +50,8 @@ Handle number_type(Hdf5Number number, std::uint64_t length) {
   switch (number) {
     case Hdf5Number::float64:
       return {H5Tcopy(H5T_NATIVE_DOUBLE), H5Tclose};
+    case Hdf5Number::int32:
+      return {H5Tcopy(H5T_NATIVE_INT32), H5Tclose};
     case Hdf5Number::int64:
       return {H5Tcopy(H5T_NATIVE_INT64), H5Tclose};
     case Hdf5Number::text:
@@ -75,6 +80,7 @@ std::optional<std::uint64_t> create_array(hid_t file, const Hdf5Array& array) {
       text ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links, 1);
+  H5Pset_char_encoding(links, H5T_CSET_UTF8);
   const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_layout(creation, H5D_CONTIGUOUS);
   H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
@@ -82,6 +88,9 @@ std::optional<std::uint64_t> create_array(hid_t file, const Hdf5Array& array) {
   H5Pset_obj_track_times(creation, false);
   const Handle data(H5Dcreate2(file, array.name.c_str(), type, space, links, creation, H5P_DEFAULT), H5Dclose);
   if (data.failed()) return std::nullopt;
+  for (const auto& [name, value] : array.attributes) {
+    if (!write_attribute(data, name, value)) return std::nullopt;
+  }
   if (array.bytes() == 0) return 0;
   const haddr_t offset = H5Dget_offset(data);
   if (offset == HADDR_UNDEF) return std::nullopt;
@@ -98,8 +107,25 @@ std::optional<std::uint64_t> create_array(hid_t file, const Hdf5Array& array) {
   bad_input(fmt::format("cannot use '{}'", path.string()), why, "Give the file as equidem wrote it");
 }
 
-std::string read_text_attribute(hid_t attribute, hid_t type) {
-  std::string value(H5Tget_size(type), '\0');
+/// The text of an attribute, also of variable length as other programs write it; none where it holds something else.
+std::optional<std::string> read_text_attribute(hid_t attribute) {
+  constexpr std::size_t longest = 1 << 20;  // bytes
+  const Handle type(H5Aget_type(attribute), H5Tclose);
+  const Handle space(H5Aget_space(attribute), H5Sclose);
+  if (H5Tget_class(type) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1) return std::nullopt;
+  if (H5Tis_variable_str(type) > 0) {
+    const Handle in_memory(H5Tcopy(H5T_C_S1), H5Tclose);
+    H5Tset_size(in_memory, H5T_VARIABLE);
+    H5Tset_cset(in_memory, H5Tget_cset(type));
+    char* text = nullptr;
+    if (H5Aread(attribute, in_memory, static_cast<void*>(&text)) < 0 || text == nullptr) return std::nullopt;
+    std::string value(text);
+    H5free_memory(text);
+    return value;
+  }
+  const std::size_t length = H5Tget_size(type);
+  if (length > longest) return std::nullopt;
+  std::string value(length, '\0');
   if (H5Aread(attribute, type, value.data()) < 0) value.clear();
   return value.substr(0, value.find('\0'));
 }
@@ -108,10 +134,9 @@ std::map<std::string, std::string> read_text_attributes(hid_t file) {
   std::map<std::string, std::string> attributes;
   const auto collect = [](hid_t owner, const char* name, const H5A_info_t*, void* into) -> herr_t {
     const Handle attribute(H5Aopen(owner, name, H5P_DEFAULT), H5Aclose);
-    const Handle type(H5Aget_type(attribute), H5Tclose);
-    if (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0) {
-      (*static_cast<std::map<std::string, std::string>*>(into))[name] = read_text_attribute(attribute, type);
-    }
+    if (attribute.failed()) return 0;
+    if (auto text = read_text_attribute(attribute))
+      (*static_cast<std::map<std::string, std::string>*>(into))[name] = std::move(*text);
     return 0;
   };
   H5Aiterate2(file, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect, &attributes);
@@ -120,9 +145,16 @@ std::map<std::string, std::string> read_text_attributes(hid_t file) {
 
 std::optional<Hdf5Number> number_of(hid_t type) {
   if (H5Tequal(type, H5T_NATIVE_DOUBLE) > 0) return Hdf5Number::float64;
+  if (H5Tequal(type, H5T_NATIVE_INT32) > 0) return Hdf5Number::int32;
   if (H5Tequal(type, H5T_NATIVE_INT64) > 0) return Hdf5Number::int64;
   if (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0) return Hdf5Number::text;
   return std::nullopt;
+}
+
+std::vector<std::uint64_t> shape_of(hid_t space) {
+  std::vector<hsize_t> shape(static_cast<std::size_t>(std::max(H5Sget_simple_extent_ndims(space), 0)));
+  H5Sget_simple_extent_dims(space, shape.data(), nullptr);
+  return {shape.begin(), shape.end()};
 }
 
 Hdf5Array find_array(const std::filesystem::path& path, hid_t file, const std::string& name) {
@@ -132,11 +164,7 @@ Hdf5Array find_array(const std::filesystem::path& path, hid_t file, const std::s
   const Handle space(H5Dget_space(data), H5Sclose);
   const std::optional<Hdf5Number> number = number_of(type);
   if (!number) cannot_use(path, fmt::format("its array '{}' holds no numbers of a type of this machine", name));
-  Hdf5Array array{.name = name, .number = *number, .shape = {}};
-  const int rank = H5Sget_simple_extent_ndims(space);
-  std::vector<hsize_t> shape(static_cast<std::size_t>(std::max(rank, 0)));
-  H5Sget_simple_extent_dims(space, shape.data(), nullptr);
-  array.shape.assign(shape.begin(), shape.end());
+  Hdf5Array array{.name = name, .number = *number, .shape = shape_of(space)};
   if (*number == Hdf5Number::text) array.shape = {H5Tget_size(type)};
   if (array.bytes() == 0) return array;
   const haddr_t offset = H5Dget_offset(data);
@@ -154,7 +182,16 @@ std::uint64_t Hdf5Array::size() const {
 }
 
 std::uint64_t Hdf5Array::bytes() const {
-  return number == Hdf5Number::text ? size() : 8 * size();
+  switch (number) {
+    case Hdf5Number::text:
+      return size();
+    case Hdf5Number::int32:
+      return 4 * size();
+    case Hdf5Number::int64:
+    case Hdf5Number::float64:
+      break;
+  }
+  return 8 * size();
 }
 
 const Hdf5Array& Hdf5Layout::operator[](const std::string& name) const {
@@ -193,6 +230,92 @@ Hdf5Layout read_hdf5_layout(const std::filesystem::path& path, const std::vector
   layout.attributes = read_text_attributes(file);
   for (const std::string& name : names) layout.arrays.push_back(find_array(path, file, name));
   return layout;
+}
+
+Hdf5File::Hdf5File(std::filesystem::path path) : path_(std::move(path)) {
+  static_assert(sizeof(hid_t) == sizeof(id_));
+  constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
+  std::string beginning(signature.size(), '\0');
+  const OpenFile bytes(path_, OpenFile::Mode::read);
+  beginning.resize(std::min<std::uint64_t>(beginning.size(), bytes.size()));
+  bytes.read_at(0, std::as_writable_bytes(std::span(beginning)));
+  if (beginning != signature) {
+    bad_input("this is no HDF5 file", "it does not begin with the signature of one",
+              "Give the file as it was written; other formats have other endings");
+  }
+  const Handle access = file_access();
+  id_ = H5Fopen(path_.c_str(), H5F_ACC_RDONLY, access);
+  if (id_ < 0) {
+    bad_input("the HDF5 library cannot open the file", "it is truncated or damaged",
+              "Get the whole file, or write it anew");
+  }
+  attributes_ = read_text_attributes(id_);
+}
+
+Hdf5File::~Hdf5File() {
+  if (id_ >= 0) H5Fclose(id_);
+}
+
+std::vector<std::string> Hdf5File::names(const std::string& group) const {
+  std::vector<std::string> found;
+  H5G_info_t info;
+  const Handle owner(H5Gopen2(id_, group.c_str(), H5P_DEFAULT), H5Gclose);
+  if (owner.failed() || H5Gget_info(owner, &info) < 0) return found;
+  for (hsize_t k = 0; k < info.nlinks; ++k) {
+    std::string name(4096, '\0');
+    const ssize_t length =
+        H5Lget_name_by_idx(owner, ".", H5_INDEX_NAME, H5_ITER_INC, k, name.data(), name.size(), H5P_DEFAULT);
+    if (length < 0) break;
+    name.resize(std::min(static_cast<std::size_t>(length), name.size() - 1));
+    found.push_back(std::move(name));
+  }
+  return found;
+}
+
+bool Hdf5File::is_group(const std::string& name) const {
+  const Handle object(H5Oopen(id_, name.c_str(), H5P_DEFAULT), H5Oclose);
+  return !object.failed() && H5Iget_type(object) == H5I_GROUP;
+}
+
+std::optional<Hdf5File::Dataset> Hdf5File::find(const std::string& name) const {
+  const Handle object(H5Oopen(id_, name.c_str(), H5P_DEFAULT), H5Oclose);
+  if (object.failed() || H5Iget_type(object) != H5I_DATASET) return std::nullopt;
+  const Handle type(H5Dget_type(object), H5Tclose);
+  const Handle space(H5Dget_space(object), H5Sclose);
+  const H5T_class_t held = H5Tget_class(type);
+  return Dataset{.kind = held == H5T_FLOAT     ? Kind::real
+                         : held == H5T_INTEGER ? Kind::whole
+                                               : Kind::other,
+                 .shape = shape_of(space)};
+}
+
+void Hdf5File::read_rows(const std::string& name, std::uint64_t first, std::span<double> values) const {
+  read_rows_as(H5T_NATIVE_DOUBLE, name, first, values.size(), values.data());
+}
+
+void Hdf5File::read_rows(const std::string& name, std::uint64_t first, std::span<std::int64_t> values) const {
+  read_rows_as(H5T_NATIVE_INT64, name, first, values.size(), values.data());
+}
+
+void Hdf5File::read_rows_as(std::int64_t type, const std::string& name, std::uint64_t first, std::size_t count,
+                            void* values) const {
+  const Handle data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  const Handle space(H5Dget_space(data), H5Sclose);
+  const std::vector<std::uint64_t> shape = shape_of(space);
+  std::vector<hsize_t> begin(shape.size(), 0), extent(shape.begin(), shape.end());
+  std::uint64_t row = 1;
+  for (std::size_t k = 1; k < shape.size(); ++k) row *= shape[k];
+  assert(!shape.empty() && row > 0 && count % row == 0 && first + count / row <= shape[0]);
+  if (count == 0) return;
+  begin[0] = first;
+  extent[0] = count / row;
+  const Handle in_memory(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose);
+  H5Sselect_hyperslab(space, H5S_SELECT_SET, begin.data(), nullptr, extent.data(), nullptr);
+  if (H5Dread(data, type, in_memory, space, H5P_DEFAULT, values) >= 0) return;
+  bad_input_at(name, "the HDF5 library cannot read this dataset",
+               "the file is truncated, damaged or compressed in a way "
+               "that the library lacks",
+               "Get the whole file, or write it anew");
 }
 
 }  // namespace equidem
