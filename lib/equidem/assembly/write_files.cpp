@@ -81,6 +81,16 @@ std::string text_of(const Assembly& assembly) {
 
 }  // namespace
 
+std::string assembly_file_name(const std::string& stem, AssemblyFormat format) {
+  switch (format) {
+    case AssemblyFormat::json:
+      break;
+    case AssemblyFormat::hdf5:
+      return stem + ".h5";
+  }
+  return stem + ".json";
+}
+
 void write_assembly(const std::filesystem::path& path, const Assembly& assembly, bool overwrite) {
   check_writable(path, overwrite);
   check(assembly);

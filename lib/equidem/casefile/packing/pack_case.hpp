@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "equidem/assembly/files.hpp"
 #include "equidem/casefile/engine/keys.hpp"
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/material/inertia.hpp"
@@ -27,6 +28,7 @@ struct PackCase : CaseDocument {
   std::optional<double> of_continuum;  ///< kg/m³, of bodies and voids together
   Body body = Body::disc;
   bool csv = true, picture = true;
+  AssemblyFormat assembly = AssemblyFormat::json;
 };
 
 /// The density of the bodies, kg/m³, as disc_density says; that of SettlingOptions where the case states none.
