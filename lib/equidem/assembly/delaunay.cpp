@@ -170,6 +170,7 @@ Assembly delaunay_assembly(const DelaunayOptions& options) {
   assembly.kind = "delaunay";
   assembly.centres.reserve(set.points.size());
   for (const std::int32_t k : hilbert_order(set.points)) assembly.centres.push_back(set.points[k]);
+  set.points = {};
   assembly.radii.resize(assembly.size(), options.radii.smallest);
   if (options.radii.largest > options.radii.smallest) {
     for (double& radius : assembly.radii) radius = random.uniform(options.radii.smallest, options.radii.largest);
