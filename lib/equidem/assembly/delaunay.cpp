@@ -15,6 +15,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
 
 namespace equidem {
 namespace {
@@ -90,9 +91,12 @@ void set_midpoints(Assembly& assembly) {
   const bool equal =
       std::all_of(assembly.radii.begin(), assembly.radii.end(), [&](double r) { return r == assembly.radii.front(); });
   if (!equal) return;
-  for (Contact& contact : assembly.contacts) {
-    contact.lever_i = contact.lever_j = 0.5 * norm(assembly.branch(contact));
-  }
+  parallel_ranges(assembly.contacts.size(), 16384, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      Contact& contact = assembly.contacts[k];
+      contact.lever_i = contact.lever_j = 0.5 * norm(assembly.branch(contact));
+    }
+  });
 }
 
 void take_sides(Assembly& assembly, PowerCells& cells) {

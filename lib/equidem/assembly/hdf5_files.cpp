@@ -14,6 +14,7 @@
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/file_keys.hpp"
 #include "equidem/assembly/hdf5_columns.hpp"
+#include "equidem/assembly/power_cells.hpp"
 #include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/files/hdf5.hpp"
@@ -26,9 +27,6 @@ namespace {
 
 using namespace hdf5_columns;
 namespace fs = std::filesystem;
-
-constexpr const char* sides[] = {"left",        "right",        "bottom",   "top",
-                                 "bottom_left", "bottom_right", "top_left", "top_right"};
 
 class Reading {
  public:
@@ -230,13 +228,14 @@ class Reading {
 
   /// Measure what the file does not give: triangulating takes longer than reading.
   void take_cells() {
-    const auto given = [&](const char* name) { return assembly_.groups.contains(name); };
-    const bool measured = has(cell_areas.name) && has(facet_lengths.name);
-    if (measured && (assembly_.periodic() || std::ranges::all_of(sides, given))) return;
-    std::vector<double> areas = assembly_.cell_areas, lengths = assembly_.facet_lengths;
-    measure_cells(assembly_);
-    if (has(cell_areas.name)) assembly_.cell_areas = std::move(areas);
-    if (has(facet_lengths.name)) assembly_.facet_lengths = std::move(lengths);
+    if (!has(cell_areas.name) || !has(facet_lengths.name)) {
+      std::vector<double> areas = std::move(assembly_.cell_areas), lengths = std::move(assembly_.facet_lengths);
+      measure_cells(assembly_);
+      if (has(cell_areas.name)) assembly_.cell_areas = std::move(areas);
+      if (has(facet_lengths.name)) assembly_.facet_lengths = std::move(lengths);
+    } else if (!assembly_.periodic()) {
+      for (auto& [name, side] : measured_sides(assembly_)) assembly_.groups.emplace(name, std::move(side));
+    }
   }
 
   Hdf5File file_;

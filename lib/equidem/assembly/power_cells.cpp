@@ -277,6 +277,41 @@ std::map<std::string, DiscGroup> side_cells(const Assembly& assembly, std::span<
   return sides;
 }
 
+/// The discs of which cells may reach a side, ascending: the power of a place of the side is at least the excess of a
+/// disc, and in a stretch of the side at most that of any disc above it plus the length of the stretch squared.
+std::vector<std::int32_t> discs_near_sides(const Assembly& assembly, const Rectangle& domain) {
+  const std::size_t count = assembly.size();
+  const auto stretches = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
+  std::vector<std::uint8_t> near(count, 0);
+  const auto look = [&](double low, double high, const auto& along, const auto& distance) {
+    const double length = (high - low) / static_cast<double>(stretches);
+    const auto excess = [&](std::size_t disc) {
+      const double d = distance(assembly.centres[disc]), r = assembly.radii[disc];
+      return d * d - r * r;
+    };
+    std::vector<double> least(stretches, infinity);
+    for (std::size_t disc = 0; disc < count; ++disc) {
+      const double stretch = std::floor((along(assembly.centres[disc]) - low) / length);
+      double& lowest = least[static_cast<std::size_t>(std::clamp(stretch, 0.0, static_cast<double>(stretches - 1)))];
+      lowest = std::min(lowest, excess(disc));
+    }
+    const double most = *std::max_element(least.begin(), least.end()) + 2 * length * length;
+    for (std::size_t disc = 0; disc < count; ++disc) near[disc] |= excess(disc) <= most ? 1 : 0;
+  };
+  const Vec2 low = domain.low, high = domain.high;
+  const auto x = [](Vec2 p) { return p.x; };
+  const auto y = [](Vec2 p) { return p.y; };
+  look(low.x, high.x, x, [&](Vec2 p) { return p.y - low.y; });
+  look(low.x, high.x, x, [&](Vec2 p) { return high.y - p.y; });
+  look(low.y, high.y, y, [&](Vec2 p) { return p.x - low.x; });
+  look(low.y, high.y, y, [&](Vec2 p) { return high.x - p.x; });
+  std::vector<std::int32_t> discs;
+  for (std::size_t disc = 0; disc < count; ++disc) {
+    if (near[disc] != 0) discs.push_back(static_cast<std::int32_t>(disc));
+  }
+  return discs;
+}
+
 PowerCells free_cells(const Assembly& assembly, const Rectangle& domain) {
   const Sites sites(assembly);
   Strips strips(sites);
@@ -297,12 +332,9 @@ PowerCells free_cells(const Assembly& assembly, const Rectangle& domain) {
   return cells;
 }
 
-}  // namespace
-
-namespace {
-
-/// The smallest that holds all discs.
-Rectangle bounding_rectangle(const Assembly& assembly) {
+/// The box of the assembly, else the smallest rectangle that holds all discs.
+Rectangle region_of_cells(const Assembly& assembly) {
+  if (assembly.box) return *assembly.box;
   Rectangle box{.low = {infinity, infinity}, .high = {-infinity, -infinity}};
   for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
     const Vec2 x = assembly.centres[disc];
@@ -318,11 +350,17 @@ Rectangle bounding_rectangle(const Assembly& assembly) {
 PowerCells power_cells(const Assembly& assembly, const std::optional<Rectangle>& domain) {
   assert(assembly.size() > 0 && assembly.radii.size() == assembly.size());
   PowerCells cells = assembly.periodic() ? periodic_cells(assembly)
-                     : domain            ? free_cells(assembly, *domain)
-                              : free_cells(assembly, assembly.box ? *assembly.box : bounding_rectangle(assembly));
+                                         : free_cells(assembly, domain ? *domain : region_of_cells(assembly));
   // Rounding may make the area of an empty cell slightly negative.
   for (double& area : cells.areas) area = std::max(area, 0.0);
   return cells;
+}
+
+std::map<std::string, DiscGroup> measured_sides(const Assembly& assembly) {
+  assert(!assembly.periodic() && assembly.size() > 0);
+  const Rectangle domain = region_of_cells(assembly);
+  std::vector<double> areas(assembly.size(), 0.0);  // unused: their parts at the sides alone
+  return side_cells(assembly, discs_near_sides(assembly, domain), domain, areas);
 }
 
 }  // namespace equidem
