@@ -71,6 +71,25 @@ bool write_attribute(hid_t owner, const std::string& name, const std::string& va
   return H5Awrite(attribute, type, value.c_str()) >= 0;
 }
 
+/// No times, so that the same layout gives the same bytes; links in a heap, which the library can list without sorting.
+void set_up_group(hid_t creation) {
+  H5Pset_obj_track_times(creation, false);
+  H5Pset_link_phase_change(creation, 0, 0);
+}
+
+/// Make the groups of "groups/left/discs" that do not exist yet.
+bool create_groups_of(hid_t file, const std::string& name, hid_t links) {
+  const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  set_up_group(creation);
+  for (std::size_t end = name.find('/'); end != std::string::npos; end = name.find('/', end + 1)) {
+    const std::string group = name.substr(0, end);
+    if (H5Lexists(file, group.c_str(), H5P_DEFAULT) > 0) continue;
+    const Handle made(H5Gcreate2(file, group.c_str(), links, creation, H5P_DEFAULT), H5Gclose);
+    if (made.failed()) return false;
+  }
+  return true;
+}
+
 /// \return its offset in the HDF5 part of the file; none where it failed
 std::optional<std::uint64_t> create_array(hid_t file, const Hdf5Array& array) {
   const bool text = array.number == Hdf5Number::text;
@@ -79,8 +98,8 @@ std::optional<std::uint64_t> create_array(hid_t file, const Hdf5Array& array) {
   const Handle space(
       text ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-  H5Pset_create_intermediate_group(links, 1);
   H5Pset_char_encoding(links, H5T_CSET_UTF8);
+  if (!create_groups_of(file, array.name, links)) return std::nullopt;
   const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_layout(creation, H5D_CONTIGUOUS);
   H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
@@ -204,6 +223,9 @@ Hdf5Layout write_hdf5_layout(const std::filesystem::path& path, Hdf5Layout layou
   const Handle access = file_access();
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_userblock(creation, layout.user_block);
+  set_up_group(creation);
+  // From version 1.8 on the structure of a file has checksums; the library may crash on one that is damaged.
+  H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_LATEST);
   Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
   if (file.failed()) cannot_lay_out(path);
   for (const auto& [name, value] : layout.attributes) {
@@ -258,17 +280,17 @@ Hdf5File::~Hdf5File() {
 
 std::vector<std::string> Hdf5File::names(const std::string& group) const {
   std::vector<std::string> found;
-  H5G_info_t info;
   const Handle owner(H5Gopen2(id_, group.c_str(), H5P_DEFAULT), H5Gclose);
-  if (owner.failed() || H5Gget_info(owner, &info) < 0) return found;
-  for (hsize_t k = 0; k < info.nlinks; ++k) {
-    std::string name(4096, '\0');
-    const ssize_t length =
-        H5Lget_name_by_idx(owner, ".", H5_INDEX_NAME, H5_ITER_INC, k, name.data(), name.size(), H5P_DEFAULT);
-    if (length < 0) break;
-    name.resize(std::min(static_cast<std::size_t>(length), name.size() - 1));
-    found.push_back(std::move(name));
-  }
+  if (owner.failed()) return found;
+  const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* into) -> herr_t {
+    static_cast<std::vector<std::string>*>(into)->emplace_back(name);
+    return 0;
+  };
+  // In the order of the file: a sorted list of links crashes the library (1.10) where one of them is damaged.
+  if (H5Literate(owner, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, collect, &found) < 0)
+    bad_input_at(group, "the HDF5 library cannot list what this group holds", "the file is truncated or damaged",
+                 "Get the whole file, or write it anew");
+  std::sort(found.begin(), found.end());
   return found;
 }
 
