@@ -27,10 +27,16 @@ Name name_of(const Assembly& assembly, std::size_t contact) {
              : Name{c.j, c.i, -c.shift_x, -c.shift_y, arms.offset_j, arms.offset_i};
 }
 
-/// Contacts that ascend, as this library writes them, need no sorting.
+/// Contacts from the lower disc to the higher that ascend, as this library writes them, need no sorting.
 bool ascend(const Assembly& assembly) {
-  for (std::size_t k = 1; k < assembly.contacts.size(); ++k) {
-    if (!(name_of(assembly, k - 1) < name_of(assembly, k))) return false;
+  const std::vector<Contact>& all = assembly.contacts;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Contact& c = all[k];
+    if (c.i >= c.j) return false;
+    if (k == 0) continue;
+    const Contact& before = all[k - 1];
+    if (std::tie(before.i, before.j, before.shift_x, before.shift_y) >= std::tie(c.i, c.j, c.shift_x, c.shift_y))
+      return false;
   }
   return true;
 }

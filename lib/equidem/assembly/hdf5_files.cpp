@@ -164,12 +164,14 @@ class Reading {
     require_memory(static_cast<double>(count * (sizeof(Contact) + sizeof(double))),
                    fmt::format("{} need about", counted(count, "contact")));
     assembly_.contacts.resize(count);
+    const auto size = static_cast<std::int64_t>(assembly_.size());
+    bool exist = true;  // the discs, which are needed before the midpoints of branches
     for_each_row<std::int64_t>(contacts.name, count, contacts.width, [&](std::size_t k, auto row) {
       const auto narrow = [&](std::size_t column) { return static_cast<std::int32_t>(row[column]); };
       assembly_.contacts[k] = {.i = narrow(0), .j = narrow(1), .shift_x = narrow(2), .shift_y = narrow(3)};
+      exist = exist && std::min(row[0], row[1]) >= 0 && std::max(row[0], row[1]) < size;
     });
-    // Discs that exist are needed before the midpoints of branches.
-    check(assembly_);
+    if (!exist) check(assembly_);
     read_places_and_springs(count);
     refuse_repeated_contacts(assembly_);
   }
@@ -228,12 +230,15 @@ class Reading {
 
   /// Measure what the file does not give: triangulating takes longer than reading.
   void take_cells() {
+    constexpr const char* sides[] = {"left",        "right",        "bottom",   "top",
+                                     "bottom_left", "bottom_right", "top_left", "top_right"};
+    const auto given = [&](const char* name) { return assembly_.groups.contains(name); };
     if (!has(cell_areas.name) || !has(facet_lengths.name)) {
       std::vector<double> areas = std::move(assembly_.cell_areas), lengths = std::move(assembly_.facet_lengths);
       measure_cells(assembly_);
       if (has(cell_areas.name)) assembly_.cell_areas = std::move(areas);
       if (has(facet_lengths.name)) assembly_.facet_lengths = std::move(lengths);
-    } else if (!assembly_.periodic()) {
+    } else if (!assembly_.periodic() && !std::ranges::all_of(sides, given)) {
       for (auto& [name, side] : measured_sides(assembly_)) assembly_.groups.emplace(name, std::move(side));
     }
   }
