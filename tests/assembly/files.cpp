@@ -115,14 +115,16 @@ TEST_CASE("files_read_back_to_the_same_bits") {
   }
   const TemporaryFolder folder;
 
-  write_assembly(folder / "sub/a.json", a, false);
-  const Assembly b = read_assembly(folder / "sub/a.json");
+  const auto file = folder / "sub" / GENERATE("a.json", "a.h5");
+
+  write_assembly(file, a, false);
+  const Assembly b = read_assembly(file);
 
   require_same(a, b);
   CHECK(b.kind == "file");
   CHECK(b.cell_areas.size() == a.size());
-  CHECK_THROWS_AS(write_assembly(folder / "sub/a.json", a, false), Error);
-  CHECK_NOTHROW(write_assembly(folder / "sub/a.json", a, true));
+  CHECK_THROWS_AS(write_assembly(file, a, false), Error);
+  CHECK_NOTHROW(write_assembly(file, a, true));
 }
 
 TEST_CASE("cells_of_a_file_are_measured") {

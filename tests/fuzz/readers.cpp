@@ -122,6 +122,19 @@ Reader reader_of_checkpoints(const fs::path& scratch) {
   });
 }
 
+Reader reader_of_hdf5_assemblies(const fs::path& scratch, const std::vector<std::string>& json_seeds) {
+  const fs::path path = scratch / "assembly.h5";
+  std::vector<std::string> seeds;
+  for (const std::string& text : json_seeds) {
+    write_assembly(path, read_assembly(put(scratch / "seed.json", text)), true);
+    seeds.push_back(read_file(path));
+  }
+  return {"assemblies (HDF5)", seeds, [=](const std::string& input) {
+            fs::remove(path);  // the HDF5 library may hold a damaged file open, and would take it for the next one
+            static_cast<void>(read_assembly(put(path, input)));
+          }};
+}
+
 Reader reader_of_frames(const fs::path& scratch) {
   const Assembly assembly = hexagonal_lattice({.columns = 2, .rows = 2});
   const std::vector<DiscMotion> still(assembly.size());
@@ -202,6 +215,7 @@ std::vector<Reader> make_readers(const fs::path& source, const fs::path& scratch
        }},
       reader_of_file("assemblies (JSON)", scratch / "assembly.json", assembly_seeds,
                      [](const fs::path& file) { return read_assembly(file); }),
+      reader_of_hdf5_assemblies(scratch, assembly_seeds),
       reader_of_file("grains (CSV)", scratch / "grains.csv", {grains, ellipses, clumps},
                      [](const fs::path& file) {
                        GrainShapes shapes(Body::disc);

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "equidem/core/file.hpp"
+#include "equidem/core/files/open_file.hpp"
 #include "equidem/core/random.hpp"
-#include "equidem/output/files/open_file.hpp"
 
 #include "output/runs.hpp"
 #include "output/states.hpp"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "equidem/assembly/delaunay.hpp"
+#include "equidem/assembly/power_cells.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/statics/load_bearing.hpp"
 
@@ -16,13 +17,10 @@ namespace equidem {
 namespace {
 
 /// The sides and corners of a free assembly that were measured: those that its file does not give.
-std::set<std::string> measured_sides(const Assembly& assembly) {
+std::set<std::string> names_of_measured_sides(const Assembly& assembly) {
   std::set<std::string> names;
   if (assembly.periodic()) return names;
-  Assembly bare = assembly;
-  bare.groups.clear();
-  measure_cells(bare);
-  for (const auto& [name, side] : bare.groups) {
+  for (const auto& [name, side] : measured_sides(assembly)) {
     const auto found = assembly.groups.find(name);
     if (found != assembly.groups.end() && found->second.discs == side.discs &&
         found->second.tributary_lengths == side.tributary_lengths)
@@ -38,9 +36,9 @@ std::vector<std::uint8_t> held_by_the_case(const Problem& problem) {
   std::vector<int> contacts(assembly.size(), 0);
   for (const Contact& c : assembly.contacts)
     ++contacts[static_cast<std::size_t>(c.i)], ++contacts[static_cast<std::size_t>(c.j)];
-  // Cells are measured only where a side could matter.
+  // Sides are measured only where one could matter.
   const bool dangling = std::ranges::any_of(contacts, [](int count) { return count <= 2; });
-  const std::set<std::string> sides = dangling ? measured_sides(assembly) : std::set<std::string>{};
+  const std::set<std::string> sides = dangling ? names_of_measured_sides(assembly) : std::set<std::string>{};
   std::vector<std::uint8_t> held(assembly.size(), 0);
   const auto hold = [&](const std::string& name, int enough) {
     const auto found = assembly.groups.find(name);
@@ -79,7 +77,7 @@ void leave_out_loose(Problem& problem) {
     resolved.assembly.density = disc_density(resolved, assembly);
     resolved.material->given.density.reset();
   }
-  const std::set<std::string> sides = measured_sides(assembly);
+  const std::set<std::string> sides = names_of_measured_sides(assembly);
   Assembly rest = std::move(network.part->assembly);
   std::erase_if(rest.groups, [&](const auto& group) { return sides.contains(group.first); });
   measure_cells(rest);

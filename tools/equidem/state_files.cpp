@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "state_files.hpp"
 
+#include "equidem/assembly/files.hpp"
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/vtk.hpp"
 
@@ -27,6 +28,15 @@ void write_state(const CommonOptions& options, const OutputCase& wanted, const s
 void write_state_picture(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix,
                          const AssemblyState& state, const PictureOptions& picture) {
   if (wanted.picture) write_picture(*options.out, "picture" + suffix, state, picture, options.overwrite);
+}
+
+void expect_assembly(const OutputPlan& plan, const OutputCase& wanted) {
+  if (wanted.assembly) plan.expect(assembly_file_name("assembly", *wanted.assembly));
+}
+
+void write_assembly(const CommonOptions& options, const OutputCase& wanted, const Assembly& assembly) {
+  if (!wanted.assembly) return;
+  write_assembly(*options.out / assembly_file_name("assembly", *wanted.assembly), assembly, options.overwrite);
 }
 
 }  // namespace equidem

@@ -24,4 +24,8 @@ void write_state(const CommonOptions& options, const OutputCase& wanted, const s
 void write_state_picture(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix,
                          const AssemblyState& state, const PictureOptions& picture);
 
+/// The assembly itself, where [output] asks for it.
+void expect_assembly(const OutputPlan& plan, const OutputCase& wanted);
+void write_assembly(const CommonOptions& options, const OutputCase& wanted, const Assembly& assembly);
+
 }  // namespace equidem

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <numbers>
 #include <numeric>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
 
 namespace equidem {
 namespace {
@@ -30,11 +32,28 @@ void check_count(const char* what, std::size_t count, const char* per, std::size
             fmt::format("Give {} {}, or none", expected, what));
 }
 
+/// Call body(k) for k from 0 to count - 1 on all threads; the error is that of the lowest k.
+template <typename Body>
+void check_each(std::size_t count, const Body& body) {
+  constexpr std::size_t piece = 16384;
+  std::vector<std::exception_ptr> failures((count + piece - 1) / piece);
+  parallel_ranges(count, piece, [&](std::size_t begin, std::size_t end) {
+    try {
+      for (std::size_t k = begin; k < end; ++k) body(k);
+    } catch (const Error&) {
+      failures[begin / piece] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+}
+
 void check_discs(const Assembly& assembly) {
   const std::size_t n = assembly.size();
   if (n == 0) bad_input("the assembly has no discs", "there is nothing to solve for", "Give it discs");
   check_count("radii", assembly.radii.size(), "discs", n);
-  for (std::size_t d = 0; d < n; ++d) {
+  check_each(n, [&](std::size_t d) {
     const auto [x, y] = assembly.centres[d];
     if (!finite(assembly.centres[d])) {
       bad_input(fmt::format("disc {} has its centre at ({}, {})", d, x, y), "centres must be finite",
@@ -52,15 +71,15 @@ void check_discs(const Assembly& assembly) {
       bad_input(fmt::format("disc {} has the radius {} m", d, assembly.radii[d]), length_limits(),
                 "Choose other units");
     }
-  }
+  });
   if (assembly.cell_areas.empty()) return;
   check_count("cell areas", assembly.cell_areas.size(), "discs", n);
-  for (std::size_t d = 0; d < n; ++d) {
+  check_each(n, [&](std::size_t d) {
     if (!(assembly.cell_areas[d] >= 0) || !std::isfinite(assembly.cell_areas[d])) {
       bad_input(fmt::format("disc {} has the cell area {}", d, assembly.cell_areas[d]),
                 "cell areas must be finite and not negative", "Measure the cells anew");
     }
-  }
+  });
 }
 
 void check_contact(const Assembly& assembly, std::size_t index) {
@@ -157,19 +176,19 @@ void check_bodies(const Assembly& assembly) {
 void check_contacts(const Assembly& assembly) {
   const std::size_t m = assembly.contacts.size();
   if (!assembly.contact_arms.empty()) check_count("arms", assembly.contact_arms.size(), "contacts", m);
-  for (std::size_t c = 0; c < m; ++c) {
+  check_each(m, [&](std::size_t c) {
     check_contact(assembly, c);
     if (!assembly.contact_arms.empty()) check_arms(assembly, c);
-  }
+  });
   if (!assembly.facet_lengths.empty()) {
     check_count("facet lengths", assembly.facet_lengths.size(), "contacts", m);
-    for (std::size_t c = 0; c < m; ++c) {
+    check_each(m, [&](std::size_t c) {
       if (!(assembly.facet_lengths[c] >= 0) || !std::isfinite(assembly.facet_lengths[c])) {
         bad_input(
             fmt::format("{}, has the facet length {}", described(assembly.contacts[c], c), assembly.facet_lengths[c]),
             "facet lengths must be finite and not negative", "Measure the cells anew");
       }
-    }
+    });
   }
   if (assembly.contact_kN.empty() && assembly.contact_kT.empty()) return;
   check_count("normal springs", assembly.contact_kN.size(), "contacts", m);

@@ -10,19 +10,17 @@
 #include <set>
 #include <string>
 #include <string_view>
-#include <tuple>
-#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "equidem/assembly/delaunay.hpp"
-#include "equidem/assembly/file_text.hpp"
+#include "equidem/assembly/file_keys.hpp"
+#include "equidem/assembly/hdf5_files.hpp"
 #include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/memory.hpp"
-#include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -123,18 +121,10 @@ void check_keys(const Json& file) {
   if (!file.is_object()) wrong_kind(file, "an object with the keys schema, discs, ...", "");
   const auto found = file.find("schema");
   if (found == file.end() || *found != assembly_schema) {
-    bad_input_at("schema",
-                 found == file.end() ? std::string("the key 'schema' is missing")
-                                     : fmt::format("the schema is {}", found->dump()),
-                 fmt::format("an assembly file has \"schema\": \"{}\"", assembly_schema),
-                 "Add or correct it, if this is an assembly file");
+    const std::string given = found == file.end() ? "" : found->is_string() ? found->get<std::string>() : found->dump();
+    check_schema(given, fmt::format("\"schema\": \"{}\"", assembly_schema));
   }
-  for (const auto& [key, value] : file.items()) {
-    if (std::find(known_keys.begin(), known_keys.end(), key) != known_keys.end()) continue;
-    const auto meant = nearest(key, known_keys);
-    bad_input_at(key, fmt::format("there is no key '{}'", key), "an assembly file is read strictly",
-                 meant ? fmt::format("Did you mean '{}'?", *meant) : "Remove it");
-  }
+  for (const auto& item : file.items()) check_key(item.key(), known_keys);
   if (!file.contains("discs")) {
     bad_input_at("discs", "the key 'discs' is missing", "an assembly is made of discs",
                  "Add \"discs\": [[x, y, radius], ...]");
@@ -174,59 +164,13 @@ void read_discs(const Json& file, Assembly& assembly) {
              });
 }
 
-/// Bodies, shift and offsets: bodies that touch in several places do so with offsets of their own, since all their
-/// contacts lead along the same branch.
-using Name = std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t, double, double>;
-
-Name name_of(const Assembly& assembly, std::size_t contact) {
-  const Contact& c = assembly.contacts[contact];
-  const ContactArms arms = assembly.contact_arms.empty() ? ContactArms{} : assembly.contact_arms[contact];
-  return std::tuple(c.i, 0, 0) <= std::tuple(c.j, c.shift_x, c.shift_y)
-             ? Name{c.i, c.j, c.shift_x, c.shift_y, arms.offset_i, arms.offset_j}
-             : Name{c.j, c.i, -c.shift_x, -c.shift_y, arms.offset_j, arms.offset_i};
-}
-
-std::optional<std::pair<std::size_t, std::size_t>> find_repeated_contact(const Assembly& assembly) {
-  std::vector<std::pair<Name, std::size_t>> named;
-  named.reserve(assembly.contacts.size());
-  for (std::size_t k = 0; k < assembly.contacts.size(); ++k) named.emplace_back(name_of(assembly, k), k);
-  std::sort(named.begin(), named.end());
-  const auto twice =
-      std::adjacent_find(named.begin(), named.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
-  if (twice == named.end()) return {};
-  return std::pair(twice->second, (twice + 1)->second);
-}
-
-void refuse_repeated(const Assembly& assembly) {
-  const auto twice = find_repeated_contact(assembly);
-  if (!twice) return;
-  const auto& [first, second] = *twice;
-  const Contact& c = assembly.contacts[first];
-  bad_input_at(fmt::format("contacts[{}]", second),
-               fmt::format("contacts {} and {} are the same, of discs {} and {}", first, second, std::min(c.i, c.j),
-                           std::max(c.i, c.j)),
-               "its springs would count twice", "Remove one of them");
-}
-
 void read_contacts(const Json& file, double gap_tolerance, Assembly& assembly) {
+  check_keys_together([&](const char* key) { return file.contains(key); }, gap_tolerance);
   if (!file.contains("contacts")) {
-    for (const char* key : {"levers", "normals", "offsets", "springs"}) {
-      if (!file.contains(key)) continue;
-      bad_input_at(key, fmt::format("there are {} but no contacts", key), "they are given in the order of the contacts",
-                   "Add \"contacts\"");
-    }
-    if (file.contains("sections")) {
-      bad_input_at("sections", "there are sections but no contacts", "only of discs it is known where they touch",
-                   "Add \"contacts\"");
-    }
     check(assembly);
     assembly.contacts = touching_discs(assembly, gap_tolerance);
     assembly.gap_tolerance = gap_tolerance;
     return;
-  }
-  if (gap_tolerance > 0) {
-    bad_input_at("contacts", "the file gives contacts, and the case a gap_tolerance", "it is for files that give none",
-                 "Remove gap_tolerance, or the contacts");
   }
   const Json& contacts = file["contacts"];
   check_list(contacts, "contacts");
@@ -252,15 +196,7 @@ void read_levers_and_springs(const Json& file, Assembly& assembly) {
     assembly.contacts[k].lever_i = r_i;
     assembly.contacts[k].lever_j = r_j;
   });
-  if (file.contains("normals") || file.contains("offsets")) {
-    for (const char* key : {"levers", "normals", "offsets"}) {
-      if (file.contains(key)) continue;
-      bad_input_at(key, fmt::format("the key '{}' is missing", key),
-                   "off the line of centres a contact has a normal, levers along it and offsets across it",
-                   fmt::format("Add \"{}\"", key));
-    }
-    assembly.contact_arms.resize(contacts);
-  }
+  if (file.contains("normals")) assembly.contact_arms.resize(contacts);
   read_pairs(file, "normals", "n_x, n_y", "contact", contacts, [&](std::size_t k, double x, double y) {
     assembly.contact_arms[k].normal = {x, y};
   });
@@ -272,7 +208,7 @@ void read_levers_and_springs(const Json& file, Assembly& assembly) {
     assembly.contact_kN.push_back(kN);
     assembly.contact_kT.push_back(kT);
   });
-  refuse_repeated(assembly);
+  refuse_repeated_contacts(assembly);
 }
 
 DiscGroup read_group(const Json& value, const std::string& entry) {
@@ -381,9 +317,10 @@ std::string quoted_json(const std::string& text) {
 }
 
 Assembly read_assembly(const std::filesystem::path& path, double gap_tolerance) {
-  const std::string text = read_file(path);
+  const bool is_hdf5 = is_hdf5_name(path);
+  const std::string text = is_hdf5 ? std::string() : read_file(path);
   try {
-    return assembly_of(parse(text), gap_tolerance);
+    return is_hdf5 ? read_hdf5_assembly(path, gap_tolerance) : assembly_of(parse(text), gap_tolerance);
   } catch (const Error& error) {
     // "file: entry", so that the user finds both.
     const std::string where = error.where().empty() ? path.string() : path.string() + ": " + error.where();

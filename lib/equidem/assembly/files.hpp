@@ -1,15 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Assemblies from and to files (JSON, schema "equidem-assembly/1").
+/// Assemblies from and to files (schema "equidem-assembly/1"): HDF5 where the name ends in .h5 or .hdf5, else JSON.
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/core/names.hpp"
 
 namespace equidem {
 
-/// Read an assembly. `contacts` missing: those of touching_discs, at least one. The contact point
+enum class AssemblyFormat { json, hdf5 };
+
+template <>
+struct EnumNames<AssemblyFormat> {
+  static constexpr const char* what = "format of an assembly file";
+  static constexpr NamedValue<AssemblyFormat> list[] = {{AssemblyFormat::json, "json"}, {AssemblyFormat::hdf5, "hdf5"}};
+};
+
+/// "assembly.json" or "assembly.h5".
+std::string assembly_file_name(const std::string& stem, AssemblyFormat format);
+
+/// Read an assembly. As JSON: `contacts` missing: those of touching_discs, at least one. The contact point
 /// is the midpoint of the branch unless "levers": [[r_i, r_j], ...] is given (see Contact); off the line of
 /// centres "normals":
 /// [[n_x, n_y], ...] and "offsets": [[o_i, o_j], ...] give its place (see ContactArms); "springs": [[kN, kT], ...]
@@ -23,7 +36,7 @@ namespace equidem {
 ///         wrong type, absent disc, non-finite number, ...; a gap tolerance above 0 beside contacts
 Assembly read_assembly(const std::filesystem::path& path, double gap_tolerance = 0);
 
-/// Write all that read_assembly reads; numbers in the shortest form that reads back to the same bits.
+/// Write all that read_assembly reads, to the same bits. A file is written whole or not at all.
 void write_assembly(const std::filesystem::path& path, const Assembly& assembly, bool overwrite);
 
 }  // namespace equidem

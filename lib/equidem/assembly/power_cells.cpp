@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "equidem/assembly/sites.hpp"
+#include "equidem/assembly/strips.hpp"
 #include "equidem/assembly/triangulation.hpp"
 #include "equidem/core/threads.hpp"
 
@@ -20,39 +21,6 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Facets shorter than this share of the distance of the centres are round-off.
 constexpr double smallest_facet = 1e-9;
-
-/// Name an edge from the end that a contact starts at: the lower disc, between images of one disc that with the
-/// positive shift to the other.
-void orient(TriangulationEdge& edge, const Sites& sites) {
-  const Image a = sites.image(edge.a);
-  const Image b = sites.image(edge.b);
-  const bool forward = a.disc != b.disc         ? a.disc < b.disc
-                       : a.shift_x != b.shift_x ? a.shift_x < b.shift_x
-                                                : a.shift_y < b.shift_y;
-  if (forward) return;
-  std::swap(edge.a, edge.b);
-  std::swap(edge.left, edge.right);
-}
-
-/// Edges in an order that does not depend on the triangulation: by a, then the disc of b, then its shift.
-std::vector<TriangulationEdge> sorted(std::span<const TriangulationEdge> edges, const Sites& sites) {
-  const std::size_t count = sites.positions().size();
-  std::vector<std::size_t> first(count + 1, 0);
-  for (const TriangulationEdge& edge : edges) ++first[static_cast<std::size_t>(edge.a) + 1];
-  for (std::size_t a = 0; a < count; ++a) first[a + 1] += first[a];
-  std::vector<TriangulationEdge> result(edges.size());
-  std::vector<std::size_t> place(first.begin(), first.end() - 1);
-  for (const TriangulationEdge& edge : edges) result[place[edge.a]++] = edge;
-  for (std::size_t a = 0; a < count; ++a) {
-    std::sort(result.begin() + static_cast<std::ptrdiff_t>(first[a]),
-              result.begin() + static_cast<std::ptrdiff_t>(first[a + 1]), [&](const auto& p, const auto& q) {
-                const Image x = sites.image(p.b);
-                const Image y = sites.image(q.b);
-                return std::tie(x.disc, x.shift_x, x.shift_y) < std::tie(y.disc, y.shift_x, y.shift_y);
-              });
-  }
-  return result;
-}
 
 /// The line of equal power of two sites a and b, at `lever` from a along the normal n from a to b, and the stretch of
 /// it from `low` to `high`, along s = (-n_y, n_x), on which no third site has less power.
@@ -69,7 +37,8 @@ struct Facet {
 
 class DualGeometry {
  public:
-  DualGeometry(const Sites& sites, const std::optional<Rectangle>& domain) : sites_(sites), domain_(domain) {}
+  DualGeometry(const Sites& sites, const Strips& strips, const std::optional<Rectangle>& domain)
+      : sites_(sites), strips_(strips), domain_(domain) {}
 
   [[nodiscard]] Facet facet(const TriangulationEdge& edge) const {
     const Vec2 l = sites_.branch(edge.a, edge.b);
@@ -80,11 +49,9 @@ class DualGeometry {
     facet.lever = 0.5 * (facet.distance + (wa - wb) / facet.distance);
     facet.high = edge.left < 0 ? infinity : radical_centre(edge, edge.left, l, facet.distance);
     facet.low = edge.right < 0 ? -infinity : radical_centre(edge, edge.right, l, facet.distance);
-    if (domain_) {
-      clip(facet, edge.a, l);
-    } else {
+    if (domain_) clip(facet, edge.a, l);
+    if (!domain_ || (strips_.count() > 1 && facet.length() > 0))
       facet.certain = certain(facet, facet.high, edge.a, l) && certain(facet, facet.low, edge.a, l);
-    }
     return facet;
   }
 
@@ -130,78 +97,84 @@ class DualGeometry {
     facet.cut = facet.low != low || facet.high != high;
   }
 
-  /// Whether no site outside the region of images can have less power at the end t of the facet than a has: its
-  /// distance from there is at least `clear`, its weight at most the largest.
+  /// Whether no site that was left out can have less power at the end t of the facet than a has, beyond the images or
+  /// beyond the strip of a: its distance from there is at least `clear`, its weight at most the largest.
   [[nodiscard]] bool certain(const Facet& facet, double t, std::int32_t a, Vec2 l) const {
     if (!std::isfinite(t)) return false;
     const Vec2 n = l / facet.distance;
     const Vec2 offset = facet.lever * n + t * perpendicular(n);
     const Vec2 end = sites_.position(a) + offset;
-    const Rectangle region = sites_.region();
-    const double clear =
-        std::min({end.x - region.low.x, region.high.x - end.x, end.y - region.low.y, region.high.y - end.y});
+    double clear = strips_.known(a, end);
+    if (!domain_) {
+      const Rectangle region = sites_.region();
+      clear =
+          std::min({clear, end.x - region.low.x, region.high.x - end.x, end.y - region.low.y, region.high.y - end.y});
+    }
     const double power = dot(offset, offset) - sites_.weight(a);
     return clear > 0 && clear * clear > (1 + 1e-9) * (power + sites_.largest_weight());
   }
 
   const Sites& sites_;
+  const Strips& strips_;
   const std::optional<Rectangle>& domain_;
 };
 
-/// The edges that end at a disc of the cell itself, named as contacts are.
-std::vector<TriangulationEdge> edges_of_cell(const Sites& sites) {
-  std::vector<TriangulationEdge> edges =
-      triangulation_edges(sites.positions(), sites.weights(), sites.insertion_order());
-  if (sites.images() > 0) {
-    std::erase_if(edges,
-                  [&](const TriangulationEdge& edge) { return !sites.in_cell(edge.a) && !sites.in_cell(edge.b); });
-  }
-  parallel_ranges(edges.size(), 65536, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) orient(edges[k], sites);
-  });
-  return sorted(edges, sites);
-}
-
-std::vector<Facet> facets_of(std::span<const TriangulationEdge> edges, const DualGeometry& geometry) {
-  std::vector<Facet> facets(edges.size());
-  parallel_ranges(edges.size(), 16384, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) facets[k] = geometry.facet(edges[k]);
-  });
-  return facets;
-}
+/// Cells of the edges of a triangulation, without sides.
+struct DualCells {
+  PowerCells cells;
+  std::vector<std::int32_t> cut;  ///< discs with a facet that the rectangle cuts, some of them repeated
+};
 
 /// Neighbours, facets, and the part of the areas that lies between centres and facets: half of lever times length on
-/// either side, the lever negative where the facet lies behind the centre.
-PowerCells cells_between(const Sites& sites, std::span<const TriangulationEdge> edges, std::span<const Facet> facets,
-                         std::size_t discs) {
-  PowerCells cells;
+/// either side, the lever negative where the facet lies behind the centre. None where a facet is not certain.
+std::optional<DualCells> cells_between(const Sites& sites, std::span<const TriangulationEdge> edges,
+                                       const DualGeometry& geometry, std::size_t discs) {
+  constexpr std::size_t at_once = 1 << 18, grain = 8192;
+  DualCells dual;
+  PowerCells& cells = dual.cells;
   cells.areas.assign(discs, 0);
   cells.neighbours.reserve(edges.size());
   cells.facet_lengths.reserve(edges.size());
-  for (std::size_t k = 0; k < edges.size(); ++k) {
-    if (!sites.in_cell(edges[k].a)) continue;
-    const Contact contact = sites.contact(edges[k].a, edges[k].b);
-    const Facet& facet = facets[k];
-    const double length = facet.length();
-    cells.areas[contact.i] += 0.5 * facet.lever * length;
-    cells.areas[contact.j] += 0.5 * (facet.distance - facet.lever) * length;
-    if (length <= smallest_facet * facet.distance) continue;
-    cells.neighbours.push_back(contact);
-    cells.neighbours.back().lever_i = std::clamp(facet.lever, 0.0, facet.distance);
-    cells.neighbours.back().lever_j = std::clamp(facet.distance - facet.lever, 0.0, facet.distance);
-    cells.facet_lengths.push_back(length);
+  std::vector<Facet> facets(std::min(edges.size(), at_once));
+  for (std::size_t first = 0; first < edges.size(); first += at_once) {
+    const std::span<const TriangulationEdge> some = edges.subspan(first, std::min(at_once, edges.size() - first));
+    parallel_ranges(some.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) facets[k] = geometry.facet(some[k]);
+    });
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      const Facet& facet = facets[k];
+      if (!facet.certain) return {};
+      if (facet.cut) dual.cut.insert(dual.cut.end(), {some[k].a, some[k].b});
+      if (!sites.in_cell(some[k].a)) continue;
+      const Contact contact = sites.contact(some[k].a, some[k].b);
+      const double length = facet.length();
+      cells.areas[contact.i] += 0.5 * facet.lever * length;
+      cells.areas[contact.j] += 0.5 * (facet.distance - facet.lever) * length;
+      if (length <= smallest_facet * facet.distance) continue;
+      cells.neighbours.push_back(contact);
+      cells.neighbours.back().lever_i = std::clamp(facet.lever, 0.0, facet.distance);
+      cells.neighbours.back().lever_j = std::clamp(facet.distance - facet.lever, 0.0, facet.distance);
+      cells.facet_lengths.push_back(length);
+    }
   }
-  return cells;
+  cells.collinear =
+      std::all_of(edges.begin(), edges.end(), [](const TriangulationEdge& e) { return e.left < 0 && e.right < 0; });
+  return dual;
 }
 
 PowerCells periodic_cells(const Assembly& assembly) {
   Sites sites(assembly);
+  Strips strips(sites);
   for (;;) {
-    const std::vector<TriangulationEdge> edges = edges_of_cell(sites);
-    const std::vector<Facet> facets = facets_of(edges, DualGeometry(sites, {}));
-    const bool certain = std::all_of(facets.begin(), facets.end(), [](const Facet& f) { return f.certain; });
-    if (certain && !edges.empty()) return cells_between(sites, edges, facets, assembly.size());
-    sites.widen();
+    const std::vector<TriangulationEdge> edges = strips.edges();
+    if (!edges.empty()) {
+      if (auto dual = cells_between(sites, edges, DualGeometry(sites, strips, {}), assembly.size())) {
+        dual->cells.collinear = false;
+        return std::move(dual->cells);
+      }
+    }
+    if (strips.count() == 1) sites.widen();
+    strips.join();
   }
 }
 
@@ -304,18 +277,52 @@ std::map<std::string, DiscGroup> side_cells(const Assembly& assembly, std::span<
   return sides;
 }
 
+/// The discs of which cells may reach a side, ascending: the power of a place of the side is at least the excess of a
+/// disc, and in a stretch of the side at most that of any disc above it plus the length of the stretch squared.
+std::vector<std::int32_t> discs_near_sides(const Assembly& assembly, const Rectangle& domain) {
+  const std::size_t count = assembly.size();
+  const auto stretches = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
+  std::vector<std::uint8_t> near(count, 0);
+  const auto look = [&](double low, double high, const auto& along, const auto& distance) {
+    const double length = (high - low) / static_cast<double>(stretches);
+    const auto excess = [&](std::size_t disc) {
+      const double d = distance(assembly.centres[disc]), r = assembly.radii[disc];
+      return d * d - r * r;
+    };
+    std::vector<double> least(stretches, infinity);
+    for (std::size_t disc = 0; disc < count; ++disc) {
+      const double stretch = std::floor((along(assembly.centres[disc]) - low) / length);
+      double& lowest = least[static_cast<std::size_t>(std::clamp(stretch, 0.0, static_cast<double>(stretches - 1)))];
+      lowest = std::min(lowest, excess(disc));
+    }
+    const double most = *std::max_element(least.begin(), least.end()) + 2 * length * length;
+    for (std::size_t disc = 0; disc < count; ++disc) near[disc] |= excess(disc) <= most ? 1 : 0;
+  };
+  const Vec2 low = domain.low, high = domain.high;
+  const auto x = [](Vec2 p) { return p.x; };
+  const auto y = [](Vec2 p) { return p.y; };
+  look(low.x, high.x, x, [&](Vec2 p) { return p.y - low.y; });
+  look(low.x, high.x, x, [&](Vec2 p) { return high.y - p.y; });
+  look(low.y, high.y, y, [&](Vec2 p) { return p.x - low.x; });
+  look(low.y, high.y, y, [&](Vec2 p) { return high.x - p.x; });
+  std::vector<std::int32_t> discs;
+  for (std::size_t disc = 0; disc < count; ++disc) {
+    if (near[disc] != 0) discs.push_back(static_cast<std::int32_t>(disc));
+  }
+  return discs;
+}
+
 PowerCells free_cells(const Assembly& assembly, const Rectangle& domain) {
   const Sites sites(assembly);
-  const std::vector<TriangulationEdge> edges = edges_of_cell(sites);
-  const std::vector<Facet> facets = facets_of(edges, DualGeometry(sites, domain));
-  PowerCells cells = cells_between(sites, edges, facets, assembly.size());
-  cells.collinear =
-      std::all_of(edges.begin(), edges.end(), [](const TriangulationEdge& e) { return e.left < 0 && e.right < 0; });
-  // A cell that takes a stretch of a side has a facet that the side cuts, unless it is the only one.
-  std::vector<std::int32_t> outermost;
-  for (std::size_t k = 0; k < edges.size(); ++k) {
-    if (facets[k].cut) outermost.insert(outermost.end(), {edges[k].a, edges[k].b});
+  Strips strips(sites);
+  std::optional<DualCells> dual;
+  while (!dual) {
+    dual = cells_between(sites, strips.edges(), DualGeometry(sites, strips, domain), assembly.size());
+    strips.join();
   }
+  PowerCells cells = std::move(dual->cells);
+  // A cell that takes a stretch of a side has a facet that the side cuts, unless it is the only one.
+  std::vector<std::int32_t>& outermost = dual->cut;
   std::sort(outermost.begin(), outermost.end());
   outermost.erase(std::unique(outermost.begin(), outermost.end()), outermost.end());
   if (outermost.empty()) {
@@ -325,12 +332,9 @@ PowerCells free_cells(const Assembly& assembly, const Rectangle& domain) {
   return cells;
 }
 
-}  // namespace
-
-namespace {
-
-/// The smallest that holds all discs.
-Rectangle bounding_rectangle(const Assembly& assembly) {
+/// The box of the assembly, else the smallest rectangle that holds all discs.
+Rectangle region_of_cells(const Assembly& assembly) {
+  if (assembly.box) return *assembly.box;
   Rectangle box{.low = {infinity, infinity}, .high = {-infinity, -infinity}};
   for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
     const Vec2 x = assembly.centres[disc];
@@ -346,11 +350,17 @@ Rectangle bounding_rectangle(const Assembly& assembly) {
 PowerCells power_cells(const Assembly& assembly, const std::optional<Rectangle>& domain) {
   assert(assembly.size() > 0 && assembly.radii.size() == assembly.size());
   PowerCells cells = assembly.periodic() ? periodic_cells(assembly)
-                     : domain            ? free_cells(assembly, *domain)
-                              : free_cells(assembly, assembly.box ? *assembly.box : bounding_rectangle(assembly));
+                                         : free_cells(assembly, domain ? *domain : region_of_cells(assembly));
   // Rounding may make the area of an empty cell slightly negative.
   for (double& area : cells.areas) area = std::max(area, 0.0);
   return cells;
+}
+
+std::map<std::string, DiscGroup> measured_sides(const Assembly& assembly) {
+  assert(!assembly.periodic() && assembly.size() > 0);
+  const Rectangle domain = region_of_cells(assembly);
+  std::vector<double> areas(assembly.size(), 0.0);  // unused: their parts at the sides alone
+  return side_cells(assembly, discs_near_sides(assembly, domain), domain, areas);
 }
 
 }  // namespace equidem

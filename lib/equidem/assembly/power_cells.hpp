@@ -34,4 +34,7 @@ struct PowerCells {
 ///         that too many images would be needed
 PowerCells power_cells(const Assembly& assembly, const std::optional<Rectangle>& domain = {});
 
+/// The sides of the cells of a free assembly, without its triangulation.
+std::map<std::string, DiscGroup> measured_sides(const Assembly& assembly);
+
 }  // namespace equidem

@@ -36,6 +36,7 @@ struct Key {
 
 /// Stable radix sort by distance, 11 bits at a time.
 void sort_by_distance(std::vector<Key>& keys) {
+  if (std::ranges::is_sorted(keys, {}, &Key::distance)) return;
   std::vector<Key> other(keys.size());
   for (int bit = 0; bit < 32; bit += 11) {
     std::array<std::size_t, 2049> place{};

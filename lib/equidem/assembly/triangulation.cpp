@@ -67,7 +67,7 @@ std::vector<TriangulationEdge> edges(const Triangulation& triangulation) {
 
 std::vector<TriangulationEdge> triangulation_edges(std::span<const Vec2> points, std::span<const double> weights,
                                                    std::span<const std::int32_t> order) {
-  assert(order.size() == points.size() && (weights.empty() || weights.size() == points.size()));
+  assert(weights.empty() || weights.size() == points.size());
   if (weights.empty()) {
     Delaunay delaunay;
     insert(delaunay, order, [&](std::int32_t k) { return Kernel::Point_2(points[k].x, points[k].y); });

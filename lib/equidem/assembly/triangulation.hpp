@@ -26,7 +26,8 @@ struct TriangulationEdge {
 /// more corners on one circle are triangulated in one of the possible ways, the same for the same points in the same
 /// order. The decisions are exact (Shewchuk's adaptive idea, in CGAL: Fabri et al. 2000).
 /// \param weights one per point, or none
-/// \param order all points, each once, in the order in which they are inserted: a space-filling curve is fast
+/// \param order the points to triangulate, each once, in the order in which they are inserted: a space-filling curve is
+/// fast
 std::vector<TriangulationEdge> triangulation_edges(std::span<const Vec2> points, std::span<const double> weights,
                                                    std::span<const std::int32_t> order);
 

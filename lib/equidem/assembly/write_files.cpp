@@ -3,8 +3,9 @@
 #include <cstdint>
 #include <string>
 
-#include "equidem/assembly/file_text.hpp"
+#include "equidem/assembly/file_keys.hpp"
 #include "equidem/assembly/files.hpp"
+#include "equidem/assembly/hdf5_files.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 
@@ -80,9 +81,20 @@ std::string text_of(const Assembly& assembly) {
 
 }  // namespace
 
+std::string assembly_file_name(const std::string& stem, AssemblyFormat format) {
+  switch (format) {
+    case AssemblyFormat::json:
+      break;
+    case AssemblyFormat::hdf5:
+      return stem + ".h5";
+  }
+  return stem + ".json";
+}
+
 void write_assembly(const std::filesystem::path& path, const Assembly& assembly, bool overwrite) {
   check_writable(path, overwrite);
   check(assembly);
+  if (is_hdf5_name(path)) return write_hdf5_assembly(path, assembly);
   write_file(path, text_of(assembly), overwrite);
 }
 

@@ -37,11 +37,11 @@ struct CalibrateVerb {
 };
 
 /// \throws Error (bad_input) where a file cannot be written, or two results go to one file
-void check_outputs(const CalibrateVerb& options) {
+void check_outputs(const CalibrateVerb& options, const std::string& assembly_name) {
   const CommonOptions& common = options.common;
   const OutputPlan plan(common);
   plan.expect_results();
-  plan.expect("assembly.json");
+  plan.expect(assembly_name);
   const auto path = options.springs_path();
   if (!path) return;
   options.springs ? plan.expect_file(*path) : check_writable(*path, common.overwrite);
@@ -50,8 +50,7 @@ void check_outputs(const CalibrateVerb& options) {
   std::vector<fs::path> others;
   if (common.json && *common.json != "-") others.emplace_back(*common.json);
   if (common.out)
-    others.insert(others.end(),
-                  {*common.out / "result.json", *common.out / "case.toml", *common.out / "assembly.json"});
+    others.insert(others.end(), {*common.out / "result.json", *common.out / "case.toml", *common.out / assembly_name});
   const auto place = [&](const fs::path& file) { return fs::weakly_canonical(fs::absolute(file), ignored); };
   for (const fs::path& other : others) {
     if (place(other) != place(*path)) continue;
@@ -136,9 +135,11 @@ Problem problem_with_material(Case resolved) {
 
 int calibrate(const CalibrateVerb& options) {
   const CommonOptions& common = options.common;
-  check_outputs(options);
+  Case read = read_case(common);
+  const std::string assembly_name = assembly_file_name("assembly", read.output.assembly.value_or(AssemblyFormat::json));
+  check_outputs(options, assembly_name);
   const auto lock = lock_out(common);
-  Problem problem = problem_with_material(read_case(common));
+  Problem problem = problem_with_material(std::move(read));
   const Case& resolved = problem.resolved;
   if (common.dry_run) return dry_run_calibration(common, problem);
 
@@ -164,7 +165,7 @@ int calibrate(const CalibrateVerb& options) {
   }
   deliver(common, "calibrated", std::move(results), std::move(times), [&](Results&) {
     if (path) write_file(*path, file, common.overwrite);
-    if (common.out) write_assembly(*common.out / "assembly.json", problem.assembly, common.overwrite);
+    if (common.out) write_assembly(*common.out / assembly_name, problem.assembly, common.overwrite);
     write_case(common, resolved);
   });
   if (path) say(common, fmt::format("springs written to {}", path->string()));

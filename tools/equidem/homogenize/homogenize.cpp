@@ -42,6 +42,7 @@ constexpr std::array written_states{WrittenState{"_strain_xx", "strain xx"}, Wri
 void check_outputs(const CommonOptions& options, const OutputCase& wanted) {
   const OutputPlan plan(options);
   plan.expect_results();
+  expect_assembly(plan, wanted);
   for (const WrittenState& state : written_states) expect_state(plan, wanted, state.suffix);
 }
 
@@ -149,6 +150,7 @@ int homogenize(const HomogenizeVerb& options) {
                                       : "solved",
           std::move(results), std::move(times), [&](Results&) {
             if (!common.out) return;
+            write_assembly(common, problem.resolved.output, problem.assembly);
             write_states(common, problem, result);
             write_case(common, problem.resolved);
           });

@@ -24,8 +24,8 @@ namespace {
 void check_outputs(const CommonOptions& common, const PackCase& resolved) {
   const OutputPlan plan(common);
   plan.expect_results();
-  plan.expect("assembly.json");
-  if (!resolved.packing.box.periodic()) plan.expect("assembly_with_walls.json");
+  plan.expect(assembly_file_name("assembly", resolved.assembly));
+  if (!resolved.packing.box.periodic()) plan.expect(assembly_file_name("assembly_with_walls", resolved.assembly));
   if (resolved.csv) {
     plan.expect("grains.csv");
     if (resolved.packing.shape.kind == PackingShape::Kind::bonded_pair) plan.expect("bonds.csv");
@@ -45,10 +45,11 @@ void write_files(const CommonOptions& common, const PackCase& resolved, const Gr
                     common.overwrite);
     if (!packing.bonds.empty()) write_bond_csv(folder / "bonds.csv", packing.bonds, {}, common.overwrite);
   }
-  write_assembly(folder / "assembly.json", network, common.overwrite);
+  const auto place = [&](const char* stem) { return folder / assembly_file_name(stem, resolved.assembly); };
+  write_assembly(place("assembly"), network, common.overwrite);
   if (!packing.box.periodic()) {
     const HeldNetwork held = held_network_of(packing, resolved.network);
-    if (!held.bodies.empty()) write_assembly(folder / "assembly_with_walls.json", held.assembly, common.overwrite);
+    if (!held.bodies.empty()) write_assembly(place("assembly_with_walls"), held.assembly, common.overwrite);
   }
   if (resolved.picture) {
     const std::vector<Wall> walls = walls_of(packing.box);

@@ -29,6 +29,7 @@ std::string suffix_of(const std::string& load_case) {
 void check_outputs(const CommonOptions& options, const Case& resolved) {
   const OutputPlan plan(options);
   plan.expect_results();
+  expect_assembly(plan, resolved.output);
   for (const NamedLoads& loads : resolved.load_cases) expect_state(plan, resolved.output, suffix_of(loads.name));
 }
 
@@ -93,6 +94,7 @@ bool solve_once(const CommonOptions& options, const Problem& problem, const std:
   if (reached) all.append(accuracy_results(*reached));
   deliver(options, results.front().status(), std::move(all), std::move(times), [&](Results&) {
     if (!options.out) return;
+    write_assembly(options, problem.resolved.output, problem.assembly);
     for (std::size_t k = 0; k < results.size(); ++k)
       write_outputs(options, problem, problem.load_cases[k].loads, results[k]);
     write_case(options, problem.resolved);

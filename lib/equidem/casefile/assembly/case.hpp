@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "equidem/assembly/delaunay.hpp"
+#include "equidem/assembly/files.hpp"
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/casefile/motion_case.hpp"
@@ -75,10 +76,11 @@ struct OutputCase {
   bool csv = true;
   bool vtk = true;
   bool picture = true;
-  std::optional<double> frame_interval;  ///< s, of a run
-  bool frame_contacts = true;            ///< in frames: contacts with their forces
-  std::optional<double> probe_interval;  ///< s, of the histories of a run
-  double checkpoint_interval = 60;       ///< s, wall-clock time
+  std::optional<AssemblyFormat> assembly;  ///< assembly.json, assembly.h5; none: what the verb does by itself
+  std::optional<double> frame_interval;    ///< s, of a run
+  bool frame_contacts = true;              ///< in frames: contacts with their forces
+  std::optional<double> probe_interval;    ///< s, of the histories of a run
+  double checkpoint_interval = 60;         ///< s, wall-clock time
 };
 
 /// [ensemble]: random samples of one kind, from the seeds s, s + 1, ..., s that of the assembly.

@@ -214,17 +214,21 @@ void bind_tasks(File<CaseTables>& file) {
 }  // namespace
 
 std::vector<Key<OutputCase>> output_keys() {
-  return {key("csv", &OutputCase::csv, "discs.csv, contacts.csv"),
-          key("vtk", &OutputCase::vtk, "state for ParaView"),
-          key("picture", &OutputCase::picture, "picture.svg, picture.png"),
-          key("frame_interval", &OutputCase::frame_interval, unit("s"), positive,
-              "from one frame of a run to the next: bodies and contacts for ParaView"),
-          key("frame_contacts", &OutputCase::frame_contacts,
-              "contacts with their forces in every frame: some 50 bytes a body and 84 a contact, beside 100 a disc"),
-          key("probe_interval", &OutputCase::probe_interval, unit("s"), positive,
-              "from one row of the histories of a run to the next"),
-          key("checkpoint_interval", &OutputCase::checkpoint_interval, unit("s"), positive,
-              "wall-clock time from one checkpoint of a run to the next")};
+  return {
+      key("csv", &OutputCase::csv, "discs.csv, contacts.csv"),
+      key("vtk", &OutputCase::vtk, "state for ParaView"),
+      key("picture", &OutputCase::picture, "picture.svg, picture.png"),
+      key("assembly", &OutputCase::assembly,
+          "discs and contacts in assembly.json or, read and written faster, assembly.h5 (HDF5); without it pack and "
+          "calibrate write json, solve and homogenize none"),
+      key("frame_interval", &OutputCase::frame_interval, unit("s"), positive,
+          "from one frame of a run to the next: bodies and contacts for ParaView"),
+      key("frame_contacts", &OutputCase::frame_contacts,
+          "contacts with their forces in every frame: some 50 bytes a body and 84 a contact, beside 100 a disc"),
+      key("probe_interval", &OutputCase::probe_interval, unit("s"), positive,
+          "from one row of the histories of a run to the next"),
+      key("checkpoint_interval", &OutputCase::checkpoint_interval, unit("s"), positive,
+          "wall-clock time from one checkpoint of a run to the next")};
 }
 
 const File<CaseTables>& case_file() {

@@ -50,7 +50,9 @@ void bind_springs_and_output(File<PackTables>& file) {
   bind_springs_file(file);
   file.table("output", completed, "what is written with --out")
       .keys({key_in<PackTables>("csv", &PackCase::csv, "grains.csv, for [grains] path"),
-             key_in<PackTables>("picture", &PackCase::picture)});
+             key_in<PackTables>("picture", &PackCase::picture),
+             key_in<PackTables>("assembly", &PackCase::assembly,
+                                "assembly.json or, read and written faster, assembly.h5 (HDF5)")});
 }
 
 const File<PackTables>& pack_file() {
@@ -88,6 +90,7 @@ PackCase packing_of(Case whole) {
   result.body = whole.assembly.body;
   result.csv = whole.output.csv;
   result.picture = whole.output.picture;
+  result.assembly = whole.output.assembly.value_or(result.assembly);
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "equidem/assembly/files.hpp"
 #include "equidem/casefile/engine/keys.hpp"
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/material/inertia.hpp"
@@ -28,6 +29,7 @@ struct PackCase : CaseDocument {
   std::optional<double> of_continuum;  ///< kg/m³, of bodies and voids together
   Body body = Body::disc;
   bool csv = true, picture = true;
+  AssemblyFormat assembly = AssemblyFormat::json;
 
   /// Whether the bodies that are written have a density: the case gives it, or they fell with the default.
   [[nodiscard]] bool has_density() const { return density || of_continuum || entry_of(packing.method).open_top; }

@@ -14,10 +14,10 @@
 #include "equidem/core/checksum.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/files/hdf5.hpp"
+#include "equidem/core/files/open_file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/hdf5.hpp"
 #include "equidem/output/files/json.hpp"
-#include "equidem/output/files/open_file.hpp"
 
 namespace equidem {
 namespace {

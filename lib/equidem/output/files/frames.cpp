@@ -8,9 +8,9 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/files/open_file.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/open_file.hpp"
 #include "equidem/output/files/placed_discs.hpp"
 #include "equidem/output/files/poly_data.hpp"
 #include "equidem/output/files/vtk.hpp"

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "equidem/core/checksum.hpp"
+#include "equidem/core/files/open_file.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/output/files/checkpoint.hpp"
 #include "equidem/output/files/csv.hpp"
-#include "equidem/output/files/open_file.hpp"
 
 namespace equidem {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/output/files/open_file.hpp"
+#include "equidem/core/files/open_file.hpp"
 
 #include <cerrno>
 #include <cstring>
@@ -17,7 +17,7 @@
 namespace equidem {
 namespace {
 
-[[noreturn]] void cannot_write(const std::filesystem::path& path, const std::string& reason) {
+[[noreturn]] void write_failed(const std::filesystem::path& path, const std::string& reason) {
   computation_failed(fmt::format("cannot write '{}'", path.string()), reason,
                      "Make room on its disk; a run goes on from its last checkpoint");
 }
@@ -50,7 +50,7 @@ void OpenFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) 
   while (!bytes.empty()) {
     const ssize_t written = pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) cannot_write(path_, std::strerror(written == 0 ? ENOSPC : errno));
+    if (written <= 0) write_failed(path_, std::strerror(written == 0 ? ENOSPC : errno));
     bytes = bytes.subspan(static_cast<std::size_t>(written));
     offset += static_cast<std::uint64_t>(written);
   }
@@ -76,15 +76,15 @@ std::uint64_t OpenFile::size() const {
 }
 
 void OpenFile::truncate(std::uint64_t bytes) {
-  if (ftruncate(descriptor_, static_cast<off_t>(bytes)) != 0) cannot_write(path_, std::strerror(errno));
+  if (ftruncate(descriptor_, static_cast<off_t>(bytes)) != 0) write_failed(path_, std::strerror(errno));
 }
 
 void OpenFile::sync() {
-  if (fsync(descriptor_) != 0) cannot_write(path_, std::strerror(errno));
+  if (fsync(descriptor_) != 0) write_failed(path_, std::strerror(errno));
 }
 
 void OpenFile::sync_file_system() {
-  if (syncfs(descriptor_) != 0) cannot_write(path_, std::strerror(errno));
+  if (syncfs(descriptor_) != 0) write_failed(path_, std::strerror(errno));
 }
 
 Replacement::Replacement(std::filesystem::path path) : path_(std::move(path)), part_(path_.string() + ".part") {}
@@ -97,7 +97,7 @@ Replacement::~Replacement() {
 void Replacement::commit() {
   std::error_code failed;
   std::filesystem::rename(part_, path_, failed);
-  if (failed) cannot_write(path_, failed.message());
+  if (failed) write_failed(path_, failed.message());
   part_.clear();
 }
 
