@@ -136,6 +136,7 @@ Equilibrium EquilibriumSolver::Implementation::solve(const LoadCase& loads) cons
   }
   const FactorReport& report = solver.factor().report();
   result.solver = solver.solver_name();
+  result.single_precision = report.single_precision;
   result.negative_pivots = report.negative_pivots;
   result.unstable_modes = solver.unstable_modes();
   result.pivot_growth = report.growth;
