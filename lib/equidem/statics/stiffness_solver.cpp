@@ -10,9 +10,9 @@
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/rigid_growth.hpp"
-#include "equidem/statics/factor_precision.hpp"
 #include "equidem/statics/motion_description.hpp"
-#include "equidem/statics/refinement.hpp"
+#include "equidem/statics/precision/factor_precision.hpp"
+#include "equidem/statics/precision/refinement.hpp"
 
 namespace equidem {
 

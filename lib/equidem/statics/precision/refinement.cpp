@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/statics/refinement.hpp"
+#include "equidem/statics/precision/refinement.hpp"
 
 #include <algorithm>
 #include <cmath>
