@@ -220,9 +220,11 @@ SoftestMotion StiffnessSolver::iterate_inverse(std::span<const double> start, st
     result.inverse_norm = std::max(result.inverse_norm, make_unit());
   }
   for (std::size_t k = 0; k < x.size(); ++k) x[k] = scale[k] > 0 ? x[k] / scale[k] : 0;
-  // Round-off of the factor may make the motion stiffer than it is.
+  // Round-off of the factor may make the motion stiffer than it is, and in single precision softer, too. The quotient
+  // of Rayleigh does not depend on the factor; for an exact one it is at least the growth of the last pass.
   const double stiffness = springs_.any_negative() ? 0 : twice_energy(x);
-  if (stiffness > 0) result.inverse_norm = std::max(result.inverse_norm, 1 / stiffness);
+  const bool single = factor_->report().single_precision;
+  if (stiffness > 0) result.inverse_norm = std::max(single ? 0.0 : result.inverse_norm, 1 / stiffness);
   result.motion = std::move(x);
   return result;
 }
