@@ -45,7 +45,7 @@ double difference(const Assembly& assembly, const Equilibrium& p, const Equilibr
 }
 
 bool is_single(const Equilibrium& state) {
-  return state.solver == "multifrontal Cholesky in single precision";
+  return state.single_precision && state.solver == "multifrontal Cholesky in single precision";
 }
 
 }  // namespace

@@ -70,6 +70,7 @@ struct EffectiveStiffness {
   std::string solver;
   std::int64_t iterations = 0;  ///< of all load cases and of the error bound, where the method is iterative
   double factor_bytes = 0;
+  bool single_precision = false;  ///< of the factor
   StageTimes times;
   /// Motion of every disc for unit strain xx, yy, xy beside the uniform strain, m; discs removed stand still. Empty for
   /// tractions.

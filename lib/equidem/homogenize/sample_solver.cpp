@@ -136,8 +136,6 @@ void SampleSolver::factorize(const std::vector<std::uint8_t>& held, bool hold_tr
   result.unknowns = solver_->unknowns().unknowns;
   result.negative_pivots = report.negative_pivots;
   result.unstable_modes = solver_->unstable_modes();
-  result.solver = solver_->solver_name();
-  result.factor_bytes = report.bytes;
 }
 
 std::vector<std::int32_t> SampleSolver::indices() const {
@@ -193,9 +191,11 @@ std::vector<Solution> SampleSolver::solve(std::span<const RightHandSide> cases, 
   }
   constexpr double safety = 10;  // the norm of the inverse is estimated from below
   energy_error_ = safety * residual * residual * result.condition;
+  const FactorReport& report = solver_->factor().report();
   result.solver = solver_->solver_name();
-  result.factor_bytes = solver_->factor().report().bytes;
-  result.iterations = solver_->factor().report().iterations;
+  result.factor_bytes = report.bytes;
+  result.single_precision = report.single_precision;
+  result.iterations = report.iterations;
   result.times.add("error bound", watch.lap());
   return solutions;
 }

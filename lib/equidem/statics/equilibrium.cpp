@@ -9,9 +9,9 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/statics/factor_precision.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/motion_description.hpp"
+#include "equidem/statics/precision/factor_precision.hpp"
 #include "equidem/statics/rigidity.hpp"
 #include "equidem/statics/solver_choice.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
@@ -138,6 +138,7 @@ Equilibrium EquilibriumSolver::Implementation::solve(const LoadCase& loads) cons
   describe_state(given.force, solution.motion, result);
   const FactorReport& report = solver.factor().report();
   result.solver = solver.solver_name();
+  result.single_precision = report.single_precision;
   result.negative_pivots = report.negative_pivots;
   result.unstable_modes = solver.unstable_modes();
   result.pivot_growth = report.growth;

@@ -13,10 +13,10 @@
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/rigid_growth.hpp"
-#include "equidem/statics/factor_precision.hpp"
 #include "equidem/statics/method_choice.hpp"
 #include "equidem/statics/motion_description.hpp"
-#include "equidem/statics/refinement.hpp"
+#include "equidem/statics/precision/factor_precision.hpp"
+#include "equidem/statics/precision/refinement.hpp"
 
 namespace equidem {
 
@@ -261,9 +261,12 @@ SoftestMotion StiffnessSolver::iterate_inverse(std::span<const double> start, st
     result.inverse_norm = std::max(result.inverse_norm, make_unit());
   }
   for (std::size_t k = 0; k < x.size(); ++k) x[k] = scale_of(k) > 0 ? x[k] / scale_of(k) : 0;
-  // Round-off of the factor may make the motion stiffer than it is.
+  // Round-off of the factor may make the motion stiffer than it is, and in single precision, or where the solutions are
+  // rough, softer, too. The quotient of Rayleigh does not depend on them; for an exact factor it is at least the growth
+  // of the last pass.
   const double stiffness = springs_.any_negative() ? 0 : twice_energy(x);
-  if (stiffness > 0) result.inverse_norm = std::max(result.inverse_norm, 1 / stiffness);
+  const bool rough = factor_->report().single_precision || entry_of(method_).back_end.iterative;
+  if (stiffness > 0) result.inverse_norm = std::max(rough ? 0.0 : result.inverse_norm, 1 / stiffness);
   result.motion = std::move(x);
   return result;
 }

@@ -205,7 +205,9 @@ void bind_tasks(File<CaseTables>& file) {
            key("confidence", &EnsembleCase::confidence, between(0.5, 1), "level of the intervals that are reported")});
   file.table("solver", &CaseTables::solver, completed, "how the equations are solved")
       .keys({key("method", &SolverOptions::method, help_of(EnumNames<SolverMethod>::list)),
-             key("max_refinements", &SolverOptions::max_refinements, from(0, 100), "steps of iterative refinement"),
+             key("max_refinements", &SolverOptions::max_refinements, from(0, 100),
+                 "steps of iterative refinement; with a factor in single precision up to eight times as many; 0: the "
+                 "factor is in double precision"),
              key("memory_limit", &SolverOptions::memory_limit, bytes, not_negative,
                  "largest memory of the factor, also as \"4 GB\"; 0: what the machine has free")});
   file.table("output", &CaseTables::output, completed, "what is written with --out").keys(output_keys());

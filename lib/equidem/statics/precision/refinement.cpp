@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/statics/refinement.hpp"
+#include "equidem/statics/precision/refinement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,10 +34,20 @@ StiffnessSolver::Refinement::Refinement(const StiffnessSolver& solver_in, const 
       good_enough(good_enough_in) {
   const auto& unknowns = solver.unknowns_;
   solution.motion = PreciseMotion(unknowns.held.size());
+  bool moves = !given.imposed.empty();
   for (std::size_t k = 0; k < given.prescribed.size(); ++k) {
-    if (unknowns.held[k] != 0) solution.motion.high[k] = given.prescribed[k];
+    if (unknowns.held[k] == 0 || given.prescribed[k] == 0) continue;
+    solution.motion.high[k] = given.prescribed[k];
+    moves = true;
   }
-  solution.residual = replaced_ = evaluate(residual);
+  if (moves) {
+    evaluate(residual);
+  } else {
+    for (std::size_t k = 0; k < residual.size(); ++k) {
+      residual[k] = unknowns.held[k] != 0 || given.force.empty() ? 0 : given.force[k];
+    }
+  }
+  solution.residual = replaced_ = solver.norm_of_free(residual);
   solution.scale = std::max(solution.residual, imposed_force());
   done = solution.residual == 0;
   if (!conjugate || done) return;

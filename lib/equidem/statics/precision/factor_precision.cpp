@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/statics/factor_precision.hpp"
+#include "equidem/statics/precision/factor_precision.hpp"
 
 #include <algorithm>
 #include <limits>
