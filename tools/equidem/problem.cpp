@@ -282,16 +282,22 @@ Results estimate_results(const SolveEstimate& e, double solutions, double before
   Results results;
   results.line("unknowns").add("unknowns", "", e.unknowns, "", {Shown::count});
   results.line("memory").add("peak_bytes", "", e.peak_bytes, "at the peak", {Shown::bytes});
-  if (e.factor_nonzeros == 0 && e.unknowns > 0) {
-    add_memory_check(results, e, memory_limit);
-    results.line("time", "not predicted: the number of iterations is not known beforehand");
-    return results.block("nothing was solved (--dry-run)\n");
+  if (e.factor_nonzeros > 0) {
+    results.add("factor_bytes", "", e.factor_bytes, "of it for the factor", {Shown::bytes})
+        .add("factor_nonzeros", "", e.factor_nonzeros, "entries in the factor", {.digits = 3});
   }
-  results.add("factor_bytes", "", e.factor_bytes, "of it for the factor", {Shown::bytes})
-      .add("factor_nonzeros", "", e.factor_nonzeros, "entries in the factor", {.digits = 3});
   add_memory_check(results, e, memory_limit);
-  results.line("work").add("operations", "", e.operations, "multiplications and additions to factorize", {.digits = 3});
-  const double seconds = before + solutions * estimate_seconds(e, measure_solve_rates(), thread_count());
+  if (e.factor_nonzeros > 0)
+    results.line("work").add("operations", "", e.operations, "multiplications and additions to factorize",
+                             {.digits = 3});
+  results.line("method", e.why.empty() ? to_string(e.method) : fmt::format("{} ({})", to_string(e.method), e.why));
+  results.set("method", to_string(e.method));
+  if (e.other_bytes > 0) {
+    results.line("instead", e.method == SolverMethod::multigrid ? "multifrontal" : "multigrid")
+        .add("other_peak_bytes", "about", e.other_bytes, "at the peak", {Shown::bytes})
+        .add("other_time_ratio", "", e.other_seconds, "times the time", {.digits = 2});
+  }
+  const double seconds = before + estimate_seconds(e, solutions, thread_count());
   results.line("time").add("estimated_seconds", "about", seconds, "s with these threads, mostly within a factor of two",
                            {.digits = 2});
   return results.block("nothing was solved (--dry-run)\n");

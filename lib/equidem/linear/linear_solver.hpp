@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "equidem/core/names.hpp"
 #include "equidem/linear/factorization.hpp"
@@ -80,9 +81,15 @@ struct SolverOptions {
 /// \throws Error (bad_input) on a negative number of refinements or a memory limit that is negative or no number
 void check(const SolverOptions& options);
 
-/// Estimated cost of a factorization.
+/// Estimated cost of a solution.
 struct SolveEstimate {
+  SolverMethod method = SolverMethod::multifrontal;
+  std::string why;           ///< the reason of the choice of "auto"; empty where it did not weigh methods
+  double other_bytes = 0;    ///< at the peak, of elimination where `method` is multigrid, of multigrid where it is not;
+                             ///< 0: not weighed
+  double other_seconds = 0;  ///< over the time of `method`
   std::int64_t unknowns = 0;
+  double discs = 0;
   double factor_nonzeros = 0;  ///< entries of L
   double factor_bytes = 0;
   double peak_bytes = 0;  ///< factor and what lives beside it during factorization

@@ -34,6 +34,8 @@ inline constexpr Quantity quantities[] = {
     // The solution
     {"unknowns", "", "number of unknowns"},
     {"peak_bytes", "B", "memory at the peak"},
+    {"other_peak_bytes", "B", "memory at the peak of the method not taken"},
+    {"other_time_ratio", "", "estimated time of the method not taken, of that of the method taken"},
     {"factor_bytes", "B", "memory of the factor"},
     {"factor_nonzeros", "", "number of entries in the factor"},
     {"operations", "", "multiplications and additions of a factorization"},

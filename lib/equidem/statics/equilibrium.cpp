@@ -10,6 +10,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/internal_force.hpp"
+#include "equidem/statics/method_choice.hpp"
 #include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/precision/factor_precision.hpp"
 #include "equidem/statics/rigidity.hpp"
@@ -120,7 +121,8 @@ Equilibrium EquilibriumSolver::Implementation::solve(const LoadCase& loads) cons
   check_inert_loads(assembly, unknowns, given.force);
   check_mechanisms(given, result);
   const auto moves = [](double u) { return u != 0; };
-  if (std::any_of(unknowns.prescribed.begin(), unknowns.prescribed.end(), moves)) given.prescribed = unknowns.prescribed;
+  if (std::any_of(unknowns.prescribed.begin(), unknowns.prescribed.end(), moves))
+    given.prescribed = unknowns.prescribed;
   const std::int64_t iterations_before = solver.factor().report().iterations;
   Solution solution = std::move(solver.solve({&given, 1}, result.times).front());
   Stopwatch watch;
@@ -246,10 +248,25 @@ SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& spr
   const ContactGraph graph(assembly);
   const Effects effects = derive_effects(assembly, springs, options.rotation);
   const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, supports);
-  if (entry_of(options.solver.method).back_end.iterative) return estimate_iterations(assembly, unknowns);
-  const SymbolicFactor symbolic = analyze(dissect(assembly, graph), graph, unknowns.per_disc);
-  return estimate(symbolic, unknowns, springs.any_negative(),
-                  tries_single_precision(options.solver, springs, symbolic));
+  const SpringNetwork network{assembly, graph, springs, unknowns};
+  const MethodChoice choice = choose_method(network, options.solver);
+  SolveEstimate result;
+  if (entry_of(choice.method).back_end.iterative) {
+    result = estimate_iterations(assembly, unknowns);
+  } else {
+    const SymbolicFactor symbolic = analyze(dissect(assembly, graph), graph, unknowns.per_disc);
+    result =
+        estimate(symbolic, unknowns, springs.any_negative(), tries_single_precision(options.solver, springs, symbolic));
+  }
+  result.method = choice.method;
+  result.why = choice.reason;
+  result.discs = static_cast<double>(assembly.size());
+  const MethodForecast costs = forecast(network, options.solver.right_hand_sides);
+  if (choice.reason.empty() || !std::isfinite(costs.multigrid)) return result;
+  const bool iterative = choice.method == SolverMethod::multigrid;
+  result.other_bytes = iterative ? costs.elimination_bytes : costs.multigrid_bytes;
+  result.other_seconds = iterative ? costs.elimination / costs.multigrid : costs.multigrid / costs.elimination;
+  return result;
 }
 
 std::string Equilibrium::report() const {

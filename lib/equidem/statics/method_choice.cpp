@@ -68,6 +68,8 @@ MethodForecast forecast(const SpringNetwork& network, int right_hand_sides) {
 }
 
 MethodChoice choose_method(const SpringNetwork& network, const SolverOptions& options) {
+  if (options.method != SolverMethod::automatic) return {options.method, {}};
+  if (options.precision != FactorPrecision::automatic) return {};
   if (static_cast<double>(network.assembly.size()) < few_discs || network.springs.any_negative()) return {};
   const MethodForecast costs = forecast(network, options.right_hand_sides);
   const double memory = options.memory_limit > 0 ? options.memory_limit : available_memory();

@@ -24,12 +24,13 @@ struct MethodForecast {
 MethodForecast forecast(const SpringNetwork& network, int right_hand_sides);
 
 struct MethodChoice {
-  SolverMethod method = SolverMethod::multifrontal;  ///< or multigrid
-  std::string reason;                                ///< empty where multigrid was not considered
+  SolverMethod method = SolverMethod::multifrontal;
+  std::string reason;  ///< empty where there was nothing to weigh
 };
 
-/// Multigrid where it is forecast to be faster, or where only its memory is available; never of few discs, where the
-/// difference is not felt and elimination finds more: pivots and mechanisms.
+/// The method that the options name; where they leave it to "auto", multigrid where it is forecast to be faster, or
+/// where only its memory is available; never of few discs, where the difference is not felt and elimination finds more:
+/// pivots and mechanisms.
 MethodChoice choose_method(const SpringNetwork& network, const SolverOptions& options);
 
 }  // namespace equidem

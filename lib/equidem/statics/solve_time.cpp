@@ -37,30 +37,50 @@ double seconds_per_operation() {
   return seconds / (2.0 * n * n * n);
 }
 
-}  // namespace
-
-SolveRates measure_solve_rates() {
-  const Assembly block = hexagonal_lattice({.columns = 41, .rows = 41, .radius = 1});
+/// The least time of the solution of a block with the bound of its error, on one thread.
+double seconds_of_block(const Assembly& block, SolverMethod method, SolveEstimate* estimate = nullptr) {
   const ContactSprings springs(SpringConstants{1, 0.5});
   const std::vector<Support> supports{{.group = "left", .ux = 0, .uy = 0, .rotation = {}}};
   const LoadCase loads{{.group = "right", .force = {1, 0}}};
-  const SolveEstimate estimate = estimate_solve(block, springs, supports);
   EquilibriumOptions options;
   options.error_bound = true;
+  options.solver.method = method;
+  if (estimate != nullptr) *estimate = estimate_solve(block, springs, supports, options);
   const int threads = thread_count();
   set_thread_count(1);
   const double seconds =
       least_seconds([&] { static_cast<void>(EquilibriumSolver(block, springs, supports, options).solve(loads)); });
   set_thread_count(threads);
+  return seconds;
+}
+
+}  // namespace
+
+SolveRates measure_solve_rates() {
+  SolveEstimate estimate;
+  const double seconds = seconds_of_block(hexagonal_lattice({.columns = 41, .rows = 41, .radius = 1}),
+                                          SolverMethod::multifrontal, &estimate);
   SolveRates rates{.per_operation = seconds_per_operation()};
   rates.per_entry = std::max(0.0, seconds - estimate.operations * rates.per_operation) / estimate.factor_nonzeros;
   return rates;
 }
 
-double estimate_seconds(const SolveEstimate& estimate, const SolveRates& rates, int threads) {
+double measure_multigrid_rate() {
+  const Assembly block = hexagonal_lattice({.columns = 90, .rows = 90, .radius = 1});
+  return seconds_of_block(block, SolverMethod::multigrid) / static_cast<double>(block.size());
+}
+
+double estimate_seconds(const SolveEstimate& estimate, double solutions, int threads) {
   constexpr double efficiency = 0.8;  // of a second thread, measured at 1e5 and 1e6 discs
+  const double speed_up = 1 + efficiency * (threads - 1);
+  if (estimate.method == SolverMethod::multigrid) {
+    constexpr double of_set_up = 1.0 / 3, out_of_cache = 1.3;
+    const double blocks = of_set_up + (1 - of_set_up) * solutions;
+    return out_of_cache * estimate.discs * blocks * measure_multigrid_rate() / speed_up;
+  }
+  const SolveRates rates = measure_solve_rates();
   const double seconds = estimate.factor_nonzeros * rates.per_entry + estimate.operations * rates.per_operation;
-  return seconds / (1 + efficiency * (threads - 1));
+  return solutions * seconds / speed_up;
 }
 
 }  // namespace equidem

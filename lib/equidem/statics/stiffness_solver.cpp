@@ -30,10 +30,7 @@ StiffnessSolver::StiffnessSolver(const Assembly& assembly, const ContactSprings&
       options_(options),
       mechanisms_(mechanisms),
       on_graph_{matrix_, assembly_, graph_} {
-  const MethodChoice choice =
-      options.method == SolverMethod::automatic && options.precision == FactorPrecision::automatic
-          ? choose_method({assembly_, graph_, springs_, unknowns_}, options_)
-          : MethodChoice{.method = options.method, .reason = {}};
+  const MethodChoice choice = choose_method({assembly_, graph_, springs_, unknowns_}, options_);
   why_method_ = choice.reason;
   if (!entry_of(choice.method).back_end.iterative) {
     eliminate(choice.method, times);

@@ -188,9 +188,9 @@ std::unique_ptr<Factorization> multigrid_solver(const SpringNetwork& network, co
 }
 
 double bytes_of_multigrid(double discs, double contacts) {
-  // Per disc two inverse blocks in float, 110 bytes on the grids, three vectors in float, twenty in double; per contact
-  // both its slots, of which random assemblies fill four in five, and its force.
-  return discs * (24 + 110 + 48 + 480) + contacts * (2 * 1.25 * 20 + 16);
+  // Per disc the inverse of its block, 75 bytes on the grids, three vectors in float, eleven in double; per contact both
+  // its slots, of which random assemblies fill four in five, and its force.
+  return discs * (24 + 75 + 48 + 264) + contacts * (2 * 1.25 * 20 + 16);
 }
 
 }  // namespace equidem
