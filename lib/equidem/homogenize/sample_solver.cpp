@@ -121,8 +121,7 @@ void SampleSolver::factorize(const std::vector<std::uint8_t>& held, bool hold_tr
   result.times.add("network", watch.lap());
   SolverOptions solver = options_.solver;
   solver.right_hand_sides = 3;  // mean strains
-  solver_.emplace(assembly(), springs(), std::move(graph), std::move(unknowns), solver, Mechanisms::hold,
-                  result.times);
+  solver_.emplace(assembly(), springs(), std::move(graph), std::move(unknowns), solver, Mechanisms::hold, result.times);
   const FactorReport& report = solver_->factor().report();
   result.motions = zero_energy_modes(assembly(), *solver_, held_motions_,
                                      options_.boundary == Boundary::traction && !whole_.groups.contains("left")
@@ -183,14 +182,16 @@ std::vector<Solution> SampleSolver::solve(std::span<const RightHandSide> cases, 
   // Without negative springs a motion without energy deforms no contact: mean strains do no work on it.
   const bool may_react = options_.boundary == Boundary::traction || springs().any_negative();
   for (std::size_t k = 0; may_react && k < cases.size(); ++k) check_reactions(cases[k], solutions[k]);
-  result.condition = solver_->scaled_inverse_norm(solutions[0].motion.high);
+  const bool estimated = solutions[0].energy_error > 0;
+  if (!estimated) result.condition = solver_->scaled_inverse_norm(solutions[0].motion.high);
   double residual = 0;
   for (std::size_t k = 0; k < solutions.size(); ++k) {
     result.relative_residual = std::max(result.relative_residual, solutions[k].relative_residual());
-    residual = std::max(residual, solver_->scaled_residual_bound(cases[k], solutions[k]));
+    energy_error_ = std::max(energy_error_, solutions[k].energy_error);
+    if (!estimated) residual = std::max(residual, solver_->scaled_residual_bound(cases[k], solutions[k]));
   }
   constexpr double safety = 10;  // the norm of the inverse is estimated from below
-  energy_error_ = safety * residual * residual * result.condition;
+  if (!estimated) energy_error_ = safety * residual * residual * result.condition;
   const FactorReport& report = solver_->factor().report();
   result.solver = solver_->solver_name();
   result.factor_bytes = report.bytes;

@@ -74,7 +74,10 @@ struct SolverOptions {
   FactorPrecision precision = FactorPrecision::automatic;  ///< single for large factors, as far as the condition allows
   int max_refinements =
       4;  ///< steps of iterative refinement, >= 0; eight times as many with a factor in single precision
-  double memory_limit = 0;   ///< bytes that factor and factorization may take; 0: what the machine has free
+  double memory_limit = 0;  ///< bytes that factor and factorization may take; 0: what the machine has free
+  /// Wanted of the motions, relative, in the norm of energy; iterative methods end there, others ignore it. 0:
+  /// round-off.
+  double accuracy = 0;
   int right_hand_sides = 1;  ///< that will be solved for, about: "auto" depends on it
 };
 

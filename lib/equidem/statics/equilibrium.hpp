@@ -41,6 +41,8 @@ struct Equilibrium {
   /// |K| |K^-1|, estimated (2-norm of the inverse by inverse iteration from the solution), and the bound on the
   /// relative error of `motions` (2-norm) that follows from it, the residual and the rounding of normals, with a margin
   /// of 10; 0 unless asked for.
+  /// Where iterations ended at SolverOptions::accuracy, the estimated error in the norm of energy takes the place of
+  /// the bound.
   double condition = 0;
   double error_bound = 0;
   std::int64_t unknowns = 0;

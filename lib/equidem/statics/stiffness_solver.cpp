@@ -159,6 +159,13 @@ bool StiffnessSolver::refine(std::span<const RightHandSide> cases, double good_e
     all.emplace_back(*this, cases[k], std::span(x).subspan(k * n, n), good_enough);
   }
   Stopwatch watch;
+  if (options_.accuracy > 0 && entry_of(method_).back_end.iterative) {
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const std::span<double> residual = std::span(x).subspan(k * n, n);
+      if (!all[k].done) all[k].take(factor_->solve_to(options_.accuracy, residual), residual);
+    }
+    times.add("solve", watch.lap());
+  }
   const int most = options_.max_refinements * (single ? steps_for_one : 1);
   for (int pass = 0; pass <= most; ++pass) {
     std::vector<Refinement*> open;  // their residuals stand one after another at the front of x

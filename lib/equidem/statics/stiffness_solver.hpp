@@ -37,6 +37,8 @@ struct Solution {
   double scale =
       0;  ///< N/m, reference of relative residuals: |f| with prescribed motions and imposed deformations included
   int refinements = 0;
+  /// e.K e of the error e of the motion, N, estimated, where iterations ended at SolverOptions::accuracy; else 0.
+  double energy_error = 0;
 
   [[nodiscard]] double relative_residual() const { return scale > 0 ? residual / scale : 0.0; }
 };
@@ -91,6 +93,8 @@ class StiffnessSolver {
   /// rounding of the geometry does to the motion u along v.
   [[nodiscard]] double rounding_work(const RightHandSide& given, const PreciseMotion& motion,
                                      std::span<const double> v) const;
+  /// Of a motion, per component: x.K x, N.
+  [[nodiscard]] double twice_energy(std::span<const double> x) const;
   /// |K| (largest sum of the magnitudes of a row), Pa.
   [[nodiscard]] double norm() const;
   [[nodiscard]] const ContactGraph& graph() const { return graph_; }
@@ -123,7 +127,6 @@ class StiffnessSolver {
   void evaluate_residual(const RightHandSide& given, const PreciseMotion& motion, std::span<double> residual) const;
   /// sum_j |K_ij| of every row, Pa.
   [[nodiscard]] std::vector<double> row_sums() const;
-  [[nodiscard]] double twice_energy(std::span<const double> x) const;
   [[nodiscard]] double norm_of_free(std::span<const double> x) const;
 
   const Assembly& assembly_;

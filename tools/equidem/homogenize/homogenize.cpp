@@ -126,6 +126,7 @@ int homogenize(const HomogenizeVerb& options) {
     bad_input("--resume has nothing to continue", "the case has no [ensemble]", "Leave it out, or add [ensemble]");
   check_outputs(common, resolved.output);
   const auto lock = lock_out(common);
+  if (options.accuracy) resolved.solver.accuracy = std::sqrt(0.1 * *options.accuracy);  // errors of moduli are squares
   const Problem problem = problem_of(std::move(resolved));
   if (common.dry_run) return dry_run_homogenization(common, problem);
 

@@ -98,10 +98,14 @@ void add_stiffness(Results& out, const EffectiveStiffness& r) {
       .add("error_bound", "", r.error_bound, "Pa for an entry", {Shown::power, 1})
       .add("", "", r.error_bound / largest_entry(r.stiffness), "of the largest", {Shown::power, 0})
       .note(": ")
-      .add("relative_residual", "residual", r.relative_residual, "", {Shown::power, 1})
-      .add("condition", "condition", r.condition, "", {Shown::power, 1})
-      .note("; ")
-      .add("hill_mandel", "macroscopic and microscopic power differ by", r.hill_mandel, "", {Shown::power, 0});
+      .add("relative_residual", "residual", r.relative_residual, "", {Shown::power, 1});
+  if (r.condition > 0) {
+    out.add("condition", "condition", r.condition, "", {Shown::power, 1});
+  } else {
+    out.set("condition", r.condition).note(", estimated from the iterations");
+  }
+  out.note("; ").add("hill_mandel", "macroscopic and microscopic power differ by", r.hill_mandel, "",
+                     {Shown::power, 0});
   out.set("tangential_part", r.tangential_part).set("normal_part", r.normal_part);
 }
 

@@ -67,6 +67,7 @@ bool solve_once(const CommonOptions& options, const Problem& problem, const std:
                 BlockSearch* search) {
   EquilibriumOptions solver_options = problem.options();
   solver_options.error_bound = true;
+  if (accuracy && search == nullptr) solver_options.solver.accuracy = 0.5 * *accuracy;
   solver_options.solver.right_hand_sides = static_cast<int>(problem.load_cases.size());
   std::vector<SolvedCase> results;
   Effects effects;

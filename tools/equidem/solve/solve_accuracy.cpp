@@ -89,14 +89,17 @@ ReachedAccuracy solver_accuracy(double accuracy, double error_bound, double cond
   ReachedAccuracy reached{
       .requested = accuracy,
       .estimated = error_bound,
-      .of =
-          "the answer to this assembly, bound from the residual and the condition; what the assembly stands for is "
-          "not judged",
+      .of = fmt::format("the answer to this assembly, {}; what the assembly stands for is not judged",
+                        condition > 0 ? "bound from the residual and the condition" : "estimated from the iterations"),
       .knob = {},
       .value = {},
       .pilots = {},
       .pilots_factor = 0,
       .ten_times_more = {.time_factor = 1, .seconds = seconds, .value = {}, .note = {}}};
+  if (condition == 0) {
+    reached.ten_times_more.note = "about two iterations more";
+    return reached;
+  }
   reached.ten_times_more.note = error_bound <= accuracy / 10
                                     ? "nothing: the direct solution has it already"
                                     : "cannot be had: the direct solution is refined as far as doubles go";

@@ -93,10 +93,15 @@ Results load_case_results(const Problem& problem, const SolvedCase& result, bool
         .add("error_bound", "", e.error_bound, "of the motions", {Shown::power, 1})
         .add("condition", "from the residual and a condition of about", e.condition, "", {Shown::power, 1});
   } else {
+    if (e.iterations > 0 && e.error_bound > 0) {
+      out.line("error")
+          .add("", "", e.error_bound, "of the motions in the norm of energy", {Shown::power, 1})
+          .note(", estimated from the iterations");
+    }
     out.set("error_bound", e.error_bound).set("condition", e.condition);
   }
   constexpr double doubtful = 1e-10;
-  if (e.relative_residual > doubtful)
+  if (e.condition > 0 && e.relative_residual > doubtful)
     out.line("", "WARNING: K is nearly singular; do not trust more digits than the residual leaves");
   add_deformation(out, problem, e.contact_forces);
   out.line("energy").add("energy", "", e.energy, "N (J per m of depth, per m)");

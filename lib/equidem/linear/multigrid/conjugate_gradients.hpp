@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <span>
 
 #include "equidem/core/progress.hpp"
@@ -17,7 +18,9 @@ namespace equidem::multigrid {
 using Product = std::function<void(std::span<const double> x, std::span<double> y)>;
 
 struct IterationOptions {
-  double tolerance = 3e-7;               ///< of |r| over |b|, and of the energy norm of the error as r.M r shows it
+  double tolerance = 3e-7;  ///< of |r| over |b|, and of the energy norm of the error as r.M r shows it
+  /// In place of the tolerance, of the estimated error over the solution, norms of energy; 0: not asked for.
+  double accuracy = 0;
   int max_iterations = most_iterations;  ///< >= 1
 };
 
@@ -30,7 +33,33 @@ enum class IterationOutcome {
 struct IterationReport {
   IterationOutcome outcome = IterationOutcome::converged;
   int iterations = 0;
-  double residual = 0;  ///< |r| over |b| as the recurrence gives it
+  double residual = 0;      ///< |r| over |b| as the recurrence gives it
+  double energy = 0;        ///< x.K x
+  double energy_error = 0;  ///< e.K e of the error e, estimated: see ErrorEstimate
+};
+
+/// The energy of the error from that of the steps. With conjugate gradients each step takes t = alpha r.M r off e.K e
+/// (Hestenes & Stiefel 1952, theorem 6:1), so that e.K e is the sum of all t to come (Strakos & Tichy 2002). These are
+/// taken as a geometric series with the slowest decay of the last steps, and doubled.
+class ErrorEstimate {
+ public:
+  void add_step(double energy) {
+    decay_ = last_ > 0 ? std::max(energy / last_, 0.5 * decay_) : decay_;
+    last_ = energy;
+    sum_ += energy;
+    ++steps_;
+  }
+  [[nodiscard]] double energy() const { return sum_; }
+  /// Infinity before the decay is known.
+  [[nodiscard]] double error() const {
+    constexpr int least = 3;
+    if (steps_ < least || decay_ >= 1) return std::numeric_limits<double>::infinity();
+    return 2 * last_ * decay_ / (1 - decay_);
+  }
+
+ private:
+  double sum_ = 0, last_ = 0, decay_ = 0;
+  int steps_ = 0;
 };
 
 /// Products of a vector z with r and with q.
@@ -59,6 +88,7 @@ IterationReport iterate(Vectors& vectors, const IterationOptions& options) {
   const double first_rz = rz;
   double inverse_size = rz;  // p.M^-1 p
   double largest_quotient = 0;
+  ErrorEstimate estimate;
   Progress progress("iterating");
   while (report.iterations < options.max_iterations) {
     const double pq = vectors.multiply();
@@ -72,8 +102,14 @@ IterationReport iterate(Vectors& vectors, const IterationOptions& options) {
     const double alpha = rz / pq;
     report.residual = vectors.advance(alpha) / size;
     ++report.iterations;
+    estimate.add_step(alpha * rz);
+    report.energy = estimate.energy();
+    report.energy_error = estimate.error();
+    if (options.accuracy > 0 && report.energy_error <= options.accuracy * options.accuracy * report.energy)
+      return report;
     const auto next = vectors.precondition();
-    if (report.residual <= options.tolerance && next.rz <= options.tolerance * options.tolerance * first_rz) {
+    if (options.accuracy == 0 && report.residual <= options.tolerance &&
+        next.rz <= options.tolerance * options.tolerance * first_rz) {
       return report;
     }
     progress.update(std::clamp(std::log(report.residual) / std::log(options.tolerance), 0.0, 1.0));

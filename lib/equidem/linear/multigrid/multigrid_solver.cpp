@@ -137,10 +137,15 @@ class MultigridSolver final : public Factorization {
   void solve(std::span<double> x, int right_hand_sides) const override {
     const std::size_t n = unknowns_.held.size();
     for (std::size_t k = 0; k < static_cast<std::size_t>(right_hand_sides); ++k) {
-      report_.iterations += solve_one(x.subspan(k * n, n), multigrid::IterationOptions{}.tolerance);
+      report_.iterations += solve_one(x.subspan(k * n, n), {}).iterations;
     }
   }
-  void solve_roughly(std::span<double> x) const override { static_cast<void>(solve_one(x, 0.03)); }
+  double solve_to(double accuracy, std::span<double> x) const override {
+    const auto report = solve_one(x, {.accuracy = accuracy});
+    report_.iterations += report.iterations;
+    return cycle_->unit() * report.energy_error;
+  }
+  void solve_roughly(std::span<double> x) const override { static_cast<void>(solve_one(x, {.tolerance = 0.03})); }
   [[nodiscard]] const FactorReport& report() const override { return report_; }
 
  private:
@@ -151,16 +156,17 @@ class MultigridSolver final : public Factorization {
     Random random(1);
     std::vector<double> load(unknowns_.held.size());
     for (double& f : load) f = random.uniform() - 0.5;
-    static_cast<void>(solve_one(load, tolerance));
+    static_cast<void>(solve_one(load, {.tolerance = tolerance}));
   }
 
-  int solve_one(std::span<double> x, double tolerance) const {
+  multigrid::IterationReport solve_one(std::span<double> x, multigrid::IterationOptions options) const {
+    options.max_iterations = max_iterations_;
     CycleVectors vectors(*cycle_, unknowns_, x);
-    const auto report = multigrid::iterate(vectors, {.tolerance = tolerance, .max_iterations = max_iterations_});
+    const auto report = multigrid::iterate(vectors, options);
     switch (report.outcome) {
       case multigrid::IterationOutcome::converged:
         vectors.hand_out(x);
-        return report.iterations;
+        return report;
       case multigrid::IterationOutcome::stalled:
         computation_failed(fmt::format("method 'multigrid' leaves a residual of {:.1e} after {}", report.residual,
                                        counted(report.iterations, "iteration")),
@@ -188,8 +194,8 @@ std::unique_ptr<Factorization> multigrid_solver(const SpringNetwork& network, co
 }
 
 double bytes_of_multigrid(double discs, double contacts) {
-  // Per disc the inverse of its block, 75 bytes on the grids, three vectors in float, eleven in double; per contact both
-  // its slots, of which random assemblies fill four in five, and its force.
+  // Per disc the inverse of its block, 75 bytes on the grids, three vectors in float, eleven in double; per contact
+  // both its slots, of which random assemblies fill four in five, and its force.
   return discs * (24 + 75 + 48 + 264) + contacts * (2 * 1.25 * 20 + 16);
 }
 
