@@ -107,8 +107,8 @@ TEST_CASE("contradictions_of_a_packing_are_told_with_their_line") {
   };
   const std::vector<Wrong> all = {
       {{"packing.solid_fraction=0.5"}, "all given"},
-      {{"packing.grains=none"}, "solid_fraction = \"auto\" without grains"},
-      {{"packing.grains=none", "packing.solid_fraction=none"}, "amount to pack is missing"},
+      {{"packing.grains=none"}, "amount to pack is missing"},
+      {{"packing.grains=none", "packing.solid_fraction=auto"}, "solid_fraction = \"auto\" without grains"},
       {{"packing.method=falling", "packing.solid_fraction=auto"}, "falling"},
       {{"packing.method=falling", "packing.sides=periodic"}, "never come to rest"},
       {{"packing.method=local_moves", "packing.solid_fraction=auto"}, "local_moves"},

@@ -79,6 +79,8 @@ class Files(PackTest):
         self.assertEqual((loose["contacts"], loose["rattlers"]), (0, loose["grains"]))
         self.assertIn("no two discs touch; bonds join them across gaps", loose["report"])
         self.assertNotIn("rattlers", loose["report"])
+        alone = equidem("pack", rock, *small, "--set", "packing.solid_fraction=0.72", "--set", "packing.gap_tolerance=0")
+        self.assertIn("no two discs touch, and none are bonded", self.check_done(alone).stdout)
         cell = parse_json(self.check_done(equidem("homogenize", rock, *small, "--set", "packing.solid_fraction=0.72", "--set",
                                                   "material=none", "--set", "springs={kN=1e9, kT=5e8}", "--json", "-")).stdout)
         self.assertEqual(cell["largest_void"], loose["largest_void"])

@@ -54,9 +54,10 @@ void add_rest(Results& out, const GrainPacking& packing, const RestConfirmation&
 }
 
 /// Contacts of bodies that touch, and bodies that fewer hold than they need.
-void add_contacts(Results& out, const PackingMeasures& measures, const std::string& noun) {
+void add_contacts(Results& out, const PackingMeasures& measures, const Assembly& network, const std::string& noun) {
   if (measures.contacts == 0) {
-    out.line("contacts", fmt::format("no two {}s touch; bonds join them across gaps", noun));
+    const char* const bonded = network.contacts.empty() ? ", and none are bonded" : "; bonds join them across gaps";
+    out.line("contacts", fmt::format("no two {}s touch{}", noun, bonded));
     if (measures.wall_contacts > 0) out.add("", "", measures.wall_contacts, "touch a wall", {Shown::number});
     out.set("contacts", 0)
         .set("wall_contacts", measures.wall_contacts)
@@ -211,7 +212,7 @@ Results packing_results(const PackCase& resolved, const GrainPacking& packing, c
   out.line("", fmt::format("measured from ({:.4g}, {:.4g}) to ({:.4g}, {:.4g}) m", region.low.x, region.low.y,
                            region.high.x, region.high.y));
   out.set("region", std::vector<double>{region.low.x, region.low.y, region.high.x, region.high.y});
-  add_contacts(out, measures, noun);
+  add_contacts(out, measures, network, noun);
   if (std::ranges::all_of(packing.grains, [](const Grain& grain) { return grain.shape() == GrainShape::disc; }))
     add_largest_void(out, network);
   add_bonds(out, packing, network);

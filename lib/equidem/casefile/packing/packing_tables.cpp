@@ -28,7 +28,8 @@ std::vector<Key<PackingTables>> packing_keys() {
           "bodies are bonded, in the assembly, where the gap between them is at most this share of the sum of their "
           "radii; 0: where they touch"),
       key("density", &T::density, unit("kg/m³"), positive,
-          fmt::format("density of the bodies; left out: that of [assembly], [springs] or [material], else {}",
+          fmt::format("density of the bodies; left out: that of [assembly], [springs] or [material], else {}, which "
+                      "grains.csv does not get unless the bodies fell",
                       SettlingOptions{}.density)),
       key("region", &T::region, unit("m"),
           "where void ratio and porosity are measured; left out: away from walls and surface")};
