@@ -5,11 +5,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/ordered_sums.hpp"
+#include "equidem/core/progress.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/rigid_growth.hpp"
@@ -153,36 +155,42 @@ bool StiffnessSolver::refine(std::span<const RightHandSide> cases, double good_e
   const bool single = factor_->report().single_precision;
   const std::size_t n = unknowns_.held.size();
   std::vector<double> x(n * cases.size());
+  const auto column = [&](std::size_t k) { return std::span(x).subspan(k * n, n); };
   std::vector<Refinement> all;
   all.reserve(cases.size());
-  for (std::size_t k = 0; k < cases.size(); ++k) {
-    all.emplace_back(*this, cases[k], std::span(x).subspan(k * n, n), good_enough);
-  }
+  for (std::size_t k = 0; k < cases.size(); ++k) all.emplace_back(*this, cases[k], column(k), good_enough);
   Stopwatch watch;
   if (options_.accuracy > 0 && entry_of(method_).back_end.iterative) {
     for (std::size_t k = 0; k < all.size(); ++k) {
-      const std::span<double> residual = std::span(x).subspan(k * n, n);
-      if (!all[k].done) all[k].take(factor_->solve_to(options_.accuracy, residual), residual);
+      if (!all[k].done) all[k].take(factor_->solve_to(options_.accuracy, column(k)), column(k));
     }
     times.add("solve", watch.lap());
   }
   const int most = options_.max_refinements * (single ? steps_for_one : 1);
+  std::optional<Progress> progress;  // iterative methods show their own
+  if (single) progress.emplace("refining");
   for (int pass = 0; pass <= most; ++pass) {
     std::vector<Refinement*> open;  // their residuals stand one after another at the front of x
     for (std::size_t k = 0; k < all.size(); ++k) {
       if (all[k].failed) return false;
       if (all[k].done) continue;
-      if (k != open.size()) std::copy_n(x.begin() + k * n, n, x.begin() + open.size() * n);
+      if (k != open.size()) std::ranges::copy(column(k), column(open.size()).begin());
       open.push_back(&all[k]);
     }
     if (open.empty()) break;
     factor_->solve(std::span(x).first(open.size() * n), static_cast<int>(open.size()));
     for (std::size_t k = open.size(); k-- > 0;) {
       const auto position = static_cast<std::size_t>(open[k] - all.data());
-      if (position != k) std::copy_n(x.begin() + k * n, n, x.begin() + position * n);
-      all[position].correct(std::span(x).subspan(position * n, n), pass);
+      if (position != k) std::ranges::copy(column(k), column(position).begin());
+      all[position].correct(column(position), pass);
     }
     times.add(pass == 0 ? "solve" : "refine", watch.lap());
+    if (!progress) continue;
+    double share = 1;
+    for (const Refinement& one : all) {
+      if (!one.done) share = std::min(share, std::log(one.solution.relative_residual()) / std::log(good_enough));
+    }
+    progress->update(std::clamp(share, 0.0, 1.0));
   }
   if (single && std::any_of(all.begin(), all.end(), [](const Refinement& one) { return !one.done || one.failed; })) {
     return false;

@@ -42,7 +42,7 @@ bool tries_single_precision(const SolverOptions& options, const ContactSprings& 
 }
 
 std::unique_ptr<Factorization> factorize_in_single_precision(const System& system, std::string& reason) {
-  constexpr double alike = 1e4;
+  constexpr double alike = 1e6;
   const double spread = diagonal_spread(system);
   if (!(spread <= alike)) {
     reason = fmt::format("stiffnesses differ by a factor of {:.0e}", spread);
@@ -52,7 +52,8 @@ std::unique_ptr<Factorization> factorize_in_single_precision(const System& syste
   FactorReport report;
   auto factor = multifrontal_cholesky<float>(system.symbolic, system.k, &report);
   if (factor && report.smallest_pivot >= share_of_round_off) return factor;
-  reason = fmt::format("a pivot fell to {:.0e} of its stiffness", std::max(0.0, report.smallest_pivot));
+  reason = report.smallest_pivot > 0 ? fmt::format("a pivot fell to {:.0e} of its stiffness", report.smallest_pivot)
+                                     : "a pivot fell below the round-off of a float";
   return nullptr;
 }
 

@@ -116,13 +116,15 @@ void StiffnessSolver::Refinement::add_conjugate_step(std::span<double> x, int pa
   last_step_ = norm_of(x);
   solution.motion.add(x);
   solution.refinements = pass;
-  // One pass of elimination in double precision mostly ends far below good_enough.
+  // One pass of elimination in double precision mostly ends far below good_enough. Beside the forces of a prescribed
+  // motion, which cancel, a small residual says little of the motion: the next step has to be at its rounding.
   const double wanted = 0.05 * good_enough * solution.scale;
+  const bool settled = last_step_ <= 100 * good_enough * norm_of(solution.motion.high);
   double now = solver.norm_of_free(residual_);
   if (now <= std::max(digits_of_recurrence * replaced_, wanted)) {
     now = evaluate(residual_);
     const bool stalls = now > 0.5 * replaced_;
-    done = stalls || now <= wanted;
+    done = stalls || (now <= wanted && settled);
     failed = stalls && now > good_enough * solution.scale;
     replaced_ = now;
   }
