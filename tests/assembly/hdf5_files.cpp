@@ -213,7 +213,10 @@ TEST_CASE("a_file_that_is_no_hdf5_file_of_this_version_is_refused") {
         "\"equidem-assembly/1\"). Read it with the version of equidem that wrote it.");
   write_datasets(path, three_discs(), "");
   CHECK_THAT(refusal(path), Catch::Matchers::StartsWith("a.h5: schema: the key 'schema' is missing"));
-  CHECK_THAT(refusal(folder / "other/a.h5"), Catch::Contains("No such file"));
+  CHECK_THAT(refusal(folder / "other/a.h5"), Catch::Contains("there is no such file"));
+  fs::remove(path);
+  fs::create_directory(path);
+  CHECK_THAT(refusal(path), Catch::Contains("it is a folder"));
 }
 
 TEST_CASE("an_hdf5_file_that_ends_early_is_refused_wherever_it_ends") {

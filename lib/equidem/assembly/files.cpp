@@ -318,6 +318,7 @@ std::string quoted_json(const std::string& text) {
 
 Assembly read_assembly(const std::filesystem::path& path, double gap_tolerance) {
   const bool is_hdf5 = is_hdf5_name(path);
+  if (is_hdf5) check_readable(path);
   const std::string text = is_hdf5 ? std::string() : read_file(path);
   try {
     return is_hdf5 ? read_hdf5_assembly(path, gap_tolerance) : assembly_of(parse(text), gap_tolerance);

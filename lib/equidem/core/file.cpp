@@ -34,7 +34,7 @@ bool is_kept(const fs::path& path) {
 
 }  // namespace
 
-std::string read_file(const fs::path& path) {
+void check_readable(const fs::path& path) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) {
     bad_input(fmt::format("cannot read '{}'", path.string()), "there is no such file", "Check its name and the folder");
@@ -46,6 +46,10 @@ std::string read_file(const fs::path& path) {
     bad_input(fmt::format("cannot read '{}'", path.string()), "it is no regular file, and reading it might never end",
               "Copy what it holds into a file");
   }
+}
+
+std::string read_file(const fs::path& path) {
+  check_readable(path);
   std::ifstream file(path, std::ios::binary);
   std::string content((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   if (!file || file.bad()) {

@@ -9,7 +9,10 @@
 
 namespace equidem {
 
-/// \throws Error (bad_input) where the file does not exist, is a folder, or cannot be read
+/// \throws Error (bad_input) where the path leads to no regular file: nothing, a folder, a device or a pipe
+void check_readable(const std::filesystem::path& path);
+
+/// \throws Error (bad_input) as check_readable, or where the file cannot be read
 std::string read_file(const std::filesystem::path& path);
 
 /// Write a file whole or not at all: into a temporary file beside it, then renamed. Missing folders are made. Devices,

@@ -68,7 +68,8 @@ void bind_assembly(File<CaseTables>& file) {
            key("density", &A::density, unit("kg/m³"), positive,
                "density of the discs themselves; for waves, time steps and motion"),
            key("body", &A::body, "what a disc stands for: a cylinder per metre of depth, or a sphere; for its inertia"),
-           key("path", &A::path, required, when("kind", from_file), "an assembly file (JSON)"),
+           key("path", &A::path, required, when("kind", from_file),
+               "an assembly file: HDF5 where its name ends in .h5 or .hdf5, else JSON"),
            key("gap_tolerance", &A::gap_tolerance, from(0, 1), when("kind", from_file),
                "of a file without contacts: discs are bonded where the gap between them is at most this share of the "
                "sum "
