@@ -28,7 +28,7 @@ using namespace equidem::test;
 
 namespace {
 
-constexpr double rounding = 2e-6;  // of entries in single precision, over the largest entry of the product
+constexpr double share_of_rounding = 2e-6;  // of entries in single precision, over the largest entry of the product
 
 /// Chunks whose sizes are no multiples of a group.
 std::vector<std::int32_t> chunks_of(std::size_t rows) {
@@ -81,8 +81,8 @@ void check_products(const std::string& name, const Assembly& assembly, const Con
     }
   }
   CAPTURE(name, off, off_single, largest_force);
-  CHECK(off <= rounding * largest_force);
-  CHECK(off_single <= rounding * largest_force);
+  CHECK(off <= share_of_rounding * largest_force);
+  CHECK(off_single <= share_of_rounding * largest_force);
   CHECK(work == Approx(product(x, wanted) / unit).epsilon(1e-5));
 }
 

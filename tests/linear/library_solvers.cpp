@@ -90,18 +90,18 @@ System all_held() {
   return {"all held", hexagonal_lattice({.columns = 2, .rows = 2}), usual, 3, [](std::int32_t, int) { return true; }};
 }
 
-struct BackEnd {
+struct LibrarySolver {
   std::string name;
   std::function<std::unique_ptr<Factorization>(const System&, FactorReport*)> factorize;
 };
 
-BackEnd cholmod(const std::string& name, CholmodOrdering ordering) {
+LibrarySolver cholmod(const std::string& name, CholmodOrdering ordering) {
   return {name, [ordering](const System& s, FactorReport* report) {
             return cholmod_cholesky(s.on_graph(), s.unknowns, ordering, s.tree.order, report);
           }};
 }
 
-std::vector<BackEnd> cholesky_back_ends() {
+std::vector<LibrarySolver> cholesky_back_ends() {
   return {{"multifrontal Cholesky",
            [](const System& s, FactorReport* report) {
              const auto symbolic = std::make_shared<const SymbolicFactor>(analyze(s.tree, s.graph, s.matrix.block));
@@ -111,7 +111,7 @@ std::vector<BackEnd> cholesky_back_ends() {
           cholmod("CHOLMOD, METIS", CholmodOrdering::metis),
           cholmod("CHOLMOD, AMD", CholmodOrdering::amd)};
 }
-BackEnd umfpack() {
+LibrarySolver umfpack() {
   return {"UMFPACK",
           [](const System& s, FactorReport* report) { return umfpack_lu(s.on_graph(), s.unknowns, report); }};
 }
@@ -137,7 +137,7 @@ TEST_CASE("all_back_ends_give_the_answer_of_gauss") {
   const int right_hand_sides = GENERATE(1, 3);
   for (const System& system : {hexagonal(usual), hexagonal({1e9, 1e9}), square_restrained(), periodic(4, 4),
                                periodic(2, 2), delaunay(), all_held()}) {
-    for (const BackEnd& back_end : back_ends) {
+    for (const LibrarySolver& back_end : back_ends) {
       CAPTURE(system.name, system.unknowns.unknowns, back_end.name, right_hand_sides);
       FactorReport report;
       const auto factor = back_end.factorize(system, &report);
@@ -151,7 +151,7 @@ TEST_CASE("all_back_ends_give_the_answer_of_gauss") {
 TEST_CASE("umfpack_solves_indefinite_systems_that_cholesky_refuses") {
   const double ratio = GENERATE(-0.05, -0.2, -0.3, -0.6);
   const System system = hexagonal({1e9, ratio * 1e9});
-  for (const BackEnd& back_end : cholesky_back_ends()) {
+  for (const LibrarySolver& back_end : cholesky_back_ends()) {
     CAPTURE(ratio, back_end.name);
     FactorReport report;
     CHECK(back_end.factorize(system, &report) == nullptr);
@@ -172,7 +172,7 @@ TEST_CASE("a_free_body_has_a_pivot_without_stiffness") {
                      [](std::int32_t, int) { return false; });
   auto back_ends = cholesky_back_ends();
   back_ends.push_back(umfpack());
-  for (const BackEnd& back_end : back_ends) {
+  for (const LibrarySolver& back_end : back_ends) {
     FactorReport report;
     static_cast<void>(back_end.factorize(loose, &report));
     CAPTURE(back_end.name, report.smallest_pivot);

@@ -18,7 +18,7 @@ using namespace equidem;
 
 namespace {
 
-EquilibriumOptions by(SolverMethod method, double accuracy = 0) {
+EquilibriumOptions solver_of(SolverMethod method, double accuracy = 0) {
   EquilibriumOptions options;
   options.solver.method = method;
   options.solver.accuracy = accuracy;
@@ -96,11 +96,11 @@ TEST_CASE("motions_are_as_accurate_as_asked_for_in_95_of_100_random_requests") {
     const auto solve = [&](const EquilibriumOptions& options) {
       return solve_equilibrium(given.assembly, given.springs, given.supports, given.loads, options);
     };
-    const Equilibrium exact = solve(by(SolverMethod::multifrontal));
-    const Equilibrium result = solve(by(SolverMethod::multigrid, accuracy));
+    const Equilibrium exact = solve(solver_of(SolverMethod::multifrontal));
+    const Equilibrium result = solve(solver_of(SolverMethod::multigrid, accuracy));
     ++solved;
     iterations += result.iterations;
-    to_the_end += k < 10 ? solve(by(SolverMethod::multigrid)).iterations : 0;
+    to_the_end += k < 10 ? solve(solver_of(SolverMethod::multigrid)).iterations : 0;
     const double over = error_of(given.assembly, result, exact) / accuracy;
     worst = std::max(worst, over);
     within += over <= 1 ? 1 : 0;

@@ -9,7 +9,7 @@ using namespace equidem;
 
 TEST_CASE("a_predicted_time_grows_with_entries_and_operations_and_falls_with_threads") {
   const int threads = thread_count();
-  const SolveRates rates = measure_solve_rates();
+  const SolveRates rates = measure_solve_rates(SolverMethod::multifrontal);
   CHECK(thread_count() == threads);
   CAPTURE(rates.per_entry, rates.per_operation);
   CHECK(rates.per_entry > 0);
@@ -17,9 +17,21 @@ TEST_CASE("a_predicted_time_grows_with_entries_and_operations_and_falls_with_thr
   const SolveEstimate small{.factor_nonzeros = 1e6, .operations = 1e8};
   const SolveEstimate fuller{.factor_nonzeros = 2e6, .operations = 1e8},
       harder{.factor_nonzeros = 1e6, .operations = 2e8};
-  const double base = estimate_seconds(small, rates, 1);
-  CHECK(estimate_seconds(fuller, rates, 1) > base);
-  CHECK(estimate_seconds(harder, rates, 1) > base);
-  CHECK(estimate_seconds(small, rates, 2) < base);
-  CHECK(estimate_seconds(small, rates, 2) > base / 2);
+  const double base = estimate_seconds(small, 1, rates, 1);
+  CHECK(estimate_seconds(fuller, 1, rates, 1) > base);
+  CHECK(estimate_seconds(harder, 1, rates, 1) > base);
+  CHECK(estimate_seconds(small, 1, rates, 2) < base);
+  CHECK(estimate_seconds(small, 1, rates, 2) > base / 2);
+  CHECK(estimate_seconds(small, 3, rates, 1) == Approx(3 * base));
+}
+
+TEST_CASE("a_predicted_time_of_multigrid_grows_with_discs_and_with_load_cases_less_than_in_proportion") {
+  const SolveRates rates = measure_solve_rates(SolverMethod::multigrid);
+  CHECK(rates.per_disc > 0);
+  const SolveEstimate sample{.method = SolverMethod::multigrid, .discs = 1e5};
+  const SolveEstimate larger{.method = SolverMethod::multigrid, .discs = 2e5};
+  const double base = estimate_seconds(sample, 1, rates, 1);
+  CHECK(estimate_seconds(larger, 1, rates, 1) == Approx(2 * base));
+  CHECK(estimate_seconds(sample, 3, rates, 1) > 2 * base);
+  CHECK(estimate_seconds(sample, 3, rates, 1) < 3 * base);
 }

@@ -297,7 +297,7 @@ Results estimate_results(const SolveEstimate& e, double solutions, double before
         .add("other_peak_bytes", "about", e.other_bytes, "at the peak", {Shown::bytes})
         .add("other_time_ratio", "", e.other_seconds, "times the time", {.digits = 2});
   }
-  const double seconds = before + estimate_seconds(e, solutions, thread_count());
+  const double seconds = before + estimate_seconds(e, solutions, measure_solve_rates(e.method), thread_count());
   results.line("time").add("estimated_seconds", "about", seconds, "s with these threads, mostly within a factor of two",
                            {.digits = 2});
   return results.block("nothing was solved (--dry-run)\n");

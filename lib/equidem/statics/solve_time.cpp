@@ -56,29 +56,26 @@ double seconds_of_block(const Assembly& block, SolverMethod method, SolveEstimat
 
 }  // namespace
 
-SolveRates measure_solve_rates() {
+SolveRates measure_solve_rates(SolverMethod method) {
+  const auto block = [](int rows) { return hexagonal_lattice({.columns = rows, .rows = rows, .radius = 1}); };
+  if (method == SolverMethod::multigrid) {
+    const Assembly large = block(90);
+    return {.per_disc = seconds_of_block(large, method) / static_cast<double>(large.size())};
+  }
   SolveEstimate estimate;
-  const double seconds = seconds_of_block(hexagonal_lattice({.columns = 41, .rows = 41, .radius = 1}),
-                                          SolverMethod::multifrontal, &estimate);
+  const double seconds = seconds_of_block(block(41), SolverMethod::multifrontal, &estimate);
   SolveRates rates{.per_operation = seconds_per_operation()};
   rates.per_entry = std::max(0.0, seconds - estimate.operations * rates.per_operation) / estimate.factor_nonzeros;
   return rates;
 }
 
-double measure_multigrid_rate() {
-  const Assembly block = hexagonal_lattice({.columns = 90, .rows = 90, .radius = 1});
-  return seconds_of_block(block, SolverMethod::multigrid) / static_cast<double>(block.size());
-}
-
-double estimate_seconds(const SolveEstimate& estimate, double solutions, int threads) {
+double estimate_seconds(const SolveEstimate& estimate, double solutions, const SolveRates& rates, int threads) {
   constexpr double efficiency = 0.8;  // of a second thread, measured at 1e5 and 1e6 discs
   const double speed_up = 1 + efficiency * (threads - 1);
   if (estimate.method == SolverMethod::multigrid) {
-    constexpr double of_set_up = 1.0 / 3, out_of_cache = 1.3;
-    const double blocks = of_set_up + (1 - of_set_up) * solutions;
-    return out_of_cache * estimate.discs * blocks * measure_multigrid_rate() / speed_up;
+    constexpr double of_grids = 1.0 / 3, out_of_cache = 1.3;
+    return out_of_cache * estimate.discs * rates.per_disc * (of_grids + (1 - of_grids) * solutions) / speed_up;
   }
-  const SolveRates rates = measure_solve_rates();
   const double seconds = estimate.factor_nonzeros * rates.per_entry + estimate.operations * rates.per_operation;
   return solutions * seconds / speed_up;
 }

@@ -11,18 +11,16 @@ namespace equidem {
 struct SolveRates {
   double per_entry = 0;      ///< s an entry of the factor: ordering, assembly, memory, solution, refinement
   double per_operation = 0;  ///< s a multiplication or addition of the factorization
+  double per_disc = 0;       ///< s of a solution by multigrid with the bound of its error, a third of it for the grids
 };
 
-/// Measured in some 30 ms, with the number of threads set to 1 meanwhile: the solution of a block of 1700 discs, and a
-/// product of dense matrices.
-SolveRates measure_solve_rates();
+/// Those of the method (multigrid, or multifrontal for all others), measured with the number of threads set to 1
+/// meanwhile: in some 30 ms by the solution of a block of 1700 discs and a product of dense matrices, or in some 0.1 s
+/// by the solution of a block of 8100 discs.
+SolveRates measure_solve_rates(SolverMethod method);
 
-/// s a disc on one thread of a solution by multigrid with the bound of its error, of which the set-up of the grids is a
-/// third. Measured in some 0.1 s.
-double measure_multigrid_rate();
-
-/// s of the set-up and of the solution of a number of load cases with the bounds of their errors, each with a set-up of
-/// its own where the method is elimination; mostly within a factor of two. Measures the rates of this machine.
-double estimate_seconds(const SolveEstimate& estimate, double solutions, int threads);
+/// s of the solution of a number of load cases with the bounds of their errors, with one set-up of grids for all but a
+/// factorization for each; mostly within a factor of two.
+double estimate_seconds(const SolveEstimate& estimate, double solutions, const SolveRates& rates, int threads);
 
 }  // namespace equidem
