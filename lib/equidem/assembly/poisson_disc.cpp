@@ -292,12 +292,15 @@ class Adsorption {
       std::vector<Vec2> near;
       std::size_t near_to = points_.size();  // the base square
       const std::size_t end = std::min(squares.size(), (task + 1) * piece);
-      quarters[task].reserve(2 * piece);
+      quarters[task].resize(4 * (end - task * piece));
+      Square* into = quarters[task].data();
       for (std::size_t k = task * piece; k < end; ++k) {
         const std::int64_t column = squares[k].x >> level, row = squares[k].y >> level;
         if (std::exchange(near_to, index(column, row)) != near_to) find_near(column, row, level, near);
-        add_quarters(squares[k], level, near, quarters[task]);
+        into = add_quarters(squares[k], level, near, into);
       }
+      quarters[task].resize(static_cast<std::size_t>(into - quarters[task].data()));
+      quarters[task].shrink_to_fit();
     });
     std::vector<Square> result;
     std::size_t count = 0;
@@ -325,8 +328,8 @@ class Adsorption {
     near.resize(count);
   }
 
-  void add_quarters(const Square& square, int level, const std::vector<Vec2>& near,
-                    std::vector<Square>& quarters) const {
+  /// Write the quarters of a square that no point covers; four places must be free. \return the end of what it wrote
+  Square* add_quarters(const Square& square, int level, const std::vector<Vec2>& near, Square* into) const {
     const Vec2 half = 0.5 / static_cast<double>(2U << level) * size_;
     const auto centre = [](std::uint32_t quarter, double half_size) { return (2.0 * quarter + 1) * half_size; };
     const double left = centre(2 * square.x, half.x), right = centre(2 * square.x + 1, half.x);
@@ -339,8 +342,10 @@ class Adsorption {
       for (unsigned k = 0; k < 4; ++k) covered |= (x[k & 1U] + y[k >> 1U] < squared_distance_ ? 1U : 0U) << k;
     }
     for (std::uint32_t k = 0; k < 4; ++k) {
-      if ((covered >> k & 1U) == 0) quarters.push_back({2 * square.x + (k & 1U), 2 * square.y + (k >> 1U)});
+      *into = {2 * square.x + (k & 1U), 2 * square.y + (k >> 1U)};
+      into += 1 - (covered >> k & 1U);
     }
+    return into;
   }
 
   Vec2 extent_;
