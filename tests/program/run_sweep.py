@@ -261,6 +261,18 @@ class Sweep(ProgramTest):
         self.assertAlmostEqual(float(rows(out)[1]["plane_strain.young_modulus_Pa"]) / solved["plane_strain"]["young_modulus"],
                                1, delta=1e-9)
 
+    def test_energies_of_runs_have_their_units(self):
+        for case, key, unit in (("run_pulse", "springs.kT", "J_per_m"), ("grains_cradle", "collisions.restitution", "J")):
+            out = self.folder / case
+            result = self.sweep(CASES / f"{case}.toml", "--verb", "run", "--key", key, "--values", "0.5,0.8", "--out", out)
+            columns = [name for name in rows(out)[0] if name.startswith("energy.")]
+            self.assertGreater(len(columns), 5)
+            for name in columns:
+                self.assertTrue(name == "energy.relative_error" or name.endswith("_" + unit), name)
+            for k, row in enumerate(rows(out)):
+                self.assertEqual(float(row["energy.kinetic_" + unit]), result["points"][k]["energy"]["kinetic"])
+            self.assertIn("kinetic energy, J", (out / "energy_kinetic.gp").read_text(encoding="utf-8"))
+
     def test_a_key_that_does_not_exist_is_answered_with_the_nearest(self):
         sweep = ("sweep", CASES / "packed_rock.toml", "--verb", "homogenize", "--values", "0.1", "--key")
         self.check_error(equidem(*sweep, "gap_tolerance"), 2, "Write packing.gap_tolerance.")

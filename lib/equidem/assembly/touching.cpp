@@ -201,9 +201,8 @@ std::string suggested_tolerance(std::span<const BondCount> counts, double tolera
                      counted(best->contacts, "contact"), best->coordination);
 }
 
-std::string how_to_add_contacts(const Assembly& assembly) {
-  if (!assembly.gap_tolerance) return "add contacts";
-  return fmt::format("add contacts by a gap_tolerance above {:g}", *assembly.gap_tolerance);
+std::string by_larger_tolerance(const Assembly& assembly) {
+  return assembly.gap_tolerance ? fmt::format(" by a gap_tolerance above {:g}", *assembly.gap_tolerance) : "";
 }
 
 void check_found_contacts(const Assembly& assembly) {

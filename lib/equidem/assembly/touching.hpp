@@ -34,8 +34,9 @@ std::vector<BondCount> bond_counts(const Assembly& discs);
 /// "gap_tolerance = 0.05 would find 4,312 contacts (z = 4.31)": the first tolerance above `tolerance` with four
 /// contacts of each body or more, else the last; empty where that finds no more.
 std::string suggested_tolerance(std::span<const BondCount> counts, double tolerance);
-/// "add contacts", and how where a gap tolerance found them: advice in errors about assemblies that lack some.
-std::string how_to_add_contacts(const Assembly& assembly);
+/// " by a gap_tolerance above 0.05": how to add contacts where a tolerance found them, for advice in errors; else
+/// empty.
+std::string by_larger_tolerance(const Assembly& assembly);
 /// Contacts that were found by a gap tolerance join bodies, and do not cross.
 /// \throws Error (bad_input): none, or more than six of each body, with a tolerance to use instead
 void check_found_contacts(const Assembly& assembly);

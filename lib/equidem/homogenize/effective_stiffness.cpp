@@ -98,8 +98,8 @@ bool resists_with_equal_springs(const Assembly& assembly, const ContactSprings& 
   const std::string strain = fmt::format("the mean strain (xx {:.3f}, yy {:.3f}, shear {:.3f})", e[0], e[1], e[2]);
   if (!resists_with_equal_springs(assembly, springs, options)) {
     bad_input("the network is floppy", strain + " costs no energy beyond rounding",
-              fmt::format("It has no modulus: {}, or give the contacts tangential springs (kT > 0)",
-                          how_to_add_contacts(assembly)));
+              fmt::format("It has no modulus. Add contacts{}, or give the contacts tangential springs (kT > 0)",
+                          by_larger_tolerance(assembly)));
   }
   if (springs.any_negative()) {
     computation_failed("at this kT/kN the network is at its limit of stability",

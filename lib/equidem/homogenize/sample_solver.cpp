@@ -74,8 +74,8 @@ std::vector<ZeroEnergyMode> zero_energy_modes(const Assembly& assembly, const St
       bad_input(mechanisms == 1 ? fmt::format("{} is a mechanism", name)
                                 : fmt::format("{} is floppy: it has {} mechanisms", name, mechanisms),
                 fmt::format("it can move at no cost: {}", describe_motion(assembly, motion)),
-                fmt::format("It has no modulus: {}, or give the contacts tangential springs (kT > 0)",
-                            how_to_add_contacts(assembly)));
+                fmt::format("It has no modulus. Add contacts{}, or give the contacts tangential springs (kT > 0)",
+                            by_larger_tolerance(assembly)));
     }
     if (static_cast<std::size_t>(k) < most_described) result.push_back({"local", describe_motion(assembly, motion)});
   }
@@ -100,10 +100,11 @@ void SampleSolver::prune(const std::vector<std::uint8_t>& held, EffectiveStiffne
   result.times.add("network", watch.lap());
   if (options_.boundary == Boundary::traction || (network_.spanned == 2 && network_.pieces > 0)) return;
   const std::string removed = joined(network_.sentences, "; ");
-  bad_input(network_.spanned == 0 || network_.pieces == 0 ? "no piece of the network spans the cell"
-                                                          : "the network spans the cell in one direction only",
-            removed.empty() ? "some mean strain costs it no energy" : removed,
-            fmt::format("It has no modulus: {}, or pack the discs more densely", how_to_add_contacts(whole_)));
+  bad_input(
+      network_.spanned == 0 || network_.pieces == 0 ? "no piece of the network spans the cell"
+                                                    : "the network spans the cell in one direction only",
+      removed.empty() ? "some mean strain costs it no energy" : removed,
+      fmt::format("It has no modulus. Add contacts{}, or pack the discs more densely", by_larger_tolerance(whole_)));
 }
 
 void SampleSolver::factorize(const std::vector<std::uint8_t>& held, bool hold_translations,

@@ -18,7 +18,7 @@ namespace {
 
 const std::set<std::string>& unit_symbols() {
   static const std::set<std::string> all = [] {
-    std::set<std::string> found;
+    std::set<std::string> found{"J", "J/m"};  // of energies, by the kind of bodies
     for (const Quantity& quantity : quantities)
       if (*quantity.unit != '\0') found.insert(quantity.unit);
     return found;
@@ -28,6 +28,7 @@ const std::set<std::string>& unit_symbols() {
 
 /// The symbol with which a unit of the report begins, "Pa" of "Pa for an entry"; empty where it is a phrase.
 std::string symbol_in(const std::string& unit) {
+  if (unit.starts_with("J per m ")) return "J/m";
   const std::string word = unit.substr(0, unit.find_first_of(" ,;("));
   return unit_symbols().contains(word) ? word : "";
 }

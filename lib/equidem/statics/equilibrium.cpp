@@ -164,7 +164,7 @@ void EquilibriumSolver::Implementation::check_mechanisms(const RightHandSide& gi
     bad_input(
         fmt::format("the assembly is floppy: it has {} mechanisms", result.mechanisms),
         fmt::format("it can move at no cost: {}", result.first_mechanism),
-        fmt::format("To hold it {}, or give the contacts tangential springs (kT > 0)", how_to_add_contacts(assembly)));
+        fmt::format("Add contacts{}, or give the contacts tangential springs (kT > 0)", by_larger_tolerance(assembly)));
   }
   for (std::int64_t k = 0; k < result.mechanisms; ++k) {
     const std::vector<double> motion = solver.factor().null_motion(k);
@@ -175,8 +175,8 @@ void EquilibriumSolver::Implementation::check_mechanisms(const RightHandSide& gi
     }
     if (std::abs(work) <= negligible * size) continue;
     bad_input("a load drives a mechanism", fmt::format("it moves the assembly at no cost: {}", description(k)),
-              fmt::format("Hold that motion by a support, {}, or take the load off those discs",
-                          how_to_add_contacts(assembly)));
+              fmt::format("Hold that motion by a support, add contacts{}, or take the load off those discs",
+                          by_larger_tolerance(assembly)));
   }
 }
 

@@ -119,16 +119,34 @@ std::vector<MainQuantity> drawn(const SweepPlan& plan) {
   const bool curves =
       plan.keys_of_case() > 0 && plan.keys.front().numeric() && (plan.side_by_side || plan.keys_of_case() <= 2);
   std::vector<MainQuantity> quantities = curves ? main_quantities(plan) : std::vector<MainQuantity>{};
-  std::erase_if(quantities, [](const MainQuantity& quantity) { return quantity.axis.empty(); });
+  // The energies of a wave sway: those at the end of the run say nothing.
+  std::erase_if(quantities, [&](const MainQuantity& quantity) {
+    return quantity.axis.empty() || (!plan.waves.empty() && quantity.path.starts_with("energy/"));
+  });
   return quantities;
 }
 
-/// Whether the quantity is known at two values of the first key: one point makes no curve.
+/// Whether the quantity is known at two values of the first key, since one point makes no curve, and not 0 throughout.
 bool has_curve(std::span<const SweepPoint> points, const MainQuantity& quantity) {
   std::set<std::string> values;
-  for (const SweepPoint& point : points)
-    if (point.find(quantity.path) != nullptr) values.insert(point.values[0]);
-  return values.size() > 1;
+  bool any = false;
+  for (const SweepPoint& point : points) {
+    if (point.find(quantity.path) == nullptr) continue;
+    values.insert(point.values[0]);
+    any = any || point.at(quantity.path) != 0;
+  }
+  return any && values.size() > 1;
+}
+
+/// The axis with the unit of the results, where it does not name one.
+std::string axis_label(std::span<const SweepPoint> points, const MainQuantity& quantity) {
+  for (const SweepPoint& point : points) {
+    const ScalarNumber* const number = point.find(quantity.path);
+    if (number == nullptr || number->unit.empty()) continue;
+    const std::string end = ", " + literal(number->unit);
+    return quantity.axis.ends_with(end) ? quantity.axis : quantity.axis + end;
+  }
+  return quantity.axis;
 }
 
 }  // namespace
@@ -144,9 +162,10 @@ std::string write_curves(const std::filesystem::path& folder, const SweepPlan& p
   const bool seeds = plan.has_seeds() && plan.keys.back().values.size() > 1;
   std::string written;
   for (const MainQuantity& quantity : drawn(plan)) {
+    if (!has_curve(points, quantity)) continue;
     Plot plot{.title = title.empty() ? joined(plan.keys, name_of_key) + " varied" : literal(title),
               .x = {.label = axis_label(plan.keys.front())},
-              .y = {.label = quantity.axis},
+              .y = {.label = axis_label(points, quantity)},
               .enhanced = true};
     const auto curves = curves_of(plan, points, quantity);
     const bool one_theory = std::ranges::all_of(
@@ -158,7 +177,7 @@ std::string write_curves(const std::filesystem::path& folder, const SweepPlan& p
       if (!one_theory) add_theory(plot, curve, which, value, curve_colours[k % curve_colours.size()]);
       add_points(plot, curve, which, value, k, seeds);
     }
-    if (has_curve(points, quantity)) written += write_plot(folder, plot_name_of(quantity), plot, true).message + "\n";
+    written += write_plot(folder, plot_name_of(quantity), plot, true).message + "\n";
   }
   return written;
 }
