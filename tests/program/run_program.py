@@ -5,9 +5,10 @@ import csv
 import math
 import os
 import pathlib
+import subprocess
 import unittest
 
-from program import CASES, SOURCE, TENSION, ProgramTest, equidem, parse_json
+from program import CASES, PROGRAM, SOURCE, TENSION, ProgramTest, equidem, parse_json
 
 
 class Usage(ProgramTest):
@@ -37,6 +38,14 @@ class Usage(ProgramTest):
         text = self.check_done(equidem("--version")).stdout
         self.assertRegex(text, r"equidem \d+\.\d+\.\d+")
         self.assertIn("CLI11", text)
+
+    def test_libraries_are_loaded_once_where_a_shell_starts_the_program(self):
+        # Without the variable "_" of shells there is no place for the number of threads of OpenBLAS: it starts again.
+        for place, loads in (({"_": "equidem"}, 1), ({}, 2)):
+            environment = {"LD_DEBUG": "statistics", "PATH": os.environ["PATH"], **place}
+            done = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, env=environment, timeout=120)
+            self.assertEqual(done.returncode, 0)
+            self.assertEqual(done.stderr.count("total startup time"), loads, done.stderr)
 
     def test_bad_usage_is_exit_code_2_with_the_nearest_word(self):
         self.check_error(equidem(), 2, "a verb is missing", "--help")

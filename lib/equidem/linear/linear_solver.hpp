@@ -87,7 +87,7 @@ void check(const SolverOptions& options);
 /// Estimated cost of a solution.
 struct SolveEstimate {
   SolverMethod method = SolverMethod::multifrontal;
-  std::string why;           ///< the reason of the choice of "auto"; empty where it did not weigh methods
+  std::string why{};         ///< the reason of the choice of "auto"; empty where it did not weigh methods
   double other_bytes = 0;    ///< at the peak, of elimination where `method` is multigrid, of multigrid where it is not;
                              ///< 0: not weighed
   double other_seconds = 0;  ///< over the time of `method`

@@ -183,16 +183,15 @@ void run(Report& report, const Request& request) {
   report.add(fmt::format(
       "\nkT/kN = 0.5, 3 unknowns per disc, left side fixed, load on the right side. Seconds, "
       "medians (smallest .. largest); total = order + analyze + factorize + solve, one right-hand side, no refinement. "
-      "A "
-      "factor in single precision is the preconditioner of conjugate gradients in double, which end where their "
-      "residual "
-      "is that of the others. Multigrid: factorize is the set-up of the grids, solve ends at a residual of the contact "
-      "law of 1e-12; K is assembled afterwards, for the residual of the table alone. "
-      "K: assembly of the stiffness matrix, not in the total. nnz(L): lower triangle, without explicit zeros. Factor: "
-      "stored of L. Peak: of the whole process, the assembly and K included. CPU: seconds of all threads since the "
-      "start of the process, the set-up of the problem included; it depends least on other load of the machine. Every "
-      "run is a fresh process, solvers take turns.\nThreads of {}. CHOLMOD runs supernodal, with 32-bit indices and "
-      "OMP_THREAD_LIMIT=1.\n",
+      "With a factor in single precision, solve is conjugate gradients in double that it preconditions, down to the "
+      "residual of the others. Multigrid: factorize is the set-up of the grids, solve ends at a residual of the "
+      "contact "
+      "law of 1e-12; K is assembled afterwards, for the residual of the table alone. K: assembly of the stiffness "
+      "matrix, not in the total. nnz(L): lower triangle, without explicit zeros. Factor: stored of L; stored/nnz(L) "
+      "counts 8 bytes an entry. Peak: of the whole process, the assembly and K included. CPU: seconds of all threads "
+      "since the start of the process, the set-up of the problem included; it depends least on other load of the "
+      "machine. Every run is a fresh process, solvers take turns.\n"
+      "Threads of {}. CHOLMOD runs supernodal, with 32-bit indices and OMP_THREAD_LIMIT=1.\n",
       threads));
   std::vector<Results> comparisons;
   for (const std::string& kind : request.kinds) {
