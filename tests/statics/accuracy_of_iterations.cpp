@@ -8,7 +8,9 @@
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
+#include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
+#include "equidem/core/text.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/statics/equilibrium.hpp"
 
@@ -55,7 +57,7 @@ Request random_request(Random& random) {
   if (random.uniform() < 0.3) {
     std::vector<Contact> kept;
     for (const Contact& contact : assembly.contacts) {
-      if (random.uniform() > 0.06) kept.push_back(contact);
+      if (random.uniform() > 0.02) kept.push_back(contact);
     }
     assembly.contacts = kept;
     assembly.facet_lengths.clear();
@@ -89,29 +91,40 @@ TEST_CASE("motions_are_as_accurate_as_asked_for_in_95_of_100_random_requests") {
   constexpr int requests = 200;
   int within = 0, solved = 0;
   double worst = 0;
-  std::int64_t iterations = 0, to_the_end = 0;
+  std::string beyond;
+  std::int64_t iterations = 0, few_iterations = 0, to_the_end = 0;
   for (int k = 0; k < requests; ++k) {
     const Request given = random_request(random);
     const double accuracy = std::pow(10.0, random.uniform(-9, -1));
     const auto solve = [&](const EquilibriumOptions& options) {
       return solve_equilibrium(given.assembly, given.springs, given.supports, given.loads, options);
     };
-    const Equilibrium exact = solve(solver_of(SolverMethod::multifrontal));
+    Equilibrium exact;
+    try {
+      exact = solve(solver_of(SolverMethod::multifrontal));
+    } catch (const Error&) {
+      continue;  // what was left out makes it a mechanism
+    }
     const Equilibrium result = solve(solver_of(SolverMethod::multigrid, accuracy));
     ++solved;
     iterations += result.iterations;
-    to_the_end += k < 10 ? solve(solver_of(SolverMethod::multigrid)).iterations : 0;
+    if (k % 20 == 0) {
+      few_iterations += result.iterations;
+      to_the_end += solve(solver_of(SolverMethod::multigrid)).iterations;
+    }
     const double over = error_of(given.assembly, result, exact) / accuracy;
     worst = std::max(worst, over);
     within += over <= 1 ? 1 : 0;
+    if (over > 1) beyond += fmt::format("{:.1e}: {:.1f}; ", accuracy, over);
     CAPTURE(accuracy, result.error_bound, over);
     CHECK(result.error_bound > 0);
     CHECK(result.error_bound <= accuracy * 1.001);
   }
-  CAPTURE(within, solved, worst, iterations, to_the_end);
+  CAPTURE(within, solved, worst, beyond, iterations, to_the_end);
   CHECK(within >= 0.95 * solved);
   CHECK(worst < 10);
-  CHECK(static_cast<double>(iterations) / requests < 0.7 * static_cast<double>(to_the_end) / 10);
+  CHECK(solved > 0.8 * requests);
+  CHECK(static_cast<double>(few_iterations) < 0.7 * static_cast<double>(to_the_end));
 }
 
 TEST_CASE("moduli_are_as_accurate_as_asked_for") {

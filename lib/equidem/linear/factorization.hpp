@@ -37,12 +37,16 @@ class Factorization {
 
   /// x := K^-1 x for right-hand sides stored one after another.
   virtual void solve(std::span<double> x, int right_hand_sides) const = 0;
-  /// x := K^-1 x to a relative accuracy in the norm of energy, where that is cheaper.
-  /// \returns the energy e.K e of its error e, Pa m², estimated; 0 where the solution is exact
-  virtual double solve_to(double accuracy, std::span<double> x) const {
-    static_cast<void>(accuracy);
+  /// Energies of a solution x, Pa m².
+  struct Energies {
+    double solution = 0;  ///< x.K x
+    double error = 0;     ///< e.K e of the error e, estimated; 0 where the solution is exact
+  };
+  /// x := K^-1 x where that is cheaper only until e.K e <= accuracy² max(x.K x, energy).
+  virtual Energies solve_to(double accuracy, double energy, std::span<double> x) const {
+    static_cast<void>(accuracy), static_cast<void>(energy);
     solve(x, 1);
-    return 0;
+    return {};
   }
   /// x := K^-1 x to a few per cent, where that is cheaper.
   virtual void solve_roughly(std::span<double> x) const { solve(x, 1); }

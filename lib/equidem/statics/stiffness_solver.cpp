@@ -162,7 +162,7 @@ bool StiffnessSolver::refine(std::span<const RightHandSide> cases, double good_e
   Stopwatch watch;
   if (options_.accuracy > 0 && entry_of(method_).back_end.iterative) {
     for (std::size_t k = 0; k < all.size(); ++k) {
-      if (!all[k].done) all[k].take(factor_->solve_to(options_.accuracy, column(k)), column(k));
+      if (!all[k].done) all[k].solve_to(options_.accuracy, column(k));
     }
     times.add("solve", watch.lap());
   }

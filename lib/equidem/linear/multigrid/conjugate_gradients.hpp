@@ -21,6 +21,7 @@ struct IterationOptions {
   double tolerance = 3e-7;  ///< of |r| over |b|, and of the energy norm of the error as r.M r shows it
   /// In place of the tolerance, of the estimated error over the solution, norms of energy; 0: not asked for.
   double accuracy = 0;
+  double energy = 0;  ///< that the error is compared with where it is larger than that of the solution
   int max_iterations = most_iterations;  ///< >= 1
 };
 
@@ -40,7 +41,7 @@ struct IterationReport {
 
 /// The energy of the error from that of the steps. With conjugate gradients each step takes t = alpha r.M r off e.K e
 /// (Hestenes & Stiefel 1952, theorem 6:1), so that e.K e is the sum of all t to come (Strakos & Tichy 2002). These are
-/// taken as a geometric series with the slowest decay of the last steps, and doubled.
+/// taken as a geometric series that falls by the square root of the slowest recent decay: decay slows down.
 class ErrorEstimate {
  public:
   void add_step(double energy) {
@@ -54,7 +55,8 @@ class ErrorEstimate {
   [[nodiscard]] double error() const {
     constexpr int least = 3;
     if (steps_ < least || decay_ >= 1) return std::numeric_limits<double>::infinity();
-    return 2 * last_ * decay_ / (1 - decay_);
+    const double following = std::sqrt(decay_);
+    return last_ * following / (1 - following);
   }
 
  private:
@@ -105,8 +107,8 @@ IterationReport iterate(Vectors& vectors, const IterationOptions& options) {
     estimate.add_step(alpha * rz);
     report.energy = estimate.energy();
     report.energy_error = estimate.error();
-    if (options.accuracy > 0 && report.energy_error <= options.accuracy * options.accuracy * report.energy)
-      return report;
+    const double compared = options.accuracy * options.accuracy * std::max(report.energy, options.energy);
+    if (options.accuracy > 0 && report.energy_error <= compared) return report;
     const auto next = vectors.precondition();
     if (options.accuracy == 0 && report.residual <= options.tolerance &&
         next.rz <= options.tolerance * options.tolerance * first_rz) {

@@ -140,10 +140,11 @@ class MultigridSolver final : public Factorization {
       report_.iterations += solve_one(x.subspan(k * n, n), {}).iterations;
     }
   }
-  double solve_to(double accuracy, std::span<double> x) const override {
-    const auto report = solve_one(x, {.accuracy = accuracy});
+  Energies solve_to(double accuracy, double energy, std::span<double> x) const override {
+    const double unit = cycle_->unit();
+    const auto report = solve_one(x, {.accuracy = accuracy, .energy = energy / unit});
     report_.iterations += report.iterations;
-    return cycle_->unit() * report.energy_error;
+    return {unit * report.energy, unit * report.energy_error};
   }
   void solve_roughly(std::span<double> x) const override { static_cast<void>(solve_one(x, {.tolerance = 0.03})); }
   [[nodiscard]] const FactorReport& report() const override { return report_; }

@@ -68,10 +68,17 @@ void StiffnessSolver::Refinement::correct(std::span<double> x, int pass) {
   }
 }
 
-void StiffnessSolver::Refinement::take(double energy_error, std::span<double> x) {
-  solution.motion.add(x);
-  solution.residual = evaluate(x);
-  solution.energy_error = energy_error;
+void StiffnessSolver::Refinement::solve_to(double accuracy, std::span<double> x) {
+  constexpr double of_one_pass = 1e-5;  // what single precision makes of the matrix counts below
+  double energy = 0;
+  for (double reached = 1; reached > accuracy;) {
+    reached = std::max(accuracy, of_one_pass * reached);
+    const auto energies = solver.factor_->solve_to(reached, energy, x);
+    solution.motion.add(x);
+    solution.residual = evaluate(x);
+    solution.energy_error = energies.error;
+    energy = std::max(energy, energies.solution);
+  }
   done = true;
 }
 

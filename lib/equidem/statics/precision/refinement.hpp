@@ -36,8 +36,8 @@ struct StiffnessSolver::Refinement {
   /// Adds the correction x, which a pass with the factor made of the residual, and replaces x by the new residual.
   void correct(std::span<double> x, int pass);
 
-  /// Adds the correction x, whose error has a known energy, and ends there. x becomes the residual.
-  void take(double energy_error, std::span<double> x);
+  /// Solves for the residual x to a relative accuracy in the norm of energy, and ends there. x becomes the residual.
+  void solve_to(double accuracy, std::span<double> x);
 
   /// \throws Error where the solution is worth nothing
   Solution finish();
