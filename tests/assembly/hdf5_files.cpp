@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/assembly/hdf5_files.hpp"
+#include "equidem/assembly/files/hdf5_files.hpp"
 
 #include <cmath>
 #include <cstdint>

@@ -175,7 +175,8 @@ class Memory(ProgramTest):
                 self.check_error(done, 1, "needs at least", "of memory are available")
 
     def test_buffers_of_the_linear_algebra_count(self):
-        done = self.within(1 << 30, "solve", TENSION, "--set", "assembly.columns=600", "--set", "assembly.rows=600")
+        done = self.within(1 << 30, "solve", TENSION, "--set", "assembly.columns=600", "--set", "assembly.rows=600",
+                           "--set", "solver.method=multifrontal")
         self.check_error(done, 1, "of address space", "ulimit -v")
 
     def test_too_little_to_start_is_told(self):

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The method that "auto" takes.
-#include "equidem/statics/method_choice.hpp"
+#include "equidem/statics/choice/method_choice.hpp"
 
 #include <cmath>
 #include <string>

@@ -15,8 +15,8 @@
 #include "equidem/core/threads.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/material/spring_relations.hpp"
-#include "equidem/statics/solve_time.hpp"
-#include "equidem/statics/solver_choice.hpp"
+#include "equidem/statics/choice/solve_time.hpp"
+#include "equidem/statics/choice/solver_choice.hpp"
 
 #include "left_out.hpp"
 

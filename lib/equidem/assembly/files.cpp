@@ -15,8 +15,8 @@
 #include <nlohmann/json.hpp>
 
 #include "equidem/assembly/delaunay.hpp"
-#include "equidem/assembly/file_keys.hpp"
-#include "equidem/assembly/hdf5_files.hpp"
+#include "equidem/assembly/files/file_keys.hpp"
+#include "equidem/assembly/files/hdf5_files.hpp"
 #include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"

@@ -13,9 +13,9 @@ double available_memory();
 /// Bytes left within the limit of the process (ulimit -v); infinity where there is none.
 double available_address_space();
 
-/// Have the allocator give freed vectors of some megabytes back to the system. The C library of GNU keeps those of up to
-/// 32 MB, between which others then lie: a quarter of the peak of a static solve of 1e6 discs. For programs to call at
-/// their start.
+/// Have the allocator give freed vectors of some megabytes back to the system. The C library of GNU keeps those of up
+/// to 32 MB, between which others then lie: a quarter of the peak of a static solve of 1e6 discs. For programs to call
+/// at their start.
 void return_freed_memory();
 
 /// \param what beginning of the sentence, up to the amount: "a run of 1 000 000 discs needs about"

@@ -13,8 +13,8 @@
 #include "equidem/core/text.hpp"
 #include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
+#include "equidem/statics/choice/solver_choice.hpp"
 #include "equidem/statics/hold_free_motions.hpp"
-#include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
 namespace {

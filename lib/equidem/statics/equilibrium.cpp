@@ -9,12 +9,12 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/statics/choice/method_choice.hpp"
+#include "equidem/statics/choice/solver_choice.hpp"
 #include "equidem/statics/internal_force.hpp"
-#include "equidem/statics/method_choice.hpp"
 #include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/precision/factor_precision.hpp"
 #include "equidem/statics/rigidity.hpp"
-#include "equidem/statics/solver_choice.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
 
 namespace equidem {

@@ -8,10 +8,10 @@
 #include "equidem/core/text.hpp"
 #include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
+#include "equidem/statics/choice/solver_choice.hpp"
 #include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/load_bearing.hpp"
 #include "equidem/statics/motion_description.hpp"
-#include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
 namespace {

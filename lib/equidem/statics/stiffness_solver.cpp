@@ -15,7 +15,7 @@
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/rigid_growth.hpp"
-#include "equidem/statics/method_choice.hpp"
+#include "equidem/statics/choice/method_choice.hpp"
 #include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/precision/factor_precision.hpp"
 #include "equidem/statics/precision/refinement.hpp"

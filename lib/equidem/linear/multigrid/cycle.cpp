@@ -200,7 +200,9 @@ double Cycle::multiply(const double* p, double* q) const {
   const Wavefront& wavefront = levels_[0].wavefront;
   if (wavefront.chunks() == 0) return levels_[0].matrix->multiply({0, levels_[0].matrix->rows()}, p, q);
   std::vector<double> sums(wavefront.chunks());
-  parallel_tasks(sums.size(), [&](std::size_t chunk, int) { sums[chunk] = levels_[0].matrix->multiply(wavefront.rows(chunk), p, q); });
+  parallel_tasks(sums.size(), [&](std::size_t chunk, int) {
+    sums[chunk] = levels_[0].matrix->multiply(wavefront.rows(chunk), p, q);
+  });
   return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "equidem/linear/multigrid/grouped_rows.hpp"
 #include "equidem/linear/multigrid/envelope_cholesky.hpp"
 #include "equidem/linear/multigrid/grid.hpp"
+#include "equidem/linear/multigrid/grouped_rows.hpp"
 #include "equidem/linear/multigrid/transfer.hpp"
 #include "equidem/linear/multigrid/wavefront.hpp"
 #include "equidem/linear/spring_network.hpp"
@@ -18,7 +18,7 @@
 namespace equidem::multigrid {
 
 struct CycleOptions {
-  double spacing = 3;    ///< of the nodes of the first grid, mean distances of discs in contact, > 0
+  double spacing = 3;      ///< of the nodes of the first grid, mean distances of discs in contact, > 0
   int degree = 5;          ///< products with the matrix before and after each coarse correction, >= 1
   double range = 15;       ///< largest over smallest eigenvalue that smoothing covers, > 1
   int direct_below = 200;  ///< discs that are solved for without a grid
@@ -48,10 +48,10 @@ class Cycle {
  private:
   struct Level {
     std::unique_ptr<GroupedRows> matrix = nullptr;  // none on the coarsest level but the first
-    std::unique_ptr<Grid> grid = nullptr;          // above; none on the coarsest level
-    std::unique_ptr<Transfer> transfer = nullptr;  // to that grid
-    Wavefront wavefront{};                         // over the chunks of the transfer
-    std::vector<ChebyshevStep> before{}, after{};  // the coarse correction
+    std::unique_ptr<Grid> grid = nullptr;           // above; none on the coarsest level
+    std::unique_ptr<Transfer> transfer = nullptr;   // to that grid
+    Wavefront wavefront{};                          // over the chunks of the transfer
+    std::vector<ChebyshevStep> before{}, after{};   // the coarse correction
     std::size_t rows = 0;
     QuadVector b{}, x{}, other{}, cells{};
   };

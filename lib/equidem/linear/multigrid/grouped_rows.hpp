@@ -2,8 +2,8 @@
 /// \file
 /// Symmetric matrices as products with them read them: rows in groups whose members are lanes of a vector.
 ///
-/// The matrix of the discs is not stored. Each of its rows sums the forces of its contacts, f_i = sum kN dn g + kT ds h,
-/// with the derivatives g of stretch and h of slip in single precision. As stretch and slip come from differences of
+/// The matrix of the discs is not stored. Each of its rows sums the forces of its contacts, f_i = sum kN dn g + kT ds
+/// h, with the derivatives g of stretch and h of slip in single precision. As stretch and slip come from differences of
 /// motions, rounding of g and h changes the energy of every motion by a factor near 1, whatever the condition of the
 /// matrix.
 #pragma once
@@ -73,13 +73,13 @@ class GroupedRows {
 
   /// Data of a group as kernels read them.
   struct Group {
-    std::size_t first_row, rows;   ///< rows <= lanes
+    std::size_t first_row, rows;  ///< rows <= lanes
     std::size_t slots;
-    const std::int32_t* other;     ///< slots x lanes: the row at the other end
-    const float* geometry;         ///< slots x fields x lanes: n_x, n_y[, lever, lever of the other][, offset, offset of
-                                   ///< the other][, kN, kT]; lengths over the scale of rotations
-    const float* inverse;          ///< 6 x lanes: lower triangle of the inverse of the diagonal block
-    const float* free;             ///< 3 x lanes: 1 where the component is not held, else 0; null: all are free
+    const std::int32_t* other;  ///< slots x lanes: the row at the other end
+    const float* geometry;      ///< slots x fields x lanes: n_x, n_y[, lever, lever of the other][, offset, offset
+                                ///< of the other][, kN, kT], or a block by rows; lengths over the scale of rotations
+    const float* inverse;       ///< 6 x lanes: lower triangle of the inverse of the diagonal block
+    const float* free;          ///< 3 x lanes: 1 where the component is not held, else 0; null: all are free
   };
   [[nodiscard]] Group group(std::size_t number) const {
     const auto row = static_cast<std::size_t>(first_row_[number]), slot = static_cast<std::size_t>(first_slot_[number]);
@@ -104,8 +104,8 @@ class GroupedRows {
   void clear(std::size_t group);
   template <typename Entry>
   void set_inverse(std::size_t group, std::size_t lane, const Entry& entry);
-  void fill(const SpringNetwork& network, std::span<const std::int32_t> order,
-            const std::vector<std::int32_t>& row_of, std::size_t group, double unit);
+  void fill(const SpringNetwork& network, std::span<const std::int32_t> order, const std::vector<std::int32_t>& row_of,
+            std::size_t group, double unit);
   void fill_slot(const SpringNetwork& network, std::size_t contact, bool from_i, std::size_t slot, std::size_t lane,
                  double unit);
 

@@ -33,8 +33,8 @@ class Transfer {
   /// 4 cell + corner for each of the (at most) four cells around a node; -1: none.
   [[nodiscard]] const std::array<std::int32_t, 4>& adjacent(std::size_t node) const { return adjacent_[node]; }
 
-  /// Forces on the nodes, of the same work as those on the points: first on the corners of the cells of each chunk, then
-  /// on the nodes.
+  /// Forces on the nodes, of the same work as those on the points: first on the corners of the cells of each chunk,
+  /// then on the nodes.
   /// \param cells corners of each cell
   void restrict_chunk(std::size_t chunk, const Quad* points, QuadVector& cells) const;
   void add_up_corners(const QuadVector& cells, QuadVector& nodes) const;

@@ -72,8 +72,7 @@ class Wavefront::Run {
         while (next[step] < end && !(step == 0 && moved)) {
           const std::size_t chunk = next[step];
           if (taken_[chunk] <= step) {
-            const State now =
-                step == 0 ? State::ready : state(chunk, step, begin, end, across, next[step - 1]);
+            const State now = step == 0 ? State::ready : state(chunk, step, begin, end, across, next[step - 1]);
             if (now == State::waits) break;
             if (now == State::ready) {
               body_(step, chunk);

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "equidem/linear/factorization.hpp"
-#include "equidem/statics/solver_choice.hpp"
+#include "equidem/statics/choice/solver_choice.hpp"
 
 namespace equidem {
 

@@ -51,16 +51,16 @@ struct Loops {
 };
 
 /// The loops compiled for vectors of one width.
-#define EQUIDEM_LOOPS(name, attributes)                                                                              \
-  struct name {                                                                                                      \
-    attributes static void restrict_cell(const PointsOfCell& points, const Quad* force, Quad* corners) {             \
-      Loops::restrict_cell(points, force, corners);                                                                  \
-    }                                                                                                                \
-    attributes static void move_points(const PointsOfCell& points, const Quad* corners, Quad* motion) {              \
-      Loops::move_points(points, corners, motion);                                                                   \
-    }                                                                                                                \
+#define EQUIDEM_LOOPS(name, attributes)                                                                               \
+  struct name {                                                                                                       \
+    attributes static void restrict_cell(const PointsOfCell& points, const Quad* force, Quad* corners) {              \
+      Loops::restrict_cell(points, force, corners);                                                                   \
+    }                                                                                                                 \
+    attributes static void move_points(const PointsOfCell& points, const Quad* corners, Quad* motion) {               \
+      Loops::move_points(points, corners, motion);                                                                    \
+    }                                                                                                                 \
     attributes static void add_square(double k, const double* v, double* matrix) { Loops::add_square(k, v, matrix); } \
-    static constexpr GridFunctions all = {&restrict_cell, &move_points, &add_square};   \
+    static constexpr GridFunctions all = {&restrict_cell, &move_points, &add_square};                                 \
   }
 
 EQUIDEM_LOOPS(PlainLoops, );

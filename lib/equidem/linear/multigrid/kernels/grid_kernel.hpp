@@ -16,7 +16,8 @@ struct Inside {
 
 /// Points of a cell whose four nodes are kept. Its motions are those of the linked interpolation (grid.hpp), with e.g.
 /// w = a theta
-///   u_x = bilinear(U_x) - h_y/2 t (1 - t) (w_below - w_above),   u_y = bilinear(U_y) + h_x/2 s (1 - s) (w_left - w_right)
+///   u_x = bilinear(U_x) - h_y/2 t (1 - t) (w_below - w_above)
+///   u_y = bilinear(U_y) + h_x/2 s (1 - s) (w_left - w_right)
 /// where w is linear along each side.
 struct PointsOfCell {
   const Inside* inside;

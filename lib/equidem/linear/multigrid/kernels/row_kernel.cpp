@@ -265,25 +265,25 @@ constexpr RowKind kinds[] = {{.blocks = true},
                              {.rotation = true, .offsets = true, .own_springs = true}};
 
 /// The loops compiled for vectors of one width.
-#define EQUIDEM_LOOPS(name, attributes)                                                                                \
-  template <RowKind kind>                                                                                              \
-  struct name {                                                                                                        \
-    attributes static void start(const GroupedRows& rows, std::size_t first, std::size_t last, float factor,           \
-                                 const Quad* b, Quad* x) {                                                             \
-      Loops<kind>::start(rows, first, last, factor, b, x);                                                             \
-    }                                                                                                                  \
-    attributes static void advance(const GroupedRows& rows, std::size_t first, std::size_t last,                       \
-                                   const ChebyshevStep& step, const Quad* b, const Quad* x, Quad* next) {              \
-      Loops<kind>::advance(rows, first, last, step, b, x, next);                                                       \
-    }                                                                                                                  \
-    attributes static void residual(const GroupedRows& rows, std::size_t first, std::size_t last, const Quad* b,       \
-                                    const Quad* x, Quad* r) {                                                          \
-      Loops<kind>::residual(rows, first, last, b, x, r);                                                               \
-    }                                                                                                                  \
-    attributes static double multiply(const GroupedRows& rows, std::size_t first, std::size_t last, const double* p,   \
-                                      double* q) {                                                                     \
-      return Loops<kind>::multiply(rows, first, last, p, q);                                                           \
-    }                                                                                                                  \
+#define EQUIDEM_LOOPS(name, attributes)                                                                              \
+  template <RowKind kind>                                                                                            \
+  struct name {                                                                                                      \
+    attributes static void start(const GroupedRows& rows, std::size_t first, std::size_t last, float factor,         \
+                                 const Quad* b, Quad* x) {                                                           \
+      Loops<kind>::start(rows, first, last, factor, b, x);                                                           \
+    }                                                                                                                \
+    attributes static void advance(const GroupedRows& rows, std::size_t first, std::size_t last,                     \
+                                   const ChebyshevStep& step, const Quad* b, const Quad* x, Quad* next) {            \
+      Loops<kind>::advance(rows, first, last, step, b, x, next);                                                     \
+    }                                                                                                                \
+    attributes static void residual(const GroupedRows& rows, std::size_t first, std::size_t last, const Quad* b,     \
+                                    const Quad* x, Quad* r) {                                                        \
+      Loops<kind>::residual(rows, first, last, b, x, r);                                                             \
+    }                                                                                                                \
+    attributes static double multiply(const GroupedRows& rows, std::size_t first, std::size_t last, const double* p, \
+                                      double* q) {                                                                   \
+      return Loops<kind>::multiply(rows, first, last, p, q);                                                         \
+    }                                                                                                                \
   }
 
 EQUIDEM_LOOPS(PlainLoops, );

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/assembly/hdf5_files.hpp"
+#include "equidem/assembly/files/hdf5_files.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "equidem/assembly/delaunay.hpp"
-#include "equidem/assembly/file_keys.hpp"
-#include "equidem/assembly/hdf5_columns.hpp"
+#include "equidem/assembly/files/file_keys.hpp"
+#include "equidem/assembly/files/hdf5_columns.hpp"
 #include "equidem/assembly/power_cells.hpp"
 #include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <string>
 
-#include "equidem/assembly/file_keys.hpp"
 #include "equidem/assembly/files.hpp"
-#include "equidem/assembly/hdf5_files.hpp"
+#include "equidem/assembly/files/file_keys.hpp"
+#include "equidem/assembly/files/hdf5_files.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 

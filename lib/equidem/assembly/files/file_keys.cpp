@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/assembly/file_keys.hpp"
+#include "equidem/assembly/files/file_keys.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/statics/solve_time.hpp"
+#include "equidem/statics/choice/solve_time.hpp"
 
 #include <algorithm>
 #include <limits>

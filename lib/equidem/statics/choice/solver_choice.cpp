@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/statics/solver_choice.hpp"
+#include "equidem/statics/choice/solver_choice.hpp"
 
 #include <algorithm>
 #include <cmath>

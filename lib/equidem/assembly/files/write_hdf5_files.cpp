@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "equidem/assembly/file_keys.hpp"
-#include "equidem/assembly/hdf5_columns.hpp"
-#include "equidem/assembly/hdf5_files.hpp"
+#include "equidem/assembly/files/file_keys.hpp"
+#include "equidem/assembly/files/hdf5_columns.hpp"
+#include "equidem/assembly/files/hdf5_files.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/files/hdf5.hpp"
 #include "equidem/core/files/open_file.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/statics/method_choice.hpp"
+#include "equidem/statics/choice/method_choice.hpp"
 
 #include <algorithm>
 #include <cmath>
