@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "equidem/linear/multigrid/block_matrix.hpp"
+#include "equidem/linear/multigrid/smoother.hpp"
 
 namespace equidem::multigrid {
 
