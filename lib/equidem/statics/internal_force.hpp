@@ -32,7 +32,7 @@ struct PreciseMotion {
 ContactDeformation deformation_of(const SpringNetwork& network, const PreciseMotion& motion,
                                   std::span<const ContactDeformation> imposed, std::size_t contact);
 
-/// The same of every contact.
+/// Computes the stretch and slip of every contact, as deformation_of does.
 void deformations_of(const SpringNetwork& network, const PreciseMotion& motion,
                      std::span<const ContactDeformation> imposed, std::span<ContactDeformation> deformations);
 

@@ -93,7 +93,7 @@ class StiffnessSolver {
   /// rounding of the geometry does to the motion u along v.
   [[nodiscard]] double rounding_work(const RightHandSide& given, const PreciseMotion& motion,
                                      std::span<const double> v) const;
-  /// Of a motion, per component: x.K x, N.
+  /// x.K x, N, of a motion given per component.
   [[nodiscard]] double twice_energy(std::span<const double> x) const;
   /// |K| (largest sum of the magnitudes of a row), Pa.
   [[nodiscard]] double norm() const;

@@ -18,7 +18,7 @@ namespace equidem::multigrid {
 using Product = std::function<void(std::span<const double> x, std::span<double> y)>;
 
 struct IterationOptions {
-  double tolerance = 3e-7;  ///< of |r| over |b|, and of the energy norm of the error as r.M r shows it
+  double tolerance = 3e-7;  ///< of |r| over |b|, and a fourth of the estimated error over the solution, norms of energy
   /// In place of the tolerance, of the estimated error over the solution, norms of energy; 0: not asked for.
   double accuracy = 0;
   double energy = 0;  ///< that the error is compared with where it is larger than that of the solution
@@ -87,7 +87,6 @@ IterationReport iterate(Vectors& vectors, const IterationOptions& options) {
   report.residual = 1;
   double rz = vectors.precondition().rz;
   vectors.turn(0);
-  const double first_rz = rz;
   double inverse_size = rz;  // p.M^-1 p
   double largest_quotient = 0;
   ErrorEstimate estimate;
@@ -107,13 +106,10 @@ IterationReport iterate(Vectors& vectors, const IterationOptions& options) {
     estimate.add_step(alpha * rz);
     report.energy = estimate.energy();
     report.energy_error = estimate.error();
-    const double compared = options.accuracy * options.accuracy * std::max(report.energy, options.energy);
-    if (options.accuracy > 0 && report.energy_error <= compared) return report;
+    const double wanted = options.accuracy > 0 ? options.accuracy : 4 * options.tolerance;
+    const bool close = report.energy_error <= wanted * wanted * std::max(report.energy, options.energy);
+    if (report.residual == 0 || (close && (options.accuracy > 0 || report.residual <= options.tolerance))) return report;
     const auto next = vectors.precondition();
-    if (options.accuracy == 0 && report.residual <= options.tolerance &&
-        next.rz <= options.tolerance * options.tolerance * first_rz) {
-      return report;
-    }
     progress.update(std::clamp(std::log(report.residual) / std::log(options.tolerance), 0.0, 1.0));
     const double beta = std::max(0.0, -alpha * next.qz / rz);
     vectors.turn(beta);

@@ -21,7 +21,7 @@
 
 namespace equidem::multigrid {
 
-/// What a slot of a row holds: a block, or a contact and the components of the contact law that the assembly needs.
+/// A slot of a row holds a block, or a contact with those components of the contact law that the assembly needs.
 struct RowKind {
   bool blocks = false;
   bool rotation = false;     ///< discs turn

@@ -10,7 +10,7 @@
 
 namespace equidem {
 
-/// What the two methods would take. The times are those of one machine (two threads of an AMD EPYC of 2024), so that
+/// Costs of the two methods. The times are those of one machine (two threads of an AMD EPYC of 2024), so that
 /// the choice is the same everywhere.
 struct MethodForecast {
   double elimination = 0;        ///< s

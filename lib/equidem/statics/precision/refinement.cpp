@@ -69,7 +69,7 @@ void StiffnessSolver::Refinement::correct(std::span<double> x, int pass) {
 }
 
 void StiffnessSolver::Refinement::solve_to(double accuracy, std::span<double> x) {
-  constexpr double of_one_pass = 1e-5;  // what single precision makes of the matrix counts below
+  constexpr double of_one_pass = 2e-6;  // what single precision makes of the matrix counts below
   double energy = 0;
   for (double reached = 1; reached > accuracy;) {
     reached = std::max(accuracy, of_one_pass * reached);
