@@ -108,7 +108,8 @@ IterationReport iterate(Vectors& vectors, const IterationOptions& options) {
     report.energy_error = estimate.error();
     const double wanted = options.accuracy > 0 ? options.accuracy : 4 * options.tolerance;
     const bool close = report.energy_error <= wanted * wanted * std::max(report.energy, options.energy);
-    if (report.residual == 0 || (close && (options.accuracy > 0 || report.residual <= options.tolerance))) return report;
+    if (report.residual == 0 || (close && (options.accuracy > 0 || report.residual <= options.tolerance)))
+      return report;
     const auto next = vectors.precondition();
     progress.update(std::clamp(std::log(report.residual) / std::log(options.tolerance), 0.0, 1.0));
     const double beta = std::max(0.0, -alpha * next.qz / rz);
