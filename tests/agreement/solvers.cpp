@@ -11,6 +11,7 @@
 #include "support/assemblies.hpp"
 #include "support/catch.hpp"
 #include "support/fields.hpp"
+#include "support/motions.hpp"
 
 using namespace equidem;
 using namespace equidem::test;
@@ -26,34 +27,23 @@ Equilibrium solved(const HeldScene& scene, SolverMethod method) {
                            options);
 }
 
-/// Largest difference of any motion (rotations times the mean radius) over the largest motion.
-double difference(const Assembly& assembly, const Equilibrium& p, const Equilibrium& q) {
-  const double a = assembly.mean_radius();
-  double off = 0, size = 0;
-  for (std::size_t d = 0; d < p.motions.size(); ++d) {
-    off = std::max({off, norm(p.motions[d].u - q.motions[d].u), a * std::abs(p.motions[d].theta - q.motions[d].theta)});
-    size = std::max({size, norm(q.motions[d].u), a * std::abs(q.motions[d].theta)});
-  }
-  return size == 0 ? off : off / size;
-}
-
 }  // namespace
 
 TEST_CASE("all_solvers_find_the_same_state_of_rest") {
   for (const HeldScene& scene : held_scenes()) {
     const Equilibrium ours = solved(scene, SolverMethod::multifrontal), lu = solved(scene, SolverMethod::umfpack);
-    const double to_lu = difference(scene.assembly(), ours, lu);
+    const double to_lu = largest_difference(scene.assembly(), ours, lu);
     CAPTURE(scene.name, ours.solver, lu.solver, to_lu);
     CHECK(to_lu < 1e-10);
     if (scene.springs.any_negative()) continue;
     const Equilibrium supernodal = solved(scene, SolverMethod::cholmod);
-    const double to_cholmod = difference(scene.assembly(), ours, supernodal);
+    const double to_cholmod = largest_difference(scene.assembly(), ours, supernodal);
     CAPTURE(supernodal.solver, to_cholmod);
     CHECK(to_cholmod < 1e-10);
     CHECK(supernodal.solver != ours.solver);
     CHECK(supernodal.energy == Approx(ours.energy).epsilon(1e-10));
     const Equilibrium iterated = solved(scene, SolverMethod::multigrid);
-    const double to_multigrid = difference(scene.assembly(), ours, iterated);
+    const double to_multigrid = largest_difference(scene.assembly(), ours, iterated);
     CAPTURE(to_multigrid);
     CHECK(to_multigrid < 1e-10);
   }

@@ -15,8 +15,10 @@
 #include "equidem/statics/equilibrium.hpp"
 
 #include "support/catch.hpp"
+#include "support/motions.hpp"
 
 using namespace equidem;
+using namespace equidem::test;
 
 namespace {
 
@@ -25,19 +27,6 @@ EquilibriumOptions solver_of(SolverMethod method, double accuracy = 0) {
   options.solver.method = method;
   options.solver.accuracy = accuracy;
   return options;
-}
-
-/// Relative error of the motions, 2-norm, rotations times the mean radius.
-double error_of(const Assembly& assembly, const Equilibrium& result, const Equilibrium& exact) {
-  const double a = assembly.mean_radius();
-  double off = 0, size = 0;
-  for (std::size_t d = 0; d < assembly.size(); ++d) {
-    const auto square = [&](const DiscMotion& m) { return squared(m.u) + a * a * m.theta * m.theta; };
-    const DiscMotion &p = result.motions[d], &q = exact.motions[d];
-    off += square({p.u - q.u, p.theta - q.theta});
-    size += square(q);
-  }
-  return std::sqrt(off / size);
 }
 
 struct Request {
@@ -112,7 +101,7 @@ TEST_CASE("motions_are_as_accurate_as_asked_for_in_95_of_100_random_requests") {
       few_iterations += result.iterations;
       to_the_end += solve(solver_of(SolverMethod::multigrid)).iterations;
     }
-    const double over = error_of(given.assembly, result, exact) / accuracy;
+    const double over = relative_difference(given.assembly, result, exact) / accuracy;
     worst = std::max(worst, over);
     within += over <= 1 ? 1 : 0;
     if (over > 1) beyond += fmt::format("{:.1e}: {:.1f}; ", accuracy, over);

@@ -14,6 +14,7 @@
 
 #include "support/catch.hpp"
 #include "support/fields.hpp"
+#include "support/motions.hpp"
 #include "support/off_line_networks.hpp"
 
 using namespace equidem;
@@ -91,23 +92,12 @@ EquilibriumOptions by(SolverMethod method, Rotation rotation = Rotation::from_sc
   return options;
 }
 
-/// Largest difference of a motion (rotations times the mean radius) over the largest motion.
-double difference(const Assembly& assembly, const Equilibrium& p, const Equilibrium& q) {
-  const double a = assembly.mean_radius();
-  double off = 0, size = 0;
-  for (std::size_t d = 0; d < p.motions.size(); ++d) {
-    off = std::max({off, norm(p.motions[d].u - q.motions[d].u), a * std::abs(p.motions[d].theta - q.motions[d].theta)});
-    size = std::max({size, norm(q.motions[d].u), a * std::abs(q.motions[d].theta)});
-  }
-  return size == 0 ? off : off / size;
-}
-
 void check_same(const std::string& name, const Assembly& assembly, const ContactSprings& springs,
                 const std::vector<Support>& supports, const LoadCase& loads, Rotation rotation = Rotation::from_scene) {
   const Equilibrium direct =
       solve_equilibrium(assembly, springs, supports, loads, by(SolverMethod::multifrontal, rotation));
   const Equilibrium ours = solve_equilibrium(assembly, springs, supports, loads, by(SolverMethod::multigrid, rotation));
-  const double off = difference(assembly, ours, direct);
+  const double off = largest_difference(assembly, ours, direct);
   CAPTURE(name, off, ours.iterations, ours.relative_residual, direct.relative_residual);
   CHECK(off < 1e-10);
   CHECK(ours.energy == Approx(direct.energy).epsilon(1e-10));
@@ -195,7 +185,7 @@ TEST_CASE("multigrid_is_right_or_names_the_method_that_serves") {
     CAPTURE(hard.name, refused.message, directly.message, ours.iterations);
     if (refused.message.empty()) {
       REQUIRE(directly.message.empty());
-      CHECK(difference(hard.assembly, ours, direct) < 1e-7);
+      CHECK(largest_difference(hard.assembly, ours, direct) < 1e-7);
     } else {
       CHECK((refused.says("multifrontal") || !directly.message.empty()));
     }
@@ -232,6 +222,6 @@ TEST_CASE("the_error_bound_of_multigrid_holds") {
   options.solver.method = SolverMethod::multifrontal;
   const Equilibrium direct = solve_equilibrium(assembly, springs, supports, loads, options);
   CHECK(ours.condition == Approx(direct.condition).epsilon(0.1));
-  CHECK(difference(assembly, ours, direct) < ours.error_bound + direct.error_bound);
+  CHECK(largest_difference(assembly, ours, direct) < ours.error_bound + direct.error_bound);
   CHECK(ours.error_bound < 1e-9);
 }

@@ -15,6 +15,7 @@
 #include "support/assemblies.hpp"
 #include "support/catch.hpp"
 #include "support/fields.hpp"
+#include "support/motions.hpp"
 
 using namespace equidem;
 using namespace equidem::test;
@@ -28,20 +29,6 @@ EquilibriumOptions with(FactorPrecision precision, Rotation rotation = Rotation:
   EquilibriumOptions options{.rotation = rotation, .solver = {}, .error_bound = true};
   options.solver.precision = precision;
   return options;
-}
-
-/// |p - q| over |q|, 2-norms, rotations times the mean radius: as error bounds count.
-double difference(const Assembly& assembly, const Equilibrium& p, const Equilibrium& q) {
-  const double a = assembly.mean_radius();
-  double off = 0, size = 0;
-  for (std::size_t d = 0; d < p.motions.size(); ++d) {
-    const Vec2 u = p.motions[d].u - q.motions[d].u;
-    const double turn = a * (p.motions[d].theta - q.motions[d].theta);
-    off += u.x * u.x + u.y * u.y + turn * turn;
-    const DiscMotion& m = q.motions[d];
-    size += m.u.x * m.u.x + m.u.y * m.u.y + a * a * m.theta * m.theta;
-  }
-  return size == 0 ? std::sqrt(off) : std::sqrt(off / size);
 }
 
 bool is_single(const Equilibrium& state) {
@@ -61,7 +48,7 @@ TEST_CASE("single_and_double_precision_of_the_factor_give_the_same_state") {
     };
     const Equilibrium single = solved(FactorPrecision::single_precision);
     const Equilibrium twofold = solved(FactorPrecision::double_precision);
-    const double off = difference(assembly, single, twofold);
+    const double off = relative_difference(assembly, single, twofold);
     CAPTURE(scene.name, single.solver, off, single.relative_residual, single.error_bound, twofold.error_bound,
             single.condition, twofold.condition);
     CHECK(off <= single.error_bound + twofold.error_bound);
@@ -132,7 +119,7 @@ TEST_CASE("where_single_precision_does_not_serve_double_does_and_the_report_says
     const Equilibrium twofold = solved(FactorPrecision::double_precision);
     CAPTURE(one.name, single.solver);
     CHECK(single.solver.find("multifrontal Cholesky in double precision, since " + one.reason) == 0);
-    CHECK(difference(one.assembly, single, twofold) == 0);
+    CHECK(relative_difference(one.assembly, single, twofold) == 0);
     CHECK(single.error_bound == twofold.error_bound);
     CHECK(single.condition == twofold.condition);
   }

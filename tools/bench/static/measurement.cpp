@@ -2,8 +2,10 @@
 #include "measurement.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <numeric>
 #include <span>
@@ -14,6 +16,7 @@
 #include "equidem/contact/effects.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/memory.hpp"
+#include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
@@ -128,6 +131,59 @@ std::unique_ptr<Factorization> factorize(const std::string& solver, const Proble
   return cholmod(problem, matrix, ordering, result);
 }
 
+/// y := A x.
+using Product = std::function<void(std::span<const double> x, std::span<double> y)>;
+
+/// The vectors of conjugate gradients with any K and any preconditioner M.
+class PlainVectors {
+  static constexpr std::size_t numbers_at_once = 1 << 14;
+
+ public:
+  PlainVectors(const Product& k, const Product& m, std::span<double> x)
+      : k_(k), m_(m), x_(x), r_(x.begin(), x.end()), p_(x.size(), 0.0), q_(x.size(), 0.0), z_(x.size()) {
+    std::fill(x.begin(), x.end(), 0.0);
+  }
+
+  [[nodiscard]] double size() const { return std::sqrt(dot(r_, r_)); }
+  multigrid::Dots precondition() {
+    m_(r_, z_);
+    return {dot(r_, z_), dot(q_, z_)};
+  }
+  void turn(double factor) {
+    parallel_ranges(p_.size(), numbers_at_once, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) p_[k] = z_[k] + factor * p_[k];
+    });
+  }
+  double multiply() {
+    k_(p_, q_);
+    return dot(p_, q_);
+  }
+  double advance(double factor) {
+    return std::sqrt(sums_over<1>(x_.size(), numbers_at_once, [&](std::size_t begin, std::size_t end) {
+      double square = 0;
+      for (std::size_t k = begin; k < end; ++k) {
+        x_[k] += factor * p_[k];
+        r_[k] -= factor * q_[k];
+        square += r_[k] * r_[k];
+      }
+      return std::array{square};
+    })[0]);
+  }
+
+ private:
+  static double dot(std::span<const double> x, std::span<const double> y) {
+    return sums_over<1>(x.size(), numbers_at_once, [&](std::size_t begin, std::size_t end) {
+      double sum = 0;
+      for (std::size_t k = begin; k < end; ++k) sum += x[k] * y[k];
+      return std::array{sum};
+    })[0];
+  }
+
+  const Product &k_, &m_;
+  std::span<double> x_;
+  LargeVector<double> r_, p_, q_, z_;
+};
+
 /// As equidem solves: passes until the residual of the contact law is small enough.
 void solve_by_multigrid(const Problem& problem, const ContactGraph& graph, const Factorization& factor,
                         std::vector<double>& x) {
@@ -150,13 +206,15 @@ void solve_by_multigrid(const Problem& problem, const ContactGraph& graph, const
 void solve(const Problem& problem, const StiffnessMatrix& matrix, const Factorization& factor, std::vector<double>& x) {
   if (!factor.report().single_precision) return factor.solve(x, 1);
   const ContactGraph graph(problem.assembly);
-  static_cast<void>(multigrid::conjugate_gradients(
-      [&](std::span<const double> v, std::span<double> kv) { multiply(matrix, problem.assembly, graph, v, kv); },
-      [&](std::span<const double> v, std::span<double> mv) {
-        std::copy(v.begin(), v.end(), mv.begin());
-        factor.solve(mv, 1);
-      },
-      x, {.tolerance = 1e-11}));
+  const Product by_k = [&](std::span<const double> v, std::span<double> kv) {
+    multiply(matrix, problem.assembly, graph, v, kv);
+  };
+  const Product by_factor = [&](std::span<const double> v, std::span<double> mv) {
+    std::copy(v.begin(), v.end(), mv.begin());
+    factor.solve(mv, 1);
+  };
+  PlainVectors vectors(by_k, by_factor, x);
+  static_cast<void>(multigrid::iterate(vectors, {.tolerance = 1e-11}));
 }
 
 double relative_residual(const Problem& problem, const StiffnessMatrix& matrix, const std::vector<double>& x) {

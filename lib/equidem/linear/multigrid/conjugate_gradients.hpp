@@ -5,17 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <span>
 
 #include "equidem/core/progress.hpp"
 #include "equidem/linear/linear_solver.hpp"
 
 namespace equidem::multigrid {
-
-/// y := A x.
-using Product = std::function<void(std::span<const double> x, std::span<double> y)>;
 
 struct IterationOptions {
   double tolerance = 3e-7;  ///< of |r| over |b|, and a fourth of the estimated error over the solution, norms of energy
@@ -105,7 +100,7 @@ IterationReport iterate(Vectors& vectors, const IterationOptions& options) {
     ++report.iterations;
     estimate.add_step(alpha * rz);
     report.energy = estimate.energy();
-    report.energy_error = estimate.error();
+    report.energy_error = report.residual == 0 ? 0 : estimate.error();
     const double wanted = options.accuracy > 0 ? options.accuracy : 4 * options.tolerance;
     const bool close = report.energy_error <= wanted * wanted * std::max(report.energy, options.energy);
     if (report.residual == 0 || (close && (options.accuracy > 0 || report.residual <= options.tolerance)))
@@ -120,10 +115,5 @@ IterationReport iterate(Vectors& vectors, const IterationOptions& options) {
   report.outcome = IterationOutcome::stalled;
   return report;
 }
-
-/// x := K^-1 b by `iterate`.
-/// \param x b on entry
-IterationReport conjugate_gradients(const Product& multiply_by_k, const Product& multiply_by_m, std::span<double> x,
-                                    const IterationOptions& options = {});
 
 }  // namespace equidem::multigrid

@@ -70,15 +70,15 @@ void StiffnessSolver::Refinement::correct(std::span<double> x, int pass) {
 
 void StiffnessSolver::Refinement::solve_to(double accuracy, std::span<double> x) {
   constexpr double of_one_pass = 2e-6;  // what single precision makes of the matrix counts below
-  double energy = 0;
-  for (double reached = 1; reached > accuracy;) {
+  double energy = 0, reached = 1;
+  do {
     reached = std::max(accuracy, of_one_pass * reached);
     const auto energies = solver.factor_->solve_to(reached, energy, x);
     solution.motion.add(x);
     solution.residual = evaluate(x);
     solution.energy_error = energies.error;
     energy = std::max(energy, energies.solution);
-  }
+  } while (reached > accuracy);
   done = true;
 }
 
