@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <iterator>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -114,53 +117,78 @@ std::optional<FolderLock> lock_out(const CommonOptions& options) {
   return FolderLock(*options.out);
 }
 
-/// Where deliver hands over the results of a verb on this thread; null: it prints and writes them.
-static thread_local Delivery* collected = nullptr;
+namespace {
 
-Delivery collect(const std::function<void()>& verb) {
+/// Where deliver and hand_over put the results of a verb on this thread; null: deliver prints and writes them.
+thread_local Delivery* collected = nullptr;
+thread_local bool arrays_collected = false;
+
+}  // namespace
+
+Delivery collect(const std::function<void()>& verb, Arrays arrays) {
+  struct Restored {
+    Delivery* const delivery = collected;
+    const bool arrays = arrays_collected;
+    ~Restored() { collected = delivery, arrays_collected = arrays; }
+  } const restored;
   Delivery delivery;
   collected = &delivery;
-  try {
-    verb();
-  } catch (...) {
-    collected = nullptr;
-    throw;
-  }
-  collected = nullptr;
+  arrays_collected = arrays == Arrays::wanted;
+  verb();
   return delivery;
 }
 
-void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times) {
-  if (collected != nullptr) {
-    *collected = {status, results, times};
-    return;
-  }
+bool arrays_wanted() {
+  return arrays_collected;
+}
+
+void hand_over(std::vector<ResultArray> arrays) {
+  if (arrays_wanted()) std::ranges::move(arrays, std::back_inserter(collected->arrays));
+}
+
+void hand_over(Assembly&& assembly) {
+  if (arrays_wanted()) collected->assembly = std::make_shared<const Assembly>(std::move(assembly));
+}
+
+std::string Delivery::report() const {
   Results all;
   if (status == "unstable") all.line("UNSTABLE", "any disturbance would grow: what follows is no state of rest");
   all.append(results);
-  if (!options.dry_run) {
+  if (status != "dry_run") {
     all.line("times", fmt::format("{:.2g} s in all", times.total()));
     constexpr double visible = 0.02;  // of all; shorter stages are left to the JSON
     for (const auto& [stage, seconds] : times.stages())
       if (seconds >= visible * times.total()) all.note(fmt::format(", {} {:.2g} s", stage, seconds));
   }
-  const std::string report = all.report();
+  return all.report();
+}
+
+std::string Delivery::json() const {
   Results seconds, object;
   for (const auto& [stage, time] : times.stages()) seconds.set(stage, time);
-  object.set("status", status).set("report", report).set("times", seconds).set("version", library_version());
+  object.set("status", status).set("report", report()).set("times", seconds).set("version", library_version());
   object.append(results);
-  const std::string json = object.append(units_and_labels(object)).json();
-  const bool to_stdout = options.json && *options.json == "-";
-  if (to_stdout) {
-    print(json);
-  } else if (!options.quiet) {
-    print(report);
+  return object.append(units_and_labels(object)).json();
+}
+
+void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times) {
+  const Delivery delivery{status, results, times};
+  if (collected != nullptr) {
+    collected->status = status;
+    collected->results = results;
+    collected->times = times;
   }
-  // The files were found writable before the computation.
-  if (options.json && !to_stdout) write_file(*options.json, json, true);
-  if (options.out && !options.dry_run) {
-    write_file(*options.out / "result.json", json, true);
-    say(options, fmt::format("written to {}", options.out->string()));
+  const bool printed = collected == nullptr, to_stdout = options.json && *options.json == "-";
+  if (printed && !to_stdout && !options.quiet) print(delivery.report());
+  if (printed || options.out) {
+    const std::string json = delivery.json();
+    if (to_stdout) print(json);
+    // The files were found writable before the computation.
+    if (options.json && !to_stdout) write_file(*options.json, json, true);
+    if (options.out && !options.dry_run) {
+      write_file(*options.out / "result.json", json, true);
+      say(options, fmt::format("written to {}", options.out->string()));
+    }
   }
   if (options.require_stable && (status == "unstable" || status == "unjudged" || status == "mechanism")) {
     computation_failed(fmt::format("the assembly is not stable: its status is \"{}\"", status),

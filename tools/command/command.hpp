@@ -6,10 +6,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/folder_lock.hpp"
@@ -92,15 +95,39 @@ void deliver(const CommonOptions& options, const std::string& status, const Resu
 void deliver(const CommonOptions& options, const std::string& status, Results results, StageTimes times,
              const std::function<void(Results&)>& write_files);
 
-/// Results as they are given to deliver.
+/// Numbers of a result in memory, too many for the JSON.
+struct ResultArray {
+  std::string name;  ///< "displacements", with '/' between the names of parts
+  std::string unit;
+  std::shared_ptr<const void> owner;                           ///< keeps the numbers
+  std::variant<const double*, const std::int32_t*> numbers{};  ///< the first of them
+  std::size_t rows = 0;
+  std::size_t columns = 1;
+  std::size_t stride = 1;  ///< numbers from one row to the next
+};
+
+/// Results as they are given to deliver, and what hand_over adds.
 struct Delivery {
   std::string status;
   Results results;
   StageTimes times;
+  std::vector<ResultArray> arrays = {};
+  std::shared_ptr<const Assembly> assembly = {};  ///< made by the verb, or null
+
+  /// The report, with the times.
+  [[nodiscard]] std::string report() const;
+  /// The results with status, report, times, version, units and labels: result.json.
+  [[nodiscard]] std::string json() const;
 };
-/// Carry out a verb whose results are not printed and not written: deliver hands those of this thread over here.
+enum class Arrays { wanted, not_wanted };
+/// Carry out a verb whose results are not printed and not written: deliver and hand_over pass those of this thread on to
+/// here.
 /// \throws Error as the verb does
-Delivery collect(const std::function<void()>& verb);
+Delivery collect(const std::function<void()>& verb, Arrays arrays = Arrays::not_wanted);
+/// Whether the caller of the verb takes arrays: only then hand_over has an effect.
+bool arrays_wanted();
+void hand_over(std::vector<ResultArray> arrays);
+void hand_over(Assembly&& assembly);
 
 /// case.toml in --out, if there is one, which reproduces the computation.
 /// \param resolved a Case or the document of another kind of case

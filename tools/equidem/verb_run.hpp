@@ -23,7 +23,7 @@ class VerbRun {
           const std::vector<std::string>& options);
 
   /// \throws Error as the verb does
-  [[nodiscard]] Delivery operator()() const { return collect(run_); }
+  [[nodiscard]] Delivery operator()(Arrays arrays = Arrays::not_wanted) const { return collect(run_, arrays); }
 
  private:
   CLI::App command_;

@@ -20,6 +20,7 @@
 #include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/given.hpp"
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
 
@@ -317,6 +318,7 @@ std::string quoted_json(const std::string& text) {
 }
 
 Assembly read_assembly(const std::filesystem::path& path, double gap_tolerance) {
+  if (const auto given = Given<Assembly>::find(path)) return *given;
   const bool is_hdf5 = is_hdf5_name(path);
   if (is_hdf5) check_readable(path);
   const std::string text = is_hdf5 ? std::string() : read_file(path);

@@ -22,7 +22,7 @@ struct EnumNames<AssemblyFormat> {
 /// "assembly.json" or "assembly.h5".
 std::string assembly_file_name(const std::string& stem, AssemblyFormat format);
 
-/// Read an assembly. As JSON: `contacts` missing: those of touching_discs, at least one. The contact point
+/// Read an assembly, or copy the Given<Assembly> of that name. As JSON: `contacts` missing: those of touching_discs, at least one. The contact point
 /// is the midpoint of the branch unless "levers": [[r_i, r_j], ...] is given (see Contact); off the line of
 /// centres "normals":
 /// [[n_x, n_y], ...] and "offsets": [[o_i, o_j], ...] give its place (see ContactArms); "springs": [[kN, kT], ...]

@@ -12,6 +12,7 @@ namespace equidem {
 /// \throws Error (bad_input) where the path leads to no regular file: nothing, a folder, a device or a pipe
 void check_readable(const std::filesystem::path& path);
 
+/// The content of a file, or of a Given<std::string> of that name.
 /// \throws Error (bad_input) as check_readable, or where the file cannot be read
 std::string read_file(const std::filesystem::path& path);
 

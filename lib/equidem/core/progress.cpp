@@ -29,6 +29,8 @@ struct Rhythm {
 };
 constexpr Rhythm on_terminal{1, 0.2}, elsewhere{3, 60};
 
+std::function<void(const std::string&)> display;
+
 }  // namespace
 
 void set_progress_shown(bool shown) {
@@ -36,11 +38,16 @@ void set_progress_shown(bool shown) {
 }
 
 Progress::Progress(std::string task)
-    : task_(std::move(task)), outermost_(existing++ == 0), terminal_(isatty(STDERR_FILENO) != 0) {}
+    : task_(std::move(task)), outermost_(existing++ == 0), terminal_(display || isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
   --existing;
-  if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
+  if (!shown_ || !terminal_) return;
+  if (display) {
+    display("");
+  } else {
+    std::fputs("\r\033[K", stderr);
+  }
 }
 
 void Progress::update(double fraction) {
@@ -51,7 +58,11 @@ void Progress::update(double fraction) {
   if (elapsed < rhythm.first_line_after || (shown_ && elapsed - last_shown_ < rhythm.line_every)) return;
   std::string line = fmt::format("{} {:.0f} %", task_, 100 * fraction);
   if (fraction > 0) line += fmt::format(", {:.0f} s left", elapsed * (1 - fraction) / fraction);
-  std::fputs((terminal_ ? "\r\033[K" + line : line + "\n").c_str(), stderr);
+  if (display) {
+    display(line);
+  } else {
+    std::fputs((terminal_ ? "\r\033[K" + line : line + "\n").c_str(), stderr);
+  }
   last_shown_ = elapsed;
   shown_ = true;
 }
@@ -59,6 +70,21 @@ void Progress::update(double fraction) {
 void catch_interrupts() {
   std::signal(SIGINT, ask_to_stop);
   std::signal(SIGTERM, ask_to_stop);
+}
+
+InterruptCatcher::InterruptCatcher() {
+  struct sigaction caught = {};
+  caught.sa_handler = [](int) { stop_asked = 1; };
+  sigaction(SIGINT, &caught, &before_);
+}
+
+InterruptCatcher::~InterruptCatcher() {
+  sigaction(SIGINT, &before_, nullptr);
+  stop_asked = 0;
+}
+
+void set_progress_display(std::function<void(const std::string&)> shown_by) {
+  display = std::move(shown_by);
 }
 
 void stop_if_interrupted() {

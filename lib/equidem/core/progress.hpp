@@ -3,6 +3,8 @@
 /// Progress on stderr, and interruption by the user.
 #pragma once
 
+#include <csignal>
+#include <functional>
 #include <string>
 
 #include "equidem/core/stopwatch.hpp"
@@ -38,5 +40,21 @@ class Progress {
 void catch_interrupts();
 /// \throws Error of kind interrupted where the user asked to stop
 void stop_if_interrupted();
+
+/// For programs that handle SIGINT themselves: while one exists, Ctrl-C asks the running computation to stop;
+/// afterwards their handler is back, and nothing is asked any more. At most one exists.
+class InterruptCatcher {
+ public:
+  InterruptCatcher();
+  ~InterruptCatcher();
+  InterruptCatcher(const InterruptCatcher&) = delete;
+  InterruptCatcher& operator=(const InterruptCatcher&) = delete;
+
+ private:
+  struct sigaction before_ = {};
+};
+
+/// A function that shows a line of progress in place of stderr, on which an empty line clears it; none: stderr.
+void set_progress_display(std::function<void(const std::string& line)> display);
 
 }  // namespace equidem

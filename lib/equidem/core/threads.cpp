@@ -6,9 +6,12 @@
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
+
+#include <pthread.h>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
@@ -110,9 +113,16 @@ class Pool {
 
 std::atomic<int> requested_threads{0};
 
+/// A process that is forked has none of the threads of its parent, and locks as they were: it gets a pool of its own.
 Pool& pool() {
-  static Pool instance;
-  return instance;
+  static std::unique_ptr<Pool> instance = [] {
+    pthread_atfork(nullptr, nullptr, [] {
+      static_cast<void>(instance.release());
+      instance = std::make_unique<Pool>();
+    });
+    return std::make_unique<Pool>();
+  }();
+  return *instance;
 }
 
 }  // namespace

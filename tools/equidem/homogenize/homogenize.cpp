@@ -15,6 +15,7 @@
 #include "equidem/homogenize/stress.hpp"
 
 #include "command.hpp"
+#include "result_arrays.hpp"
 #include "homogenize/ensemble.hpp"
 #include "homogenize/homogenize_results.hpp"
 #include "solve/solve_accuracy.hpp"
@@ -127,7 +128,7 @@ int homogenize(const HomogenizeVerb& options) {
   check_outputs(common, resolved.output);
   const auto lock = lock_out(common);
   if (options.accuracy) resolved.solver.accuracy = std::sqrt(0.1 * *options.accuracy);  // errors of moduli are squares
-  const Problem problem = problem_of(std::move(resolved));
+  Problem problem = problem_of(std::move(resolved));
   if (common.dry_run) return dry_run_homogenization(common, problem);
 
   const BoundedStiffness homogenized = homogenize(problem);
@@ -155,6 +156,10 @@ int homogenize(const HomogenizeVerb& options) {
             write_states(common, problem, result);
             write_case(common, problem.resolved);
           });
+  constexpr const char* strains[] = {"xx", "yy", "xy"};
+  for (std::size_t k = 0; arrays_wanted() && k < result.fluctuations.size(); ++k)
+    hand_over(motion_arrays(fmt::format("fluctuations/{}/", strains[k]), result.fluctuations[k]));
+  hand_over(std::move(problem.assembly));
   return 0;
 }
 

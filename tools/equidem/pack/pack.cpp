@@ -86,7 +86,7 @@ int run(const CommonOptions& common) {
   Stopwatch watch;
   const GrainPacking packing = located(resolved, "method", [&] { return pack(resolved.packing); });
   times.add("packing", watch.lap());
-  const Assembly network = network_of(packing, resolved.network);
+  Assembly network = network_of(packing, resolved.network);
   const double density = body_density(resolved, network);
   times.add("network", watch.lap());
   const PackingMeasures measures = located(resolved, "region", [&] { return measure(packing, resolved.region); });
@@ -98,6 +98,7 @@ int run(const CommonOptions& common) {
             if (common.out) write_files(common, resolved, packing, network, density);
             write_case(common, resolved.document);
           });
+  hand_over(std::move(network));
   return 0;
 }
 

@@ -108,21 +108,11 @@ void check_options(const RunVerb& options, bool collide) {
   if (common.seed && collide) bad_input("--seed", "nothing in a case of grains is random", "Leave it out");
 }
 
-std::unique_ptr<RunJob> make_job(const RunVerb& options, bool collide) {
-  const CommonOptions& common = options.common;
-  prepare(common);
-  if (collide) return std::make_unique<GrainRun>(read_grain_case(common.case_file, common.set));
-  Case resolved = read_case(common);
-  const bool continues = options.resume && resolved.run && resolved.run->duration;
-  return std::make_unique<BondedRun>(
-      std::move(resolved), continues ? std::optional(kept_step(*common.out / "run.checkpoint.h5")) : std::nullopt);
-}
-
 int run(const RunVerb& options) {
   const bool collide = describes_grains(casefile::read_document(options.common.case_file, options.common.set));
   check_options(options, collide);
   if (options.accuracy) return run_to_accuracy(options, *options.accuracy);
-  const std::unique_ptr<RunJob> job = make_job(options, collide);
+  const std::unique_ptr<RunJob> job = make_run_job(options.common, options.resume);
   check_outputs(options, *job);
   const auto lock = lock_out(options.common);
   if (options.common.dry_run) {
@@ -136,6 +126,16 @@ int run(const RunVerb& options) {
 }
 
 }  // namespace
+
+std::unique_ptr<RunJob> make_run_job(const CommonOptions& options, bool resume) {
+  prepare(options);
+  if (describes_grains(casefile::read_document(options.case_file, options.set)))
+    return std::make_unique<GrainRun>(read_grain_case(options.case_file, options.set));
+  Case resolved = read_case(options);
+  const bool continues = resume && resolved.run && resolved.run->duration;
+  return std::make_unique<BondedRun>(
+      std::move(resolved), continues ? std::optional(kept_step(*options.out / "run.checkpoint.h5")) : std::nullopt);
+}
 
 Run declare_run(CLI::App& command) {
   const auto options = std::make_shared<RunVerb>();

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/output/results.hpp"
 #include "equidem/output/run/run_loop.hpp"
+
+#include "command.hpp"
 
 namespace equidem {
 
@@ -51,5 +54,10 @@ class RunJob {
   /// Relax the scene to rest, the state that write_files() then writes.
   virtual Results relax(StageTimes& /*times*/) { return {}; }
 };
+
+/// The run of a case of bonded discs or of bodies that collide.
+/// \param resume whether an automatic time step is that of the checkpoint in --out
+/// \throws Error (bad_input) as the readers of the cases and the constructors of the runs
+std::unique_ptr<RunJob> make_run_job(const CommonOptions& options, bool resume);
 
 }  // namespace equidem

@@ -12,6 +12,7 @@
 
 #include "command.hpp"
 #include "problem.hpp"
+#include "result_arrays.hpp"
 #include "solve/solve_accuracy.hpp"
 #include "solve/solve_results.hpp"
 #include "state_files.hpp"
@@ -100,6 +101,9 @@ bool solve_once(const CommonOptions& options, const Problem& problem, const std:
       write_outputs(options, problem, problem.load_cases[k].loads, results[k]);
     write_case(options, problem.resolved);
   });
+  if (!arrays_wanted()) return true;
+  for (SolvedCase& result : results)
+    hand_over(state_arrays(result.name.empty() ? "" : result.name + "/", std::move(result.equilibrium)));
   return true;
 }
 
@@ -110,16 +114,20 @@ int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
   const auto lock = lock_out(options);
   if (accuracy && BlockSearch::serves(resolved)) {
     BlockSearch search(options, resolved, *accuracy);
-    while (!solve_once(options, build_problem(search.propose()), accuracy, &search)) {
+    for (bool done = false; !done;) {
+      Problem problem = build_problem(search.propose());
+      done = solve_once(options, problem, accuracy, &search);
+      if (done) hand_over(std::move(problem.assembly));
     }
     return 0;
   }
-  const Problem problem = build_problem(std::move(resolved));
+  Problem problem = build_problem(std::move(resolved));
   if (options.dry_run) {
     deliver(options, "dry_run", dry_run_results(problem, 1), problem.times);
     return 0;
   }
   solve_once(options, problem, accuracy, nullptr);
+  hand_over(std::move(problem.assembly));
   return 0;
 }
 

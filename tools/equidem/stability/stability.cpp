@@ -12,6 +12,7 @@
 #include "equidem/core/text.hpp"
 
 #include "command.hpp"
+#include "result_arrays.hpp"
 #include "stability/stability_results.hpp"
 #include "verbs.hpp"
 
@@ -70,7 +71,7 @@ int stability(const CommonOptions& options) {
   expect_survey(plan);
   const auto lock = lock_out(options);
   // Nothing needs to act: an assembly without supports is judged as a free body or a periodic cell.
-  const Problem problem = acts(resolved) ? build_problem(std::move(resolved)) : problem_of(std::move(resolved));
+  Problem problem = acts(resolved) ? build_problem(std::move(resolved)) : problem_of(std::move(resolved));
   if (options.dry_run) return dry_run_survey(options, problem);
   const Stability result =
       analyze_stability(problem.assembly, problem.springs.springs, problem.supports, options_of(problem));
@@ -80,6 +81,8 @@ int stability(const CommonOptions& options) {
     if (options.out) write_survey(*options.out, problem.resolved.title, result, options.overwrite);
     write_case(options, problem.resolved);
   });
+  if (arrays_wanted() && result.survey) hand_over(dispersion_arrays(*result.survey));
+  hand_over(std::move(problem.assembly));
   return 0;
 }
 

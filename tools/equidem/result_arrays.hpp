@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The states of assemblies as arrays, for callers who keep results in memory (hand_over).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "equidem/contact/frame.hpp"
+#include "equidem/statics/equilibrium.hpp"
+#include "equidem/waves/wave_survey.hpp"
+
+#include "command.hpp"
+
+namespace equidem {
+
+/// Arrays in the memory of `numbers`, which they own.
+/// \param columns numbers in a row
+template <class Row>
+ResultArray array_of(std::string name, std::string unit, std::vector<Row> numbers, std::size_t columns) {
+  const auto owner = std::make_shared<const std::vector<Row>>(std::move(numbers));
+  static_assert(sizeof(Row) % sizeof(double) == 0);
+  return {std::move(name),  std::move(unit), owner, reinterpret_cast<const double*>(owner->data()),
+          owner->size(), columns,         sizeof(Row) / sizeof(double)};
+}
+
+/// PREFIXdisplacements (n, 2) in m and PREFIXrotations (n) in rad.
+std::vector<ResultArray> motion_arrays(const std::string& prefix, std::vector<DiscMotion> motions);
+/// The motions of all discs, PREFIXcontact_forces (contacts, 2), normal and tangential, in N/m, and of the discs that
+/// supports hold PREFIXsupported_discs, PREFIXreactions (2 columns) in N/m and PREFIXreaction_moments in N.
+std::vector<ResultArray> state_arrays(const std::string& prefix, Equilibrium equilibrium);
+/// Along the path through the Brillouin zone: dispersion/along in rad/m, dispersion/wave_vectors in 1/m and
+/// dispersion/squared_frequencies, ascending, in 1/s².
+std::vector<ResultArray> dispersion_arrays(const WaveSurvey& survey);
+
+}  // namespace equidem
