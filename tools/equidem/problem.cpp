@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "equidem/assembly/lattices.hpp"
 #include "equidem/assembly/touching.hpp"
 #include "equidem/assembly/voids.hpp"
 #include "equidem/core/error.hpp"
@@ -156,6 +157,7 @@ Problem problem_of(Case resolved, Purpose purpose) {
   StageTimes times;
   Stopwatch watch;
   Assembly assembly = assembly_of(resolved);
+  if (resolved.assembly.kind == AssemblyKind::file) resolved.assembly.arrangement = find_lattice(assembly.kind);
   times.add("assembly", watch.lap());
   BuiltSprings springs = build_springs(resolved, assembly);
   times.add("springs", watch.lap());

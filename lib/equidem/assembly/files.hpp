@@ -36,6 +36,8 @@ std::string assembly_file_name(const std::string& stem, AssemblyFormat format);
 ///         wrong type, absent disc, non-finite number, ...; a gap tolerance above 0 beside contacts
 Assembly read_assembly(const std::filesystem::path& path, double gap_tolerance = 0);
 
+/// The text of an assembly file, with all that read_assembly reads, to the same bits.
+std::string json_of(const Assembly& assembly);
 /// Write all that read_assembly reads, to the same bits. A file is written whole or not at all.
 void write_assembly(const std::filesystem::path& path, const Assembly& assembly, bool overwrite);
 

@@ -85,12 +85,6 @@ struct Scene : AnyScene {
 std::vector<BodyContact> bonded_contacts(const Scene& scene, LoopKind::Motion motion,
                                          const std::vector<DiscMotion>& motions, double time);
 
-/// Resultant force and moment on a disc.
-struct DiscForce {
-  Vec2 force;         ///< N/m
-  double moment = 0;  ///< N
-};
-
 class Simulation final : public AnySimulation {
  public:
   /// Determines the effects, chooses the loop, lays out memory.

@@ -2,6 +2,7 @@
 #include "equidem/statics/equilibrium.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -61,6 +62,23 @@ std::vector<double> assemble_loads(const Assembly& assembly, const DegreesOfFree
   return f;
 }
 
+std::vector<double> assemble_loads(const DegreesOfFreedom& unknowns, std::span<const DiscForce> loads) {
+  const auto b = static_cast<std::size_t>(unknowns.per_disc);
+  std::vector<double> f(loads.size() * b, 0.0);
+  for (std::size_t d = 0; d < loads.size(); ++d) {
+    const auto& [force, moment] = loads[d];
+    if (!std::isfinite(force.x) || !std::isfinite(force.y) || !std::isfinite(moment))
+      bad_input(fmt::format("the load on disc {} is not finite", d), "no motion could balance it", "Give a number");
+    if (moment != 0 && b != 3)
+      bad_input(fmt::format("a moment acts on disc {}", d), "rotations are no unknowns of this scene",
+                "Remove the moment, or let rotation = \"free\" with tangential springs");
+    f[d * b] = force.x;
+    f[d * b + 1] = force.y;
+    if (b == 3) f[d * b + 2] = moment / unknowns.rotation_scale;
+  }
+  return f;
+}
+
 /// A moment on a disc that no contact keeps from turning, and no support either, could not be balanced.
 void check_inert_loads(const Assembly& assembly, const DegreesOfFreedom& unknowns, std::span<const double> f) {
   if (unknowns.per_disc != 3 || unknowns.rotations_without_stiffness == 0) return;
@@ -92,7 +110,8 @@ struct EquilibriumSolver::Implementation {
         solver(build(supports)) {}
 
   StiffnessSolver build(std::span<const Support> supports);
-  [[nodiscard]] Equilibrium solve(const LoadCase& loads) const;
+  /// \param force per component, N/m
+  [[nodiscard]] Equilibrium solve(std::vector<double> force) const;
   void check_mechanisms(const RightHandSide& given, Equilibrium& result) const;
   void bound_error(const RightHandSide& given, const Solution& solution, Equilibrium& result) const;
   void describe_state(std::span<const double> f, const PreciseMotion& motion, Equilibrium& result) const;
@@ -111,13 +130,13 @@ StiffnessSolver EquilibriumSolver::Implementation::build(std::span<const Support
   return {assembly, springs, std::move(graph), std::move(unknowns), options.solver, options.mechanisms, times};
 }
 
-Equilibrium EquilibriumSolver::Implementation::solve(const LoadCase& loads) const {
+Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) const {
   Equilibrium result;
   result.times = times;
   const DegreesOfFreedom& unknowns = solver.unknowns();
   result.unknowns = unknowns.unknowns;
   RightHandSide given;
-  given.force = assemble_loads(assembly, unknowns, loads);
+  given.force = std::move(force);
   check_inert_loads(assembly, unknowns, given.force);
   check_mechanisms(given, result);
   const auto moves = [](double u) { return u != 0; };
@@ -229,7 +248,12 @@ EquilibriumSolver::EquilibriumSolver(EquilibriumSolver&&) noexcept = default;
 EquilibriumSolver& EquilibriumSolver::operator=(EquilibriumSolver&&) noexcept = default;
 
 Equilibrium EquilibriumSolver::solve(const LoadCase& loads) const {
-  return implementation_->solve(loads);
+  const Implementation& self = *implementation_;
+  return self.solve(assemble_loads(self.assembly, self.solver.unknowns(), loads));
+}
+Equilibrium EquilibriumSolver::solve(std::span<const DiscForce> loads) const {
+  assert(loads.size() == implementation_->assembly.size());
+  return implementation_->solve(assemble_loads(implementation_->solver.unknowns(), loads));
 }
 const Effects& EquilibriumSolver::effects() const {
   return implementation_->effects;

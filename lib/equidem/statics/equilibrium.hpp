@@ -94,6 +94,8 @@ class EquilibriumSolver {
   /// \throws Error (bad_input) where a load names no group or an empty one, or gives a moment to a disc that nothing
   ///         keeps from turning; Error (computation_failed) where the residual shows that K is too near to singular
   [[nodiscard]] Equilibrium solve(const LoadCase& loads) const;
+  /// \param loads one for each disc
+  [[nodiscard]] Equilibrium solve(std::span<const DiscForce> loads) const;
   [[nodiscard]] const Effects& effects() const;
   [[nodiscard]] std::int64_t unknowns() const;
 

@@ -42,6 +42,12 @@ struct Load {
   double moment = 0;  ///< N (N m per metre of depth); on each disc, or in equal shares
 };
 
+/// Force and moment on a disc.
+struct DiscForce {
+  Vec2 force;         ///< N/m
+  double moment = 0;  ///< N
+};
+
 /// Loads that act together.
 using LoadCase = std::vector<Load>;
 

@@ -28,7 +28,9 @@ std::string pair_of(double first, double second) {
   return fmt::format("[{}, {}]", shortest(first), shortest(second));
 }
 
-std::string text_of(const Assembly& assembly) {
+}  // namespace
+
+std::string json_of(const Assembly& assembly) {
   std::string text = fmt::format("{{\"schema\": \"{}\"", assembly_schema);
   text += ",\n\"title\": " + quoted_json(assembly.kind);
   text += assembly.period
@@ -79,8 +81,6 @@ std::string text_of(const Assembly& assembly) {
   return text + "}\n";
 }
 
-}  // namespace
-
 std::string assembly_file_name(const std::string& stem, AssemblyFormat format) {
   switch (format) {
     case AssemblyFormat::json:
@@ -95,7 +95,7 @@ void write_assembly(const std::filesystem::path& path, const Assembly& assembly,
   check_writable(path, overwrite);
   check(assembly);
   if (is_hdf5_name(path)) return write_hdf5_assembly(path, assembly);
-  write_file(path, text_of(assembly), overwrite);
+  write_file(path, json_of(assembly), overwrite);
 }
 
 }  // namespace equidem

@@ -37,7 +37,7 @@ enum class AssemblyKind { lattice, delaunay, packing, file };
 /// [assembly]; the options of the other kinds keep their defaults.
 struct AssemblyCase {
   AssemblyKind kind = AssemblyKind::lattice;
-  const Lattice* arrangement = nullptr;  ///< the lattice, for the kind lattice; else null
+  const Lattice* arrangement = nullptr;  ///< the lattice, also of an assembly in memory; else null
   LatticeOptions lattice;
   DelaunayOptions delaunay;
   std::optional<ScalablePacking> packing;  ///< for the kind packing; else none

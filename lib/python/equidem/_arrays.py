@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Arguments as arrays of the type and shape that the compiled part reads."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import BadInput
+
+Floats = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int32]
+
+
+def _shown(shape: tuple[int | None, ...]) -> str:
+    return "(" + ", ".join("n" if s is None else str(s) for s in shape) + ("," if len(shape) == 1 else "") + ")"
+
+
+def _check_shape(name: str, array: npt.NDArray[Any], shapes: tuple[tuple[int | None, ...], ...]) -> None:
+    for shape in shapes:
+        if array.ndim == len(shape) and all(s is None or s == n for s, n in zip(shape, array.shape)):
+            return
+    raise BadInput(f"{name} has the shape {array.shape}", f"it must be {' or '.join(map(_shown, shapes))}",
+                   "Reshape it")
+
+
+def floats(name: str, value: npt.ArrayLike, *shapes: tuple[int | None, ...]) -> Floats:
+    """An array of finite numbers with one of the shapes, in which None stands for any number."""
+    try:
+        array = np.asarray(value, dtype=np.float64, order="C")
+    except (TypeError, ValueError) as error:
+        raise BadInput(f"{name} is no array of numbers", str(error), "Give numbers") from None
+    _check_shape(name, array, shapes)
+    if not np.isfinite(array).all():
+        first = tuple(int(k) for k in np.argwhere(~np.isfinite(array))[0])
+        raise BadInput(f"{name} holds {array[first]} at {list(first)}", "every number must be finite", "Correct it")
+    return array
+
+
+def integers(name: str, value: npt.ArrayLike, *shapes: tuple[int | None, ...]) -> Integers:
+    """An array of whole numbers with one of the shapes."""
+    array = np.asarray(value)
+    if array.size == 0:
+        array = array.astype(np.int32)
+    if array.dtype.kind not in "iu":
+        raise BadInput(f"{name} holds no whole numbers", f"its type is {array.dtype}", "Give the numbers of discs")
+    _check_shape(name, array, shapes)
+    if array.size > 0 and (array.max() > np.iinfo(np.int32).max or array.min() < np.iinfo(np.int32).min):
+        raise BadInput(f"{name} holds a number beyond 32 bits", "discs are numbered by 32 bits", "Correct it")
+    return np.ascontiguousarray(array, dtype=np.int32)

@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Assemblies: discs and the contacts that join them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import Any
+
+import numpy.typing as npt
+
+from . import _core, _toml
+from ._arrays import Floats, Integers, floats, integers
+from .errors import BadInput
+
+
+class Assembly:
+    """Discs, or other bodies, and the contacts that join them; SI units, per metre of depth. It does not change.
+
+    Parameters
+    ----------
+    centres : array (n, 2)
+        m.
+    radii : array (n,) or number
+        m.
+    contacts : array (m, 2) or (m, 4), optional
+        The two discs i and j of each contact; periodic cells: i, j and by how many periods in x and y the image of j is
+        shifted that i touches. Left out: the pairs whose gap is at most `gap_tolerance` times the sum of their radii.
+    levers : array (m, 2), optional
+        m, distances of the contact point from the centres of i and j; left out: half the distance of the centres.
+    cell : (Lx, Ly), optional
+        m, the period of a periodic cell.
+    gap_tolerance : float
+        From 0 to 1; 0: discs that overlap or touch.
+
+    Raises
+    ------
+    BadInput
+        Wrong shapes, numbers that are not finite, radii that are not positive, discs that do not exist, no contacts.
+
+    Notes
+    -----
+    Arrays are read-only views of the memory of the assembly, which lives as long as one of them.
+    """
+
+    _native: _core.Assembly
+
+    def __init__(self, centres: npt.ArrayLike, radii: npt.ArrayLike, contacts: npt.ArrayLike | None = None, *,
+                 levers: npt.ArrayLike | None = None, cell: tuple[float, float] | None = None,
+                 gap_tolerance: float = 0.0) -> None:
+        places = floats("centres", centres, (None, 2))
+        n = len(places)
+        sizes = floats("radii", radii, (), (n,))
+        sizes = sizes if sizes.ndim else floats("radii", [float(sizes)] * n, (n,))
+        pairs = None if contacts is None else integers("contacts", contacts, (None, 2), (None, 4))
+        arms = None
+        if levers is not None:
+            if pairs is None:
+                raise BadInput("levers without contacts", "each belongs to a contact", "Give the contacts", "levers")
+            arms = floats("levers", levers, (len(pairs), 2))
+        if pairs is not None and gap_tolerance:
+            raise BadInput("contacts and gap_tolerance are both given", "the tolerance finds contacts",
+                           "Leave one of them out", "gap_tolerance")
+        period = None
+        if cell is not None:
+            sides = floats("cell", cell, (2,))
+            period = (float(sides[0]), float(sides[1]))
+        self._native = _core.from_arrays(places, sizes, pairs, arms, period, float(gap_tolerance))
+
+    @staticmethod
+    def _of(native: _core.Assembly) -> Assembly:
+        made = Assembly.__new__(Assembly)
+        made._native = native
+        return made
+
+    def __len__(self) -> int:
+        """Number of discs."""
+        return len(self._native)
+
+    def __repr__(self) -> str:
+        cell = f", cell {self.cell[0]:.4g} x {self.cell[1]:.4g} m" if self.cell else ""
+        return f"<Assembly of {len(self)} discs, {len(self.contacts)} contacts{cell}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Assembly._of, (self._native,)
+
+    @property
+    def kind(self) -> str:
+        """"hexagonal", "square", "delaunay", "arrays", "file", ..."""
+        return self._native.kind
+
+    @property
+    def centres(self) -> Floats:
+        """(n, 2), m."""
+        return self._native.centres
+
+    @property
+    def radii(self) -> Floats:
+        """(n,), m."""
+        return self._native.radii
+
+    @property
+    def contacts(self) -> Integers:
+        """(m, 2): the discs i and j."""
+        return self._native.contacts
+
+    @property
+    def shifts(self) -> Integers:
+        """(m, 2): by how many periods the image of j is shifted that i touches."""
+        return self._native.shifts
+
+    @property
+    def levers(self) -> Floats:
+        """(m, 2), m: distances of the contact point from the centres of i and j."""
+        return self._native.levers
+
+    @property
+    def normals(self) -> Floats:
+        """(m, 2): unit normals from i to j; computed at each call."""
+        return self._native.normals
+
+    @property
+    def cell_areas(self) -> Floats:
+        """(n,), m²: the Voronoi (power) cell of each disc."""
+        return self._native.cell_areas
+
+    @property
+    def facet_lengths(self) -> Floats:
+        """(m,), m: the edge that the cells of both discs share; empty where unknown."""
+        return self._native.facet_lengths
+
+    @property
+    def cell(self) -> tuple[float, float] | None:
+        """(Lx, Ly), m, of a periodic cell; None: free boundary."""
+        return self._native.period
+
+    @property
+    def area(self) -> float:
+        """m²: of the periodic cell, else the sum of the cells of the discs."""
+        return self._native.area
+
+    @property
+    def solid_fraction(self) -> float:
+        """Share of the area that the bodies cover."""
+        return self._native.solid_fraction
+
+    @property
+    def coordination_number(self) -> float:
+        """Mean number of contacts of a disc."""
+        return self._native.coordination_number
+
+    @property
+    def groups(self) -> Mapping[str, Integers]:
+        """The discs of each group: left, right, bottom, top, ... of a free assembly, and those of its file."""
+        return self._native.groups
+
+    def write(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Write an assembly file: HDF5 where the name ends in .h5 or .hdf5, else JSON. Reading it back gives the same
+        bits."""
+        _core.write_assembly(os.fspath(path), self._native, overwrite)
+
+    def plot(self, ax: Any = None, **options: Any) -> Any:
+        """Draw the discs and their contacts with matplotlib; see `equidem.plot.discs`."""
+        from . import plot
+
+        return plot.discs(self, ax, **options)
+
+
+def read(path: str | os.PathLike[str], *, gap_tolerance: float = 0.0) -> Assembly:
+    """Read an assembly file, JSON or HDF5.
+
+    Parameters
+    ----------
+    gap_tolerance : float
+        For a file without contacts: pairs whose gap is at most this share of the sum of their radii touch.
+    """
+    return Assembly._of(_core.read_assembly(os.fspath(path), float(gap_tolerance)))
+
+
+def assembly(**keys: Any) -> Assembly:
+    """The assembly of a table ``[assembly]`` of the case file: ``equidem help case`` lists its keys.
+
+    Examples
+    --------
+    >>> import equidem as eq
+    >>> len(eq.assembly(kind="square", columns=4, rows=3))
+    12
+    """
+    # the reader of cases asks for springs, which the assembly does not depend on
+    tables = {"assembly": keys, "springs": {"kN": 1.0, "kT": 1.0}}
+    return Assembly._of(_core.build_assembly(_toml.document(tables)))
+
+
+def hexagonal(**keys: Any) -> Assembly:
+    """A block of the hexagonal lattice (Abe 1996, Figs. 5 and 6).
+
+    Parameters
+    ----------
+    columns, rows : int
+        Discs in the first row, and number of rows.
+    radius : float
+        m.
+    periodic : bool
+        A periodic cell; rows are then even.
+    """
+    return assembly(kind="hexagonal", **keys)
+
+
+def square(**keys: Any) -> Assembly:
+    """A block of the square lattice, with the parameters of `hexagonal`."""
+    return assembly(kind="square", **keys)
+
+
+def delaunay(**keys: Any) -> Assembly:
+    """Random points and their Delaunay (or, for different radii, regular) triangulation, whose edges are the contacts.
+
+    Parameters
+    ----------
+    discs : int
+        Wanted number; len() is the number reached.
+    seed : int
+    points : str
+        "poisson_disc", "perturbed_hexagonal" or "random".
+    disorder : float
+        Of "perturbed_hexagonal", from 0 to below 0.5.
+    radius : float, or radii : {"smallest": ..., "largest": ...}
+        m.
+    aspect : float
+        Width over height; or box : (width, height) in m instead of discs.
+    periodic : bool
+    """
+    return assembly(kind="delaunay", **keys)

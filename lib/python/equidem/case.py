@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cases: everything that the command line can do."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from . import _core, _toml
+from ._arrays import integers
+from .assembly import Assembly
+from .errors import BadInput
+from .result import Result
+from .simulation import Simulation
+from .springs import springs_from
+
+
+class Case:
+    """A case file, or its tables as dictionaries. Its verbs are those of the program, with the same defaults.
+
+    Parameters
+    ----------
+    file : path, optional
+        A case file (TOML). Its tables may be changed by `set`.
+    assembly : Assembly, optional
+        In place of a table `assembly`; only without a file.
+    springs : Springs, (kN, kT) or dict, optional
+    supports : sequence of dict
+        ``{"group": "left", "ux": 0.0, "uy": 0.0, "rotation": 0.0}``, in m and rad; what is left out stays free. A group is
+        a name, or an array of disc numbers.
+    loads : sequence of dict
+        ``{"group": "right", "force": (1e6, 0), "moment": 0, "kind": "traction"}``; kinds "per_disc" (N/m), "total" (N/m)
+        and "traction" (Pa).
+    tables
+        Further tables by their names in the case file: ``effects={"rotation": "restrained"}``.
+
+    Examples
+    --------
+    >>> import equidem as eq
+    >>> case = eq.Case(assembly={"kind": "hexagonal", "columns": 21, "rows": 21, "radius": 5e-3},
+    ...                springs=(1e9, 0.5e9), test={"kind": "uniaxial_tension", "stress": 1e6})
+    >>> round(case.set("springs.kT", 0.0).solve().poisson_ratio, 6)
+    0.25
+    """
+
+    def __init__(self, file: str | os.PathLike[str] | None = None, *, assembly: Assembly | Mapping[str, Any] | None = None,
+                 springs: Any = None, supports: Iterable[Mapping[str, Any]] = (),
+                 loads: Iterable[Mapping[str, Any]] = (), **tables: Any) -> None:
+        self._file = "" if file is None else os.fspath(file)
+        self._assembly: Assembly | None = None
+        self._tables: dict[str, Any] = {}
+        self._overrides: list[str] = []
+        if self._file:
+            if assembly is not None or springs is not None or supports or loads or tables:
+                raise BadInput("a case file and tables beside it", "the file holds all of them",
+                               "Change keys of the file by set()")
+            return
+        self._tables = {name: table for name, table in tables.items() if table is not None}
+        self._set_assembly(assembly, springs)
+        self._groups: list[dict[str, Any]] = list(self._tables.pop("group", []))
+        for name, entries in (("support", supports), ("load", loads)):
+            listed = [*self._tables.pop(name, []), *(self._with_group(name, entry) for entry in entries)]
+            if listed:
+                self._tables[name] = listed
+        if self._groups:
+            self._tables["group"] = self._groups
+
+    def _set_assembly(self, assembly: Assembly | Mapping[str, Any] | None, springs: Any) -> None:
+        if isinstance(assembly, Assembly):
+            table: dict[str, Any] = {"kind": "file", "path": "assembly"}
+            density = self._tables.pop("density", None)
+            if density is not None:
+                table["density"] = density
+            self._tables["assembly"] = table
+            self._assembly = assembly
+            given = springs_from(springs)
+            if given is not None and not given.uniform:
+                self._assembly = Assembly._of(assembly._native.with_springs(given.at_contacts(assembly)))
+                springs = None
+        elif assembly is not None:
+            self._tables["assembly"] = dict(assembly)
+        if isinstance(springs, (str, os.PathLike)):
+            self._tables["springs"] = springs
+        elif springs is not None:
+            chosen = springs_from(springs)
+            assert chosen is not None
+            self._tables["springs"] = {"kN": chosen.kN, "kT": chosen.kT, "weighting": chosen.weighting}
+
+    def _with_group(self, table: str, entry: Mapping[str, Any]) -> dict[str, Any]:
+        """The entry with the name of its group, made where it lists discs."""
+        if not isinstance(entry, Mapping):
+            raise BadInput(f"a {table} of type {type(entry).__name__}", "it is a table of keys",
+                           'Give a dictionary such as {"group": "left", ...}', table)
+        named = dict(entry)
+        group = named.get("group")
+        if group is None or isinstance(group, str):
+            return named
+        discs = np.unique(integers(f"{table}.group", group, (None,))).tolist()
+        for known in self._groups:
+            if known.get("discs") == discs:
+                named["group"] = known["name"]
+                return named
+        named["group"] = f"discs {len(self._groups) + 1}"
+        self._groups.append({"name": named["group"], "discs": discs})
+        return named
+
+    def set(self, key: str, value: Any) -> Case:
+        """Set a key, such as "springs.kT" or "load.0.moment"; None takes it out. Returns the case."""
+        self._overrides.append(f"{key}=" + ("none" if value is None else _toml.value(value, key)))
+        return self
+
+    def copy(self) -> Case:
+        """A case of its own with the same file, tables and changes."""
+        copied = Case.__new__(Case)
+        copied.__dict__.update(self.__dict__)
+        copied._overrides = list(self._overrides)
+        return copied
+
+    def __repr__(self) -> str:
+        what = repr(self._file) if self._file else ", ".join(self._tables)
+        return f"<Case {what}{', ' + ', '.join(self._overrides) if self._overrides else ''}>"
+
+    def _inputs(self) -> tuple[str, str, _core.Assembly | None, list[str]]:
+        native = self._assembly._native if self._assembly is not None else None
+        return _toml.document(self._tables), self._file, native, self._overrides
+
+    def run_verb(self, verb: str, **options: Any) -> Result:
+        """Carry out a verb of the program.
+
+        Parameters
+        ----------
+        options
+            Of the command line, with "_" for "-": ``accuracy=1e-3``, ``dry_run=True``, ``out="folder"``,
+            ``overwrite=True``, ``require_stable=True``, ...
+        """
+        words: list[str] = []
+        for name, value in options.items():
+            option = "--" + name.replace("_", "-")
+            if value is True:
+                words.append(option)
+            elif value is not None and value is not False:
+                words += [option, os.fspath(value) if isinstance(value, (str, os.PathLike)) else str(value)]
+        text, file, native, overrides = self._inputs()
+        if native is not None and options.get("out") is not None:
+            return self._with_file(os.fspath(options["out"])).run_verb(verb, **options)
+        values, arrays, made = _core.run_verb(verb, text, file, native, overrides, words)
+        own = self._assembly
+        if made is None or (own is not None and len(own) == len(made)):
+            return Result(json.loads(values), arrays, own)
+        return Result(json.loads(values), arrays, Assembly._of(made))
+
+    def _with_file(self, folder: str) -> Case:
+        """The case with its assembly in a file of the folder, so that the case file written there can be run again."""
+        assert self._assembly is not None
+        path = os.path.join(folder, "given_assembly.h5")
+        self._assembly.write(path, overwrite=True)
+        copied = self.copy()
+        copied._assembly = None
+        copied._tables = {**self._tables, "assembly": {**self._tables["assembly"], "path": os.path.abspath(path)}}
+        return copied
+
+    def solve(self, **options: Any) -> Result:
+        """Equilibrium under supports and loads, or Abe's tension test (table `test`).
+
+        Arrays: displacements (n, 2) in m, rotations (n,) in rad, contact_forces (contacts, 2), normal (tension positive) and
+        tangential, in N/m, supported_discs, reactions in N/m and reaction_moments in N; of several load cases each under
+        its name.
+        """
+        return self.run_verb("solve", **options)
+
+    def homogenize(self, **options: Any) -> Result:
+        """Effective stiffness and moduli, with bounds; of many random cells with the table `ensemble`.
+
+        Arrays: fluctuations.xx.displacements, ... for the unit mean strains xx, yy and xy.
+        """
+        return self.run_verb("homogenize", **options)
+
+    def calibrate(self, **options: Any) -> Result:
+        """Springs that give the assembly the wanted moduli (table `material`)."""
+        return self.run_verb("calibrate", **options)
+
+    def stability(self, **options: Any) -> Result:
+        """Mechanisms, waves, the critical kT/kN, the highest frequency and time steps.
+
+        Arrays: dispersion.along, dispersion.wave_vectors and dispersion.squared_frequencies.
+        """
+        return self.run_verb("stability", **options)
+
+    def pack(self, **options: Any) -> Result:
+        """Bodies in a box, at random or at rest (table `packing`); `result.assembly` is the packing."""
+        return self.run_verb("pack", **options)
+
+    def run(self, **options: Any) -> Result:
+        """The dynamics of the table `run`, to its end; `simulation` steps it."""
+        return self.run_verb("run", **options)
+
+    def sweep(self, verb: str, values: Mapping[str, Iterable[Any]], **options: Any) -> Any:
+        """A verb for all combinations of values of keys; see `equidem.sweep`."""
+        from .sweep import sweep
+
+        return sweep(self, values, verb=verb, **options)
+
+    def simulation(self) -> Simulation:
+        """The dynamics of the table `run`, ready to be stepped."""
+        return Simulation(_core.Steps(*self._inputs()))

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Exceptions. Each is a sentence: the problem, why it is one, and what to do."""
+
+from __future__ import annotations
+
+
+class _Sentence:
+    """The parts of the sentence.
+
+    Attributes
+    ----------
+    problem, why, remedy, where : str
+        `where` is "file:line: key" or the key, or empty.
+    """
+
+    def __init__(self, problem: str, why: str = "", remedy: str = "", where: str = "") -> None:
+        where = _place(where)
+        self.problem, self.why, self.remedy, self.where = problem, why, remedy, where
+        text = (f"{where}: " if where else "") + problem + (f" ({why})" if why else "") + "."
+        stop = "" if remedy.endswith((".", "?", "!")) else "."
+        super().__init__(text + (f" {remedy}{stop}" if remedy else ""))
+
+    def __reduce__(self) -> tuple[type, tuple[str, str, str, str]]:
+        return type(self), (self.problem, self.why, self.remedy, self.where)
+
+
+def _place(where: str) -> str:
+    """Without the names of cases and assemblies in memory: "case#3:2: springs.kT" is "springs.kT"."""
+    parts = [p for p in where.split(": ") if not p.startswith(("case#", "assembly#"))]
+    return ": ".join(parts)
+
+
+class EquidemError(Exception):
+    """Base of BadInput and ComputationFailed."""
+
+
+class BadInput(_Sentence, EquidemError, ValueError):
+    """The input cannot be used as it is. A ValueError."""
+
+
+class ComputationFailed(_Sentence, EquidemError, RuntimeError):
+    """The input was accepted, but no trustworthy answer exists or was reached. A RuntimeError."""
+
+
+class Interrupted(_Sentence, KeyboardInterrupt):
+    """The user pressed Ctrl-C. A KeyboardInterrupt."""

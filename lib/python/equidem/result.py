@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Results: the numbers of result.json as attributes, and the arrays that are too large for it."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .assembly import Assembly
+
+
+class Result(Mapping[str, Any]):
+    """The result of a verb.
+
+    Its numbers have the names of result.json (`equidem help result` lists them) and are attributes and keys alike:
+    ``result.poisson_ratio``, ``result["poisson_ratio"]``. Nested objects are results too:
+    ``result.plane_strain.young_modulus``. Arrays, such as ``result.displacements``, are read-only views.
+
+    Attributes
+    ----------
+    units, labels : dict
+        Unit and meaning of each number and array by its name, nested names joined by ".".
+    report : str
+        The text that the command line prints.
+    assembly : Assembly or None
+        What was computed on, without discs that carry no load; of `pack`: what was made.
+    """
+
+    def __init__(self, values: Mapping[str, Any], arrays: Mapping[str, tuple[Any, str]] = {},
+                 assembly: Assembly | None = None) -> None:
+        own = dict(values)
+        self.units: dict[str, str] = own.pop("units", {})
+        self.labels: dict[str, str] = own.pop("labels", {})
+        self.report: str = own.pop("report", "")
+        self.assembly = assembly
+        self._plain: dict[str, Any] = own
+        self._arrays: dict[str, Any] = {}
+        nested: dict[str, dict[str, tuple[Any, str]]] = {}
+        for name, (array, unit) in arrays.items():
+            first, _, rest = name.partition("/")
+            if rest:
+                nested.setdefault(first, {})[rest] = (array, unit)
+            else:
+                self._arrays[first] = array
+                self.units[first] = unit
+        self._values: dict[str, Any] = {name: _wrapped(value) for name, value in own.items()}
+        self._values.update(self._arrays)
+        for name, parts in nested.items():
+            inner = own.get(name, {})
+            self._arrays[name] = self._values[name] = Result(inner if isinstance(inner, Mapping) else {}, parts)
+
+    def __getitem__(self, name: str) -> Any:
+        return self._values[name]
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        try:
+            return self._values[name]
+        except KeyError:
+            raise AttributeError(f"the result has no '{name}'. It has {', '.join(self._values)}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._values]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The numbers as plain dictionaries and lists, as in result.json; arrays are left out."""
+        return dict(self._plain)
+
+    def __repr__(self) -> str:
+        if self.report:
+            return self.report.rstrip("\n")
+        return "Result(" + ", ".join(f"{k}={_short(v)}" for k, v in self._values.items()) + ")"
+
+    def _repr_html_(self) -> str:
+        if self.report:
+            return f"<pre>{html.escape(self.report)}</pre>"
+        rows = "".join(f"<tr><td>{html.escape(k)}</td><td>{html.escape(_short(v))}</td>"
+                       f"<td>{html.escape(self.units.get(k, ''))}</td></tr>" for k, v in self._values.items())
+        return f"<table>{rows}</table>"
+
+    def plot(self, ax: Axes | None = None, **options: Any) -> Axes:
+        """Draw the result with matplotlib: the deformed discs of a solution, the branches of a dispersion, or the discs
+        of a packing.
+
+        Parameters
+        ----------
+        ax : matplotlib axes, optional
+        options
+            Of `equidem.plot.discs`.
+        """
+        from . import plot
+
+        return plot.of(self, ax, **options)
+
+
+def _wrapped(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return Result(value)
+    if isinstance(value, list) and value and isinstance(value[0], Mapping):
+        return [Result(item) for item in value]
+    return value
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, Result):
+        return "..."
+    if hasattr(value, "shape"):
+        return f"array{value.shape}"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

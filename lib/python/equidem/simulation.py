@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Motion in time, step by step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+from . import _core
+from ._arrays import Floats
+from .assembly import Assembly
+from .errors import BadInput
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """The state at one time.
+
+    Attributes
+    ----------
+    step : int
+    time : float
+        s.
+    positions, velocities : array (n, 2)
+        m, m/s.
+    angles, spins : array (n,)
+        rad, rad/s.
+    """
+
+    step: int
+    time: float
+    positions: Floats
+    angles: Floats
+    velocities: Floats
+    spins: Floats
+
+
+class Simulation:
+    """Bonded discs stepped in time, or bodies that collide; made by `Case.simulation` or `equidem.simulation`.
+
+    Results have the same bits for any number of threads and any division of the steps into calls.
+    """
+
+    def __init__(self, steps: _core.Steps) -> None:
+        self._steps = steps
+        bodies = steps.bodies()
+        self._assembly = None if bodies is None else Assembly._of(bodies)
+
+    def __repr__(self) -> str:
+        return f"<Simulation at step {self.step} of {self.steps}, t = {self.time:.6g} s>"
+
+    @property
+    def step(self) -> int:
+        """Steps done."""
+        return self._steps.step
+
+    @property
+    def steps(self) -> int:
+        """Steps of the duration of the case; 0 where it goes to rest."""
+        return self._steps.steps
+
+    @property
+    def time(self) -> float:
+        """s."""
+        return self._steps.time
+
+    @property
+    def time_step(self) -> float:
+        """s."""
+        return self._steps.time_step
+
+    @property
+    def assembly(self) -> Assembly | None:
+        """The bodies at the start."""
+        return self._assembly
+
+    @property
+    def displacements(self) -> Floats:
+        """(n, 2), m, of bonded discs from the start."""
+        if not self._steps.bonded:
+            raise BadInput("bodies that collide have no displacements", "they have no reference state",
+                           "Use positions")
+        return self._steps.motions()[0]
+
+    @property
+    def positions(self) -> Floats:
+        """(n, 2), m."""
+        moved = self._steps.motions()[0]
+        if not self._steps.bonded or self._assembly is None:
+            return moved
+        return self._assembly.centres + moved
+
+    @property
+    def angles(self) -> Floats:
+        """(n,), rad."""
+        return self._steps.motions()[1]
+
+    @property
+    def velocities(self) -> Floats:
+        """(n, 2), m/s."""
+        return self._steps.velocities()[0]
+
+    @property
+    def spins(self) -> Floats:
+        """(n,), rad/s."""
+        return self._steps.velocities()[1]
+
+    @property
+    def contacts(self) -> Mapping[str, Floats]:
+        """Arrays of the contacts: bodies (m, 2), where j < 0 is wall -1 - j, arms (m, 2) in m from the centre of i, forces
+        (m, 2) on i, normal_forces and tangential_forces (m,) in N/m (spheres: N). Normal forces of bonded discs are
+        positive in tension, of bodies that collide in compression."""
+        return self._steps.contacts()
+
+    @property
+    def energy(self) -> Mapping[str, float]:
+        """Terms of the energy ledger, J per metre of depth (spheres: J), and the error of its balance."""
+        return self._steps.energy()
+
+    def advance(self, steps: int) -> None:
+        """Make that many steps.
+
+        Raises
+        ------
+        ComputationFailed
+            Where the motion runs away.
+        Interrupted
+            After Ctrl-C, between two steps.
+        """
+        if steps < 0:
+            raise BadInput(f"{steps} steps", "time goes forward", "Give 0 or more", "steps")
+        self._steps.advance(int(steps))
+
+    @property
+    def frame(self) -> Frame:
+        """The present state."""
+        return Frame(self.step, self.time, self.positions, self.angles, self.velocities, self.spins)
+
+    def frames(self, every: int, steps: int | None = None) -> Iterator[Frame]:
+        """The present state, then one after each `every` steps, and the last.
+
+        Parameters
+        ----------
+        every : int
+        steps : int, optional
+            In all; left out: what is left of the duration of the case.
+        """
+        if every < 1:
+            raise BadInput(f"a frame every {every} steps", "at least one step lies between two frames",
+                           "Give 1 or more", "every")
+        left = self.steps - self.step if steps is None else int(steps)
+        yield self.frame
+        while left > 0:
+            self.advance(min(every, left))
+            left -= every
+            yield self.frame
+
+    def run(self, callback: Callable[[Simulation], object] | None = None, every: int = 100,
+            steps: int | None = None) -> Simulation:
+        """Make all steps. The callback is called after each `every` of them; where it returns False the run ends."""
+        left = self.steps - self.step if steps is None else int(steps)
+        while left > 0:
+            self.advance(min(every, left))
+            left -= every
+            if callback is not None and callback(self) is False:
+                break
+        return self

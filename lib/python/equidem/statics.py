@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Statics and homogenization of an assembly in memory."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._arrays import Floats, floats, integers
+from .assembly import Assembly
+from .case import Case
+from .errors import BadInput
+from .result import Result
+from .springs import Springs, springs_from
+
+if TYPE_CHECKING:
+    from scipy.sparse import bsr_matrix
+
+Tables = Mapping[str, Any]
+
+
+def solve(assembly: Assembly, springs: Any = None, *, supports: Iterable[Tables] = (), loads: Iterable[Tables] = (),
+          accuracy: float | None = None, **tables: Any) -> Result:
+    """The equilibrium of an assembly under supports and loads; parameters and arrays as those of `Case` and
+    `Case.solve`.
+
+    Parameters
+    ----------
+    accuracy : float, optional
+        Wanted relative error of the motions; the result says what was reached.
+
+    Raises
+    ------
+    BadInput
+        Supports that leave a motion free, a mechanism (named), groups that do not exist, ...
+    ComputationFailed
+        Where the stiffness matrix is singular to working precision.
+    """
+    return Case(assembly=assembly, springs=springs, supports=supports, loads=loads, **tables).solve(accuracy=accuracy)
+
+
+def tension_test(assembly: Assembly, springs: Any = None, *, stress: float = 1e6, gauge: str | None = None,
+                 accuracy: float | None = None, **tables: Any) -> Result:
+    """Abe's tension test (1996, section 3): a free block is pulled along x.
+
+    Parameters
+    ----------
+    stress : float
+        Pa.
+    gauge : str, optional
+        Where strains are read: "centre", "quarter" or "ends".
+    """
+    test = {"kind": "uniaxial_tension", "stress": stress, "gauge": gauge}
+    return Case(assembly=assembly, springs=springs, test=test, **tables).solve(accuracy=accuracy)
+
+
+def homogenize(cell: Assembly, springs: Any = None, *, accuracy: float | None = None, **tables: Any) -> Result:
+    """Effective stiffness (3, 3) in Pa (Voigt, engineering shear) and moduli of the continuum that an assembly stands
+    for, with bounds and the bound of the error."""
+    return Case(assembly=cell, springs=springs, **tables).homogenize(accuracy=accuracy)
+
+
+def calibrate(cell: Assembly, *, plane: str = "strain", weighting: str | None = None, **moduli: Any) -> Result:
+    """Springs that give an assembly two wanted moduli.
+
+    Parameters
+    ----------
+    plane : str
+        "strain" or "stress": to which the moduli refer.
+    moduli
+        Two keys of the table `material`, such as young_modulus (Pa) and poisson_ratio. Other keyword arguments that are
+        dictionaries are tables of the case.
+    """
+    tables = {name: value for name, value in moduli.items() if isinstance(value, Mapping)}
+    material = {name: value for name, value in moduli.items() if name not in tables}
+    if weighting is not None:
+        material["weighting"] = weighting
+    return Case(assembly=cell, material={"plane": plane, **material}, **tables).calibrate()
+
+
+def stability(assembly: Assembly, springs: Any = None, *, supports: Iterable[Tables] = (), **tables: Any) -> Result:
+    """Mechanisms, waves, the critical kT/kN, the highest frequency and time steps. `density` in kg/m³ is that of the
+    discs."""
+    return Case(assembly=assembly, springs=springs, supports=supports, **tables).stability()
+
+
+class Factor:
+    """The factorized stiffness matrix of an assembly with its supports: one factorization, any number of loads.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    springs : Springs, (kN, kT) or dict
+    supports : sequence of dict
+        As of `Case`.
+    rotation : str
+        "from_scene", "free" or "restrained".
+    method : str
+        "auto", "multifrontal", "cholmod", "umfpack" or "multigrid".
+    error_bound : bool
+        Estimate the condition of K, at the cost of two more solutions for each load.
+    """
+
+    def __init__(self, assembly: Assembly, springs: Any, supports: Iterable[Tables] = (), *,
+                 rotation: str = "from_scene", method: str = "auto", error_bound: bool = False) -> None:
+        self.assembly = assembly
+        chosen = _springs_of(assembly, springs)
+        held: list[_core.Support] = []
+        groups: list[tuple[str, Any]] = []
+        for support in supports:
+            group = support.get("group")
+            if not isinstance(group, str):
+                groups.append((f"discs {len(groups) + 1}", integers("support.group", group, (None,))))
+                group = groups[-1][0]
+            held.append(_core.Support(group, *(_motion(support, name) for name in ("ux", "uy", "rotation"))))
+        for _, discs in groups:
+            if discs.size == 0 or discs.min() < 0 or discs.max() >= len(assembly):
+                raise BadInput("a support names discs that do not exist", f"the assembly has {len(assembly)}, from 0 on",
+                               "Correct the list", "support.group")
+        self._native = _core.Factor(assembly._native, chosen, held, groups, rotation, method, error_bound)
+
+    @property
+    def unknowns(self) -> int:
+        """Components of the motions that are not held."""
+        return self._native.unknowns
+
+    def solve(self, loads: npt.ArrayLike) -> Result:
+        """The equilibrium under a force (N/m) and, in the third column, a moment (N) on each disc.
+
+        Parameters
+        ----------
+        loads : array (n, 2), (n, 3) or (n, 3, k)
+            With k load cases displacements have the shape (n, 2, k), rotations (n, k), contact_forces (contacts, 2, k).
+        """
+        n = len(self.assembly)
+        given = floats("loads", loads, (n, 2), (n, 3), (n, 2, None), (n, 3, None))
+        if given.shape[1] == 2:
+            given = np.concatenate([given, np.zeros_like(given[:, :1])], axis=1)
+        if given.ndim == 2:
+            return Result(*self._native.solve(np.ascontiguousarray(given)), self.assembly)
+        if given.shape[2] == 0:
+            raise BadInput("no load cases", "the last axis of loads is empty", "Give at least one", "loads")
+        parts = [self._native.solve(np.ascontiguousarray(given[:, :, k])) for k in range(given.shape[2])]
+        values = {name: [part[0][name] for part in parts] for name in parts[0][0]}
+        arrays = {name: (np.stack([part[1][name][0] for part in parts], axis=-1), unit)
+                  for name, (_, unit) in parts[0][1].items() if name != "supported_discs"}
+        arrays["supported_discs"] = parts[0][1]["supported_discs"]
+        return Result(values, arrays, self.assembly)
+
+
+def factorize(assembly: Assembly, springs: Any, supports: Iterable[Tables] = (), **options: Any) -> Factor:
+    """The same as Factor(...)."""
+    return Factor(assembly, springs, supports, **options)
+
+
+def stiffness_matrix(assembly: Assembly, springs: Any, *, rotation: str = "from_scene") -> bsr_matrix:
+    """The assembled stiffness matrix without supports (Abe 1996, section 3), as scipy.sparse.
+
+    Rows and columns are u_x, u_y (m) and, where rotations are unknowns, theta (rad) of disc 0, then of disc 1, ...:
+    forces in N/m per m in Pa, moments in N.
+    """
+    from scipy.sparse import bsr_matrix
+
+    data, columns, first = _core.stiffness_matrix(assembly._native, _springs_of(assembly, springs), rotation)
+    size = data.shape[1] * len(assembly)
+    matrix = bsr_matrix((data, columns, first), shape=(size, size))
+    matrix.sum_duplicates()
+    return matrix
+
+
+def _springs_of(assembly: Assembly, springs: Any) -> Floats:
+    chosen = springs_from(springs)
+    if chosen is None:
+        raise BadInput("the springs are missing", "every contact has a normal and a tangential spring",
+                       "Give equidem.Springs(kN=..., kT=...)", "springs")
+    assert isinstance(chosen, Springs)
+    return chosen._native(assembly)
+
+
+def _motion(support: Tables, name: str) -> float | None:
+    """A prescribed motion; True is 0, as in the case file."""
+    given = support.get(name)
+    if given is None or given is False:
+        return None
+    return 0.0 if given is True else float(floats(f"support.{name}", given, ()))

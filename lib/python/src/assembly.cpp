@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/assembly/assembly.hpp"
+
+#include <string>
+#include <utility>
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "equidem/assembly/delaunay.hpp"
+#include "equidem/assembly/files.hpp"
+#include "equidem/assembly/touching.hpp"
+#include "equidem/casefile/assembly/build.hpp"
+#include "equidem/casefile/assembly/case.hpp"
+#include "equidem/contact/frame.hpp"
+#include "equidem/core/given.hpp"
+
+#include "module.hpp"
+
+namespace equidem::python {
+namespace {
+
+using Shared = std::shared_ptr<Assembly>;
+
+Shared shared(Assembly assembly) {
+  return std::make_shared<Assembly>(std::move(assembly));
+}
+
+Vec2 row_of(const Floats& rows, py::ssize_t k) {
+  return {rows.at(k, 0), rows.at(k, 1)};
+}
+
+Shared from_arrays(const Floats& centres, const Floats& radii, const std::optional<Integers>& contacts,
+                   const std::optional<Floats>& levers, const std::optional<std::pair<double, double>>& period,
+                   double gap_tolerance) {
+  Assembly assembly;
+  assembly.kind = "arrays";
+  if (period) assembly.period = Vec2{period->first, period->second};
+  for (py::ssize_t d = 0; d < centres.shape(0); ++d) {
+    assembly.centres.push_back(row_of(centres, d));
+    assembly.radii.push_back(radii.at(d));
+  }
+  for (py::ssize_t c = 0; contacts && c < contacts->shape(0); ++c) {
+    const bool shifted = contacts->shape(1) == 4;
+    assembly.contacts.push_back({.i = contacts->at(c, 0),
+                                 .j = contacts->at(c, 1),
+                                 .shift_x = shifted ? contacts->at(c, 2) : 0,
+                                 .shift_y = shifted ? contacts->at(c, 3) : 0});
+  }
+  return without_lock([&] {
+    if (contacts) {
+      const auto discs = static_cast<std::int32_t>(assembly.size());
+      const auto exists = [&](std::int32_t disc) { return disc >= 0 && disc < discs; };
+      for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+        Contact& contact = assembly.contacts[c];
+        if (!exists(contact.i) || !exists(contact.j)) continue;  // check() names it
+        const Vec2 given = levers ? row_of(*levers, static_cast<py::ssize_t>(c)) : Vec2{};
+        const double half = 0.5 * norm(assembly.branch(contact));
+        contact.lever_i = levers ? given.x : half;
+        contact.lever_j = levers ? given.y : half;
+      }
+    } else {
+      assembly.gap_tolerance = gap_tolerance;
+      assembly.contacts = touching_discs(assembly, gap_tolerance);
+      check_found_contacts(assembly);
+    }
+    check(assembly);
+    measure_cells(assembly);
+    return shared(std::move(assembly));
+  });
+}
+
+Shared from_text(std::string text) {
+  return without_lock([&] {
+    const Given<std::string> given("assembly", std::make_shared<const std::string>(std::move(text)));
+    return shared(read_assembly(given.name()));
+  });
+}
+
+Shared with_springs(const Assembly& assembly, const Floats& springs) {
+  Assembly result = assembly;
+  for (py::ssize_t c = 0; c < springs.shape(0); ++c) {
+    result.contact_kN.push_back(springs.at(c, 0));
+    result.contact_kT.push_back(springs.at(c, 1));
+  }
+  return shared(std::move(result));
+}
+
+py::array normals_of(const Assembly& assembly) {
+  std::vector<Vec2> normals(assembly.contacts.size());
+  for (std::size_t c = 0; c < normals.size(); ++c) normals[c] = frame_of(assembly, c).normal;
+  const auto owner = std::make_shared<const std::vector<Vec2>>(std::move(normals));
+  return columns_of(owner, *owner, &Vec2::x, 2);
+}
+
+py::dict groups_of(const Shared& assembly) {
+  py::dict result;
+  for (const auto& [name, group] : assembly->groups)
+    result[py::str(name)] = view(assembly, group.discs.data(), {py::ssize_t(group.discs.size())}, {sizeof(std::int32_t)});
+  return result;
+}
+
+template <std::vector<double> Assembly::*numbers>
+py::array numbers_of(const Shared& assembly) {
+  const std::vector<double>& values = (*assembly).*numbers;
+  return view(assembly, values.data(), {py::ssize_t(values.size())}, {sizeof(double)});
+}
+
+}  // namespace
+
+void bind_assembly(py::module_& module) {
+  py::class_<Assembly, Shared>(module, "Assembly")
+      .def_property_readonly("kind", [](const Assembly& a) { return a.kind; })
+      .def("__len__", &Assembly::size)
+      .def_property_readonly("centres",
+                             [](const Shared& a) { return columns_of(a, a->centres, &Vec2::x, 2); })
+      .def_property_readonly("radii", numbers_of<&Assembly::radii>)
+      .def_property_readonly("cell_areas", numbers_of<&Assembly::cell_areas>)
+      .def_property_readonly("facet_lengths", numbers_of<&Assembly::facet_lengths>)
+      .def_property_readonly("contacts",
+                             [](const Shared& a) { return columns_of(a, a->contacts, &Contact::i, 2); })
+      .def_property_readonly("shifts",
+                             [](const Shared& a) { return columns_of(a, a->contacts, &Contact::shift_x, 2); })
+      .def_property_readonly("levers",
+                             [](const Shared& a) { return columns_of(a, a->contacts, &Contact::lever_i, 2); })
+      .def_property_readonly("normals", normals_of)
+      .def_property_readonly("own_springs", [](const Assembly& a) { return !a.contact_kN.empty(); })
+      .def_property_readonly("period",
+                             [](const Assembly& a) -> std::optional<std::pair<double, double>> {
+                               if (!a.period) return {};
+                               return std::pair(a.period->x, a.period->y);
+                             })
+      .def_property_readonly("area", &Assembly::area)
+      .def_property_readonly("solid_fraction", &Assembly::solid_fraction)
+      .def_property_readonly("coordination_number", &Assembly::coordination_number)
+      .def_property_readonly("groups", groups_of)
+      .def("with_springs", with_springs)
+      .def(py::pickle([](const Assembly& a) { return py::make_tuple(json_of(a)); },
+                      [](const py::tuple& state) { return from_text(state[0].cast<std::string>()); }));
+
+  module.def("from_arrays", from_arrays);
+  module.def("build_assembly", [](const std::string& case_text) {
+    return without_lock([&] { return shared(build_assembly(parse_case(case_text, "case#0", {}))); });
+  });
+  module.def("read_assembly", [](const std::filesystem::path& path, double gap_tolerance) {
+    return without_lock([&] { return shared(read_assembly(path, gap_tolerance)); });
+  });
+  module.def("write_assembly", [](const std::filesystem::path& path, const Assembly& assembly, bool overwrite) {
+    without_lock([&] { write_assembly(path, assembly, overwrite); });
+  });
+}
+
+}  // namespace equidem::python

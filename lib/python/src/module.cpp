@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "module.hpp"
+
+#include <mutex>
+#include <string>
+
+#include <cblas.h>
+
+#include "equidem/core/threads.hpp"
+#include "equidem/output/files/json.hpp"
+
+namespace equidem::python {
+namespace {
+
+bool on_main_thread() {
+  const py::module_ threading = py::module_::import("threading");
+  return threading.attr("current_thread")().is(threading.attr("main_thread")());
+}
+
+std::mutex blas_mutex;
+int blas_users = 0, blas_threads_before = 1;
+
+}  // namespace
+
+OneBlasThread::OneBlasThread() {
+  const std::lock_guard lock(blas_mutex);
+  if (blas_users++ > 0) return;
+  blas_threads_before = openblas_get_num_threads();
+  openblas_set_num_threads(1);
+}
+
+OneBlasThread::~OneBlasThread() {
+  const std::lock_guard lock(blas_mutex);
+  if (--blas_users == 0) openblas_set_num_threads(blas_threads_before);
+}
+
+LongWork::LongWork() : catcher_(on_main_thread() ? std::make_unique<InterruptCatcher>() : nullptr) {}
+
+}  // namespace equidem::python
+
+PYBIND11_MODULE(_core, module) {
+  using namespace equidem::python;
+  module.doc() = "The compiled part of equidem.";
+  module.attr("version") = equidem::library_version();
+  module.def("set_threads", &equidem::set_thread_count);
+  module.def("threads", &equidem::thread_count);
+  module.def("show_progress", &equidem::set_progress_shown);
+  module.def("display_progress_by", [](const py::object& display) {
+    if (display.is_none()) return equidem::set_progress_display({});
+    // never destroyed: the interpreter may be gone by then
+    auto* kept = new py::object(display);
+    equidem::set_progress_display([kept](const std::string& line) {
+      const py::gil_scoped_acquire locked;
+      try {
+        (*kept)(line);
+      } catch (py::error_already_set& error) {
+        error.discard_as_unraisable("progress");
+      }
+    });
+  });
+  bind_errors(module);
+  bind_assembly(module);
+  bind_springs(module);
+  bind_factor(module);
+  bind_simulation(module);
+  bind_verbs(module);
+}

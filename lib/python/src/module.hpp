@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The parts of the extension module equidem._core. Arguments arrive checked by the Python files of the package: arrays
+/// have their type and shape.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include "equidem/core/progress.hpp"
+
+namespace equidem::python {
+
+namespace py = pybind11;
+
+void bind_errors(py::module_& module);
+void bind_assembly(py::module_& module);
+void bind_springs(py::module_& module);
+void bind_factor(py::module_& module);
+void bind_simulation(py::module_& module);
+void bind_verbs(py::module_& module);
+
+using Floats = py::array_t<double, py::array::c_style>;
+using Integers = py::array_t<std::int32_t, py::array::c_style>;
+
+/// OpenBLAS on one thread while one exists: this library calls it from threads of its own. Afterwards it has the threads
+/// that the user of NumPy gave it.
+class OneBlasThread {
+ public:
+  OneBlasThread();
+  ~OneBlasThread();
+  OneBlasThread(const OneBlasThread&) = delete;
+  OneBlasThread& operator=(const OneBlasThread&) = delete;
+};
+
+/// Work without the global lock. On Python's main thread Ctrl-C ends it with an Error of kind interrupted.
+class LongWork {
+ public:
+  LongWork();
+
+ private:
+  OneBlasThread blas_;
+  std::unique_ptr<InterruptCatcher> catcher_;
+  py::gil_scoped_release released_;
+};
+
+/// Do a task as LongWork.
+template <class Task>
+auto without_lock(const Task& task) {
+  const LongWork working;
+  return task();
+}
+
+enum class Access { read_only, writable };
+/// An array in memory that `owner` keeps.
+/// \param strides in bytes
+template <class Number>
+py::array view(std::shared_ptr<const void> owner, const Number* first, std::vector<py::ssize_t> shape,
+               std::vector<py::ssize_t> strides, Access access = Access::read_only) {
+  using Owner = std::shared_ptr<const void>;
+  const py::capsule keeper(new Owner(std::move(owner)), [](void* kept) { delete static_cast<Owner*>(kept); });
+  py::array result(py::dtype::of<Number>(), std::move(shape), std::move(strides), first, keeper);
+  if (access == Access::read_only) result.attr("setflags")(py::arg("write") = false);
+  return result;
+}
+
+/// The same of the items of a vector: columns numbers of each, from `first` on, `step` bytes apart.
+template <class Item, class Number>
+py::array columns_of(const std::shared_ptr<const void>& owner, const std::vector<Item>& items, Number Item::*first,
+                     py::ssize_t columns, py::ssize_t step = sizeof(Number)) {
+  const auto rows = static_cast<py::ssize_t>(items.size());
+  const Number* start = items.empty() ? nullptr : &(items.front().*first);
+  if (columns == 1) return view(owner, start, {rows}, {sizeof(Item)});
+  return view(owner, start, {rows, columns}, {sizeof(Item), step});
+}
+
+/// A vector of numbers as a writable array that owns it.
+template <class Number>
+py::array owned(std::vector<Number> numbers, std::vector<py::ssize_t> shape) {
+  const auto owner = std::make_shared<const std::vector<Number>>(std::move(numbers));
+  std::vector<py::ssize_t> strides(shape.size(), sizeof(Number));
+  for (std::size_t k = shape.size(); k-- > 1;) strides[k - 1] = strides[k] * shape[k];
+  return view(std::shared_ptr<const void>(owner), owner->data(), std::move(shape), std::move(strides),
+              Access::writable);
+}
+
+}  // namespace equidem::python

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "springs.hpp"
+
+#include <string>
+#include <utility>
+
+#include <pybind11/stl.h>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/effects.hpp"
+#include "equidem/core/names.hpp"
+#include "equidem/linear/contact_graph.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
+#include "equidem/statics/number_unknowns.hpp"
+
+namespace equidem::python {
+namespace {
+
+/// kN and kT of every contact, (contacts, 2), Pa.
+py::array springs_at_contacts(const Assembly& assembly, double kN, double kT, const std::string& weighting) {
+  const ContactSprings springs = contact_springs(assembly, {kN, kT}, enum_from<SpringWeighting>(weighting));
+  std::vector<double> numbers;
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    numbers.push_back(springs[c].kN);
+    numbers.push_back(springs[c].kT);
+  }
+  return owned(std::move(numbers), {py::ssize_t(assembly.contacts.size()), 2});
+}
+
+/// K without supports as blocks in compressed rows: data (blocks, b, b), column of each block, first block of each row.
+/// Rotations in rad: rows and columns of a theta times a.
+py::tuple stiffness_matrix(const Assembly& assembly, const Floats& springs, const std::string& rotation) {
+  const ContactSprings k = springs_of(springs);
+  StiffnessMatrix matrix;
+  DegreesOfFreedom unknowns;
+  std::vector<double> data;
+  std::vector<std::int32_t> columns, first;
+  {
+    const LongWork working;
+    check(assembly);
+    const ContactGraph graph(assembly);
+    unknowns = number_unknowns(assembly, k, derive_effects(assembly, k, enum_from<Rotation>(rotation)), {});
+    // rotations that nothing resists have rows of zeros, not of a unit matrix
+    unknowns.held.assign(unknowns.held.size(), DegreesOfFreedom::free);
+    matrix = assemble_stiffness(assembly, graph, k, unknowns);
+    const std::size_t b = static_cast<std::size_t>(matrix.block);
+    const auto add = [&](std::size_t column, const double* block, bool transposed) {
+      columns.push_back(static_cast<std::int32_t>(column));
+      for (std::size_t r = 0; r < b; ++r) {
+        for (std::size_t c = 0; c < b; ++c) {
+          const double scale = (r == 2 ? unknowns.rotation_scale : 1) * (c == 2 ? unknowns.rotation_scale : 1);
+          data.push_back(scale * block[transposed ? c * b + r : r * b + c]);
+        }
+      }
+    };
+    for (std::size_t d = 0; d < assembly.size(); ++d) {
+      first.push_back(static_cast<std::int32_t>(columns.size()));
+      add(d, matrix.diagonal_block(d), false);
+      for (const auto& [other, contact] : graph.of(d)) {
+        const Contact& joined = assembly.contacts[static_cast<std::size_t>(contact)];
+        if (joined.i == joined.j) continue;  // with its own image: in the diagonal block
+        add(static_cast<std::size_t>(other), matrix.coupling_block(static_cast<std::size_t>(contact)),
+            joined.j == static_cast<std::int32_t>(d));
+      }
+    }
+    first.push_back(static_cast<std::int32_t>(columns.size()));
+  }
+  const auto blocks = static_cast<py::ssize_t>(columns.size());
+  const auto rows = static_cast<py::ssize_t>(first.size());
+  return py::make_tuple(owned(std::move(data), {blocks, matrix.block, matrix.block}),
+                        owned(std::move(columns), {blocks}), owned(std::move(first), {rows}));
+}
+
+}  // namespace
+
+ContactSprings springs_of(const Floats& springs) {
+  if (springs.ndim() == 1) return ContactSprings(SpringConstants{springs.at(0), springs.at(1)});
+  std::vector<SpringConstants> all;
+  for (py::ssize_t c = 0; c < springs.shape(0); ++c) all.push_back({springs.at(c, 0), springs.at(c, 1)});
+  return ContactSprings(std::move(all));
+}
+
+void bind_springs(py::module_& module) {
+  module.def("springs_at_contacts", springs_at_contacts);
+  module.def("stiffness_matrix", stiffness_matrix);
+}
+
+}  // namespace equidem::python

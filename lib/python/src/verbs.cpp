@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <string>
+#include <utility>
+#include <variant>
+
+#include <CLI/CLI.hpp>
+#include <pybind11/stl.h>
+
+#include "equidem/casefile/assembly/case.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/given.hpp"
+
+#include "case_inputs.hpp"
+#include "result.hpp"
+#include "verb_run.hpp"
+
+namespace equidem::python {
+namespace {
+
+/// Carry out a verb. Returns (JSON of the result, arrays, assembly or None).
+py::tuple run_verb(const std::string& verb, const std::string& case_text, const std::string& case_file,
+                   const std::shared_ptr<Assembly>& assembly, std::vector<std::string> overrides,
+                   const std::vector<std::string>& options) {
+  const CaseInputs inputs(case_text, case_file, assembly, std::move(overrides));
+  Delivery delivery;
+  std::string json;
+  {
+    const LongWork working;
+    try {
+      delivery = VerbRun(verb, inputs.case_file(), inputs.overrides(), options)(Arrays::wanted);
+    } catch (const CLI::ParseError& error) {
+      bad_input(error.what(), "", "");
+    }
+    json = delivery.json();
+  }
+  return py::make_tuple(json, arrays_of(delivery.arrays), std::const_pointer_cast<Assembly>(delivery.assembly));
+}
+
+}  // namespace
+
+py::dict arrays_of(const std::vector<ResultArray>& arrays) {
+  py::dict result;
+  for (const ResultArray& array : arrays) {
+    const auto rows = static_cast<py::ssize_t>(array.rows), columns = static_cast<py::ssize_t>(array.columns);
+    const py::array made = std::visit(
+        [&](const auto* first) {
+          const auto size = static_cast<py::ssize_t>(sizeof(*first));
+          const py::ssize_t stride = static_cast<py::ssize_t>(array.stride) * size;
+          return columns == 1 ? view(array.owner, first, {rows}, {stride})
+                              : view(array.owner, first, {rows, columns}, {stride, size});
+        },
+        array.numbers);
+    result[py::str(array.name)] = py::make_tuple(made, array.unit);
+  }
+  return result;
+}
+
+void bind_verbs(py::module_& module) {
+  module.def("run_verb", run_verb);
+  module.def("case_reference", case_file_page);
+}
+
+}  // namespace equidem::python
