@@ -120,9 +120,8 @@ struct Delivery {
   [[nodiscard]] std::string json() const;
 };
 enum class Arrays { wanted, not_wanted };
-/// Carry out a verb whose results are not printed and not written: deliver and hand_over pass those of this thread on to
-/// here.
-/// \throws Error as the verb does
+/// Carry out a verb whose results are not printed and not written: deliver and hand_over pass those of this thread on
+/// to here. \throws Error as the verb does
 Delivery collect(const std::function<void()>& verb, Arrays arrays = Arrays::not_wanted);
 /// Whether the caller of the verb takes arrays: only then hand_over has an effect.
 bool arrays_wanted();

@@ -20,8 +20,13 @@ template <class Row>
 ResultArray array_of(std::string name, std::string unit, std::vector<Row> numbers, std::size_t columns) {
   const auto owner = std::make_shared<const std::vector<Row>>(std::move(numbers));
   static_assert(sizeof(Row) % sizeof(double) == 0);
-  return {std::move(name),  std::move(unit), owner, reinterpret_cast<const double*>(owner->data()),
-          owner->size(), columns,         sizeof(Row) / sizeof(double)};
+  return {std::move(name),
+          std::move(unit),
+          owner,
+          reinterpret_cast<const double*>(owner->data()),
+          owner->size(),
+          columns,
+          sizeof(Row) / sizeof(double)};
 }
 
 /// PREFIXdisplacements (n, 2) in m and PREFIXrotations (n) in rad.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "equidem/core/error.hpp"
+
 #include "verbs.hpp"
 
 namespace equidem {
@@ -14,7 +16,11 @@ VerbRun::VerbRun(const std::string& verb, const std::filesystem::path& case_file
   for (const std::string& assignment : overrides) arguments.insert(arguments.end(), {"--set", assignment});
   arguments.insert(arguments.end(), options.begin(), options.end());
   std::ranges::reverse(arguments);
-  command_.parse(arguments);
+  try {
+    command_.parse(arguments);
+  } catch (const CLI::ParseError& error) {
+    bad_input(error.what(), "", "See 'equidem help'");
+  }
 }
 
 }  // namespace equidem

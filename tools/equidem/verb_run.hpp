@@ -19,6 +19,7 @@ class VerbRun {
   /// \param verb its name
   /// \param overrides of keys of the case, as those of --set
   /// \param options further ones of the command line
+  /// \throws Error (bad_input) on an option that the verb does not have
   VerbRun(const std::string& verb, const std::filesystem::path& case_file, const std::vector<std::string>& overrides,
           const std::vector<std::string>& options);
 

@@ -5,7 +5,7 @@
 >>> block = eq.hexagonal(columns=21, rows=21, radius=5e-3)
 >>> test = eq.tension_test(block, eq.Springs(kN=1e9, kT=0.5e9), stress=1e6)
 >>> round(test.poisson_ratio, 3)
-0.125
+0.12
 
 SI units, per metre of depth; angles in rad, counter-clockwise; tension positive.
 """

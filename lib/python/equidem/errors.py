@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 
-class _Sentence:
-    """The parts of the sentence.
+class _Sentence(BaseException):
+    """An error with the parts of its sentence.
 
     Attributes
     ----------
@@ -26,8 +26,7 @@ class _Sentence:
 
 def _place(where: str) -> str:
     """Without the names of cases and assemblies in memory: "case#3:2: springs.kT" is "springs.kT"."""
-    parts = [p for p in where.split(": ") if not p.startswith(("case#", "assembly#"))]
-    return ": ".join(parts)
+    return ": ".join(part for part in where.split(": ") if "case#" not in part and "assembly#" not in part)
 
 
 class EquidemError(Exception):

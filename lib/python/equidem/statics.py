@@ -75,7 +75,7 @@ def calibrate(cell: Assembly, *, plane: str = "strain", weighting: str | None = 
         Two keys of the table `material`, such as young_modulus (Pa) and poisson_ratio. Other keyword arguments that are
         dictionaries are tables of the case.
     """
-    tables = {name: value for name, value in moduli.items() if isinstance(value, Mapping)}
+    tables: dict[str, Any] = {name: value for name, value in moduli.items() if isinstance(value, Mapping)}
     material = {name: value for name, value in moduli.items() if name not in tables}
     if weighting is not None:
         material["weighting"] = weighting
@@ -112,7 +112,7 @@ class Factor:
         held: list[_core.Support] = []
         groups: list[tuple[str, Any]] = []
         for support in supports:
-            group = support.get("group")
+            group: Any = support.get("group")
             if not isinstance(group, str):
                 groups.append((f"discs {len(groups) + 1}", integers("support.group", group, (None,))))
                 group = groups[-1][0]

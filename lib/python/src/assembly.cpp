@@ -13,6 +13,7 @@
 #include "equidem/casefile/assembly/build.hpp"
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/contact/frame.hpp"
+#include "equidem/core/error.hpp"
 #include "equidem/core/given.hpp"
 
 #include "module.hpp"
@@ -33,6 +34,7 @@ Vec2 row_of(const Floats& rows, py::ssize_t k) {
 Shared from_arrays(const Floats& centres, const Floats& radii, const std::optional<Integers>& contacts,
                    const std::optional<Floats>& levers, const std::optional<std::pair<double, double>>& period,
                    double gap_tolerance) {
+  if (centres.shape(0) == 0) bad_input("there are no discs", "an assembly has at least one", "Give their centres");
   Assembly assembly;
   assembly.kind = "arrays";
   if (period) assembly.period = Vec2{period->first, period->second};
@@ -60,6 +62,7 @@ Shared from_arrays(const Floats& centres, const Floats& radii, const std::option
         contact.lever_j = levers ? given.y : half;
       }
     } else {
+      check(assembly);
       assembly.gap_tolerance = gap_tolerance;
       assembly.contacts = touching_discs(assembly, gap_tolerance);
       check_found_contacts(assembly);
@@ -96,7 +99,8 @@ py::array normals_of(const Assembly& assembly) {
 py::dict groups_of(const Shared& assembly) {
   py::dict result;
   for (const auto& [name, group] : assembly->groups)
-    result[py::str(name)] = view(assembly, group.discs.data(), {py::ssize_t(group.discs.size())}, {sizeof(std::int32_t)});
+    result[py::str(name)] =
+        view(assembly, group.discs.data(), {py::ssize_t(group.discs.size())}, {sizeof(std::int32_t)});
   return result;
 }
 
@@ -112,17 +116,13 @@ void bind_assembly(py::module_& module) {
   py::class_<Assembly, Shared>(module, "Assembly")
       .def_property_readonly("kind", [](const Assembly& a) { return a.kind; })
       .def("__len__", &Assembly::size)
-      .def_property_readonly("centres",
-                             [](const Shared& a) { return columns_of(a, a->centres, &Vec2::x, 2); })
+      .def_property_readonly("centres", [](const Shared& a) { return columns_of(a, a->centres, &Vec2::x, 2); })
       .def_property_readonly("radii", numbers_of<&Assembly::radii>)
       .def_property_readonly("cell_areas", numbers_of<&Assembly::cell_areas>)
       .def_property_readonly("facet_lengths", numbers_of<&Assembly::facet_lengths>)
-      .def_property_readonly("contacts",
-                             [](const Shared& a) { return columns_of(a, a->contacts, &Contact::i, 2); })
-      .def_property_readonly("shifts",
-                             [](const Shared& a) { return columns_of(a, a->contacts, &Contact::shift_x, 2); })
-      .def_property_readonly("levers",
-                             [](const Shared& a) { return columns_of(a, a->contacts, &Contact::lever_i, 2); })
+      .def_property_readonly("contacts", [](const Shared& a) { return columns_of(a, a->contacts, &Contact::i, 2); })
+      .def_property_readonly("shifts", [](const Shared& a) { return columns_of(a, a->contacts, &Contact::shift_x, 2); })
+      .def_property_readonly("levers", [](const Shared& a) { return columns_of(a, a->contacts, &Contact::lever_i, 2); })
       .def_property_readonly("normals", normals_of)
       .def_property_readonly("own_springs", [](const Assembly& a) { return !a.contact_kN.empty(); })
       .def_property_readonly("period",

@@ -23,8 +23,7 @@ class Factor {
          const std::vector<std::pair<std::string, Integers>>& groups, const std::string& rotation,
          const std::string& method, bool error_bound)
       : assembly_(assembly), springs_(springs_of(springs)) {
-    for (const auto& [name, discs] : groups)
-      assembly_.groups[name] = {{discs.data(), discs.data() + discs.size()}, {}};
+    for (const auto& [name, discs] : groups) assembly_.groups[name] = {{discs.data(), discs.data() + discs.size()}, {}};
     EquilibriumOptions options;
     options.rotation = enum_from<Rotation>(rotation);
     options.solver.method = enum_from<SolverMethod>(method);
@@ -66,8 +65,10 @@ class Factor {
 
 void bind_factor(py::module_& module) {
   py::class_<Support>(module, "Support")
-      .def(py::init([](std::string group, std::optional<double> ux, std::optional<double> uy,
-                       std::optional<double> rotation) { return Support{std::move(group), ux, uy, rotation}; }));
+      .def(py::init(
+          [](std::string group, std::optional<double> ux, std::optional<double> uy, std::optional<double> rotation) {
+            return Support{std::move(group), ux, uy, rotation};
+          }));
   py::class_<Factor>(module, "Factor")
       .def(py::init<const Assembly&, const Floats&, std::vector<Support>,
                     const std::vector<std::pair<std::string, Integers>>&, const std::string&, const std::string&,

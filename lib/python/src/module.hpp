@@ -26,8 +26,8 @@ void bind_verbs(py::module_& module);
 using Floats = py::array_t<double, py::array::c_style>;
 using Integers = py::array_t<std::int32_t, py::array::c_style>;
 
-/// OpenBLAS on one thread while one exists: this library calls it from threads of its own. Afterwards it has the threads
-/// that the user of NumPy gave it.
+/// OpenBLAS on one thread while one exists: this library calls it from threads of its own. Afterwards it has the
+/// threads that the user of NumPy gave it.
 class OneBlasThread {
  public:
   OneBlasThread();

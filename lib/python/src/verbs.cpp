@@ -3,11 +3,9 @@
 #include <utility>
 #include <variant>
 
-#include <CLI/CLI.hpp>
 #include <pybind11/stl.h>
 
 #include "equidem/casefile/assembly/case.hpp"
-#include "equidem/core/error.hpp"
 #include "equidem/core/given.hpp"
 
 #include "case_inputs.hpp"
@@ -26,11 +24,7 @@ py::tuple run_verb(const std::string& verb, const std::string& case_text, const 
   std::string json;
   {
     const LongWork working;
-    try {
-      delivery = VerbRun(verb, inputs.case_file(), inputs.overrides(), options)(Arrays::wanted);
-    } catch (const CLI::ParseError& error) {
-      bad_input(error.what(), "", "");
-    }
+    delivery = VerbRun(verb, inputs.case_file(), inputs.overrides(), options)(Arrays::wanted);
     json = delivery.json();
   }
   return py::make_tuple(json, arrays_of(delivery.arrays), std::const_pointer_cast<Assembly>(delivery.assembly));

@@ -15,9 +15,9 @@
 #include "equidem/homogenize/stress.hpp"
 
 #include "command.hpp"
-#include "result_arrays.hpp"
 #include "homogenize/ensemble.hpp"
 #include "homogenize/homogenize_results.hpp"
+#include "result_arrays.hpp"
 #include "solve/solve_accuracy.hpp"
 #include "state_files.hpp"
 #include "verbs.hpp"

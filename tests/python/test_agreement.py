@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The module gives the numbers of an independent dense computation and of the program."""
+
+import json
+import os
+import pathlib
+import subprocess
+
+import numpy as np
+import pytest
+
+import dense
+import equidem as eq
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = os.environ["EQUIDEM_PROGRAM"]
+
+BLOCKS = {
+    "hexagonal": lambda: eq.hexagonal(columns=6, rows=5, radius=5e-3),
+    "square": lambda: eq.square(columns=5, rows=4, radius=5e-3),
+    "delaunay": lambda: eq.delaunay(discs=40, radius=5e-3, seed=3),
+    "polydisperse": lambda: eq.delaunay(discs=40, radii={"smallest": 3e-3, "largest": 6e-3}, seed=5),
+}
+CELLS = {
+    "hexagonal": lambda: eq.hexagonal(columns=4, rows=4, radius=5e-3, periodic=True),
+    "delaunay": lambda: eq.delaunay(discs=40, radius=5e-3, seed=3, periodic=True),
+    "polydisperse": lambda: eq.delaunay(discs=40, radii={"smallest": 3e-3, "largest": 6e-3}, seed=5, periodic=True),
+}
+KN, KT = 1e9, 0.3e9
+
+
+@pytest.mark.parametrize("kind", BLOCKS)
+def test_the_stiffness_matrix_is_that_of_the_contact_law(kind):
+    block = BLOCKS[kind]()
+    expected = dense.stiffness(block, KN, KT)
+    assert abs(eq.stiffness_matrix(block, (KN, KT)).toarray() - expected).max() <= 1e-14 * abs(expected).max()
+
+
+@pytest.mark.parametrize("kind", CELLS)
+def test_the_stiffness_matrix_of_a_periodic_cell_is_that_of_the_contact_law(kind):
+    cell = CELLS[kind]()
+    expected = dense.stiffness(cell, KN, KT)
+    assert abs(eq.stiffness_matrix(cell, (KN, KT)).toarray() - expected).max() <= 1e-14 * abs(expected).max()
+
+
+@pytest.mark.parametrize("kind", BLOCKS)
+def test_solutions_are_those_of_dense_matrices(kind):
+    block = BLOCKS[kind]()
+    left, right = block.groups["left"], block.groups["right"]
+    held = np.concatenate([3 * left, 3 * left + 1, 3 * left + 2])
+    loads = np.zeros((len(block), 3))
+    loads[right, :2] = [1e3, -2e3]
+    expected = dense.solve(block, KN, KT, held, loads)
+    result = eq.solve(block, (KN, KT), supports=[{"group": "left", "ux": 0.0, "uy": True, "rotation": 0}],
+                      loads=[{"group": "right", "force": (1e3, -2e3)}])
+    scale = abs(expected[:, :2]).max()
+    assert abs(result.displacements - expected[:, :2]).max() <= 1e-10 * scale
+    assert abs(result.rotations - expected[:, 2]).max() <= 1e-10 * abs(expected[:, 2]).max()
+    stretch, slip, _ = dense.contact_gradients(block)
+    forces = np.stack([KN * stretch @ expected.ravel(), KT * slip @ expected.ravel()], axis=1)
+    assert abs(result.contact_forces - forces).max() <= 1e-10 * abs(forces).max()
+    assert np.allclose(result.reactions.sum(axis=0), -loads[:, :2].sum(axis=0), rtol=1e-10)
+
+
+def test_springs_of_each_contact_act_on_their_contact():
+    block = BLOCKS["delaunay"]()
+    random = np.random.default_rng(1)
+    kN = random.uniform(0.5e9, 2e9, len(block.contacts))
+    kT = random.uniform(0.1e9, 1e9, len(block.contacts))
+    loads = random.normal(size=(len(block), 3)) * [1, 1, 1e-3]
+    bottom = block.groups["bottom"]
+    held = np.concatenate([3 * bottom, 3 * bottom + 1])
+    expected = dense.solve(block, kN, kT, held, loads)
+    factor = eq.factorize(block, eq.Springs(kN, kT), [{"group": "bottom", "ux": 0, "uy": 0}])
+    assert abs(factor.solve(loads).displacements - expected[:, :2]).max() <= 1e-10 * abs(expected).max()
+
+
+def test_one_factor_solves_many_loads():
+    block = BLOCKS["hexagonal"]()
+    loads = np.random.default_rng(2).normal(size=(len(block), 3, 4))
+    factor = eq.factorize(block, (KN, KT), [{"group": block.groups["left"], "ux": 0, "uy": 0}])
+    together = factor.solve(loads)
+    assert together.displacements.shape == (len(block), 2, 4)
+    for k in range(4):
+        assert np.array_equal(together.displacements[:, :, k], factor.solve(loads[:, :, k]).displacements)
+
+
+@pytest.mark.parametrize("kind", CELLS)
+def test_effective_stiffness_is_that_of_dense_matrices(kind):
+    cell = CELLS[kind]()
+    expected = dense.effective_stiffness(cell, KN, KT)
+    assert abs(np.array(eq.homogenize(cell, (KN, KT)).stiffness) - expected).max() <= 1e-11 * abs(expected).max()
+
+
+def test_calibrated_springs_give_the_wanted_moduli():
+    cell = CELLS["delaunay"]()
+    springs = eq.calibrate(cell, young_modulus=30e9, poisson_ratio=0.15, plane="strain")
+    moduli = eq.homogenize(cell, springs)
+    assert abs(moduli.poisson_ratio.plane_strain - 0.15) < 1e-10
+    assert abs(moduli.young_modulus.plane_strain / 30e9 - 1) < 1e-10
+
+
+def test_an_assembly_from_arrays_is_the_one_that_its_arrays_came_from():
+    for cell in (CELLS["polydisperse"](), BLOCKS["polydisperse"]()):
+        contacts = np.concatenate([cell.contacts, cell.shifts], axis=1)
+        copy = eq.Assembly(cell.centres, cell.radii, contacts, levers=cell.levers, cell=cell.cell)
+        assert np.array_equal(copy.levers, cell.levers) and np.array_equal(copy.shifts, cell.shifts)
+        if cell.cell:  # cells of a free block fill the smallest rectangle that holds its discs
+            assert np.allclose(copy.cell_areas, cell.cell_areas, rtol=1e-12)
+        found = eq.stiffness_matrix(copy, (KN, KT)) - eq.stiffness_matrix(cell, (KN, KT))
+        assert abs(found).max() == 0
+
+
+@pytest.mark.parametrize("verb, case", [
+    ("solve", "abe1996_fig6"), ("solve", "cantilever"), ("solve", "truss"), ("homogenize", "random_cell"),
+    ("calibrate", "calibrate_lattice"), ("calibrate", "calibrate_random"), ("stability", "hexagonal_cell"),
+    ("pack", "pack_jammed"), ("run", "run_corner"), ("run", "grains_cradle")])
+def test_a_case_gives_the_numbers_of_the_program(verb, case):
+    path = SOURCE / "data/cases" / f"{case}.toml"
+    done = subprocess.run([PROGRAM, verb, path, "--json", "-", "--quiet"], check=True, capture_output=True)
+    expected = json.loads(done.stdout)
+    result = eq.Case(path).run_verb(verb)
+    timed = {"times", "report", "units", "labels", "seconds"}
+    found = result.to_dict()
+    for key in expected.keys() - timed:
+        if not key.endswith("per_second"):
+            assert found[key] == expected[key], key
+
+
+def test_an_assembly_in_memory_gives_the_numbers_of_its_case():
+    case = SOURCE / "data/cases/abe1996_fig6.toml"
+    from_file = eq.Case(case).solve()
+    block = eq.hexagonal(columns=21, rows=21, radius=0.005)
+    in_memory = eq.tension_test(block, (1e9, 0.5e9), stress=1e6)
+    assert in_memory.poisson_ratio == from_file.poisson_ratio
+    assert in_memory.theory.poisson_ratio == from_file.theory.poisson_ratio

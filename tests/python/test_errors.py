@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Wrong input is answered with one sentence: the problem, why it is one, what to do."""
+
+import numpy as np
+import pytest
+
+import equidem as eq
+
+CENTRES = [[0.0, 0.0], [2.0, 0.0], [1.0, 1.7]]
+BLOCK = eq.hexagonal(columns=5, rows=5, radius=1e-3)
+HELD = [{"group": "left", "ux": 0, "uy": 0}]
+
+WRONG = {
+    "a_wrong_shape": (lambda: eq.Assembly([[0, 0, 0]], 1.0), "shape"),
+    "a_list_of_words": (lambda: eq.Assembly(["a", "b"], 1.0), "no array of numbers"),
+    "a_ragged_list": (lambda: eq.Assembly([[0, 0], [1]], 1.0), "no array of numbers"),
+    "nan": (lambda: eq.Assembly([[0, np.nan], [1, 0]], 1.0), "every number must be finite"),
+    "no_discs": (lambda: eq.Assembly(np.zeros((0, 2)), 1.0), "disc"),
+    "a_cell_of_no_width": (lambda: eq.Assembly(CENTRES, 1.0, cell=(0.0, 1.0)), "period"),
+    "a_radius_of_zero": (lambda: eq.Assembly(CENTRES, 0.0), "radius"),
+    "radii_of_too_few_discs": (lambda: eq.Assembly(CENTRES, [1.0, 1.0]), "shape"),
+    "a_disc_that_does_not_exist": (lambda: eq.Assembly(CENTRES, 1.0, [[0, 7]]), "7"),
+    "a_negative_disc": (lambda: eq.Assembly(CENTRES, 1.0, [[0, -1]]), "-1"),
+    "contacts_that_are_no_whole_numbers": (lambda: eq.Assembly(CENTRES, 1.0, [[0.0, 1.5]]), "whole numbers"),
+    "discs_that_touch_nothing": (lambda: eq.Assembly(CENTRES, 0.1), "contact"),
+    "levers_without_contacts": (lambda: eq.Assembly(CENTRES, 1.0, levers=[[1, 1]]), "contacts"),
+    "an_unknown_kind": (lambda: eq.assembly(kind="hexagnal"), 'Did you mean "hexagonal"'),
+    "an_unknown_key": (lambda: eq.hexagonal(colums=4), "columns"),
+    "no_springs": (lambda: eq.tension_test(BLOCK), "springs"),
+    "springs_of_words": (lambda: eq.solve(BLOCK, "stiff", supports=HELD), "springs of type str"),
+    "a_negative_normal_spring": (lambda: eq.tension_test(BLOCK, (-1.0, 0.0)), "kN"),
+    "springs_of_too_few_contacts": (lambda: eq.tension_test(BLOCK, eq.Springs(np.ones(3), np.ones(3))), "shape"),
+    "nothing_that_acts": (lambda: eq.solve(BLOCK, (1.0, 0.5)), "nothing pulls"),
+    "an_unknown_group": (lambda: eq.solve(BLOCK, (1.0, 0.5), supports=[{"group": "lefft", "ux": 0}]), "left"),
+    "an_unknown_component": (lambda: eq.solve(BLOCK, (1.0, 0.5), supports=[{"group": "left", "uz": 0}]), "uz"),
+    "a_support_that_is_no_table": (lambda: eq.solve(BLOCK, (1.0, 0.5), supports=["left"]), "dictionary"),
+    "a_rigid_motion": (lambda: eq.solve(BLOCK, (1.0, 0.5), supports=[{"group": "left", "ux": 0}]), "translation along y"),
+    "a_disc_of_a_group_that_does_not_exist":
+        (lambda: eq.solve(BLOCK, (1.0, 0.5), supports=[{"group": [999], "ux": 0, "uy": 0}]), "999"),
+    "loads_of_too_few_discs": (lambda: eq.factorize(BLOCK, (1.0, 0.5), HELD).solve(np.ones((3, 3))), "shape"),
+    "a_support_of_a_factor_on_no_disc":
+        (lambda: eq.factorize(BLOCK, (1.0, 0.5), [{"group": [999], "ux": 0}]), "do not exist"),
+    "an_unknown_option": (lambda: eq.Case("case.toml").solve(acuracy=1), "acuracy"),
+    "a_file_that_does_not_exist": (lambda: eq.Case("nowhere.toml").solve(), "no such file"),
+    "a_free_assembly_homogenized_as_a_cell":
+        (lambda: eq.homogenize(BLOCK, (1e9, 0.5e9), homogenize={"boundary": "periodic"}), "periodic"),
+    "a_poisson_ratio_out_of_reach":
+        (lambda: eq.calibrate(eq.square(columns=4, rows=4, radius=1e-3, periodic=True), young_modulus=1e9,
+                              poisson_ratio=0.4), "0"),
+    "too_many_discs": (lambda: eq.hexagonal(columns=10**9, rows=10**9, radius=1e-3), "out of range"),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_wrong_input_is_refused_with_a_sentence(what):
+    call, part = WRONG[what]
+    with pytest.raises(eq.BadInput) as caught:
+        call()
+    sentence = str(caught.value)
+    print(sentence)
+    assert part in sentence
+    assert caught.value.problem in sentence and sentence.endswith((".", "?")) and "\n" not in sentence
+    assert "#" not in sentence and isinstance(caught.value, ValueError)
+
+
+def test_a_matrix_that_is_singular_is_a_failed_computation_or_bad_input():
+    with pytest.raises(eq.EquidemError):
+        eq.solve(BLOCK, (1.0, -0.9), supports=HELD, loads=[{"group": "right", "force": (1, 0)}], require_stable=True)

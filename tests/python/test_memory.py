@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Arrays are views of the memory of their owner, which they keep."""
+
+import gc
+import pickle
+
+import numpy as np
+import pytest
+
+import equidem as eq
+
+
+def address(array):
+    return array.__array_interface__["data"][0]
+
+
+@pytest.mark.parametrize("name", ["centres", "radii", "contacts", "shifts", "levers", "cell_areas"])
+def test_arrays_of_an_assembly_are_views(name):
+    block = eq.hexagonal(columns=5, rows=5, radius=1e-3)
+    first, second = getattr(block, name), getattr(block, name)
+    assert address(first) == address(second)
+    assert not first.flags.owndata and not first.flags.writeable
+    with pytest.raises(ValueError):
+        first[0] = 0
+
+
+def test_arrays_of_a_contact_lie_in_one_memory():
+    block = eq.hexagonal(columns=5, rows=5, radius=1e-3)
+    assert address(block.shifts) - address(block.contacts) == 8
+    assert address(block.levers) - address(block.contacts) == 16
+    assert block.contacts.strides == (32, 4) and block.levers.strides == (32, 8)
+
+
+def test_displacements_and_rotations_lie_in_one_memory():
+    block = eq.hexagonal(columns=5, rows=5, radius=1e-3)
+    result = eq.tension_test(block, (1e9, 0.5e9))
+    assert address(result.rotations) - address(result.displacements) == 16
+    assert result.displacements.strides == (24, 8)
+
+
+def test_an_array_keeps_its_owner():
+    centres = eq.hexagonal(columns=300, rows=300, radius=1e-3).centres
+    before = centres.copy()
+    gc.collect()
+    for _ in range(20):
+        eq.hexagonal(columns=300, rows=300, radius=2e-3)
+    assert np.array_equal(centres, before)
+    motions = eq.tension_test(eq.hexagonal(columns=30, rows=31, radius=1e-3), (1e9, 0.5e9)).displacements
+    before = motions.copy()
+    gc.collect()
+    for _ in range(20):
+        eq.tension_test(eq.hexagonal(columns=30, rows=31, radius=2e-3), (1e9, 0.5e9))
+    assert np.array_equal(motions, before)
+
+
+def test_an_assembly_is_not_copied_by_what_uses_it():
+    block = eq.hexagonal(columns=5, rows=5, radius=1e-3)
+    result = eq.tension_test(block, (1e9, 0.5e9))
+    assert result.assembly is block
+
+
+def test_results_and_assemblies_are_pickled():
+    cell = eq.delaunay(discs=40, radius=1e-3, seed=1, periodic=True)
+    copy = pickle.loads(pickle.dumps(cell))
+    assert np.array_equal(copy.centres, cell.centres) and np.array_equal(copy.contacts, cell.contacts)
+    result = eq.homogenize(cell, (1e9, 0.5e9))
+    again = pickle.loads(pickle.dumps(result))
+    assert again.to_dict() == result.to_dict() and again.units == result.units and again.report == result.report
+    assert np.array_equal(again.fluctuations.xx.displacements, result.fluctuations.xx.displacements)
+    error = pickle.loads(pickle.dumps(eq.BadInput("a", "b", "c", "d")))
+    assert str(error) == "d: a (b). c."
+
+
+def test_a_file_gives_back_the_same_bits(tmp_path):
+    cell = eq.delaunay(discs=40, radii={"smallest": 1e-3, "largest": 2e-3}, seed=1, periodic=True)
+    for name in ("cell.json", "cell.h5"):
+        cell.write(tmp_path / name)
+        again = eq.read(tmp_path / name)
+        assert np.array_equal(again.centres, cell.centres) and np.array_equal(again.levers, cell.levers)
+        with pytest.raises(eq.BadInput, match="exists already"):
+            cell.write(tmp_path / name)
+        cell.write(tmp_path / name, overwrite=True)
+
+
+def test_results_written_to_a_folder_can_be_computed_again(tmp_path):
+    block = eq.hexagonal(columns=7, rows=7, radius=1e-3)
+    case = eq.Case(assembly=block, springs=(1e9, 0.5e9), test={"kind": "uniaxial_tension", "stress": 1e6})
+    result = case.solve(out=tmp_path / "result")
+    assert (tmp_path / "result/result.json").exists()
+    assert eq.Case(tmp_path / "result/case.toml").solve().poisson_ratio == result.poisson_ratio
+    with pytest.raises(eq.BadInput, match="exists already"):
+        case.solve(out=tmp_path / "result")

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Results show themselves as text, HTML, tables and pictures."""
+
+import doctest
+import importlib
+import json
+import pkgutil
+
+import numpy as np
+import pytest
+
+import equidem as eq
+
+BLOCK = eq.hexagonal(columns=7, rows=7, radius=1e-3)
+SPRINGS = eq.Springs(kN=1e9, kT=0.5e9)
+
+
+def test_numbers_have_units_and_meanings():
+    result = eq.tension_test(BLOCK, SPRINGS)
+    assert result.units["plane_strain.young_modulus"] == "Pa" and result.units["displacements"] == "m"
+    assert "Poisson" in result.labels["poisson_ratio"]
+    assert result["poisson_ratio"] == result.poisson_ratio and "poisson_ratio" in dir(result)
+    with pytest.raises(AttributeError, match="It has status"):
+        result.poison_ratio
+
+
+def test_a_result_is_shown_as_text_and_html():
+    result = eq.tension_test(BLOCK, SPRINGS)
+    assert "tension test" in repr(result) and repr(result) == result.report.rstrip("\n")
+    assert result._repr_html_().startswith("<pre>")
+    json.dumps(result.to_dict())
+    factor = eq.factorize(BLOCK, SPRINGS, [{"group": "left", "ux": 0, "uy": 0}])
+    assert "<table>" in factor.solve(np.zeros((len(BLOCK), 3)))._repr_html_()
+
+
+def test_load_cases_have_their_own_arrays():
+    result = eq.solve(BLOCK, SPRINGS, supports=[{"group": "left", "ux": 0, "uy": 0}],
+                      loads=[{"group": "right", "force": (1, 0), "case": "pull"},
+                             {"group": "right", "force": (0, 1), "case": "lift"}])
+    assert result.pull.displacements[:, 0].max() > 0 and result.lift.displacements[:, 1].max() > 0
+    assert [case["case"] for case in result.load_cases] == ["pull", "lift"]
+
+
+def test_a_sweep_is_a_table_with_units():
+    pandas = pytest.importorskip("pandas")
+    cell = eq.hexagonal(columns=4, rows=4, radius=1e-3, periodic=True)
+    case = eq.Case(assembly=cell, springs=SPRINGS)
+    table = eq.sweep(case, {"springs.kN": [1e9, 2e9], "springs.kT": [0.2e9, -5e9]})
+    assert isinstance(table, pandas.DataFrame) and len(table) == 4
+    assert table.attrs["units"]["shear_modulus"] == "Pa"
+    # Abe 1996, eq. (34): G = sqrt(3)/4 (kN + kT)
+    expected = np.sqrt(3) / 4 * (table["springs.kN"] + table["springs.kT"])
+    done = table["error"] == ""
+    assert done.any() and np.allclose(table["shear_modulus"][done], expected[done], rtol=1e-12)
+
+
+def test_random_cells_are_sampled():
+    result = eq.Case(assembly={"kind": "delaunay", "radius": 1e-3, "discs": 50, "periodic": True}, springs=SPRINGS,
+                     ensemble={"discs": [50, 100], "samples": 4}).homogenize()
+    assert result.status == "done" or result.status == "solved"
+
+
+def test_a_study_shows_the_price_of_accuracy():
+    result = eq.study("integrators", accuracy=1e-3)
+    assert result.status == "done" and len(result.settings) > 5
+
+
+def test_a_dry_run_computes_nothing():
+    case = eq.Case(assembly=BLOCK, springs=SPRINGS, test={"kind": "uniaxial_tension", "stress": 1e6})
+    result = case.solve(dry_run=True)
+    assert result.status == "dry_run" and "displacements" not in result and result.unknowns > 0
+
+
+def test_pictures_are_drawn(tmp_path):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    axes = eq.tension_test(BLOCK, SPRINGS).plot()
+    assert len(axes.collections) == 2 and "displacements x" in axes.get_title()
+    waves = eq.stability(eq.hexagonal(columns=2, rows=2, radius=1e-3, periodic=True), SPRINGS, density=2500.0)
+    assert len(waves.plot().lines) > 3
+    BLOCK.plot(values=np.arange(len(BLOCK)), label="number")
+    with pytest.raises(eq.BadInput, match="no picture"):
+        eq.study("integrators").plot()
+    plt.savefig(tmp_path / "discs.png")
+    plt.close("all")
+    assert (tmp_path / "discs.png").stat().st_size > 5000
+
+
+def test_examples_of_the_docstrings_work():
+    for module in pkgutil.iter_modules(eq.__path__, "equidem."):
+        if module.name.endswith("_core"):
+            continue
+        failed, tried = doctest.testmod(importlib.import_module(module.name))
+        print(module.name, tried)
+        assert failed == 0
+    assert doctest.testmod(eq).failed == 0
+
+
+def test_every_public_name_is_documented():
+    for name in eq.__all__:
+        thing = getattr(eq, name)
+        assert thing.__doc__ and len(thing.__doc__) > 20, name

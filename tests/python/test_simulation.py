@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Simulations are stepped, watched and drawn from Python."""
+
+import pathlib
+
+import numpy as np
+import pytest
+
+import equidem as eq
+
+CASES = pathlib.Path(__file__).resolve().parents[2] / "data/cases"
+
+
+def pulse():
+    block = eq.hexagonal(columns=20, rows=5, radius=1e-3)
+    return eq.simulation(block, (1e9, 0.5e9), density=2500.0, run={"duration": 2e-4},
+                         velocity=[{"group": "left", "velocity": (0.1, 0.0)}])
+
+
+def test_any_division_of_the_steps_gives_the_same_bits():
+    at_once, in_parts = pulse(), pulse()
+    at_once.advance(90)
+    for steps in (1, 2, 30, 57):
+        in_parts.advance(steps)
+    assert np.array_equal(at_once.displacements, in_parts.displacements)
+    assert np.array_equal(at_once.velocities, in_parts.velocities)
+
+
+def test_frames_follow_the_motion():
+    simulation = pulse()
+    frames = list(simulation.frames(every=10))
+    assert [frame.step for frame in frames][:3] == [0, 10, 20] and frames[-1].step == simulation.steps
+    assert np.array_equal(frames[0].positions, simulation.assembly.centres)
+    assert np.array_equal(frames[-1].positions, simulation.positions)
+    assert frames[1].positions[:, 0].max() >= frames[0].positions[:, 0].max()
+
+
+def test_energy_is_kept_without_damping():
+    simulation = pulse().run()
+    energy = simulation.energy
+    print(dict(energy))
+    assert abs(energy["error"]) <= 1e-12 * energy["initial"]
+    assert 0.05 * energy["initial"] < energy["elastic"] < 0.95 * energy["initial"]
+
+
+def test_momentum_of_bodies_that_collide_is_kept():
+    simulation = eq.Case(CASES / "grains_cradle.toml").simulation()
+    before = simulation.velocities[:, 0].sum()
+    simulation.run()
+    assert abs(simulation.velocities[:, 0].sum() - before) <= 1e-9 * abs(before)
+    with pytest.raises(eq.BadInput, match="no displacements"):
+        simulation.displacements
+
+
+def test_a_callback_sees_the_run_and_ends_it():
+    seen = []
+
+    def watch(simulation):
+        seen.append(simulation.time)
+        return len(seen) < 3
+
+    simulation = pulse().run(watch, every=10)
+    assert simulation.step == 30 and seen == pytest.approx([10 * k * simulation.time_step for k in (1, 2, 3)])
+
+
+def test_forces_of_contacts_are_those_of_their_springs():
+    simulation = pulse()
+    simulation.advance(50)
+    block, contacts = simulation.assembly, simulation.contacts
+    i, j = block.contacts.T
+    stretch = np.sum((simulation.displacements[j] - simulation.displacements[i]) * block.normals, axis=1)
+    bonds = contacts["normal_forces"][:len(stretch)]
+    assert abs(bonds - 1e9 * stretch).max() <= 1e-9 * abs(bonds).max()
+
+
+def test_a_run_that_fails_raises_its_sentence():
+    block = eq.hexagonal(columns=5, rows=5, radius=1e-3)
+    with pytest.raises(eq.EquidemError, match="time_step|step"):
+        eq.run(block, (1e9, 0.5e9), density=2500.0, run={"duration": 1e-2, "time_step": 1e-3},
+               velocity=[{"group": "left", "velocity": (0.1, 0.0)}])
+
+
+@pytest.mark.parametrize("backward", [-1])
+def test_time_goes_forward(backward):
+    with pytest.raises(eq.BadInput, match="forward"):
+        pulse().advance(backward)

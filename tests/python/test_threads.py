@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Threads, processes and Ctrl-C."""
+
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import equidem as eq
+
+
+def test_two_threads_at_once_give_the_answers_of_one():
+    cells = [eq.delaunay(discs=2000, radius=1e-3, seed=seed, periodic=True) for seed in range(4)]
+    alone = [eq.homogenize(cell, (1e9, 0.5e9)).stiffness for cell in cells]
+    found = [None] * len(cells)
+
+    def work(first):
+        for k in range(first, len(cells), 2):
+            found[k] = eq.homogenize(cells[k], (1e9, 0.5e9)).stiffness
+
+    workers = [threading.Thread(target=work, args=(first,)) for first in range(2)]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    assert found == alone
+
+
+def test_results_have_the_same_bits_for_any_number_of_threads():
+    block = eq.hexagonal(columns=60, rows=61, radius=1e-3)
+    results = []
+    for count in (1, 2, 3):
+        eq.set_threads(count)
+        results.append(eq.tension_test(block, (1e9, 0.5e9)).displacements)
+    assert np.array_equal(results[0], results[1]) and np.array_equal(results[0], results[2])
+
+
+def test_other_threads_run_during_a_solution():
+    block = eq.hexagonal(columns=300, rows=301, radius=1e-3)
+    longest, last, stop = 0.0, time.monotonic(), threading.Event()
+
+    def tick():
+        nonlocal longest, last
+        while not stop.is_set():
+            time.sleep(0.001)
+            now = time.monotonic()
+            longest, last = max(longest, now - last), now
+
+    ticking = threading.Thread(target=tick)
+    ticking.start()
+    start = time.monotonic()
+    eq.tension_test(block, (1e9, 0.5e9))
+    whole = time.monotonic() - start
+    stop.set()
+    ticking.join()
+    print(f"the solution took {whole:.3f} s, the longest pause of the other thread {longest:.3f} s")
+    assert longest < 0.5 * whole
+
+
+def _poisson_ratio(queue):
+    queue.put(eq.tension_test(eq.hexagonal(columns=61, rows=61, radius=1e-3), (1e9, 0.5e9)).poisson_ratio)
+
+
+def test_a_forked_process_computes():
+    expected = eq.tension_test(eq.hexagonal(columns=61, rows=61, radius=1e-3), (1e9, 0.5e9)).poisson_ratio
+    context = multiprocessing.get_context("fork")
+    queue = context.Queue()
+    child = context.Process(target=_poisson_ratio, args=(queue,))
+    child.start()
+    found = queue.get(timeout=60)
+    child.join(60)
+    assert found == expected and child.exitcode == 0
+
+
+LONG = """
+import equidem as eq, sys
+cell = eq.delaunay(discs=300, radius=1e-3, seed=1, periodic=True)
+simulation = eq.simulation(cell, (1e9, 0.5e9), density=2500.0, run={"duration": 1e4})
+print("begun", flush=True)
+try:
+    simulation.advance(simulation.steps)
+except KeyboardInterrupt as error:
+    print(type(error).__name__, flush=True)
+print(eq.tension_test(eq.hexagonal(columns=7, rows=7, radius=1e-3), (1e9, 0.5e9)).status)
+try:
+    while True:
+        pass
+except KeyboardInterrupt as error:
+    print(type(error).__name__)
+"""
+
+
+def test_ctrl_c_ends_a_long_computation_and_python_goes_on():
+    child = subprocess.Popen([sys.executable, "-c", LONG], stdout=subprocess.PIPE, text=True)
+    assert child.stdout.readline() == "begun\n"
+    time.sleep(0.3)
+    child.send_signal(signal.SIGINT)
+    assert child.stdout.readline() == "Interrupted\n"
+    assert child.stdout.readline() == "solved\n"
+    time.sleep(0.1)
+    child.send_signal(signal.SIGINT)  # Python has its own handler back
+    assert child.stdout.readline() == "KeyboardInterrupt\n"
+    assert child.wait(60) == 0
+
+
+@pytest.mark.skipif("EQUIDEM_SANITIZE" in os.environ, reason="sanitizers take their time to start")
+def test_the_module_is_imported_in_less_than_a_third_of_a_second_of_work():
+    used = []
+    for _ in range(3):
+        done = subprocess.run([sys.executable, "-c", "import equidem, resource;"
+                               "u = resource.getrusage(resource.RUSAGE_SELF); print(u.ru_utime + u.ru_stime)"],
+                              capture_output=True, text=True, check=True)
+        used.append(float(done.stdout))
+    print(used)
+    assert min(used) < 0.3
