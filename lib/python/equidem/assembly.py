@@ -183,7 +183,7 @@ def assembly(**keys: Any) -> Assembly:
     Examples
     --------
     >>> import equidem as eq
-    >>> len(eq.assembly(kind="square", columns=4, rows=3))
+    >>> len(eq.assembly(kind="square", columns=4, rows=3, radius=1e-3))
     12
     """
     # the reader of cases asks for springs, which the assembly does not depend on
