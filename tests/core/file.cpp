@@ -5,10 +5,12 @@
 
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -16,6 +18,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/folder_lock.hpp"
+#include "equidem/core/text.hpp"
 
 #include "support/catch.hpp"
 #include "support/fields.hpp"
@@ -161,6 +164,31 @@ TEST_CASE("the_lock_of_a_killed_process_is_gone") {
   CHECK(refusal_of([&] { FolderLock second(folder.path()); }).message.empty());
   close(ready[0]);
   close(ready[1]);
+}
+
+TEST_CASE("files_that_a_killed_process_left_half_written_are_removed_by_the_next_and_no_others") {
+  const TemporaryFolder folder;
+  const pid_t child = fork();
+  if (child == 0) {
+    std::ofstream(folder / fmt::format("case.toml.equidem.{}.part", getpid())) << "half";
+    pause();
+    _exit(0);
+  }
+  const auto left = folder / fmt::format("case.toml.equidem.{}.part", child);
+  while (!fs::exists(left)) usleep(1000);
+  const std::vector<fs::path> kept{folder / "case.toml", folder / "film.999999999.part", folder / "a.equidem.1x.part",
+                                   folder / "b.equidem..part", folder / fmt::format("c.equidem.{}.part", getpid())};
+  for (const fs::path& path : kept) std::ofstream(path) << "x";
+  { const FolderLock lock(folder.path()); }
+  CHECK(fs::exists(left));  // its process is at work
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  { const FolderLock lock(folder.path()); }
+  CHECK_FALSE(fs::exists(left));
+  for (const fs::path& path : kept) {
+    CAPTURE(path);
+    CHECK(fs::exists(path));
+  }
 }
 
 TEST_CASE("what_is_no_folder_is_not_locked") {

@@ -65,8 +65,9 @@ double error_of(const Equilibrium& state, const DegreesOfFreedom& unknowns, cons
 }
 
 Equilibrium state_of(const Problem& problem, Answer& answer) {
-  Equilibrium state = solve_equilibrium(problem.assembly, problem.springs, problem.supports, problem.loads,
-                                        {.rotation = problem.rotation, .solver = {}, .error_bound = true});
+  Equilibrium state =
+      solve_equilibrium(problem.assembly, problem.springs, problem.supports, problem.loads,
+                        {.rotation = problem.rotation, .solver = {.method = problem.method}, .error_bound = true});
   answer.bound = state.error_bound;
   answer.condition = state.condition;
   answer.residual = state.relative_residual;
@@ -103,10 +104,30 @@ Answer solve(const Problem& problem, const std::vector<double>& exact) {
   return answer;
 }
 
-Answer homogenize(const Assembly& cell, const ContactSprings& springs, Rotation rotation, const Matrix3& exact) {
+Answer solve_by_multigrid(Problem problem) {
+  Answer eliminated, answer;
+  std::vector<double> motions;
+  problem.method = SolverMethod::multifrontal;
+  answer_or_refuse(eliminated, [&] {
+    const Equilibrium state = state_of(problem, eliminated);
+    const DegreesOfFreedom unknowns = unknowns_of(problem);
+    for (const DiscMotion& m : state.motions) {
+      motions.insert(motions.end(), {m.u.x, m.u.y});
+      if (unknowns.per_disc == 3) motions.push_back(unknowns.rotation_scale * m.theta);
+    }
+  });
+  problem.method = SolverMethod::multigrid;
+  answer = solve(problem, motions);
+  answer.bound += eliminated.bound;
+  return answer;
+}
+
+Answer homogenize(const Assembly& cell, const ContactSprings& springs, Rotation rotation, const Matrix3& exact,
+                  SolverMethod method) {
   Answer answer;
   answer_or_refuse(answer, [&] {
-    const EffectiveStiffness result = effective_stiffness(cell, springs, {.rotation = rotation, .solver = {}});
+    const EffectiveStiffness result =
+        effective_stiffness(cell, springs, {.rotation = rotation, .solver = {.method = method}});
     const double size = largest_entry(exact);
     answer.error = largest_entry(result.stiffness + (-1.0) * exact) / size;
     answer.bound = result.error_bound / size;

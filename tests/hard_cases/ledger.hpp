@@ -48,14 +48,18 @@ struct Problem {
   std::vector<Support> supports;
   LoadCase loads;
   Rotation rotation = Rotation::from_scene;
+  SolverMethod method = SolverMethod::automatic;
 };
 Answer solve(const Problem& problem);
 /// Against motions (u_x, u_y[, a theta]) that are known.
 Answer solve(const Problem& problem, const std::vector<double>& exact);
+/// By multigrid against elimination, within the bounds of both together.
+Answer solve_by_multigrid(Problem problem);
 
 /// Periodic cell, against quadruple precision, or a stiffness that is known.
 Answer homogenize(const Assembly& cell, const ContactSprings& springs, Rotation rotation = Rotation::from_scene);
-Answer homogenize(const Assembly& cell, const ContactSprings& springs, Rotation rotation, const Matrix3& exact);
+Answer homogenize(const Assembly& cell, const ContactSprings& springs, Rotation rotation, const Matrix3& exact,
+                  SolverMethod method = SolverMethod::automatic);
 
 /// One case of the table: collects what its tests ask of each task, checks it, and writes a row for each task to the
 /// file that EQUIDEM_HARD_CASES names. From the first on, all cases run on as many threads as

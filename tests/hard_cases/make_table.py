@@ -23,9 +23,9 @@ Each is right to a stated accuracy, or refused with a sentence that says what to
     tests/hard_cases/make_table.py write build/release/tests/test_hard_cases [build/debug/tests/test_hard_cases] data/hard_cases.md
 
 """
-READING = """*error* is the distance from the truth: quadruple precision, a closed form, or a solution known beforehand. *bound* is what the
-program itself states, from the residual, an estimate of the condition and the rounding of the geometry. Both are relative: of all
-motions (2-norm, rotations times the mean radius), or of the largest entry of the effective stiffness. *energy* is the error of
+READING = """*error* is the distance from the truth: quadruple precision, a closed form, or a solution known beforehand; of multigrid the distance
+from elimination, and the bound is that of both. *bound* is what the program itself states, from the residual, an estimate of the
+condition and the rounding of the geometry. Both are relative: of all motions (2-norm, rotations times the mean radius), or of the largest entry of the effective stiffness. *energy* is the error of
 the ledger of energies, *heat* what a body at rest dissipates, of the elastic energy, *balance* the force that a body lacks to be
 at rest, over the largest contact force. *< floor* is a value below the round-off of the quantity that it is a share of, 1.1e-16
 (2^-53). Digits differ a little from machine to machine; that the error is within the bound, and the bound within what is

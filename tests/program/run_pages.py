@@ -58,6 +58,15 @@ class Pages(ProgramTest):
         for extension in ("png", "svg"):
             self.assertTrue((run.kept / f"integrators.{extension}").exists())
 
+    def test_solvers_are_compared_by_the_time_to_the_same_error(self):
+        def solver(method, time, error, problem):
+            return {**setting(method, time, error, problem), "values": {"memory": 2.0}}
+
+        result = {"settings": [solver("a", 1.0, 1e-7, "small"), solver("a", 2.0, 1e-13, "small"), solver("b", 3.0, 1e-13, "small"),
+                               {**solver("a", 0.0, None, "large"), "refusal": "too large"}, solver("b", 5.0, 1e-13, "large")]}
+        self.assertIn("| small | **1 s, 2 MB** | 3 s, 2 MB |\n| large | refused | **5 s, 2 MB** |", accuracy.by_size(result, 1e-6))
+        self.assertIn("| small | **2 s, 2 MB** |", accuracy.by_size(result, 1e-12))
+
     def test_the_report_of_effects_is_that_of_a_run(self):
         said = effects.report_of(self.run_of(), "run data/cases/run_pulse.toml --dry-run")
         self.assertTrue(said.startswith("effects "))

@@ -73,6 +73,18 @@ class Study(ProgramTest):
         self.check_error(equidem("study", STUDY, "--accuracy", -1), 2, "not positive")
         self.check_error(equidem("study", STUDY, "--accuracy", "inf"), 2, "--accuracy", "'inf' is not a finite number")
 
+    def test_solvers_are_compared_over_sizes(self):
+        out = self.folder / "out"
+        result = parse_json(self.check_done(equidem("study", "solvers", "--discs", "1e3", *SHORT, "--out", out, "--json", "-")).stdout)
+        self.assertEqual({row["size"] for row in result["settings"]}, {33 * 33})
+        self.assertIn("--discs 1000", result["command"])
+        timed = rows(out / "solvers_time_to_1e_06.csv")
+        self.assertEqual(len(timed), 1)
+        self.assertLess(float(timed[0]["multigrid"]), float(timed[0]["relaxation"]))
+        self.check_error(equidem("study", STUDY, "--discs", "1e3"), 2, "--discs does not belong to a study file")
+        self.check_error(equidem("study", "solvers", "--quick", "--discs", "1e3"), 2, "exclude each other")
+        self.check_error(equidem("study", "integrators", "--discs", "1e3"), 2, "takes no number of discs")
+
     def test_options_out_of_range_are_refused(self):
         for budget in ("nan", "inf", "-1", "1s", ""):
             self.check_error(equidem("study", STUDY, "--budget", budget), 2, "--budget",

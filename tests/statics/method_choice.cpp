@@ -42,7 +42,8 @@ TEST_CASE("large_samples_are_iterated_small_ones_and_slender_ones_eliminated") {
   const auto method = [&](int columns, int rows) {
     return choice(hexagonal_lattice({.columns = columns, .rows = rows}), springs).method;
   };
-  CHECK(method(30, 30) == SolverMethod::multifrontal);
+  CHECK(method(120, 120) == SolverMethod::multifrontal);
+  CHECK(method(150, 150) == SolverMethod::multigrid);
   CHECK(method(250, 250) == SolverMethod::multigrid);
   CHECK(method(30000, 3) == SolverMethod::multifrontal);
 }

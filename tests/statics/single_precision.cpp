@@ -79,6 +79,7 @@ TEST_CASE("single_precision_has_the_same_bits_for_every_number_of_threads") {
 TEST_CASE("large_factors_are_in_single_precision_by_themselves") {
   const auto solved = [](int columns, int max_refinements) {
     EquilibriumOptions options = with(FactorPrecision::automatic);
+    options.solver.method = SolverMethod::multifrontal;
     options.solver.max_refinements = max_refinements;
     return solve_equilibrium(hexagonal_lattice({.columns = columns, .rows = columns}), ContactSprings({1e9, 0.5e9}),
                              left_side, pull, options);

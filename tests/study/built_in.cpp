@@ -59,6 +59,28 @@ TEST_CASE("direct_solvers_and_the_exact_contact_are_exact") {
   }
 }
 
+TEST_CASE("multigrid_ends_within_the_accuracy_of_its_setting_or_at_round_off") {
+  for (const StudyRow& row : values_alone(built_in_study("solvers", true)).rows) {
+    if (row.setting.method != "multigrid") continue;
+    // The accuracy is that of the norm of energy; the error that of displacements.
+    const double allowed = row.setting.values.empty() ? 1e-13 : 3 * row.setting.values[0].second;
+    CAPTURE(row.setting.problem, row.setting.label(), row.errors);
+    CHECK(row.errors[0] <= allowed);
+  }
+}
+
+TEST_CASE("the_largest_block_of_the_solvers_has_the_discs_asked_for") {
+  for (const double discs : {1e4, 1e6}) {
+    std::set<double> sizes;
+    for (const StudyTask& task : built_in_study("solvers", false, discs).tasks) sizes.insert(task.setting.size);
+    CAPTURE(sizes);
+    CHECK(*sizes.begin() == Approx(1e3).epsilon(0.1));
+    CHECK(*sizes.rbegin() == Approx(discs).epsilon(0.03));
+    CHECK(sizes.size() == (discs == 1e4 ? 2 : 4));
+  }
+  CHECK_THROWS_WITH(built_in_study("integrators", false, 1e4), Catch::Contains("Leave out --discs"));
+}
+
 TEST_CASE("a_margin_of_the_neighbour_lists_changes_no_motion") {
   const Study study = built_in_study("neighbour_margin", true);
   std::set<double> energies, rebuilds;

@@ -2,10 +2,13 @@
 #include "equidem/core/file.hpp"
 
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <system_error>
+#include <vector>
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -27,6 +30,24 @@ fs::path folder_of(const fs::path& path) {
 bool is_kept(const fs::path& path) {
   std::error_code ignored;
   return fs::exists(path, ignored) && !fs::is_regular_file(fs::symlink_status(path, ignored));
+}
+
+constexpr std::string_view temporary_begin = ".equidem.", temporary_end = ".part";
+
+/// End of the name of a temporary file of this process.
+std::string temporary_suffix() {
+  return fmt::format("{}{}{}", temporary_begin, getpid(), temporary_end);
+}
+
+/// Whether temporary_suffix() of a process that has ended is the end of a name.
+bool is_abandoned(std::string_view name) {
+  const std::size_t begin = name.rfind(temporary_begin);
+  if (begin == std::string_view::npos || !name.ends_with(temporary_end)) return false;
+  const char* const number = name.data() + begin + temporary_begin.size();
+  const char* const end = name.data() + name.size() - temporary_end.size();
+  pid_t process = 0;
+  const auto read = std::from_chars(number, end, process);
+  return read.ec == std::errc() && read.ptr == end && process > 0 && kill(process, 0) != 0 && errno == ESRCH;
 }
 
 [[noreturn]] void cannot_write(const fs::path& path, const std::string& reason) {
@@ -80,7 +101,7 @@ void check_writable(const fs::path& path, bool overwrite) {
   if (!fs::is_directory(folder, ignored)) cannot_write(path, fmt::format("'{}' is not a folder", folder.string()));
   // Some file systems refuse what their permissions allow: try it. Another thread may try the same folder at the same
   // time.
-  const fs::path trial = folder / fmt::format(".equidem.{}.part", getpid());
+  const fs::path trial = folder / temporary_suffix();
   if (mkdir(trial.c_str(), 0700) != 0 && errno != EEXIST)
     cannot_write(path, fmt::format("'{}': {}", folder.string(), std::strerror(errno)));
   fs::remove(trial, ignored);
@@ -101,7 +122,7 @@ void write_file(const fs::path& path, std::string_view content, bool overwrite) 
     if (const std::string reason = write_to(path); !reason.empty()) cannot_write(path, reason);
     return;
   }
-  const fs::path temporary = path.string() + fmt::format(".{}.part", getpid());
+  const fs::path temporary = path.string() + temporary_suffix();
   if (const std::string reason = write_to(temporary); !reason.empty()) {
     fs::remove(temporary, failed);
     cannot_write(path, reason);
@@ -112,6 +133,15 @@ void write_file(const fs::path& path, std::string_view content, bool overwrite) 
     fs::remove(temporary, failed);
     cannot_write(path, reason);
   }
+}
+
+void remove_abandoned_files(const fs::path& folder) {
+  std::error_code ignored;
+  std::vector<fs::path> abandoned;
+  for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end; entry.increment(ignored)) {
+    if (is_abandoned(entry->path().filename().string())) abandoned.push_back(entry->path());
+  }
+  for (const fs::path& path : abandoned) fs::remove(path, ignored);
 }
 
 }  // namespace equidem

@@ -22,6 +22,10 @@ std::string read_file(const std::filesystem::path& path);
 ///         reason)
 void write_file(const std::filesystem::path& path, std::string_view content, bool overwrite);
 
+/// Remove the temporary files that processes which have ended since, killed in the middle of write_file, left in a
+/// folder (not below it).
+void remove_abandoned_files(const std::filesystem::path& folder);
+
 /// Fail early: the error that write_file would give, without writing.
 void check_writable(const std::filesystem::path& path, bool overwrite);
 

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -24,11 +25,13 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
     const std::string reason = std::strerror(errno);
     bad_input(fmt::format("cannot open the folder '{}'", folder.string()), reason, "Check its name and your rights");
   }
-  if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
-  close(descriptor_);
-  bad_input(fmt::format("the folder '{}' is in use", folder.string()),
-            "another process of equidem writes there, and the files of two would mix",
-            "Wait until it has ended, or choose another folder");
+  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    close(descriptor_);
+    bad_input(fmt::format("the folder '{}' is in use", folder.string()),
+              "another process of equidem writes there, and the files of two would mix",
+              "Wait until it has ended, or choose another folder");
+  }
+  remove_abandoned_files(folder);
 }
 
 FolderLock::~FolderLock() {

@@ -11,7 +11,7 @@ namespace equidem {
 /// Where the file system has no locks for folders (NFS), the folder is not locked.
 class FolderLock {
  public:
-  /// Missing folders are made.
+  /// Missing folders are made, and files that killed processes left half written in it are removed.
   /// \throws Error (bad_input) where the folder is locked already, or where it cannot be opened
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();

@@ -23,7 +23,8 @@ double bytes_in(const std::string& path) {
   return file >> bytes ? bytes : std::numeric_limits<double>::infinity();
 }
 
-/// Memory of this process, bytes: "VmRSS:" resident, "VmSize:" address space, "VmData:" data segment.
+/// Memory of this process, bytes: "VmRSS:" resident, "VmHWM:" its peak, "VmSize:" address space, "VmData:" data
+/// segment.
 double bytes_of_process(const std::string& what) {
   std::ifstream status("/proc/self/status");
   std::string word;
@@ -40,6 +41,19 @@ void return_freed_memory() {
 #if defined(__GLIBC__)
   mallopt(M_MMAP_THRESHOLD, 1 << 22);
 #endif
+}
+
+PeakMemory::PeakMemory() {
+#if defined(__GLIBC__)
+  malloc_trim(0);  // what is free already would serve the work, uncounted
+#endif
+  std::ofstream peak("/proc/self/clear_refs");
+  peak << "5" << std::flush;  // proc(5): the peak is set to what is resident now
+  before_ = peak ? bytes_of_process("VmRSS:") : std::numeric_limits<double>::quiet_NaN();
+}
+
+double PeakMemory::bytes() const {
+  return std::max(bytes_of_process("VmHWM:") - before_, 0.0);
 }
 
 double available_address_space() {

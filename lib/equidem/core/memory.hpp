@@ -18,6 +18,19 @@ double available_address_space();
 /// at their start.
 void return_freed_memory();
 
+/// Memory that a piece of work takes. One at a time: the system keeps one peak of a process.
+class PeakMemory {
+ public:
+  /// The peak begins anew.
+  PeakMemory();
+  /// The largest resident memory since construction, beyond what was resident then; not a number where the system does
+  /// not tell it.
+  [[nodiscard]] double bytes() const;
+
+ private:
+  double before_ = 0;
+};
+
 /// \param what beginning of the sentence, up to the amount: "a run of 1 000 000 discs needs about"
 /// \param remedy what the user can do
 /// \param limit bytes; 0: what is available

@@ -95,8 +95,9 @@ struct SolveEstimate {
   double discs = 0;
   double factor_nonzeros = 0;  ///< entries of L
   double factor_bytes = 0;
-  double peak_bytes = 0;  ///< factor and what lives beside it during factorization
-  double operations = 0;  ///< additions and multiplications
+  double peak_bytes = 0;          ///< factor and what lives beside it during factorization
+  double operations = 0;          ///< additions and multiplications
+  bool single_precision = false;  ///< of the factor
 };
 
 /// Treatment of zero-energy modes.

@@ -13,7 +13,8 @@ namespace {
 constexpr BuiltInStudy studies[] = {
     {"abe_lattice", "nu and G of Abe's tension test against the size of the lattice", abe_lattice_study},
     {"random_assembly", "moduli of random periodic cells against discs and seeds", random_assembly_study},
-    {"solvers", "solvers and tolerances of a block in tension, direct and by relaxation", solvers_study},
+    {"solvers", "solvers of a block in tension: direct, multigrid, relaxation; error, time and memory by size",
+     solvers_study, solvers_study_up_to},
     {"collision_laws", "laws of collision against the time step: one impact, stacked spheres", collision_laws_study},
     {"integrators", "integrators against the time step on a wave in a bonded lattice", integrators_study},
     {"ellipse_contact", "contact of ellipses: exact, sampled, enlarged as printed and mended", ellipse_contact_study},
@@ -29,10 +30,13 @@ std::span<const BuiltInStudy> built_in_studies() {
   return studies;
 }
 
-Study built_in_study(const std::string& name, bool quick) {
+Study built_in_study(const std::string& name, bool quick, double discs) {
   std::vector<std::string> names;
   for (const BuiltInStudy& study : studies) {
-    if (study.name == name) return study.make(quick);
+    if (study.name == name && discs > 0 && study.make_up_to == nullptr)
+      bad_input(fmt::format("the study '{}' takes no number of discs", name), "its sizes are fixed",
+                "Leave out --discs");
+    if (study.name == name) return discs > 0 ? study.make_up_to(discs) : study.make(quick);
     names.emplace_back(study.name);
   }
   const auto meant = nearest(name, names);

@@ -20,6 +20,7 @@ struct Setting {
   std::string problem = {};  ///< problem solved; results for one problem compete. Empty where there is only one
   std::string method = {};   ///< by what; empty where there is only one
   std::vector<std::pair<std::string, double>> values = {};  ///< what is varied, by name
+  double size = 0;                                          ///< of the problem, in what Study::size names; 0: none
   /// h > 0, smaller is finer: errors of a method of order p fall as h^p. Not a number: nothing is refined.
   double resolution = std::numeric_limits<double>::quiet_NaN();
 
@@ -93,6 +94,10 @@ struct Study {
   Truth truth = Truth::known;
   std::vector<ExpectedOrder> orders = {};
   std::vector<std::string> notes = {};  ///< sentences: what is computed, and what to make of it
+  /// Where problems differ in their size: what it counts, "discs", and the errors to which the methods are compared, by
+  /// the time of the cheapest setting of each against the size.
+  std::string size = {};
+  std::vector<double> compared = {};
   /// Equal pieces of the work of each setting, such as a step of one disc: the time of one is reported. 0: none.
   double pieces = 0;
   std::string piece = {};  ///< name of one: "disc-step"

@@ -34,6 +34,8 @@ class Run:
     def study(self, name):
         print(f"study {name}", file=sys.stderr, flush=True)
         command = [self.program, "study", name, "--overwrite", "--quiet", "--out", self.folder / name]
+        if name == "solvers" and not self.options.quick:
+            command += ["--discs", self.options.discs]
         command += ["--quick"] * self.options.quick + ["--budget", self.options.budget, "--rounds", self.options.rounds]
         self.call(command)
         return json.loads((self.folder / name / "result.json").read_text(encoding="utf-8"))
@@ -52,7 +54,7 @@ class Run:
         return f"studies/{name}.png"
 
     def command(self):
-        quick = " --quick" if self.options.quick else ""
+        quick = " --quick" if self.options.quick else f" --discs {self.options.discs}"
         return f"tools/bench/pages build/release/tools/equidem{quick} --budget {self.options.budget:g} --rounds {self.options.rounds}"
 
 

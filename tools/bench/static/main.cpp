@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Static solves side by side with CHOLMOD: bench_static --help.
+/// Static solves side by side with CHOLMOD, PETSc and hypre: bench_static --help.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -45,6 +45,7 @@ constexpr std::pair<const char*, double Measurement::*> fields[] = {
     {"analyze", &Measurement::analyze},
     {"factorize", &Measurement::factorize},
     {"solve", &Measurement::solve},
+    {"iterations", &Measurement::iterations},
     {"nonzeros", &Measurement::nonzeros},
     {"factor_bytes", &Measurement::factor_bytes},
     {"residual", &Measurement::residual},
@@ -129,34 +130,36 @@ std::vector<Series> compare(const Request& request, const std::string& kind, dou
 std::string medians(const std::vector<Series>& all) {
   using M = Measurement;
   TextTable table(
-      "solver & threads & order & analyze & factorize & solve & total, s & K & nnz(L) & stored/nnz(L) & factor, MB & "
-      "peak, MB & peak/factor & CPU & residual");
+      "solver & threads & order & analyze & factorize & solve & total, s & iterations & K & nnz(L) & stored/nnz(L) & "
+      "factor, MB & peak, MB & peak/factor & CPU & residual");
   for (const Series& s : all) {
-    const bool factor = s.median(&M::nonzeros) > 0;
+    const bool factor = s.median(&M::nonzeros) > 0, stored = s.median(&M::factor_bytes) > 0;
     table.add(
-        "{} & {} & {:.3g} & {:.3g} & {:.3g} & {:.3g} & {} & {:.3g} & {} & {} & {:.0f} & {:.0f} & {:.2f} & {:.3g} & "
-        "{:.1e}",
+        "{} & {} & {:.3g} & {:.3g} & {:.3g} & {:.3g} & {} & {} & {:.3g} & {} & {} & {} & {:.0f} & {} & {:.3g} & {:.1e}",
         s.label(), s.trial.threads, s.median(&M::order), s.median(&M::analyze), s.median(&M::factorize),
-        s.median(&M::solve), range_of(s.values(&M::total)).text("{:.3g}"), s.median(&M::assembly),
+        s.median(&M::solve), range_of(s.values(&M::total)).text("{:.3g}"),
+        s.median(&M::iterations) > 0 ? fmt::format("{:.0f}", s.median(&M::iterations)) : "-", s.median(&M::assembly),
         factor ? fmt::format("{:.3e}", s.median(&M::nonzeros)) : "-",
-        factor ? fmt::format("{:.2f}", s.median(&M::stored_over_nonzeros)) : "-", 1e-6 * s.median(&M::factor_bytes),
-        1e-6 * s.median(&M::peak_bytes), s.median(&M::peak_over_factor), s.median(&M::cpu), s.median(&M::residual));
+        factor ? fmt::format("{:.2f}", s.median(&M::stored_over_nonzeros)) : "-",
+        stored ? fmt::format("{:.0f}", 1e-6 * s.median(&M::factor_bytes)) : "-", 1e-6 * s.median(&M::peak_bytes),
+        stored ? fmt::format("{:.2f}", s.median(&M::peak_over_factor)) : "-", s.median(&M::cpu),
+        s.median(&M::residual));
   }
   return table.markdown();
 }
 
-/// equidem over CHOLMOD with its own orderings, and its methods over those before them in the list: medians of the
-/// ratios within each round.
+/// equidem over CHOLMOD with its own orderings and over algebraic multigrid, and its methods over those before them in
+/// the list: medians of the ratios within each round.
 std::string ratios(const std::vector<Series>& all) {
   using M = Measurement;
   TextTable table("of & over & threads & total & nnz(L) & peak & K / total of equidem");
   for (const Series& ours : all) {
     for (const Series& theirs : all) {
       const bool peer = theirs.trial.solver == "cholmod-metis" || theirs.trial.solver == "cholmod-amd" ||
-                        (is_ours(theirs.trial.solver) && &theirs < &ours);
+                        theirs.trial.solver.starts_with("petsc-") || (is_ours(theirs.trial.solver) && &theirs < &ours);
       if (!is_ours(ours.trial.solver) || !peer || theirs.trial.threads != ours.trial.threads) continue;
       const auto ratio = [&](auto value) { return ratio_of(ours.values(value), theirs.values(value)); };
-      const bool factors = ratio(&M::nonzeros).median > 0;
+      const bool factors = ours.median(&M::nonzeros) > 0 && theirs.median(&M::nonzeros) > 0;
       table.add("{} & {} & {} & {} & {} & {:.2f} & {:.1f} %", ours.label(), theirs.label(), ours.trial.threads,
                 ratio(&M::total).text("{:.3g}"), factors ? fmt::format("{:.3f}", ratio(&M::nonzeros).median) : "-",
                 ratio(&M::peak_bytes).median, 100 * ratio_of(ours.values(&M::assembly), ours.values(&M::total)).median);
@@ -186,7 +189,12 @@ void run(Report& report, const Request& request) {
       "With a factor in single precision, solve is conjugate gradients in double that it preconditions, down to the "
       "residual of the others. Multigrid: factorize is the set-up of the grids, solve ends at a residual of the "
       "contact "
-      "law of 1e-12; K is assembled afterwards, for the residual of the table alone. K: assembly of the stiffness "
+      "law of 1e-12; K is assembled afterwards, for the residual of the table alone. GAMG and BoomerAMG precondition "
+      "conjugate gradients "
+      "down to a residual of 1e-12 in their own recursion: factorize is their set-up; the matrix comes by a file, "
+      "which is "
+      "in their peak and CPU, not in the total. The residual of the table is computed by equidem for all. K: assembly "
+      "of the stiffness "
       "matrix, not in the total. nnz(L): lower triangle, without explicit zeros. Factor: stored of L; stored/nnz(L) "
       "counts 8 bytes an entry. Peak: of the whole process, the assembly and K included. CPU: seconds of all threads "
       "since the start of the process, the set-up of the problem included; it depends least on other load of the "
@@ -232,7 +240,9 @@ int main(int argc, char** argv) {
   for (const Solver& solver : solvers()) names.push_back(solver.name);
   request.solvers = names;
   return run_benchmark(
-      "bench_static", "Static solves side by side with CHOLMOD, each in a fresh process", argc, argv,
+      "bench_static",
+      "Static solves side by side with CHOLMOD, PETSc and hypre (where it was built), each in a fresh process", argc,
+      argv,
       [&](CLI::App& app) {
         app.add_option("--discs", request.discs, "numbers of discs")->delimiter(',')->check(CLI::PositiveNumber);
         app.add_option("--kinds", request.kinds, "assemblies")->delimiter(',')->check(CLI::IsMember(assembly_kinds()));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -12,6 +13,7 @@
 #include <utility>
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "equidem/contact/effects.hpp"
 #include "equidem/core/error.hpp"
@@ -30,6 +32,7 @@
 #include "equidem/statics/supports.hpp"
 
 #include "bench.hpp"
+#include "petsc.hpp"
 
 namespace equidem::bench {
 namespace {
@@ -228,72 +231,7 @@ double relative_residual(const Problem& problem, const StiffnessMatrix& matrix, 
   return std::sqrt(difference / size);
 }
 
-double seconds(const timeval& time) {
-  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
-
-}  // namespace
-
-const std::vector<Solver>& solvers() {
-  static const std::vector<Solver> list = {
-      {"equidem", "equidem multifrontal", "threads"},
-      {"equidem-single", "equidem multifrontal, single precision", "threads"},
-      {"equidem-multigrid", "equidem multigrid", "threads"},
-      {"cholmod-metis", "CHOLMOD, METIS on the unknowns", "BLAS threads"},
-      {"cholmod-amd", "CHOLMOD, AMD on the unknowns", "BLAS threads"},
-      {"cholmod-ours", "CHOLMOD, order of equidem", "BLAS threads"},
-  };
-  return list;
-}
-
-Measurement measure(const Trial& trial) {
-  return_freed_memory();  // as the program does
-  set_thread_count(trial.threads);
-  const Problem problem = build_problem(trial.kind, trial.discs);
-  Measurement result{.discs = static_cast<double>(problem.assembly.size()),
-                     .unknowns = static_cast<double>(problem.unknowns.unknowns)};
-  const bool iterates = trial.solver == "equidem-multigrid";
-  const ContactGraph graph(problem.assembly);
-  StiffnessMatrix matrix;
-  const auto assemble = [&] {
-    const Stopwatch watch;
-    matrix = assemble_stiffness(problem.assembly, graph, problem.springs, problem.unknowns);
-    result.assembly = watch.seconds();
-  };
-  if (!iterates) assemble();
-  std::unique_ptr<Factorization> factor;
-  if (iterates) {
-    const Stopwatch watch;
-    factor = multigrid_solver({problem.assembly, graph, problem.springs, problem.unknowns});
-    result.factorize = watch.seconds();
-  } else {
-    factor = factorize(trial.solver, problem, matrix, result);
-  }
-  if (!factor) computation_failed("the stiffness matrix is not positive definite", "", "");
-  std::vector<double> x = problem.load;
-  const Stopwatch watch;
-  if (iterates) {
-    solve_by_multigrid(problem, graph, *factor, x);
-  } else {
-    solve(problem, matrix, *factor, x);
-  }
-  result.solve = watch.seconds();
-  if (result.nonzeros == 0) result.nonzeros = factor->report().nonzeros;
-  result.factor_bytes = factor->report().bytes;
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  result.peak_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
-  result.cpu = seconds(usage.ru_utime) + seconds(usage.ru_stime);
-  if (iterates) assemble();  // for the residual alone
-  result.residual = relative_residual(problem, matrix, x);
-  return result;
-}
-
-void write_matrix_file(const std::string& path, const std::string& kind, std::int64_t discs) {
-  const Problem problem = build_problem(kind, discs);
-  const ContactGraph graph(problem.assembly);
-  const StiffnessMatrix matrix = assemble_stiffness(problem.assembly, graph, problem.springs, problem.unknowns);
-  const CompressedColumns columns = compress(matrix, problem.assembly, graph, problem.unknowns);
+void write_matrix(const std::filesystem::path& path, const Problem& problem, const CompressedColumns& columns) {
   const auto per_disc = problem.unknowns.per_disc;
   std::vector<double> load, x, y;
   std::vector<std::int32_t> component;
@@ -315,7 +253,109 @@ void write_matrix_file(const std::string& path, const std::string& kind, std::in
   put(std::vector<std::int32_t>(columns.rows.begin(), columns.rows.end()));
   for (const auto& numbers : {columns.values, load, x, y}) put(numbers);
   put(component);
-  if (!file.flush()) bad_input(fmt::format("'{}' cannot be written", path), "", "Choose another path");
+  if (!file.flush()) bad_input(fmt::format("'{}' cannot be written", path.string()), "", "Choose another path");
+}
+
+/// By another process, from a file.
+std::vector<double> solve_by_petsc(const Trial& trial, const Problem& problem, const StiffnessMatrix& matrix,
+                                   const ContactGraph& graph, Measurement& result) {
+  const CompressedColumns columns = compress(matrix, problem.assembly, graph, problem.unknowns);
+  const auto file = std::filesystem::temp_directory_path() / fmt::format("equidem_matrix_{}", getpid());
+  write_matrix(file, problem, columns);
+  const PetscSolution found = bench::solve_by_petsc(trial.solver, trial.threads, file, 1e-12);
+  std::filesystem::remove(file);
+  result.factorize = found.set_up;
+  result.solve = found.solve;
+  result.iterations = found.iterations;
+  result.peak_bytes = found.peak_bytes;
+  result.cpu = found.cpu;
+  std::vector<double> x(problem.load.size(), 0.0);
+  for (std::size_t k = 0; k < found.values.size(); ++k)
+    x[static_cast<std::size_t>(columns.component[k])] = found.values[k];
+  return x;
+}
+
+double seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+}  // namespace
+
+const std::vector<Solver>& solvers() {
+  static const std::vector<Solver> list = [] {
+    std::vector<Solver> all{
+        {"equidem", "equidem multifrontal", "threads"},
+        {"equidem-single", "equidem multifrontal, single precision", "threads"},
+        {"equidem-multigrid", "equidem multigrid", "threads"},
+        {"cholmod-metis", "CHOLMOD, METIS on the unknowns", "BLAS threads"},
+        {"cholmod-amd", "CHOLMOD, AMD on the unknowns", "BLAS threads"},
+        {"cholmod-ours", "CHOLMOD, order of equidem", "BLAS threads"},
+    };
+    if (has_petsc()) {
+      all.push_back({"petsc-gamg", "GAMG (PETSc), rigid motions", "MPI processes"});
+      all.push_back({"petsc-hypre", "BoomerAMG (hypre)", "MPI processes"});
+      all.push_back({"petsc-hypre-rigid", "BoomerAMG (hypre), rigid motions", "MPI processes"});
+    }
+    return all;
+  }();
+  return list;
+}
+
+Measurement measure(const Trial& trial) {
+  return_freed_memory();  // as the program does
+  set_thread_count(trial.threads);
+  const Problem problem = build_problem(trial.kind, trial.discs);
+  Measurement result{.discs = static_cast<double>(problem.assembly.size()),
+                     .unknowns = static_cast<double>(problem.unknowns.unknowns)};
+  const bool iterates = trial.solver == "equidem-multigrid";
+  const ContactGraph graph(problem.assembly);
+  StiffnessMatrix matrix;
+  const auto assemble = [&] {
+    const Stopwatch watch;
+    matrix = assemble_stiffness(problem.assembly, graph, problem.springs, problem.unknowns);
+    result.assembly = watch.seconds();
+  };
+  if (!iterates) assemble();
+  if (trial.solver.starts_with("petsc-")) {
+    const std::vector<double> x = solve_by_petsc(trial, problem, matrix, graph, result);
+    result.residual = relative_residual(problem, matrix, x);
+    return result;
+  }
+  std::unique_ptr<Factorization> factor;
+  if (iterates) {
+    const Stopwatch watch;
+    factor = multigrid_solver({problem.assembly, graph, problem.springs, problem.unknowns});
+    result.factorize = watch.seconds();
+  } else {
+    factor = factorize(trial.solver, problem, matrix, result);
+  }
+  if (!factor) computation_failed("the stiffness matrix is not positive definite", "", "");
+  std::vector<double> x = problem.load;
+  const Stopwatch watch;
+  if (iterates) {
+    solve_by_multigrid(problem, graph, *factor, x);
+  } else {
+    solve(problem, matrix, *factor, x);
+  }
+  result.solve = watch.seconds();
+  if (result.nonzeros == 0) result.nonzeros = factor->report().nonzeros;
+  result.factor_bytes = factor->report().bytes;
+  result.iterations = static_cast<double>(factor->report().iterations);
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  result.peak_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
+  result.cpu = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  if (iterates) assemble();  // for the residual alone
+  result.residual = relative_residual(problem, matrix, x);
+  return result;
+}
+
+void write_matrix_file(const std::string& path, const std::string& kind, std::int64_t discs) {
+  const Problem problem = build_problem(kind, discs);
+  const ContactGraph graph(problem.assembly);
+  write_matrix(path, problem,
+               compress(assemble_stiffness(problem.assembly, graph, problem.springs, problem.unknowns),
+                        problem.assembly, graph, problem.unknowns));
 }
 
 }  // namespace equidem::bench

@@ -33,6 +33,7 @@ struct Measurement {
   double analyze = 0;
   double factorize = 0;
   double solve = 0;
+  double iterations = 0;    ///< 0: a direct solver
   double nonzeros = 0;      ///< entries of L, lower triangle, without explicit zeros
   double factor_bytes = 0;  ///< stored of L
   double residual = 0;      ///< |f - K u| / |f|, 2-norms, without refinement

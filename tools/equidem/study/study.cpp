@@ -32,6 +32,7 @@ struct StudyVerb {
   std::string what;
   bool quick = false;
   bool list = false;
+  double discs = 0;
   StudyOptions options;
   std::optional<double> accuracy;
 };
@@ -49,6 +50,7 @@ std::string list_of_studies() {
 std::string command_of(const StudyVerb& verb) {
   std::string command = "equidem study " + verb.what;
   if (verb.quick) command += " --quick";
+  if (verb.discs > 0) command += fmt::format(" --discs {:g}", verb.discs);
   command += fmt::format(" --seed {} --threads {} --budget {:g} --rounds {}", verb.options.seed, thread_count(),
                          verb.options.budget, verb.options.least_rounds);
   if (verb.accuracy) command += fmt::format(" --accuracy {:g}", *verb.accuracy);
@@ -136,9 +138,11 @@ void check(const StudyVerb& verb) {
   if (verb.accuracy && !(*verb.accuracy > 0))
     bad_input(fmt::format("the accuracy {:g} is not positive", *verb.accuracy), "no computation is without error",
               "Give a positive number, such as 1e-3");
-  if (verb.quick && is_file(verb.what))
-    bad_input("--quick does not belong to a study file", "it would change nothing",
-              "Leave it out, or vary fewer values");
+  if ((verb.quick || verb.discs > 0) && is_file(verb.what))
+    bad_input(fmt::format("{} does not belong to a study file", verb.quick ? "--quick" : "--discs"),
+              "it would change nothing", "Leave it out, or vary other values");
+  if (verb.quick && verb.discs > 0)
+    bad_input("--quick and --discs exclude each other", "both choose the sizes", "Leave out one of them");
 }
 
 void refuse_all_failed(const StudyReport& report) {
@@ -188,7 +192,7 @@ int run_verb(const StudyVerb& verb) {
   set_thread_count(verb.common.threads > 0 ? verb.common.threads : 1);
   set_progress_shown(!verb.common.quiet);
   const Study study =
-      is_file(verb.what) ? study_of_file(verb.what, verb.common) : built_in_study(verb.what, verb.quick);
+      is_file(verb.what) ? study_of_file(verb.what, verb.common) : built_in_study(verb.what, verb.quick, verb.discs);
   if (verb.common.dry_run) return dry_run_study(verb, study);
   const Machine machine = this_machine();
   const std::string identity =
@@ -251,6 +255,9 @@ Run declare_study(CLI::App& command) {
   command.get_option("--threads")->description("threads; left out: one, so that times are those of one processor");
   command.add_flag("--list", verb->list, "list the built-in studies");
   command.add_flag("--quick", verb->quick, "built-in studies: fewer and smaller settings");
+  command.add_option("--discs", verb->discs, "study 'solvers': discs of the largest block; left out: 1e5")
+      ->check(number(1e3, 1e7))
+      ->type_name("N");
   command.add_option("--accuracy", verb->accuracy, "name the cheapest setting whose errors are at most X")
       ->check(finite_number())
       ->type_name("X");
@@ -272,6 +279,7 @@ Run declare_study(CLI::App& command) {
                  "\nExamples:\n"
                  "  equidem study integrators --out figures\n"
                  "  equidem study collision_laws --quick --accuracy 0.01\n"
+                 "  equidem study solvers --discs 1e6 --out figures\n"
                  "  equidem study data/cases/study_tension.toml --out figures\n"
                  "Ctrl-C keeps what is done; the same command with the same --out goes on from there.");
   return [verb] {

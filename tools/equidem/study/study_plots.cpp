@@ -181,6 +181,40 @@ BarChart time_chart(const StudyReport& report, const std::string& problem) {
   return chart;
 }
 
+std::string size_plot_name(const Study& study, double error) {
+  return fmt::format("{}_time_to_{}", study.name, plain(fmt::format("{:g}", error)));
+}
+
+/// Time of the cheapest setting of each method whose assured errors are at most `error`, against the size of the
+/// problem.
+Plot size_plot(const StudyReport& report, double error) {
+  Plot plot{.title = title_of(report.study, fmt::format("time to an error of {:g}", error)),
+            .x = {.label = report.study.size, .logarithmic = true},
+            .y = {.label = "time of computing, s", .logarithmic = true},
+            .enhanced = true};
+  for (const std::string& problem : problems_of(report.study)) {
+    for (const auto& [method, rows] : by_method(report, problem)) {
+      const StudyRow* cheapest = nullptr;
+      for (const std::size_t k : rows) {
+        const StudyRow& row = report.result.rows[k];
+        const bool reached = !std::ranges::any_of(row.assured, [error](double e) { return e > error; });
+        if (reached && (cheapest == nullptr || row.time.median < cheapest->time.median)) cheapest = &row;
+      }
+      if (cheapest == nullptr) continue;
+      auto series = std::ranges::find(plot.series, method, &Series::column);
+      if (series == plot.series.end()) {
+        plot.series.push_back(series_of(plot.series.size(), 2));
+        series = plot.series.end() - 1;
+        series->column = method;
+        series->label = literal(method);
+      }
+      series->x.push_back(cheapest->setting.size);
+      series->y.push_back(cheapest->time.median);
+    }
+  }
+  return plot;
+}
+
 bool varies_nothing(const StudyReport& report, const std::string& problem) {
   return std::ranges::all_of(report.result.rows, [&](const StudyRow& row) {
     return row.setting.problem != problem || row.setting.values.empty();
@@ -201,6 +235,7 @@ std::vector<std::string> study_plot_names(const Study& study) {
       if (!quantity.fact) names.push_back(name_of(study, problem, quantity.name));
     }
   }
+  for (const double error : study.compared) names.push_back(size_plot_name(study, error));
   return names;
 }
 
@@ -209,6 +244,10 @@ std::vector<std::pair<std::string, StudyPlot>> study_plots(const StudyReport& re
   for (const StudyFront& front : report.result.fronts)
     plots.emplace_back(name_of(report.study, front.problem, report.study.quantities[front.quantity].name),
                        error_plot(report, front));
+  for (const double error : report.study.compared) {
+    Plot plot = size_plot(report, error);
+    if (!plot.series.empty()) plots.emplace_back(size_plot_name(report.study, error), std::move(plot));
+  }
   if (!all_facts(report.study)) return plots;
   for (const std::string& problem : problems_of(report.study)) {
     if (by_method(report, problem).empty()) continue;

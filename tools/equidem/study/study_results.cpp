@@ -72,6 +72,7 @@ Results row_results(const StudyReport& report, const StudyRow& row) {
   }
   Results out;
   out.set("problem", row.setting.problem).set("method", row.setting.method).set("setting", setting);
+  if (row.setting.size > 0) out.set("size", row.setting.size);
   out.set("resolution", row.setting.resolution)
       .set("seconds/median", row.time.median)
       .set("seconds/lower_quartile", row.time.lower_quartile)

@@ -12,7 +12,8 @@
 namespace equidem {
 namespace {
 
-constexpr double few_discs = 5e4;
+// Multigrid is faster from some thousand discs on; up to here it saves less than 50 ms.
+constexpr double few_discs = 2e4;
 
 /// Discs across the shorter side of a rectangle around the sample.
 double discs_across(const Assembly& assembly) {
@@ -55,7 +56,8 @@ MethodForecast forecast(const SpringNetwork& network, int right_hand_sides) {
   // separators of a periodic cell come in pairs.
   const double entries = (60 + 40 * std::log2(across)) * unknowns * unknowns * (assembly.periodic() ? 1.4 : 1);
   const double operations = 500 * across * std::pow(unknowns, 3) * (assembly.periodic() ? 2.5 : 1);
-  constexpr double per_entry = 8e-9, per_operation = 1e-11, per_solution = 0.4e-9;  // s
+  // s, of a factor in single precision: a solution takes several steps of conjugate gradients.
+  constexpr double per_entry = 4.3e-9, per_operation = 5.2e-12, per_solution = 2e-9;
   MethodForecast result;
   result.elimination = discs * (entries * (per_entry + sides * per_solution) + operations * per_operation);
   result.elimination_bytes = discs * (entries * 4.5 + 400) + contacts * 100;

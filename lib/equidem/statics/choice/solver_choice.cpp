@@ -157,6 +157,7 @@ SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& u
   const double bytes = single ? sizeof(float) : sizeof(double);
   result.factor_bytes = bytes * symbolic.panel_entries();
   result.operations = symbolic.operations;
+  result.single_precision = single;
   // Beside the factor: update matrices on their way up, about two of the largest front and a tenth of the
   // factor; L D L^T works in whole fronts and keeps the names of its rows.
   const double front = bytes * symbolic.largest_front * symbolic.largest_front;
