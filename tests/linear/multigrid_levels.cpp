@@ -146,6 +146,22 @@ TEST_CASE("where_no_cell_is_complete_rigid_motions_stay_exact") {
   for (const Motion& motion : rigid_motions()) CHECK(largest_miss(grid, random_points(300), motion) < rounding);
 }
 
+TEST_CASE("the_place_of_a_point_seen_from_its_host_is_that_of_the_host") {
+  for (const bool periodic : {false, true}) {
+    Grid grid({.low = -3, .spacing = 2, .cells = 6, .periodic = periodic},
+              {.low = 1, .spacing = 1.5, .cells = 5, .periodic = periodic});
+    std::vector<double> mass(grid.nodes(), 1.0);
+    mass[0] = mass[8] = 0;
+    grid.keep_nodes(mass);
+    for (const Vec2 x : random_points(200)) {
+      const Place host = grid.host(grid.place(x)), seen = grid.place_in(host.cell, x);
+      CAPTURE(periodic, x.x, x.y, host.cell, host.s, host.t, seen.s, seen.t);
+      CHECK(seen.s == Approx(host.s).margin(1e-12));
+      CHECK(seen.t == Approx(host.t).margin(1e-12));
+    }
+  }
+}
+
 TEST_CASE("forces_on_nodes_do_the_work_of_those_on_points") {
   for (const bool periodic : {false, true}) {
     Grid grid({.low = -3, .spacing = 2, .cells = 6, .periodic = periodic},

@@ -95,6 +95,24 @@ TEST_CASE("multigrid_agrees_with_elimination_on_every_kind_of_assembly") {
   }
 }
 
+TEST_CASE("the_error_of_a_solution_is_within_its_estimate_and_the_rounding_of_the_matrix") {
+  constexpr double rounding = 2e-6;  // of the matrix in single precision, in the norm of energy
+  for (const HeldScene& scene : held_scenes()) {
+    if (scene.springs.any_negative()) continue;
+    const Network system(scene.assembly(), scene.springs, scene.supports, scene.options.rotation);
+    std::vector<double> x = random_vector(system.unknowns.held.size(), 12);
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] = system.unknowns.held[k] != 0 ? 0 : x[k];
+    std::vector<double> error = system.solved(*system.elimination(), x), product_of_error(x.size());
+    const auto solver = system.multigrid({.direct_below = 0});
+    const Factorization::Energies energies = solver->solve_to(0, 0, x);
+    for (std::size_t k = 0; k < x.size(); ++k) error[k] -= x[k];
+    multiply(system.matrix, system.assembly, system.graph, error, product_of_error);
+    const double of_error = product(error, product_of_error);
+    CAPTURE(scene.name, of_error, energies.error, energies.solution);
+    CHECK(of_error <= std::max(energies.error, rounding * rounding * energies.solution));
+  }
+}
+
 TEST_CASE("iterations_stay_flat_from_1e3_to_1e5_discs") {
   for (const bool random : {false, true}) {
     std::vector<std::int64_t> iterations;

@@ -79,6 +79,12 @@ inline ContactDeformation deformation(const ContactFrame& frame, const DiscMotio
                      frame.offset_i * i.theta + frame.offset_j * j.theta);
 }
 
+/// Stretch and slip where the branch of the contact deforms by a displacement gradient, and no body turns.
+inline ContactDeformation affine_deformation(const ContactFrame& frame, Vec2 branch, const Tensor2& gradient) {
+  const Vec2 du = gradient * branch;
+  return deformation(frame, du.x, du.y, 0.0);
+}
+
 /// The contact force on disc i; its negative acts on disc j.
 inline Vec2 force_on_i(const ContactFrame& frame, const ContactForce& f) {
   return f.normal * frame.normal + f.tangential * frame.tangent();

@@ -48,9 +48,11 @@ struct EffectiveStiffness {
   double stress_asymmetry = 0;  ///< largest |s_xy - s_yx| of any unit gradient over the largest entry
 
   double relative_residual = 0;  ///< largest of the load cases
-  double condition = 0;          ///< estimate of |K| |K^-1|, each component measured by the stiffness of its row
-  /// Pa: bound on the error of an entry of `stiffness`, from residual, condition and (but for tractions) rounding of
-  /// normals and lever arms; centres, period and springs are taken as the exact numbers that they are given as.
+  /// Estimate of |K| |K^-1|, each component measured by the stiffness of its row; 0 where the method is iterative.
+  double condition = 0;
+  /// Pa: bound on the error of an entry of `stiffness`, from residual and condition, or as estimated from the
+  /// iterations, and (but for tractions) from rounding of normals and lever arms; centres, period and springs are taken
+  /// as the exact numbers that they are given as.
   double error_bound = 0;
   double hill_mandel = 0;  ///< largest |macroscopic - microscopic power| over the latter
 
@@ -68,7 +70,7 @@ struct EffectiveStiffness {
   std::int64_t unstable_modes = 0;
   std::int64_t unstable_strains = 0;  ///< negative eigenvalues of `stiffness`
   std::string solver;
-  std::int64_t iterations = 0;  ///< of all load cases and of the error bound, where the method is iterative
+  std::int64_t iterations = 0;  ///< of all load cases, where the method is iterative
   double factor_bytes = 0;
   bool single_precision = false;  ///< of the factor
   StageTimes times;

@@ -9,7 +9,6 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/statics/motion_description.hpp"
 
@@ -183,16 +182,17 @@ std::vector<Solution> SampleSolver::solve(std::span<const RightHandSide> cases, 
   // Without negative springs a motion without energy deforms no contact: mean strains do no work on it.
   const bool may_react = options_.boundary == Boundary::traction || springs().any_negative();
   for (std::size_t k = 0; may_react && k < cases.size(); ++k) check_reactions(cases[k], solutions[k]);
-  const bool estimated = solutions[0].energy_error > 0;
+  const bool estimated = solver_->iterative();
   if (!estimated) result.condition = solver_->scaled_inverse_norm(solutions[0].motion.high);
-  double residual = 0;
-  for (std::size_t k = 0; k < solutions.size(); ++k) {
-    result.relative_residual = std::max(result.relative_residual, solutions[k].relative_residual());
-    energy_error_ = std::max(energy_error_, solutions[k].energy_error);
-    if (!estimated) residual = std::max(residual, solver_->scaled_residual_bound(cases[k], solutions[k]));
+  for (const Solution& solution : solutions) {
+    result.relative_residual = std::max(result.relative_residual, solution.relative_residual());
+    energy_error_ = std::max(energy_error_, solution.energy_error);
   }
-  constexpr double safety = 10;  // the norm of the inverse is estimated from below
-  if (!estimated) energy_error_ = safety * residual * residual * result.condition;
+  if (!estimated) {
+    constexpr double safety = 10;  // the norm of the inverse is estimated from below
+    const double residual = solver_->scaled_residual_bound(cases, solutions);
+    energy_error_ = safety * residual * residual * result.condition;
+  }
   const FactorReport& report = solver_->factor().report();
   result.solver = solver_->solver_name();
   result.factor_bytes = report.bytes;
@@ -204,11 +204,10 @@ std::vector<Solution> SampleSolver::solve(std::span<const RightHandSide> cases, 
 
 void SampleSolver::check_reactions(const RightHandSide& given, const Solution& solution) const {
   if (held_motions_.components.empty()) return;
-  const auto deformations = solver_->deformations(given, solution.motion);
-  std::vector<ContactForce> forces(deformations.size());
+  std::vector<ContactForce> forces(assembly().contacts.size());
   double size = 0;
   for (std::size_t c = 0; c < forces.size(); ++c) {
-    forces[c] = linear_spring_force(springs()[c], deformations[c]);
+    forces[c] = linear_spring_force(springs()[c], solver_->deformation(given, solution.motion, c));
     size = std::max({size, std::abs(forces[c].normal), std::abs(forces[c].tangential)});
   }
   std::vector<double> internal(unknowns().held.size());
@@ -223,23 +222,23 @@ void SampleSolver::check_reactions(const RightHandSide& given, const Solution& s
   }
 }
 
-PairEnergies pair_energies(const ContactSprings& springs, const std::vector<std::vector<ContactDeformation>>& d) {
-  const auto sums = contact_sums<12>(d[0].size(), [&](std::size_t c, std::array<double, 12>& total) {
-    const SpringConstants k = springs[c];
-    std::size_t entry = 0;
-    for (int a = 0; a < 3; ++a) {
-      for (int b = a; b < 3; ++b, ++entry) {
-        total[entry] += k.kN * d[a][c].normal * d[b][c].normal;
-        total[6 + entry] += k.kT * d[a][c].tangential * d[b][c].tangential;
-      }
+void add_pair_energies(const SpringConstants& k, const ContactDeformation* deformations, double* sums) {
+  std::size_t entry = 0;
+  for (int a = 0; a < 3; ++a) {
+    for (int b = a; b < 3; ++b, ++entry) {
+      sums[entry] += k.kN * deformations[a].normal * deformations[b].normal;
+      sums[pair_sums / 2 + entry] += k.kT * deformations[a].tangential * deformations[b].tangential;
     }
-  });
+  }
+}
+
+PairEnergies pair_energies(const double* sums) {
   PairEnergies result;
   std::size_t entry = 0;
   for (int a = 0; a < 3; ++a) {
     for (int b = a; b < 3; ++b, ++entry) {
       result.normal[a][b] = result.normal[b][a] = sums[entry];
-      result.tangential[a][b] = result.tangential[b][a] = sums[6 + entry];
+      result.tangential[a][b] = result.tangential[b][a] = sums[pair_sums / 2 + entry];
     }
   }
   return result;

@@ -65,9 +65,12 @@ struct PairEnergies {
   Matrix3 normal{}, tangential{};
 };
 
-/// \param deformations per load case (the first three count), per contact, m
-PairEnergies pair_energies(const ContactSprings& springs,
-                           const std::vector<std::vector<ContactDeformation>>& deformations);
+/// Entries of both matrices, which are symmetric.
+inline constexpr std::size_t pair_sums = 12;
+/// Adds the terms of one contact.
+/// \param deformations by three load cases, m
+void add_pair_energies(const SpringConstants& k, const ContactDeformation* deformations, double* sums);
+PairEnergies pair_energies(const double* sums);
 
 /// Unit mean strains, and the unit mean rotation where discs cannot turn. Fills the stiffness, its parts, the
 /// unsymmetric tensor, the fluctuations and the error bound (without rounding) of `result`.

@@ -28,19 +28,35 @@ double power_difference(const std::vector<Tensor2>& stresses, const Matrix3& sti
   return largest / largest_entry(stiffness);
 }
 
-/// Bound, N, on the error of an energy of two cases by rounding of normals and lever arms: the motion is stationary, so
-/// that the change of sum kN dn_a dn_b + kT ds_a ds_b is that of the deformations of given motions.
-double rounding_of_energies(const SampleSolver& solver, const std::vector<Solution>& solutions,
-                            const std::vector<std::vector<ContactDeformation>>& deformations) {
+/// Sums over the contacts of the part that carries load.
+struct StrainSums {
+  PairEnergies energies;
+  std::vector<Tensor2> stresses;  ///< of each case, times the area
+  /// Bound, N, on the error of an energy of two cases by rounding of normals and lever arms: the motion is stationary,
+  /// so that the change of sum kN dn_a dn_b + kT ds_a ds_b is that of the deformations of given motions.
+  double rounding = 0;
+};
+
+StrainSums sum_up(const SampleSolver& solver, const std::vector<RightHandSide>& cases,
+                  const std::vector<Solution>& solutions) {
+  constexpr std::size_t most_cases = std::size(unit_gradients), first_stress = pair_sums;
   const Assembly& assembly = solver.assembly();
   const auto b = static_cast<std::size_t>(solver.unknowns().per_disc);
   const double scale = solver.unknowns().rotation_scale;
   const auto reach = [](double lever, double offset) { return std::abs(lever) + std::abs(offset); };
-  const auto sum = contact_sums<1>(assembly.contacts.size(), [&](std::size_t c, std::array<double, 1>& total) {
+  using Sums = std::array<double, first_stress + 4 * most_cases + 1>;
+  const Sums sums = contact_sums<std::tuple_size_v<Sums>>(assembly.contacts.size(), [&](std::size_t c, Sums& total) {
     const Contact& contact = assembly.contacts[c];
     const ContactFrame frame = frame_of(assembly, c);
-    double force = 0, distance = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
+    std::array<ContactDeformation, most_cases> deformations;
+    double largest_force = 0, distance = 0;
+    for (std::size_t k = 0; k < cases.size(); ++k) {
+      deformations[k] = solver.solver().deformation(cases[k], solutions[k].motion, c);
+      const ContactForce force = linear_spring_force(solver.springs()[c], deformations[k]);
+      const Tensor2 work = force_by_branch(frame, force);
+      const double entries[] = {work.xx, work.xy, work.yx, work.yy};
+      for (std::size_t e = 0; e < 4; ++e) total[first_stress + 4 * k + e] += entries[e];
+      if (k >= 3) continue;
       const double *u_i = &solutions[k].motion.high[contact.i * b], *u_j = &solutions[k].motion.high[contact.j * b];
       const double rolled = b == 3 ? (reach(frame.lever_i, frame.offset_i) * std::abs(u_i[2]) +
                                       reach(frame.lever_j, frame.offset_j) * std::abs(u_j[2])) /
@@ -48,12 +64,19 @@ double rounding_of_energies(const SampleSolver& solver, const std::vector<Soluti
                                    : 0;
       distance = std::max(distance, rolled + norm(unit_gradients[k] * assembly.branch(contact) +
                                                   Vec2{u_j[0] - u_i[0], u_j[1] - u_i[1]}));
-      const auto f = linear_spring_force(solver.springs()[c], deformations[k][c]);
-      force = std::max(force, std::abs(f.normal) + std::abs(f.tangential));
+      largest_force = std::max(largest_force, std::abs(force.normal) + std::abs(force.tangential));
     }
-    total[0] += normal_rounding(assembly, contact) * force * distance;
+    add_pair_energies(solver.springs()[c], deformations.data(), total.data());
+    total.back() += normal_rounding(assembly, contact) * largest_force * distance;
   });
-  return 2 * std::numeric_limits<double>::epsilon() * sum[0];
+  StrainSums result{.energies = pair_energies(sums.data()),
+                    .stresses = {},
+                    .rounding = 2 * std::numeric_limits<double>::epsilon() * sums.back()};
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    const double* stress = &sums[first_stress + 4 * k];
+    result.stresses.push_back({stress[0], stress[1], stress[2], stress[3]});
+  }
+  return result;
 }
 
 /// Stresses of unit displacement gradients xx, yy, xy, yx from those of unit strains and of the unit rotation.
@@ -70,15 +93,6 @@ void keep_gradient_stiffness(const std::vector<Tensor2>& stresses, EffectiveStif
   result.stress_asymmetry = asymmetric / largest_entry(result.gradient_stiffness);
 }
 
-/// Stiffness of the part that carries load, over the area of the whole.
-Tensor2 mean_stress(const SampleSolver& solver, const std::vector<ContactDeformation>& deformations, double area) {
-  std::vector<ContactForce> forces(deformations.size());
-  for (std::size_t c = 0; c < forces.size(); ++c) {
-    forces[c] = linear_spring_force(solver.springs()[c], deformations[c]);
-  }
-  return (solver.assembly().area() / area) * macroscopic_stress(solver.assembly(), forces);
-}
-
 }  // namespace
 
 void solve_strains(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options,
@@ -89,24 +103,19 @@ void solve_strains(const Assembly& assembly, const ContactSprings& springs, cons
   const bool turned = result.effects.restrained;
   std::vector<RightHandSide> cases(turned ? 4 : 3);
   for (std::size_t k = 0; k < cases.size(); ++k) {
-    cases[k].imposed = affine_deformations(solver.assembly(), unit_gradients[k], 0);
+    cases[k].gradient = unit_gradients[k];
   }
   const std::vector<Solution> solutions = solver.solve(cases, result);
 
   Stopwatch watch;
-  std::vector<std::vector<ContactDeformation>> deformations;
-  std::vector<Tensor2> stresses;
-  for (std::size_t k = 0; k < cases.size(); ++k) {
-    deformations.push_back(solver.solver().deformations(cases[k], solutions[k].motion));
-    stresses.push_back(mean_stress(solver, deformations[k], result.area));
-  }
-  const PairEnergies energies = pair_energies(solver.springs(), deformations);
-  result.normal_part = (1 / result.area) * energies.normal;
-  result.tangential_part = (1 / result.area) * energies.tangential;
+  StrainSums sums = sum_up(solver, cases, solutions);
+  for (Tensor2& stress : sums.stresses) stress *= 1 / result.area;
+  result.normal_part = (1 / result.area) * sums.energies.normal;
+  result.tangential_part = (1 / result.area) * sums.energies.tangential;
   result.stiffness = result.normal_part + result.tangential_part;
-  result.error_bound = (solver.energy_error() + rounding_of_energies(solver, solutions, deformations)) / result.area;
-  result.hill_mandel = power_difference(stresses, result.stiffness);
-  keep_gradient_stiffness(stresses, result);
+  result.error_bound = (solver.energy_error() + sums.rounding) / result.area;
+  result.hill_mandel = power_difference(sums.stresses, result.stiffness);
+  keep_gradient_stiffness(sums.stresses, result);
   for (std::size_t k = 0; k < 3; ++k) {
     result.fluctuations.push_back(solver.motions_of_whole(solutions[k].motion));
   }

@@ -72,6 +72,12 @@ Tensor2 average_stress(const Assembly& assembly, std::span<const Tensor2> stress
   return (1 / area) * sum;
 }
 
+Tensor2 force_by_branch(const ContactFrame& frame, const ContactForce& f) {
+  const Vec2 force = force_on_i(frame, f);
+  return frame.offset_i != 0 || frame.offset_j != 0 ? outer(force, arm_of_i(frame) + arm_to_j(frame))
+                                                    : (frame.lever_i + frame.lever_j) * outer(force, frame.normal);
+}
+
 Tensor2 macroscopic_stress(const Assembly& assembly, std::span<const ContactForce> forces) {
   assert(forces.size() == assembly.contacts.size());
   const double area = assembly.area();
@@ -82,11 +88,7 @@ Tensor2 macroscopic_stress(const Assembly& assembly, std::span<const ContactForc
   parallel_tasks(partial.size(), [&](std::size_t task, int) {
     const std::size_t end = std::min(forces.size(), (task + 1) * block);
     for (std::size_t c = task * block; c < end; ++c) {
-      const ContactFrame frame = frame_of(assembly, c);
-      const Vec2 force = force_on_i(frame, forces[c]);
-      partial[task] += frame.offset_i != 0 || frame.offset_j != 0
-                           ? outer(force, arm_of_i(frame) + arm_to_j(frame))
-                           : (frame.lever_i + frame.lever_j) * outer(force, frame.normal);
+      partial[task] += force_by_branch(frame_of(assembly, c), forces[c]);
     }
   });
   return (1 / area) * std::accumulate(partial.begin(), partial.end(), Tensor2{});

@@ -29,6 +29,9 @@ std::vector<Tensor2> disc_stresses(const Assembly& assembly, std::span<const Con
 Tensor2 average_stress(const Assembly& assembly, std::span<const Tensor2> stresses,
                        const std::function<bool(std::size_t disc)>& inside);
 
+/// The force on i times the branch of a contact, N: its part of the stress times the area.
+Tensor2 force_by_branch(const ContactFrame& frame, const ContactForce& f);
+
 /// Stress of the whole assembly, Pa: the average of the stresses of all discs. Where the levers of each contact add
 /// up to its branch it is also the stress of the outer forces f on the discs, (1/A) sum f_i x_j.
 Tensor2 macroscopic_stress(const Assembly& assembly, std::span<const ContactForce> forces);

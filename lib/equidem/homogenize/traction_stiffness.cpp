@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include <array>
+#include <cstddef>
+
+#include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/homogenize/sample_solver.hpp"
 
@@ -71,9 +75,15 @@ void solve_tractions(const Assembly& assembly, const ContactSprings& springs, co
   const std::vector<Solution> solutions = solver.solve(cases, result);
 
   Stopwatch watch;
-  std::vector<std::vector<ContactDeformation>> deformations;
-  for (int k = 0; k < 3; ++k) deformations.push_back(solver.solver().deformations(cases[k], solutions[k].motion));
-  const PairEnergies inside = pair_energies(solver.springs(), deformations);
+  const PairEnergies inside = pair_energies(
+      contact_sums<pair_sums>(solver.assembly().contacts.size(), [&](std::size_t c,
+                                                                     std::array<double, pair_sums>& sums) {
+        std::array<ContactDeformation, 3> deformations;
+        for (std::size_t k = 0; k < 3; ++k) {
+          deformations[k] = solver.solver().deformation(cases[k], solutions[k].motion, c);
+        }
+        add_pair_energies(solver.springs()[c], deformations.data(), sums.data());
+      }).data());
   const PairEnergies cut = energies_of_cuts(assembly, springs, sample);
   const Matrix3 stored = inside.normal + inside.tangential;
   Matrix3 compliance = cut.normal + cut.tangential;

@@ -42,7 +42,7 @@ class Factorization {
     double solution = 0;  ///< x.K x
     double error = 0;     ///< e.K e of the error e, estimated; 0 where the solution is exact
   };
-  /// x := K^-1 x where that is cheaper only until e.K e <= accuracy² max(x.K x, energy).
+  /// x := K^-1 x where that is cheaper only until e.K e <= accuracy² max(x.K x, energy); accuracy 0: as solve does.
   virtual Energies solve_to(double accuracy, double energy, std::span<double> x) const {
     static_cast<void>(accuracy), static_cast<void>(energy);
     solve(x, 1);

@@ -2,9 +2,12 @@
 #include "equidem/linear/rigid_growth.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
+
+#include "equidem/core/ordered_sums.hpp"
 
 namespace equidem {
 namespace {
@@ -18,9 +21,16 @@ class RigidGrowth {
     for (std::size_t d = 0; d < discs_.size(); ++d) {
       if (discs_[d].cluster < 0) grow_from(static_cast<std::int32_t>(d));
     }
-    return std::all_of(assembly_.contacts.begin(), assembly_.contacts.end(), [&](const Contact& c) {
-      return discs_[c.i].cluster >= 0 && discs_[c.i].cluster == discs_[c.j].cluster;
-    });
+    constexpr std::size_t contacts_at_once = 1 << 14;
+    return sums_over<1>(assembly_.contacts.size(), contacts_at_once, [&](std::size_t begin, std::size_t end) {
+             const auto inside = [&](const Contact& c) {
+               return discs_[c.i].cluster >= 0 && discs_[c.i].cluster == discs_[c.j].cluster;
+             };
+             const auto first = assembly_.contacts.begin();
+             const bool all = std::all_of(first + static_cast<std::ptrdiff_t>(begin),
+                                          first + static_cast<std::ptrdiff_t>(end), inside);
+             return std::array{all ? 0.0 : 1.0};
+           })[0] == 0;
   }
 
  private:
@@ -79,12 +89,13 @@ class RigidGrowth {
   void grow(std::vector<Neighbour> members) {
     const std::int32_t cluster = clusters_++;
     for (const Neighbour& m : members) discs_[m.disc] = {cluster, cluster, m.image, {}};
-    for (std::size_t next = 0; next < members.size(); ++next) {
-      for (const auto& edge : graph_.of(members[next].disc)) {
-        if (!joins(edge)) continue;
-        const Neighbour n = across(members[next].disc, members[next].image, edge);
-        Disc& disc = discs_[n.disc];
-        if (disc.cluster >= 0) continue;
+    while (!members.empty()) {  // the last one first: its neighbours are near in memory
+      const auto [here, image, direction] = members.back();
+      members.pop_back();
+      for (const auto& edge : graph_.of(here)) {
+        Disc& disc = discs_[edge.other];
+        if (disc.cluster >= 0 || !joins(edge)) continue;
+        const Neighbour n = across(here, image, edge);
         if (disc.touches != cluster) {
           disc = {-1, cluster, n.image, n.direction};
         } else if (disc.image == n.image && apart(disc.normal, n.direction)) {

@@ -150,7 +150,7 @@ Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) 
   result.iterations = solver.factor().report().iterations - iterations_before;
   if (solution.scale > 0) result.rounded_residual = solver.rounded_residual(given, solution.motion) / solution.scale;
   result.times.add("refine", watch.lap());
-  if (solution.energy_error > 0) {
+  if (options.solver.accuracy > 0 && solution.energy_error > 0) {
     result.error_bound = std::sqrt(solution.energy_error / solver.twice_energy(solution.motion.high));
   } else if (options.error_bound) {
     bound_error(given, solution, result);

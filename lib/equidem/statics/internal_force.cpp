@@ -2,6 +2,7 @@
 #include "equidem/statics/internal_force.hpp"
 
 #include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/threads.hpp"
 
 namespace equidem {
@@ -11,9 +12,9 @@ constexpr std::size_t grain = 1 << 13;
 
 using Extended = long double;  // 64 bits of mantissa on x86, more elsewhere
 
-/// Stretch and slip of a contact by the motion, and those imposed.
+/// Stretch and slip of a contact by the motion and by the mean displacement gradient.
 DeformationOf<Extended> evaluate(const Contact& contact, const ContactFrame& frame, const DegreesOfFreedom& unknowns,
-                                 const PreciseMotion& motion, const ContactDeformation& imposed = {}) {
+                                 const PreciseMotion& motion, const ContactDeformation& affine = {}) {
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
   const std::size_t i = contact.i * b, j = contact.j * b;
   const auto difference = [&](std::size_t c) {
@@ -32,19 +33,34 @@ DeformationOf<Extended> evaluate(const Contact& contact, const ContactFrame& fra
       opening = (frame.offset_i * turn_i + frame.offset_j * turn_j) / unknowns.rotation_scale;
   }
   const auto d = deformation(frame, difference(0), difference(1), turn, opening);
-  return {d.normal + imposed.normal, d.tangential + imposed.tangential};
+  return {d.normal + affine.normal, d.tangential + affine.tangential};
+}
+
+ContactDeformation affine_part(const Assembly& assembly, const Contact& contact, const ContactFrame& frame,
+                               const std::optional<Tensor2>& gradient) {
+  return gradient ? affine_deformation(frame, assembly.branch(contact), *gradient) : ContactDeformation{};
 }
 
 }  // namespace
 
 void PreciseMotion::add(std::span<const double> correction) {
-  for (std::size_t k = 0; k < high.size(); ++k) {
-    const double add = low[k] + correction[k];
-    const double sum = high[k] + add;
-    const double rounded = sum - high[k];  // two-sum (Knuth): exact remainder of high + add
-    low[k] = (high[k] - (sum - rounded)) + (add - rounded);
-    high[k] = sum;
-  }
+  const bool simple =
+      low.empty() && sums_over<1>(high.size(), grain, [&](std::size_t begin, std::size_t end) {
+                       const auto both = [&](std::size_t k) { return high[k] != 0 && correction[k] != 0; };
+                       std::size_t k = begin;
+                       while (k < end && !both(k)) ++k;
+                       return std::array{k < end ? 1.0 : 0.0};
+                     })[0] == 0;
+  if (!simple) low.resize(high.size(), 0.0);
+  parallel_ranges(high.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const double add = simple ? correction[k] : low[k] + correction[k];
+      const double sum = high[k] + add;
+      const double rounded = sum - high[k];  // two-sum (Knuth): exact remainder of high + add
+      if (!simple) low[k] = (high[k] - (sum - rounded)) + (add - rounded);
+      high[k] = sum;
+    }
+  });
 }
 
 void contact_forces_of(const Assembly& assembly, const ContactSprings& springs, const DegreesOfFreedom& unknowns,
@@ -59,22 +75,16 @@ void contact_forces_of(const Assembly& assembly, const ContactSprings& springs, 
 }
 
 ContactDeformation deformation_of(const SpringNetwork& network, const PreciseMotion& motion,
-                                  std::span<const ContactDeformation> imposed, std::size_t contact) {
-  const auto d = evaluate(network.assembly.contacts[contact], frame_of(network.assembly, contact), network.unknowns,
-                          motion, imposed.empty() ? ContactDeformation{} : imposed[contact]);
+                                  const std::optional<Tensor2>& gradient, std::size_t number) {
+  const Contact& contact = network.assembly.contacts[number];
+  const ContactFrame frame = frame_of(network.assembly, number);
+  const auto d =
+      evaluate(contact, frame, network.unknowns, motion, affine_part(network.assembly, contact, frame, gradient));
   return {static_cast<double>(d.normal), static_cast<double>(d.tangential)};
 }
 
-void deformations_of(const SpringNetwork& network, const PreciseMotion& motion,
-                     std::span<const ContactDeformation> imposed, std::span<ContactDeformation> deformations) {
-  parallel_ranges(network.assembly.contacts.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) deformations[c] = deformation_of(network, motion, imposed, c);
-  });
-}
-
-void residual_force(const SpringNetwork& network, const PreciseMotion& motion,
-                    std::span<const ContactDeformation> imposed, std::span<const double> f,
-                    std::span<double> residual) {
+void residual_force(const SpringNetwork& network, const PreciseMotion& motion, const std::optional<Tensor2>& gradient,
+                    std::span<const double> f, std::span<double> residual) {
   const auto& assembly = network.assembly;
   const auto& graph = network.graph;
   const auto& springs = network.springs;
@@ -88,7 +98,7 @@ void residual_force(const SpringNetwork& network, const PreciseMotion& motion,
         const ContactFrame frame = frame_of(assembly, static_cast<std::size_t>(edge.contact));
         const auto force = linear_spring_force(
             springs[edge.contact],
-            evaluate(contact, frame, unknowns, motion, imposed.empty() ? ContactDeformation{} : imposed[edge.contact]));
+            evaluate(contact, frame, unknowns, motion, affine_part(assembly, contact, frame, gradient)));
         const Vec2 n = frame.normal;
         const Extended fx = force.normal * n.x - force.tangential * n.y;
         const Extended fy = force.normal * n.y + force.tangential * n.x;

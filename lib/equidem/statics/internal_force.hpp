@@ -3,6 +3,7 @@
 /// The force that the contacts exert, evaluated from the contact law itself.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,19 +23,15 @@ struct PreciseMotion {
   std::vector<double> high;
   std::vector<double> low;  ///< empty: 0
 
-  explicit PreciseMotion(std::size_t components) : high(components, 0.0), low(components, 0.0) {}
+  explicit PreciseMotion(std::size_t components) : high(components, 0.0) {}
   /// Add a correction, keeping the digits that a sum in one double would lose.
   void add(std::span<const double> correction);
 };
 
-/// Stretch and slip of a contact: those of the motion, from differences in extended precision, and those imposed.
-/// \param imposed per contact, or empty
+/// Stretch and slip of a contact by the motion, from differences in extended precision, and by a mean strain.
+/// \param gradient of the mean displacement (affine_deformation); none: 0
 ContactDeformation deformation_of(const SpringNetwork& network, const PreciseMotion& motion,
-                                  std::span<const ContactDeformation> imposed, std::size_t contact);
-
-/// Computes the stretch and slip of every contact, as deformation_of does.
-void deformations_of(const SpringNetwork& network, const PreciseMotion& motion,
-                     std::span<const ContactDeformation> imposed, std::span<ContactDeformation> deformations);
+                                  const std::optional<Tensor2>& gradient, std::size_t contact);
 
 /// Force of every contact, from the differences of the motion of its discs, evaluated in extended precision: a disc
 /// that has turned far stretches its contacts by small differences of large products.
@@ -47,10 +44,10 @@ void internal_force(const Assembly& assembly, const ContactGraph& graph, const D
 
 /// Residual force f - f_int(motion) on free components, 0 on held ones.
 /// Stretch, slip, forces and their sums are all evaluated in extended precision.
-/// \param imposed deformation of each contact beside that of the motion; empty: none
+/// \param gradient as in deformation_of
 /// \param f per component; empty: no load
-void residual_force(const SpringNetwork& network, const PreciseMotion& motion,
-                    std::span<const ContactDeformation> imposed, std::span<const double> f, std::span<double> residual);
+void residual_force(const SpringNetwork& network, const PreciseMotion& motion, const std::optional<Tensor2>& gradient,
+                    std::span<const double> f, std::span<double> residual);
 
 /// Moment that contacts exert on each disc about its centre, N.
 std::vector<double> contact_moments(const Assembly& assembly, std::span<const ContactForce> forces);

@@ -14,6 +14,7 @@
 #include "equidem/core/progress.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/linear/large_buffer.hpp"
 #include "equidem/linear/rigid_growth.hpp"
 #include "equidem/statics/choice/method_choice.hpp"
 #include "equidem/statics/motion_description.hpp"
@@ -21,6 +22,11 @@
 #include "equidem/statics/precision/refinement.hpp"
 
 namespace equidem {
+namespace {
+
+constexpr std::size_t components_at_once = 1 << 14;
+
+}  // namespace
 
 StiffnessSolver::StiffnessSolver(const Assembly& assembly, const ContactSprings& springs, ContactGraph graph,
                                  DegreesOfFreedom unknowns, const SolverOptions& options, Mechanisms mechanisms,
@@ -137,16 +143,18 @@ void StiffnessSolver::judge_inertia() {
 }
 
 double StiffnessSolver::norm_of_free(std::span<const double> x) const {
-  double sum = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    if (unknowns_.held[k] == 0) sum += x[k] * x[k];
-  }
-  return std::sqrt(sum);
+  return std::sqrt(sums_over<1>(x.size(), components_at_once, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      if (unknowns_.held[k] == 0) sum += x[k] * x[k];
+    }
+    return std::array{sum};
+  })[0]);
 }
 
 void StiffnessSolver::evaluate_residual(const RightHandSide& given, const PreciseMotion& motion,
                                         std::span<double> residual) const {
-  residual_force({assembly_, graph_, springs_, unknowns_}, motion, given.imposed, given.force, residual);
+  residual_force({assembly_, graph_, springs_, unknowns_}, motion, given.gradient, given.force, residual);
 }
 
 bool StiffnessSolver::refine(std::span<const RightHandSide> cases, double good_enough, std::vector<Solution>* solutions,
@@ -154,13 +162,13 @@ bool StiffnessSolver::refine(std::span<const RightHandSide> cases, double good_e
   constexpr int steps_for_one = 8;  // of conjugate gradients with a factor in single precision
   const bool single = factor_->report().single_precision;
   const std::size_t n = unknowns_.held.size();
-  std::vector<double> x(n * cases.size());
+  LargeVector<double> x(n * cases.size());
   const auto column = [&](std::size_t k) { return std::span(x).subspan(k * n, n); };
   std::vector<Refinement> all;
   all.reserve(cases.size());
   for (std::size_t k = 0; k < cases.size(); ++k) all.emplace_back(*this, cases[k], column(k), good_enough);
   Stopwatch watch;
-  if (options_.accuracy > 0 && entry_of(method_).back_end.iterative) {
+  if (options_.accuracy > 0 && iterative()) {
     for (std::size_t k = 0; k < all.size(); ++k) {
       if (!all[k].done) all[k].solve_to(options_.accuracy, column(k));
     }
@@ -178,7 +186,11 @@ bool StiffnessSolver::refine(std::span<const RightHandSide> cases, double good_e
       open.push_back(&all[k]);
     }
     if (open.empty()) break;
-    factor_->solve(std::span(x).first(open.size() * n), static_cast<int>(open.size()));
+    if (iterative()) {
+      for (std::size_t k = 0; k < open.size(); ++k) open[k]->energies = factor_->solve_to(0, 0, column(k));
+    } else {
+      factor_->solve(std::span(x).first(open.size() * n), static_cast<int>(open.size()));
+    }
     for (std::size_t k = open.size(); k-- > 0;) {
       const auto position = static_cast<std::size_t>(open[k] - all.data());
       if (position != k) std::ranges::copy(column(k), column(position).begin());
@@ -201,14 +213,18 @@ bool StiffnessSolver::refine(std::span<const RightHandSide> cases, double good_e
 
 std::vector<Solution> StiffnessSolver::solve(std::span<const RightHandSide> cases, StageTimes& times) const {
   const auto attempt = [&](std::vector<Solution>& solutions) {
-    return refine(cases, entry_of(method_).back_end.good_enough, &solutions, times);
+    const double good_enough = entry_of(method_).back_end.good_enough;
+    if (!iterative()) return refine(cases, good_enough, &solutions, times);
+    // One after another: vectors of one take as much memory as the grids.
+    for (std::size_t k = 0; k < cases.size(); ++k) refine(cases.subspan(k, 1), good_enough, &solutions, times);
+    return true;
   };
   std::vector<Solution> solutions;
   try {
     if (attempt(solutions)) return solutions;
     factorize_in_double("refinement did not converge", times);
   } catch (const Error& error) {
-    if (method_ == options_.method || !entry_of(method_).back_end.iterative) throw;
+    if (method_ == options_.method || !iterative()) throw;
     eliminate_instead(error, times);
   }
   solutions.clear();
@@ -224,11 +240,9 @@ double StiffnessSolver::rounded_residual(const RightHandSide& given, const Preci
   return norm_of_free(residual);
 }
 
-std::vector<ContactDeformation> StiffnessSolver::deformations(const RightHandSide& given,
-                                                              const PreciseMotion& motion) const {
-  std::vector<ContactDeformation> result(assembly_.contacts.size());
-  deformations_of({assembly_, graph_, springs_, unknowns_}, motion, given.imposed, result);
-  return result;
+ContactDeformation StiffnessSolver::deformation(const RightHandSide& given, const PreciseMotion& motion,
+                                                std::size_t contact) const {
+  return deformation_of({assembly_, graph_, springs_, unknowns_}, motion, given.gradient, contact);
 }
 
 double StiffnessSolver::twice_energy(std::span<const double> x) const {
@@ -277,7 +291,7 @@ SoftestMotion StiffnessSolver::iterate_inverse(std::span<const double> start, st
   // rough, softer, too. The quotient of Rayleigh does not depend on them; for an exact factor it is at least the growth
   // of the last pass.
   const double stiffness = springs_.any_negative() ? 0 : twice_energy(x);
-  const bool rough = factor_->report().single_precision || entry_of(method_).back_end.iterative;
+  const bool rough = factor_->report().single_precision || iterative();
   if (stiffness > 0) result.inverse_norm = std::max(rough ? 0.0 : result.inverse_norm, 1 / stiffness);
   result.motion = std::move(x);
   return result;
@@ -293,7 +307,8 @@ double StiffnessSolver::scaled_residual(const RightHandSide& given, const Precis
   return norm_of_free(residual);
 }
 
-double StiffnessSolver::scaled_residual_bound(const RightHandSide& given, const Solution& solution) const {
+double StiffnessSolver::scaled_residual_bound(std::span<const RightHandSide> cases,
+                                              std::span<const Solution> solutions) const {
   const std::vector<double> rows = row_sums();
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -302,8 +317,13 @@ double StiffnessSolver::scaled_residual_bound(const RightHandSide& given, const 
     most = std::max(most, rows[k]);
   }
   constexpr double alike = 100;
-  if (!(least > 0) || most > alike * least) return scaled_residual(given, solution.motion);
-  return solution.residual / std::sqrt(least);
+  const bool each = !(least > 0) || most > alike * least;
+  double largest = 0;
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    largest = std::max(
+        largest, each ? scaled_residual(cases[k], solutions[k].motion) : solutions[k].residual / std::sqrt(least));
+  }
+  return largest;
 }
 
 double normal_rounding(const Assembly& assembly, const Contact& contact) {
@@ -328,12 +348,12 @@ double StiffnessSolver::rounding_work(const RightHandSide& given, const PreciseM
       const auto distance = [&](std::span<const double> x) {
         return equidem::norm(Vec2{x[j] - x[i], x[j + 1] - x[i + 1]});
       };
-      const auto force = [&](const PreciseMotion& m, std::span<const ContactDeformation> imposed) {
-        const auto f = linear_spring_force(springs_[c], deformation_of(network, m, imposed, c));
+      const auto force = [&](const PreciseMotion& m, const std::optional<Tensor2>& gradient) {
+        const auto f = linear_spring_force(springs_[c], deformation_of(network, m, gradient, c));
         return std::abs(f.normal) + std::abs(f.tangential);
       };
       work += rounding * normal_rounding(assembly_, contact) *
-              (distance(motion.high) * force(other, {}) + distance(v) * force(motion, given.imposed));
+              (distance(motion.high) * force(other, {}) + distance(v) * force(motion, given.gradient));
     }
     return std::array{work};
   })[0];

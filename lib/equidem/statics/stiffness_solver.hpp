@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,21 +24,20 @@
 
 namespace equidem {
 
-/// Right-hand side: loads on discs, prescribed motions of held components, deformations imposed on contacts.
+/// Right-hand side: loads on discs, prescribed motions of held components, a mean strain.
 struct RightHandSide {
-  std::vector<double> force;                ///< per component, N/m (moments over a); empty: none
-  std::vector<double> prescribed;           ///< per component, m, read where held; empty: held at 0
-  std::vector<ContactDeformation> imposed;  ///< per contact, m, in addition to that of the motion; empty: none
+  std::vector<double> force;          ///< per component, N/m (moments over a); empty: none
+  std::vector<double> prescribed;     ///< per component, m, read where held; empty: held at 0
+  std::optional<Tensor2> gradient{};  ///< of the mean displacement: all contacts deform by it beside the motion
 };
 
 /// The motion that balances one right-hand side.
 struct Solution {
   PreciseMotion motion{0};
   double residual = 0;  ///< |f - f_int|, 2-norm over the unknowns, N/m
-  double scale =
-      0;  ///< N/m, reference of relative residuals: |f| with prescribed motions and imposed deformations included
+  double scale = 0;  ///< N/m, reference of relative residuals: |f| with prescribed motions and the mean strain included
   int refinements = 0;
-  /// e.K e of the error e of the motion, N, estimated, where iterations ended at SolverOptions::accuracy; else 0.
+  /// e.K e of the error e of the motion, N, estimated from the iterations; 0 where the method is direct.
   double energy_error = 0;
 
   [[nodiscard]] double relative_residual() const { return scale > 0 ? residual / scale : 0.0; }
@@ -73,9 +73,9 @@ class StiffnessSolver {
 
   /// Residual of the motion rounded to doubles, N/m.
   [[nodiscard]] double rounded_residual(const RightHandSide& given, const PreciseMotion& motion) const;
-  /// Deformation of every contact, imposed one included.
-  [[nodiscard]] std::vector<ContactDeformation> deformations(const RightHandSide& given,
-                                                             const PreciseMotion& motion) const;
+  /// Deformation of a contact, that by the mean strain included.
+  [[nodiscard]] ContactDeformation deformation(const RightHandSide& given, const PreciseMotion& motion,
+                                               std::size_t contact) const;
   /// By inverse iteration from `start` (empty: from a fixed rough vector), which finds the softest motion that
   /// `start` has a part in.
   [[nodiscard]] SoftestMotion softest_motion(std::span<const double> start = {}) const;
@@ -83,9 +83,10 @@ class StiffnessSolver {
   /// stiff translations (small kT) are no errors: |D^-1/2 K D^-1/2| <= 1, and the energy of what a motion misses is
   /// at most scaled_residual² scaled_inverse_norm. |D^-1/2 (f - f_int)|, square root of N.
   [[nodiscard]] double scaled_residual(const RightHandSide& given, const PreciseMotion& motion) const;
-  /// As above, or where rows are alike (within a factor of 100) a bound on it at no cost: the residual over
-  /// the root of the smallest row.
-  [[nodiscard]] double scaled_residual_bound(const RightHandSide& given, const Solution& solution) const;
+  /// The largest of several solutions as above, or where rows are alike (within a factor of 100) a bound on it: the
+  /// residual over the root of the smallest row.
+  [[nodiscard]] double scaled_residual_bound(std::span<const RightHandSide> cases,
+                                             std::span<const Solution> solutions) const;
   /// |D^1/2 K^-1 D^1/2| as softest_motion finds it: a lower bound, mostly within a factor of 2; 0 where nothing is
   /// free.
   [[nodiscard]] double scaled_inverse_norm(std::span<const double> start) const;
@@ -103,6 +104,8 @@ class StiffnessSolver {
   /// Name of the method, with the reason for double precision where single precision did not serve, and for the choice
   /// of "auto" between elimination and iterations.
   [[nodiscard]] std::string solver_name() const;
+  /// Whether the method is iterative: solutions come with an estimate of their error.
+  [[nodiscard]] bool iterative() const { return entry_of(method_).back_end.iterative; }
   /// Negative eigenvalues beyond those that rotations bring by themselves where kT < 0; -1: not known.
   [[nodiscard]] std::int64_t unstable_modes() const { return unstable_modes_; }
 

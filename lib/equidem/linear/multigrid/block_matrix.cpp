@@ -3,11 +3,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace equidem::multigrid {
+namespace {
+
+constexpr double nothing = 1e-6;  // share of a diagonal entry that rounding of the entries in float may leave
+
+/// By L D L^T, where no component is a combination of those before it.
+std::optional<Block> regular_inverse(const Block& a) {
+  if (!(a[0] > 0)) return {};
+  const double d0 = 1 / a[0], l10 = a[3] * d0, l20 = a[6] * d0;
+  const double pivot1 = a[4] - l10 * a[3];
+  if (!(pivot1 > nothing * a[4])) return {};
+  const double d1 = 1 / pivot1, l21 = (a[7] - l20 * a[3]) * d1;
+  const double pivot2 = a[8] - l20 * a[6] - l21 * l21 * pivot1;
+  if (!(pivot2 > nothing * a[8])) return {};
+  const double d2 = 1 / pivot2, up = l10 * l21 - l20;
+  const double xy = -l10 * d1 - up * l21 * d2, xt = up * d2, yt = -l21 * d2;
+  return Block{d0 + l10 * l10 * d1 + up * up * d2, xy, xt, xy, d1 + l21 * l21 * d2, yt, xt, yt, d2};
+}
+
+}  // namespace
 
 Block inverse_or_zero(const Block& block) {
-  constexpr double nothing = 1e-6;  // share of a diagonal entry that rounding of the entries in float may leave
+  if (const auto inverse = regular_inverse(block)) return *inverse;
   std::array<int, 3> kept{};
   int count = 0;
   double l[3][3] = {};  // Cholesky factor of the rows kept

@@ -36,11 +36,11 @@ void add_derivative(const Shape& shape, const std::array<double, 3>& of_disc, bo
   }
 }
 
-void add_contact(const Grid& grid, const Assembly& assembly, std::size_t c, SpringConstants k,
+void add_contact(const Grid& grid, std::int32_t cell, const Assembly& assembly, std::size_t c, SpringConstants k,
                  const DegreesOfFreedom& unknowns, double* matrix) {
   const Contact& contact = assembly.contacts[c];
   const double a = unknowns.rotation_scale;
-  const Place middle = grid.host(grid.place(midpoint(assembly, contact, a)));
+  const Place middle = grid.place_in(cell, midpoint(assembly, contact, a));
   const Vec2 half = (0.5 / a) * assembly.branch(contact);
   const double s = half.x / grid.spacing().x, t = half.y / grid.spacing().y;
   DeformationGradient g = deformation_gradient(frame_of(assembly, c), a);
@@ -56,68 +56,45 @@ void add_contact(const Grid& grid, const Assembly& assembly, std::size_t c, Spri
   const Shape of_j = grid.shape({middle.cell, middle.s + s, middle.t + t});
   add_derivative(of_j, g.normal_j, b == 3, normal);
   add_derivative(of_j, g.tangential_j, b == 3, tangential);
-  const auto add_square = grid_functions().add_square;
-  add_square(k.kN, normal.data(), matrix);
-  if (k.kT != 0) add_square(k.kT, tangential.data(), matrix);
+  grid_functions().add_squares(k.kN, normal.data(), k.kT, tangential.data(), matrix);
 }
 
-/// The motion of a node by the unknowns of a coarser cell: 3 x 12.
-using NodeMotion = std::array<CellVector, 3>;
-
-NodeMotion motion_of_node(const Shape& shape) {
-  NodeMotion motion{};
+/// The motion of a node by the unknowns of a coarser cell, 3 x 12.
+void set_motion_of_node(const Shape& shape, double* motion) {
   for (int k = 0; k < 4; ++k) {
-    for (int e = 0; e < 3; ++e) motion[e][3 * k + e] = shape.weight[k];
-    motion[0][3 * k + 2] = -shape.weight[k] * shape.arm[k].y;
-    motion[1][3 * k + 2] = shape.weight[k] * shape.arm[k].x;
-  }
-  return motion;
-}
-
-/// matrix += T^T K T with T the motion of the nodes of the finer cell.
-void add_transformed(const double* cell, const std::array<NodeMotion, 4>& motion, double* matrix) {
-  double product[cell_unknowns * cell_unknowns] = {};  // K T
-  for (int r = 0; r < cell_unknowns; ++r) {
-    for (int k = 0; k < cell_unknowns; ++k) {
-      const double entry = cell[r * cell_unknowns + k];
-      for (int c = 0; c < cell_unknowns; ++c) product[r * cell_unknowns + c] += entry * motion[k / 3][k % 3][c];
-    }
-  }
-  for (int k = 0; k < cell_unknowns; ++k) {
-    for (int r = 0; r < cell_unknowns; ++r) {
-      const double entry = motion[k / 3][k % 3][r];
-      if (entry == 0) continue;
-      for (int c = 0; c < cell_unknowns; ++c) matrix[r * cell_unknowns + c] += entry * product[k * cell_unknowns + c];
-    }
+    for (int e = 0; e < 3; ++e) motion[e * cell_unknowns + 3 * k + e] = shape.weight[k];
+    motion[3 * k + 2] = -shape.weight[k] * shape.arm[k].y;
+    motion[cell_unknowns + 3 * k + 2] = shape.weight[k] * shape.arm[k].x;
   }
 }
 
-/// The blocks of a row: what is added under one column.
-struct Row {
-  std::array<std::int32_t, 16> columns{};
-  std::array<Block, 16> blocks{};
-  int entries = 0;
-
-  Row(const Transfer& numbering, const CellStiffness& cells, std::size_t node) {
-    add(static_cast<std::int32_t>(node), nullptr);
+/// The columns of a row, that of the diagonal first.
+class RowColumns {
+ public:
+  /// \param found(entry, place, corner) is called for every corner of the cells around the node
+  template <typename Found>
+  RowColumns(const Transfer& numbering, std::size_t node, const Found& found) {
+    columns_[entries_++] = static_cast<std::int32_t>(node);
     for (const std::int32_t place : numbering.adjacent(node)) {
       if (place < 0) continue;
-      const double* rows =
-          &cells[static_cast<std::size_t>(place / 4) * cell_unknowns * cell_unknowns + place % 4 * 3 * cell_unknowns];
-      const auto& corners = numbering.corners(place / 4);
+      const auto& corners = numbering.corners(static_cast<std::size_t>(place / 4));
       for (int k = 0; k < 4; ++k) {
-        if (corners[k] >= 0) add(corners[k], rows + 3 * k);
+        if (corners[k] >= 0) found(entry_of(corners[k]), place, k);
       }
     }
   }
+  [[nodiscard]] std::span<const std::int32_t> get() const { return {columns_.data(), entries_}; }
 
  private:
-  void add(std::int32_t column, const double* block) {
-    int e = 0;
-    while (e < entries && columns[e] != column) ++e;
-    if (e == entries) columns[entries++] = column;
-    for (int k = 0; block != nullptr && k < 9; ++k) blocks[e][k] += block[k / 3 * cell_unknowns + k % 3];
+  std::size_t entry_of(std::int32_t column) {
+    std::size_t e = 0;
+    while (e < entries_ && columns_[e] != column) ++e;
+    if (e == entries_) columns_[entries_++] = column;
+    return e;
   }
+
+  std::array<std::int32_t, 16> columns_{};
+  std::size_t entries_ = 0;
 };
 
 }  // namespace
@@ -138,7 +115,8 @@ CellStiffness stiffness_of_contacts(const Grid& grid, const Assembly& assembly, 
       double sum[cell_unknowns * cell_unknowns] = {};
       for (const std::int32_t c : contacts.of(k)) {
         const SpringConstants spring = springs[c];
-        add_contact(grid, assembly, c, {spring.kN / unit, spring.kT / unit}, unknowns, sum);
+        add_contact(grid, static_cast<std::int32_t>(k), assembly, c, {spring.kN / unit, spring.kT / unit}, unknowns,
+                    sum);
       }
       std::copy(sum, sum + cell_unknowns * cell_unknowns, &result[k * cell_unknowns * cell_unknowns]);
     }
@@ -159,12 +137,14 @@ CellStiffness stiffness_on_coarser(const Grid& coarse, const Grid& fine, const C
       double sum[cell_unknowns * cell_unknowns] = {};
       for (const std::int32_t child : children.of(k)) {
         const Place middle = middle_of(child);
-        std::array<NodeMotion, 4> motion;
-        for (int corner = 0; corner < 4; ++corner) {  // a quarter of the coarse spacing from the middle
-          motion[corner] = motion_of_node(
-              coarse.shape({middle.cell, middle.s + 0.5 * (corner % 2) - 0.25, middle.t + 0.5 * (corner / 2) - 0.25}));
+        double motion[cell_unknowns * cell_unknowns] = {};  // of the four nodes of the child
+        for (int corner = 0; corner < 4; ++corner) {        // a quarter of the coarse spacing from the middle
+          set_motion_of_node(
+              coarse.shape({middle.cell, middle.s + 0.5 * (corner % 2) - 0.25, middle.t + 0.5 * (corner / 2) - 0.25}),
+              motion + 3 * corner * cell_unknowns);
         }
-        add_transformed(&cells[static_cast<std::size_t>(child) * cell_unknowns * cell_unknowns], motion, sum);
+        grid_functions().add_projection(&cells[static_cast<std::size_t>(child) * cell_unknowns * cell_unknowns], motion,
+                                        sum);
       }
       std::copy(sum, sum + cell_unknowns * cell_unknowns, &result[k * cell_unknowns * cell_unknowns]);
     }
@@ -177,15 +157,26 @@ BlockMatrix assemble_cells(const Transfer& numbering, const CellStiffness& cells
   const std::size_t n = numbering.unknowns();
   matrix.first.assign(n + 1, 0);
   parallel_ranges(n, nodes_at_once, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t node = begin; node < end; ++node) matrix.first[node + 1] = Row(numbering, cells, node).entries;
+    for (std::size_t node = begin; node < end; ++node) {
+      const RowColumns columns(numbering, node, [](std::size_t, std::int32_t, int) {});
+      matrix.first[node + 1] = static_cast<std::int64_t>(columns.get().size());
+    }
   });
   for (std::size_t node = 0; node < n; ++node) matrix.first[node + 1] += matrix.first[node];
   matrix.resize();
   parallel_ranges(n, nodes_at_once, [&](std::size_t begin, std::size_t end) {
     for (std::size_t node = begin; node < end; ++node) {
-      const Row row(numbering, cells, node);
-      for (int e = 0; e < row.entries; ++e) matrix.set(matrix.first[node] + e, row.columns[e], row.blocks[e]);
-      matrix.set_inverse(node, row.blocks[0]);
+      std::array<Block, 16> blocks{};
+      const RowColumns row(numbering, node, [&](std::size_t entry, std::int32_t place, int corner) {
+        const double* block = &cells[static_cast<std::size_t>(place / 4) * cell_unknowns * cell_unknowns +
+                                     static_cast<std::size_t>(place % 4 * 3 * cell_unknowns + 3 * corner)];
+        for (int k = 0; k < 9; ++k) blocks[entry][k] += block[k / 3 * cell_unknowns + k % 3];
+      });
+      const auto columns = row.get();
+      for (std::size_t e = 0; e < columns.size(); ++e) {
+        matrix.set(matrix.first[node] + static_cast<std::int64_t>(e), static_cast<std::size_t>(columns[e]), blocks[e]);
+      }
+      matrix.set_inverse(node, blocks[0]);
     }
   });
   return matrix;

@@ -100,11 +100,14 @@ void Cycle::build_grids(const SpringNetwork& network, const CycleOptions& option
   auto grid = std::make_unique<Grid>(grid_over(assembly, a, options.spacing));
   std::vector<Place> places(assembly.size());
   std::vector<double> masses(places.size());
-  for (std::size_t d = 0; d < places.size(); ++d) {
-    places[d] = grid->place((1 / a) * assembly.centres[d]);
-    const auto held = unknowns.held.begin() + static_cast<std::ptrdiff_t>(d * b);
-    masses[d] = std::all_of(held, held + 2, [](std::uint8_t h) { return h != 0; }) ? 0 : 1;
-  }
+  constexpr std::size_t discs_at_once = 1 << 13;
+  parallel_ranges(places.size(), discs_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t d = begin; d < end; ++d) {
+      places[d] = grid->place((1 / a) * network.assembly.centres[d]);
+      const auto held = network.unknowns.held.begin() + static_cast<std::ptrdiff_t>(d * b);
+      masses[d] = std::all_of(held, held + 2, [](std::uint8_t h) { return h != 0; }) ? 0 : 1;
+    }
+  });
   masses = node_masses(*grid, places, masses);
   grid->keep_nodes(masses);
   CellStiffness cells = stiffness_of_contacts(*grid, assembly, springs, unknowns, unit_);

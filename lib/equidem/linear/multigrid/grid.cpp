@@ -113,6 +113,14 @@ Place Grid::place(Vec2 point) const {
   return {x.cell + x_.cells * y.cell, x.inside, y.inside};
 }
 
+Place Grid::place_in(std::int32_t cell, Vec2 point) const {
+  const auto inside = [](const GridAxis& axis, double x, int position) {
+    const double s = (x - axis.low) / axis.spacing - position;
+    return axis.periodic ? s - axis.cells * std::round((s - 0.5) / axis.cells) : s;
+  };
+  return {cell, inside(x_, point.x, cell % x_.cells), inside(y_, point.y, cell / x_.cells)};
+}
+
 Place Grid::host(const Place& place) const {
   if (full(place.cell)) return place;
   constexpr double farthest = 1;  // spacings by which functions are continued

@@ -75,6 +75,8 @@ class Grid {
 
   /// The cell that contains a point (over a); points beyond a free side belong to the cells along it.
   [[nodiscard]] Place place(Vec2 point) const;
+  /// The place of a point, of its nearest image where the grid is periodic, seen from a given cell.
+  [[nodiscard]] Place place_in(std::int32_t cell, Vec2 point) const;
   /// Places a point in the cell whose functions move it: its own where that is full, else the nearest full one around
   /// it, else its own.
   [[nodiscard]] Place host(const Place& place) const;

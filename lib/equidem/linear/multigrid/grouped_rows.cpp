@@ -28,10 +28,17 @@ std::size_t slots_of(const ContactGraph& graph, std::size_t disc) {
   return slots;
 }
 
-void add_square(double k, const std::array<double, 3>& g, Block& block) {
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) block[3 * r + c] += k * g[r] * g[c];
-  }
+/// The lower triangle of a symmetric block by rows.
+using Triangle = std::array<double, 6>;
+
+void add_square(double k, const std::array<double, 3>& g, Triangle& block) {
+  const double x = k * g[0], y = k * g[1], t = k * g[2];
+  block[0] += x * g[0];
+  block[1] += y * g[0];
+  block[2] += y * g[1];
+  block[3] += t * g[0];
+  block[4] += t * g[1];
+  block[5] += t * g[2];
 }
 
 }  // namespace
@@ -87,23 +94,32 @@ GroupedRows::GroupedRows(const BlockMatrix& matrix, std::span<const std::int32_t
 
 template <typename Slots, typename Held>
 void GroupedRows::lay_out(std::span<const std::int32_t> first_row, const Slots& slots_of, const Held& any_held) {
-  first_row_.push_back(0);
-  first_slot_.push_back(0);
   for (std::size_t chunk = 0; chunk + 1 < first_row.size(); ++chunk) {
-    for (std::int32_t row = first_row[chunk]; row < first_row[chunk + 1];) {
-      const std::int32_t end = std::min<std::int32_t>(row + static_cast<std::int32_t>(lanes), first_row[chunk + 1]);
+    for (std::int32_t row = first_row[chunk]; row < first_row[chunk + 1]; row += static_cast<std::int32_t>(lanes)) {
+      first_row_.push_back(row);
+    }
+  }
+  free_.resize(first_row_.size());
+  first_slot_.resize(first_row_.size() + 1, 0);
+  first_row_.push_back(first_row.back());
+  parallel_ranges(free_.size(), groups_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t group = begin; group < end; ++group) {
       std::size_t slots = 0;
       bool held = false;
-      for (; row < end; ++row) {
+      for (std::int32_t row = first_row_[group]; row < first_row_[group + 1]; ++row) {
         slots = std::max(slots, slots_of(static_cast<std::size_t>(row)));
         held = held || any_held(static_cast<std::size_t>(row));
       }
-      first_row_.push_back(row);
-      first_slot_.push_back(first_slot_.back() + static_cast<std::int64_t>(slots));
-      free_.push_back(held ? static_cast<std::int32_t>(masks_.size() / (3 * lanes)) : -1);
-      if (held) masks_.resize(masks_.size() + 3 * lanes, 1.0F);
+      first_slot_[group + 1] = static_cast<std::int64_t>(slots);
+      free_[group] = held ? 0 : -1;
     }
+  });
+  std::int32_t masks = 0;
+  for (std::size_t group = 0; group < free_.size(); ++group) {
+    first_slot_[group + 1] += first_slot_[group];
+    if (free_[group] >= 0) free_[group] = masks++;
   }
+  masks_.resize(static_cast<std::size_t>(masks) * 3 * lanes, 1.0F);
   const auto slots = static_cast<std::size_t>(first_slot_.back());
   other_.resize(slots * lanes);
   geometry_.resize(slots * lanes * static_cast<std::size_t>(kind_.fields()));
@@ -136,17 +152,17 @@ void GroupedRows::fill(const SpringNetwork& network, std::span<const std::int32_
   for (std::size_t lane = 0; lane < rows; ++lane) {
     const auto disc = static_cast<std::size_t>(order[first_row + lane]);
     std::size_t slot = first_slot;
-    Block diagonal{};
+    Triangle sum{};
     for (const auto& edge : network.graph.of(disc)) {
       const auto contact = static_cast<std::size_t>(edge.contact);
       const Contact& c = network.assembly.contacts[contact];
-      const SpringConstants k = network.springs[contact];
-      const DeformationGradient g =
-          deformation_gradient(frame_of(network.assembly, contact), network.unknowns.rotation_scale);
+      const SpringConstants given = network.springs[contact], k{given.kN / unit, given.kT / unit};
+      const ContactFrame frame = frame_of(network.assembly, contact);
+      const DeformationGradient g = deformation_gradient(frame, network.unknowns.rotation_scale);
       std::array<double, 3> normal{}, tangential{};
       for (const bool from_i : {true, false}) {
         if (static_cast<std::size_t>(from_i ? c.i : c.j) != disc) continue;
-        fill_slot(network, contact, from_i, slot, lane, unit);
+        fill_slot(frame, k, network.unknowns.rotation_scale, from_i, slot, lane);
         other_[slot * lanes + lane] = row_of[edge.other];
         ++slot;
         for (std::size_t e = 0; e < 3; ++e) {
@@ -154,9 +170,10 @@ void GroupedRows::fill(const SpringNetwork& network, std::span<const std::int32_
           tangential[e] += (from_i ? g.tangential_i : g.tangential_j)[e];
         }
       }
-      add_square(k.kN / unit, normal, diagonal);
-      add_square(k.kT / unit, tangential, diagonal);
+      add_square(k.kN, normal, sum);
+      add_square(k.kT, tangential, sum);
     }
+    Block diagonal{sum[0], sum[1], sum[3], sum[1], sum[2], sum[4], sum[3], sum[4], sum[5]};
     for (std::size_t e = 0; e < 3; ++e) {
       const bool is_held = e < b && network.unknowns.held[disc * b + e] != 0;
       if (is_held) masks_[static_cast<std::size_t>(free_[group]) * 3 * lanes + e * lanes + lane] = 0;
@@ -168,10 +185,8 @@ void GroupedRows::fill(const SpringNetwork& network, std::span<const std::int32_
   }
 }
 
-void GroupedRows::fill_slot(const SpringNetwork& network, std::size_t contact, bool from_i, std::size_t slot,
-                            std::size_t lane, double unit) {
-  const ContactFrame frame = frame_of(network.assembly, contact);
-  const double a = network.unknowns.rotation_scale;
+void GroupedRows::fill_slot(const ContactFrame& frame, const SpringConstants& k, double scale, bool from_i,
+                            std::size_t slot, std::size_t lane) {
   float* place = &geometry_[slot * lanes * static_cast<std::size_t>(kind_.fields()) + lane];
   const auto put = [&](double value) {
     *place = static_cast<float>(value);
@@ -180,16 +195,16 @@ void GroupedRows::fill_slot(const SpringNetwork& network, std::size_t contact, b
   put(from_i ? frame.normal.x : -frame.normal.x);
   put(from_i ? frame.normal.y : -frame.normal.y);
   if (kind_.rotation) {
-    put((from_i ? frame.lever_i : frame.lever_j) / a);
-    put((from_i ? frame.lever_j : frame.lever_i) / a);
+    put((from_i ? frame.lever_i : frame.lever_j) / scale);
+    put((from_i ? frame.lever_j : frame.lever_i) / scale);
   }
   if (kind_.offsets) {
-    put((from_i ? frame.offset_i : frame.offset_j) / a);
-    put((from_i ? frame.offset_j : frame.offset_i) / a);
+    put((from_i ? frame.offset_i : frame.offset_j) / scale);
+    put((from_i ? frame.offset_j : frame.offset_i) / scale);
   }
   if (kind_.own_springs) {
-    put(network.springs[contact].kN / unit);
-    put(network.springs[contact].kT / unit);
+    put(k.kN);
+    put(k.kT);
   }
 }
 

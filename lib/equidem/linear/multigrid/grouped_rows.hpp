@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "equidem/contact/frame.hpp"
 #include "equidem/linear/large_buffer.hpp"
 #include "equidem/linear/multigrid/block_matrix.hpp"
 #include "equidem/linear/multigrid/smoother.hpp"
@@ -106,8 +107,8 @@ class GroupedRows {
   void set_inverse(std::size_t group, std::size_t lane, const Entry& entry);
   void fill(const SpringNetwork& network, std::span<const std::int32_t> order, const std::vector<std::int32_t>& row_of,
             std::size_t group, double unit);
-  void fill_slot(const SpringNetwork& network, std::size_t contact, bool from_i, std::size_t slot, std::size_t lane,
-                 double unit);
+  void fill_slot(const ContactFrame& frame, const SpringConstants& k, double scale, bool from_i, std::size_t slot,
+                 std::size_t lane);
 
   RowKind kind_;
   float kN_ = 0, kT_ = 0;                 // over the unit, where all contacts have the same

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/linear/multigrid/multigrid_solver.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -21,25 +22,29 @@ constexpr std::size_t rows_at_once = 1 << 12;
 /// The vectors of conjugate gradients by rows of three, and the cycle, which takes r over its size.
 class CycleVectors {
  public:
-  /// \param load over discs x block components
-  CycleVectors(multigrid::Cycle& cycle, const DegreesOfFreedom& unknowns, std::span<const double> load)
-      : cycle_(cycle), unknowns_(unknowns) {
+  /// \param x the load over discs x block components; the solution by rows from then on
+  CycleVectors(multigrid::Cycle& cycle, const DegreesOfFreedom& unknowns, std::span<double> x)
+      : cycle_(cycle), unknowns_(unknowns), x_(x) {
     const std::size_t n = 3 * cycle.order().size();
-    for (LargeVector<double>* vector : {&x_, &r_, &p_, &q_}) vector->assign(n + 1, 0.0);
+    for (LargeVector<double>* vector : {&r_, &p_, &q_}) {
+      vector->resize(n + 1);
+      vector->back() = 0;
+    }
     const auto b = static_cast<std::size_t>(unknowns.per_disc);
     size_ = std::sqrt(sum_over_rows([&](std::size_t row) {
       double square = 0;
-      for (std::size_t e = 0; e < b; ++e) {
-        const std::size_t component = static_cast<std::size_t>(cycle_.order()[row]) * b + e;
-        if (unknowns_.held[component] != 0) continue;
-        r_[3 * row + e] = load[component] / cycle_.unit();
-        square += r_[3 * row + e] * r_[3 * row + e];
+      for (std::size_t e = 0; e < 3; ++e) {
+        const std::size_t k = 3 * row + e, component = static_cast<std::size_t>(cycle_.order()[row]) * b + e;
+        p_[k] = q_[k] = 0;
+        r_[k] = e < b && unknowns_.held[component] == 0 ? x[component] / cycle_.unit() : 0;
+        square += r_[k] * r_[k];
       }
       return square;
     }));
-    if (!(size_ > 0)) return;
-    const double over = 1 / size_;
+    const double over = size_ > 0 ? 1 / size_ : 0;
     parallel_ranges(rows(), rows_at_once, [&](std::size_t begin, std::size_t end) {
+      std::fill(x.begin() + static_cast<std::ptrdiff_t>(begin * b), x.begin() + static_cast<std::ptrdiff_t>(end * b),
+                0.0);
       for (std::size_t row = begin; row < end; ++row) give_to_cycle(row, over);
     });
     scale_ = size_;
@@ -76,11 +81,12 @@ class CycleVectors {
   double advance(double factor) {
     const double over = 1 / size_;  // the size before does as well
     scale_ = size_;
+    const auto b = static_cast<std::size_t>(unknowns_.per_disc);
     size_ = std::sqrt(sum_over_rows([&](std::size_t row) {
       double square = 0;
+      for (std::size_t e = 0; e < b; ++e) x_[b * row + e] += factor * p_[3 * row + e];
       for (std::size_t e = 0; e < 3; ++e) {
         const std::size_t k = 3 * row + e;
-        x_[k] += factor * p_[k];
         r_[k] -= factor * q_[k];
         square += r_[k] * r_[k];
       }
@@ -90,12 +96,17 @@ class CycleVectors {
     return size_;
   }
 
-  /// \param x over discs x block components
-  void hand_out(std::span<double> x) const {
+  /// The solution over discs x block components.
+  void sort_by_discs() {
     const auto b = static_cast<std::size_t>(unknowns_.per_disc);
+    const auto component = [b](std::size_t row) { return static_cast<std::ptrdiff_t>(row * b); };
+    parallel_ranges(rows(), rows_at_once, [&](std::size_t begin, std::size_t end) {
+      std::copy(x_.begin() + component(begin), x_.begin() + component(end), q_.begin() + component(begin));
+    });
     parallel_ranges(rows(), rows_at_once, [&](std::size_t begin, std::size_t end) {
       for (std::size_t row = begin; row < end; ++row) {
-        for (std::size_t e = 0; e < b; ++e) x[static_cast<std::size_t>(cycle_.order()[row]) * b + e] = x_[3 * row + e];
+        std::copy_n(q_.begin() + component(row), b,
+                    x_.begin() + component(static_cast<std::size_t>(cycle_.order()[row])));
       }
     });
   }
@@ -117,7 +128,8 @@ class CycleVectors {
 
   multigrid::Cycle& cycle_;
   const DegreesOfFreedom& unknowns_;
-  LargeVector<double> x_, r_, p_, q_;  // rows x 3, and one number for loads of vectors behind the last row
+  std::span<double> x_;            // rows x block components
+  LargeVector<double> r_, p_, q_;  // rows x 3, and one number for loads of vectors behind the last row
   const multigrid::Quad* z_ = nullptr;
   double size_ = 0;   // |r|
   double scale_ = 1;  // of z
@@ -166,7 +178,7 @@ class MultigridSolver final : public Factorization {
     const auto report = multigrid::iterate(vectors, options);
     switch (report.outcome) {
       case multigrid::IterationOutcome::converged:
-        vectors.hand_out(x);
+        vectors.sort_by_discs();
         return report;
       case multigrid::IterationOutcome::stalled:
         computation_failed(fmt::format("method 'multigrid' leaves a residual of {:.1e} after {}", report.residual,
@@ -195,9 +207,10 @@ std::unique_ptr<Factorization> multigrid_solver(const SpringNetwork& network, co
 }
 
 double bytes_of_multigrid(double discs, double contacts) {
-  // Per disc the inverse of its block, 75 bytes on the grids, three vectors in float, eleven in double; per contact
-  // both its slots, of which random assemblies fill four in five, and its force.
-  return discs * (24 + 75 + 48 + 264) + contacts * (2 * 1.25 * 20 + 16);
+  // Per disc the inverse of its block, 75 bytes on the grids, three vectors in float, nine in double (five of a
+  // solution and four of the two others that homogenization keeps, or of loads); per contact both its slots, of which
+  // random assemblies fill four in five, and its force.
+  return discs * (24 + 75 + 48 + 216) + contacts * (2 * 1.25 * 20 + 16);
 }
 
 }  // namespace equidem

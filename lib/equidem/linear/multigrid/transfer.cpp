@@ -10,7 +10,10 @@ namespace equidem::multigrid {
 namespace {
 
 constexpr std::size_t points_per_task = 1 << 13;
-constexpr std::int32_t points_per_chunk = 1 << 10;
+/// Fewer on small levels, whose chunks still go round to several threads.
+std::int32_t points_per_chunk(std::size_t points) {
+  return std::clamp(static_cast<std::int32_t>(points >> 7), 1 << 6, 1 << 10);
+}
 
 /// The motion of a point is sum w_k (U_k + a theta_k turn_k) over the corners k.
 struct Corner {
@@ -45,9 +48,10 @@ Transfer::Transfer(const Grid& grid, std::span<const Place> places) : grid_(grid
   points_ = sort_into_buckets(cell, grid.cells());
   inside_.resize(places.size());
   for (std::size_t k = 0; k < places.size(); ++k) inside_[k] = inside[points_.items[k]];
+  const std::int32_t at_once = points_per_chunk(places.size());
   chunks_.push_back(0);
   for (std::size_t k = 0; k < cells_.size(); ++k) {
-    if (points_.first[k + 1] - points_.first[chunks_.back()] >= points_per_chunk || k + 1 == cells_.size()) {
+    if (points_.first[k + 1] - points_.first[chunks_.back()] >= at_once || k + 1 == cells_.size()) {
       chunks_.push_back(static_cast<std::int32_t>(k + 1));
     }
   }

@@ -2,20 +2,27 @@
 #include "equidem/statics/precision/refinement.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
 namespace {
 
+constexpr std::size_t components_at_once = 1 << 14;
+constexpr double of_one_pass = 2e-6;  // accuracy of iterations, which multiply by a matrix in single precision
+
 double norm_of(std::span<const double> x) {
-  double sum = 0;
-  for (const double value : x) sum += value * value;
-  return std::sqrt(sum);
+  return std::sqrt(sums_over<1>(x.size(), components_at_once, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (const double value : x.subspan(begin, end - begin)) sum += value * value;
+    return std::array{sum};
+  })[0]);
 }
 
 double product_of(std::span<const double> x, std::span<const double> y) {
@@ -34,7 +41,7 @@ StiffnessSolver::Refinement::Refinement(const StiffnessSolver& solver_in, const 
       good_enough(good_enough_in) {
   const auto& unknowns = solver.unknowns_;
   solution.motion = PreciseMotion(unknowns.held.size());
-  bool moves = !given.imposed.empty();
+  bool moves = given.gradient.has_value();
   for (std::size_t k = 0; k < given.prescribed.size(); ++k) {
     if (unknowns.held[k] == 0 || given.prescribed[k] == 0) continue;
     solution.motion.high[k] = given.prescribed[k];
@@ -43,12 +50,14 @@ StiffnessSolver::Refinement::Refinement(const StiffnessSolver& solver_in, const 
   if (moves) {
     evaluate(residual);
   } else {
-    for (std::size_t k = 0; k < residual.size(); ++k) {
-      residual[k] = unknowns.held[k] != 0 || given.force.empty() ? 0 : given.force[k];
-    }
+    parallel_ranges(residual.size(), components_at_once, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        residual[k] = unknowns.held[k] != 0 || given.force.empty() ? 0 : given.force[k];
+      }
+    });
   }
   solution.residual = replaced_ = solver.norm_of_free(residual);
-  solution.scale = std::max(solution.residual, imposed_force());
+  solution.scale = std::max(solution.residual, affine_force());
   done = solution.residual == 0;
   if (!conjugate || done) return;
   residual_.assign(residual.begin(), residual.end());
@@ -57,9 +66,11 @@ StiffnessSolver::Refinement::Refinement(const StiffnessSolver& solver_in, const 
 }
 
 void StiffnessSolver::Refinement::correct(std::span<double> x, int pass) {
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    if (solver.unknowns_.held[k] != 0) x[k] = 0;
-  }
+  parallel_ranges(x.size(), components_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      if (solver.unknowns_.held[k] != 0) x[k] = 0;
+    }
+  });
   ++corrections_;
   if (conjugate) {
     add_conjugate_step(x, pass);
@@ -69,11 +80,10 @@ void StiffnessSolver::Refinement::correct(std::span<double> x, int pass) {
 }
 
 void StiffnessSolver::Refinement::solve_to(double accuracy, std::span<double> x) {
-  constexpr double of_one_pass = 2e-6;  // what single precision makes of the matrix counts below
   double energy = 0, reached = 1;
   do {
     reached = std::max(accuracy, of_one_pass * reached);
-    const auto energies = solver.factor_->solve_to(reached, energy, x);
+    energies = solver.factor_->solve_to(reached, energy, x);
     solution.motion.add(x);
     solution.residual = evaluate(x);
     solution.energy_error = energies.error;
@@ -99,6 +109,8 @@ void StiffnessSolver::Refinement::add_correction(std::span<double> x, int pass) 
   previous_ = PreciseMotion(0);
   solution.residual = now;
   solution.refinements = pass;
+  solution.energy_error =
+      scaled ? energies.solution : std::max(energies.error, of_one_pass * of_one_pass * energies.solution);
   done = now <= good_enough * solution.scale || (pass > 0 && !scaled && now > 0.5 * before);
 }
 
@@ -149,10 +161,10 @@ Solution StiffnessSolver::Refinement::finish() {
     bad_input("the numbers of this case overflow a double", fmt::format("the residual comes out as {}", relative),
               "Check the units of sizes, springs and loads");
   }
-  if (!(relative <= worthless) && solution.energy_error == 0) {
+  if (!(relative <= worthless) && (solver.options_.accuracy == 0 || solution.energy_error == 0)) {
     computation_failed(fmt::format("the solution leaves a relative residual of {:.1e}", relative), too_soft, remedy);
   }
-  const double size = std::hypot(norm_of(solution.motion.high), imposed_length());
+  const double size = std::hypot(norm_of(solution.motion.high), affine_length());
   if (corrections_ > 1 && relative > 0 && !(last_step_ <= worthless * size)) {
     computation_failed(fmt::format("the last of {} refinements still changed the motions by {:.1e} of their size",
                                    corrections_ - 1, last_step_ / size),
@@ -179,20 +191,32 @@ bool StiffnessSolver::Refinement::scale_to_least_energy(std::span<double> x) con
   return true;
 }
 
-double StiffnessSolver::Refinement::imposed_length() const {
-  double sum = 0;
-  for (const ContactDeformation& d : given.imposed) sum += d.normal * d.normal + d.tangential * d.tangential;
-  return std::sqrt(sum);
+/// Root of the sum of square(contact, deformation by the mean strain) over the contacts.
+template <typename Square>
+double StiffnessSolver::Refinement::norm_of_affine(const Square& square) const {
+  if (!given.gradient) return 0;
+  const Assembly& assembly = solver.assembly_;
+  return std::sqrt(sums_over<1>(assembly.contacts.size(), components_at_once, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t c = begin; c < end; ++c) {
+      sum +=
+          square(c, affine_deformation(frame_of(assembly, c), assembly.branch(assembly.contacts[c]), *given.gradient));
+    }
+    return std::array{sum};
+  })[0]);
 }
 
-/// Size of the forces that imposed deformations cause, before they cancel on each disc.
-double StiffnessSolver::Refinement::imposed_force() const {
-  double sum = 0;
-  for (std::size_t c = 0; c < given.imposed.size(); ++c) {
-    const ContactForce f = linear_spring_force(solver.springs_[c], given.imposed[c]);
-    sum += f.normal * f.normal + f.tangential * f.tangential;
-  }
-  return std::sqrt(2 * sum);
+double StiffnessSolver::Refinement::affine_length() const {
+  return norm_of_affine(
+      [](std::size_t, const ContactDeformation& d) { return d.normal * d.normal + d.tangential * d.tangential; });
+}
+
+/// Size of the forces that the mean strain causes, before they cancel on each disc.
+double StiffnessSolver::Refinement::affine_force() const {
+  return std::sqrt(2.0) * norm_of_affine([&](std::size_t c, const ContactDeformation& d) {
+           const ContactForce f = linear_spring_force(solver.springs_[c], d);
+           return f.normal * f.normal + f.tangential * f.tangential;
+         });
 }
 
 }  // namespace equidem

@@ -28,7 +28,8 @@ struct StiffnessSolver::Refinement {
   double good_enough;
   Solution solution;
   bool done = false;
-  bool failed = false;  ///< conjugate gradients do not converge: the factor is too rough
+  bool failed = false;                 ///< conjugate gradients do not converge: the factor is too rough
+  Factorization::Energies energies{};  ///< of the correction that comes next, where the method is iterative
 
   /// \param residual becomes f - f_int of the start, in which held components move and no other
   Refinement(const StiffnessSolver& solver, const RightHandSide& given, std::span<double> residual, double good_enough);
@@ -47,8 +48,10 @@ struct StiffnessSolver::Refinement {
   void add_conjugate_step(std::span<double> x, int pass);
   double evaluate(std::span<double> residual) const;
   bool scale_to_least_energy(std::span<double> x) const;
-  [[nodiscard]] double imposed_length() const;
-  [[nodiscard]] double imposed_force() const;
+  [[nodiscard]] double affine_length() const;
+  [[nodiscard]] double affine_force() const;
+  template <typename Square>
+  [[nodiscard]] double norm_of_affine(const Square& square) const;
 
   PreciseMotion previous_{0};
   int corrections_ = 0;

@@ -34,33 +34,69 @@ struct Loops {
     }
   }
 
-  static EQUIDEM_INLINE void add_square(double k, const double* v, double* matrix) {
-    using Four = double __attribute__((vector_size(32)));
+  using Four = double __attribute__((vector_size(32)));
+  static EQUIDEM_INLINE void load(const double* from, Four& four) { std::memcpy(&four, from, sizeof four); }
+  static EQUIDEM_INLINE void store(const Four& four, double* to) { std::memcpy(to, &four, sizeof four); }
+
+  static EQUIDEM_INLINE void add_squares(double k, const double* v, double l, const double* w, double* matrix) {
     for (int part = 0; part < 12; part += 4) {
-      Four columns;
-      std::memcpy(&columns, v + part, sizeof columns);
-      columns *= k;
+      Four kv, lw, row;
+      load(v + part, kv);
+      load(w + part, lw);
+      kv *= k;
+      lw *= l;
       for (int r = 0; r < 12; ++r) {
-        Four row;
-        std::memcpy(&row, matrix + 12 * r + part, sizeof row);
-        row += v[r] * columns;
-        std::memcpy(matrix + 12 * r + part, &row, sizeof row);
+        load(matrix + 12 * r + part, row);
+        row += v[r] * kv + w[r] * lw;
+        store(row, matrix + 12 * r + part);
       }
+    }
+  }
+
+  static EQUIDEM_INLINE void add_projection(const double* k, const double* t, double* matrix) {
+    double product[144];  // K T
+    for (int r = 0; r < 12; ++r) {
+      Four sums[3] = {};
+      for (int c = 0; c < 12; ++c) {
+        for (int part = 0; part < 3; ++part) {
+          Four row;
+          load(t + 12 * c + 4 * part, row);
+          sums[part] += k[12 * r + c] * row;
+        }
+      }
+      for (int part = 0; part < 3; ++part) store(sums[part], product + 12 * r + 4 * part);
+    }
+    for (int r = 0; r < 12; ++r) {
+      Four sums[3];
+      for (int part = 0; part < 3; ++part) load(matrix + 12 * r + 4 * part, sums[part]);
+      for (int c = 0; c < 12; ++c) {
+        for (int part = 0; part < 3; ++part) {
+          Four row;
+          load(product + 12 * c + 4 * part, row);
+          sums[part] += t[12 * c + r] * row;
+        }
+      }
+      for (int part = 0; part < 3; ++part) store(sums[part], matrix + 12 * r + 4 * part);
     }
   }
 };
 
 /// The loops compiled for vectors of one width.
-#define EQUIDEM_LOOPS(name, attributes)                                                                               \
-  struct name {                                                                                                       \
-    attributes static void restrict_cell(const PointsOfCell& points, const Quad* force, Quad* corners) {              \
-      Loops::restrict_cell(points, force, corners);                                                                   \
-    }                                                                                                                 \
-    attributes static void move_points(const PointsOfCell& points, const Quad* corners, Quad* motion) {               \
-      Loops::move_points(points, corners, motion);                                                                    \
-    }                                                                                                                 \
-    attributes static void add_square(double k, const double* v, double* matrix) { Loops::add_square(k, v, matrix); } \
-    static constexpr GridFunctions all = {&restrict_cell, &move_points, &add_square};                                 \
+#define EQUIDEM_LOOPS(name, attributes)                                                                        \
+  struct name {                                                                                                \
+    attributes static void restrict_cell(const PointsOfCell& points, const Quad* force, Quad* corners) {       \
+      Loops::restrict_cell(points, force, corners);                                                            \
+    }                                                                                                          \
+    attributes static void move_points(const PointsOfCell& points, const Quad* corners, Quad* motion) {        \
+      Loops::move_points(points, corners, motion);                                                             \
+    }                                                                                                          \
+    attributes static void add_squares(double k, const double* v, double l, const double* w, double* matrix) { \
+      Loops::add_squares(k, v, l, w, matrix);                                                                  \
+    }                                                                                                          \
+    attributes static void add_projection(const double* k, const double* t, double* matrix) {                  \
+      Loops::add_projection(k, t, matrix);                                                                     \
+    }                                                                                                          \
+    static constexpr GridFunctions all = {&restrict_cell, &move_points, &add_squares, &add_projection};        \
   }
 
 EQUIDEM_LOOPS(PlainLoops, );

@@ -30,8 +30,10 @@ struct GridFunctions {
   void (*restrict_cell)(const PointsOfCell& points, const Quad* force, Quad* corners);
   /// Add the motions that the corners give.
   void (*move_points)(const PointsOfCell& points, const Quad* corners, Quad* motion);
-  /// matrix += k v v^T, 12 x 12.
-  void (*add_square)(double k, const double* v, double* matrix);
+  /// matrix += k v v^T + l w w^T, 12 x 12.
+  void (*add_squares)(double k, const double* v, double l, const double* w, double* matrix);
+  /// matrix += T^T K T, all 12 x 12.
+  void (*add_projection)(const double* k, const double* t, double* matrix);
 };
 
 const GridFunctions& grid_functions();
