@@ -43,7 +43,11 @@ class LowestBlock {
     for (;; ++result.iterations) {
       const std::vector<std::size_t> open = evaluate(result);
       if (result.converged || result.iterations == options_.iterations) break;
-      progress.update(static_cast<double>(result.iterations) / options_.iterations);
+      double share = 1;  // of the decades on the way to the tolerance
+      for (std::size_t k = 0; k < result.values.size(); ++k) {
+        share = std::min(share, std::log(result.residuals[k] / result.values[k]) / std::log(options_.tolerance));
+      }
+      progress.update(std::clamp(share, 0.0, 1.0));
       expand(open);
       if (!reduce()) break;
     }

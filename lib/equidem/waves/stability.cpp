@@ -71,13 +71,15 @@ CriticalMotion critical_of_large_cell(const Assembly& assembly, const ContactSpr
 
 CriticalMotion find_critical_motion(const Assembly& assembly, const ContactSprings& springs,
                                     std::span<const Support> supports, const std::optional<WaveSurvey>& survey,
-                                    bool rotation) {
+                                    const StabilityOptions& options) {
+  const bool rotation = options.rotation != Rotation::restrained;
   if (!on_lines_of_centres(assembly))
     return {.sought = false,
             .searched =
                 "contacts lie off the lines of centres, where normal springs resist rotations too, so that no "
                 "single kT/kN tells what gives way"};
   if (survey) return critical_of_survey(*survey);
+  if (!options.critical_ratio) return {.sought = false, .searched = "it was not asked for"};
   if (assembly.periodic()) return critical_of_large_cell(assembly, springs, rotation);
   const CriticalRatio found = find_critical_ratio(assembly, springs, supports, {.rotation = rotation});
   CriticalMotion critical{.ratio = found.ratio};
@@ -181,7 +183,7 @@ Stability analyze_stability(const Assembly& assembly, const ContactSprings& spri
     add_continuum(assembly, springs, options, s);
     s.times.add("continuum", watch.lap());
   }
-  s.critical = find_critical_motion(assembly, springs, supports, s.survey, options.rotation != Rotation::restrained);
+  s.critical = find_critical_motion(assembly, springs, supports, s.survey, options);
   s.times.add("critical ratio", watch.lap());
   return s;
 }

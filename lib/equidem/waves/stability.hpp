@@ -29,16 +29,17 @@ struct StabilityOptions {
   Body body = Body::disc;
   SolverOptions solver = {};    ///< of the homogenized continuum and of natural frequencies
   int natural_frequencies = 4;  ///< number of the lowest, >= 0
+  bool critical_ratio = true;   ///< whether it is sought by factorizations, some 15 of the whole assembly
 };
 
 /// The critical ratio and the motion that loses its stiffness there.
 struct CriticalMotion {
-  bool sought = true;                      ///< false: contacts lie off the lines of centres
+  bool sought = true;                      ///< false: see `searched`
   double ratio = 0;                        ///< negative infinity: none down to kT = -kN
   std::optional<ZonePoint> wave = {};      ///< of a periodic assembly
   std::vector<ZonePoint> equivalent = {};  ///< all points of symmetry that reach it
   std::string motion = {};                 ///< in words; empty where it is a wave
-  std::string searched = {};               ///< the motions that were searched, in words
+  std::string searched = {};               ///< the motions that were searched, in words, or why none were
 };
 
 struct Stability {

@@ -20,6 +20,7 @@ namespace {
 
 struct StabilityCommand : CommonOptions {
   int frequencies = StabilityOptions{}.natural_frequencies;
+  bool without_critical_ratio = false;
 };
 
 /// The density of the discs, or 1.
@@ -29,7 +30,8 @@ StabilityOptions options_of(const Problem& problem, const StabilityCommand& comm
           .density = disc_density(resolved, problem.assembly).value_or(1),
           .body = resolved.assembly.body,
           .solver = resolved.solver,
-          .natural_frequencies = command.frequencies};
+          .natural_frequencies = command.frequencies,
+          .critical_ratio = !command.without_critical_ratio};
 }
 
 int dry_run_survey(const StabilityCommand& options, const Problem& problem) {
@@ -97,6 +99,9 @@ Run declare_stability(CLI::App& command) {
   command.add_option("--frequencies", options->frequencies, "number of the lowest natural frequencies; 0: none")
       ->check(CLI::Range(0, 50))
       ->capture_default_str();
+  command.add_flag("--without-critical-ratio", options->without_critical_ratio,
+                   "do not seek the critical kT/kN of an assembly without a small cell,\n"
+                   "which takes most of the time of large ones");
   command.footer(
       "A periodic assembly needs neither supports nor loads; a free one is judged with its [[support]]\n"
       "or [test], or as a free body.\n"
