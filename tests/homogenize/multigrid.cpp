@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "equidem/homogenize/calibrate/calibrate.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 
 #include "homogenize/samples.hpp"
@@ -71,4 +72,23 @@ TEST_CASE("multigrid_homogenizes_scattered_springs") {
     return stiffness_by(method, cell, springs, Boundary::periodic, Rotation::free);
   };
   CHECK(relative_difference(by(SolverMethod::multigrid).stiffness, by(SolverMethod::multifrontal).stiffness) < 1e-10);
+}
+
+TEST_CASE("multigrid_calibrates_the_springs_of_elimination_in_half_the_iterations") {
+  for (const bool periodic : {true, false}) {
+    const Assembly assembly = random_cell(periodic);
+    for (const double nu : {-0.3, 0.1, 0.2}) {
+      const auto by = [&](SolverMethod method) {
+        return calibrate(assembly, {2.5e7, nu, Plane::strain}, {.homogenize = {.solver = {.method = method}}});
+      };
+      const Calibration direct = by(SolverMethod::multifrontal), ours = by(SolverMethod::multigrid);
+      const EffectiveStiffness to_round_off =
+          stiffness_by(SolverMethod::multigrid, assembly, ContactSprings(direct.springs),
+                       periodic ? Boundary::periodic : Boundary::displacement, Rotation::from_scene);
+      CAPTURE(periodic, nu, direct.springs.kN, ours.springs.kN, ours.achieved.iterations, to_round_off.iterations);
+      CHECK(ours.springs.kN == Approx(direct.springs.kN).epsilon(2e-11));
+      CHECK(ours.springs.kT == Approx(direct.springs.kT).epsilon(5e-10));
+      CHECK(2 * ours.achieved.iterations <= to_round_off.iterations);
+    }
+  }
 }

@@ -105,6 +105,43 @@ class OtherCases(StabilityTest):
             self.assertIsNone(result["critical_wave_vector"])
             self.assertIn("critical_motion", result)
 
+    def test_natural_frequencies_fall_with_the_size_of_the_sample(self):
+        lowest = {}
+        for size in (11, 21, 41):
+            result = self.stability(TENSION, "--set", f"assembly.columns={size}", "--set", f"assembly.rows={size}",
+                                    "--set", "assembly.density=2500", "--frequencies", "6")
+            values = result["natural_frequencies"]
+            self.assertEqual(len(values), 6)
+            self.assertEqual(values, sorted(values))
+            self.assertTrue(result["natural_frequencies_converged"])
+            self.assertEqual(result["zero_energy_modes"], 0)
+            self.check_relative(result["longest_period"] * values[0], 1, 1e-12)
+            for hertz, omega, residual in zip(values, result["natural_omegas"], result["natural_omega_squared_residuals"]):
+                self.check_relative(hertz, omega / (2 * math.pi), 1e-12)
+                self.assertLessEqual(residual, 1e-6 * omega**2)
+            self.assertLess(omega, result["omega_max"])
+            lowest[size] = values[0]
+        self.assertTrue(1.7 < lowest[11] / lowest[21] < 2.3, lowest)
+        self.assertTrue(1.8 < lowest[21] / lowest[41] < 2.2, lowest)
+        self.assertNotIn("natural_frequencies", self.stability(TENSION, "--frequencies", "0"))
+        self.assertNotIn("natural_frequencies", self.stability(TENSION, "--set", "springs.kT=-0.1e9"))
+
+    def test_the_critical_ratio_can_be_left_out(self):
+        result = self.stability(TENSION, "--without-critical-ratio")
+        self.assertIsNone(result["critical_ratio"])
+        self.assertEqual(result["status"], "stable")
+        self.assertIn("not asked for", result["critical_ratio_searched"])
+
+    def test_mechanisms_have_no_natural_frequency(self):
+        square = ("--set", "assembly.kind=square", "--set", "springs.kT=0", "--set", "assembly.columns=70",
+                  "--set", "assembly.rows=70")
+        result = self.stability(TENSION, *square)
+        self.assertIsNone(result["natural_frequencies"])
+        self.assertIn("zero-energy modes would have to be told apart", " ".join(result["report"].split()))
+        few = self.stability(CASES / "hexagonal_cell.toml")
+        self.assertEqual(few["zero_energy_modes"], 2)
+        self.assertIn("above 2 zero-energy modes", " ".join(few["report"].split()))
+
     def test_a_random_cell(self):
         small = self.stability(CASES / "random_cell.toml", "--set", "assembly.discs=12")
         self.assertEqual(small["primitive_cell"]["discs"], small["discs"])

@@ -7,6 +7,7 @@
 
 #include "equidem/core/text.hpp"
 #include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
+#include "equidem/linear/rigid_growth.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/statics/choice/solver_choice.hpp"
 #include "equidem/statics/hold_free_motions.hpp"
@@ -16,22 +17,25 @@
 namespace equidem {
 namespace {
 
-/// K, with the zero-energy modes found from the graph held, factorized as indefinite.
+/// K with the zero-energy modes found from the graph held.
 struct HeldSystem {
   ContactGraph graph;
   DegreesOfFreedom unknowns;
   HeldMotions held;
-  StiffnessMatrix matrix;
-  std::shared_ptr<const SymbolicFactor> symbolic;
-  std::unique_ptr<Factorization> factor;
+  StiffnessMatrix matrix{};
+  std::shared_ptr<const SymbolicFactor> symbolic{};
+  std::unique_ptr<Factorization> factor{};
 
   HeldSystem(const Assembly& assembly, const ContactSprings& springs, Rotation rotation,
              std::span<const Support> supports)
       : graph(assembly),
         unknowns(number_unknowns(assembly, springs, derive_effects(assembly, springs, rotation), supports)),
-        held(hold_free_motions(assembly, graph, springs, unknowns)),
-        matrix(assemble_stiffness(assembly, graph, springs, unknowns)),
-        symbolic(std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph), graph, unknowns.per_disc))) {
+        held(hold_free_motions(assembly, graph, springs, unknowns)) {}
+
+  /// Factorizes it as indefinite.
+  void factorize(const Assembly& assembly, const ContactSprings& springs) {
+    matrix = assemble_stiffness(assembly, graph, springs, unknowns);
+    symbolic = std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph), graph, unknowns.per_disc));
     check_memory(estimate(*symbolic, unknowns, true), 0);
     // With many mechanisms at once, a pivot that is zero would outgrow its round-off by the usual threshold, and be
     // missed.
@@ -46,11 +50,12 @@ MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& 
   const ContactSprings positive = springs.changed([](SpringConstants k) {
     return SpringConstants{k.kN, std::abs(k.kT)};
   });
-  const HeldSystem system(assembly, positive, rotation, supports);
+  HeldSystem system(assembly, positive, rotation, supports);
+  if (!grows_rigid(assembly, system.graph, positive, system.unknowns.per_disc)) system.factorize(assembly, positive);
   MechanismReport report;
   report.gears = static_cast<std::int64_t>(system.held.gears.size());
   // No spring is negative: a negative pivot is the round-off of a zero.
-  report.others = system.factor->report().zero_pivots + system.factor->report().negative_pivots;
+  if (system.factor) report.others = system.factor->report().zero_pivots + system.factor->report().negative_pivots;
   const std::int64_t of_the_whole = !supports.empty() ? 0 : assembly.periodic() ? 2 : 3;
   report.rigid_motions = std::min(of_the_whole, system.held.rigid);
   report.free_pieces = system.held.rigid - report.rigid_motions;
@@ -91,7 +96,8 @@ MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& 
 InertiaReport find_inertia(const Assembly& assembly, const ContactSprings& springs, Rotation rotation,
                            std::span<const Support> supports) {
   if (!springs.any_negative()) return {};
-  const HeldSystem system(assembly, springs, rotation, supports);
+  HeldSystem system(assembly, springs, rotation, supports);
+  system.factorize(assembly, springs);
   InertiaReport report;
   report.negative_pivots = system.factor->report().negative_pivots;
   const MatrixOnGraph k{system.matrix, assembly, system.graph};

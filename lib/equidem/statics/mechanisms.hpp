@@ -30,7 +30,7 @@ struct MechanismReport {
   [[nodiscard]] std::int64_t count() const { return free_pieces + gears + others + unjoined; }
 };
 
-/// One L D L^T factorization.
+/// One L D L^T factorization, or none where the network grows rigid from its triangles (grows_rigid).
 /// \throws Error (bad_input) as number_unknowns does; (computation_failed) where the factor would not fit into memory
 MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& springs, Rotation rotation,
                                 std::span<const Support> supports);

@@ -71,13 +71,15 @@ CriticalMotion critical_of_large_cell(const Assembly& assembly, const ContactSpr
 
 CriticalMotion find_critical_motion(const Assembly& assembly, const ContactSprings& springs,
                                     std::span<const Support> supports, const std::optional<WaveSurvey>& survey,
-                                    bool rotation) {
+                                    const StabilityOptions& options) {
+  const bool rotation = options.rotation != Rotation::restrained;
   if (!on_lines_of_centres(assembly))
     return {.sought = false,
             .searched =
                 "contacts lie off the lines of centres, where normal springs resist rotations too, so that no "
                 "single kT/kN tells what gives way"};
   if (survey) return critical_of_survey(*survey);
+  if (!options.critical_ratio) return {.sought = false, .searched = "it was not asked for"};
   if (assembly.periodic()) return critical_of_large_cell(assembly, springs, rotation);
   const CriticalRatio found = find_critical_ratio(assembly, springs, supports, {.rotation = rotation});
   CriticalMotion critical{.ratio = found.ratio};
@@ -89,7 +91,8 @@ CriticalMotion find_critical_motion(const Assembly& assembly, const ContactSprin
 
 /// The frequencies of the assembly as it is given.
 void add_frequencies(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
-                     const std::vector<Inertia>& inertia, Stability& s) {
+                     const std::vector<Inertia>& inertia, const StabilityOptions& options, Stability& s) {
+  Stopwatch watch;
   const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, s.effects, supports);
   if (unknowns.unknowns == 0)
     bad_input("the supports hold every disc", "nothing can move, so that nothing can be lost", "Hold fewer discs");
@@ -106,6 +109,11 @@ void add_frequencies(const Assembly& assembly, const ContactSprings& springs, st
   if (springs.any_negative())
     s.lowest = extreme_squared_frequency(assembly, springs, unknowns, inertia, SpectrumEnd::smallest);
   s.rules = time_step_rules(assembly, springs, inertia, s.effects.rotation);
+  s.times.add("highest frequency", watch.lap());
+  if (springs.any_negative() || options.natural_frequencies == 0) return;
+  s.natural = natural_frequencies(assembly, springs, unknowns, inertia,
+                                  {.count = options.natural_frequencies, .solver = options.solver});
+  s.times.add("natural frequencies", watch.lap());
 }
 
 void add_waves(const Assembly& assembly, const ContactSprings& springs, const std::vector<Inertia>& inertia,
@@ -167,15 +175,15 @@ Stability analyze_stability(const Assembly& assembly, const ContactSprings& spri
   s.mechanisms = find_mechanisms(assembly, springs, options.rotation, supports);
   s.inertia = find_inertia(assembly, springs, options.rotation, supports);
   s.times.add("inertia", watch.lap());
-  add_frequencies(assembly, springs, supports, inertia, s);
-  s.times.add("highest frequency", watch.lap());
+  add_frequencies(assembly, springs, supports, inertia, options, s);
+  watch.lap();
   if (assembly.periodic()) {
     add_waves(assembly, springs, inertia, options.rotation, s);
     s.times.add("waves", watch.lap());
     add_continuum(assembly, springs, options, s);
     s.times.add("continuum", watch.lap());
   }
-  s.critical = find_critical_motion(assembly, springs, supports, s.survey, options.rotation != Rotation::restrained);
+  s.critical = find_critical_motion(assembly, springs, supports, s.survey, options);
   s.times.add("critical ratio", watch.lap());
   return s;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Stability of an assembly: mechanisms, inertia, waves, the critical kT/kN, the highest frequency and time steps.
+/// Stability of an assembly: mechanisms, inertia, waves, the critical kT/kN, natural frequencies and time steps.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +17,7 @@
 #include "equidem/material/inertia.hpp"
 #include "equidem/statics/critical_ratio.hpp"
 #include "equidem/statics/mechanisms.hpp"
+#include "equidem/waves/natural_frequencies.hpp"
 #include "equidem/waves/vibration.hpp"
 #include "equidem/waves/wave_survey.hpp"
 
@@ -26,17 +27,19 @@ struct StabilityOptions {
   Rotation rotation = Rotation::from_scene;
   double density = 1;  ///< kg/m³, of the discs; frequencies scale with the inverse of its square root
   Body body = Body::disc;
-  SolverOptions solver = {};  ///< of the homogenized continuum
+  SolverOptions solver = {};    ///< of the homogenized continuum and of natural frequencies
+  int natural_frequencies = 4;  ///< number of the lowest, >= 0
+  bool critical_ratio = true;   ///< whether it is sought by factorizations, some 15 of the whole assembly
 };
 
 /// The critical ratio and the motion that loses its stiffness there.
 struct CriticalMotion {
-  bool sought = true;                      ///< false: contacts lie off the lines of centres
+  bool sought = true;                      ///< false: see `searched`
   double ratio = 0;                        ///< negative infinity: none down to kT = -kN
   std::optional<ZonePoint> wave = {};      ///< of a periodic assembly
   std::vector<ZonePoint> equivalent = {};  ///< all points of symmetry that reach it
   std::string motion = {};                 ///< in words; empty where it is a wave
-  std::string searched = {};               ///< the motions that were searched, in words
+  std::string searched = {};               ///< the motions that were searched, in words, or why none were
 };
 
 struct Stability {
@@ -48,6 +51,7 @@ struct Stability {
 
   ExtremeEigenvalue highest;  ///< omega², (rad/s)², of the assembly as it is given; 0: nothing in it vibrates
   std::optional<ExtremeEigenvalue> lowest;  ///< likewise, where some kT < 0
+  NaturalFrequencies natural;               ///< of the assembly as it is given, where no kT < 0
   double element_bound = 0;                 ///< (rad/s)²
   TimeStepRules rules;
 

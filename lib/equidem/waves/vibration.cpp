@@ -10,6 +10,7 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
 
@@ -58,13 +59,18 @@ ExtremeEigenvalue extreme_squared_frequency(const Assembly& assembly, const Cont
     component.push_back(k);
     inverse_root_mass.push_back(1 / std::sqrt(k % b == 2 ? body.moment / (scale * scale) : body.mass));
   }
+  constexpr std::size_t at_once = 1 << 13;
   std::vector<double> motion(unknowns.held.size(), 0.0), force(unknowns.held.size());
   return extreme_eigenvalue(
       component.size(),
       [&](std::span<const double> x, std::span<double> y) {
-        for (std::size_t k = 0; k < component.size(); ++k) motion[component[k]] = inverse_root_mass[k] * x[k];
+        parallel_ranges(component.size(), at_once, [&](std::size_t begin, std::size_t last) {
+          for (std::size_t k = begin; k < last; ++k) motion[component[k]] = inverse_root_mass[k] * x[k];
+        });
         multiply(matrix, assembly, graph, motion, force);
-        for (std::size_t k = 0; k < component.size(); ++k) y[k] = inverse_root_mass[k] * force[component[k]];
+        parallel_ranges(component.size(), at_once, [&](std::size_t begin, std::size_t last) {
+          for (std::size_t k = begin; k < last; ++k) y[k] = inverse_root_mass[k] * force[component[k]];
+        });
       },
       end, options);
 }

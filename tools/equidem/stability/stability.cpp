@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// equidem stability: mechanisms, inertia, waves, critical kT/kN, highest frequency and time step.
+/// equidem stability: mechanisms, inertia, waves, critical kT/kN, natural frequencies and time step.
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -19,16 +19,23 @@
 namespace equidem {
 namespace {
 
+struct StabilityCommand : CommonOptions {
+  int frequencies = StabilityOptions{}.natural_frequencies;
+  bool without_critical_ratio = false;
+};
+
 /// The density of the discs, or 1.
-StabilityOptions options_of(const Problem& problem) {
+StabilityOptions options_of(const Problem& problem, const StabilityCommand& command) {
   const Case& resolved = problem.resolved;
   return {.rotation = resolved.rotation,
           .density = disc_density(resolved, problem.assembly).value_or(1),
           .body = resolved.assembly.body,
-          .solver = resolved.solver};
+          .solver = resolved.solver,
+          .natural_frequencies = command.frequencies,
+          .critical_ratio = !command.without_critical_ratio};
 }
 
-int dry_run_survey(const CommonOptions& options, const Problem& problem) {
+int dry_run_survey(const StabilityCommand& options, const Problem& problem) {
   const Assembly& assembly = problem.assembly;
   const ContactSprings& springs = problem.springs.springs;
   const Effects effects = derive_effects(assembly, springs, problem.resolved.rotation);
@@ -50,7 +57,7 @@ int dry_run_survey(const CommonOptions& options, const Problem& problem) {
   } else {
     results.note("none: the assembly is not periodic");
   }
-  const StabilityOptions judged = options_of(problem);
+  const StabilityOptions judged = options_of(problem, options);
   const bool assumed = !disc_density(problem.resolved, assembly);
   const auto inertia = inertia_of(assembly, judged.density, judged.body);
   check_magnitudes(assembly, springs, inertia);
@@ -64,7 +71,7 @@ int dry_run_survey(const CommonOptions& options, const Problem& problem) {
   return 0;
 }
 
-int stability(const CommonOptions& options) {
+int stability(const StabilityCommand& options) {
   Case resolved = read_case(options);
   const OutputPlan plan(options);
   plan.expect_results();
@@ -74,7 +81,7 @@ int stability(const CommonOptions& options) {
   Problem problem = acts(resolved) ? build_problem(std::move(resolved)) : problem_of(std::move(resolved));
   if (options.dry_run) return dry_run_survey(options, problem);
   const Stability result =
-      analyze_stability(problem.assembly, problem.springs.springs, problem.supports, options_of(problem));
+      analyze_stability(problem.assembly, problem.springs.springs, problem.supports, options_of(problem, options));
   StageTimes times = problem.times;
   times.add(result.times);
   deliver(options, result.status(), stability_results(problem, result), std::move(times), [&](Results&) {
@@ -89,14 +96,21 @@ int stability(const CommonOptions& options) {
 }  // namespace
 
 Run declare_stability(CLI::App& command) {
-  const auto options = std::make_shared<CommonOptions>();
+  const auto options = std::make_shared<StabilityCommand>();
   add_common_options(command, *options);
   add_require_stable(command, *options);
+  command.add_option("--frequencies", options->frequencies, "number of the lowest natural frequencies; 0: none")
+      ->check(CLI::Range(0, 50))
+      ->capture_default_str();
+  command.add_flag("--without-critical-ratio", options->without_critical_ratio,
+                   "do not seek the critical kT/kN of an assembly without a small cell,\n"
+                   "which takes most of the time of large ones");
   command.footer(
       "A periodic assembly needs neither supports nor loads; a free one is judged with its [[support]]\n"
       "or [test], or as a free body.\n"
       "Examples:\n"
       "  equidem stability data/cases/abe1996_fig6.toml         free edges: stable down to kT/kN = -0.2650\n"
+      "  equidem stability sample.toml --frequencies 10         the ten lowest natural frequencies\n"
       "  equidem stability cell.toml --out waves                dispersion, critical kT/kN over the zone\n"
       "  equidem stability cell.toml --set springs.kT=-0.1e9    stable in statics, but not in motion");
   return [options] { return stability(*options); };

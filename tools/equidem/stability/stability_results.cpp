@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "equidem/core/text.hpp"
+#include "equidem/statics/motion_description.hpp"
 
 namespace equidem {
 namespace {
@@ -132,6 +133,40 @@ void add_growth(Results& out, const Stability& s, bool periodic) {
            "kT < 0 gives rotations negative stiffness. Statics finds where all forces balance; for the rotations that "
            "is a maximum of the energy, not a minimum, so that it is a state of rest no explicit run can reach or "
            "keep, at any time step and any damping. Use such springs in statics only");
+}
+
+void add_natural_frequencies(Results& out, const Stability& s, const Assembly& assembly) {
+  const NaturalFrequencies& natural = s.natural;
+  std::vector<double> omega, hertz, residuals;
+  double largest = 0;  // of the relative residuals
+  for (std::size_t k = 0; k < natural.squared.size(); ++k) {
+    omega.push_back(signed_root(natural.squared[k]));
+    hertz.push_back(omega.back() / (2 * std::numbers::pi));
+    residuals.push_back(natural.residuals[k]);
+    largest = std::max(largest, natural.residuals[k] / std::abs(natural.squared[k]));
+  }
+  if (omega.empty() && natural.why_none.empty()) return;  // not sought
+  out.line("frequencies");
+  if (omega.empty()) {
+    out.note("the lowest are not known: " + natural.why_none).set("natural_frequencies", nullptr);
+  } else {
+    out.add("natural_frequencies", "lowest", hertz, "Hz");
+    constexpr double worthless = 0.5;
+    out.note(largest > worthless  ? " (NOT TOLD APART FROM 0: the residual is as large as omega²)"
+             : !natural.converged ? fmt::format(" (NOT CONVERGED: residual {:.1e} of omega²)", largest)
+                                  : "");
+    if (assembly.periodic()) out.note(", of motions that repeat with the cell");
+    out.line("", "longest period ").add("longest_period", "", 1 / hertz.front(), "s");
+    out.add("", "residual", largest, "of omega²", {Shown::power, 1});
+    out.add("", "of", describe_motion(assembly, natural.motions.front()));
+  }
+  out.set("natural_omegas", omega).set("natural_omega_squared_residuals", residuals);
+  out.set("natural_frequencies_converged", natural.converged).set("natural_frequencies_method", natural.solver);
+  out.set("natural_frequencies_iterations", natural.iterations);
+  out.set("zero_energy_modes", natural.zero_energy_modes);
+  if (natural.zero_energy_modes > 0 && !omega.empty()) {
+    out.line("", fmt::format("above {} with the frequency 0", counted(natural.zero_energy_modes, "zero-energy mode")));
+  }
 }
 
 /// \param density kg/m³, of the discs; none: 1 was assumed
@@ -273,6 +308,7 @@ Results stability_results(const Problem& problem, const Stability& s) {
   add_inertia(out, s);
   add_critical(out, s);
   add_growth(out, s, periodic);
+  add_natural_frequencies(out, s, problem.assembly);
   add_time_step(out, s, disc_density(problem.resolved, problem.assembly), problem.resolved.assembly.body);
   return out;
 }

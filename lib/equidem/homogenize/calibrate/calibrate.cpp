@@ -26,6 +26,8 @@ double shear_part(const Matrix3& c) {
 HomogenizeOptions homogenize_options(const Assembly& assembly, const CalibrateOptions& options) {
   HomogenizeOptions result = options.homogenize;
   if (result.boundary == Boundary::periodic && !assembly.periodic()) result.boundary = Boundary::displacement;
+  constexpr double share = 0.4;  // of the tolerance, for the error of moduli; it is the square of that of motions
+  if (result.solver.accuracy == 0) result.solver.accuracy = std::sqrt(share * options.tolerance);
   return result;
 }
 

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/waves/natural_frequencies.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
+#include "equidem/linear/multifrontal/dense_kernels.hpp"
+#include "equidem/statics/hold_free_motions.hpp"
+#include "equidem/statics/stiffness_solver.hpp"
+#include "equidem/waves/lowest_eigenvalues.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr std::size_t most_null = 60;  // zero-energy modes that are left out of the iterations
+
+/// A = M^-1/2 K M^-1/2 over discs x block components, with rows and columns of zeros where components are held.
+class VibrationOperator {
+ public:
+  VibrationOperator(const SpringNetwork& network, const std::vector<Inertia>& inertia)
+      : network_(network), b_(static_cast<std::size_t>(network.unknowns.per_disc)) {
+    const double a = network.unknowns.rotation_scale;
+    over_root_mass_.resize(network.unknowns.held.size());
+    for (std::size_t k = 0; k < over_root_mass_.size(); ++k) {
+      const Inertia& body = inertia[k / b_];
+      const double mass = k % b_ == 2 ? body.moment / (a * a) : body.mass;
+      over_root_mass_[k] = network.unknowns.held[k] != 0 ? 0 : 1 / std::sqrt(mass);
+    }
+  }
+
+  [[nodiscard]] std::size_t size() const { return over_root_mass_.size(); }
+  [[nodiscard]] double over_root_mass(std::size_t k) const { return over_root_mass_[k]; }
+
+  /// Forces come from stretch and slip of contacts, whose differences of motions keep the digits of soft motions.
+  void multiply(const TallMatrix& x, ColumnRange columns, TallMatrix& y) const {
+    constexpr std::size_t discs_at_once = 1 << 10;
+    parallel_ranges(network_.assembly.size(), discs_at_once, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t d = begin; d < end; ++d) multiply_disc(d, x, columns, y);
+    });
+  }
+
+ private:
+  [[nodiscard]] double motion(std::span<const double> x, std::size_t component) const {
+    return over_root_mass_[component] * x[component];
+  }
+
+  void multiply_disc(std::size_t d, const TallMatrix& x, ColumnRange columns, TallMatrix& y) const {
+    const auto& [assembly, graph, springs, unknowns] = network_;
+    const double over_scale = 1 / unknowns.rotation_scale;
+    for (std::size_t c = columns.first; c < columns.first + columns.count; ++c) {
+      for (std::size_t e = 0; e < b_; ++e) y(d * b_ + e, c) = 0;
+    }
+    for (const auto& edge : graph.of(d)) {
+      const auto contact = static_cast<std::size_t>(edge.contact);
+      const Contact& ends = assembly.contacts[contact];
+      const std::size_t i = static_cast<std::size_t>(ends.i) * b_, j = static_cast<std::size_t>(ends.j) * b_;
+      const ContactFrame frame = frame_of(assembly, contact);
+      for (std::size_t c = columns.first; c < columns.first + columns.count; ++c) {
+        const auto u = x.column(c);
+        double turn = 0, opening = 0;
+        if (b_ == 3) {
+          const double of_i = motion(u, i + 2) * over_scale, of_j = motion(u, j + 2) * over_scale;
+          turn = frame.lever_i * of_i + frame.lever_j * of_j;
+          opening = frame.offset_i * of_i + frame.offset_j * of_j;
+        }
+        const auto stretch =
+            deformation(frame, motion(u, j) - motion(u, i), motion(u, j + 1) - motion(u, i + 1), turn, opening);
+        const ContactForce force = linear_spring_force(springs[contact], stretch);
+        const Vec2 on_i = force_on_i(frame, force);
+        const auto add = [&](double sign, double moment) {
+          double* const row = &y(d * b_, c);
+          row[0] -= sign * on_i.x * over_root_mass_[d * b_];
+          row[1] -= sign * on_i.y * over_root_mass_[d * b_ + 1];
+          if (b_ == 3) row[2] -= moment * over_scale * over_root_mass_[d * b_ + 2];
+        };
+        if (i == d * b_) add(1, moment_on_i(frame, force));
+        if (j == d * b_) add(-1, moment_on_j(frame, force));
+      }
+    }
+  }
+
+  const SpringNetwork& network_;
+  std::size_t b_;
+  std::vector<double> over_root_mass_;  // 0 where held
+};
+
+/// K with its zero-energy modes: those that follow from the graph are held in the unknowns of the solver.
+class Vibration {
+ public:
+  Vibration(const Assembly& assembly, const ContactSprings& springs, const DegreesOfFreedom& unknowns)
+      : assembly_(assembly), springs_(springs), graph_(assembly), unknowns_(unknowns), held_unknowns_(unknowns) {
+    const auto b = static_cast<std::size_t>(unknowns.per_disc);
+    for (const std::size_t component : hold_free_motions(assembly, graph_, springs, held_unknowns_).components) {
+      if (!graph_.of(component / b).empty()) {
+        held_.push_back(component);
+      } else {  // of a disc that touches nothing
+        unknowns_.held[component] = DegreesOfFreedom::without_stiffness;
+        --unknowns_.unknowns;
+        ++alone_;
+      }
+    }
+  }
+
+  [[nodiscard]] SpringNetwork network() const { return {assembly_, graph_, springs_, unknowns_}; }
+  [[nodiscard]] std::size_t held() const { return held_.size(); }
+  /// Components that discs without contacts have.
+  [[nodiscard]] std::int64_t alone() const { return alone_; }
+
+  void factorize(const SolverOptions& options) {
+    StageTimes times;
+    solver_.reset();
+    solver_.emplace(assembly_, springs_, ContactGraph(assembly_), held_unknowns_, options, Mechanisms::hold, times);
+  }
+  [[nodiscard]] const StiffnessSolver& solver() const { return *solver_; }
+
+  /// Orthonormal in the product with M.
+  [[nodiscard]] TallMatrix zero_energy_modes_of(const VibrationOperator& a) const {
+    const auto pivots = static_cast<std::size_t>(solver_->factor().report().zero_pivots);
+    TallMatrix null(a.size(), held_.size() + pivots);
+    for (std::size_t k = 0; k < null.columns(); ++k) {
+      const std::vector<double> motion =
+          k < held_.size() ? freed(held_[k])
+                           : solver_->factor().null_motion(static_cast<std::int64_t>(k - held_.size()));
+      const auto column = null.column(k);
+      for (std::size_t c = 0; c < column.size(); ++c) {
+        column[c] = a.over_root_mass(c) > 0 ? motion[c] / a.over_root_mass(c) : 0;
+      }
+    }
+    const std::size_t independent = make_orthonormal(null, {0, null.columns()});
+    assert(independent == null.columns());
+    static_cast<void>(independent);
+    return null;
+  }
+
+  /// x := M^1/2 K^-1 M^1/2 x, roughly, with what was held as it is.
+  void precondition(const VibrationOperator& a, TallMatrix& x, ColumnRange columns) const {
+    const auto all = x.column(columns.first, columns.count);
+    constexpr std::size_t at_once = 1 << 13;
+    const auto scale = [&] {
+      parallel_ranges(a.size(), at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+          const double over = held_unknowns_.held[k] != 0 ? 0 : a.over_root_mass(k);
+          for (std::size_t c = 0; c < columns.count; ++c) {
+            double& value = all[c * a.size() + k];
+            value = over > 0 ? value / over : 0;
+          }
+        }
+      });
+    };
+    scale();
+    if (solver_->factor().report().nonzeros > 0) {
+      solver_->factor().solve(all, static_cast<int>(columns.count));
+    } else {
+      for (std::size_t k = 0; k < columns.count; ++k) solver_->factor().solve_roughly(x.column(columns.first + k));
+    }
+    scale();
+  }
+
+ private:
+  /// The zero-energy mode that moves a held component by 1, and no other of those held.
+  [[nodiscard]] std::vector<double> freed(std::size_t component) const {
+    RightHandSide given;
+    given.prescribed.assign(unknowns_.held.size(), 0.0);
+    given.prescribed[component] = 1;
+    StageTimes times;
+    return solver_->solve({&given, 1}, times).front().motion.high;
+  }
+
+  const Assembly& assembly_;
+  const ContactSprings& springs_;
+  ContactGraph graph_;
+  DegreesOfFreedom unknowns_, held_unknowns_;
+  std::vector<std::size_t> held_;
+  std::int64_t alone_ = 0;
+  std::optional<StiffnessSolver> solver_;
+};
+
+/// The lowest part of the whole spectrum of few components.
+LowestEigenvalues lowest_of_all(const VibrationOperator& a, const TallMatrix& null, std::size_t wanted) {
+  const std::size_t n = a.size();
+  TallMatrix x(n, n), y(n, n);
+  for (std::size_t k = 0; k < n; ++k) x(k, k) = 1;
+  a.multiply(x, {0, n}, y);
+  double largest = 0;
+  for (std::size_t k = 0; k < n; ++k) largest = std::max(largest, y(k, k));
+  // Zero-energy modes, and components that are held, go to the far end of the spectrum.
+  const double far = 10 * static_cast<double>(n) * largest;
+  TallMatrix null_rows(null.columns(), n);
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t m = 0; m < null.columns(); ++m) null_rows(m, k) = -far * null(k, m);
+    if (!(a.over_root_mass(k) > 0)) y(k, k) = far;
+  }
+  subtract_product(null, {0, null.columns()}, null_rows, y, {0, n});
+  std::vector<double> values(n);
+  LowestEigenvalues result;
+  dense::use_one_thread_per_call();
+  if (dense::find_spectrum(n, &y(0, 0), values.data(), true) != 0) return result;
+  result.vectors = TallMatrix(n, wanted);
+  std::ranges::copy(std::as_const(y).column(0, wanted), result.vectors.column(0, wanted).begin());
+  TallMatrix product(n, wanted);
+  a.multiply(result.vectors, {0, wanted}, product);
+  for (std::size_t k = 0; k < wanted; ++k) {
+    double value = 0, square = 0;
+    for (std::size_t c = 0; c < n; ++c) value += result.vectors(c, k) * product(c, k);
+    for (std::size_t c = 0; c < n; ++c) square += std::pow(product(c, k) - value * result.vectors(c, k), 2);
+    result.values.push_back(value);
+    result.residuals.push_back(std::sqrt(square));
+  }
+  result.converged = true;
+  return result;
+}
+
+LowestEigenvalues find_lowest(Vibration& vibration, const VibrationOperator& a, const NaturalFrequencyOptions& options,
+                              NaturalFrequencies& result) {
+  const std::int64_t unknowns = vibration.network().unknowns.unknowns;
+  LowestOptions iterations{.tolerance = options.tolerance};
+  const TallMatrix null = vibration.zero_energy_modes_of(a);
+  result.zero_energy_modes = vibration.alone() + static_cast<std::int64_t>(null.columns());
+  if (null.columns() > most_null) {
+    result.why_none =
+        fmt::format("{} zero-energy modes would have to be told apart from the lowest frequencies", null.columns());
+    return {};
+  }
+  const std::int64_t others = unknowns - static_cast<std::int64_t>(null.columns());
+  iterations.wanted = static_cast<std::size_t>(std::min<std::int64_t>(options.count, others));
+  result.solver = vibration.solver().solver_name();
+  if (iterations.wanted == 0) {
+    result.why_none = "every motion that is free is a zero-energy mode";
+    return {};
+  }
+  if (a.size() <= options.dense_limit) return lowest_of_all(a, null, iterations.wanted);
+  const SymmetricOperator k{
+      .size = a.size(),
+      .multiply = [&](const TallMatrix& x, ColumnRange columns, TallMatrix& y) { a.multiply(x, columns, y); },
+      .precondition = [&](TallMatrix& x, ColumnRange columns) { vibration.precondition(a, x, columns); }};
+  return lowest_eigenvalues(k, null, iterations);
+}
+
+}  // namespace
+
+NaturalFrequencies natural_frequencies(const Assembly& assembly, const ContactSprings& springs,
+                                       const DegreesOfFreedom& unknowns, const std::vector<Inertia>& inertia,
+                                       const NaturalFrequencyOptions& options) {
+  assert(!springs.any_negative());
+  NaturalFrequencies result;
+  Vibration vibration(assembly, springs, unknowns);
+  const SpringNetwork network = vibration.network();
+  result.zero_energy_modes = vibration.alone() + static_cast<std::int64_t>(vibration.held());
+  if (vibration.held() > most_null) {
+    result.why_none =
+        fmt::format("{} zero-energy modes would have to be told apart from the lowest frequencies", vibration.held());
+    return result;
+  }
+  const VibrationOperator a(network, inertia);
+  SolverOptions solver = options.solver;
+  constexpr int of_iterations = 20;  // solutions that those to a few per cent take as much time as
+  solver.right_hand_sides = of_iterations;
+  LowestEigenvalues found;
+  const auto attempt = [&] {
+    vibration.factorize(solver);
+    found = find_lowest(vibration, a, options, result);
+  };
+  try {
+    try {
+      attempt();
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::computation_failed || solver.method != SolverMethod::automatic) throw;
+      solver.method = SolverMethod::multifrontal;  // the rough solutions of iterations may fail
+      attempt();
+    }
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    result.why_none = error.problem();
+    return result;
+  }
+  result.squared = found.values;
+  result.residuals = found.residuals;
+  result.converged = found.converged;
+  result.iterations = found.iterations;
+  for (std::size_t k = 0; k < found.values.size(); ++k) {
+    std::vector<double> x(found.vectors.column(k).begin(), found.vectors.column(k).end());
+    for (std::size_t c = 0; c < x.size(); ++c) x[c] *= a.over_root_mass(c);
+    result.motions.push_back(disc_motions(unknowns, x));
+  }
+  return result;
+}
+
+}  // namespace equidem

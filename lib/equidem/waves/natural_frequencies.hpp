@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The lowest natural frequencies of an assembly.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/contact/frame.hpp"
+#include "equidem/linear/linear_solver.hpp"
+#include "equidem/material/inertia.hpp"
+#include "equidem/statics/number_unknowns.hpp"
+
+namespace equidem {
+
+struct NaturalFrequencyOptions {
+  int count = 4;            ///< lowest frequencies, >= 1
+  double tolerance = 1e-6;  ///< of the residual of omega², relative, > 0
+  SolverOptions solver = {};
+  /// Components of motion, held ones included, up to which the whole spectrum is computed.
+  std::size_t dense_limit = 150;
+};
+
+/// The lowest eigenvalues of K x = omega² M x above those of zero-energy modes, ascending.
+struct NaturalFrequencies {
+  std::vector<double> squared;  ///< omega², (rad/s)²; fewer than asked for where the assembly has no more
+  /// (rad/s)²: some omega² of the assembly lies within this of `squared`, which is never below the true one of its
+  /// place.
+  std::vector<double> residuals;
+  std::vector<std::vector<DiscMotion>> motions;  ///< of all discs, of unit kinetic energy at omega = sqrt 2
+  bool converged = false;                        ///< to the tolerance
+  std::int64_t zero_energy_modes = 0;            ///< rigid motions and mechanisms, with the frequency 0
+  std::string why_none;                          ///< why there are none; empty where they were sought
+  std::string solver;                            ///< of the inverse
+  int iterations = 0;                            ///< 0: the whole spectrum was computed
+};
+
+/// Expects no negative spring. Zero-energy modes are those that hold_free_motions finds and those of zero pivots.
+/// \param unknowns of the assembly with its supports; in a periodic cell the motions repeat with it
+/// \throws Error of kind interrupted
+NaturalFrequencies natural_frequencies(const Assembly& assembly, const ContactSprings& springs,
+                                       const DegreesOfFreedom& unknowns, const std::vector<Inertia>& inertia,
+                                       const NaturalFrequencyOptions& options = {});
+
+}  // namespace equidem
