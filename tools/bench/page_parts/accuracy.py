@@ -220,8 +220,8 @@ def sizes(run, result):
         f"digits, not a residual.\nNever the fastest here: {', '.join(never) or 'none'}.\n\n"
         "`method = \"auto\"` takes multigrid from 2e4 discs on, where it is estimated to be faster; below, it would save milliseconds, "
         "and elimination\nnames mechanisms. Elimination wins where kT < 0, where springs differ by many orders of magnitude, near "
-        "mechanisms ([hard cases](hard_cases.md)),\non strips a few discs wide, and for tens of loads on the same supports; refined, it "
-        "also has the last digit. CHOLMOD and UMFPACK serve as\nindependent checks. GAMG of PETSc and BoomerAMG of hypre, which run on "
+        "mechanisms ([hard cases](hard_cases.md))\nand on strips a few discs wide; refined, it also has the last digit. For tens of "
+        "loads on the same supports both take about as long. CHOLMOD and\nUMFPACK serve as independent checks. GAMG of PETSc and BoomerAMG of hypre, which run on "
         "many machines, solve the same matrices in [static solves](benchmarks/static.md).\n\n")
 
 
