@@ -172,48 +172,57 @@ def all_settings(result):
     return table(head, rows)
 
 
+def cheapest_of_methods(result, wanted):
+    """Problem -> method -> the row of the cheapest setting that reaches an error."""
+    found = {}
+    for row in result["settings"]:
+        if "refusal" in row or not row["seconds"]["repetitions"] or worst(row) > wanted:
+            continue
+        best = found.setdefault(row["problem"], {}).setdefault(row["method"], row)
+        if row["seconds"]["median"] < best["seconds"]["median"]:
+            found[row["problem"]][row["method"]] = row
+    return found
+
+
+def fastest_of(cheapest):
+    return min(cheapest, key=lambda method: cheapest[method]["seconds"]["median"])
+
+
 def by_size(result, wanted):
     """Time and memory of the cheapest setting of each method that reaches an error, against the size."""
-    done = [row for row in result["settings"] if "refusal" not in row and row["seconds"]["repetitions"]]
     methods = list(dict.fromkeys(row["method"] for row in result["settings"]))
-    rows = []
-    for problem in dict.fromkeys(row["problem"] for row in result["settings"]):
-        cheapest = {}
-        for row in done:
-            if row["problem"] == problem and worst(row) <= wanted:
-                best = cheapest.get(row["method"])
-                if best is None or row["seconds"]["median"] < best["seconds"]["median"]:
-                    cheapest[row["method"]] = row
-        if not cheapest:
-            continue
-        fastest = min(row["seconds"]["median"] for row in cheapest.values())
 
-        def cell(method):
-            if method not in cheapest:
-                tried = [row for row in result["settings"] if row["problem"] == problem and row["method"] == method]
-                return "refused" if any("refusal" in row for row in tried) else "not reached" if tried else "not tried"
-            row = cheapest[method]
-            memory = row["values"]["memory"]
-            text = seconds(row["seconds"]["median"]) + (f", {memory:.3g} MB" if memory is not None else "")
-            return f"**{text}**" if row["seconds"]["median"] == fastest else text
+    def cell(problem, cheapest, method):
+        if method not in cheapest:
+            tried = [row for row in result["settings"] if row["problem"] == problem and row["method"] == method]
+            return "refused" if any("refusal" in row for row in tried) else "not reached" if tried else "not tried"
+        row = cheapest[method]
+        memory = row["values"]["memory"]
+        text = seconds(row["seconds"]["median"]) + (f", {memory:.3g} MB" if memory is not None else "")
+        return f"**{text}**" if method == fastest_of(cheapest) else text
 
-        rows.append([problem, *map(cell, methods)])
+    rows = [[problem, *(cell(problem, cheapest, method) for method in methods)]
+            for problem, cheapest in cheapest_of_methods(result, wanted).items()]
     return f"Error of at most {wanted:g}:\n\n" + table(["", *methods], rows)
 
 
 def sizes(run, result):
-    text = ""
+    text, fastest = "", set()
     for number, wanted in enumerate(COMPARED):
         plot = f"solvers_time_to_{wanted:g}".replace("-", "_")
         text += f"![Time to an error of {wanted:g} against size]({run.keep_plot('solvers', plot, f'solvers_by_size_{number + 1}')})\n\n"
         text += by_size(result, wanted)
+        fastest |= {fastest_of(cheapest) for cheapest in cheapest_of_methods(result, wanted).values()}
+    never = [method for method in dict.fromkeys(row["method"] for row in result["settings"]) if method not in fastest]
     return text + (
-        "Time, and the peak of memory beyond that of the block, of the cheapest setting of each solver that reaches the error; one thread. "
-        "The error is the distance from\na direct solution that is refined with residuals in twice the digits, not a residual. In bold the "
-        "fastest. `method = \"auto\"` takes it,\nexcept where elimination is needed: kT < 0, springs that differ by many orders of magnitude, "
-        "mechanisms to be named, and small samples, where\nthe difference is milliseconds. Several loads on one set of supports cost elimination "
-        "one pass over the factor each, multigrid its iterations. CHOLMOD and\nUMFPACK serve as independent checks. Multigrid of other "
-        "projects on the same matrix: [static solves](benchmarks/static.md).\n\n")
+        "Time, and the peak of memory beyond that of the block, of the cheapest setting of each solver that reaches the error; one "
+        "thread; in bold\nthe fastest. The error is the distance from a direct solution that is refined with residuals in twice the "
+        f"digits, not a residual.\nNever the fastest here: {', '.join(never) or 'none'}.\n\n"
+        "`method = \"auto\"` takes multigrid from 2e4 discs on, where it is estimated to be faster; below, it would save milliseconds, "
+        "and elimination\nnames mechanisms. Elimination wins where kT < 0, where springs differ by many orders of magnitude, near "
+        "mechanisms ([hard cases](hard_cases.md))\nand on strips a few discs wide; refined, it also has the last digit. For tens of "
+        "loads on the same supports both take about as long. CHOLMOD and\nUMFPACK serve as independent checks. GAMG of PETSc and BoomerAMG of hypre, which run on "
+        "many machines, solve the same matrices in [static solves](benchmarks/static.md).\n\n")
 
 
 def largest_blocks(result):
