@@ -10,6 +10,7 @@
 #include "homogenize/samples.hpp"
 #include "homogenize/tensors.hpp"
 #include "support/catch.hpp"
+#include "support/fields.hpp"
 
 using namespace equidem;
 using namespace samples;
@@ -71,4 +72,21 @@ TEST_CASE("multigrid_homogenizes_scattered_springs") {
     return stiffness_by(method, cell, springs, Boundary::periodic, Rotation::free);
   };
   CHECK(relative_difference(by(SolverMethod::multigrid).stiffness, by(SolverMethod::multifrontal).stiffness) < 1e-10);
+}
+
+TEST_CASE("bits_of_moduli_by_multigrid_are_those_of_one_thread") {
+  const Assembly cell = delaunay_assembly({.discs = 20000, .seed = 4, .periodic = true});
+  const ContactSprings springs({1e9, 0.4e9});
+  const auto on = [&](int threads) {
+    const test::ThreadsFor only(threads);
+    return stiffness_by(SolverMethod::multigrid, cell, springs, Boundary::periodic, Rotation::restrained);
+  };
+  const EffectiveStiffness one = on(1);
+  for (const int threads : {2, 3}) {
+    const EffectiveStiffness other = on(threads);
+    CAPTURE(threads, one.error_bound, other.error_bound);
+    CHECK(one.stiffness == other.stiffness);
+    CHECK(one.gradient_stiffness == other.gradient_stiffness);
+    CHECK(one.error_bound == other.error_bound);
+  }
 }
