@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 
 #include "homogenize/samples.hpp"
@@ -72,6 +73,19 @@ TEST_CASE("multigrid_homogenizes_scattered_springs") {
     return stiffness_by(method, cell, springs, Boundary::periodic, Rotation::free);
   };
   CHECK(relative_difference(by(SolverMethod::multigrid).stiffness, by(SolverMethod::multifrontal).stiffness) < 1e-10);
+}
+
+TEST_CASE("lattices_at_rest_under_a_mean_strain_take_few_iterations") {
+  const Assembly cell = hexagonal_lattice({.columns = 60, .rows = 60, .periodic = true});
+  const ContactSprings springs({1e9, 0.4e9});
+  const EffectiveStiffness ours =
+      stiffness_by(SolverMethod::multigrid, cell, springs, Boundary::periodic, Rotation::free);
+  const Matrix3 voigt = voigt_stiffness(cell, springs);  // exact for this lattice
+  const double off = relative_difference(ours.stiffness, voigt);
+  CAPTURE(off, ours.iterations, ours.error_bound, ours.relative_residual);
+  CHECK(off < 1e-13);
+  CHECK(off * largest_entry(voigt) <= ours.error_bound);
+  CHECK(ours.iterations <= 12);
 }
 
 TEST_CASE("bits_of_moduli_by_multigrid_are_those_of_one_thread") {
