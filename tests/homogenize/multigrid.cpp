@@ -5,12 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/calibrate/calibrate.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 
 #include "homogenize/samples.hpp"
 #include "homogenize/tensors.hpp"
 #include "support/catch.hpp"
+#include "support/fields.hpp"
 
 using namespace equidem;
 using namespace samples;
@@ -90,5 +92,35 @@ TEST_CASE("multigrid_calibrates_the_springs_of_elimination_in_half_the_iteration
       CHECK(ours.springs.kT == Approx(direct.springs.kT).epsilon(5e-10));
       CHECK(2 * ours.achieved.iterations <= to_round_off.iterations);
     }
+  }
+}
+
+TEST_CASE("lattices_at_rest_under_a_mean_strain_take_few_iterations") {
+  const Assembly cell = hexagonal_lattice({.columns = 60, .rows = 60, .periodic = true});
+  const ContactSprings springs({1e9, 0.4e9});
+  const EffectiveStiffness ours =
+      stiffness_by(SolverMethod::multigrid, cell, springs, Boundary::periodic, Rotation::free);
+  const Matrix3 voigt = voigt_stiffness(cell, springs);  // exact for this lattice
+  const double off = relative_difference(ours.stiffness, voigt);
+  CAPTURE(off, ours.iterations, ours.error_bound, ours.relative_residual);
+  CHECK(off < 1e-13);
+  CHECK(off * largest_entry(voigt) <= ours.error_bound);
+  CHECK(ours.iterations <= 12);
+}
+
+TEST_CASE("bits_of_moduli_by_multigrid_are_those_of_one_thread") {
+  const Assembly cell = delaunay_assembly({.discs = 20000, .seed = 4, .periodic = true});
+  const ContactSprings springs({1e9, 0.4e9});
+  const auto on = [&](int threads) {
+    const test::ThreadsFor only(threads);
+    return stiffness_by(SolverMethod::multigrid, cell, springs, Boundary::periodic, Rotation::restrained);
+  };
+  const EffectiveStiffness one = on(1);
+  for (const int threads : {2, 3}) {
+    const EffectiveStiffness other = on(threads);
+    CAPTURE(threads, one.error_bound, other.error_bound);
+    CHECK(one.stiffness == other.stiffness);
+    CHECK(one.gradient_stiffness == other.gradient_stiffness);
+    CHECK(one.error_bound == other.error_bound);
   }
 }

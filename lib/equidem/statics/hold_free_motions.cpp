@@ -77,7 +77,7 @@ HeldMotions hold_free_motions(const Assembly& assembly, const ContactGraph& grap
                               DegreesOfFreedom& unknowns) {
   HeldMotions held;
   const FreeMotions free = find_free_motions(assembly, graph, springs, unknowns);
-  const UnwrappedPieces pieces = unwrap_pieces(assembly, graph);
+  const UnwrappedPieces& pieces = free.unwrapped;
   std::vector<std::vector<std::int32_t>> discs(pieces.count());
   for (std::size_t d = 0; d < assembly.size(); ++d) discs[pieces.piece[d]].push_back(static_cast<std::int32_t>(d));
   Holder holder(unknowns, held);

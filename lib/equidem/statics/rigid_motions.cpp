@@ -129,6 +129,7 @@ class Equations {
     for (const RollingComponent& c : components_) {
       if (c.gear_mode()) result.gears.push_back({c.first_disc, c.discs});
     }
+    result.unwrapped = std::move(unwrapped_);
     return result;
   }
 

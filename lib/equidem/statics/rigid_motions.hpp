@@ -60,6 +60,7 @@ struct GearMode {
 struct FreeMotions {
   std::vector<PieceMotions> pieces;  ///< of one disc (with or without contacts) or more
   std::vector<GearMode> gears;
+  UnwrappedPieces unwrapped;  ///< the discs of the pieces
 };
 
 /// In a time proportional to the contacts. Sums below 1e-9 of their terms count as zero, below the rounding of
