@@ -116,7 +116,7 @@ class OtherCases(StabilityTest):
             self.assertTrue(result["natural_frequencies_converged"])
             self.assertEqual(result["zero_energy_modes"], 0)
             self.check_relative(result["longest_period"] * values[0], 1, 1e-12)
-            for hertz, omega, residual in zip(values, result["natural_omegas"], result["natural_omega_squared_residuals"]):
+            for hertz, omega, residual in zip(values, result["natural_omegas"], result["natural_omega_squared_error_bounds"]):
                 self.check_relative(hertz, omega / (2 * math.pi), 1e-12)
                 self.assertLessEqual(residual, 1e-6 * omega**2)
             self.assertLess(omega, result["omega_max"])

@@ -136,7 +136,7 @@ inline constexpr Quantity quantities[] = {
     {"growth_wave_vector", "rad/m", "wave vector of the disturbance that grows fastest"},
     {"natural_frequencies", "Hz", "lowest natural frequencies"},
     {"natural_omegas", "rad/s", "lowest natural angular frequencies"},
-    {"natural_omega_squared_residuals", "1/s²", "residuals of the squares of the natural angular frequencies"},
+    {"natural_omega_squared_error_bounds", "1/s²", "error bounds of the squares of the natural angular frequencies"},
     {"natural_frequencies_iterations", "", "number of iterations for the natural frequencies"},
     {"longest_period", "s", "period of the lowest natural frequency"},
     {"zero_energy_modes", "", "number of motions with the frequency 0"},

@@ -51,17 +51,14 @@ std::vector<double> starting_vector(std::size_t size, std::uint64_t seed) {
 /// The matrix of the process: diagonal[k], and beside[k] between k and k + 1; the last of them leads out of it.
 struct Tridiagonal {
   std::vector<double> diagonal, beside;
-};
+  double norm = 0;  ///< upper bound of the sizes of its eigenvalues
 
-/// Upper bound of the sizes of its eigenvalues.
-double norm_of(const Tridiagonal& t) {
-  double largest = 0;
-  for (std::size_t k = 0; k < t.diagonal.size(); ++k) {
-    largest = std::max(largest, std::abs(t.diagonal[k]) + (k > 0 ? t.beside[k - 1] : 0) +
-                                    (k + 1 < t.diagonal.size() ? t.beside[k] : 0));
+  void add(double on_diagonal, double next) {
+    norm = std::max(norm, std::abs(on_diagonal) + next + (beside.empty() ? 0 : beside.back()));
+    diagonal.push_back(on_diagonal);
+    beside.push_back(next);
   }
-  return largest;
-}
+};
 
 /// The largest eigenvalue of the matrix by bisection, from above.
 double largest_eigenvalue(const Tridiagonal& t) {
@@ -72,7 +69,7 @@ double largest_eigenvalue(const Tridiagonal& t) {
     }
     return pivot < 0;
   };
-  double low = *std::ranges::max_element(t.diagonal), high = (1 + 1e-14) * norm_of(t);
+  double low = *std::ranges::max_element(t.diagonal), high = (1 + 1e-14) * t.norm;
   while (true) {
     const double middle = low + 0.5 * (high - low);
     if (!(middle > low && middle < high)) return high;
@@ -127,8 +124,7 @@ class Recurrence {
       w_[k] -= diagonal * v_[k] + last * before_[k];
       return w_[k] * w_[k];
     }));
-    t.diagonal.push_back(diagonal);
-    t.beside.push_back(beside);
+    t.add(diagonal, beside);
     advance(beside);
   }
 
@@ -171,11 +167,11 @@ void iterate(const Operator& a, std::vector<double> start, const LanczosOptions&
   for (std::size_t next = 10;;) {
     vectors.step(t);
     const std::size_t steps = t.diagonal.size();
-    const bool ends = steps == most || t.beside.back() <= rounding * norm_of(t);
+    const bool ends = steps == most || t.beside.back() <= rounding * t.norm;
     if (steps < next && !ends) continue;
     next = steps + std::max<std::size_t>(5, steps / 20);
     result.value = largest_eigenvalue(t);
-    result.residual = t.beside.back() * std::abs(last_of_eigenvector(t, result.value)) + rounding * norm_of(t);
+    result.residual = t.beside.back() * std::abs(last_of_eigenvector(t, result.value)) + rounding * t.norm;
     result.products = static_cast<std::int64_t>(steps);
     result.converged = result.residual <= options.tolerance * std::abs(result.value);
     if (ends || result.converged) return;

@@ -24,16 +24,17 @@ struct SymmetricOperator {
 struct LowestOptions {
   std::size_t wanted = 4;   ///< number of eigenvalues, >= 1
   std::size_t guards = 4;   ///< vectors beside them, for speed
-  double tolerance = 1e-8;  ///< of the residual, relative to the eigenvalue
+  double tolerance = 1e-6;  ///< of `error_bounds`, relative to the eigenvalue
   int iterations = 60;      ///< at most, >= 1
   std::uint64_t seed = 1;   ///< of the starting vectors
 };
 
-/// Ascending. Some eigenvalue of A lies within `residuals[k]` of `values[k]`, which is not below the k-th eigenvalue.
+/// Ascending. Some eigenvalue of A lies within `error_bounds[k]` of `values[k]`, as far as T is the inverse of A to a
+/// few per cent in the norm of energy; `values[k]` is not below the k-th eigenvalue.
 struct LowestEigenvalues {
   std::vector<double> values;
-  std::vector<double> residuals;  ///< |A x - value x|, |x| = 1
-  TallMatrix vectors{0, 0};       ///< x
+  std::vector<double> error_bounds;  ///< sqrt(value r.T r), r = A x - value x, |x| = 1, with a margin
+  TallMatrix vectors{0, 0};          ///< x
   int iterations = 0;
   bool converged = false;  ///< to the tolerance
 };

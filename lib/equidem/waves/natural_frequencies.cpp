@@ -213,7 +213,7 @@ LowestEigenvalues lowest_of_all(const VibrationOperator& a, const TallMatrix& nu
     for (std::size_t c = 0; c < n; ++c) value += result.vectors(c, k) * product(c, k);
     for (std::size_t c = 0; c < n; ++c) square += std::pow(product(c, k) - value * result.vectors(c, k), 2);
     result.values.push_back(value);
-    result.residuals.push_back(std::sqrt(square));
+    result.error_bounds.push_back(std::sqrt(square));
   }
   result.converged = true;
   return result;
@@ -283,7 +283,7 @@ NaturalFrequencies natural_frequencies(const Assembly& assembly, const ContactSp
     return result;
   }
   result.squared = found.values;
-  result.residuals = found.residuals;
+  result.error_bounds = found.error_bounds;
   result.converged = found.converged;
   result.iterations = found.iterations;
   for (std::size_t k = 0; k < found.values.size(); ++k) {

@@ -18,7 +18,7 @@ namespace equidem {
 
 struct NaturalFrequencyOptions {
   int count = 4;            ///< lowest frequencies, >= 1
-  double tolerance = 1e-6;  ///< of the residual of omega², relative, > 0
+  double tolerance = 1e-6;  ///< of the error bound of omega², relative, > 0
   SolverOptions solver = {};
   /// Components of motion, held ones included, up to which the whole spectrum is computed.
   std::size_t dense_limit = 150;
@@ -29,13 +29,14 @@ struct NaturalFrequencies {
   std::vector<double> squared;  ///< omega², (rad/s)²; fewer than asked for where the assembly has no more
   /// (rad/s)²: some omega² of the assembly lies within this of `squared`, which is never below the true one of its
   /// place.
-  std::vector<double> residuals;
-  std::vector<std::vector<DiscMotion>> motions;  ///< of all discs, of unit kinetic energy at omega = sqrt 2
-  bool converged = false;                        ///< to the tolerance
-  std::int64_t zero_energy_modes = 0;            ///< rigid motions and mechanisms, with the frequency 0
-  std::string why_none;                          ///< why there are none; empty where they were sought
-  std::string solver;                            ///< of the inverse
-  int iterations = 0;                            ///< 0: the whole spectrum was computed
+  std::vector<double> error_bounds;
+  std::vector<std::vector<DiscMotion>>
+      motions;                         ///< of all discs, with a modal mass sum m u² + I theta² of 1 kg (per metre)
+  bool converged = false;              ///< to the tolerance
+  std::int64_t zero_energy_modes = 0;  ///< rigid motions and mechanisms, with the frequency 0
+  std::string why_none;                ///< why there are none; empty where they were sought
+  std::string solver;                  ///< of the inverse
+  int iterations = 0;                  ///< 0: the whole spectrum was computed
 };
 
 /// Expects no negative spring. Zero-energy modes are those that hold_free_motions finds and those of zero pivots.

@@ -137,13 +137,13 @@ void add_growth(Results& out, const Stability& s, bool periodic) {
 
 void add_natural_frequencies(Results& out, const Stability& s, const Assembly& assembly) {
   const NaturalFrequencies& natural = s.natural;
-  std::vector<double> omega, hertz, residuals;
-  double largest = 0;  // of the relative residuals
+  std::vector<double> omega, hertz, bounds;
+  double largest = 0;  // of the relative errors
   for (std::size_t k = 0; k < natural.squared.size(); ++k) {
     omega.push_back(signed_root(natural.squared[k]));
     hertz.push_back(omega.back() / (2 * std::numbers::pi));
-    residuals.push_back(natural.residuals[k]);
-    largest = std::max(largest, natural.residuals[k] / std::abs(natural.squared[k]));
+    bounds.push_back(natural.error_bounds[k]);
+    largest = std::max(largest, natural.error_bounds[k] / std::abs(natural.squared[k]));
   }
   if (omega.empty() && natural.why_none.empty()) return;  // not sought
   out.line("frequencies");
@@ -152,15 +152,15 @@ void add_natural_frequencies(Results& out, const Stability& s, const Assembly& a
   } else {
     out.add("natural_frequencies", "lowest", hertz, "Hz");
     constexpr double worthless = 0.5;
-    out.note(largest > worthless  ? " (NOT TOLD APART FROM 0: the residual is as large as omega²)"
-             : !natural.converged ? fmt::format(" (NOT CONVERGED: residual {:.1e} of omega²)", largest)
+    out.note(largest > worthless  ? " (NOT TOLD APART FROM 0: the error may be as large as omega²)"
+             : !natural.converged ? fmt::format(" (NOT CONVERGED: error up to {:.1e} of omega²)", largest)
                                   : "");
     if (assembly.periodic()) out.note(", of motions that repeat with the cell");
     out.line("", "longest period ").add("longest_period", "", 1 / hertz.front(), "s");
-    out.add("", "residual", largest, "of omega²", {Shown::power, 1});
-    out.add("", "of", describe_motion(assembly, natural.motions.front()));
+    out.add("", "error below", largest, "of omega²", {Shown::power, 1});
+    out.line("", "the slowest is " + describe_motion(assembly, natural.motions.front()));
   }
-  out.set("natural_omegas", omega).set("natural_omega_squared_residuals", residuals);
+  out.set("natural_omegas", omega).set("natural_omega_squared_error_bounds", bounds);
   out.set("natural_frequencies_converged", natural.converged).set("natural_frequencies_method", natural.solver);
   out.set("natural_frequencies_iterations", natural.iterations);
   out.set("zero_energy_modes", natural.zero_energy_modes);
