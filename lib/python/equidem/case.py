@@ -184,9 +184,10 @@ class Case:
         return self.run_verb("calibrate", **options)
 
     def stability(self, **options: Any) -> Result:
-        """Mechanisms, waves, the critical kT/kN, the highest frequency and time steps.
+        """Mechanisms, waves, the critical kT/kN, natural frequencies and time steps.
 
-        Arrays: dispersion.along, dispersion.wave_vectors and dispersion.squared_frequencies.
+        Arrays: modes["0"].displacements, modes["0"].rotations, ... of the lowest natural frequencies; of small periodic
+        cells dispersion.along, dispersion.wave_vectors and dispersion.squared_frequencies.
         """
         return self.run_verb("stability", **options)
 
