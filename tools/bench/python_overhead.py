@@ -4,9 +4,9 @@
 
     tools/bench/python_overhead.py --build build/release [--discs N,...] [--rounds N] [--markdown FILE]
 
-A hexagonal block, left side held, load on the right. In every round the program solves the case, and the module solves it from
-an assembly in memory; both report the times of their stages, and the module that of the verb in C++, around which its call does
-the rest: the case as text, the numbers as JSON and back, views of the arrays."""
+A hexagonal block, left side held, load on the right. In every round the program solves the case, and the module solves
+it from an assembly in memory; both report the times of their stages, and the module that of the verb in C++, around
+which its call does the rest: the case as text, the numbers as JSON and back, views of the arrays."""
 import argparse
 import json
 import os
@@ -20,6 +20,24 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 SPRINGS = (1e9, 0.5e9)
 SUPPORTS = [{"group": "left", "ux": 0, "uy": 0}]
 LOADS = [{"group": "right", "force": (1e3, 0)}]
+CASE = """schema = "equidem/1"
+assembly = {{ kind = "hexagonal", columns = {side}, rows = {side}, radius = 0.005 }}
+springs  = {{ kN = {kN}, kT = {kT} }}
+[[support]]
+group = "left"
+ux = 0.0
+uy = 0.0
+[[load]]
+group = "right"
+force = [1000.0, 0.0]
+"""
+TEXT = """`equidem.solve` of a hexagonal block, kT/kN = 0.5, left side held, load on the right, {threads} threads. Milliseconds, the \
+least of {rounds} rounds in which program and module take turns. Stages: the times that the result reports, without the making \
+of the assembly. Verb in C++: the wall clock of the verb, with what no stage counts, such as the freeing of the factor. Call: \
+the wall clock of the Python call; beyond the verb it writes the case as TOML, and gets the numbers as JSON and the arrays as \
+views.
+"""
+COLUMNS = ("stages, program", "stages, module", "verb in C++", "call", "call beyond the verb")
 
 
 def main():
@@ -36,8 +54,9 @@ def main():
     rows = []
     for discs in (float(word) for word in options.discs.split(",")):
         side = round(discs**0.5)
-        rows.append(measured(eq, options.build / "tools" / "equidem", side, options.rounds))
-        print(f"{side * side} discs: " + ", ".join(f"{name} {1e3 * least:.3f} ms" for name, least in rows[-1][1].items()), file=sys.stderr)
+        count, least = measured(eq, options.build / "tools" / "equidem", side, options.rounds)
+        print(f"{count} discs: call {1e3 * least['call']:.3g} ms", file=sys.stderr)
+        rows.append((count, least))
     text = page(rows, options, eq)
     if options.markdown:
         options.markdown.write_text(text, encoding="utf-8")
@@ -54,9 +73,7 @@ def measured(eq, program, side, rounds):
 
     with tempfile.TemporaryDirectory() as folder:
         case = Path(folder) / "case.toml"
-        case.write_text(f'schema = "equidem/1"\n[assembly]\nkind = "hexagonal"\ncolumns = {side}\nrows = {side}\nradius = 0.005\n'
-                        f'[springs]\nkN = {SPRINGS[0]}\nkT = {SPRINGS[1]}\n[[support]]\ngroup = "left"\nux = true\nuy = true\n'
-                        '[[load]]\ngroup = "right"\nforce = [1000.0, 0.0]\n', encoding="utf-8")
+        case.write_text(CASE.format(side=side, kN=SPRINGS[0], kT=SPRINGS[1]), encoding="utf-8")
         for _ in range(rounds):
             done = subprocess.run([program, "solve", case, "--json", "-", "--quiet"], capture_output=True, check=True)
             take("stages, program", stages(json.loads(done.stdout)["times"]))
@@ -77,22 +94,17 @@ def stages(times):
 
 def machine(eq):
     """The machine, in the words of a study."""
-    found = eq.study("neighbour_margin", quick=True, budget=0, rounds=1).machine
+    found = eq.study("integrators", quick=True, budget=1, rounds=3).machine
     return f"{found.processor}, {found.cores} cores; equidem {found.version}, {found.build}, compiler {found.compiler}"
 
 
 def page(rows, options, eq):
     command = f"tools/bench/python_overhead.py --build build/release --discs {options.discs} --rounds {options.rounds}"
     lines = ["# From Python", "", f"    {command}", "", f"{machine(eq)}; Python {sys.version.split()[0]}.", "",
-             f"`equidem.solve` of a hexagonal block, kT/kN = 0.5, left side held, load on the right, {eq.threads()} threads. Milliseconds, the "
-             f"least of {options.rounds} rounds in which program and module take turns. Stages: the times that the result reports, without "
-             "the making of the assembly. Verb in C++: the wall clock of the verb, with what no stage counts, such as the freeing of the "
-             "factor. Call: the wall clock of the Python call; beyond the verb it writes the case as TOML, and gets the numbers as JSON "
-             "and the arrays as views.", "",
-             "| discs | stages, program | stages, module | verb in C++ | call | call beyond the verb | of the verb |",
-             "|---|---|---|---|---|---|---|"]
+             TEXT.format(threads=eq.threads(), rounds=options.rounds), f"| discs | {' | '.join(COLUMNS)} | of the verb |",
+             "|---" * (len(COLUMNS) + 2) + "|"]
     for discs, least in rows:
-        numbers = [1e3 * least[name] for name in ("stages, program", "stages, module", "verb in C++", "call", "call beyond the verb")]
+        numbers = [1e3 * least[name] for name in COLUMNS]
         share = least["call beyond the verb"] / least["verb in C++"]
         lines.append(f"| {discs} | " + " | ".join(f"{number:.3g}" for number in numbers) + f" | {100 * share:.2g} % |")
     return "\n".join(lines) + "\n"
