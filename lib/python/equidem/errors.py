@@ -28,7 +28,7 @@ class _Sentence(BaseException):
 
 def without_memory_names(text: str) -> str:
     """Without the names of cases and assemblies in memory: "case#3:2: springs.kT" is "springs.kT"."""
-    return re.sub(r"(--set [\w.]+=\")?\b(case|assembly)#\d+(:\d+)*\"?(: |$)", "", text)
+    return text if "#" not in text else re.sub(r"(--set [\w.]+=\")?\b(case|assembly)#\d+(:\d+)*\"?(: |$)", "", text)
 
 
 class EquidemError(Exception):
