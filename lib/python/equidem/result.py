@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import html
+import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -26,17 +27,20 @@ class Result(Mapping[str, Any]):
         Unit and meaning of each number and array by its name, nested names joined by ".".
     report : str
         The text that the command line prints.
+    elapsed : float
+        s, wall clock of the verb in C++; nan where a result is not that of a verb.
     assembly : Assembly or None
         What was computed on, without discs that carry no load; of `pack`: what was made.
     """
 
     def __init__(self, values: Mapping[str, Any], arrays: Mapping[str, tuple[Any, str]] = {},
-                 assembly: Assembly | None = None) -> None:
+                 assembly: Assembly | None = None, elapsed: float = math.nan) -> None:
         own = dict(values)
         self.units: dict[str, str] = own.pop("units", {})
         self.labels: dict[str, str] = own.pop("labels", {})
         self.report: str = own.pop("report", "")
         self.assembly = assembly
+        self.elapsed = elapsed
         self._plain: dict[str, Any] = own
         self._arrays: dict[str, Any] = {}
         nested: dict[str, dict[str, tuple[Any, str]]] = {}

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <variant>
@@ -7,6 +8,7 @@
 
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/given.hpp"
+#include "equidem/core/stopwatch.hpp"
 
 #include "case_inputs.hpp"
 #include "result.hpp"
@@ -15,19 +17,25 @@
 namespace equidem::python {
 namespace {
 
-/// Carry out a verb. Returns (JSON of the result, arrays, assembly or None).
+/// Carry out a verb. Returns (JSON of the result, arrays, assembly or None, wall clock of the verb in s).
 py::tuple run_verb(const std::string& verb, const std::string& case_text, const std::string& case_file,
                    const std::shared_ptr<Assembly>& assembly, std::vector<std::string> overrides,
-                   const std::vector<std::string>& options) {
+                   std::vector<std::string> options) {
+  if (!progress_wanted() && std::ranges::find(options, "--quiet") == options.end()) options.emplace_back("--quiet");
   const CaseInputs inputs(case_text, case_file, assembly, std::move(overrides));
   Delivery delivery;
   std::string json;
+  double seconds = 0;
   {
     const LongWork working;
+    const KeptSettings settings;
+    const Stopwatch watch;
     delivery = VerbRun(verb, inputs.case_file(), inputs.overrides(), options)(Arrays::wanted);
+    seconds = watch.seconds();
     json = delivery.json();
   }
-  return py::make_tuple(json, arrays_of(delivery.arrays), std::const_pointer_cast<Assembly>(delivery.assembly));
+  return py::make_tuple(json, arrays_of(delivery.arrays), std::const_pointer_cast<Assembly>(delivery.assembly),
+                        seconds);
 }
 
 }  // namespace
