@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
+import pathlib
+import tempfile
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -148,10 +151,19 @@ class Case:
         if native is not None and options.get("out") is not None:
             return self._with_file(os.fspath(options["out"])).run_verb(verb, **options)
         values, arrays, made = _core.run_verb(verb, text, file, native, overrides, words)
-        own = self._assembly
-        if made is None or (own is not None and len(own) == len(made)):
-            return Result(json.loads(values), arrays, own)
-        return Result(json.loads(values), arrays, Assembly._of(made))
+        assembly = self._assembly
+        if made is not None and (assembly is None or len(assembly) != len(made)):
+            assembly = Assembly._of(made)
+        return Result(json.loads(values), arrays, assembly, functools.partial(self.copy()._page, verb, options))
+
+    def _page(self, verb: str, options: Mapping[str, Any]) -> str:
+        """The page of a verb: that of its folder, or of one that is made for it."""
+        out = options.get("out")
+        if out is not None:
+            return (pathlib.Path(out) / "index.html").read_text(encoding="utf-8")
+        with tempfile.TemporaryDirectory(prefix="equidem_") as folder:
+            self.run_verb(verb, **{**options, "out": folder, "quiet": True})
+            return (pathlib.Path(folder) / "index.html").read_text(encoding="utf-8")
 
     def _with_file(self, folder: str) -> Case:
         """The case with its assembly in a file of the folder, so that the case file written there can be run again."""
