@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
+import pathlib
+import tempfile
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -160,7 +163,16 @@ class Case:
         own = self._assembly
         if made is not None and (own is None or len(own) != len(made)):
             own = Assembly._of(made)
-        return Result(json.loads(values), arrays, own, seconds)
+        return Result(json.loads(values), arrays, own, seconds, functools.partial(self.copy()._page, verb, options))
+
+    def _page(self, verb: str, options: Mapping[str, Any]) -> str:
+        """The page of a verb: that of its folder, or of one that is made for it."""
+        out = options.get("out")
+        if out is not None:
+            return (pathlib.Path(out) / "index.html").read_text(encoding="utf-8")
+        with tempfile.TemporaryDirectory(prefix="equidem_") as folder:
+            self.run_verb(verb, **{**options, "out": folder, "quiet": True})
+            return (pathlib.Path(folder) / "index.html").read_text(encoding="utf-8")
 
     def _with_file(self, folder: str) -> Case:
         """The case with its assembly in a file of the folder, so that the case file written there can be run again."""

@@ -5,13 +5,16 @@ from __future__ import annotations
 
 import html
 import math
-from collections.abc import Iterator, Mapping
+import os
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from .assembly import Assembly
+
+from .errors import BadInput
 
 
 class Result(Mapping[str, Any]):
@@ -34,13 +37,15 @@ class Result(Mapping[str, Any]):
     """
 
     def __init__(self, values: Mapping[str, Any], arrays: Mapping[str, tuple[Any, str]] = {},
-                 assembly: Assembly | None = None, elapsed: float = math.nan) -> None:
+                 assembly: Assembly | None = None, elapsed: float = math.nan,
+                 page: Callable[[], str] | None = None) -> None:
         own = dict(values)
         self.units: dict[str, str] = own.pop("units", {})
         self.labels: dict[str, str] = own.pop("labels", {})
         self.report: str = own.pop("report", "")
         self.assembly = assembly
         self.elapsed = elapsed
+        self._page = page
         self._plain: dict[str, Any] = own
         self._arrays: dict[str, Any] = {}
         nested: dict[str, dict[str, tuple[Any, str]]] = {}
@@ -80,6 +85,27 @@ class Result(Mapping[str, Any]):
     def to_dict(self) -> dict[str, Any]:
         """The numbers as plain dictionaries and lists, as in result.json; arrays are left out."""
         return dict(self._plain)
+
+    def save_page(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Write the result as one HTML page that needs nothing else: the answer with its error, the case, what acts, figures,
+        warnings and the way to repeat it.
+
+        It is the page that the verb writes with ``out="folder"``. Where the verb was carried out without a folder it is
+        carried out once more for the files of the figures: give long runs a folder.
+
+        Raises
+        ------
+        BadInput
+            Where the file exists and `overwrite` is false, and where the result is only a part of one.
+        """
+        if self._page is None:
+            raise BadInput("this result has no page", "pages are of the results of whole verbs",
+                           "Save the page of what solve, homogenize, run, ... returned")
+        if not overwrite and os.path.exists(path):
+            raise BadInput(f"'{os.fspath(path)}' exists", "it would be lost", "Choose another name, or give overwrite=True")
+        text = self._page()
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
 
     def __repr__(self) -> str:
         if self.report:
