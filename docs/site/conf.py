@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sphinx configuration of the site. tools/docs sets EQUIDEM_DOXYGEN (folder of Doxygen's XML), EQUIDEM_VERSION and the path
-of the Python module; the sources are those that stage.py has gathered."""
+"""Sphinx configuration of the site. The script build sets EQUIDEM_DOXYGEN (folder of Doxygen's XML), EQUIDEM_VERSION and
+the path of the Python module; the sources are those that stage.py has gathered."""
 
 import os
 import pathlib
@@ -11,7 +11,8 @@ from pygments.lexers.special import TextLexer
 project = "equidem"
 author = "the authors of equidem"
 version = release = os.environ["EQUIDEM_VERSION"]
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax", "sphinx_copybutton", "breathe"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax", "sphinx_copybutton",
+              "breathe"]
 exclude_patterns = ["parts/**", "files/**"]
 nitpicky = True
 # Types of other libraries, whose pages are not part of the site.
@@ -80,8 +81,8 @@ def show_colons(app, what, name, obj, options, lines):
 
 
 def mend_theme(app, failed):
-    """Debian 12's furo 2022.12 has its script in two modules, which browsers load from a server only, and its style sheet
-    lacks the dark colours of readers whose system is dark."""
+    """Debian 12's furo 2022.12 has its script in two modules, which browsers load from a server only, and its style
+    sheet lacks the dark colours of readers whose system is dark."""
     if failed:
         return
     static = pathlib.Path(app.outdir) / "_static"
@@ -93,5 +94,5 @@ def mend_theme(app, failed):
     text = sheet.read_text(encoding="utf-8")
     dark = re.search(r'body\[data-theme="dark"\] (\{[^}]*--color-background-primary[^}]*\})', text)
     if dark and "prefers-color-scheme" not in text:
-        text += f'@media not print {{ @media (prefers-color-scheme: dark) {{ body[data-theme="auto"] {dark.group(1)} }} }}\n'
+        text += f'@media screen and (prefers-color-scheme: dark) {{ body[data-theme="auto"] {dark.group(1)} }}\n'
         sheet.write_text(text, encoding="utf-8")

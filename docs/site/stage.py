@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Gather the pages of the site: stage.py SOURCE STAGE PROGRAM.
 
-Pages are the Markdown files of docs/, data/ and of the top folder, with links as they are in the repository, and pages that
-are made from the tables of the program. STAGE gets the pages as Sphinx reads them: links lead to other pages, to figures,
-vector graphics where they exist, or to a copy of the file.
+Pages are those of docs/, the Markdown files of data/ and of the top folder, with links as they are in the repository,
+and pages that generate.py makes. STAGE gets them as Sphinx reads them: links lead to other pages, to figures, vector
+graphics where they exist, or to a copy of the file.
 """
 
 import os
@@ -12,8 +12,9 @@ import pathlib
 import posixpath
 import re
 import shutil
-import subprocess
 import sys
+
+import generate
 
 # Pages made here, by their place in docs/, which pages may link to.
 GENERATED = ["reference/verbs.md", "reference/result.md", "examples/index.md"]
@@ -137,111 +138,20 @@ class Stage:
         return posixpath.relpath(part, posixpath.dirname(place) or ".")
 
 
-def output_of(program, *words):
-    return subprocess.run([program, *words], check=True, capture_output=True, text=True).stdout
-
-
-def cell(text):
-    return text.replace("|", "\\|").replace("<", "&lt;").replace("_", "\\_").replace("*", "\\*")
-
-
-def verbs_of(program):
-    """Names and meanings of all verbs, from the program's help."""
-    listed = output_of(program, "--help").split("\nVerbs:\n")[1].split("\n\n")[0]
-    return [line.split(None, 1) for line in listed.splitlines()]
-
-
-def verbs_page(program):
-    page = ["# Verbs", "", "`equidem VERB CASE.toml [OPTIONS]`. This page is made from `equidem VERB --help`; the keys of the "
-            "case file have [their own](../case_file.md).", ""]
-    for verb, meaning in verbs_of(program):
-        page += [f"## {verb}", "", cell(meaning[0].upper() + meaning[1:]) + ".", ""]
-        examples = []
-        section = ""
-        for line in output_of(program, verb, "--help").splitlines():
-            if line.startswith("Usage:"):
-                page += [f"`{line[len('Usage: '):]}`", ""]
-            elif line and not line.startswith(" ") and line.endswith(":"):
-                section = line
-                if section in ("Positionals:", "Options:"):
-                    page += ["", "| option | meaning |" if section == "Options:" else "| argument | meaning |", "|---|---|"]
-            elif section in ("Positionals:", "Options:") and line.startswith("  "):
-                name, text = line[2:30].rstrip(), line[30:].strip()
-                if len(line) > 30 and line[29] != " ":  # the name is longer than its column
-                    name, text = line.strip(), ""
-                if name:
-                    page.append(f"| `{name}` | {cell(text)} |".replace("`|`", "`\\|`"))
-                    page[-1] = re.sub(r"`([^`]*)`", lambda m: "`" + m.group(1).replace("|", "\\|") + "`", page[-1], count=1)
-                else:
-                    page[-1] = page[-1][:-2].rstrip() + f" {cell(text)} |"
-            elif section == "Examples:" and line.startswith("  "):
-                examples.append(line[2:])
-        if examples:
-            page += ["", "```text", *examples, "```"]
-        page.append("")
-    return "\n".join(page)
-
-
-def result_page(program):
-    """The list of quantities as a table; columns of the help: name, unit, meaning."""
-    intro, _, listed = output_of(program, "help", "result").partition("\nNames of numbers")
-    page = ["# Numbers of result.json", "", "This page is `equidem help result`. In Python a result has the same numbers as "
-            "attributes: `result.plane_strain.young_modulus`.", ""]
-    paragraphs = intro.strip().split("\n\n")
-    for paragraph in paragraphs:
-        if re.match(r"\w+   ", paragraph):
-            page += ["| key | meaning |", "|---|---|"]
-            for line in paragraph.splitlines():
-                name, text = line.split(None, 1)
-                page.append(f"| `{name}` | {cell(text)} |")
-        else:
-            page.append(cell(paragraph))
-        page.append("")
-    page += ["| number | unit | meaning |", "|---|---|---|"]
-    lines = [line for line in listed.splitlines()[1:] if line.startswith("  ")]
-    for line in lines:
-        name, rest = line.split(None, 1) if not line[2:].startswith(" ") else ("", line.strip())
-        unit, meaning = "", rest
-        column = re.match(r"\s{2}(\S+)(\s+)(\S+)\s{2,}(\S.*)$", line)
-        if column and len(column.group(1) + column.group(2)) <= 38 and " " not in column.group(3):
-            unit, meaning = column.group(3), column.group(4)
-        page.append(f"| `{name}` | {cell(unit)} | {cell(meaning)} |")
-    return "\n".join(page) + "\n"
-
-
-def example_pages(source, stage):
-    """Scripts in the percent format as pages."""
-    listed = []
-    for script in sorted((source / "docs/examples").glob("*.py")):
-        page, kind = [], "code"
-        for chunk in re.split(r"^# %%", script.read_text(encoding="utf-8"), flags=re.M):
-            head, _, body = chunk.partition("\n")
-            kind = "text" if "[markdown]" in head else "code"
-            if kind == "text":
-                page += [re.sub(r"^# ?", "", body, flags=re.M).strip(), ""]
-            elif body.strip() and not body.startswith("# SPDX"):
-                page += ["```python", body.strip("\n"), "```", ""]
-        text = "\n".join(page)
-        if not text.startswith("# "):
-            text = f"# {script.stem[3:].replace('_', ' ').capitalize()}\n\n" + text
-        stage.write(f"examples/{script.stem}.md", text)
-        listed.append(script.stem)
-    contents = ["```{toctree}", ":maxdepth: 1", "", *listed, "```"] if listed else []
-    stage.write("examples/index.md", "\n".join([
-        "# Examples", "", "Scripts to copy from, each with one question and one figure: `docs/examples/` of the source.", "",
-        *contents, ""]))
-
-
 def main():
-    source, place, program = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]), os.path.abspath(sys.argv[3])
+    source, place = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
+    program = os.path.abspath(sys.argv[3])
     shutil.rmtree(place, ignore_errors=True)
     stage = Stage(source, place)
     for name, target in stage.pages.items():
         if target not in GENERATED:
             stage.write(target, stage.text(name, target))
-    stage.write("reference/verbs.md", verbs_page(program))
-    stage.write("reference/result.md", result_page(program))
-    example_pages(source, stage)
+    examples = sorted((source / "docs/examples").glob("*.py"))
+    for script in examples:
+        stage.write(f"examples/{script.stem}.md", generate.example_page(script))
+    stage.write("examples/index.md", generate.examples_page([script.stem for script in examples]))
+    stage.write("reference/verbs.md", generate.verbs_page(program))
+    stage.write("reference/result.md", generate.result_page(program))
 
 
 if __name__ == "__main__":

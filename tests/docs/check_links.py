@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""check_links.py SOURCE: every link of the pages of the site leads to a file of the repository and to a heading of it, and every
-page of docs/ is in a table of contents."""
+"""check_links.py SOURCE: every link of the pages of the site leads to a file of the repository and to a heading of it,
+and every page of docs/ is in a table of contents."""
 
 import fnmatch
 import pathlib
@@ -48,7 +48,8 @@ def lost_pages():
     listed = re.findall(r"^[\w/\[\]!*]+$", (SOURCE / "docs/index.md").read_text(encoding="utf-8"), re.M)
     for place in stage.pages_of(SOURCE).values():
         page = place.rpartition(".")[0]
-        if not place.startswith(("data/", "project/")) and page != "index" and not any(fnmatch.fnmatch(page, p) for p in listed):
+        elsewhere = place.startswith(("data/", "project/")) or page == "index"
+        if not elsewhere and not any(fnmatch.fnmatch(page, pattern) for pattern in listed):
             yield f"docs/{place} is in no table of contents of docs/index.md"
 
 
