@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pages that are made from the tables of the program, and from the example scripts, as Markdown."""
+"""Pages that are made from the tables of the program, as Markdown."""
 
 import re
 import subprocess
@@ -86,20 +86,8 @@ def result_page(program):
     return "\n".join(page + table(["number", "unit", "meaning"], rows))
 
 
-def example_page(script):
-    """A script in the percent format as a page."""
-    page = []
-    for chunk in re.split(r"^# %%", script.read_text(encoding="utf-8"), flags=re.M):
-        head, _, body = chunk.partition("\n")
-        if "[markdown]" in head:
-            page += [re.sub(r"^# ?", "", body, flags=re.M).strip(), ""]
-        elif body.strip() and not chunk.startswith("# SPDX"):
-            page += ["```python", body.strip("\n"), "```", ""]
-    text = "\n".join(page)
-    return text if text.startswith("# ") else f"# {script.stem[3:].replace('_', ' ').capitalize()}\n\n{text}"
-
-
 def examples_page(names):
+    """The contents of the examples, whose pages tools/notebooks makes."""
     contents = ["```{toctree}", ":maxdepth: 1", "", *names, "```"] if names else []
     return "\n".join(["# Examples", "", "Scripts to copy from, each with one question and one figure: `docs/examples/` of",
                       "the source.", "", *contents, ""])

@@ -146,10 +146,8 @@ def main():
     for name, target in stage.pages.items():
         if target not in GENERATED:
             stage.write(target, stage.text(name, target))
-    examples = sorted((source / "docs/examples").glob("*.py"))
-    for script in examples:
-        stage.write(f"examples/{script.stem}.md", generate.example_page(script))
-    stage.write("examples/index.md", generate.examples_page([script.stem for script in examples]))
+    examples = sorted(script.stem for script in (source / "docs/examples").glob("*.py"))
+    stage.write("examples/index.md", generate.examples_page(examples))
     stage.write("reference/verbs.md", generate.verbs_page(program))
     stage.write("reference/result.md", generate.result_page(program))
 
