@@ -124,7 +124,7 @@ class Stage:
             if is_text:
                 line = self.without_folders(line, name)
                 line = LINK.sub(lambda found: f"]({self.link(found.group(1), name, place)})", line)
-                # the source of a page is drawn with those words of a fence that Sphinx knows
+                # Sphinx has no word for blocks that the tests leave out
                 line = re.sub(r"^(\s*```\w+) not-run$", r"\1", line)
                 line = INCLUDE.sub(lambda found: found.group(1) + self.part(found.group(2), name, place), line)
             lines.append(line)
