@@ -78,7 +78,7 @@ struct GrainPacking {
 };
 
 /// The packing depends on the options only, not on the number of threads.
-/// \throws Error, its place the name of the option at fault, or empty. (bad_input): no bodies, a shape that is none
+/// \throws Error whose place is the name of the option at fault, or empty. (bad_input): no bodies, a shape that is none
 ///         (unit_body_of), a box or radii that are not positive, bodies wider than the box, more area than the box has,
 ///         falling into a box without an open top and the reverse; (computation_failed): the bodies do not fit, naming
 ///         how dense they came to lie, and as settle
