@@ -205,12 +205,18 @@ std::string Delivery::report() const {
   return all.report();
 }
 
-std::string Delivery::json() const {
+Results Delivery::numbers() const {
   Results seconds, object;
   for (const auto& [stage, time] : times.stages()) seconds.set(stage, time);
-  object.set("status", status).set("report", report()).set("times", seconds).set("version", library_version());
-  object.append(results);
-  return object.append(units_and_labels(object)).json();
+  return object.set("status", status).set("times", seconds).set("version", library_version()).append(results);
+}
+
+Results Delivery::texts() const {
+  return Results().set("report", report()).append(units_and_labels(numbers()));
+}
+
+std::string Delivery::json() const {
+  return numbers().append(texts()).json();
 }
 
 void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times,

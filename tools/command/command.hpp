@@ -121,7 +121,11 @@ struct Delivery {
 
   /// The report, with the times.
   [[nodiscard]] std::string report() const;
-  /// The results with status, report, times, version, units and labels: result.json.
+  /// The results with status, times and version.
+  [[nodiscard]] Results numbers() const;
+  /// Report, units and labels.
+  [[nodiscard]] Results texts() const;
+  /// Numbers and texts: result.json.
   [[nodiscard]] std::string json() const;
 };
 enum class Arrays { wanted, not_wanted };

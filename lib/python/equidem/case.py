@@ -158,12 +158,12 @@ class Case:
         text, file, native, overrides = self._inputs()
         if native is not None and options.get("out") is not None:
             return self._with_file(os.fspath(options["out"])).run_verb(verb, **options)
-        values, arrays, made, seconds = _core.run_verb(verb, text, file, native, overrides, words)
-        values = without_memory_names(values)
-        own = self._assembly
-        if made is not None and (own is None or len(own) != len(made)):
-            own = Assembly._of(made)
-        return Result(json.loads(values), arrays, own, seconds, functools.partial(self.copy()._page, verb, options))
+        numbers, arrays, made, seconds, texts = _core.run_verb(verb, text, file, native, overrides, words)
+        assembly = self._assembly if made is None else Assembly._of(made)
+        result = Result(json.loads(without_memory_names(numbers)), arrays, assembly, texts.json,
+                        functools.partial(self.copy()._page, verb, options))
+        result.elapsed = seconds
+        return result
 
     def _page(self, verb: str, options: Mapping[str, Any]) -> str:
         """The page of a verb: that of its folder, or of one that is made for it."""

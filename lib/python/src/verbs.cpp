@@ -17,7 +17,18 @@
 namespace equidem::python {
 namespace {
 
-/// Carry out a verb. Returns (JSON of the result, arrays, assembly or None, wall clock of the verb in s).
+/// Report, units and labels of a result, as JSON: made when they are asked for, since they take as long as its numbers.
+class Texts {
+ public:
+  explicit Texts(Delivery delivery) : delivery_(std::move(delivery)) {}
+  [[nodiscard]] std::string json() const { return delivery_.texts().json(); }
+
+ private:
+  Delivery delivery_;
+};
+
+/// Carry out a verb. Returns (JSON of the numbers, arrays, assembly or None where it is the given one, wall clock of
+/// the verb in s, texts).
 py::tuple run_verb(const std::string& verb, const std::string& case_text, const std::string& case_file,
                    const std::shared_ptr<Assembly>& assembly, std::vector<std::string> overrides,
                    std::vector<std::string> options) {
@@ -31,11 +42,14 @@ py::tuple run_verb(const std::string& verb, const std::string& case_text, const 
     const KeptSettings settings;
     const Stopwatch watch;
     delivery = VerbRun(verb, inputs.case_file(), inputs.overrides(), options)(Arrays::wanted);
+    const bool is_given = assembly && delivery.assembly && delivery.assembly->size() == assembly->size();
+    if (is_given) delivery.assembly.reset();
     seconds = watch.seconds();
-    json = delivery.json();
+    json = delivery.numbers().json();
   }
-  return py::make_tuple(json, arrays_of(delivery.arrays), std::const_pointer_cast<Assembly>(delivery.assembly),
-                        seconds);
+  const py::dict arrays = arrays_of(std::exchange(delivery.arrays, {}));
+  auto made = std::const_pointer_cast<Assembly>(std::exchange(delivery.assembly, nullptr));
+  return py::make_tuple(json, arrays, std::move(made), seconds, Texts(std::move(delivery)));
 }
 
 }  // namespace
@@ -58,6 +72,7 @@ py::dict arrays_of(const std::vector<ResultArray>& arrays) {
 }
 
 void bind_verbs(py::module_& module) {
+  py::class_<Texts>(module, "Texts").def("json", &Texts::json);
   module.def("run_verb", run_verb);
   module.def("case_reference", case_file_page);
 }
