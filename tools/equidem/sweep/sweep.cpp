@@ -207,7 +207,7 @@ int sweep(const SweepOptions& options) {
   const bool all_failed = failed == points.size();
   Results results;
   if (!sweep.base.title.empty()) results.block(sweep.base.title + "\n\n");
-  results.append(results_of_keys(sweep.plan)).set("complete", !run.stopped());
+  results.set("title", sweep.base.title).append(results_of_keys(sweep.plan)).set("complete", !run.stopped());
   results.table("points", sweep_rows(sweep.plan, points));
   if (failed > 0) add_failures(results, points, failed);
   if (run.stopped())

@@ -204,7 +204,8 @@ std::vector<Answer> shown(const Results& results, const Results& units, std::spa
       const std::string unit = unit_of(units, path);
       const auto [factor, name_of_unit] = prefixed(*value, unit);
       answer.value = *value;
-      answer.text = number_html(*value / factor, digits);
+      const bool whole = std::floor(*value) == *value && std::abs(*value) < 1e9 && unit.empty();
+      answer.text = whole ? grouped(static_cast<std::int64_t>(*value)) : number_html(*value / factor, digits);
       answer.unit = name_of_unit;
       if (const auto error = number_of(results, key.error); error && std::isfinite(*error)) {
         const auto [small, unit_of_error] = prefixed(*error, unit);

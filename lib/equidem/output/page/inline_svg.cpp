@@ -164,9 +164,14 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
   text = replaced.append(text, copied);
 }
 
-void remove_element(std::string& svg, const std::string& name) {
-  const std::size_t from = svg.find("<" + name + ">"), end = svg.find("</" + name + ">");
-  if (from != std::string::npos && end != std::string::npos) svg.erase(from, end + name.size() + 3 - from);
+void remove_elements(std::string& svg, const std::string& name) {
+  const std::string end_tag = "</" + name + ">";
+  for (std::size_t from = svg.find("<" + name + ">"); from != std::string::npos;
+       from = svg.find("<" + name + ">", from)) {
+    const std::size_t end = svg.find(end_tag, from);
+    if (end == std::string::npos) return;
+    svg.erase(from, end + end_tag.size() - from);
+  }
 }
 
 std::string base64(std::string_view bytes) {
@@ -205,8 +210,8 @@ std::string inline_svg(std::string_view file, const std::string& prefix, const s
     svg += of_cairo ? short_tag(inside) : std::string(file.substr(path, end + 2 - path));
     at = end + 2;
   }
-  remove_element(svg, "title");  // of the program, where there is one
-  remove_element(svg, "desc");
+  remove_elements(svg, "title");  // names that gnuplot gives its drawing and curves
+  remove_elements(svg, "desc");
   for (const char quote : {'"', '\''}) {
     replace_all(svg, fmt::format(" id={}", quote), fmt::format(" id={}{}", quote, prefix));
     replace_all(svg, fmt::format("href={}#", quote), fmt::format("href={}#{}", quote, prefix));

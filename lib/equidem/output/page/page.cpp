@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/output/page/page.hpp"
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <string_view>
@@ -18,9 +19,8 @@
 namespace equidem {
 namespace {
 
-constexpr std::size_t most_svg_bytes = 300'000;       ///< of a drawing; larger ones are shown as images
-constexpr std::size_t most_figure_bytes = 1'000'000;  ///< of all figures without the player
-constexpr std::size_t most_text_bytes = 100'000;      ///< of the case and of the report
+constexpr std::size_t most_svg_bytes = 300'000;   ///< of a drawing; larger ones are shown as images
+constexpr std::size_t most_text_bytes = 100'000;  ///< of the case and of the report
 
 /// Marks of lines of the report that a reader must not miss.
 constexpr std::array<std::string_view, 10> marks{"WARNING",      "UNSTABLE",  "NOT CONVERGED", "NOT TOLD APART",
@@ -108,9 +108,13 @@ std::string answers_html(const Answers& answers) {
   return html + "</dl>\n";
 }
 
-/// The tables of a report that are its answer.
+/// Advice, and the tables of a report that are its answer.
 std::string tables_html(const Results& results) {
   std::string html;
+  const Result* advice = find_result(results, "advice");
+  const auto* lines = advice != nullptr ? std::get_if<std::vector<std::string>>(&advice->value.value) : nullptr;
+  for (const std::string& line : lines != nullptr ? *lines : std::vector<std::string>{})
+    html += fmt::format("<p>{}</p>\n", escape_xml(line));
   for (const Result& part : results.parts()) {
     if (part.part != Result::Part::table) continue;
     const Results table = Results().table("", *std::get<std::shared_ptr<const std::vector<Results>>>(part.value.value));
@@ -179,7 +183,8 @@ std::string drawing_of(const DrawnFigure& figure, const std::string& prefix) {
   return html;
 }
 
-std::string figures_html(const std::vector<DrawnFigure>& figures) {
+/// \param room bytes
+std::string figures_html(const std::vector<DrawnFigure>& figures, std::size_t room) {
   std::string html, missing;
   std::size_t number = 0, used = 0;
   for (const DrawnFigure& figure : figures) {
@@ -190,7 +195,7 @@ std::string figures_html(const std::vector<DrawnFigure>& figures) {
     }
     const std::string drawing = drawing_of(figure, fmt::format("f{}-", ++number));
     used += drawing.size();
-    if (drawing.empty() || used > most_figure_bytes) {
+    if (drawing.empty() || used > room) {
       used -= drawing.size();
       missing += fmt::format("<li>{}: no room is left on this page; its files hold it</li>\n", escape_xml(figure.name));
       continue;
@@ -238,9 +243,12 @@ std::string result_page_html(const ResultPage& page) {
   body += section("case", "What was asked", folded("The case with all its keys (TOML)", page.case_text));
   body += section("effects", "What acts", effects_html(page.results));
   body += section("motion", "Motion", players_html(page.figures));
-  body += section("figures", "Figures", figures_html(page.figures));
-  body += section("repeat", "How to repeat it", repeat_html(page));
-  body += section("report", "Report", folded("All that the program printed", page.report));
+  const std::string end = section("repeat", "How to repeat it", repeat_html(page)) +
+                          section("report", "Report", folded("All that the program printed", page.report));
+  constexpr std::size_t reserve = 50'000;  // of the style sheet, headings and captions
+  const std::size_t used = body.size() + end.size() + reserve;
+  body += section("figures", "Figures", figures_html(page.figures, most_page_bytes - std::min(most_page_bytes, used)));
+  body += end;
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n"

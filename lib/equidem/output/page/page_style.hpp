@@ -51,7 +51,7 @@ dd { margin: 0; }
 .quality .unit { font-size: inherit; }
 sup { line-height: 0; }
 ul { margin: 0; padding: 0; list-style: none; }
-.trust li { display: grid; grid-template-columns: 1.6rem 11rem 1fr; gap: 0 0.6rem; padding: 0.45rem 0;
+.trust li { display: grid; grid-template-columns: 1.6rem 12.5rem 1fr; gap: 0 0.6rem; padding: 0.45rem 0;
   border-bottom: 1px solid var(--line); }
 .trust b { font-weight: 600; }
 .trust em { grid-column: 3; color: var(--soft); }
@@ -77,7 +77,7 @@ summary { cursor: pointer; color: var(--accent); }
 pre { margin: 0.7rem 0 0.3rem; overflow-x: auto; font: 0.82rem/1.5 ui-monospace, monospace; }
 .table, .command { margin: 0; padding: 0.8rem 1rem; background: var(--card); border: 1px solid var(--line);
   border-radius: 8px; }
-.answers + .table { margin-top: 1rem; }
+section > .table { margin-top: 1rem; }
 code { font-family: ui-monospace, monospace; font-size: 0.9em; }
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); gap: 1.2rem; align-items: start; }
 figure { margin: 0; }
