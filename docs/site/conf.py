@@ -49,8 +49,7 @@ html_show_sphinx = False
 html_show_search_summary = False  # it would fetch pages, which browsers refuse where there is no server
 pygments_style = "tango"
 pygments_dark_style = "monokai"
-copybutton_prompt_text = r">>> |\.\.\. |\$ "
-copybutton_prompt_is_regexp = True
+copybutton_selector = "div:not(.highlight-text) > div.highlight > pre"  # not output
 
 mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_SVG"
 mathjax2_config = {

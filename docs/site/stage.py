@@ -93,7 +93,6 @@ class Stage:
             return target
         path, _, fragment = target.partition("#")
         wanted = posixpath.normpath(posixpath.join(posixpath.dirname(name), path))
-        mark = "#" + fragment if fragment else ""
         if wanted == "README.md":
             place_of = "index.md"
         elif wanted in self.pages:

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# build_site.sh SOURCE BUILD: the site without a warning, or one line that begins with "skipped: ".
+# build_site.sh SOURCE BUILD: the site without a warning or a broken link, or one line that begins with "skipped: ".
 set -euo pipefail
 for module in sphinx myst_parser furo breathe sphinx_copybutton; do
   if ! /usr/bin/python3 -c "import $module" 2>/dev/null; then
@@ -13,3 +13,4 @@ if ! command -v doxygen >/dev/null; then
   exit 0
 fi
 "$1/docs/site/build" "$2" "$2/docs/site"
+/usr/bin/python3 -B "$1/tests/docs/check_site.py" "$2/docs/site"
