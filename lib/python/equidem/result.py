@@ -5,12 +5,15 @@ from __future__ import annotations
 
 import html
 import os
-from collections.abc import Callable, Iterator, Mapping
+import re
+import tempfile
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from . import _core
     from .assembly import Assembly
 
 from .errors import BadInput
@@ -34,13 +37,13 @@ class Result(Mapping[str, Any]):
     """
 
     def __init__(self, values: Mapping[str, Any], arrays: Mapping[str, tuple[Any, str]] = {},
-                 assembly: Assembly | None = None, page: Callable[[], str] | None = None) -> None:
+                 assembly: Assembly | None = None, delivered: _core.Delivered | None = None) -> None:
         own = dict(values)
         self.units: dict[str, str] = own.pop("units", {})
         self.labels: dict[str, str] = own.pop("labels", {})
         self.report: str = own.pop("report", "")
         self.assembly = assembly
-        self._page = page
+        self._delivered = delivered
         self._plain: dict[str, Any] = own
         self._arrays: dict[str, Any] = {}
         nested: dict[str, dict[str, tuple[Any, str]]] = {}
@@ -56,6 +59,9 @@ class Result(Mapping[str, Any]):
         for name, parts in nested.items():
             inner = own.get(name, {})
             self._arrays[name] = self._values[name] = Result(inner if isinstance(inner, Mapping) else {}, parts)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_delivered": None}
 
     def __getitem__(self, name: str) -> Any:
         return self._values[name]
@@ -85,20 +91,22 @@ class Result(Mapping[str, Any]):
         """Write the result as one HTML page that needs nothing else: the answer with its error, the case, what acts, figures,
         warnings and the way to repeat it.
 
-        It is the page that the verb writes with ``out="folder"``. Where the verb was carried out without a folder it is
-        carried out once more for the files of the figures: give long runs a folder.
+        It is the page that the verb writes with ``out="folder"``; the figures are drawn now.
 
         Raises
         ------
         BadInput
-            Where the file exists and `overwrite` is false, and where the result is only a part of one.
+            Where the file exists and `overwrite` is false, and where the result is only a part of one, or was unpickled.
         """
-        if self._page is None:
-            raise BadInput("this result has no page", "pages are of the results of whole verbs",
+        if self._delivered is None:
+            raise BadInput("this result has no page", "pages are of the results of whole verbs, before they are pickled",
                            "Save the page of what solve, homogenize, run, ... returned")
         if not overwrite and os.path.exists(path):
             raise BadInput(f"'{os.fspath(path)}' exists", "it would be lost", "Choose another name, or give overwrite=True")
-        text = self._page()
+        with tempfile.TemporaryDirectory(prefix="equidem_") as folder:
+            text = self._delivered.page(folder)
+        # The name of an assembly in memory is that of no file.
+        text = re.sub(r"(&quot;)?[^ &\n]*assembly#\d+(&quot;)?", "&quot;assembly.json&quot;", text)
         with open(path, "w", encoding="utf-8") as file:
             file.write(text)
 

@@ -15,7 +15,18 @@
 namespace equidem::python {
 namespace {
 
-/// Carry out a verb. Returns (JSON of the result, arrays, assembly or None).
+/// A result as it was delivered, which a page can be made of.
+struct Delivered {
+  Delivery delivery;
+
+  /// The page; its case and figures are written into the folder.
+  [[nodiscard]] std::string page(const std::string& folder) const {
+    const LongWork working;
+    return delivery.page_drawn_in(folder);
+  }
+};
+
+/// Carry out a verb. Returns (JSON of the result, arrays, assembly or None, Delivered).
 py::tuple run_verb(const std::string& verb, const std::string& case_text, const std::string& case_file,
                    const std::shared_ptr<Assembly>& assembly, std::vector<std::string> overrides,
                    const std::vector<std::string>& options) {
@@ -27,7 +38,9 @@ py::tuple run_verb(const std::string& verb, const std::string& case_text, const 
     delivery = VerbRun(verb, inputs.case_file(), inputs.overrides(), options)(Arrays::wanted);
     json = delivery.json();
   }
-  return py::make_tuple(json, arrays_of(delivery.arrays), std::const_pointer_cast<Assembly>(delivery.assembly));
+  const py::dict arrays = arrays_of(delivery.arrays);
+  const auto made = std::const_pointer_cast<Assembly>(delivery.assembly);
+  return py::make_tuple(json, arrays, made, Delivered{std::move(delivery)});
 }
 
 }  // namespace
@@ -50,6 +63,7 @@ py::dict arrays_of(const std::vector<ResultArray>& arrays) {
 }
 
 void bind_verbs(py::module_& module) {
+  py::class_<Delivered>(module, "Delivered").def("page", &Delivered::page);
   module.def("run_verb", run_verb);
   module.def("case_reference", case_file_page);
 }
